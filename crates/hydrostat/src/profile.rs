@@ -1,0 +1,289 @@
+//! A quantity given along the arm, with its slope and curvature.
+
+use crate::arm::ArmError;
+
+/// A quantity along the reference arc length `s` in [0, L], base to tip.
+///
+/// ```
+/// use hydrostat::Profile;
+///
+/// let radius = Profile::linear(0.010, 0.002);
+/// let middle = radius.at(0.1, 0.2); // s = 0.1 m on an arm of 0.2 m
+/// assert!((middle.value - 0.006).abs() < 1e-15);
+/// assert!((middle.slope + 0.04).abs() < 1e-15);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub enum Profile {
+    /// The same everywhere.
+    Constant(f64),
+    /// Linear from base (s = 0) to tip (s = L).
+    Linear {
+        /// Value at s = 0.
+        base: f64,
+        /// Value at s = L.
+        tip: f64,
+    },
+    /// Monotone piecewise cubic through given points.
+    Table(Table),
+}
+
+/// Value and derivatives of a [`Profile`] at one place.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sample {
+    /// The value, in the unit of the profile.
+    pub value: f64,
+    /// First derivative in s, per metre.
+    pub slope: f64,
+    /// Second derivative in s, per square metre. At a knot of a table, where it jumps, the value
+    /// to the right.
+    pub curvature: f64,
+}
+
+impl Profile {
+    /// A profile that is `base` at s = 0 and `tip` at s = L, linear between.
+    pub fn linear(base: f64, tip: f64) -> Self {
+        Self::Linear { base, tip }
+    }
+
+    /// A monotone piecewise cubic through `points`, each `[s in m, value]`.
+    ///
+    /// # Errors
+    /// [`TableError`] when there are fewer than two points, one is not finite, or `s` does not increase.
+    pub fn table(points: &[[f64; 2]]) -> Result<Self, TableError> {
+        Table::new(points).map(Self::Table)
+    }
+
+    /// Value, slope and curvature at `s` (m) on an arm of length `length` (m).
+    pub fn at(&self, s: f64, length: f64) -> Sample {
+        match self {
+            Self::Constant(value) => Sample { value: *value, slope: 0.0, curvature: 0.0 },
+            Self::Linear { base, tip } => {
+                let slope = (tip - base) / length;
+                Sample { value: base + slope * s, slope, curvature: 0.0 }
+            }
+            Self::Table(table) => table.at(s),
+        }
+    }
+
+    /// The places strictly inside (0, length) where the curvature jumps: the knots of a table.
+    pub fn knots(&self) -> &[f64] {
+        match self {
+            Self::Table(table) => &table.s[1..table.s.len() - 1],
+            _ => &[],
+        }
+    }
+
+    /// Smallest and largest value on [0, `upto`] (m), exact because every kind of profile is
+    /// monotone between its knots.
+    pub fn range(&self, upto: f64, length: f64) -> (f64, f64) {
+        let inner = self.knots().iter().copied().filter(|s| *s < upto);
+        std::iter::once(0.0)
+            .chain(inner)
+            .chain(std::iter::once(upto))
+            .map(|s| self.at(s, length).value)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
+    }
+
+    /// Whether it is zero everywhere.
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Self::Constant(v) => *v == 0.0,
+            Self::Linear { base, tip } => *base == 0.0 && *tip == 0.0,
+            Self::Table(t) => t.value.iter().all(|v| *v == 0.0),
+        }
+    }
+
+    /// This profile with every value multiplied by `factor` and every place by `stretch`.
+    pub fn scaled(&self, factor: f64, stretch: f64) -> Self {
+        match self {
+            Self::Constant(v) => Self::Constant(v * factor),
+            Self::Linear { base, tip } => Self::Linear { base: base * factor, tip: tip * factor },
+            Self::Table(t) => Self::Table(Table {
+                s: t.s.iter().map(|s| s * stretch).collect(),
+                value: t.value.iter().map(|v| v * factor).collect(),
+                slope: t.slope.iter().map(|d| d * factor / stretch).collect(),
+            }),
+        }
+    }
+
+    /// Refuses values that are not finite and tables that do not cover [0, `length`].
+    pub(crate) fn check(&self, key: &str, length: f64) -> Result<(), ArmError> {
+        let finite = match self {
+            Self::Constant(v) => v.is_finite(),
+            Self::Linear { base, tip } => base.is_finite() && tip.is_finite(),
+            Self::Table(_) => true,
+        };
+        if !finite {
+            return Err(ArmError::NotFinite { key: key.to_owned() });
+        }
+        if let Self::Table(table) = self {
+            let (from, to) = (table.s[0], table.s[table.s.len() - 1]);
+            let slack = 1e-9 * length;
+            if from.abs() > slack || (to - length).abs() > slack {
+                return Err(ArmError::TableDoesNotCover { key: key.to_owned(), from, to, length });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl From<f64> for Profile {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+/// Points joined by a monotone piecewise cubic (Fritsch and Carlson 1980; Fritsch and Butland 1984
+/// for the weighted harmonic mean), with the slopes of SciPy's `PchipInterpolator`, end slopes included.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    s: Vec<f64>,
+    value: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+/// Why points do not make a [`Table`].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TableError {
+    /// Fewer than two points.
+    #[error("a table needs at least two points [s, value], found {found}")]
+    TooShort {
+        /// How many there were.
+        found: usize,
+    },
+    /// A number that is NaN or infinite.
+    #[error("point {index} of the table, [{s}, {value}], is not finite")]
+    NotFinite {
+        /// Which point, from 0.
+        index: usize,
+        /// Its place.
+        s: f64,
+        /// Its value.
+        value: f64,
+    },
+    /// Places that do not increase.
+    #[error("the places of a table must increase: point {index} at s = {s} follows s = {previous}")]
+    NotIncreasing {
+        /// Which point, from 0.
+        index: usize,
+        /// Its place.
+        s: f64,
+        /// The place before it.
+        previous: f64,
+    },
+}
+
+impl Table {
+    /// Builds the interpolant through `points`, each `[s in m, value]`.
+    ///
+    /// # Errors
+    /// See [`TableError`].
+    pub fn new(points: &[[f64; 2]]) -> Result<Self, TableError> {
+        if points.len() < 2 {
+            return Err(TableError::TooShort { found: points.len() });
+        }
+        for (index, &[s, value]) in points.iter().enumerate() {
+            if !s.is_finite() || !value.is_finite() {
+                return Err(TableError::NotFinite { index, s, value });
+            }
+            if index > 0 && s <= points[index - 1][0] {
+                return Err(TableError::NotIncreasing { index, s, previous: points[index - 1][0] });
+            }
+        }
+        let s: Vec<f64> = points.iter().map(|p| p[0]).collect();
+        let value: Vec<f64> = points.iter().map(|p| p[1]).collect();
+        let slope = pchip_slopes(&s, &value);
+        Ok(Self { s, value, slope })
+    }
+
+    /// The points, as `[s, value]`.
+    pub fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.s.iter().zip(&self.value).map(|(s, v)| [*s, *v])
+    }
+
+    fn at(&self, s: f64) -> Sample {
+        let last = self.s.len() - 2;
+        let i = self.s.partition_point(|knot| *knot <= s).saturating_sub(1).min(last);
+        let h = self.s[i + 1] - self.s[i];
+        let chord = (self.value[i + 1] - self.value[i]) / h;
+        let c2 = (3.0 * chord - 2.0 * self.slope[i] - self.slope[i + 1]) / h;
+        let c3 = (self.slope[i] + self.slope[i + 1] - 2.0 * chord) / (h * h);
+        let t = s - self.s[i];
+        Sample {
+            value: self.value[i] + t * (self.slope[i] + t * (c2 + t * c3)),
+            slope: self.slope[i] + t * (2.0 * c2 + 3.0 * t * c3),
+            curvature: 2.0 * c2 + 6.0 * t * c3,
+        }
+    }
+}
+
+fn pchip_slopes(s: &[f64], value: &[f64]) -> Vec<f64> {
+    let n = s.len();
+    let h: Vec<f64> = s.windows(2).map(|w| w[1] - w[0]).collect();
+    let chord: Vec<f64> = value.windows(2).zip(&h).map(|(v, h)| (v[1] - v[0]) / h).collect();
+    if n == 2 {
+        return vec![chord[0]; 2];
+    }
+    let mut slope = vec![0.0; n];
+    for i in 1..n - 1 {
+        let (before, after) = (chord[i - 1], chord[i]);
+        if before * after > 0.0 {
+            let (w1, w2) = (2.0 * h[i] + h[i - 1], h[i] + 2.0 * h[i - 1]);
+            slope[i] = (w1 + w2) / (w1 / before + w2 / after);
+        }
+    }
+    slope[0] = end_slope(h[0], h[1], chord[0], chord[1]);
+    slope[n - 1] = end_slope(h[n - 2], h[n - 3], chord[n - 2], chord[n - 3]);
+    slope
+}
+
+/// One-sided three-point slope at an end, limited so that the cubic stays monotone.
+fn end_slope(h0: f64, h1: f64, chord0: f64, chord1: f64) -> f64 {
+    let slope = ((2.0 * h0 + h1) * chord0 - h0 * chord1) / (h0 + h1);
+    if slope * chord0 <= 0.0 {
+        0.0
+    } else if chord0 * chord1 <= 0.0 && slope.abs() > 3.0 * chord0.abs() {
+        3.0 * chord0
+    } else {
+        slope
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// SciPy 1.11 `PchipInterpolator([0, 1, 3, 4], [0, 2, 3, 1])` at the points and its slopes.
+    #[test]
+    fn slopes_are_those_of_scipy() {
+        let Profile::Table(t) = Profile::table(&[[0.0, 0.0], [1.0, 2.0], [3.0, 3.0], [4.0, 1.0]]).unwrap() else {
+            unreachable!()
+        };
+        // End: ((2*1+2)*2 - 1*0.5)/3 = 2.5; inner: (5+4)/(5/2+4/0.5) = 6/7; turn: 0;
+        // end: ((2*1+2)*(-2) - 1*0.5)/3 = -17/6.
+        for (got, want) in t.slope.iter().zip([2.5, 6.0 / 7.0, 0.0, -17.0 / 6.0]) {
+            assert!((got - want).abs() < 1e-14, "{got} {want}");
+        }
+    }
+
+    #[test]
+    fn derivatives_match_differences() {
+        let p = Profile::table(&[[0.0, 1.0], [0.3, 1.5], [0.7, 1.6], [1.0, 3.0]]).unwrap();
+        for s in [0.05, 0.41, 0.93] {
+            let d = 1e-6;
+            let (lo, hi) = (p.at(s - d, 1.0), p.at(s + d, 1.0));
+            assert!(((hi.value - lo.value) / (2.0 * d) - p.at(s, 1.0).slope).abs() < 1e-8);
+            assert!(((hi.slope - lo.slope) / (2.0 * d) - p.at(s, 1.0).curvature).abs() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn bad_tables_are_refused_with_their_numbers() {
+        assert_eq!(Table::new(&[[0.0, 1.0]]), Err(TableError::TooShort { found: 1 }));
+        assert_eq!(
+            Table::new(&[[0.0, 1.0], [0.0, 2.0]]),
+            Err(TableError::NotIncreasing { index: 1, s: 0.0, previous: 0.0 })
+        );
+        assert!(matches!(Table::new(&[[0.0, f64::NAN], [1.0, 2.0]]), Err(TableError::NotFinite { .. })));
+    }
+}

@@ -1,0 +1,127 @@
+//! The options of the model: where the source can be read in more than one way.
+//!
+//! Each default is the reading that is physically consistent and smooth. Each alternative changes
+//! one thing, so that a reader of the source can see what it does.
+
+/// How a section swells: the section stretch `beta` as a function of the stretch `nu`, (15) and (16).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Volume {
+    /// beta = 1/nu: (15) and (16) read literally, planar determinant, mean over the section.
+    #[default]
+    Planar,
+    /// beta = nu^(-1/2): a round section that keeps its true volume, nu beta^2 = 1.
+    Circular,
+    /// beta = 1: the classical rod, and every textbook check.
+    None,
+}
+
+/// The surface whose tangent and normal direct the loads of the stream, (7)-(10).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum FlowSurface {
+    /// The centreline's tangent and normal.
+    #[default]
+    Centreline,
+    /// Those of the windward lateral surface, "tangent vector to the arm surface". The windward
+    /// side can change, and there the load jumps.
+    Lateral,
+}
+
+/// The entering speed of (8), which has no subscript in the source.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum EnteringSpeed {
+    /// V_in = V_tin: f_t = S (V_t^2 + 2 V_t V_n).
+    #[default]
+    Tangential,
+    /// V_in^2 = V_tin^2 + V_nin^2: f_t = S (V_t + V_n)^2. Leaves a force along the arm at normal
+    /// incidence, whose sign jumps there.
+    Resultant,
+}
+
+/// Which mean of the layer profile (7) enters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum LayerMean {
+    /// The mean of the speed: V_tin = 2/3 v_t_inf.
+    #[default]
+    Speed,
+    /// The root of the mean square: V_tin = sqrt(8/15) v_t_inf.
+    Momentum,
+}
+
+impl LayerMean {
+    /// V_tin / v_t_inf.
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::Speed => 2.0 / 3.0,
+            Self::Momentum => (8.0_f64 / 15.0).sqrt(),
+        }
+    }
+}
+
+/// The length on which the stream acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum WettedLength {
+    /// ds is the undeformed length.
+    #[default]
+    Reference,
+    /// S times |r'|: it is the deformed arm that is wet.
+    Deformed,
+}
+
+/// Which part of weight and buoyancy acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Hydrostatics {
+    /// The whole of it.
+    #[default]
+    Archimedes,
+    /// Its part along the centreline's normal: (9) and (10) act along u_n only.
+    NormalOnly,
+}
+
+/// The conditions at the base.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Support {
+    /// Place and angle of the base section are given; the tip carries the tip loads.
+    #[default]
+    Clamped,
+    /// nu = beta = 1, eta = mu = 0 at the base, integrated to the tip, whose balance is then left
+    /// unmet: the source's closing line read as conditions on the solution.
+    UnstrainedBase,
+}
+
+/// All readings together. `Readings::default()` is the consistent one, [`Readings::LITERAL`] the
+/// source word by word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Readings {
+    /// Section stretch.
+    pub volume: Volume,
+    /// Surface that directs the flow loads.
+    pub flow_surface: FlowSurface,
+    /// Entering speed.
+    pub entering_speed: EnteringSpeed,
+    /// Mean over the layer.
+    pub layer_mean: LayerMean,
+    /// Wetted length.
+    pub wetted_length: WettedLength,
+    /// Hydrostatic part.
+    pub hydrostatics: Hydrostatics,
+    /// Support.
+    pub support: Support,
+}
+
+impl Readings {
+    /// `closure = "literal"`: lateral, resultant, speed, reference, normal-only, planar, clamped.
+    pub const LITERAL: Self = Self {
+        volume: Volume::Planar,
+        flow_surface: FlowSurface::Lateral,
+        entering_speed: EnteringSpeed::Resultant,
+        layer_mean: LayerMean::Speed,
+        wetted_length: WettedLength::Reference,
+        hydrostatics: Hydrostatics::NormalOnly,
+        support: Support::Clamped,
+    };
+
+    /// Whether the load of the stream can jump with the motion under these readings.
+    pub fn load_can_jump(&self) -> bool {
+        self.flow_surface == FlowSurface::Lateral || self.entering_speed == EnteringSpeed::Resultant
+    }
+}
