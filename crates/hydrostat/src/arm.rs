@@ -397,7 +397,9 @@ impl Arm {
             [c1, c2, c3].into_iter().for_each(&mut add);
         }
         [&self.reference.nu, &self.reference.eta, &self.reference.mu].into_iter().for_each(&mut add);
-        [&self.distributed.force[0], &self.distributed.force[1], &self.distributed.couple].into_iter().for_each(&mut add);
+        [&self.distributed.force[0], &self.distributed.force[1], &self.distributed.couple]
+            .into_iter()
+            .for_each(&mut add);
         for cable in &self.cables {
             add(&cable.offset);
         }
@@ -526,10 +528,8 @@ impl Arm {
                 at.extend(p.knots().iter().copied().filter(|s| *s < upto));
             }
             at.sort_by(f64::total_cmp);
-            let between: Vec<f64> = at
-                .windows(2)
-                .flat_map(|w| (1..16).map(move |k| w[0] + (w[1] - w[0]) * f64::from(k) / 16.0))
-                .collect();
+            let between: Vec<f64> =
+                at.windows(2).flat_map(|w| (1..16).map(move |k| w[0] + (w[1] - w[0]) * f64::from(k) / 16.0)).collect();
             at.extend(between);
         }
         debug_assert!(upto <= self.length * (1.0 + 1e-12));

@@ -1,0 +1,147 @@
+//! Why there is no answer, with numbers.
+
+use crate::configuration::Configuration;
+
+/// Which physical limit was met on the way from the unloaded arm to the loads asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum VerdictKind {
+    /// nu - y_i beta mu reaches zero: a cable folds its side of the arm shut.
+    CableFold,
+    /// Net compression crushes the section: nu reaches zero (volume law `none`).
+    SectionCrushed,
+    /// The section law has no strains that carry the contact force: in tension a `planar` section
+    /// softens past nu = 2, a `circular` one saturates.
+    NoSectionSolution,
+    /// The equilibrium path turns back: past this load the equilibrium does not exist.
+    LimitPoint,
+    /// The load of the stream jumps against the motion, so that no shape balances it.
+    LoadJump,
+    /// None of these was established: the solver gave up.
+    NotFound,
+}
+
+impl VerdictKind {
+    /// The name in results: `cable_fold`, `limit_point` and so on.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CableFold => "cable_fold",
+            Self::SectionCrushed => "section_crushed",
+            Self::NoSectionSolution => "no_section_solution",
+            Self::LimitPoint => "limit_point",
+            Self::LoadJump => "load_jump",
+            Self::NotFound => "not_found",
+        }
+    }
+}
+
+/// The two phases in which loads are raised from the unloaded arm: first everything but the
+/// cables, then the cables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Phase {
+    /// Stream, weight, tip and distributed loads are multiplied by the load fraction; cables are slack.
+    Loads,
+    /// All other loads are whole; tensions are multiplied by the load fraction.
+    Tension,
+}
+
+impl Phase {
+    /// The name in results: `loads` or `tension`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Loads => "loads",
+            Self::Tension => "tension",
+        }
+    }
+}
+
+/// Why there is no equilibrium, or why none was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// Which limit.
+    pub kind: VerdictKind,
+    /// In which phase of loading.
+    pub phase: Phase,
+    /// The part of the phase's loads at which it was met, 0 to 1.
+    pub load_fraction: f64,
+    /// Where along the arm (m), if the limit is local.
+    pub s: Option<f64>,
+    /// What was left unbalanced when the solver stopped: the largest Newton correction, in rad.
+    pub residual: f64,
+}
+
+impl Verdict {
+    /// What happened, in a sentence with its numbers.
+    pub fn message(&self) -> String {
+        let place = self.s.map_or_else(String::new, |s| format!(" at s = {:.4} m", s));
+        let load = match self.phase {
+            Phase::Loads => format!("{:.6} of the stream, weight and tip loads (cables slack)", self.load_fraction),
+            Phase::Tension => format!("{:.6} of the tensions (all other loads whole)", self.load_fraction),
+        };
+        match self.kind {
+            VerdictKind::CableFold => format!("a cable folds its side of the arm shut{place}, at {load}"),
+            VerdictKind::SectionCrushed => format!("net compression crushes the section{place}, at {load}"),
+            VerdictKind::NoSectionSolution => {
+                format!("no section strains carry the contact force{place}, at {load}")
+            }
+            VerdictKind::LimitPoint => {
+                format!("the equilibrium ends in a limit point at {load}: the arm would snap to another shape")
+            }
+            VerdictKind::LoadJump => format!(
+                "the load of the stream jumps against the motion{place}, at {load}: no shape balances it in this reading"
+            ),
+            VerdictKind::NotFound => format!(
+                "no equilibrium was found past {load}, and no physical limit was established (last correction {:.1e} rad)",
+                self.residual
+            ),
+        }
+    }
+
+    /// What to try.
+    pub fn advice(&self) -> &'static str {
+        match self.kind {
+            VerdictKind::CableFold => {
+                "lower the tension, move the cable towards the centreline near that place, or stiffen the section there"
+            }
+            VerdictKind::SectionCrushed => "lower the tensions or stiffen the section; `none` keeps no volume",
+            VerdictKind::NoSectionSolution => {
+                "lower the stream or the pull, or stiffen the section: the law softens in tension (planar: peak at nu = 2)"
+            }
+            VerdictKind::LimitPoint => "stay below that load, or change the order in which loads are applied",
+            VerdictKind::LoadJump => {
+                "use `flow_surface = \"centreline\"` and `entering_speed = \"tangential\"`, the smooth readings"
+            }
+            VerdictKind::NotFound => "loosen the tolerance, or lower the loads and raise them in steps",
+        }
+    }
+}
+
+/// Why a solve gives no configuration at the loads asked for.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum SolveError {
+    /// The numbers do not make an arm.
+    #[error(transparent)]
+    Arm(#[from] crate::arm::ArmError),
+    /// An option out of range.
+    #[error("`{option}` must be {expected}, found {value}")]
+    Option {
+        /// Which option.
+        option: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// There is no such equilibrium, or it was not found.
+    #[error("{}", .0.verdict.message())]
+    NoEquilibrium(Box<NoEquilibrium>),
+}
+
+/// A verdict with the last configuration before it.
+#[derive(Debug, Clone)]
+pub struct NoEquilibrium {
+    /// Why.
+    pub verdict: Verdict,
+    /// The last good solution on the way, its `arm` carrying the loads that it balances.
+    /// `None` only when not even the first step off the unloaded arm could be solved.
+    pub last_good: Option<Configuration>,
+}
