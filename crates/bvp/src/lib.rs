@@ -1,1 +1,10 @@
 //! Two-point boundary-value problems.
+pub mod collocation;
+pub mod gauss;
+pub mod mesh;
+pub mod problem;
+mod block;
+pub use collocation::{Collocation, Correction, Determinant, RoundError, Singular, Solution};
+pub use gauss::Gauss;
+pub use mesh::{Limits, Mesh};
+pub use problem::{Condition, Local, Problem};

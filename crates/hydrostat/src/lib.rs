@@ -1,7 +1,15 @@
 //! The static shape of a soft arm under water.
 
 pub mod arm;
+mod cable;
 pub mod configuration;
+mod equilibrium;
+mod flow;
+mod loads;
+mod real;
+mod section;
+mod solve;
+mod swelling;
 pub mod profile;
 pub mod readings;
 pub mod verdict;

@@ -1,0 +1,691 @@
+//! Gauss collocation: linearisation, condensation of the stages, and the sweep over the nodes.
+//!
+//! The unknowns of an element are the slopes at its `M` stages; they are eliminated element by
+//! element, which leaves `z_{i+1} = G_i z_i + g_i` between nodes. The conditions at s = 1 are then
+//! carried from node to node towards s = 0 as rows `C_i z_i = d_i`, reduced with pivoting at every
+//! node. Carrying rows (rather than solutions) is what keeps problems with both fast growing and
+//! fast decaying solutions stable, where shooting from either end overflows.
+
+use crate::block::{Block, apply, inverse, product, subtract_product};
+use crate::gauss::Gauss;
+use crate::mesh::Mesh;
+use crate::problem::{Condition, Local, Problem};
+
+/// A discrete solution: states at the nodes and slopes at the stages.
+#[derive(Debug, Clone)]
+pub struct Solution<const N: usize, const M: usize> {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// States at the nodes.
+    pub nodes: Vec<[f64; N]>,
+    /// Slopes at the stages of each element.
+    pub slopes: Vec<[[f64; N]; M]>,
+}
+
+impl<const N: usize, const M: usize> Solution<N, M> {
+    /// The state `z` everywhere.
+    pub fn constant(mesh: Mesh, z: [f64; N]) -> Self {
+        let n = mesh.elements();
+        Self { mesh, nodes: vec![z; n + 1], slopes: vec![[[0.0; N]; M]; n] }
+    }
+
+    /// State at `s` from the collocation polynomial of element `i`.
+    pub fn state_in(&self, gauss: &Gauss<M>, i: usize, s: f64) -> [f64; N] {
+        let h = self.mesh.step(i);
+        let w = gauss.integrals((s - self.mesh.nodes()[i]) / h);
+        let mut z = self.nodes[i];
+        for j in 0..M {
+            for a in 0..N {
+                z[a] += h * w[j] * self.slopes[i][j][a];
+            }
+        }
+        z
+    }
+
+    /// The solution carried over to another mesh by its polynomials.
+    pub fn on(&self, gauss: &Gauss<M>, mesh: Mesh) -> Self {
+        let nodes: Vec<[f64; N]> =
+            mesh.nodes().iter().map(|s| self.state_in(gauss, self.mesh.element_of(*s), *s)).collect();
+        let slopes = (0..mesh.elements())
+            .map(|i| {
+                let (s, h) = (mesh.nodes()[i], mesh.step(i));
+                let mut k = [[0.0; N]; M];
+                for j in 0..M {
+                    let at = s + h * gauss.c[j];
+                    let e = self.mesh.element_of(at);
+                    let l = gauss.cardinals((at - self.mesh.nodes()[e]) / self.mesh.step(e));
+                    for m in 0..M {
+                        for a in 0..N {
+                            k[j][a] += l[m] * self.slopes[e][m][a];
+                        }
+                    }
+                }
+                k
+            })
+            .collect();
+        Self { mesh, nodes, slopes }
+    }
+
+    /// This solution's polynomials sampled as a solution with `K` stages on the same mesh.
+    pub fn with_stages<const K: usize>(&self, from: &Gauss<M>, to: &Gauss<K>) -> Solution<N, K> {
+        let mut slopes = vec![[[0.0; N]; K]; self.slopes.len()];
+        for k in 0..K {
+            let l = from.cardinals(to.c[k]);
+            for (out, own) in slopes.iter_mut().zip(&self.slopes) {
+                for m in 0..M {
+                    for a in 0..N {
+                        out[k][a] += l[m] * own[m][a];
+                    }
+                }
+            }
+        }
+        Solution { mesh: self.mesh.clone(), nodes: self.nodes.clone(), slopes }
+    }
+}
+
+/// One element after its stages are eliminated.
+#[derive(Debug, Clone, Copy)]
+struct Element<const N: usize, const M: usize> {
+    /// d (stage slopes) / d z_i.
+    response: [Block<N>; M],
+    /// Stage slopes due to the residual (row 0) and to the parameter (row 1), as columns 0 and 1.
+    load: [Block<N>; M],
+    /// Transition `dz_{i+1} = g dz_i + affine[0] + affine[1] dlambda`.
+    transition: Block<N>,
+    affine: [[f64; N]; 2],
+}
+
+/// The right conditions carried to a node, reduced: `z[pivot[r]] + sum_free rows[r][free] z[free] = load[r]`.
+#[derive(Debug, Clone, Copy)]
+struct Rows<const N: usize> {
+    rows: Block<N>,
+    load: [[f64; 2]; N],
+    pivot: [usize; N],
+    /// Reduced = `undo`^-1 times carried; kept for the adjoint.
+    reduction: Block<N>,
+}
+
+/// Why a linear system could not be solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Singular {
+    /// The stages of an element cannot be eliminated: it is too long for its fastest solution.
+    Element(usize),
+    /// The end conditions do not determine the solution.
+    System,
+}
+
+/// Why a Newton round has no correction.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RoundError<F> {
+    /// The problem has no slopes at this state.
+    Slopes(F),
+    /// The linear system is singular.
+    Singular(Singular),
+}
+
+/// A Newton correction, or a tangent.
+#[derive(Debug, Clone)]
+pub struct Correction<const N: usize, const M: usize, const Q: usize> {
+    /// At the nodes.
+    pub nodes: Vec<[f64; N]>,
+    /// At the stages, of the slopes.
+    pub slopes: Vec<[[f64; N]; M]>,
+    /// Of the quadratures over [0, 1].
+    pub total: [f64; Q],
+}
+
+impl<const N: usize, const M: usize, const Q: usize> Default for Correction<N, M, Q> {
+    fn default() -> Self {
+        Self { nodes: Vec::new(), slopes: Vec::new(), total: [0.0; Q] }
+    }
+}
+
+impl<const N: usize, const M: usize, const Q: usize> Correction<N, M, Q> {
+    /// Largest change of component `a` at the nodes.
+    pub fn largest(&self, a: usize) -> f64 {
+        self.nodes.iter().fold(0.0, |m, z| if z[a].is_nan() { f64::NAN } else { f64::max(m, z[a].abs()) })
+    }
+}
+
+/// The sign and size of the determinant of the shooting matrix: of the conditions at s = 1 by the
+/// states that the conditions at s = 0 leave free. It does not depend on the mesh, changes sign
+/// where two solutions meet or cross, and is what tells branches apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Determinant {
+    /// -1, 0 or 1.
+    pub sign: f64,
+    /// Natural logarithm of the size.
+    pub log: f64,
+}
+
+/// Workspace of a collocation solve with `M` stages: nothing is allocated once the mesh has its size.
+#[derive(Debug, Clone)]
+pub struct Collocation<const N: usize, const M: usize, const Q: usize> {
+    /// The method's points and weights.
+    pub gauss: Gauss<M>,
+    states: Vec<[f64; N]>,
+    locals: Vec<Local<N, Q>>,
+    drifts: Vec<[f64; N]>,
+    elements: Vec<Element<N, M>>,
+    rows: Vec<Rows<N>>,
+    right_count: usize,
+    determinant: Determinant,
+    /// Inverse of the left conditions joined with the rows at node 0.
+    start: Block<N>,
+    left_load: [[f64; 2]; N],
+}
+
+impl<const N: usize, const M: usize, const Q: usize> Default for Collocation<N, M, Q> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
+    /// An empty workspace.
+    pub fn new() -> Self {
+        Self {
+            gauss: Gauss::new(),
+            states: Vec::new(),
+            locals: Vec::new(),
+            drifts: Vec::new(),
+            elements: Vec::new(),
+            rows: Vec::new(),
+            right_count: 0,
+            determinant: Determinant { sign: 0.0, log: 0.0 },
+            start: [[0.0; N]; N],
+            left_load: [[0.0; 2]; N],
+        }
+    }
+
+    /// The stage points of a mesh, in order.
+    pub fn stations(&self, mesh: &Mesh, out: &mut Vec<f64>) {
+        out.clear();
+        for i in 0..mesh.elements() {
+            let (s, h) = (mesh.nodes()[i], mesh.step(i));
+            out.extend(self.gauss.c.iter().map(|c| s + h * c));
+        }
+    }
+
+    /// States at the stages of the last [`Collocation::linearise`].
+    pub fn states(&self) -> &[[f64; N]] {
+        &self.states
+    }
+
+    /// Slopes, rates and gradients at the stages of the last [`Collocation::linearise`].
+    pub fn locals(&self) -> &[Local<N, Q>] {
+        &self.locals
+    }
+
+    /// Determinant at the last [`Collocation::linearise`].
+    pub fn determinant(&self) -> Determinant {
+        self.determinant
+    }
+
+    /// Evaluates the problem at the stages of `solution` without linearising.
+    ///
+    /// # Errors
+    /// Those of [`Problem::slopes`].
+    #[inline(always)]
+    pub fn evaluate<P: Problem<N, Q>>(
+        &mut self,
+        problem: &mut P,
+        solution: &Solution<N, M>,
+    ) -> Result<(), P::Failure> {
+        let n = solution.mesh.elements();
+        self.states.resize(n * M, [0.0; N]);
+        self.locals.resize(n * M, Local::default());
+        for i in 0..n {
+            let (z, k, h) = (&solution.nodes[i], &solution.slopes[i], solution.mesh.step(i));
+            for j in 0..M {
+                let mut out = *z;
+                for l in 0..M {
+                    for a in 0..N {
+                        out[a] += h * self.gauss.a[j][l] * k[l][a];
+                    }
+                }
+                self.states[i * M + j] = out;
+            }
+        }
+        problem.slopes(&self.states, &mut self.locals)
+    }
+
+    /// Evaluates the problem at `solution` and factorises its linearisation. With `parameter`, also
+    /// the response to the problem's parameter.
+    ///
+    /// # Errors
+    /// [`RoundError`].
+    #[inline(always)]
+    pub fn linearise<P: Problem<N, Q>>(
+        &mut self,
+        problem: &mut P,
+        solution: &Solution<N, M>,
+        parameter: bool,
+    ) -> Result<(), RoundError<P::Failure>> {
+        self.evaluate(problem, solution).map_err(RoundError::Slopes)?;
+        let n = solution.mesh.elements();
+        self.drifts.resize(n * M, [0.0; N]);
+        if parameter {
+            problem.drift(&mut self.drifts);
+        }
+        self.condense(solution, parameter).map_err(RoundError::Singular)?;
+        self.carry_rows(problem, solution).map_err(RoundError::Singular)
+    }
+
+    #[inline(always)]
+    fn condense(&mut self, solution: &Solution<N, M>, parameter: bool) -> Result<(), Singular> {
+        let n = solution.mesh.elements();
+        let empty = Element {
+            response: [[[0.0; N]; N]; M],
+            load: [[[0.0; N]; N]; M],
+            transition: [[0.0; N]; N],
+            affine: [[0.0; N]; 2],
+        };
+        self.elements.resize(n, empty);
+        for i in 0..n {
+            let h = solution.mesh.step(i);
+            let k = &solution.slopes[i];
+            let locals = &self.locals[i * M..(i + 1) * M];
+            let drifts = &self.drifts[i * M..(i + 1) * M];
+            let element = &mut self.elements[i];
+            let Element { response, load, .. } = element;
+            for j in 0..M {
+                response[j] = locals[j].jacobian;
+                for a in 0..N {
+                    let row = &mut load[j][a];
+                    *row = [0.0; N];
+                    row[0] = locals[j].slope[a] - k[j][a];
+                    if N > 1 && parameter {
+                        row[1] = drifts[j][a];
+                    }
+                }
+            }
+            if !eliminate(h, &self.gauss, locals, response, load) {
+                return Err(Singular::Element(i));
+            }
+            let mut transition = [[0.0; N]; N];
+            let mut affine = [[0.0; N]; 2];
+            for a in 0..N {
+                transition[a][a] = 1.0;
+                affine[0][a] = solution.nodes[i][a] - solution.nodes[i + 1][a];
+            }
+            for j in 0..M {
+                let w = h * self.gauss.b[j];
+                for a in 0..N {
+                    for c in 0..N {
+                        transition[a][c] += w * response[j][a][c];
+                    }
+                    affine[0][a] += w * (k[j][a] + load[j][a][0]);
+                    if N > 1 {
+                        affine[1][a] += w * load[j][a][1];
+                    }
+                }
+            }
+            element.transition = transition;
+            element.affine = affine;
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn carry_rows<P: Problem<N, Q>>(&mut self, problem: &P, solution: &Solution<N, M>) -> Result<(), Singular> {
+        let n = solution.mesh.elements();
+        let left_count = problem.left_count();
+        let right_count = N - left_count;
+        self.right_count = right_count;
+        let blank = Rows { rows: [[0.0; N]; N], load: [[0.0; 2]; N], pivot: [0; N], reduction: [[0.0; N]; N] };
+        self.rows.resize(n + 1, blank);
+        let mut determinant = Determinant { sign: 1.0, log: 0.0 };
+
+        let mut conditions = [Condition::default(); N];
+        problem.right(&solution.nodes[n], &mut conditions);
+        let mut carried = blank;
+        for r in 0..right_count {
+            carried.rows[r] = conditions[r].gradient;
+            carried.load[r] = [-conditions[r].residual, -conditions[r].drift];
+        }
+        self.rows[n] = reduce(carried, right_count, &mut determinant).ok_or(Singular::System)?;
+        for i in (0..n).rev() {
+            let next = &self.rows[i + 1];
+            let element = &self.elements[i];
+            let mut carried = blank;
+            for r in 0..right_count {
+                let row = &next.rows[r];
+                for b in 0..N {
+                    for c in 0..N {
+                        carried.rows[r][c] += row[b] * element.transition[b][c];
+                    }
+                    carried.load[r][0] -= row[b] * element.affine[0][b];
+                    carried.load[r][1] -= row[b] * element.affine[1][b];
+                }
+                carried.load[r][0] += next.load[r][0];
+                carried.load[r][1] += next.load[r][1];
+            }
+            self.rows[i] = reduce(carried, right_count, &mut determinant).ok_or(Singular::System)?;
+        }
+
+        let mut conditions = [Condition::default(); N];
+        problem.left(&solution.nodes[0], &mut conditions);
+        let mut joined = [[0.0; N]; N];
+        for r in 0..left_count {
+            joined[r] = conditions[r].gradient;
+            self.left_load[r] = [-conditions[r].residual, -conditions[r].drift];
+        }
+        joined[left_count..N].copy_from_slice(&self.rows[0].rows[..right_count]);
+        let (sign, log) = sign_and_log(joined);
+        determinant.sign *= sign;
+        determinant.log += log;
+        self.determinant = determinant;
+        self.start = inverse(joined, 1e-300).ok_or(Singular::System)?;
+        Ok(())
+    }
+
+    /// Solves for column `column` of the loads (0: Newton correction, 1: response to the parameter).
+    #[inline(always)]
+    pub fn solve(&self, solution: &Solution<N, M>, column: usize, out: &mut Correction<N, M, Q>) {
+        let n = solution.mesh.elements();
+        let left_count = N - self.right_count;
+        out.nodes.resize(n + 1, [0.0; N]);
+        out.slopes.resize(n, [[0.0; N]; M]);
+        let mut load = [0.0; N];
+        for r in 0..N {
+            load[r] = if r < left_count {
+                self.left_load[r][column]
+            } else {
+                self.rows[0].load[r - left_count][column]
+            };
+        }
+        out.nodes[0] = apply(&self.start, &load);
+        out.total = [0.0; Q];
+        for i in 0..n {
+            let element = &self.elements[i];
+            let z = out.nodes[i];
+            let mut next = apply(&element.transition, &z);
+            for a in 0..N {
+                next[a] += element.affine[column][a];
+            }
+            // The carried rows, not the transition, decide the components they pivot on: this
+            // stops what grows towards s = 1 from being amplified.
+            let rows = &self.rows[i + 1];
+            let mut pivots = [0.0; N];
+            for r in 0..self.right_count {
+                let mut v = rows.load[r][column];
+                for c in 0..N {
+                    if !rows.pivot[..self.right_count].contains(&c) {
+                        v -= rows.rows[r][c] * next[c];
+                    }
+                }
+                pivots[r] = v;
+            }
+            for r in 0..self.right_count {
+                next[rows.pivot[r]] = pivots[r];
+            }
+            out.nodes[i + 1] = next;
+
+            let h = solution.mesh.step(i);
+            for j in 0..M {
+                let mut k = apply(&element.response[j], &z);
+                for a in 0..N {
+                    k[a] += element.load[j][a][column];
+                }
+                out.slopes[i][j] = k;
+            }
+            for j in 0..M {
+                let mut dz = z;
+                for l in 0..M {
+                    for a in 0..N {
+                        dz[a] += h * self.gauss.a[j][l] * out.slopes[i][l][a];
+                    }
+                }
+                let local = &self.locals[i * M + j];
+                for q in 0..Q {
+                    let mut rate = 0.0;
+                    for a in 0..N {
+                        rate += local.rate_gradient[q][a] * dz[a];
+                    }
+                    out.total[q] += h * self.gauss.b[j] * rate;
+                }
+            }
+        }
+    }
+
+    /// The quadratures over [0, 1] at the state of the last linearisation.
+    pub fn totals(&self, mesh: &Mesh) -> [f64; Q] {
+        let mut total = [0.0; Q];
+        for i in 0..mesh.elements() {
+            for j in 0..M {
+                for q in 0..Q {
+                    total[q] += mesh.step(i) * self.gauss.b[j] * self.locals[i * M + j].rate[q];
+                }
+            }
+        }
+        total
+    }
+
+    /// What each element's residual contributes to the Newton correction of the totals, as the sum
+    /// over the `Q` totals of absolute values: the adjoint of [`Collocation::solve`].
+    pub fn contributions(&self, mesh: &Mesh, out: &mut Vec<f64>) {
+        let n = mesh.elements();
+        out.clear();
+        out.resize(n, 0.0);
+        let nr = self.right_count;
+        let nl = N - nr;
+        // gradient of a total by the affine part of each element, and by the row loads of each node
+        let mut by_affine = vec![[0.0; N]; n];
+        let mut by_rows = vec![[0.0; N]; n + 1];
+        let mut by_node = vec![[0.0; N]; n + 1];
+        for q in 0..Q {
+            for v in by_affine.iter_mut().chain(&mut by_rows).chain(&mut by_node) {
+                *v = [0.0; N];
+            }
+            for i in 0..n {
+                let (element, h) = (&self.elements[i], mesh.step(i));
+                let mut own = 0.0;
+                for j in 0..M {
+                    let weight = h * self.gauss.b[j];
+                    let gradient = &self.locals[i * M + j].rate_gradient[q];
+                    for a in 0..N {
+                        by_node[i][a] += weight * gradient[a];
+                        let (mut own_a, w) = (0.0, weight * gradient[a] * h);
+                        for l in 0..M {
+                            own_a += self.gauss.a[j][l] * element.load[l][a][0];
+                            for c in 0..N {
+                                by_node[i][c] += w * self.gauss.a[j][l] * element.response[l][a][c];
+                            }
+                        }
+                        own += w * own_a;
+                    }
+                }
+                out[i] += own.abs();
+            }
+            for i in (0..n).rev() {
+                let rows = &self.rows[i + 1];
+                let mut bar = by_node[i + 1];
+                for r in 0..nr {
+                    let p = rows.pivot[r];
+                    by_rows[i + 1][r] += bar[p];
+                    for c in 0..N {
+                        if !rows.pivot[..nr].contains(&c) {
+                            bar[c] -= rows.rows[r][c] * bar[p];
+                        }
+                    }
+                }
+                for a in 0..N {
+                    if !rows.pivot[..nr].contains(&a) {
+                        by_affine[i][a] += bar[a];
+                        for c in 0..N {
+                            by_node[i][c] += self.elements[i].transition[a][c] * bar[a];
+                        }
+                    }
+                }
+            }
+            for r in 0..nr {
+                for a in 0..N {
+                    by_rows[0][r] += self.start[a][nl + r] * by_node[0][a];
+                }
+            }
+            for i in 0..n {
+                let mut carried = [0.0; N];
+                for r in 0..nr {
+                    for c in 0..nr {
+                        carried[c] += self.rows[i].reduction[r][c] * by_rows[i][r];
+                    }
+                }
+                for r in 0..nr {
+                    by_rows[i + 1][r] += carried[r];
+                    for a in 0..N {
+                        by_affine[i][a] -= self.rows[i + 1].rows[r][a] * carried[r];
+                    }
+                }
+                let total: f64 = (0..N).map(|a| by_affine[i][a] * self.elements[i].affine[0][a]).sum();
+                out[i] += total.abs();
+            }
+        }
+    }
+}
+
+/// Eliminates the stages: on return `response` and `load` hold the stage slopes they lead to.
+#[inline(always)]
+fn eliminate<const N: usize, const M: usize, const Q: usize>(
+    h: f64,
+    gauss: &Gauss<M>,
+    locals: &[Local<N, Q>],
+    response: &mut [Block<N>; M],
+    load: &mut [Block<N>; M],
+) -> bool {
+    let mut m = [[[[0.0; N]; N]; M]; M];
+    for j in 0..M {
+        for l in 0..M {
+            let w = -h * gauss.a[j][l];
+            for a in 0..N {
+                for c in 0..N {
+                    m[j][l][a][c] = w * locals[j].jacobian[a][c];
+                }
+            }
+        }
+        for a in 0..N {
+            m[j][j][a][a] += 1.0;
+        }
+    }
+    for j in 0..M {
+        let Some(inv) = inverse(m[j][j], 1e-10) else { return false };
+        for l in j + 1..M {
+            m[j][l] = product(&inv, &m[j][l]);
+        }
+        response[j] = product(&inv, &response[j]);
+        load[j] = product(&inv, &load[j]);
+        for i in j + 1..M {
+            let f = m[i][j];
+            for l in j + 1..M {
+                let row = m[j][l];
+                subtract_product(&mut m[i][l], &f, &row);
+            }
+            let (r, d) = (response[j], load[j]);
+            subtract_product(&mut response[i], &f, &r);
+            subtract_product(&mut load[i], &f, &d);
+        }
+    }
+    for j in (0..M).rev() {
+        for l in j + 1..M {
+            let (r, d) = (response[l], load[l]);
+            subtract_product(&mut response[j], &m[j][l], &r);
+            subtract_product(&mut load[j], &m[j][l], &d);
+        }
+    }
+    true
+}
+
+/// Reduces carried rows to the identity on their pivot columns.
+#[inline(always)]
+fn reduce<const N: usize>(mut c: Rows<N>, count: usize, determinant: &mut Determinant) -> Option<Rows<N>> {
+    for r in 0..N {
+        c.reduction[r] = [0.0; N];
+        c.reduction[r][r] = 1.0;
+    }
+    for r in 0..count {
+        // The largest entry of the remaining rows, so that no column is divided by something small.
+        let (mut row, mut column, mut largest) = (r, 0, 0.0);
+        for i in r..count {
+            for col in 0..N {
+                if c.rows[i][col].abs() > largest {
+                    (row, column, largest) = (i, col, c.rows[i][col].abs());
+                }
+            }
+        }
+        if largest == 0.0 || !largest.is_finite() {
+            return None;
+        }
+        if row != r {
+            c.rows.swap(row, r);
+            c.load.swap(row, r);
+            c.reduction.swap(row, r);
+            determinant.sign = -determinant.sign;
+        }
+        c.pivot[r] = column;
+        let pivot = c.rows[r][column];
+        determinant.sign *= pivot.signum();
+        determinant.log += largest.ln();
+        let scale = 1.0 / pivot;
+        for v in c.rows[r].iter_mut().chain(&mut c.load[r]).chain(&mut c.reduction[r]) {
+            *v *= scale;
+        }
+        let (own, load, reduction) = (c.rows[r], c.load[r], c.reduction[r]);
+        for i in 0..count {
+            if i != r {
+                let f = c.rows[i][column];
+                for k in 0..N {
+                    c.rows[i][k] -= f * own[k];
+                    c.reduction[i][k] -= f * reduction[k];
+                }
+                c.load[i][0] -= f * load[0];
+                c.load[i][1] -= f * load[1];
+                c.rows[i][column] = 0.0;
+            }
+        }
+    }
+    Some(c)
+}
+
+/// Sign and logarithm of a determinant.
+#[inline(always)]
+fn sign_and_log<const N: usize>(mut m: Block<N>) -> (f64, f64) {
+    let (mut sign, mut log) = (1.0, 0.0);
+    for k in 0..N {
+        let best = (k..N).max_by(|i, j| m[*i][k].abs().total_cmp(&m[*j][k].abs())).unwrap_or(k);
+        if m[best][k] == 0.0 {
+            return (0.0, f64::NEG_INFINITY);
+        }
+        if best != k {
+            m.swap(best, k);
+            sign = -sign;
+        }
+        sign *= m[k][k].signum();
+        log += m[k][k].abs().ln();
+        for i in k + 1..N {
+            let f = m[i][k] / m[k][k];
+            for c in k..N {
+                m[i][c] -= f * m[k][c];
+            }
+        }
+    }
+    (sign, log)
+}
+
+impl<const N: usize, const M: usize> Solution<N, M> {
+    /// Adds `factor` times a correction.
+    #[inline(always)]
+    pub fn add<const Q: usize>(&mut self, correction: &Correction<N, M, Q>, factor: f64) {
+        for (z, dz) in self.nodes.iter_mut().zip(&correction.nodes) {
+            for a in 0..N {
+                z[a] += factor * dz[a];
+            }
+        }
+        for (k, dk) in self.slopes.iter_mut().zip(&correction.slopes) {
+            for j in 0..M {
+                for a in 0..N {
+                    k[j][a] += factor * dk[j][a];
+                }
+            }
+        }
+    }
+}

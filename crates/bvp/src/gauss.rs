@@ -1,0 +1,163 @@
+//! Gauss–Legendre collocation with `M` stages on [0, 1]: order 2M at the nodes.
+
+/// Points and weights of the `M`-stage Gauss method.
+///
+/// Everything follows from the cardinal polynomials
+/// `l_j(x) = b_j sum_n (2n+1) P_n(c_j) P_n(x)` (shifted Legendre `P_n`), which hold because the
+/// quadrature is exact to degree 2M-1.
+#[derive(Debug, Clone)]
+pub struct Gauss<const M: usize> {
+    /// Stage points in (0, 1), increasing.
+    pub c: [f64; M],
+    /// Quadrature weights.
+    pub b: [f64; M],
+    /// `a[j][l]`: integral of `l_l` from 0 to `c[j]`.
+    pub a: [[f64; M]; M],
+    /// `d[j][l]`: slope of `l_l` at `c[j]`.
+    pub d: [[f64; M]; M],
+    /// Second derivative at `c[j]` of the polynomial of degree 2M-1 that has given values and
+    /// slopes at all stages: `hermite[0][j][l]` weighs values, `hermite[1][j][l]` slopes.
+    pub hermite: [[[f64; M]; M]; 2],
+}
+
+impl<const M: usize> Gauss<M> {
+    /// The method with `M` stages.
+    pub fn new() -> Self {
+        let mut c = [0.0; M];
+        let mut b = [0.0; M];
+        for j in 0..M {
+            // Tricomi's start, then Newton on P_M.
+            let mut x = -(std::f64::consts::PI * (j as f64 + 0.75) / (M as f64 + 0.5)).cos();
+            let mut slope = 1.0;
+            for _ in 0..20 {
+                let (value, derivative) = legendre(M, x);
+                slope = derivative;
+                let step = value / derivative;
+                x -= step;
+                if step.abs() < 1e-16 {
+                    break;
+                }
+            }
+            c[j] = 0.5 * (1.0 + x);
+            b[j] = 1.0 / ((1.0 - x * x) * slope * slope);
+        }
+        let mut gauss = Self { c, b, a: [[0.0; M]; M], d: [[0.0; M]; M], hermite: [[[0.0; M]; M]; 2] };
+        for j in 0..M {
+            gauss.a[j] = gauss.integrals(c[j]);
+            gauss.d[j] = gauss.slopes(c[j]);
+        }
+        gauss.hermite = gauss.second_derivatives();
+        gauss
+    }
+
+    /// Values of the cardinal polynomials at `x`: interpolation weights.
+    pub fn cardinals(&self, x: f64) -> [f64; M] {
+        self.series(|n| legendre(n, 2.0 * x - 1.0).0)
+    }
+
+    /// Slopes of the cardinal polynomials at `x`.
+    pub fn slopes(&self, x: f64) -> [f64; M] {
+        self.series(|n| 2.0 * legendre(n, 2.0 * x - 1.0).1)
+    }
+
+    /// Integrals of the cardinal polynomials from 0 to `x`.
+    pub fn integrals(&self, x: f64) -> [f64; M] {
+        let t = 2.0 * x - 1.0;
+        self.series(|n| {
+            if n == 0 {
+                x
+            } else {
+                (legendre(n + 1, t).0 - legendre(n - 1, t).0) / (2.0 * (2 * n + 1) as f64)
+            }
+        })
+    }
+
+    /// From H_l = (1 - 2 (x - c_l) l_l'(c_l)) l_l^2 for values and (x - c_l) l_l^2 for slopes.
+    fn second_derivatives(&self) -> [[[f64; M]; M]; 2] {
+        let mut out = [[[0.0; M]; M]; 2];
+        for j in 0..M {
+            for l in 0..M {
+                let own = self.d[l][l];
+                if j == l {
+                    let curvature: f64 = (0..M).map(|k| self.d[l][k] * self.d[k][l]).sum();
+                    out[0][j][l] = 2.0 * curvature - 6.0 * own * own;
+                    out[1][j][l] = 4.0 * own;
+                } else {
+                    let square = 2.0 * self.d[j][l] * self.d[j][l];
+                    let distance = self.c[j] - self.c[l];
+                    out[0][j][l] = square * (1.0 - 2.0 * distance * own);
+                    out[1][j][l] = square * distance;
+                }
+            }
+        }
+        out
+    }
+
+    fn series(&self, of: impl Fn(usize) -> f64) -> [f64; M] {
+        let mut out = [0.0; M];
+        for n in 0..M {
+            let value = (2 * n + 1) as f64 * of(n);
+            for j in 0..M {
+                out[j] += self.b[j] * legendre(n, 2.0 * self.c[j] - 1.0).0 * value;
+            }
+        }
+        out
+    }
+}
+
+impl<const M: usize> Default for Gauss<M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Legendre polynomial of degree `n` at `x` in [-1, 1], and its slope.
+fn legendre(n: usize, x: f64) -> (f64, f64) {
+    let (mut p0, mut p1, mut d0, mut d1) = (1.0, x, 0.0, 1.0);
+    if n == 0 {
+        return (p0, d0);
+    }
+    for k in 1..n {
+        let k = k as f64;
+        let p2 = ((2.0 * k + 1.0) * x * p1 - k * p0) / (k + 1.0);
+        let d2 = d0 + (2.0 * k + 1.0) * p1;
+        (p0, p1, d0, d1) = (p1, p2, d1, d2);
+    }
+    (p1, d1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integrates_degree_seven_exactly_with_four_stages() {
+        let g = Gauss::<4>::new();
+        let sum: f64 = (0..4).map(|j| g.b[j] * g.c[j].powi(7)).sum();
+        assert!((sum - 0.125).abs() < 1e-15);
+    }
+
+    #[test]
+    fn hermite_second_derivatives_are_exact_to_degree_seven() {
+        let g = Gauss::<4>::new();
+        for j in 0..4 {
+            let sum: f64 = (0..4)
+                .map(|l| g.hermite[0][j][l] * g.c[l].powi(7) + g.hermite[1][j][l] * 7.0 * g.c[l].powi(6))
+                .sum();
+            assert!((sum - 42.0 * g.c[j].powi(5)).abs() < 1e-11, "{sum}");
+        }
+    }
+
+    #[test]
+    fn cardinals_reproduce_cubics_with_slope_and_integral() {
+        let g = Gauss::<4>::new();
+        let f = |x: f64| 1.0 + x - 2.0 * x * x + 0.5 * x.powi(3);
+        for x in [0.0, 0.3, 1.0] {
+            let (l, d, i) = (g.cardinals(x), g.slopes(x), g.integrals(x));
+            let dot = |w: [f64; 4]| -> f64 { (0..4).map(|j| w[j] * f(g.c[j])).sum() };
+            assert!((dot(l) - f(x)).abs() < 1e-13);
+            assert!((dot(d) - (1.0 - 4.0 * x + 1.5 * x * x)).abs() < 1e-12);
+            assert!((dot(i) - (x + x * x / 2.0 - 2.0 * x.powi(3) / 3.0 + x.powi(4) / 8.0)).abs() < 1e-13);
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! All distributed loads at a station: stream (7)-(10), weight and buoyancy, and what the user adds.
+
+use crate::flow::{Law, traction};
+use crate::readings::{FlowSurface, Hydrostatics, WettedLength};
+use crate::real::Real;
+use crate::swelling::Swelling;
+
+/// What the loads need to know of the arm as a whole.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Water {
+    /// U, m/s.
+    pub(crate) stream: [f64; 2],
+    pub(crate) law: Law,
+    pub(crate) surface: FlowSurface,
+    pub(crate) wetted: WettedLength,
+    pub(crate) hydrostatics: Hydrostatics,
+    /// Factor on the tangential load, one but for asking what hangs on it.
+    pub(crate) tangential_factor: f64,
+}
+
+/// What the loads need to know of a station (in the units of [`crate::equilibrium::Units`]).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Body<R> {
+    pub(crate) radius: R,
+    pub(crate) radius_slope: R,
+    /// pi rho_w R: S over beta.
+    pub(crate) wetted: R,
+    /// Weight of the wall per length, as a vector: rho_arm pi (R^2 - R_in^2) g.
+    pub(crate) weight: [R; 2],
+    /// Weight of the water that the undeformed section displaces, as a vector.
+    pub(crate) displaced: [R; 2],
+    /// Dead load along e1, e2.
+    pub(crate) force: [R; 2],
+    /// Dead couple.
+    pub(crate) couple: R,
+}
+
+/// A distributed force in space with its derivatives, and where its kinks are.
+#[derive(Clone, Copy)]
+pub(crate) struct Load<R> {
+    pub(crate) force: [R; 2],
+    /// By theta.
+    pub(crate) by_theta: [R; 2],
+    /// By nu, eta, mu.
+    pub(crate) by_strain: [[R; 3]; 2],
+    /// Speeds whose change of sign kinks the load: along and across the surface, and, on the
+    /// lateral surface, the tie of both sides, where it jumps. Over the stream's speed.
+    pub(crate) switches: [R; 3],
+}
+
+/// A direction fixed in the section: tangent (x, y) in the directors and its derivatives by strain.
+#[derive(Clone, Copy)]
+struct Direction<R> {
+    x: R,
+    y: R,
+    x_strain: [R; 3],
+    y_strain: [R; 3],
+}
+
+/// Unit vectors u, w = k x u in space and the turn of u by strain.
+#[derive(Clone, Copy)]
+struct Frame<R> {
+    u: [R; 2],
+    w: [R; 2],
+    turn: [R; 3],
+}
+
+impl<R: Real> Direction<R> {
+    #[inline(always)]
+    fn frame(&self, cos: R, sin: R) -> Frame<R> {
+        let square = self.x * self.x + self.y * self.y;
+        let inverse = R::of(1.0) / square.sqrt();
+        let u = [(cos * self.x - sin * self.y) * inverse, (sin * self.x + cos * self.y) * inverse];
+        let f = inverse * inverse;
+        let turn = [0, 1, 2].map(|k| (self.x * self.y_strain[k] - self.y * self.x_strain[k]) * f);
+        Frame { u, w: [-u[1], u[0]], turn }
+    }
+}
+
+#[inline(always)]
+fn dot<R: Real>(a: [R; 2], b: [R; 2]) -> R {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// The load of everything but cables, tip and support at a station.
+#[inline(always)]
+pub(crate) fn load<R: Real>(
+    water: &Water,
+    body: &Body<R>,
+    [cos, sin]: [R; 2],
+    strain: [R; 3],
+    swelling: &Swelling<R>,
+    beta_slope: R,
+) -> Load<R> {
+    let (zero, one) = (R::of(0.0), R::of(1.0));
+    let [nu, eta, mu] = strain;
+    let centreline =
+        Direction { x: nu, y: eta, x_strain: [one, zero, zero], y_strain: [zero, one, zero] };
+    let along = centreline.frame(cos, sin);
+    let mut out = Load {
+        force: body.force,
+        by_theta: [zero; 2],
+        by_strain: [[zero; 3]; 2],
+        switches: [zero; 3],
+    };
+
+    if water.stream != [0.0; 2] {
+        // S = pi rho_w beta R, times |r'| when the deformed length is wet.
+        let mut s = body.wetted * swelling.beta;
+        let mut s_strain = [body.wetted * swelling.slope, zero, zero];
+        if water.wetted == WettedLength::Deformed {
+            let q = (nu * nu + eta * eta).sqrt();
+            s_strain = [s_strain[0] * q + s * nu / q, s * eta / q, zero];
+            s = s * q;
+        }
+        match water.surface {
+            FlowSurface::Centreline => {
+                stream_load(water, &along, one, (s, s_strain), one, &mut out);
+            }
+            FlowSurface::Lateral => {
+                let side = |sigma: f64| {
+                    let sigma = R::of(sigma);
+                    // x_sigma' = (nu - sigma beta R mu) a + (eta + sigma (beta R)') b
+                    let half_width = sigma * swelling.beta * body.radius;
+                    Direction {
+                        x: nu - half_width * mu,
+                        y: eta + sigma * (beta_slope * body.radius + swelling.beta * body.radius_slope),
+                        x_strain: [one - sigma * swelling.slope * body.radius * mu, zero, -half_width],
+                        y_strain: [sigma * body.radius_slope * swelling.slope, one, zero],
+                    }
+                    .frame(cos, sin)
+                };
+                let (left, right) = (side(1.0), side(-1.0));
+                let stream = water.stream.map(R::of);
+                // U . u_n with u_n = sigma k x u_t outward: the smaller is windward.
+                let (hit_left, hit_right) = (dot(stream, left.w), -dot(stream, right.w));
+                let half = R::of(0.5);
+                let left_share =
+                    hit_left.if_less(hit_right, one, hit_right.if_less(hit_left, zero, half));
+                let faces = |hit: R| hit.if_less(zero, one, zero);
+                stream_load(water, &left, faces(hit_left), (s, s_strain), left_share, &mut out);
+                stream_load(water, &right, faces(hit_right), (s, s_strain), one - left_share, &mut out);
+                let speed = R::of(1.0 / water.stream[0].hypot(water.stream[1]));
+                let windward = hit_left.min(hit_right);
+                out.switches[1] = windward * speed;
+                out.switches[2] = (hit_left - hit_right) * speed;
+            }
+        }
+    }
+
+    // Weight less buoyancy: f_h = (rho_arm - rho_w nu beta^2) pi (R^2 - R_in^2) g (solid or flooded).
+    let volume = nu * swelling.beta * swelling.beta;
+    let volume_nu = swelling.beta * (swelling.beta + R::of(2.0) * nu * swelling.slope);
+    let h = [0, 1].map(|k| body.weight[k] - body.displaced[k] * volume);
+    let h_nu = [0, 1].map(|k| -(body.displaced[k] * volume_nu));
+    match water.hydrostatics {
+        Hydrostatics::Archimedes => {
+            for k in 0..2 {
+                out.force[k] += h[k];
+                out.by_strain[k][0] += h_nu[k];
+            }
+        }
+        Hydrostatics::NormalOnly => {
+            let (across, down, across_nu) = (dot(h, along.w), dot(h, along.u), dot(h_nu, along.w));
+            for k in 0..2 {
+                out.force[k] += across * along.w[k];
+                let turned = -(down * along.w[k] + across * along.u[k]);
+                out.by_theta[k] += turned;
+                for c in 0..3 {
+                    out.by_strain[k][c] += turned * along.turn[c];
+                }
+                out.by_strain[k][0] += across_nu * along.w[k];
+            }
+        }
+    }
+    out
+}
+
+/// Adds `share` of the stream's load on one surface: S (g_t u + g_n w).
+#[inline(always)]
+fn stream_load<R: Real>(
+    water: &Water,
+    frame: &Frame<R>,
+    normal_share: R,
+    (s, s_strain): (R, [R; 3]),
+    share: R,
+    out: &mut Load<R>,
+) {
+    let stream = water.stream.map(R::of);
+    let (u_t, u_n) = (dot(stream, frame.u), dot(stream, frame.w));
+    let t = traction(water.law, u_t, u_n, normal_share);
+    let factor = R::of(water.tangential_factor);
+    let (tangential, tangential_turn) = (factor * t.tangential, factor * t.tangential_turn);
+    let s = s * share;
+    for k in 0..2 {
+        let per_s = tangential * frame.u[k] + t.normal * frame.w[k];
+        let turned =
+            s * ((tangential_turn - t.normal) * frame.u[k] + (t.normal_turn + tangential) * frame.w[k]);
+        out.force[k] += s * per_s;
+        out.by_theta[k] += turned;
+        for c in 0..3 {
+            out.by_strain[k][c] += turned * frame.turn[c] + share * s_strain[c] * per_s;
+        }
+    }
+    let speed = R::of(1.0 / water.stream[0].hypot(water.stream[1]));
+    out.switches[0] += share * u_t * speed;
+    out.switches[1] += share * u_n * speed;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::FlowLaw;
+    use crate::readings::{EnteringSpeed, LayerMean, Volume};
+    use crate::swelling::swelling;
+
+    /// Every reading's derivatives against differences, away from kinks.
+    #[test]
+    fn derivatives_match_differences_in_every_reading() {
+        let body = Body {
+            radius: 0.05,
+            radius_slope: -0.04,
+            wetted: 1.3,
+            weight: [0.1, -0.5],
+            displaced: [0.08, -0.4],
+            force: [0.0; 2],
+            couple: 0.0,
+        };
+        for surface in [FlowSurface::Centreline, FlowSurface::Lateral] {
+            for entering in [EnteringSpeed::Tangential, EnteringSpeed::Resultant] {
+                for wetted in [WettedLength::Reference, WettedLength::Deformed] {
+                    for hydrostatics in [Hydrostatics::Archimedes, Hydrostatics::NormalOnly] {
+                        let water = Water {
+                            stream: [0.6, 0.3],
+                            law: Law::new(FlowLaw::Momentum, entering, LayerMean::Speed.factor()),
+                            surface,
+                            wetted,
+                            hydrostatics,
+                            tangential_factor: 1.0,
+                        };
+                        check(&water, &body);
+                    }
+                }
+            }
+        }
+    }
+
+    fn check(water: &Water, body: &Body<f64>) {
+        let at = |x: [f64; 4]| {
+            let e = [x[1], x[2], x[3]];
+            load(water, body, [x[0].cos(), x[0].sin()], e, &swelling(Volume::Planar, e[0]), 0.3)
+        };
+        for theta in [0.9, 2.2, -1.4] {
+            let x = [theta, 0.9, 0.1, 3.0];
+            let exact = at(x);
+            for c in 0..4 {
+                let (mut hi, mut lo) = (x, x);
+                hi[c] += 1e-6;
+                lo[c] -= 1e-6;
+                let (hi, lo) = (at(hi), at(lo));
+                for k in 0..2 {
+                    let want = (hi.force[k] - lo.force[k]) / 2e-6;
+                    let got = if c == 0 { exact.by_theta[k] } else { exact.by_strain[k][c - 1] };
+                    assert!((want - got).abs() < 2e-7, "{water:?} theta {theta} by {c}: {got} {want}");
+                }
+            }
+        }
+    }
+}
