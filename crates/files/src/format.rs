@@ -176,7 +176,7 @@ impl Kind {
             }
             ProfilePair(_) => "two profiles [_, _]".to_owned(),
             Table(keys) => format!("a table with {}", names(keys)),
-            Tables(keys) => format!("one [[table]] for each, with {}", names(keys)),
+            Tables(keys) => format!("[[cable]] tables, each with {}", names(keys)),
         }
     }
 }
@@ -193,7 +193,7 @@ pub(crate) fn home_of(name: &str) -> Option<String> {
         keys.iter().find_map(|k| {
             let here = if path.is_empty() { k.name.to_owned() } else { format!("{path}.{}", k.name) };
             match k.kind {
-                _ if k.name == name && !path.is_empty() => Some(here),
+                _ if k.name == name => Some(here),
                 Table(inner) => search(inner, name, &here),
                 Tables(inner) => search(inner, name, &format!("{here}[0]")),
                 _ => None,

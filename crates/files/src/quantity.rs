@@ -115,7 +115,7 @@ const CURVATURE: &[Unit] = &[
 const FORCE_PER_LENGTH: &[Unit] =
     &[(&["N/m"], Decimal(0)), (&["mN/m"], Decimal(-3)), (&["N/cm"], Decimal(2)), (&["N/mm"], Decimal(3))];
 const MOMENT_PER_LENGTH: &[Unit] =
-    &[(&["N m/m", "Nm/m", "N*m/m", "N\u{b7}m/m"], Decimal(0)), (&["N"], Decimal(0)), (&["mN"], Decimal(-3))];
+    &[(&["N m/m", "Nm/m", "N*m/m", "N\u{b7}m/m", "N"], Decimal(0)), (&["mN m/m", "mNm/m", "mN"], Decimal(-3))];
 
 impl Dimension {
     /// All of them.
