@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 
 use hydrostat::ArmError;
+use hydrostat::profile::TableError;
 
 /// Where a value was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -175,7 +176,11 @@ fn expected(error: &ArmError) -> String {
         ArmError::TableDoesNotCover { length, .. } => {
             format!("a table that runs from s = 0 to the length, {length} m")
         }
-        ArmError::Table { .. } => "a table [[s, value], ...] with increasing s".to_owned(),
+        ArmError::Table { source: TableError::TooShort { .. }, .. } => "at least two points [s, value]".to_owned(),
+        ArmError::Table { source: TableError::NotIncreasing { previous, .. }, .. } => {
+            format!("increasing places, here one above s = {previous} m")
+        }
+        ArmError::Table { source: TableError::NotFinite { .. }, .. } => "finite numbers".to_owned(),
         ArmError::TensionCount { cables, .. } => format!("{cables} tensions, one a cable"),
     }
 }
@@ -191,7 +196,9 @@ fn found(error: &ArmError) -> String {
         ArmError::OffsetOutside { offset, .. } => format!("{offset} m there"),
         ArmError::TensionAboveMax { tension, .. } => format!("{tension} N"),
         ArmError::TableDoesNotCover { from, to, .. } => format!("one from {from} m to {to} m"),
-        ArmError::Table { source, .. } => source.to_string(),
+        ArmError::Table { source: TableError::TooShort { found }, .. } => format!("{found}"),
+        ArmError::Table { source: TableError::NotIncreasing { s, .. }, .. } => format!("s = {s} m"),
+        ArmError::Table { source: TableError::NotFinite { s, value, .. }, .. } => format!("[{s}, {value}]"),
         ArmError::TensionCount { given, .. } => format!("{given}"),
     }
 }

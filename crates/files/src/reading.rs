@@ -280,7 +280,7 @@ fn profile_table(path: &str, dimension: Dimension, entry: &Entry, points: &[Entr
                 quantity(&format!("{here}[1]"), dimension, &pair[1])?,
             ]),
             other => {
-                let expected = format!("a point [s, value] of {}", Kind::Profile(dimension).expected());
+                let expected = "a point [s, value]".to_owned();
                 return Err(value_fault(&here, point.origin, expected, other.describe()));
             }
         }

@@ -133,14 +133,14 @@ fn added_values() {
         ("[[cable]]\noffset = 0\nend = 0", 8, "cable[0].end", &["in (0, 1]", "found 0"]),
         ("[[cable]]\noffset = 0\nend = 1.5", 8, "cable[0].end", &["in (0, 1]", "found 1.5"]),
         // Tables.
-        ("[reference]\nmu = [[0, 1]]", 7, "reference.mu", &["a table [[s, value], ...]", "at least two points"]),
-        ("[reference]\nmu = []", 7, "reference.mu", &["found a table needs at least two points"]),
+        ("[reference]\nmu = [[0, 1]]", 7, "reference.mu", &["at least two points [s, value]", "found 1"]),
+        ("[reference]\nmu = []", 7, "reference.mu", &["at least two points [s, value]", "found 0"]),
         ("[reference]\nmu = [[0, 1], [0.1, 2]]", 7, "reference.mu", &["length, 0.2 m", "from 0 m to 0.1 m"]),
         (
             "[reference]\nmu = [\n  [0, 1],\n  [0.1, 2],\n  [0.1, 3],\n  [0.2, 1]]",
             10,
             "reference.mu[2]",
-            &["increasing s", "point 2 at s = 0.1 follows s = 0.1"],
+            &["increasing places, here one above s = 0.1 m", "found s = 0.1 m"],
         ),
         ("[reference]\nmu = [0, 1]", 7, "reference.mu[0]", &["a point [s, value]", "found 0"]),
         ("[reference]\nmu = [[0, 1, 2], [1, 2]]", 7, "reference.mu[0]", &["a point", "found an array of 3 values"]),

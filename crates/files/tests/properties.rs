@@ -1,5 +1,7 @@
 //! What holds for any arm and any text.
 
+use std::sync::LazyLock;
+
 use hydrostat::{
     Arm, Base, Cable, Cavity, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity, Hydrostatics,
     LayerMean, Material, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
@@ -7,6 +9,9 @@ use hydrostat::{
 use hydrostat_files::{ArmFile, Inputs, arm_to_toml, schema, shipped};
 use proptest::prelude::*;
 use proptest::sample::select;
+
+static SCHEMA: LazyLock<jsonschema::Validator> =
+    LazyLock::new(|| jsonschema::validator_for(&schema::arm_schema()).unwrap());
 
 /// Any profile with values in a range, on an arm of a given length.
 fn profile(low: f64, high: f64, length: f64) -> impl Strategy<Value = Profile> {
@@ -211,9 +216,8 @@ proptest! {
 
     #[test]
     fn inputs_follow_the_schema(arm in arm()) {
-        let validator = jsonschema::validator_for(&schema::arm_schema()).unwrap();
         let inputs = serde_json::to_value(Inputs::new(&arm)).unwrap();
-        prop_assert!(validator.is_valid(&inputs), "{}", inputs);
+        prop_assert!(SCHEMA.is_valid(&inputs), "{}", inputs);
     }
 
     #[test]
