@@ -1,0 +1,304 @@
+//! Arm files: TOML text, overrides, and the [`Arm`] they mean.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use hydrostat::{
+    Arm, Base, Cable, Cavity, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity, Hydrostatics,
+    LayerMean, Material, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
+};
+
+use crate::document::{self, Field, Origin};
+use crate::error::{FileError, Place};
+use crate::format::MAX_BYTES;
+use crate::reading::{Fault, FaultKind, Values};
+use crate::setting;
+
+/// An arm file: its text, where it came from, and what overrides it.
+///
+/// ```
+/// use hydrostat_files::ArmFile;
+///
+/// let text = r#"
+///     [arm]
+///     length = "245 mm"
+///     radius = { base = "10 mm", tip = "2 mm" }
+///     [material]
+///     young = "110 kPa"
+/// "#;
+/// let mut file = ArmFile::parse(text, "arm.toml").unwrap();
+/// file.set("flow.speed", "0.5").unwrap();
+/// let arm = file.arm().unwrap();
+/// assert_eq!((arm.length, arm.flow.speed), (0.245, 0.5));
+///
+/// let wrong = ArmFile::parse("[arm]\nlenght = 0.2", "arm.toml").unwrap().arm().unwrap_err();
+/// assert!(wrong.to_string().starts_with("arm.toml:2: arm.lenght: expected"));
+/// assert!(wrong.to_string().ends_with("did you mean `length`?"));
+/// ```
+#[derive(Debug, Clone)]
+pub struct ArmFile {
+    path: String,
+    text: String,
+    fields: Vec<Field>,
+    settings: Vec<String>,
+}
+
+impl ArmFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`FileError`] when it cannot be read, or is not TOML.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, FileError> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        let mut bytes = Vec::new();
+        File::open(path)
+            .and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
+            .map_err(|source| FileError::Read { path: name.clone(), source })?;
+        Self::parse_bytes(&bytes, &name)
+    }
+
+    /// Reads bytes that came from `path`, which messages name.
+    ///
+    /// # Errors
+    /// [`FileError`] when they are not UTF-8, or not TOML.
+    pub fn parse_bytes(bytes: &[u8], path: &str) -> Result<Self, FileError> {
+        match std::str::from_utf8(bytes) {
+            Ok(text) => Self::parse(text, path),
+            Err(error) => {
+                let at = error.valid_up_to();
+                let valid = std::str::from_utf8(&bytes[..at]).unwrap_or_default();
+                let byte = bytes.get(at).copied().unwrap_or_default();
+                Err(FileError::NotText { place: line_of(path, valid, at), byte })
+            }
+        }
+    }
+
+    /// Reads text that came from `path`, which messages name and which is the default of `name`.
+    ///
+    /// # Errors
+    /// [`FileError`] when it is not TOML.
+    pub fn parse(text: &str, path: &str) -> Result<Self, FileError> {
+        if text.len() as u64 > MAX_BYTES {
+            return Err(FileError::TooLarge { path: path.to_owned(), limit: MAX_BYTES });
+        }
+        let fields = document::parse(text).map_err(|error| {
+            let place = line_of(path, text, error.at);
+            let key = document::key_at(text, error.at);
+            if error.message == "duplicate key" {
+                // Inside an inline table the line's key is not the one that is there twice.
+                let what = error.what.trim();
+                let key = key.unwrap_or_default();
+                let whole = key.split(['.', '[', ']']).any(|part| part == what);
+                let key = if whole || key.is_empty() { key } else { crate::reading::join(&key, what) };
+                return FileError::Duplicate { place, key };
+            }
+            FileError::Syntax { place, key, message: error.message }
+        })?;
+        Ok(Self { path: path.to_owned(), text: text.to_owned(), fields, settings: Vec::new() })
+    }
+
+    /// The path or name that messages carry.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// Overrides one value: `key` is a dotted path (`flow.speed`, `cable[0].tension`), `value` is
+    /// TOML or, where it is none, a string. Tables that are not there are made; cables are not.
+    ///
+    /// # Errors
+    /// [`FileError`] when the format has no such key, or the arm no such cable. Whether the value
+    /// fits is seen by [`ArmFile::arm`].
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), FileError> {
+        let index = self.settings.len();
+        self.settings.push(format!("{key}={value}"));
+        // On a copy, so that a refused override leaves nothing behind.
+        let mut fields = self.fields.clone();
+        match setting::apply(&mut fields, key, value, index) {
+            Ok(()) => {
+                self.fields = fields;
+                Ok(())
+            }
+            Err(fault) => {
+                let error = self.error(fault);
+                self.settings.pop();
+                Err(error)
+            }
+        }
+    }
+
+    /// The arm that this file with its overrides means, checked.
+    ///
+    /// # Errors
+    /// [`FileError`] for the first thing that is wrong, with its place.
+    pub fn arm(&self) -> Result<Arm, FileError> {
+        let values = Values::read(&self.fields).map_err(|fault| self.error(fault))?;
+        let stem = Path::new(&self.path).file_stem().map(|s| s.to_string_lossy().into_owned());
+        let arm = build(&values, stem.unwrap_or_else(|| self.path.clone()));
+        arm.check().map_err(|source| {
+            let key = source.key().to_owned();
+            self.error(Fault { origin: values.origin(&key), key, kind: FaultKind::Arm(source) })
+        })?;
+        Ok(arm)
+    }
+
+    fn error(&self, fault: Fault) -> FileError {
+        let Fault { origin, key, kind } = fault;
+        let place = match origin {
+            Origin::Text(at) => line_of(&self.path, &self.text, at),
+            Origin::Setting(i) => Place::Setting { setting: self.settings.get(i).cloned().unwrap_or_default() },
+        };
+        match kind {
+            FaultKind::Unknown { expected, suggestion } => FileError::UnknownKey { place, key, expected, suggestion },
+            FaultKind::Missing { expected } => FileError::Missing { place, key, expected },
+            FaultKind::Value { expected, found } => FileError::Value { place, key, expected, found },
+            FaultKind::Arm(source) => FileError::Arm { place, key, source: Box::new(source) },
+        }
+    }
+}
+
+fn line_of(path: &str, text: &str, at: usize) -> Place {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    let before = &text[..at];
+    let start = before.rfind('\n').map_or(0, |i| i + 1);
+    let line = before.bytes().filter(|b| *b == b'\n').count() + 1;
+    let column = before[start..].trim_start_matches('\u{feff}').chars().count() + 1;
+    Place::Line { path: path.to_owned(), line, column }
+}
+
+/// The arm that the values mean. The format has made sure that what is required is there; what is
+/// not falls back on the defaults of the core.
+fn build(v: &Values, name: String) -> Arm {
+    let zero = || Profile::Constant(0.0);
+    Arm {
+        name: v.text("name").unwrap_or(name),
+        length: v.number("arm.length").unwrap_or_default(),
+        radius: v.profile("arm.radius").unwrap_or_else(zero),
+        inner_radius: v.profile("arm.inner_radius").unwrap_or_else(zero),
+        cavity: match v.word("arm.cavity") {
+            Some("sealed") => Cavity::Sealed,
+            _ => Cavity::Flooded,
+        },
+        density: v.number("arm.density").unwrap_or(1000.0),
+        base: Base {
+            x: v.number("arm.base.x").unwrap_or_default(),
+            y: v.number("arm.base.y").unwrap_or_default(),
+            angle: v.number("arm.base.angle").unwrap_or_default(),
+        },
+        material: material(v),
+        reference: reference(v),
+        cables: (0..v.cables).map(|i| cable(v, i)).collect(),
+        flow: flow(v),
+        gravity: v.has("gravity").then(|| {
+            let default = Gravity::default();
+            Gravity {
+                acceleration: v.number("gravity.acceleration").unwrap_or(default.acceleration),
+                direction: v.number("gravity.direction").unwrap_or(default.direction),
+            }
+        }),
+        tip: TipLoad {
+            force: v.pair("tip.force").unwrap_or_default(),
+            moment: v.number("tip.moment").unwrap_or_default(),
+            follower: v.pair("tip.follower").unwrap_or_default(),
+        },
+        distributed: DistributedLoad {
+            force: v.profiles("distributed.force").unwrap_or_else(|| [zero(), zero()]),
+            couple: v.profile("distributed.couple").unwrap_or_else(zero),
+        },
+        readings: readings(v),
+    }
+}
+
+fn material(v: &Values) -> Material {
+    let c = |name: &str| v.profile(&format!("material.{name}"));
+    match (c("c1"), c("c2"), c("c3")) {
+        (Some(c1), Some(c2), Some(c3)) => Material::Coefficients { c1, c2, c3 },
+        _ => Material::Homogeneous {
+            young: v.number("material.young").unwrap_or_default(),
+            poisson: v.number("material.poisson").unwrap_or(0.5),
+            shear_factor: v.number("material.shear_factor").unwrap_or(1.0),
+        },
+    }
+}
+
+fn reference(v: &Values) -> Reference {
+    let default = Reference::default();
+    Reference {
+        nu: v.profile("reference.nu").unwrap_or(default.nu),
+        eta: v.profile("reference.eta").unwrap_or(default.eta),
+        mu: v.profile("reference.mu").unwrap_or(default.mu),
+    }
+}
+
+fn cable(v: &Values, index: usize) -> Cable {
+    let key = |name: &str| format!("cable[{index}].{name}");
+    Cable {
+        name: v.text(&key("name")).unwrap_or_else(|| index.to_string()),
+        offset: v.profile(&key("offset")).unwrap_or(Profile::Linear { base: 0.005, tip: 0.001 }),
+        tension: v.number(&key("tension")).unwrap_or_default(),
+        max_tension: v.number(&key("max_tension")),
+        end: v.number(&key("end")).unwrap_or(1.0),
+    }
+}
+
+fn flow(v: &Values) -> Flow {
+    let default = Flow::default();
+    Flow {
+        speed: v.number("flow.speed").unwrap_or(default.speed),
+        direction: v.number("flow.direction").unwrap_or(default.direction),
+        density: v.number("flow.density").unwrap_or(default.density),
+        layer_thickness: v.number("flow.layer_thickness").unwrap_or(default.layer_thickness),
+        law: match v.word("flow.law") {
+            Some("quadratic-drag") => FlowLaw::QuadraticDrag {
+                cn: v.number("flow.cn").unwrap_or_default(),
+                ct: v.number("flow.ct").unwrap_or_default(),
+            },
+            _ => FlowLaw::Momentum,
+        },
+    }
+}
+
+fn readings(v: &Values) -> Readings {
+    let mut r = if v.word("model.closure") == Some("literal") { Readings::LITERAL } else { Readings::default() };
+    match v.word("model.volume") {
+        Some("planar") => r.volume = Volume::Planar,
+        Some("circular") => r.volume = Volume::Circular,
+        Some("none") => r.volume = Volume::None,
+        _ => {}
+    }
+    match v.word("model.flow_surface") {
+        Some("centreline") => r.flow_surface = FlowSurface::Centreline,
+        Some("lateral") => r.flow_surface = FlowSurface::Lateral,
+        _ => {}
+    }
+    match v.word("model.entering_speed") {
+        Some("tangential") => r.entering_speed = EnteringSpeed::Tangential,
+        Some("resultant") => r.entering_speed = EnteringSpeed::Resultant,
+        _ => {}
+    }
+    match v.word("model.layer_mean") {
+        Some("speed") => r.layer_mean = LayerMean::Speed,
+        Some("momentum") => r.layer_mean = LayerMean::Momentum,
+        _ => {}
+    }
+    match v.word("model.wetted_length") {
+        Some("reference") => r.wetted_length = WettedLength::Reference,
+        Some("deformed") => r.wetted_length = WettedLength::Deformed,
+        _ => {}
+    }
+    match v.word("model.hydrostatics") {
+        Some("archimedes") => r.hydrostatics = Hydrostatics::Archimedes,
+        Some("normal-only") => r.hydrostatics = Hydrostatics::NormalOnly,
+        _ => {}
+    }
+    match v.word("model.support") {
+        Some("clamped") => r.support = Support::Clamped,
+        Some("unstrained-base") => r.support = Support::UnstrainedBase,
+        _ => {}
+    }
+    r
+}

@@ -1,0 +1,328 @@
+//! A tree read against the format: one typed value in SI a dotted key.
+
+use std::collections::HashMap;
+
+use hydrostat::profile::TableError;
+use hydrostat::{ArmError, Profile};
+
+use crate::document::{Entry, Field, Node, Origin, segment};
+use crate::format::{self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_POINTS};
+use crate::quantity::Dimension;
+
+/// What is wrong, without the names of files.
+#[derive(Debug)]
+pub(crate) struct Fault {
+    pub(crate) origin: Origin,
+    pub(crate) key: String,
+    pub(crate) kind: FaultKind,
+}
+
+#[derive(Debug)]
+pub(crate) enum FaultKind {
+    Unknown { expected: String, suggestion: Option<String> },
+    Missing { expected: String },
+    Value { expected: String, found: String },
+    Arm(ArmError),
+}
+
+/// A value in SI, angles in rad.
+#[derive(Debug, Clone)]
+pub(crate) enum Value {
+    Text(String),
+    Word(&'static str),
+    Number(f64),
+    Pair([f64; 2]),
+    Profile(Profile),
+    Profiles([Profile; 2]),
+    /// A table that is there.
+    Group,
+}
+
+/// All values of a file by dotted key, and where they were written.
+#[derive(Debug, Default)]
+pub(crate) struct Values {
+    values: HashMap<String, (Value, Origin)>,
+    /// How many cables there are.
+    pub(crate) cables: usize,
+}
+
+impl Values {
+    /// Reads a file's fields.
+    pub(crate) fn read(fields: &[Field]) -> Result<Self, Fault> {
+        let mut values = Self::default();
+        values.table("", format::FILE, fields, Origin::Text(0))?;
+        values.check_material()?;
+        values.check_drag()?;
+        Ok(values)
+    }
+
+    /// Where `key` was written, or else the nearest table around it.
+    pub(crate) fn origin(&self, key: &str) -> Origin {
+        let mut key = key;
+        loop {
+            if let Some((_, origin)) = self.values.get(key) {
+                return *origin;
+            }
+            match key.rfind(['.', '[']) {
+                Some(end) => key = &key[..end],
+                None => return Origin::Text(0),
+            }
+        }
+    }
+
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.values.contains_key(key)
+    }
+
+    pub(crate) fn text(&self, key: &str) -> Option<String> {
+        match self.values.get(key) {
+            Some((Value::Text(text), _)) => Some(text.clone()),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn word(&self, key: &str) -> Option<&'static str> {
+        match self.values.get(key) {
+            Some((Value::Word(word), _)) => Some(word),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn number(&self, key: &str) -> Option<f64> {
+        match self.values.get(key) {
+            Some((Value::Number(value), _)) => Some(*value),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {
+        match self.values.get(key) {
+            Some((Value::Pair(pair), _)) => Some(*pair),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn profile(&self, key: &str) -> Option<Profile> {
+        match self.values.get(key) {
+            Some((Value::Profile(profile), _)) => Some(profile.clone()),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn profiles(&self, key: &str) -> Option<[Profile; 2]> {
+        match self.values.get(key) {
+            Some((Value::Profiles(profiles), _)) => Some(profiles.clone()),
+            _ => None,
+        }
+    }
+
+    fn table(&mut self, path: &str, keys: &'static [Key], fields: &[Field], at: Origin) -> Result<(), Fault> {
+        for field in fields {
+            let here = join(path, &field.name);
+            let Some(key) = keys.iter().find(|k| k.name == field.name) else {
+                return Err(unknown(field.origin, here, &field.name, keys));
+            };
+            self.value(&here, key.kind, &field.entry)?;
+        }
+        for key in keys.iter().filter(|k| k.required) {
+            if !fields.iter().any(|f| f.name == key.name) {
+                let expected = key.kind.expected();
+                return Err(Fault { origin: at, key: join(path, key.name), kind: FaultKind::Missing { expected } });
+            }
+        }
+        Ok(())
+    }
+
+    fn value(&mut self, path: &str, kind: Kind, entry: &Entry) -> Result<(), Fault> {
+        let value = match (kind, &entry.node) {
+            (Kind::Text, Node::Text(text)) => Value::Text(text.clone()),
+            (Kind::Choice(words), Node::Text(text)) => match words.iter().find(|w| *w == text) {
+                Some(word) => Value::Word(word),
+                None => return Err(refuse(path, kind, entry)),
+            },
+            (Kind::Quantity(dimension), _) => Value::Number(quantity(path, dimension, entry)?),
+            (Kind::Pair(dimension), Node::Array(entries)) => match entries.as_slice() {
+                [a, b] => Value::Pair([
+                    quantity(&format!("{path}[0]"), dimension, a)?,
+                    quantity(&format!("{path}[1]"), dimension, b)?,
+                ]),
+                _ => return Err(refuse(path, kind, entry)),
+            },
+            (Kind::Profile(dimension), _) => Value::Profile(self.profile_at(path, dimension, entry)?),
+            (Kind::ProfilePair(dimension), Node::Array(entries)) => match entries.as_slice() {
+                [a, b] => Value::Profiles([
+                    self.profile_at(&format!("{path}[0]"), dimension, a)?,
+                    self.profile_at(&format!("{path}[1]"), dimension, b)?,
+                ]),
+                _ => return Err(refuse(path, kind, entry)),
+            },
+            (Kind::Table(keys), Node::Table(fields)) => {
+                self.table(path, keys, fields, entry.origin)?;
+                Value::Group
+            }
+            (Kind::Tables(keys), Node::Array(entries)) => {
+                if entries.len() > MAX_CABLES {
+                    let expected = format!("at most {MAX_CABLES} cables");
+                    return Err(value_fault(path, entry.origin, expected, format!("{}", entries.len())));
+                }
+                for (i, element) in entries.iter().enumerate() {
+                    let here = format!("{path}[{i}]");
+                    let Node::Table(fields) = &element.node else {
+                        return Err(refuse(&here, Kind::Table(keys), element));
+                    };
+                    self.table(&here, keys, fields, element.origin)?;
+                    self.values.insert(here, (Value::Group, element.origin));
+                }
+                self.cables = entries.len();
+                Value::Group
+            }
+            _ => return Err(refuse(path, kind, entry)),
+        };
+        self.values.insert(path.to_owned(), (value, entry.origin));
+        Ok(())
+    }
+
+    fn profile_at(&mut self, path: &str, dimension: Dimension, entry: &Entry) -> Result<Profile, Fault> {
+        let profile = match &entry.node {
+            Node::Table(fields) => {
+                let mut ends = [None; 2];
+                for field in fields {
+                    let here = join(path, &field.name);
+                    let Some(end) = ENDS.iter().position(|e| *e == field.name) else {
+                        let expected = "base and tip".to_owned();
+                        let suggestion = format::nearest(&field.name, ENDS.into_iter()).map(str::to_owned);
+                        let kind = FaultKind::Unknown { expected, suggestion };
+                        return Err(Fault { origin: field.origin, key: here, kind });
+                    };
+                    ends[end] = Some(quantity(&here, dimension, &field.entry)?);
+                }
+                let missing = |name: &str| Fault {
+                    origin: entry.origin,
+                    key: join(path, name),
+                    kind: FaultKind::Missing { expected: dimension.expected() },
+                };
+                Profile::linear(ends[0].ok_or_else(|| missing("base"))?, ends[1].ok_or_else(|| missing("tip"))?)
+            }
+            Node::Array(points) => profile_table(path, dimension, entry, points)?,
+            Node::Number(_) | Node::Text(_) => {
+                quantity(path, dimension, entry).map(Profile::Constant).map_err(|fault| match fault.kind {
+                    FaultKind::Value { found, .. } => {
+                        value_fault(path, entry.origin, Kind::Profile(dimension).expected(), found)
+                    }
+                    _ => fault,
+                })?
+            }
+            _ => return Err(refuse(path, Kind::Profile(dimension), entry)),
+        };
+        // Under its own key as well, because the core names the two profiles of a pair one by one.
+        self.values.insert(path.to_owned(), (Value::Profile(profile.clone()), entry.origin));
+        Ok(profile)
+    }
+
+    /// One way to give the stiffness, and the whole of it.
+    fn check_material(&self) -> Result<(), Fault> {
+        let given =
+            |names: [&str; 3]| names.into_iter().map(|n| format!("material.{n}")).filter(|k| self.has(k)).collect();
+        let (homogeneous, coefficients): (Vec<String>, Vec<String>) = (given(HOMOGENEOUS), given(COEFFICIENTS));
+        let missing = |name: &str, expected: String| Fault {
+            origin: self.origin("material"),
+            key: format!("material.{name}"),
+            kind: FaultKind::Missing { expected },
+        };
+        match (homogeneous.first(), coefficients.first()) {
+            (Some(_), Some(_)) => {
+                // An override is what the user can mend soonest.
+                let both = coefficients.iter().chain(&homogeneous);
+                let by_setting = |k: &&String| matches!(self.origin(k), Origin::Setting(_));
+                let key = both.clone().find(by_setting).unwrap_or(&coefficients[0]);
+                let expected = "either young, poisson, shear_factor or c1, c2, c3".to_owned();
+                let all: Vec<&str> = both.map(|k| k.trim_start_matches("material.")).collect();
+                Err(value_fault(key, self.origin(key), expected, format!("{} together", all.join(", "))))
+            }
+            (None, Some(_)) => match COEFFICIENTS.into_iter().find(|n| !self.has(&format!("material.{n}"))) {
+                Some(name) => {
+                    let expected = "c1, c2 and c3 together".to_owned();
+                    Err(missing(name, expected))
+                }
+                None => Ok(()),
+            },
+            _ if self.has("material.young") => Ok(()),
+            _ => {
+                let expected = format!("{}, or c1, c2 and c3", Dimension::Pressure.expected());
+                Err(missing("young", expected))
+            }
+        }
+    }
+
+    fn check_drag(&self) -> Result<(), Fault> {
+        if self.word("flow.law") != Some("quadratic-drag") {
+            return Ok(());
+        }
+        let missing = DRAG.into_iter().map(|n| format!("flow.{n}")).find(|k| !self.has(k));
+        missing.map_or(Ok(()), |key| {
+            let expected = format!("{} with law = \"quadratic-drag\"", Dimension::Number.expected());
+            Err(Fault { origin: self.origin("flow.law"), key, kind: FaultKind::Missing { expected } })
+        })
+    }
+}
+
+fn profile_table(path: &str, dimension: Dimension, entry: &Entry, points: &[Entry]) -> Result<Profile, Fault> {
+    if points.len() > MAX_POINTS {
+        let expected = format!("at most {MAX_POINTS} points");
+        return Err(value_fault(path, entry.origin, expected, format!("{}", points.len())));
+    }
+    let mut pairs = Vec::with_capacity(points.len());
+    for (i, point) in points.iter().enumerate() {
+        let here = format!("{path}[{i}]");
+        match &point.node {
+            Node::Array(pair) if pair.len() == 2 => pairs.push([
+                quantity(&format!("{here}[0]"), Dimension::Length, &pair[0])?,
+                quantity(&format!("{here}[1]"), dimension, &pair[1])?,
+            ]),
+            other => {
+                let expected = "a point [s, value]".to_owned();
+                return Err(value_fault(&here, point.origin, expected, other.describe()));
+            }
+        }
+    }
+    Profile::table(&pairs).map_err(|source| {
+        let (origin, key) = match &source {
+            TableError::NotFinite { index, .. } | TableError::NotIncreasing { index, .. } => {
+                (points[*index].origin, format!("{path}[{index}]"))
+            }
+            TableError::TooShort { .. } => (entry.origin, path.to_owned()),
+        };
+        Fault { origin, kind: FaultKind::Arm(ArmError::Table { key: key.clone(), source }), key }
+    })
+}
+
+/// `name` under `path`.
+pub(crate) fn join(path: &str, name: &str) -> String {
+    if path.is_empty() { segment(name) } else { format!("{path}.{}", segment(name)) }
+}
+
+/// A key that is not in `keys`, with the one that was probably meant.
+pub(crate) fn unknown(origin: Origin, path: String, name: &str, keys: &'static [Key]) -> Fault {
+    let near = format::nearest(name, keys.iter().map(|k| k.name));
+    let suggestion = near.map(str::to_owned).or_else(|| format::home_of(name));
+    let expected = format!("one of {}", format::names(keys));
+    Fault { origin, key: path, kind: FaultKind::Unknown { expected, suggestion } }
+}
+
+pub(crate) fn value_fault(key: &str, origin: Origin, expected: String, found: String) -> Fault {
+    Fault { origin, key: key.to_owned(), kind: FaultKind::Value { expected, found } }
+}
+
+fn refuse(path: &str, kind: Kind, entry: &Entry) -> Fault {
+    value_fault(path, entry.origin, kind.expected(), entry.node.describe())
+}
+
+fn quantity(path: &str, dimension: Dimension, entry: &Entry) -> Result<f64, Fault> {
+    let refused = |found: String| value_fault(path, entry.origin, dimension.expected(), found);
+    match &entry.node {
+        Node::Number(value) if value.is_finite() => Ok(dimension.bare(*value)),
+        Node::Number(_) => Err(refused(format!("{}, which is not finite", entry.node.describe()))),
+        Node::Text(text) => dimension.parse(text).map_err(|e| refused(format!("{}: {e}", entry.node.describe()))),
+        other => Err(refused(other.describe())),
+    }
+}

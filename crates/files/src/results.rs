@@ -1,0 +1,235 @@
+//! Results as people and programs get them: JSON and CSV.
+//!
+//! Numbers are written with the fewest digits that read back as the same number. What is not
+//! finite is `null` in JSON and an empty field in CSV.
+
+use hydrostat::{Configuration, NoEquilibrium, Stations, Verdict, Warning, Wrench};
+use serde::Serialize;
+
+use crate::written::Inputs;
+
+/// The version of the JSON documents' structure.
+pub const SCHEMA: u32 = 1;
+
+/// The document of an equilibrium that was found.
+#[derive(Debug, Clone, Serialize)]
+pub struct Solution<'a> {
+    schema: u32,
+    version: &'static str,
+    converged: bool,
+    stable: Option<bool>,
+    warnings: Vec<Note>,
+    tip: TipOut,
+    stations: StationsOut<'a>,
+    cables: Vec<CableOut<'a>>,
+    base: WrenchOut,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unmet: Option<WrenchOut>,
+    error_estimate: f64,
+    fold_margin: f64,
+    inputs: Inputs,
+    statistics: StatisticsOut,
+}
+
+/// The document of a solve without an answer.
+#[derive(Debug, Clone, Serialize)]
+pub struct Failure<'a> {
+    schema: u32,
+    version: &'static str,
+    converged: bool,
+    verdict: VerdictOut,
+    last_good: Option<Solution<'a>>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct Note {
+    kind: &'static str,
+    message: String,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct TipOut {
+    x: f64,
+    y: f64,
+    theta: f64,
+    alpha: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct StationsOut<'a> {
+    s: &'a [f64],
+    x: &'a [f64],
+    y: &'a [f64],
+    theta: &'a [f64],
+    nu: &'a [f64],
+    eta: &'a [f64],
+    mu: &'a [f64],
+    beta: &'a [f64],
+    alpha: &'a [f64],
+    n_a: &'a [f64],
+    n_b: &'a [f64],
+    m: &'a [f64],
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct CableOut<'a> {
+    name: &'a str,
+    tension: f64,
+    length: f64,
+    stroke: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct WrenchOut {
+    force: [f64; 2],
+    moment: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct StatisticsOut {
+    elements: usize,
+    stages: usize,
+    newton_rounds: usize,
+    meshes: usize,
+    load_steps: usize,
+    evaluations: usize,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct VerdictOut {
+    kind: &'static str,
+    phase: &'static str,
+    load_fraction: f64,
+    s: Option<f64>,
+    residual: f64,
+    message: String,
+    advice: String,
+}
+
+impl From<Wrench> for WrenchOut {
+    fn from(w: Wrench) -> Self {
+        Self { force: w.force, moment: w.moment }
+    }
+}
+
+impl From<&Verdict> for VerdictOut {
+    fn from(v: &Verdict) -> Self {
+        Self {
+            kind: v.kind.name(),
+            phase: v.phase.name(),
+            load_fraction: v.load_fraction,
+            s: v.s,
+            residual: v.residual,
+            message: v.message(),
+            advice: v.advice().to_string(),
+        }
+    }
+}
+
+impl<'a> Solution<'a> {
+    /// Of a configuration with its `fold_margin` (the least (nu - beta R |mu|)/nu) and its warnings.
+    pub fn new(configuration: &'a Configuration, fold_margin: f64, warnings: &[Warning]) -> Self {
+        let Configuration {
+            arm, stations: s, cables, base_reaction, unmet, error_estimate, stable, statistics, ..
+        } = configuration;
+        let tip = configuration.tip();
+        Self {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            converged: true,
+            stable: *stable,
+            warnings: warnings.iter().map(|w| Note { kind: w.kind(), message: w.message() }).collect(),
+            tip: TipOut { x: tip.x, y: tip.y, theta: tip.theta, alpha: tip.alpha },
+            stations: StationsOut {
+                s: &s.s,
+                x: &s.x,
+                y: &s.y,
+                theta: &s.theta,
+                nu: &s.nu,
+                eta: &s.eta,
+                mu: &s.mu,
+                beta: &s.beta,
+                alpha: &s.alpha,
+                n_a: &s.n_a,
+                n_b: &s.n_b,
+                m: &s.m,
+            },
+            cables: cables
+                .iter()
+                .map(|c| CableOut { name: &c.name, tension: c.tension, length: c.length, stroke: c.stroke })
+                .collect(),
+            base: (*base_reaction).into(),
+            unmet: unmet.map(Into::into),
+            error_estimate: *error_estimate,
+            fold_margin,
+            inputs: Inputs::new(arm),
+            statistics: StatisticsOut {
+                elements: statistics.elements,
+                stages: statistics.stages,
+                newton_rounds: statistics.newton_rounds,
+                meshes: statistics.meshes,
+                load_steps: statistics.load_steps,
+                evaluations: statistics.evaluations,
+            },
+        }
+    }
+
+    /// The document, one line.
+    ///
+    /// # Errors
+    /// None in practice: the document has no maps with keys that are not strings.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string(self)
+    }
+}
+
+impl<'a> Failure<'a> {
+    /// Of a verdict, with the fold margin and the warnings of its last good configuration (not used
+    /// if there is none).
+    pub fn new(failure: &'a NoEquilibrium, fold_margin: f64, warnings: &[Warning]) -> Self {
+        Self {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            converged: false,
+            verdict: (&failure.verdict).into(),
+            last_good: failure.last_good.as_ref().map(|c| Solution::new(c, fold_margin, warnings)),
+        }
+    }
+
+    /// The document, one line.
+    ///
+    /// # Errors
+    /// None in practice: the document has no maps with keys that are not strings.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string(self)
+    }
+}
+
+/// The stations, one row each, with names and units in the first row.
+pub fn stations_csv(stations: &Stations) -> String {
+    let columns: [(&str, &[f64]); 12] = [
+        ("s_m", &stations.s),
+        ("x_m", &stations.x),
+        ("y_m", &stations.y),
+        ("theta_rad", &stations.theta),
+        ("nu", &stations.nu),
+        ("eta", &stations.eta),
+        ("mu_per_m", &stations.mu),
+        ("beta", &stations.beta),
+        ("alpha_rad", &stations.alpha),
+        ("n_a_N", &stations.n_a),
+        ("n_b_N", &stations.n_b),
+        ("m_Nm", &stations.m),
+    ];
+    let mut out = columns.map(|(name, _)| name).join(",");
+    out.push('\n');
+    for row in 0..stations.len() {
+        let cells = columns.map(|(_, values)| match values.get(row) {
+            Some(value) if value.is_finite() => format!("{value:?}"),
+            _ => String::new(),
+        });
+        out.push_str(&cells.join(","));
+        out.push('\n');
+    }
+    out
+}

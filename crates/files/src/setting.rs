@@ -1,0 +1,187 @@
+//! Overrides: `--set KEY=VALUE`, applied to the tree before it is read.
+
+use crate::document::{Entry, Field, Node, Origin, parse_setting};
+use crate::format::{self, Key, Kind};
+use crate::reading::{Fault, join, unknown, value_fault};
+
+/// One step of a dotted path.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Step {
+    Name(String),
+    Index(usize),
+}
+
+/// Writes `value` at the dotted path `key`, making tables that are not there yet. `index` is the
+/// number of the override.
+pub(crate) fn apply(fields: &mut Vec<Field>, key: &str, value: &str, index: usize) -> Result<(), Fault> {
+    let origin = Origin::Setting(index);
+    let steps = path(key).ok_or_else(|| {
+        let expected = "a dotted key such as flow.speed or cable[0].tension".to_owned();
+        value_fault("KEY", origin, expected, format!("\"{}\"", crate::error::shortened(key)))
+    })?;
+    into_table(fields, "", format::FILE, &steps, &Target { value, index, origin })
+}
+
+struct Target<'a> {
+    value: &'a str,
+    index: usize,
+    origin: Origin,
+}
+
+impl Target<'_> {
+    fn node(&self, kind: Kind) -> Node {
+        match (kind, parse_setting(self.value, self.index)) {
+            (_, text @ Node::Text(_)) => text,
+            // A name may look like a number.
+            (Kind::Text, _) => Node::Text(self.value.to_owned()),
+            (_, node) => node,
+        }
+    }
+
+    fn refuse(&self, path: &str, expected: impl Into<String>, found: impl Into<String>) -> Fault {
+        value_fault(path, self.origin, expected.into(), found.into())
+    }
+}
+
+fn into_table(
+    fields: &mut Vec<Field>,
+    path: &str,
+    keys: &'static [Key],
+    steps: &[Step],
+    target: &Target<'_>,
+) -> Result<(), Fault> {
+    let [Step::Name(name), rest @ ..] = steps else {
+        return Err(target.refuse(path, format!("one of {}", format::names(keys)), "an index"));
+    };
+    let here = join(path, name);
+    let Some(key) = keys.iter().find(|k| k.name == name) else {
+        return Err(unknown(target.origin, here, name, keys));
+    };
+    let at = fields.iter().position(|f| f.name == *name).unwrap_or(fields.len());
+    if at == fields.len() {
+        let entry = Entry { node: empty(key.kind), origin: target.origin };
+        fields.push(Field { name: name.clone(), origin: target.origin, entry });
+    }
+    into_value(&mut fields[at].entry, &here, key.kind, rest, target)
+}
+
+/// What a value that is not there yet is made of when only a part of it is set.
+fn empty(kind: Kind) -> Node {
+    match kind {
+        Kind::Tables(_) => Node::Array(Vec::new()),
+        Kind::Pair(_) | Kind::ProfilePair(_) => {
+            let zero = Entry { node: Node::Number(0.0), origin: Origin::Text(0) };
+            Node::Array(vec![zero.clone(), zero])
+        }
+        _ => Node::Table(Vec::new()),
+    }
+}
+
+fn into_value(entry: &mut Entry, path: &str, kind: Kind, steps: &[Step], target: &Target<'_>) -> Result<(), Fault> {
+    let [step, rest @ ..] = steps else {
+        *entry = Entry { node: target.node(kind), origin: target.origin };
+        return Ok(());
+    };
+    let whole = |entry: &Entry, what: &str| {
+        target.refuse(path, format!("{what}; set {path} as a whole"), entry.node.describe())
+    };
+    match (kind, step, &mut entry.node) {
+        (Kind::Table(keys), Step::Name(_), Node::Table(fields)) => into_table(fields, path, keys, steps, target),
+        (Kind::Tables(keys), Step::Index(i), Node::Array(entries)) => {
+            let count = entries.len();
+            let Some(element) = entries.get_mut(*i) else {
+                let expected = match count {
+                    0 => "no index, because the arm has 0 cables".to_owned(),
+                    1 => "the index 0, because the arm has 1 cable".to_owned(),
+                    n => format!("an index from 0 to {}, because the arm has {n} cables", n - 1),
+                };
+                return Err(target.refuse(path, expected, format!("{i}")));
+            };
+            into_value(element, &format!("{path}[{i}]"), Kind::Table(keys), rest, target)
+        }
+        (Kind::Tables(_), Step::Name(_), _) => {
+            Err(target.refuse(path, format!("an index, as in {path}[0].tension"), "none"))
+        }
+        (Kind::Profile(_), Step::Name(name), Node::Table(fields)) => {
+            let here = join(path, name);
+            if !format::ENDS.contains(&name.as_str()) {
+                return Err(target.refuse(&here, "base or tip", format!("\"{name}\"")));
+            }
+            if !rest.is_empty() {
+                return Err(target.refuse(&here, "the end of the key", "more of it"));
+            }
+            let entry = Entry { node: target.node(kind), origin: target.origin };
+            match fields.iter_mut().find(|f| f.name == *name) {
+                Some(field) => field.entry = entry,
+                None => fields.push(Field { name: name.clone(), origin: target.origin, entry }),
+            }
+            Ok(())
+        }
+        (Kind::Profile(_), Step::Name(_), _) => Err(whole(entry, "{ base = _, tip = _ }")),
+        (Kind::Profile(d), Step::Index(i), Node::Array(entries)) => {
+            let count = entries.len();
+            match entries.get_mut(*i) {
+                Some(point) => into_value(point, &format!("{path}[{i}]"), Kind::Pair(d), rest, target),
+                None => Err(target.refuse(path, format!("an index below {count}"), format!("{i}"))),
+            }
+        }
+        (Kind::Profile(_), Step::Index(_), _) => Err(whole(entry, "[[s, value], ...]")),
+        (Kind::Pair(d), Step::Index(i), Node::Array(entries)) => match entries.get_mut(*i) {
+            Some(part) => into_value(part, &format!("{path}[{i}]"), Kind::Quantity(d), rest, target),
+            None => Err(target.refuse(path, "the index 0 or 1", format!("{i}"))),
+        },
+        (Kind::ProfilePair(d), Step::Index(i), Node::Array(entries)) => match entries.get_mut(*i) {
+            Some(part) => into_value(part, &format!("{path}[{i}]"), Kind::Profile(d), rest, target),
+            None => Err(target.refuse(path, "the index 0 or 1", format!("{i}"))),
+        },
+        (Kind::Table(_) | Kind::Tables(_) | Kind::Pair(_) | Kind::ProfilePair(_), _, _) => {
+            Err(target.refuse(path, kind.expected(), entry.node.describe()))
+        }
+        (Kind::Text | Kind::Choice(_) | Kind::Quantity(_), ..) => {
+            Err(target.refuse(path, "the end of the key", "more of it"))
+        }
+    }
+}
+
+/// `cable[0].tension` as steps.
+fn path(key: &str) -> Option<Vec<Step>> {
+    // The format is four steps deep; more can only be a mistake.
+    const LONGEST: usize = 200;
+    if key.len() > LONGEST {
+        return None;
+    }
+    let mut steps = Vec::new();
+    for part in key.trim().split('.') {
+        let (name, mut indices) = part.find('[').map_or((part, ""), |i| part.split_at(i));
+        let word = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+        if name.is_empty() || !name.chars().all(word) {
+            return None;
+        }
+        steps.push(Step::Name(name.to_owned()));
+        while !indices.is_empty() {
+            let (digits, rest) = indices.strip_prefix('[')?.split_once(']')?;
+            if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) {
+                return None;
+            }
+            steps.push(Step::Index(digits.parse().unwrap_or(usize::MAX)));
+            indices = rest;
+        }
+    }
+    Some(steps)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_names_and_indices() {
+        let name = |n: &str| Step::Name(n.to_owned());
+        assert_eq!(path("flow.speed"), Some(vec![name("flow"), name("speed")]));
+        assert_eq!(path("cable[12].tension"), Some(vec![name("cable"), Step::Index(12), name("tension")]));
+        assert_eq!(path("arm.radius[1][0]").map(|s| s.len()), Some(4));
+        for bad in ["", ".", "a..b", "cable[]", "cable[-1]", "cable[0", "cable]0[", "a b", "cable[0]x"] {
+            assert_eq!(path(bad), None, "{bad}");
+        }
+    }
+}

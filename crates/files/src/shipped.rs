@@ -1,0 +1,52 @@
+//! The arms that ship with the program.
+
+struct Shipped {
+    name: &'static str,
+    description: &'static str,
+    text: &'static str,
+}
+
+const ARMS: [Shipped; 4] = [
+    Shipped {
+        name: "paper",
+        description: "the source's arm: two cables, the left one pulled, 0.5 m/s; parameters found by trial",
+        text: include_str!("../../../arms/paper.toml"),
+    },
+    Shipped {
+        name: "silicone",
+        description: "silicone cone of 245 mm, two cables (Renda et al. 2018)",
+        text: include_str!("../../../arms/silicone.toml"),
+    },
+    Shipped {
+        name: "multi-bending",
+        description: "silicone cone of 418 mm, six cables that end at three places (Renda et al.)",
+        text: include_str!("../../../arms/multi-bending.toml"),
+    },
+    Shipped {
+        name: "octopus",
+        description: "octopus arm of 200 mm, 10 kPa, two cables (Chang et al., drag of Yekutieli et al. 2005)",
+        text: include_str!("../../../arms/octopus.toml"),
+    },
+];
+
+/// Their names.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    ARMS.iter().map(|arm| arm.name)
+}
+
+/// The text of an arm's file.
+///
+/// ```
+/// use hydrostat_files::{ArmFile, shipped};
+///
+/// let file = ArmFile::parse(shipped::get("paper").unwrap(), "paper").unwrap();
+/// assert_eq!(file.arm().unwrap().length, 0.2);
+/// ```
+pub fn get(name: &str) -> Option<&'static str> {
+    ARMS.iter().find(|arm| arm.name == name).map(|arm| arm.text)
+}
+
+/// What an arm is, in a line.
+pub fn description(name: &str) -> Option<&'static str> {
+    ARMS.iter().find(|arm| arm.name == name).map(|arm| arm.description)
+}

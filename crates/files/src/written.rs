@@ -1,0 +1,342 @@
+//! An arm written out in the form of its file: as TOML, and as the `inputs` of results.
+
+use std::fmt::Write;
+
+use hydrostat::{
+    Arm, Cavity, EnteringSpeed, FlowLaw, FlowSurface, Hydrostatics, LayerMean, Material, Profile, Readings, Support,
+    Volume, WettedLength,
+};
+use serde::{Serialize, Serializer};
+
+/// An arm in the form of its file, every default filled in: SI numbers, angles as bare numbers in
+/// degrees. Serialized as JSON it has the keys of the arm file, and reads back as the same arm (an
+/// angle to its last digit).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inputs(Tree);
+
+impl Inputs {
+    /// Of this arm.
+    pub fn new(arm: &Arm) -> Self {
+        Self(tree(arm, &|rad| Tree::Number(nearest_degrees(rad))))
+    }
+}
+
+impl Serialize for Inputs {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
+    }
+}
+
+/// An arm as the text of an arm file, every default filled in. Reading it gives the same arm, to
+/// the last bit: an angle that no number of degrees gives exactly is written in rad.
+///
+/// ```
+/// use hydrostat::{Arm, Cable, Profile};
+/// use hydrostat_files::{ArmFile, arm_to_toml};
+///
+/// let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+/// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
+/// let text = arm_to_toml(&arm);
+/// assert_eq!(ArmFile::parse(&text, "copy.toml").unwrap().arm().unwrap(), arm);
+/// ```
+pub fn arm_to_toml(arm: &Arm) -> String {
+    let angle = |rad: f64| {
+        let degrees = nearest_degrees(rad);
+        if degrees.to_radians().to_bits() == rad.to_bits() {
+            Tree::Number(degrees)
+        } else {
+            Tree::Text(format!("{rad:?} rad"))
+        }
+    };
+    let mut out = String::new();
+    if let Tree::Table(tables) = tree(arm, &angle) {
+        for (name, value) in tables {
+            match value {
+                Tree::Table(keys) => section(&mut out, &format!("[{name}]"), &keys),
+                Tree::Array(elements) => {
+                    for element in elements {
+                        if let Tree::Table(keys) = element {
+                            section(&mut out, &format!("[[{name}]]"), &keys);
+                        }
+                    }
+                }
+                other => assign(&mut out, name, &other),
+            }
+        }
+    }
+    out
+}
+
+fn section(out: &mut String, header: &str, keys: &[(&'static str, Tree)]) {
+    out.push('\n');
+    out.push_str(header);
+    out.push('\n');
+    for (name, value) in keys {
+        assign(out, name, value);
+    }
+}
+
+fn assign(out: &mut String, name: &str, value: &Tree) {
+    out.push_str(name);
+    out.push_str(" = ");
+    value.write_toml(out);
+    out.push('\n');
+}
+
+/// Values in the order in which they are written.
+#[derive(Debug, Clone, PartialEq)]
+enum Tree {
+    Text(String),
+    Number(f64),
+    Array(Vec<Tree>),
+    Table(Vec<(&'static str, Tree)>),
+}
+
+impl Tree {
+    fn word(word: &str) -> Self {
+        Self::Text(word.to_owned())
+    }
+
+    fn pair(pair: [f64; 2]) -> Self {
+        Self::Array(pair.into_iter().map(Self::Number).collect())
+    }
+
+    fn profile(profile: &Profile) -> Self {
+        match profile {
+            Profile::Constant(value) => Self::Number(*value),
+            Profile::Linear { base, tip } => {
+                Self::Table(vec![("base", Self::Number(*base)), ("tip", Self::Number(*tip))])
+            }
+            Profile::Table(table) => Self::Array(table.points().map(Self::pair).collect()),
+        }
+    }
+
+    fn write_toml(&self, out: &mut String) {
+        match self {
+            Self::Text(text) => write_string(out, text),
+            Self::Number(value) => {
+                // TOML spells what is not finite in lower case.
+                let text = format!("{value:?}");
+                out.push_str(if value.is_nan() { "nan" } else { &text });
+            }
+            Self::Array(elements) => {
+                out.push('[');
+                for (i, element) in elements.iter().enumerate() {
+                    out.push_str(if i == 0 { "" } else { ", " });
+                    element.write_toml(out);
+                }
+                out.push(']');
+            }
+            Self::Table(keys) => {
+                for (i, (name, value)) in keys.iter().enumerate() {
+                    out.push_str(if i == 0 { "{ " } else { ", " });
+                    out.push_str(name);
+                    out.push_str(" = ");
+                    value.write_toml(out);
+                }
+                out.push_str(" }");
+            }
+        }
+    }
+}
+
+impl Serialize for Tree {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Text(text) => serializer.serialize_str(text),
+            Self::Number(value) => serializer.serialize_f64(*value),
+            Self::Array(elements) => serializer.collect_seq(elements),
+            Self::Table(keys) => serializer.collect_map(keys.iter().map(|(k, v)| (k, v))),
+        }
+    }
+}
+
+fn write_string(out: &mut String, text: &str) {
+    out.push('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => {
+                out.push('\\');
+                out.push(c);
+            }
+            c if c.is_control() => {
+                // Writing to a string cannot fail.
+                let _ = write!(out, "\\u{:04X}", u32::from(c));
+            }
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+}
+
+/// The degrees that are read as `rad`, or as near as degrees come to it; of several the one with
+/// the fewest digits.
+fn nearest_degrees(rad: f64) -> f64 {
+    let degrees = rad.to_degrees();
+    if !degrees.is_finite() {
+        return degrees;
+    }
+    let rounded: Option<f64> = format!("{degrees:.14e}").parse().ok();
+    let candidates = [rounded.unwrap_or(degrees), degrees, degrees.next_down(), degrees.next_up()];
+    candidates.into_iter().find(|d| d.to_radians().to_bits() == rad.to_bits()).unwrap_or(degrees)
+}
+
+fn tree(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
+    let number = Tree::Number;
+    let mut file = vec![("name", Tree::Text(arm.name.clone()))];
+    file.push((
+        "arm",
+        Tree::Table(vec![
+            ("length", number(arm.length)),
+            ("radius", Tree::profile(&arm.radius)),
+            ("inner_radius", Tree::profile(&arm.inner_radius)),
+            (
+                "cavity",
+                Tree::word(match arm.cavity {
+                    Cavity::Flooded => "flooded",
+                    Cavity::Sealed => "sealed",
+                }),
+            ),
+            ("density", number(arm.density)),
+            (
+                "base",
+                Tree::Table(vec![
+                    ("x", number(arm.base.x)),
+                    ("y", number(arm.base.y)),
+                    ("angle", angle(arm.base.angle)),
+                ]),
+            ),
+        ]),
+    ));
+    file.push(("material", material(&arm.material)));
+    file.push((
+        "reference",
+        Tree::Table(vec![
+            ("nu", Tree::profile(&arm.reference.nu)),
+            ("eta", Tree::profile(&arm.reference.eta)),
+            ("mu", Tree::profile(&arm.reference.mu)),
+        ]),
+    ));
+    if !arm.cables.is_empty() {
+        file.push(("cable", Tree::Array(arm.cables.iter().map(cable).collect())));
+    }
+    file.push(("flow", flow(arm, angle)));
+    if let Some(gravity) = &arm.gravity {
+        let keys = vec![("acceleration", number(gravity.acceleration)), ("direction", angle(gravity.direction))];
+        file.push(("gravity", Tree::Table(keys)));
+    }
+    file.push((
+        "tip",
+        Tree::Table(vec![
+            ("force", Tree::pair(arm.tip.force)),
+            ("moment", number(arm.tip.moment)),
+            ("follower", Tree::pair(arm.tip.follower)),
+        ]),
+    ));
+    let [e1, e2] = &arm.distributed.force;
+    let keys = vec![
+        ("force", Tree::Array(vec![Tree::profile(e1), Tree::profile(e2)])),
+        ("couple", Tree::profile(&arm.distributed.couple)),
+    ];
+    file.push(("distributed", Tree::Table(keys)));
+    file.push(("model", model(arm.readings)));
+    Tree::Table(file)
+}
+
+fn material(material: &Material) -> Tree {
+    Tree::Table(match material {
+        Material::Homogeneous { young, poisson, shear_factor } => vec![
+            ("young", Tree::Number(*young)),
+            ("poisson", Tree::Number(*poisson)),
+            ("shear_factor", Tree::Number(*shear_factor)),
+        ],
+        Material::Coefficients { c1, c2, c3 } => {
+            vec![("c1", Tree::profile(c1)), ("c2", Tree::profile(c2)), ("c3", Tree::profile(c3))]
+        }
+    })
+}
+
+fn cable(cable: &hydrostat::Cable) -> Tree {
+    let mut keys = vec![
+        ("name", Tree::Text(cable.name.clone())),
+        ("offset", Tree::profile(&cable.offset)),
+        ("tension", Tree::Number(cable.tension)),
+    ];
+    if let Some(max_tension) = cable.max_tension {
+        keys.push(("max_tension", Tree::Number(max_tension)));
+    }
+    keys.push(("end", Tree::Number(cable.end)));
+    Tree::Table(keys)
+}
+
+fn flow(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
+    let mut keys = vec![
+        ("speed", Tree::Number(arm.flow.speed)),
+        ("direction", angle(arm.flow.direction)),
+        ("density", Tree::Number(arm.flow.density)),
+        ("layer_thickness", Tree::Number(arm.flow.layer_thickness)),
+    ];
+    match arm.flow.law {
+        FlowLaw::Momentum => keys.push(("law", Tree::word("momentum"))),
+        FlowLaw::QuadraticDrag { cn, ct } => {
+            keys.extend([("law", Tree::word("quadratic-drag")), ("cn", Tree::Number(cn)), ("ct", Tree::Number(ct))]);
+        }
+    }
+    Tree::Table(keys)
+}
+
+fn model(r: Readings) -> Tree {
+    let words = [
+        (
+            "volume",
+            match r.volume {
+                Volume::Planar => "planar",
+                Volume::Circular => "circular",
+                Volume::None => "none",
+            },
+        ),
+        (
+            "flow_surface",
+            match r.flow_surface {
+                FlowSurface::Centreline => "centreline",
+                FlowSurface::Lateral => "lateral",
+            },
+        ),
+        (
+            "entering_speed",
+            match r.entering_speed {
+                EnteringSpeed::Tangential => "tangential",
+                EnteringSpeed::Resultant => "resultant",
+            },
+        ),
+        (
+            "layer_mean",
+            match r.layer_mean {
+                LayerMean::Speed => "speed",
+                LayerMean::Momentum => "momentum",
+            },
+        ),
+        (
+            "wetted_length",
+            match r.wetted_length {
+                WettedLength::Reference => "reference",
+                WettedLength::Deformed => "deformed",
+            },
+        ),
+        (
+            "hydrostatics",
+            match r.hydrostatics {
+                Hydrostatics::Archimedes => "archimedes",
+                Hydrostatics::NormalOnly => "normal-only",
+            },
+        ),
+        (
+            "support",
+            match r.support {
+                Support::Clamped => "clamped",
+                Support::UnstrainedBase => "unstrained-base",
+            },
+        ),
+    ];
+    Tree::Table(words.into_iter().map(|(key, word)| (key, Tree::word(word))).collect())
+}
