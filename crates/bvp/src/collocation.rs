@@ -227,11 +227,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     /// # Errors
     /// Those of [`Problem::slopes`].
     #[inline(always)]
-    pub fn evaluate<P: Problem<N, Q>>(
-        &mut self,
-        problem: &mut P,
-        solution: &Solution<N, M>,
-    ) -> Result<(), P::Failure> {
+    pub fn evaluate<P: Problem<N, Q>>(&mut self, problem: &mut P, solution: &Solution<N, M>) -> Result<(), P::Failure> {
         let n = solution.mesh.elements();
         self.states.resize(n * M, [0.0; N]);
         self.locals.resize(n * M, Local::default());
@@ -389,11 +385,8 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         out.slopes.resize(n, [[0.0; N]; M]);
         let mut load = [0.0; N];
         for r in 0..N {
-            load[r] = if r < left_count {
-                self.left_load[r][column]
-            } else {
-                self.rows[0].load[r - left_count][column]
-            };
+            load[r] =
+                if r < left_count { self.left_load[r][column] } else { self.rows[0].load[r - left_count][column] };
         }
         out.nodes[0] = apply(&self.start, &load);
         out.total = [0.0; Q];
@@ -546,7 +539,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
 
 /// Eliminates the stages: on return `response` and `load` hold the stage slopes they lead to.
 #[inline(always)]
-fn eliminate<const N: usize, const M: usize, const Q: usize>(
+pub(crate) fn eliminate<const N: usize, const M: usize, const Q: usize>(
     h: f64,
     gauss: &Gauss<M>,
     locals: &[Local<N, Q>],

@@ -63,13 +63,11 @@ impl<const M: usize> Gauss<M> {
     /// Integrals of the cardinal polynomials from 0 to `x`.
     pub fn integrals(&self, x: f64) -> [f64; M] {
         let t = 2.0 * x - 1.0;
-        self.series(|n| {
-            if n == 0 {
-                x
-            } else {
-                (legendre(n + 1, t).0 - legendre(n - 1, t).0) / (2.0 * (2 * n + 1) as f64)
-            }
-        })
+        self.series(
+            |n| {
+                if n == 0 { x } else { (legendre(n + 1, t).0 - legendre(n - 1, t).0) / (2.0 * (2 * n + 1) as f64) }
+            },
+        )
     }
 
     /// From H_l = (1 - 2 (x - c_l) l_l'(c_l)) l_l^2 for values and (x - c_l) l_l^2 for slopes.
@@ -141,9 +139,8 @@ mod tests {
     fn hermite_second_derivatives_are_exact_to_degree_seven() {
         let g = Gauss::<4>::new();
         for j in 0..4 {
-            let sum: f64 = (0..4)
-                .map(|l| g.hermite[0][j][l] * g.c[l].powi(7) + g.hermite[1][j][l] * 7.0 * g.c[l].powi(6))
-                .sum();
+            let sum: f64 =
+                (0..4).map(|l| g.hermite[0][j][l] * g.c[l].powi(7) + g.hermite[1][j][l] * 7.0 * g.c[l].powi(6)).sum();
             assert!((sum - 42.0 * g.c[j].powi(5)).abs() < 1e-11, "{sum}");
         }
     }

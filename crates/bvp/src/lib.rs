@@ -1,10 +1,12 @@
 //! Two-point boundary-value problems.
+mod block;
 pub mod collocation;
 pub mod gauss;
 pub mod mesh;
 pub mod problem;
-mod block;
+pub mod step;
 pub use collocation::{Collocation, Correction, Determinant, RoundError, Singular, Solution};
 pub use gauss::Gauss;
 pub use mesh::{Limits, Mesh};
 pub use problem::{Condition, Local, Problem};
+pub use step::step;

@@ -1,6 +1,11 @@
 //! The answer: the arm's shape and what it carries.
 
 use crate::arm::Arm;
+use crate::dense::Dense;
+use crate::engine::{Engine, M};
+use crate::equilibrium::{AtPlace, SectionFailure};
+use crate::flow::layer_profile;
+use crate::readings::Support;
 
 /// The static configuration of an arm.
 #[derive(Debug, Clone)]
@@ -22,6 +27,19 @@ pub struct Configuration {
     pub stable: Option<bool>,
     /// What the solve took.
     pub statistics: Statistics,
+    pub(crate) fold: FoldMargin,
+    pub(crate) tangential_shift: Option<f64>,
+    energy: f64,
+    dense: Box<Dense>,
+}
+
+/// How far the surface is from folding over itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoldMargin {
+    /// min over s of (nu - beta R |mu|) / nu; at or below zero the surface folds.
+    pub value: f64,
+    /// Where, m.
+    pub s: f64,
 }
 
 /// A force (N, in space) and a moment (N m).
@@ -211,6 +229,89 @@ impl Stations {
 }
 
 impl Configuration {
+    /// Reads the engine's solution out; the engine must be settled.
+    pub(crate) fn read(
+        engine: &mut Engine,
+        error_estimate: f64,
+        statistics: Statistics,
+    ) -> Result<Self, SectionFailure> {
+        engine.refresh()?;
+        let dense = Box::new(Dense::new(engine));
+        let arm = dense.equations.arm_at_fraction();
+        let mesh = &dense.solution.mesh;
+        let n = mesh.elements();
+        let mut stations = Stations::default();
+        let mut fold = FoldMargin { value: 1.0, s: 0.0 };
+        let (l, f) = (arm.length, dense.equations.units.force);
+        let mut note = |s: f64, nu: f64, beta: f64, mu: f64, radius: f64| {
+            let value = (nu - beta * radius * mu.abs()) / nu;
+            if value < fold.value {
+                fold = FoldMargin { value, s: s * l };
+            }
+        };
+        let mut push = |place: (Station, AtPlace)| {
+            let (station, place) = place;
+            note(station.s / l, station.nu, station.beta, station.mu * l, place.radius);
+            stations.push(&station);
+        };
+        for i in 0..n {
+            let s = mesh.nodes()[i];
+            let cable_ends_here =
+                i > 0 && (0..arm.cables.len()).any(|c| (dense.equations.cable_end(c) - s).abs() < 1e-9);
+            if cable_ends_here {
+                push(dense.at(i - 1, s)?);
+            }
+            push(dense.at(i, s)?);
+        }
+        push(dense.at(n - 1, 1.0)?);
+
+        let mut cables: Vec<CableState> = arm
+            .cables
+            .iter()
+            .map(|c| CableState { name: c.name.clone(), tension: c.tension, length: 0.0, stroke: 0.0 })
+            .collect();
+        let mut energy = 0.0;
+        let places = dense.equations.stations();
+        for i in 0..n {
+            for j in 0..M {
+                let k = i * M + j;
+                let weight = l * mesh.step(i) * engine.system.gauss.b[j];
+                let strain = dense.equations.strain(k);
+                energy += weight * dense.equations.strain_energy(places[k], strain);
+                for (c, cable) in cables.iter_mut().enumerate() {
+                    if places[k] < dense.equations.cable_end(c) {
+                        let [now, unloaded] =
+                            dense.equations.cable_stretch(c, places[k], strain, dense.equations.beta_slope[k]);
+                        cable.length += weight * now;
+                        cable.stroke += weight * (unloaded - now);
+                    }
+                }
+            }
+        }
+
+        let [_, n1, n2, m] = dense.solution.nodes[0];
+        let base_reaction = Wrench { force: [-n1 * f, -n2 * f], moment: -m * f * l };
+        let unmet = (arm.readings.support == Support::UnstrainedBase).then(|| {
+            let end = dense.solution.nodes[n];
+            let (load, _) = dense.equations.tip_load(end[0]);
+            Wrench { force: [f * (end[1] - load[0]), f * (end[2] - load[1])], moment: f * l * (end[3] - load[2]) }
+        });
+        Ok(Self {
+            arm,
+            stations,
+            cables,
+            base_reaction,
+            unmet,
+            error_estimate,
+            stable: None,
+            statistics,
+            fold,
+            tangential_shift: None,
+            energy: energy * f,
+            dense,
+        })
+    }
+
     /// Where the tip is.
     pub fn tip(&self) -> Tip {
         let last = |v: &[f64]| v.last().copied().unwrap_or_default();
@@ -221,4 +322,114 @@ impl Configuration {
             alpha: last(&self.stations.alpha),
         }
     }
+
+    /// Everything at `s` (m), to the accuracy of the nodes; `s` outside [0, L] is moved to the
+    /// nearer end. At the end of a cable, the values on the tip's side.
+    pub fn at(&self, s: f64) -> Station {
+        let share = (s / self.arm.length).clamp(0.0, 1.0);
+        let share = if share.is_nan() { 0.0 } else { share };
+        let element = self.dense.solution.mesh.element_of(share);
+        match self.dense.at(element, share) {
+            Ok((station, _)) => station,
+            // A section that cannot be solved between two that can: as near as the nodes come.
+            Err(_) => self.nearest(s),
+        }
+    }
+
+    fn nearest(&self, s: f64) -> Station {
+        let st = &self.stations;
+        let i = (0..st.len()).min_by(|i, j| (st.s[*i] - s).abs().total_cmp(&(st.s[*j] - s).abs())).unwrap_or_default();
+        Station {
+            s: st.s[i],
+            x: st.x[i],
+            y: st.y[i],
+            theta: st.theta[i],
+            nu: st.nu[i],
+            eta: st.eta[i],
+            mu: st.mu[i],
+            beta: st.beta[i],
+            beta_slope: 0.0,
+            alpha: st.alpha[i],
+            n_a: st.n_a[i],
+            n_b: st.n_b[i],
+            m: st.m[i],
+        }
+    }
+
+    /// `count` (at least two) equally spaced stations from base to tip.
+    pub fn resampled(&self, count: usize) -> Stations {
+        let count = count.max(2);
+        let mut out = Stations::default();
+        for k in 0..count {
+            out.push(&self.at(self.arm.length * k as f64 / (count - 1) as f64));
+        }
+        out
+    }
+
+    /// The deformed surface on the left and on the right at `s` (m): x = r +- beta R b, (4), m.
+    pub fn surfaces(&self, s: f64) -> [[f64; 2]; 2] {
+        let st = self.at(s);
+        let half_width = st.beta * self.arm.radius.at(st.s, self.arm.length).value;
+        [offset_point(&st, half_width), offset_point(&st, -half_width)]
+    }
+
+    /// Cable `cable` at `s` (m): r + y beta b, m; `None` past its anchor or for a cable that is not there.
+    pub fn cable_point(&self, cable: usize, s: f64) -> Option<[f64; 2]> {
+        let cable = self.arm.cables.get(cable)?;
+        if s > cable.end * self.arm.length * (1.0 + 1e-12) {
+            return None;
+        }
+        let st = self.at(s);
+        Some(offset_point(&st, st.beta * cable.offset.at(st.s, self.arm.length).value))
+    }
+
+    /// Speed (m/s) of the water along the arm at `s` (m) and the distance `y` (m) from the windward
+    /// surface, (7): positive towards the tip. No slip at y = 0, the stream's tangential part from
+    /// y = h_inf on.
+    pub fn layer_speed(&self, s: f64, y: f64) -> f64 {
+        let st = self.at(s);
+        let angle = st.theta + st.alpha - self.arm.flow.direction;
+        layer_profile(self.arm.flow.speed * angle.cos(), y, self.arm.flow.layer_thickness)
+    }
+
+    /// The strain measure 1/2 int (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A ds, J. Not
+    /// a potential of the section law, whose area follows nu: a measure, no more.
+    pub fn strain_energy(&self) -> f64 {
+        self.energy
+    }
+
+    /// How far the surface is from folding over itself.
+    pub fn fold_margin(&self) -> FoldMargin {
+        self.fold
+    }
+
+    /// What should be known about this answer.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let mut out = Vec::new();
+        if self.fold.value <= 0.0 {
+            out.push(Warning::SurfaceFold { margin: self.fold.value, s: self.fold.s });
+        }
+        let worst = (0..self.stations.len())
+            .map(|i| (self.stations.nu[i], self.stations.s[i]))
+            .max_by(|a, b| (a.0 - 1.0).abs().total_cmp(&(b.0 - 1.0).abs()));
+        if let Some((nu, s)) = worst
+            && !(0.5..=1.5).contains(&nu)
+        {
+            out.push(Warning::StrainRange { nu, s });
+        }
+        if self.arm.cavity == crate::Cavity::Sealed && !self.arm.inner_radius.is_zero() {
+            out.push(Warning::SealedCavity);
+        }
+        if let Some(tip_shift) = self.tangential_shift
+            && tip_shift > 0.01
+        {
+            out.push(Warning::TangentialLoad { tip_shift });
+        }
+        out
+    }
+}
+
+fn offset_point(st: &Station, distance: f64) -> [f64; 2] {
+    let (sin, cos) = st.theta.sin_cos();
+    [st.x - distance * sin, st.y + distance * cos]
 }

@@ -15,12 +15,13 @@
 use hydrostat_bvp::{Condition, Gauss, Local, Problem};
 
 use crate::arm::{Arm, Cavity, Material};
-use crate::cable::Offset;
+use crate::cable::{Offset, tangent};
 use crate::flow::Law;
 use crate::loads::{Body, Load, Water, load};
 use crate::readings::{Support, Volume};
 use crate::real::{LANES, Lanes, Real};
 use crate::section::{Balance, CableAt, Stiffness, apply3, balance, inverse3};
+use crate::swelling::swelling;
 use crate::verdict::Phase;
 
 /// States: theta, n_f along e1, n_f along e2, m_f.
@@ -62,9 +63,7 @@ struct Differentiation {
 
 impl Differentiation {
     fn new<const M: usize>(gauss: &Gauss<M>) -> Self {
-        let rows = |m: &[[f64; M]; M]| {
-            m.iter().map(|row| row.iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max)
-        };
+        let rows = |m: &[[f64; M]; M]| m.iter().map(|row| row.iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max);
         // The first Legendre coefficient: 3 (2 x - 1) against beta', slope 2 a unit.
         let line: Vec<f64> = (0..M).map(|l| 6.0 * gauss.b[l] * (2.0 * gauss.c[l] - 1.0)).collect();
         let flat = |m: &[[f64; M]; M]| m.iter().flatten().copied().collect::<Vec<f64>>();
@@ -203,12 +202,58 @@ impl Equilibrium {
         &self.arm
     }
 
-    pub(crate) fn volume(&self) -> Volume {
-        self.volume
+    /// The arm with the loads that act at the present fractions.
+    pub(crate) fn arm_at_fraction(&self) -> Arm {
+        let mut arm = self.arm.clone();
+        let [loads, tension] = self.fraction;
+        if tension != 1.0 {
+            for cable in &mut arm.cables {
+                cable.tension *= tension;
+            }
+        }
+        if loads != 1.0 {
+            // The stream's load is its fraction: with the square of the speed, which both laws have.
+            arm.flow.speed *= loads.sqrt();
+            if let Some(gravity) = &mut arm.gravity {
+                gravity.acceleration *= loads;
+            }
+            for v in arm.tip.force.iter_mut().chain(&mut arm.tip.follower) {
+                *v *= loads;
+            }
+            arm.tip.moment *= loads;
+            for p in arm.distributed.force.iter_mut().chain([&mut arm.distributed.couple]) {
+                *p = p.scaled(loads, 1.0);
+            }
+        }
+        arm
     }
 
     pub(crate) fn set_tangential_factor(&mut self, factor: f64) {
         self.water.tangential_factor = factor;
+    }
+
+    /// |tau| of cable `c` at `s` (over L) and given strains and beta', and at the reference strains.
+    pub(crate) fn cable_stretch(&self, c: usize, s: f64, strain: [f64; 3], beta_slope: f64) -> [f64; 2] {
+        let offset = self.offset(c, s);
+        let stiffness = self.place(s).stiffness;
+        let reference = swelling(self.volume, stiffness.reference[0]);
+        let reference_slope = reference.slope * stiffness.reference_slope[0];
+        [
+            tangent(&offset, strain, &swelling(self.volume, strain[0]), beta_slope).stretch,
+            tangent(&offset, stiffness.reference, &reference, reference_slope).stretch,
+        ]
+    }
+
+    /// Where cable `c` ends, over L.
+    pub(crate) fn cable_end(&self, c: usize) -> f64 {
+        self.ends[c]
+    }
+
+    /// Strain measure 1/2 (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A per length.
+    pub(crate) fn strain_energy(&self, s: f64, strain: [f64; 3]) -> f64 {
+        let stiffness = self.place(s).stiffness;
+        let beta = swelling(self.volume, strain[0]).beta;
+        (0..3).map(|k| 0.5 * stiffness.value[k] * beta * beta * (strain[k] - stiffness.reference[k]).powi(2)).sum()
     }
 
     /// Data at `s` (over L).
@@ -407,7 +452,8 @@ impl Equilibrium {
         guess: [f64; 3],
         [mut beta_slope, beta_curvature]: [f64; 2],
     ) -> Result<AtPlace, SectionFailure> {
-        let place = self.place(s);
+        let mut place = self.place(s);
+        place.body.couple *= self.fraction[0];
         let cables: Vec<CableAt<f64>> = (0..self.tensions.len())
             .map(|c| {
                 let runs = if from_left { s <= self.ends[c] + 1e-12 } else { s < self.ends[c] - 1e-12 };
@@ -442,10 +488,19 @@ impl Equilibrium {
                 beta: solved.balance.swelling.beta,
                 beta_slope,
                 contact: [0, 1, 2].map(|k| contact[k] - solved.balance.cables[k]),
-                load,
-                couple: place.body.couple * self.fraction[0],
-                slope: slopes.slope,
-                cables: cables.iter().map(|c| c.offset).collect(),
+                switches: load.switches,
+                local: {
+                    let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
+                    let [nu, eta, _] = solved.strain;
+                    let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
+                    Local {
+                        slope: slopes.slope,
+                        jacobian: jacobian([cos, sin], contact, &solved, &load, &by_state),
+                        rate,
+                        rate_gradient: rate_gradient([cos, sin], rate, &by_state),
+                    }
+                },
+                radius: place.body.radius,
             });
             if change < 1e-13 {
                 break;
@@ -456,8 +511,7 @@ impl Equilibrium {
 
     #[inline(always)]
     fn load<R: Real>(&self, place: &Place<R>, direction: [R; 2], solved: &Solved<R>, beta_slope: R) -> Load<R> {
-        let mut load =
-            load(&self.water, &place.body, direction, solved.strain, &solved.balance.swelling, beta_slope);
+        let mut load = load(&self.water, &place.body, direction, solved.strain, &solved.balance.swelling, beta_slope);
         let fraction = R::of(self.fraction[0]);
         for k in 0..2 {
             load.force[k] = load.force[k] * fraction;
@@ -476,10 +530,10 @@ pub(crate) struct AtPlace {
     pub(crate) beta_slope: f64,
     /// n.a, n.b, m: what the body carries.
     pub(crate) contact: [f64; 3],
-    pub(crate) load: Load<f64>,
-    pub(crate) couple: f64,
-    pub(crate) slope: [f64; N],
-    pub(crate) cables: Vec<Offset<f64>>,
+    pub(crate) switches: [f64; 3],
+    pub(crate) local: Local<N, Q>,
+    /// Undeformed radius.
+    pub(crate) radius: f64,
 }
 
 fn water(arm: &Arm) -> Water {
@@ -675,15 +729,27 @@ impl Problem<N, Q> for Equilibrium {
                 }
             }
 
-            let solved =
-                solve_section(self.volume, &place.stiffness, pulled, contact, guess, beta_along, 1e-6);
+            let solved = solve_section(self.volume, &place.stiffness, pulled, contact, guess, beta_along, 1e-6);
             for lane in 0..LANES {
                 let fine = solved.step.0[lane] < 1e-6
                     && solved.regularity.0[lane] > 0.0
                     && solved.balance.openness.0[lane] > 0.0
                     && solved.strain[0].0[lane] > 0.0;
                 if !fine {
-                    if std::env::var("DBG").is_ok() { eprintln!("FAIL s {} frac {:?} step {:.2e} reg {:.3e} open {:.3} strain {:?} p {:.3} guess {:?} contact {:?}", self.stations[(block * LANES + lane).min(count - 1)], self.fraction, solved.step.0[lane], solved.regularity.0[lane], solved.balance.openness.0[lane], solved.strain.map(|v| v.0[lane]), beta_along[0].0[lane], guess.map(|v| v.0[lane]), contact.map(|v| v.0[lane])); }
+                    if std::env::var("DBG").is_ok() {
+                        eprintln!(
+                            "FAIL s {} frac {:?} step {:.2e} reg {:.3e} open {:.3} strain {:?} p {:.3} guess {:?} contact {:?}",
+                            self.stations[(block * LANES + lane).min(count - 1)],
+                            self.fraction,
+                            solved.step.0[lane],
+                            solved.regularity.0[lane],
+                            solved.balance.openness.0[lane],
+                            solved.strain.map(|v| v.0[lane]),
+                            beta_along[0].0[lane],
+                            guess.map(|v| v.0[lane]),
+                            contact.map(|v| v.0[lane])
+                        );
+                    }
                     let k = (block * LANES + lane).min(count - 1);
                     return Err(SectionFailure {
                         s: self.stations[k],

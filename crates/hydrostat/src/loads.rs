@@ -94,15 +94,9 @@ pub(crate) fn load<R: Real>(
 ) -> Load<R> {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let [nu, eta, mu] = strain;
-    let centreline =
-        Direction { x: nu, y: eta, x_strain: [one, zero, zero], y_strain: [zero, one, zero] };
+    let centreline = Direction { x: nu, y: eta, x_strain: [one, zero, zero], y_strain: [zero, one, zero] };
     let along = centreline.frame(cos, sin);
-    let mut out = Load {
-        force: body.force,
-        by_theta: [zero; 2],
-        by_strain: [[zero; 3]; 2],
-        switches: [zero; 3],
-    };
+    let mut out = Load { force: body.force, by_theta: [zero; 2], by_strain: [[zero; 3]; 2], switches: [zero; 3] };
 
     if water.stream != [0.0; 2] {
         // S = pi rho_w beta R, times |r'| when the deformed length is wet.
@@ -135,8 +129,7 @@ pub(crate) fn load<R: Real>(
                 // U . u_n with u_n = sigma k x u_t outward: the smaller is windward.
                 let (hit_left, hit_right) = (dot(stream, left.w), -dot(stream, right.w));
                 let half = R::of(0.5);
-                let left_share =
-                    hit_left.if_less(hit_right, one, hit_right.if_less(hit_left, zero, half));
+                let left_share = hit_left.if_less(hit_right, one, hit_right.if_less(hit_left, zero, half));
                 let faces = |hit: R| hit.if_less(zero, one, zero);
                 stream_load(water, &left, faces(hit_left), (s, s_strain), left_share, &mut out);
                 stream_load(water, &right, faces(hit_right), (s, s_strain), one - left_share, &mut out);
@@ -194,8 +187,7 @@ fn stream_load<R: Real>(
     let s = s * share;
     for k in 0..2 {
         let per_s = tangential * frame.u[k] + t.normal * frame.w[k];
-        let turned =
-            s * ((tangential_turn - t.normal) * frame.u[k] + (t.normal_turn + tangential) * frame.w[k]);
+        let turned = s * ((tangential_turn - t.normal) * frame.u[k] + (t.normal_turn + tangential) * frame.w[k]);
         out.force[k] += s * per_s;
         out.by_theta[k] += turned;
         for c in 0..3 {

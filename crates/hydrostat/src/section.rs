@@ -74,8 +74,7 @@ pub(crate) fn balance<R: Real>(
         out.by_strain[k][k] = stiffness.value[k] * area;
         out.carried[k] = out.by_strain[k][k] * strained;
         out.by_strain[k][0] += stiffness.value[k] * strained * area_nu;
-        out.along_s[k] =
-            (stiffness.slope[k] * strained - stiffness.value[k] * stiffness.reference_slope[k]) * area;
+        out.along_s[k] = (stiffness.slope[k] * strained - stiffness.value[k] * stiffness.reference_slope[k]) * area;
     }
     for cable in cables {
         let (pull, tangent) = pull(cable.tension, &cable.offset, strain, &swelling, beta_along);
@@ -106,11 +105,8 @@ pub(crate) fn inverse3<R: Real>(m: &[[R; 3]; 3]) -> ([[R; 3]; 3], R) {
     let (c00, c01, c02) = (c(0, 0), c(0, 1), c(0, 2));
     let det = m[0][0] * c00 + m[0][1] * c01 + m[0][2] * c02;
     let f = R::of(1.0) / det;
-    let inv = [
-        [c00 * f, c(1, 0) * f, c(2, 0) * f],
-        [c01 * f, c(1, 1) * f, c(2, 1) * f],
-        [c02 * f, c(1, 2) * f, c(2, 2) * f],
-    ];
+    let inv =
+        [[c00 * f, c(1, 0) * f, c(2, 0) * f], [c01 * f, c(1, 1) * f, c(2, 1) * f], [c02 * f, c(1, 2) * f, c(2, 2) * f]];
     (inv, det)
 }
 

@@ -1,0 +1,64 @@
+//! One Gauss step from a known state: values of a solution between its nodes, to the order of the nodes.
+
+use crate::collocation::eliminate;
+use crate::gauss::Gauss;
+use crate::problem::Local;
+
+/// Follows the solution from `z` at `s` over the length `h` with one `M`-stage step. `slopes` are
+/// guesses of the stage slopes, `local` evaluates the problem at a place and a state. Returns the
+/// state at `s + h` and the quadratures over the step; `None` when the step's equations are singular.
+///
+/// # Errors
+/// Those of `local`.
+#[allow(clippy::type_complexity)]
+pub fn step<const N: usize, const M: usize, const Q: usize, E>(
+    gauss: &Gauss<M>,
+    z: [f64; N],
+    s: f64,
+    h: f64,
+    mut slopes: [[f64; N]; M],
+    mut local: impl FnMut(usize, f64, &[f64; N]) -> Result<Local<N, Q>, E>,
+) -> Result<Option<([f64; N], [f64; Q])>, E> {
+    let mut locals = [Local::default(); M];
+    for _ in 0..8 {
+        for j in 0..M {
+            let mut state = z;
+            for l in 0..M {
+                for a in 0..N {
+                    state[a] += h * gauss.a[j][l] * slopes[l][a];
+                }
+            }
+            locals[j] = local(j, s + h * gauss.c[j], &state)?;
+        }
+        let mut response = [[[0.0; N]; N]; M];
+        let mut load = [[[0.0; N]; N]; M];
+        for j in 0..M {
+            for a in 0..N {
+                load[j][a][0] = locals[j].slope[a] - slopes[j][a];
+            }
+        }
+        if !eliminate(h, gauss, &locals, &mut response, &mut load) {
+            return Ok(None);
+        }
+        let mut size = 0.0_f64;
+        for j in 0..M {
+            for a in 0..N {
+                slopes[j][a] += load[j][a][0];
+                size = size.max(load[j][a][0].abs() / (1.0 + slopes[j][a].abs()));
+            }
+        }
+        if size * h.abs() < 1e-11 {
+            break;
+        }
+    }
+    let (mut end, mut total) = (z, [0.0; Q]);
+    for j in 0..M {
+        for a in 0..N {
+            end[a] += h * gauss.b[j] * slopes[j][a];
+        }
+        for q in 0..Q {
+            total[q] += h * gauss.b[j] * locals[j].rate[q];
+        }
+    }
+    Ok(Some((end, total)))
+}

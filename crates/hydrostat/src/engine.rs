@@ -1,0 +1,406 @@
+//! From an arm to its configuration.
+
+use hydrostat_bvp::{Collocation, Correction, Gauss, Limits, Mesh, RoundError, Solution};
+
+use crate::arm::Arm;
+use crate::equilibrium::{Equilibrium, N, Q, SectionFailure};
+use crate::verdict::Phase;
+
+/// Stages of the solve, and of the check that estimates its error.
+pub(crate) const M: usize = 4;
+const K: usize = M + 1;
+
+pub(crate) type Guess = Solution<N, M>;
+
+#[derive(Debug, Clone)]
+pub(crate) enum Trouble {
+    Section(SectionFailure),
+    Singular,
+    Stalled(f64),
+    Mesh(f64),
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Engine {
+    pub(crate) equations: Equilibrium,
+    pub(crate) system: Collocation<N, M, Q>,
+    check_equations: Equilibrium,
+    check: Collocation<N, K, Q>,
+    pub(crate) solution: Solution<N, M>,
+    correction: Correction<N, M, Q>,
+    check_correction: Correction<N, K, Q>,
+    stations: Vec<f64>,
+    check_stations: Vec<f64>,
+    errors: Vec<f64>,
+    breaks: Vec<f64>,
+    pub(crate) rounds: usize,
+    pub(crate) meshes: usize,
+    pub(crate) last: f64,
+    /// Tip position over L at the last round.
+    pub(crate) tip: [f64; 2],
+    pub(crate) trace: bool,
+}
+
+impl Engine {
+    pub(crate) fn new(arm: &Arm) -> Self {
+        let (gauss, check_gauss) = (Gauss::<M>::new(), Gauss::<K>::new());
+        let breaks: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
+        Self {
+            equations: Equilibrium::new(arm, &gauss),
+            check_equations: Equilibrium::new(arm, &check_gauss),
+            system: Collocation::new(),
+            check: Collocation::new(),
+            solution: Solution::constant(Mesh::uniform(1, &[]), [0.0; N]),
+            correction: Correction::default(),
+            check_correction: Correction::default(),
+            stations: Vec::new(),
+            check_stations: Vec::new(),
+            errors: Vec::new(),
+            breaks,
+            rounds: 0,
+            meshes: 0,
+            last: 0.0,
+            tip: [0.0; 2],
+            trace: false,
+        }
+    }
+
+    /// Strains from the cables alone (no stream, weight or tip load): a start that is exact when
+    /// nothing else acts.
+    pub(crate) fn start_from_cables(&mut self, elements: usize) -> Result<(), Trouble> {
+        let mesh = Mesh::uniform(elements, &self.breaks);
+        self.meshes += 1;
+        self.system.stations(&mesh, &mut self.stations);
+        let reference: Vec<[f64; 3]> = self.stations.iter().map(|s| self.equations.reference_strain(*s)).collect();
+        self.equations.place_stations(&self.stations, &mesh, |k| (reference[k], 0.0, 0.0));
+        let angle = self.equations.arm().base.angle;
+        self.solution = Solution::constant(mesh, [angle, 0.0, 0.0, 0.0]);
+        self.equations.blunt = true;
+        let strains = self.strains_from_cables();
+        self.equations.blunt = false;
+        strains?;
+        let n = self.solution.mesh.elements();
+        for i in 0..n {
+            let h = self.solution.mesh.step(i);
+            let mut next = self.solution.nodes[i];
+            for j in 0..M {
+                let mu = self.system.locals()[i * M + j].slope[0];
+                self.solution.slopes[i][j] = [mu, 0.0, 0.0, 0.0];
+                next[0] += h * self.system.gauss.b[j] * mu;
+            }
+            self.solution.nodes[i + 1] = next;
+        }
+        Ok(())
+    }
+
+    fn strains_from_cables(&mut self) -> Result<(), Trouble> {
+        let whole = self.equations.fraction;
+        let mut fine = self.system.evaluate(&mut self.equations, &self.solution).is_ok();
+        if !fine {
+            // Raise the tensions in steps, each from the strains of the last.
+            for k in 1..=16 {
+                self.equations.fraction[1] = whole[1] * f64::from(k) / 16.0;
+                fine = self.system.evaluate(&mut self.equations, &self.solution).is_ok();
+                if !fine {
+                    break;
+                }
+            }
+            self.equations.fraction = whole;
+        }
+        for _ in 0..2 {
+            self.system.evaluate(&mut self.equations, &self.solution).map_err(Trouble::Section)?;
+        }
+        Ok(())
+    }
+
+    /// Newton on the present mesh until the tip moves by less than `tolerance`.
+    #[inline(always)]
+    pub(crate) fn newton(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
+        let mut applied = 0.0;
+        let mut halvings = 0;
+        let mut round = 0;
+        loop {
+            match self.system.linearise(&mut self.equations, &self.solution, false) {
+                Ok(()) => {}
+                Err(RoundError::Slopes(failure)) => {
+                    if applied == 0.0 || halvings == 8 {
+                        return Err(Trouble::Section(failure));
+                    }
+                    applied *= 0.5;
+                    halvings += 1;
+                    self.solution.add(&self.correction, -applied);
+                    continue;
+                }
+                Err(RoundError::Singular(_)) => return Err(Trouble::Singular),
+            }
+            self.rounds += 1;
+            round += 1;
+            self.system.solve(&self.solution, 0, &mut self.correction);
+            let size = self.correction.largest(0);
+            if !size.is_finite() {
+                return Err(Trouble::Singular);
+            }
+            let [dx, dy] = self.correction.total;
+            applied = if size > 1.0 { 1.0 / size } else { 1.0 };
+            halvings = 0;
+            self.solution.add(&self.correction, applied);
+            let [x, y] = self.system.totals(&self.solution.mesh);
+            self.tip = [x + dx, y + dy];
+            let moved = dx.hypot(dy).max(0.1 * size);
+            self.last = size;
+            if self.trace {
+                eprintln!(
+                    "  round {round} n {} size {size:.2e} tip {:.2e} det {:?}",
+                    self.solution.mesh.elements(),
+                    dx.hypot(dy),
+                    self.system.determinant()
+                );
+            }
+            if moved <= tolerance {
+                return Ok(());
+            }
+            if round == most {
+                return Err(Trouble::Stalled(size));
+            }
+        }
+    }
+
+    /// Brings stages, strains and switches up to date with the solution.
+    pub(crate) fn refresh(&mut self) -> Result<(), SectionFailure> {
+        self.system.evaluate(&mut self.equations, &self.solution)
+    }
+
+    /// Compares with one more stage an element: what the tip would move, over L. Fills the errors
+    /// that each element contributes.
+    #[inline(always)]
+    pub(crate) fn estimate(&mut self) -> Result<f64, Trouble> {
+        let finer = self.solution.with_stages(&self.system.gauss, &self.check.gauss);
+        self.check.stations(&finer.mesh, &mut self.check_stations);
+        let weights: [[f64; M]; K] = std::array::from_fn(|k| self.system.gauss.cardinals(self.check.gauss.c[k]));
+        let own = &self.equations;
+        self.check_equations.fraction = own.fraction;
+        self.check_equations.phase = own.phase;
+        self.check_equations.place_stations(&self.check_stations, &finer.mesh, |k| {
+            let (i, w) = (k / K, &weights[k % K]);
+            let mut out = ([0.0; 3], 0.0, 0.0);
+            for j in 0..M {
+                let strain = own.strain(i * M + j);
+                for a in 0..3 {
+                    out.0[a] += w[j] * strain[a];
+                }
+                out.1 += w[j] * own.beta_slope[i * M + j];
+                out.2 += w[j] * own.beta_curvature[i * M + j];
+            }
+            out
+        });
+        for _ in 0..2 {
+            self.check.evaluate(&mut self.check_equations, &finer).map_err(Trouble::Section)?;
+        }
+        self.check.linearise(&mut self.check_equations, &finer, false).map_err(|e| match e {
+            RoundError::Slopes(failure) => Trouble::Section(failure),
+            RoundError::Singular(_) => Trouble::Singular,
+        })?;
+        self.rounds += 1;
+        self.check.solve(&finer, 0, &mut self.check_correction);
+        let total = self.check.totals(&finer.mesh);
+        let [dx, dy] = self.check_correction.total;
+        self.check.contributions(&finer.mesh, &mut self.errors);
+        let estimate = (total[0] + dx - self.tip[0]).hypot(total[1] + dy - self.tip[1]);
+        if self.trace {
+            eprintln!(
+                "  estimate {estimate:.2e} contributions {:.2e} size {:.2e}",
+                self.errors.iter().sum::<f64>(),
+                self.check_correction.largest(0)
+            );
+        }
+        Ok(estimate)
+    }
+
+    /// Moves the solution to another mesh.
+    pub(crate) fn move_to(&mut self, mesh: Mesh) {
+        self.meshes += 1;
+        let gauss = &self.system.gauss;
+        let old = &self.solution;
+        self.system.stations(&mesh, &mut self.stations);
+        let count = self.stations.len();
+        let mut guesses = Vec::with_capacity(count);
+        for s in &self.stations {
+            let e = old.mesh.element_of(*s);
+            let w = gauss.cardinals((s - old.mesh.nodes()[e]) / old.mesh.step(e));
+            let mut out = ([0.0; 3], 0.0, 0.0);
+            for j in 0..M {
+                let strain = self.equations.strain(e * M + j);
+                for a in 0..3 {
+                    out.0[a] += w[j] * strain[a];
+                }
+                out.1 += w[j] * self.equations.beta_slope[e * M + j];
+                out.2 += w[j] * self.equations.beta_curvature[e * M + j];
+            }
+            guesses.push(out);
+        }
+        let moved = old.on(gauss, mesh);
+        self.equations.place_stations(&self.stations, &moved.mesh, |k| guesses[k]);
+        self.solution = moved;
+    }
+
+    /// Places inside (0, 1) where the load of the stream has a kink: where a switch changes sign.
+    /// Changes closer than `resolution` count as one, or cancel.
+    pub(crate) fn kinks(&self, resolution: f64) -> Vec<f64> {
+        const SAMPLES: usize = 8;
+        let mesh = &self.solution.mesh;
+        let switches = &self.equations.switches;
+        let mut out: Vec<f64> = Vec::new();
+        for w in 0..3 {
+            let first = out.len();
+            let mut before = (0.0, 0.0);
+            for i in 0..mesh.elements() {
+                let (start, h) = (mesh.nodes()[i], mesh.step(i));
+                let own: [f64; M] = std::array::from_fn(|j| switches[i * M + j][w]);
+                let largest = own.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+                if largest < 1e-6 {
+                    before.1 = 0.0;
+                    continue;
+                }
+                let at = |x: f64| -> f64 {
+                    let c = self.system.gauss.cardinals(x);
+                    (0..M).map(|j| c[j] * own[j]).sum()
+                };
+                for p in 0..=SAMPLES {
+                    let x = p as f64 / SAMPLES as f64;
+                    let now = (start + h * x, at(x));
+                    if before.1 * now.1 < 0.0 {
+                        let (mut lo, mut hi) = (before, now);
+                        while p > 0 && hi.0 - lo.0 > 0.01 * resolution {
+                            let mid = 0.5 * (lo.0 + hi.0);
+                            let v = at((mid - start) / h);
+                            if v * lo.1 <= 0.0 { hi = (mid, v) } else { lo = (mid, v) }
+                        }
+                        let place = 0.5 * (lo.0 + hi.0);
+                        if out.len() > first && place - out[out.len() - 1] < resolution {
+                            out.pop();
+                        } else {
+                            out.push(place);
+                        }
+                    }
+                    if now.1 != 0.0 {
+                        before = now;
+                    }
+                }
+            }
+        }
+        out.retain(|s| *s > resolution && *s < 1.0 - resolution);
+        out.sort_by(f64::total_cmp);
+        out.dedup_by(|b, a| *b - *a < resolution);
+        out
+    }
+
+    pub(crate) fn pin(&mut self, kinks: &[f64], tolerance: f64) -> bool {
+        let mesh = &self.solution.mesh;
+        let near = |s: f64| {
+            let i = mesh.element_of(s);
+            (s - mesh.nodes()[i]).min(mesh.nodes()[i + 1] - s)
+        };
+        let stray = kinks.iter().any(|s| {
+            let i = mesh.element_of(*s);
+            let (l, r) = (s - mesh.nodes()[i], mesh.nodes()[i + 1] - s);
+            let nearest = if l < r { i } else { i + 1 };
+            !(near(*s) < tolerance && (mesh.is_pinned(nearest)))
+        });
+        if stray {
+            let mut mesh = mesh.clone();
+            mesh.pin(&self.breaks, kinks);
+            if mesh != self.solution.mesh {
+                self.move_to(mesh);
+                return true;
+            }
+        }
+        false
+    }
+
+    pub(crate) fn refine(&mut self, target: f64) {
+        let limits = Limits { fewest: 4, most: 2000, growth: 6.0, cut: 8.0, least: 0.2 };
+        let mesh = self.solution.mesh.redistributed(&self.errors, (2 * M + 1) as f64, target, limits);
+        self.move_to(mesh);
+    }
+
+    /// Refines until the estimate meets `tolerance` (tip position over L).
+    pub(crate) fn settle(&mut self, tolerance: f64) -> Result<f64, Trouble> {
+        let mut estimate = f64::INFINITY;
+        for attempt in 0..12 {
+            let goal = if attempt == 0 { 1e-3 } else { (1e-4 * estimate).clamp(3.0 * tolerance, 1e-3) };
+            self.newton(goal, 40)?;
+            for _ in 0..3 {
+                let resolution = 0.3 * tolerance.sqrt();
+                let kinks = self.kinks(10.0 * resolution);
+                if !self.pin(&kinks, resolution) {
+                    break;
+                }
+                self.newton(goal, 40)?;
+            }
+            estimate = self.estimate()?;
+            if self.trace {
+                eprintln!("  kinks {:?}", self.kinks(1e-4));
+                for i in 0..self.solution.mesh.elements() {
+                    eprintln!(
+                        "   {:.6} h {:.2e} {} err {:.1e} b' {:.3e} b'' {:.3e}",
+                        self.solution.mesh.nodes()[i],
+                        self.solution.mesh.step(i),
+                        self.solution.mesh.is_pinned(i),
+                        self.errors[i],
+                        self.equations.beta_slope[i * M],
+                        self.equations.beta_curvature[i * M]
+                    );
+                }
+            }
+            if estimate <= tolerance && goal <= 3.0 * tolerance {
+                return Ok(estimate);
+            }
+            self.refine(0.2 * tolerance);
+        }
+        Err(Trouble::Mesh(estimate))
+    }
+
+    pub(crate) fn set_phase(&mut self, phase: Phase, fraction: f64) {
+        self.equations.set_phase(phase, fraction);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Cable, Material, Profile};
+
+    pub(crate) fn paper(tension: f64, speed: f64) -> Arm {
+        let mut arm = Arm::cone(0.2, 0.010, 0.0008, 500e3, 0.5);
+        arm.material = Material::Coefficients { c1: 500e3.into(), c2: (500e3 / 3.0).into(), c3: 150.0.into() };
+        arm.density = 1080.0;
+        arm.cables.push(Cable::new("left", Profile::linear(0.008, 0.0001)).pulled(tension));
+        arm.cables.push(Cable::new("right", Profile::linear(-0.008, -0.0001)));
+        arm.flow.speed = speed;
+        arm
+    }
+
+    #[test]
+    fn look() {
+        for (t, v) in [(40.0, 0.5), (40.0, 0.0), (86.2, 0.5), (100.0, 0.5)] {
+            let arm = paper(t, v);
+            let mut e = Engine::new(&arm);
+            e.trace = true;
+            eprintln!("T {t} v {v}");
+            let start = std::time::Instant::now();
+            let n = std::env::var("N0").map_or(6, |v| v.parse().unwrap());
+            if let Err(f) = e.start_from_cables(n) {
+                eprintln!("start {f:?}");
+                continue;
+            }
+            let r = e.settle(1e-8);
+            eprintln!(
+                "{r:?} tip {:?} rounds {} evals {} {:?}",
+                e.tip,
+                e.rounds,
+                e.equations.evaluations,
+                start.elapsed()
+            );
+        }
+    }
+}
