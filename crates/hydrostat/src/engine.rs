@@ -3,7 +3,7 @@
 use hydrostat_bvp::{Collocation, Correction, Gauss, Limits, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
-use crate::equilibrium::{Equilibrium, N, Q, SectionFailure};
+use crate::equilibrium::{Equilibrium, N, Nearness, Q, SectionFailure};
 use crate::verdict::Phase;
 
 /// Stages of the solve, and of the check that estimates its error.
@@ -61,7 +61,7 @@ impl Engine {
             meshes: 0,
             last: 0.0,
             tip: [0.0; 2],
-            trace: false,
+            trace: std::env::var_os("TRACE").is_some(),
         }
     }
 
@@ -91,6 +91,71 @@ impl Engine {
             self.solution.nodes[i + 1] = next;
         }
         Ok(())
+    }
+
+    /// The unloaded arm: reference strains, nothing carried.
+    pub(crate) fn start_unloaded(&mut self, elements: usize) {
+        let mesh = Mesh::uniform(elements, &self.breaks);
+        self.meshes += 1;
+        self.system.stations(&mesh, &mut self.stations);
+        let reference: Vec<[f64; 3]> = self.stations.iter().map(|s| self.equations.reference_strain(*s)).collect();
+        self.equations.place_stations(&self.stations, &mesh, |k| (reference[k], 0.0, 0.0));
+        let angle = self.equations.arm().base.angle;
+        self.solution = Solution::constant(mesh, [angle, 0.0, 0.0, 0.0]);
+        let n = self.solution.mesh.elements();
+        for i in 0..n {
+            let h = self.solution.mesh.step(i);
+            let mut next = self.solution.nodes[i];
+            for j in 0..M {
+                let mu = reference[i * M + j][2];
+                self.solution.slopes[i][j] = [mu, 0.0, 0.0, 0.0];
+                next[0] += h * self.system.gauss.b[j] * mu;
+            }
+            self.solution.nodes[i + 1] = next;
+        }
+    }
+
+    /// Whether the section law has strains at both ends, which are no stations.
+    pub(crate) fn ends_fine(&self) -> Result<(), Trouble> {
+        let n = self.solution.mesh.elements();
+        for (s, z, k, from_left) in
+            [(0.0, self.solution.nodes[0], 0, false), (1.0, self.solution.nodes[n], n * M - 1, true)]
+        {
+            let (i, x) = if from_left { (n - 1, 1.0) } else { (0, 0.0) };
+            let w = self.system.gauss.cardinals(x);
+            let mut strain = [0.0; 3];
+            let mut beta = [0.0; 2];
+            for j in 0..M {
+                let own = self.equations.strain(i * M + j);
+                for a in 0..3 {
+                    strain[a] += w[j] * own[a];
+                }
+                beta[0] += w[j] * self.equations.beta_slope[i * M + j];
+                beta[1] += w[j] * self.equations.beta_curvature[i * M + j];
+            }
+            self.equations
+                .at_place(s, from_left, z, strain, beta)
+                .or_else(|_| self.equations.at_place(s, from_left, z, self.equations.strain(k), beta))
+                .map_err(Trouble::Section)?;
+        }
+        Ok(())
+    }
+
+    /// How near the limits of the section law the stations are.
+    pub(crate) fn nearest_limits(&mut self) -> Nearness {
+        let _ = self.refresh();
+        self.equations.nearness
+    }
+
+    /// Where the switch of the load that can jump is nearest to its jump.
+    pub(crate) fn nearest_switch(&self) -> Option<f64> {
+        let which = if self.equations.arm().readings.flow_surface == crate::FlowSurface::Lateral { 2 } else { 0 };
+        (0..self.equations.stations().len())
+            .min_by(|a, b| {
+                let v = |k: usize| self.equations.switches[k][which].abs();
+                v(*a).total_cmp(&v(*b))
+            })
+            .map(|k| self.equations.stations()[k])
     }
 
     fn strains_from_cables(&mut self) -> Result<(), Trouble> {
@@ -358,6 +423,30 @@ impl Engine {
             self.refine(0.2 * tolerance);
         }
         Err(Trouble::Mesh(estimate))
+    }
+
+    /// Whether something pushes against the arm hard enough that a direct solve may have landed on a
+    /// branch that the path does not lead to. Cheap and on the safe side.
+    pub(crate) fn may_have_left_the_branch(&self) -> bool {
+        if self.system.determinant().sign <= 0.0 {
+            return true;
+        }
+        let base = self.equations.arm().base.angle;
+        let mut reference_angle = base;
+        let mesh = &self.solution.mesh;
+        for i in 0..mesh.elements() {
+            for j in 0..M {
+                let k = i * M + j;
+                let s = self.equations.stations()[k];
+                let z = self.system.states()[k];
+                let mu = self.equations.reference_strain(s)[2];
+                reference_angle += mesh.step(i) * self.system.gauss.b[j] * mu;
+                if self.equations.adversity(k, s, z, reference_angle) > 0.3 {
+                    return true;
+                }
+            }
+        }
+        false
     }
 
     pub(crate) fn set_phase(&mut self, phase: Phase, fraction: f64) {

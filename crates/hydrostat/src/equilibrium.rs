@@ -77,6 +77,32 @@ impl Differentiation {
     }
 }
 
+/// How near the limits of the section law the stations came, each with its place (over L).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Nearness {
+    /// Smallest tau.a / nu of a pulled cable.
+    pub(crate) openness: (f64, f64),
+    /// Smallest stretch.
+    pub(crate) nu: (f64, f64),
+    /// Smallest determinant of the section law over that of the slack one.
+    pub(crate) regularity: (f64, f64),
+}
+
+impl Nearness {
+    const FAR: Self = Self { openness: (1.0, 0.0), nu: (f64::INFINITY, 0.0), regularity: (f64::INFINITY, 0.0) };
+
+    #[inline(always)]
+    fn note(&mut self, s: f64, openness: f64, nu: f64, regularity: f64) {
+        for (least, value) in
+            [(&mut self.openness, openness), (&mut self.nu, nu), (&mut self.regularity, regularity)]
+        {
+            if value < least.0 {
+                *least = (value, s);
+            }
+        }
+    }
+}
+
 /// One place of the arm as data.
 #[derive(Debug, Clone, Copy)]
 struct Place<R> {
@@ -140,6 +166,8 @@ pub(crate) struct Equilibrium {
     /// Load switches a station.
     pub(crate) switches: Vec<[f64; 3]>,
     pub(crate) evaluations: usize,
+    /// At the last evaluation.
+    pub(crate) nearness: Nearness,
 }
 
 impl Equilibrium {
@@ -170,6 +198,7 @@ impl Equilibrium {
             drifts: Vec::new(),
             switches: Vec::new(),
             evaluations: 0,
+            nearness: Nearness::FAR,
         };
         let bending = this.place(0.0).stiffness.value[2];
         // At unit force the stiffness is C3 A0 / L^2: make it one at the base.
@@ -385,6 +414,58 @@ impl Equilibrium {
     /// Strains of the unloaded arm at `s` (over L), mu times L.
     pub(crate) fn reference_strain(&self, s: f64) -> [f64; 3] {
         self.place(s).stiffness.reference
+    }
+
+    pub(crate) fn volume(&self) -> Volume {
+        self.volume
+    }
+
+    /// Whether anything but cables loads the arm.
+    pub(crate) fn has_loads(&self) -> bool {
+        let a = &self.arm;
+        let water_moves = a.flow.speed != 0.0 && a.flow.density != 0.0;
+        let gravity = a.gravity.is_some_and(|g| g.acceleration != 0.0);
+        let tip = a.tip.force != [0.0; 2] || a.tip.moment != 0.0 || a.tip.follower != [0.0; 2];
+        let along = !(a.distributed.force.iter().all(crate::Profile::is_zero) && a.distributed.couple.is_zero());
+        water_moves || gravity || tip || along
+    }
+
+    /// Whether a cable is pulled.
+    pub(crate) fn has_tension(&self) -> bool {
+        self.tensions.iter().any(|t| *t != 0.0)
+    }
+
+    /// How hard loads push against the arm at station `k`, over what its bending stiffness there
+    /// resists over the rest of its length: compression of the contact force by (1 - s)^2/EI, and
+    /// stream and weight by (1 - s)^3/EI where they run against the tangent, now or in the unloaded
+    /// arm (at the angle `unloaded`). Well below one, equilibria are unique.
+    pub(crate) fn adversity(&self, k: usize, s: f64, z: [f64; N], unloaded: f64) -> f64 {
+        let rest = 1.0 - s;
+        let (block, lane) = (k / LANES, k % LANES);
+        let place = &self.places[block];
+        let [nu, eta, _] = self.strain(k);
+        let stiffness = place.stiffness.value[2].0[lane] * self.beta[k] * self.beta[k];
+        let alpha = eta.atan2(nu);
+        let (sin, cos) = (z[0] + alpha).sin_cos();
+        let compression = -(cos * z[1] + sin * z[2]) * rest * rest / stiffness;
+        let stream = self.water.stream;
+        let speed_square = stream[0] * stream[0] + stream[1] * stream[1];
+        let drag = place.body.wetted.0[lane] * self.beta[k] * speed_square * nu.hypot(eta);
+        let net = [0, 1].map(|c| {
+            place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * nu * self.beta[k] * self.beta[k]
+                + place.body.force[c].0[lane]
+        });
+        let cube = rest * rest * rest / stiffness;
+        let mut worst = compression;
+        let (unloaded_sin, unloaded_cos) = unloaded.sin_cos();
+        for (cos, sin) in [(cos, sin), (unloaded_cos, unloaded_sin)] {
+            if cos * stream[0] + sin * stream[1] < -1e-9 * speed_square.sqrt() {
+                worst = worst.max(drag * cube);
+            }
+            worst = worst.max(-(cos * net[0] + sin * net[1]) * cube);
+        }
+        let (tip, _) = self.tip_load(unloaded);
+        worst.max(-(unloaded_cos * tip[0] + unloaded_sin * tip[1]) * rest * rest / stiffness)
     }
 
     /// The other fraction is whole in the tension phase, zero in the loads phase.
@@ -669,6 +750,7 @@ impl Problem<N, Q> for Equilibrium {
     fn slopes(&mut self, z: &[[f64; N]], out: &mut [Local<N, Q>]) -> Result<(), SectionFailure> {
         let count = z.len();
         self.evaluations += count;
+        self.nearness = Nearness::FAR;
         let cable_count = self.tensions.len();
         let fraction = Lanes::of(self.fraction[0]);
         let mut pulled: [CableAt<Lanes>; MOST_IN_PLACE] = [blank_cable(); MOST_IN_PLACE];
@@ -789,6 +871,12 @@ impl Problem<N, Q> for Equilibrium {
                         local.rate_gradient[q][b] = rate_gradient[q][b].0[lane];
                     }
                 }
+                self.nearness.note(
+                    self.stations[k],
+                    solved.balance.openness.0[lane],
+                    solved.strain[0].0[lane],
+                    solved.regularity.0[lane],
+                );
                 self.beta_slope[k] = slopes.beta_slope.0[lane];
                 self.beta[k] = solved.balance.swelling.beta.0[lane];
                 self.reach[k] = reach.0[lane];

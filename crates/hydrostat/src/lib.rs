@@ -8,6 +8,7 @@ mod engine;
 mod equilibrium;
 mod flow;
 mod loads;
+mod path;
 pub mod profile;
 pub mod readings;
 mod real;

@@ -3,6 +3,7 @@
 use crate::arm::Arm;
 use crate::configuration::{Configuration, Statistics};
 use crate::engine::{Engine, M, Trouble};
+use crate::path::{Pace, Travelled, follow};
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
 
 /// How a solve is done.
@@ -43,35 +44,73 @@ impl Solver {
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
     pub fn solve(&mut self) -> Result<Configuration, SolveError> {
-        let result = self.engine.start_from_cables(8).and_then(|()| self.engine.settle(self.options.tol));
-        match result {
-            Ok(estimate) => self.read(estimate),
-            Err(trouble) => Err(Self::give_up(&trouble)),
+        self.engine.rounds = 0;
+        self.engine.meshes = 0;
+        self.engine.equations.evaluations = 0;
+        self.engine.set_phase(Phase::Tension, 1.0);
+        let direct = self.engine.start_from_cables(8).and_then(|()| self.engine.settle(self.options.tol));
+        if let Ok(estimate) = direct
+            && !self.engine.may_have_left_the_branch()
+            && let Ok(configuration) = self.read(estimate, Travelled::default())
+        {
+            return Ok(configuration);
+        }
+        self.solve_along_the_path(Pace::BRISK)
+    }
+
+    /// Follows the path of section 7 of the model notes, whatever a direct solve would give.
+    pub(crate) fn solve_along_the_path(&mut self, pace: Pace) -> Result<Configuration, SolveError> {
+        let travelled = match follow(&mut self.engine, pace) {
+            Ok(travelled) => travelled,
+            Err(end) => return Err(self.no_equilibrium(end.verdict)),
+        };
+        let before = self.engine.tip;
+        let sign = self.engine.system.determinant().sign;
+        let settled = self.engine.settle(self.options.tol);
+        let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
+        match settled {
+            Ok(estimate) if moved < 0.05 && self.engine.system.determinant().sign == sign => {
+                let mut configuration = self.read(estimate, travelled).map_err(|_| {
+                    self.no_equilibrium(self.last_verdict(Some(1.0)))
+                })?;
+                if travelled.crossings > 0 || sign < 0.0 {
+                    configuration.stable = Some(false);
+                }
+                Ok(configuration)
+            }
+            _ => Err(self.no_equilibrium(self.last_verdict(None))),
         }
     }
 
-    fn read(&mut self, estimate: f64) -> Result<Configuration, SolveError> {
+    fn last_verdict(&self, load_fraction: Option<f64>) -> Verdict {
+        let jumps = self.engine.equations.arm().readings.load_can_jump();
+        Verdict {
+            kind: if jumps { VerdictKind::LoadJump } else { VerdictKind::NotFound },
+            phase: Phase::Tension,
+            load_fraction: load_fraction.unwrap_or(1.0),
+            s: if jumps { self.engine.nearest_switch().map(|s| s * self.engine.equations.units.length) } else { None },
+            residual: self.engine.last,
+        }
+    }
+
+    /// The verdict with the last good point, which the engine holds, settled and read.
+    fn no_equilibrium(&mut self, verdict: Verdict) -> SolveError {
+        let estimate = self.engine.settle(self.options.tol.max(1e-6)).or_else(|_| self.engine.estimate());
+        let last_good = estimate.ok().and_then(|e| self.read(e, Travelled::default()).ok());
+        SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good }))
+    }
+
+    fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<Configuration, Trouble> {
         let statistics = Statistics {
             elements: self.engine.solution.mesh.elements(),
             stages: M,
             newton_rounds: self.engine.rounds,
             meshes: self.engine.meshes,
-            load_steps: 0,
+            load_steps: travelled.steps,
             evaluations: self.engine.equations.evaluations,
         };
         let length = self.engine.equations.units.length;
-        Configuration::read(&mut self.engine, estimate * length, statistics)
-            .map_err(|failure| Self::give_up(&Trouble::Section(failure)))
-    }
-
-    fn give_up(trouble: &Trouble) -> SolveError {
-        let (s, residual) = match trouble {
-            Trouble::Section(f) => (Some(f.s), f64::NAN),
-            Trouble::Stalled(r) | Trouble::Mesh(r) => (None, *r),
-            Trouble::Singular => (None, f64::NAN),
-        };
-        let verdict = Verdict { kind: VerdictKind::NotFound, phase: Phase::Tension, load_fraction: 0.0, s, residual };
-        SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good: None }))
+        Configuration::read(&mut self.engine, estimate * length, statistics).map_err(Trouble::Section)
     }
 }
 

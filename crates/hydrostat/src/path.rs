@@ -1,0 +1,411 @@
+//! The path that defines the answer: from the unloaded arm, loads first, then tensions (section 7 of
+//! the model notes), followed by arclength so that no fold is stepped over unseen.
+
+use hydrostat_bvp::{Correction, RoundError, Solution};
+
+use crate::engine::{Engine, M, Trouble};
+use crate::equilibrium::{Equilibrium, N, Q};
+use crate::readings::Volume;
+use crate::verdict::{Phase, Verdict, VerdictKind};
+
+/// Fractions start here rather than at zero, where a tangent by the fraction is not defined.
+const START: f64 = 1e-12;
+/// Error of the tip over L that is kept along the path.
+const LOOSE: f64 = 1e-4;
+
+/// How finely a path is followed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pace {
+    /// Longest step of arclength (root mean square of the change of theta, with the fraction).
+    pub(crate) longest: f64,
+    /// Smallest cosine between the tangents at both ends of a step.
+    pub(crate) straightness: f64,
+    /// Most steps.
+    pub(crate) most: usize,
+}
+
+impl Pace {
+    pub(crate) const BRISK: Self = Self { longest: 0.4, straightness: 0.94, most: 1500 };
+}
+
+/// What a path met.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Travelled {
+    pub(crate) steps: usize,
+    /// Times the determinant changed sign while the load went on rising: bifurcations passed.
+    pub(crate) crossings: usize,
+}
+
+/// Why a path ended early; the engine holds the last good point.
+#[derive(Debug, Clone)]
+pub(crate) struct PathEnd {
+    pub(crate) verdict: Verdict,
+}
+
+#[derive(Clone)]
+struct Point {
+    solution: Solution<N, M>,
+    equations: Equilibrium,
+    fraction: f64,
+    /// Unit tangent: theta at the nodes, and the fraction.
+    tangent: Vec<f64>,
+    rise: f64,
+    sign: f64,
+}
+
+struct Stepper<'e> {
+    engine: &'e mut Engine,
+    phase: Phase,
+    correction: Correction<N, M, Q>,
+    response: Correction<N, M, Q>,
+    last_trouble: Option<Trouble>,
+}
+
+/// Follows both phases to whole loads.
+pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, PathEnd> {
+    let mut travelled = Travelled::default();
+    engine.set_phase(Phase::Loads, START);
+    engine.start_unloaded(10);
+    for phase in [Phase::Loads, Phase::Tension] {
+        let moves = match phase {
+            Phase::Loads => engine.equations.has_loads(),
+            Phase::Tension => engine.equations.has_tension(),
+        };
+        if moves {
+            let mut stepper = Stepper {
+                engine,
+                phase,
+                correction: Correction::default(),
+                response: Correction::default(),
+                last_trouble: None,
+            };
+            stepper.follow(pace, &mut travelled)?;
+        }
+        engine.set_phase(phase, 1.0);
+    }
+    Ok(travelled)
+}
+
+enum Reached {
+    Whole,
+    Point(Box<Point>),
+}
+
+impl Stepper<'_> {
+    fn follow(&mut self, pace: Pace, travelled: &mut Travelled) -> Result<(), PathEnd> {
+        self.set(START);
+        let mut here = match self.engine.newton(1e-6, 12).and_then(|()| self.point(START, None)) {
+            Ok(point) => point,
+            Err(trouble) => {
+                self.last_trouble = Some(trouble);
+                return Err(self.give_up(None, 0.0, 0.0));
+            }
+        };
+        let mut step = 0.1_f64.min(pace.longest);
+        // Turning the determinant's sign without turning back is believed only on a short step.
+        let mut suspicion = 0;
+        loop {
+            if travelled.steps >= pace.most || step < 1e-8 {
+                let residual = self.engine.last;
+                self.restore(&here);
+                return Err(self.give_up(Some(&here), here.fraction, residual));
+            }
+            let attempt = self.advance(&here, step, pace);
+            match attempt {
+                Ok(Reached::Whole) => {
+                    let sign = self.engine.system.determinant().sign;
+                    if sign != here.sign && suspicion < 12 && 1.0 - here.fraction > 1e-9 {
+                        suspicion += 1;
+                        step = 0.25 * step.min((1.0 - here.fraction) / here.rise.max(1e-3));
+                        self.restore(&here);
+                        continue;
+                    }
+                    if sign != here.sign {
+                        travelled.crossings += 1;
+                    }
+                    travelled.steps += 1;
+                    return Ok(());
+                }
+                Ok(Reached::Point(next)) => {
+                    if next.rise < 0.0 {
+                        let limit = self.limit_point(&here, &next, step, pace);
+                        self.restore(&here);
+                        return Err(self.end(VerdictKind::LimitPoint, limit, None));
+                    }
+                    if next.sign != here.sign && suspicion < 12 {
+                        suspicion += 1;
+                        step *= 0.25;
+                        self.restore(&here);
+                        continue;
+                    }
+                    if next.sign != here.sign {
+                        travelled.crossings += 1;
+                    }
+                    suspicion = 0;
+                    travelled.steps += 1;
+                    if self.engine.trace {
+                        eprintln!("path {:?} {:.6} -> {:.6} step {step:.2e} rise {:.3} n {}", self.phase, here.fraction, next.fraction, next.rise, next.solution.mesh.elements());
+                    }
+                    here = *next;
+                    step = (step * 1.6).min(pace.longest);
+                }
+                Err(trouble) => {
+                    if self.engine.trace {
+                        eprintln!("path {:?} {:.6} step {step:.2e} {trouble:?}", self.phase, here.fraction);
+                    }
+                    self.last_trouble = Some(trouble);
+                    step *= 0.4;
+                    self.restore(&here);
+                }
+            }
+        }
+    }
+
+    fn set(&mut self, fraction: f64) {
+        self.engine.set_phase(self.phase, fraction);
+    }
+
+    fn restore(&mut self, point: &Point) {
+        self.engine.solution.clone_from(&point.solution);
+        self.engine.equations.clone_from(&point.equations);
+    }
+
+    fn linearise(&mut self) -> Result<(), Trouble> {
+        let engine = &mut *self.engine;
+        engine.linearise(true)?;
+        engine.system.solve(&engine.solution, 1, &mut self.response);
+        Ok(())
+    }
+
+    /// Length of theta's change in the metric of the path: its root mean square along the arm.
+    fn weights(&self) -> Vec<f64> {
+        let mesh = &self.engine.solution.mesh;
+        let n = mesh.elements();
+        (0..=n)
+            .map(|i| {
+                let left = if i > 0 { mesh.step(i - 1) } else { 0.0 };
+                let right = if i < n { mesh.step(i) } else { 0.0 };
+                0.5 * (left + right)
+            })
+            .collect()
+    }
+
+    /// The point here, with its tangent oriented along `before` (or upwards at the start).
+    fn point(&mut self, fraction: f64, before: Option<(&Solution<N, M>, &[f64], f64)>) -> Result<Point, Trouble> {
+        self.linearise()?;
+        let weights = self.weights();
+        let square: f64 = weights.iter().zip(&self.response.nodes).map(|(w, z)| w * z[0] * z[0]).sum();
+        let norm = (1.0 + square).sqrt();
+        if !norm.is_finite() {
+            return Err(Trouble::Singular);
+        }
+        let mut rise = 1.0 / norm;
+        let mut tangent: Vec<f64> = self.response.nodes.iter().map(|z| z[0] / norm).collect();
+        if let Some((solution, old, old_rise)) = before {
+            // The old tangent on the new mesh, by nodes: linear interpolation is enough to orient.
+            let mut along = old_rise * rise;
+            for (i, s) in self.engine.solution.mesh.nodes().iter().enumerate() {
+                let e = solution.mesh.element_of(*s);
+                let x = (s - solution.mesh.nodes()[e]) / solution.mesh.step(e);
+                along += weights[i] * tangent[i] * (old[e] + x * (old[e + 1] - old[e]));
+            }
+            if along < 0.0 {
+                rise = -rise;
+                tangent.iter_mut().for_each(|t| *t = -*t);
+            }
+        }
+        Ok(Point {
+            solution: self.engine.solution.clone(),
+            equations: self.engine.equations.clone(),
+            fraction,
+            tangent,
+            rise,
+            sign: self.engine.system.determinant().sign,
+        })
+    }
+
+    /// Moves the solution along the tangent at `here`, whose response is recomputed.
+    fn predict(&mut self, here: &Point, step: f64) -> Result<f64, Trouble> {
+        self.restore(here);
+        self.set(here.fraction);
+        self.linearise()?;
+        let climb = step * here.rise;
+        self.engine.solution.add(&self.response, climb);
+        Ok(here.fraction + climb)
+    }
+
+    fn advance(&mut self, here: &Point, step: f64, pace: Pace) -> Result<Reached, Trouble> {
+        let mut fraction = self.predict(here, step)?;
+        if fraction >= 1.0 {
+            // Land on whole loads, at fixed load; near a fold that is refused and the step shrinks.
+            self.predict(here, (1.0 - here.fraction) / here.rise)?;
+            self.set(1.0);
+            let from = self.engine.solution.clone();
+            self.engine.newton(1e-6, 9)?;
+            let moved = largest_turn(&from, &self.engine.solution);
+            if moved > 0.15 {
+                return Err(Trouble::Stalled(moved));
+            }
+            self.keep_accuracy()?;
+            self.engine.ends_fine()?;
+            // The tangent at the end must still climb.
+            let end = self.point(1.0, Some((&here.solution, &here.tangent, here.rise)))?;
+            if end.rise < 0.0 || self.cosine(here, &end) < pace.straightness - 0.3 {
+                return Err(Trouble::Stalled(moved));
+            }
+            return Ok(Reached::Whole);
+        }
+        let from = self.engine.solution.clone();
+        let weights = self.weights();
+        let mut done = false;
+        let mut before = f64::INFINITY;
+        for round in 0..8 {
+            self.set(fraction);
+            self.linearise()?;
+            self.engine.system.solve(&self.engine.solution, 0, &mut self.correction);
+            let dot = |c: &Correction<N, M, Q>| -> f64 {
+                weights.iter().zip(&c.nodes).zip(&here.tangent).map(|((w, z), t)| w * z[0] * t).sum()
+            };
+            let slide = -dot(&self.correction) / (dot(&self.response) + here.rise);
+            self.engine.solution.add(&self.correction, 1.0);
+            self.engine.solution.add(&self.response, slide);
+            fraction += slide;
+            let size = (0..self.correction.nodes.len())
+                .map(|i| (self.correction.nodes[i][0] + slide * self.response.nodes[i][0]).abs())
+                .fold(slide.abs(), f64::max);
+            self.engine.last = size;
+            if !size.is_finite() || size > 1.0 || (round > 2 && size > before) {
+                return Err(Trouble::Stalled(size));
+            }
+            before = size;
+            if size < 1e-6 {
+                done = true;
+                break;
+            }
+        }
+        if !done {
+            return Err(Trouble::Stalled(before));
+        }
+        let moved = largest_turn(&from, &self.engine.solution);
+        if moved > 0.15 {
+            return Err(Trouble::Stalled(moved));
+        }
+        self.set(fraction);
+        self.keep_accuracy()?;
+        self.engine.ends_fine()?;
+        let next = self.point(fraction, Some((&here.solution, &here.tangent, here.rise)))?;
+        if self.cosine(here, &next) < pace.straightness && step > 1e-5 {
+            return Err(Trouble::Stalled(self.cosine(here, &next) - 2.0));
+        }
+        Ok(Reached::Point(Box::new(next)))
+    }
+
+    /// Refines when the mesh no longer carries the path's tolerance.
+    fn keep_accuracy(&mut self) -> Result<(), Trouble> {
+        for _ in 0..4 {
+            let estimate = self.engine.estimate()?;
+            if estimate <= LOOSE {
+                return Ok(());
+            }
+            self.engine.refine(0.05 * LOOSE);
+            self.engine.newton(1e-6, 12)?;
+        }
+        Ok(())
+    }
+
+    fn cosine(&self, a: &Point, b: &Point) -> f64 {
+        // Both on the mesh of `b`, lengths included: a coarse mesh measures them coarsely.
+        let weights = self.weights();
+        let (mut both, mut first, mut second) = (a.rise * b.rise, a.rise * a.rise, b.rise * b.rise);
+        for (i, s) in b.solution.mesh.nodes().iter().enumerate() {
+            let e = a.solution.mesh.element_of(*s);
+            let x = (s - a.solution.mesh.nodes()[e]) / a.solution.mesh.step(e);
+            let carried = a.tangent[e] + x * (a.tangent[e + 1] - a.tangent[e]);
+            both += weights[i] * b.tangent[i] * carried;
+            first += weights[i] * carried * carried;
+            second += weights[i] * b.tangent[i] * b.tangent[i];
+        }
+        both / (first * second).sqrt()
+    }
+
+    /// The largest fraction between two points whose tangents rise and fall.
+    fn limit_point(&mut self, here: &Point, next: &Point, step: f64, pace: Pace) -> f64 {
+        let (mut low, mut low_rise) = (0.0, here.rise);
+        let (mut high, mut high_rise) = (step, next.rise);
+        let mut best = here.fraction.max(next.fraction);
+        for _ in 0..40 {
+            let share = (low_rise / (low_rise - high_rise)).clamp(0.1, 0.9);
+            let middle = low + share * (high - low);
+            match self.advance(here, middle, Pace { straightness: -1.0, ..pace }) {
+                Ok(Reached::Point(point)) => {
+                    best = best.max(point.fraction);
+                    if point.rise < 0.0 {
+                        (high, high_rise) = (middle, point.rise);
+                    } else {
+                        (low, low_rise) = (middle, point.rise);
+                    }
+                    if point.rise.abs() < 1e-7 {
+                        break;
+                    }
+                }
+                _ => high = middle,
+            }
+            if high - low < 1e-9 {
+                break;
+            }
+        }
+        best.clamp(0.0, 1.0)
+    }
+
+    fn end(&self, kind: VerdictKind, load_fraction: f64, s: Option<f64>) -> PathEnd {
+        let load_fraction = if load_fraction <= START { 0.0 } else { load_fraction.min(1.0) };
+        let s = s.map(|s| s * self.engine.equations.units.length);
+        PathEnd { verdict: Verdict { kind, phase: self.phase, load_fraction, s, residual: self.engine.last } }
+    }
+
+    /// Names the limit that the last good point is at.
+    fn give_up(&mut self, here: Option<&Point>, fraction: f64, residual: f64) -> PathEnd {
+        self.engine.last = residual;
+        let Some(_) = here else {
+            return self.end(VerdictKind::NotFound, 0.0, None);
+        };
+        self.set(fraction);
+        let near = self.engine.nearest_limits();
+        let failed = match &self.last_trouble {
+            Some(Trouble::Section(failure)) => Some(*failure),
+            _ => None,
+        };
+        let volume = self.engine.equations.volume();
+        let readings = self.engine.equations.arm().readings;
+        let crushed = volume == Volume::None && near.nu.0 < 0.1;
+        if near.openness.0 < 0.1 {
+            self.end(VerdictKind::CableFold, fraction, Some(near.openness.1))
+        } else if crushed {
+            self.end(VerdictKind::SectionCrushed, fraction, Some(near.nu.1))
+        } else if near.regularity.0 < 0.1 {
+            self.end(VerdictKind::NoSectionSolution, fraction, Some(near.regularity.1))
+        } else if readings.load_can_jump() && failed.is_none() {
+            self.end(VerdictKind::LoadJump, fraction, self.engine.nearest_switch())
+        } else {
+            self.end(VerdictKind::NotFound, fraction, failed.map(|f| f.s))
+        }
+    }
+}
+
+fn largest_turn(a: &Solution<N, M>, b: &Solution<N, M>) -> f64 {
+    if a.nodes.len() != b.nodes.len() {
+        return 0.0;
+    }
+    a.nodes.iter().zip(&b.nodes).fold(0.0, |m, (a, b)| f64::max(m, (a[0] - b[0]).abs()))
+}
+
+impl Engine {
+    /// Factorises at the present solution.
+    pub(crate) fn linearise(&mut self, parameter: bool) -> Result<(), Trouble> {
+        self.rounds += 1;
+        self.system.linearise(&mut self.equations, &self.solution, parameter).map_err(|e| match e {
+            RoundError::Slopes(failure) => Trouble::Section(failure),
+            RoundError::Singular(_) => Trouble::Singular,
+        })
+    }
+}
