@@ -93,9 +93,7 @@ impl Nearness {
 
     #[inline(always)]
     fn note(&mut self, s: f64, openness: f64, nu: f64, regularity: f64) {
-        for (least, value) in
-            [(&mut self.openness, openness), (&mut self.nu, nu), (&mut self.regularity, regularity)]
-        {
+        for (least, value) in [(&mut self.openness, openness), (&mut self.nu, nu), (&mut self.regularity, regularity)] {
             if value < least.0 {
                 *least = (value, s);
             }

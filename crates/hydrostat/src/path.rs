@@ -144,7 +144,14 @@ impl Stepper<'_> {
                     suspicion = 0;
                     travelled.steps += 1;
                     if self.engine.trace {
-                        eprintln!("path {:?} {:.6} -> {:.6} step {step:.2e} rise {:.3} n {}", self.phase, here.fraction, next.fraction, next.rise, next.solution.mesh.elements());
+                        eprintln!(
+                            "path {:?} {:.6} -> {:.6} step {step:.2e} rise {:.3} n {}",
+                            self.phase,
+                            here.fraction,
+                            next.fraction,
+                            next.rise,
+                            next.solution.mesh.elements()
+                        );
                     }
                     here = *next;
                     step = (step * 1.6).min(pace.longest);
@@ -267,6 +274,10 @@ impl Stepper<'_> {
                 weights.iter().zip(&c.nodes).zip(&here.tangent).map(|((w, z), t)| w * z[0] * t).sum()
             };
             let slide = -dot(&self.correction) / (dot(&self.response) + here.rise);
+            let totals = self.engine.system.totals(&self.engine.solution.mesh);
+            for q in 0..Q {
+                self.engine.tip[q] = totals[q] + self.correction.total[q] + slide * self.response.total[q];
+            }
             self.engine.solution.add(&self.correction, 1.0);
             self.engine.solution.add(&self.response, slide);
             fraction += slide;
@@ -303,7 +314,7 @@ impl Stepper<'_> {
     /// Refines when the mesh no longer carries the path's tolerance.
     fn keep_accuracy(&mut self) -> Result<(), Trouble> {
         for _ in 0..4 {
-            let estimate = self.engine.estimate()?;
+            let estimate = self.engine.estimate(LOOSE)?;
             if estimate <= LOOSE {
                 return Ok(());
             }

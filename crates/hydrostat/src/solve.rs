@@ -70,9 +70,8 @@ impl Solver {
         let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
         match settled {
             Ok(estimate) if moved < 0.05 && self.engine.system.determinant().sign == sign => {
-                let mut configuration = self.read(estimate, travelled).map_err(|_| {
-                    self.no_equilibrium(self.last_verdict(Some(1.0)))
-                })?;
+                let mut configuration =
+                    self.read(estimate, travelled).map_err(|_| self.no_equilibrium(self.last_verdict(Some(1.0))))?;
                 if travelled.crossings > 0 || sign < 0.0 {
                     configuration.stable = Some(false);
                 }
@@ -95,7 +94,7 @@ impl Solver {
 
     /// The verdict with the last good point, which the engine holds, settled and read.
     fn no_equilibrium(&mut self, verdict: Verdict) -> SolveError {
-        let estimate = self.engine.settle(self.options.tol.max(1e-6)).or_else(|_| self.engine.estimate());
+        let estimate = self.engine.settle(self.options.tol.max(1e-6)).or_else(|_| self.engine.estimate(1e-6));
         let last_good = estimate.ok().and_then(|e| self.read(e, Travelled::default()).ok());
         SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good }))
     }

@@ -15,7 +15,10 @@ fn configurations_agree_with_an_independent_solver() {
     let mut failed = Vec::new();
     for case in &cases {
         let name = case["name"].as_str().unwrap();
-        if std::env::var("ONLY").is_ok_and(|o| !name.contains(&o)) {
+        if std::env::var("ONLY").is_ok_and(|o| match o.strip_suffix('!') {
+            Some(exact) => name != exact,
+            None => !name.contains(&o),
+        }) {
             continue;
         }
         let arm = ArmFile::parse(case["toml"].as_str().unwrap(), name).unwrap().arm().unwrap();
@@ -51,7 +54,11 @@ fn configurations_agree_with_an_independent_solver() {
                 (own.m, "m"),
             ] {
                 let scale = if key == "x" || key == "y" { arm.length } else { 1.0 };
-                let size = if key == "x" || key == "y" { 1.0 } else { largest(key).max(if key.starts_with('n') || key == "m" { 1e-6 } else { 1.0 }) };
+                let size = if key == "x" || key == "y" {
+                    1.0
+                } else {
+                    largest(key).max(if key.starts_with('n') || key == "m" { 1e-6 } else { 1.0 })
+                };
                 let off = (value - pick(key) / scale).abs() / size;
                 // A cable that ends here makes both sides valid.
                 if off > worst {
@@ -61,7 +68,12 @@ fn configurations_agree_with_an_independent_solver() {
             }
         }
         let ratio = far * arm.length / solved.error_estimate;
-        eprintln!("{name:40} tip {far:.1e} est {:.1e} ratio {ratio:.2} stations {worst:.1e} at {place:.3} el {} rounds {}", solved.error_estimate / arm.length, solved.statistics.elements, solved.statistics.newton_rounds);
+        eprintln!(
+            "{name:40} tip {far:.1e} est {:.1e} ratio {ratio:.2} stations {worst:.1e} at {place:.3} el {} rounds {}",
+            solved.error_estimate / arm.length,
+            solved.statistics.elements,
+            solved.statistics.newton_rounds
+        );
         if far > 3e-8 {
             failed.push(name);
         }
