@@ -130,13 +130,15 @@ pub struct Correction<const N: usize, const M: usize, const Q: usize> {
     pub nodes: Vec<[f64; N]>,
     /// At the stages, of the slopes.
     pub slopes: Vec<[[f64; N]; M]>,
+    /// Of the quadratures over each element.
+    pub by_element: Vec<[f64; Q]>,
     /// Of the quadratures over [0, 1].
     pub total: [f64; Q],
 }
 
 impl<const N: usize, const M: usize, const Q: usize> Default for Correction<N, M, Q> {
     fn default() -> Self {
-        Self { nodes: Vec::new(), slopes: Vec::new(), total: [0.0; Q] }
+        Self { nodes: Vec::new(), slopes: Vec::new(), by_element: Vec::new(), total: [0.0; Q] }
     }
 }
 
@@ -383,6 +385,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         let left_count = N - self.right_count;
         out.nodes.resize(n + 1, [0.0; N]);
         out.slopes.resize(n, [[0.0; N]; M]);
+        out.by_element.resize(n, [0.0; Q]);
         let mut load = [0.0; N];
         for r in 0..N {
             load[r] =
@@ -416,6 +419,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             out.nodes[i + 1] = next;
 
             let h = solution.mesh.step(i);
+            out.by_element[i] = [0.0; Q];
             for j in 0..M {
                 let mut k = apply(&element.response[j], &z);
                 for a in 0..N {
@@ -436,9 +440,26 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
                     for a in 0..N {
                         rate += local.rate_gradient[q][a] * dz[a];
                     }
-                    out.total[q] += h * self.gauss.b[j] * rate;
+                    out.by_element[i][q] += h * self.gauss.b[j] * rate;
                 }
             }
+            for q in 0..Q {
+                out.total[q] += out.by_element[i][q];
+            }
+        }
+    }
+
+    /// The quadratures over each element at the state of the last linearisation.
+    pub fn quadratures(&self, mesh: &Mesh, out: &mut Vec<[f64; Q]>) {
+        out.clear();
+        for i in 0..mesh.elements() {
+            let mut sum = [0.0; Q];
+            for j in 0..M {
+                for q in 0..Q {
+                    sum[q] += mesh.step(i) * self.gauss.b[j] * self.locals[i * M + j].rate[q];
+                }
+            }
+            out.push(sum);
         }
     }
 
@@ -456,8 +477,9 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     }
 
     /// What each element's residual contributes to the Newton correction of the totals, as the sum
-    /// over the `Q` totals of absolute values: the adjoint of [`Collocation::solve`].
-    pub fn contributions(&self, mesh: &Mesh, out: &mut Vec<f64>) {
+    /// over the `Q` totals of absolute values: the adjoint of [`Collocation::solve`]. To it comes
+    /// the change of each element's own quadratures against `before`.
+    pub fn contributions(&self, mesh: &Mesh, before: &[[f64; Q]], out: &mut Vec<f64>) {
         let n = mesh.elements();
         out.clear();
         out.resize(n, 0.0);
@@ -473,9 +495,10 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             }
             for i in 0..n {
                 let (element, h) = (&self.elements[i], mesh.step(i));
-                let mut own = 0.0;
+                let mut own = -before[i][q];
                 for j in 0..M {
                     let weight = h * self.gauss.b[j];
+                    own += weight * self.locals[i * M + j].rate[q];
                     let gradient = &self.locals[i * M + j].rate_gradient[q];
                     for a in 0..N {
                         by_node[i][a] += weight * gradient[a];

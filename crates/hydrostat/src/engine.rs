@@ -10,6 +10,9 @@ use crate::verdict::Phase;
 pub(crate) const M: usize = 4;
 const K: usize = M + 1;
 
+/// The worst estimate (tip over L) with which a solution is still an answer.
+const WORST: f64 = 1e-5;
+
 pub(crate) type Guess = Solution<N, M>;
 
 #[derive(Debug, Clone)]
@@ -32,6 +35,8 @@ pub(crate) struct Engine {
     stations: Vec<f64>,
     check_stations: Vec<f64>,
     errors: Vec<f64>,
+    /// x, y over L that each element adds, at the last round.
+    pub(crate) spans: Vec<[f64; Q]>,
     breaks: Vec<f64>,
     pub(crate) rounds: usize,
     pub(crate) meshes: usize,
@@ -56,6 +61,7 @@ impl Engine {
             stations: Vec::new(),
             check_stations: Vec::new(),
             errors: Vec::new(),
+            spans: Vec::new(),
             breaks,
             rounds: 0,
             meshes: 0,
@@ -181,6 +187,8 @@ impl Engine {
     /// Newton on the present mesh until the tip moves by less than `tolerance`.
     #[inline(always)]
     pub(crate) fn newton(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
+        let clamped = self.equations.arm().readings.support == crate::Support::Clamped;
+        let most = if clamped { most } else { 60 };
         let mut applied = 0.0;
         let mut halvings = 0;
         let mut round = 0;
@@ -222,9 +230,15 @@ impl Engine {
                 );
             }
             if moved <= tolerance {
+                self.system.quadratures(&self.solution.mesh, &mut self.spans);
+                for (span, change) in self.spans.iter_mut().zip(&self.correction.by_element) {
+                    for q in 0..Q {
+                        span[q] += change[q];
+                    }
+                }
                 return Ok(());
             }
-            if round == most || (round >= 4 && size > 3.0) {
+            if round == most || (clamped && round >= 4 && size > 3.0) {
                 return Err(Trouble::Stalled(size));
             }
         }
@@ -239,6 +253,10 @@ impl Engine {
     /// that each element contributes.
     #[inline(always)]
     pub(crate) fn estimate(&mut self, tolerance: f64) -> Result<f64, Trouble> {
+        if self.spans.len() != self.solution.mesh.elements() {
+            // The last Newton rounds on this mesh did not converge: there is nothing to compare with.
+            return Err(Trouble::Mesh(f64::INFINITY));
+        }
         let mut finer = self.solution.with_stages(&self.system.gauss, &self.check.gauss);
         self.check.stations(&finer.mesh, &mut self.check_stations);
         let weights: [[f64; M]; K] = std::array::from_fn(|k| self.system.gauss.cardinals(self.check.gauss.c[k]));
@@ -262,7 +280,7 @@ impl Engine {
             self.check.evaluate(&mut self.check_equations, &finer).map_err(Trouble::Section)?;
         }
         let mut estimate = self.compare(&finer)?;
-        self.check.contributions(&finer.mesh, &mut self.errors);
+        self.check.contributions(&finer.mesh, &self.spans, &mut self.errors);
         let contributed: f64 = self.errors.iter().sum();
         if estimate > tolerance && contributed < tolerance {
             // Between nodes the polynomials are less accurate than at them, and one Newton round
@@ -396,27 +414,50 @@ impl Engine {
         self.move_to(mesh);
     }
 
-    /// Refines until the estimate meets `tolerance` (tip position over L).
+    /// Refines until the estimate meets `tolerance` (tip position over L). Where that cannot be had,
+    /// the best there is, if it is good to [`WORST`].
     pub(crate) fn settle(&mut self, tolerance: f64) -> Result<f64, Trouble> {
         let mut estimate = f64::INFINITY;
-        for attempt in 0..12 {
+        let mut best: Option<(f64, Guess, Equilibrium, [f64; 2])> = None;
+        for attempt in 0..10 {
             let goal = if attempt == 0 { 1e-3 } else { (1e-4 * estimate).clamp(3.0 * tolerance, 1e-3) };
-            self.newton(goal, 14)?;
-            for _ in 0..3 {
-                let resolution = 0.3 * tolerance.sqrt();
-                let kinks = self.kinks(10.0 * resolution);
-                if !self.pin(&kinks, resolution) {
-                    break;
-                }
-                self.newton(goal, 14)?;
-            }
-            estimate = self.estimate(tolerance)?;
+            let outcome = self.converge(goal, tolerance).and_then(|()| self.estimate(tolerance));
+            estimate = match (outcome, &best) {
+                (Ok(estimate), _) => estimate,
+                (Err(trouble), None) => return Err(trouble),
+                (Err(_), Some(_)) => break,
+            };
             if estimate <= tolerance && goal <= 3.0 * tolerance {
                 return Ok(estimate);
             }
+            if attempt > 2 && estimate < best.as_ref().map_or(WORST, |b| b.0) {
+                best = Some((estimate, self.solution.clone(), self.equations.clone(), self.tip));
+            }
             self.refine(0.2 * tolerance);
         }
-        Err(Trouble::Mesh(estimate))
+        match best {
+            Some((estimate, solution, equations, tip)) => {
+                self.solution = solution;
+                self.equations = equations;
+                self.tip = tip;
+                Ok(estimate)
+            }
+            None => Err(Trouble::Mesh(estimate)),
+        }
+    }
+
+    /// Newton on this mesh, with nodes moved onto the kinks of the load.
+    fn converge(&mut self, goal: f64, tolerance: f64) -> Result<(), Trouble> {
+        self.newton(goal, 14)?;
+        let resolution = 0.05 * tolerance.sqrt();
+        for _ in 0..4 {
+            let kinks = self.kinks(10.0 * resolution);
+            if !self.pin(&kinks, resolution) {
+                break;
+            }
+            self.newton(goal, 14)?;
+        }
+        Ok(())
     }
 
     /// Whether something pushes against the arm hard enough that a direct solve may have landed on a

@@ -55,26 +55,48 @@ struct Differentiation {
     by_slope: Vec<f64>,
     /// From the polynomial through beta'.
     plain: Vec<f64>,
-    /// From the straight line closest to beta'.
-    line: Vec<f64>,
-    /// Largest row sum of each of the three: how they amplify what beta' is off by.
-    gain: [f64; 3],
+    /// Largest row sum of `by_slope`: how it amplifies what beta' is off by.
+    hermite_gain: f64,
 }
+
+/// No method here has more stages.
+const MOST_STAGES: usize = 6;
 
 impl Differentiation {
     fn new<const M: usize>(gauss: &Gauss<M>) -> Self {
-        let rows = |m: &[[f64; M]; M]| m.iter().map(|row| row.iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max);
-        // The first Legendre coefficient: 3 (2 x - 1) against beta', slope 2 a unit.
-        let line: Vec<f64> = (0..M).map(|l| 6.0 * gauss.b[l] * (2.0 * gauss.c[l] - 1.0)).collect();
+        const { assert!(M <= MOST_STAGES) };
         let flat = |m: &[[f64; M]; M]| m.iter().flatten().copied().collect::<Vec<f64>>();
+        let rows = gauss.hermite[1].iter().map(|row| row.iter().map(|v| v.abs()).sum::<f64>());
         Self {
-            gain: [rows(&gauss.hermite[1]), rows(&gauss.d), line.iter().map(|v| v.abs()).sum()],
+            hermite_gain: rows.fold(0.0, f64::max),
             by_value: flat(&gauss.hermite[0]),
             by_slope: flat(&gauss.hermite[1]),
             plain: flat(&gauss.d),
-            line,
         }
     }
+}
+
+/// Solves `m` equations whose right side is column `m`, by elimination with row pivoting.
+fn solve_small(a: &mut [[f64; MOST_STAGES + 1]; MOST_STAGES], m: usize) -> bool {
+    for k in 0..m {
+        let best = (k..m).max_by(|i, j| a[*i][k].abs().total_cmp(&a[*j][k].abs())).unwrap_or(k);
+        if a[best][k].abs() < 1e-12 || !a[best][k].is_finite() {
+            return false;
+        }
+        a.swap(k, best);
+        for i in 0..m {
+            if i != k {
+                let f = a[i][k] / a[k][k];
+                for c in k..=m {
+                    a[i][c] -= f * a[k][c];
+                }
+            }
+        }
+    }
+    for k in 0..m {
+        a[k][m] /= a[k][k];
+    }
+    true
 }
 
 /// How near the limits of the section law the stations came, each with its place (over L).
@@ -482,41 +504,49 @@ impl Equilibrium {
 
     /// beta'' at the stations from beta and beta', element by element.
     ///
-    /// It feeds back into beta' with the length `reach`: differentiating over a step that is not
-    /// long against it would excite the fast mode that section 8.1 of the model notes excludes. So
-    /// the formula gets blunter as steps get shorter, where it also matters less.
+    /// beta'' feeds back into beta' as `reach` beta''. Where a step is long against `reach` the
+    /// sharpest formula serves, one round behind. Where it is not, lagging would excite the fast mode
+    /// that section 8.1 of the model notes excludes: there beta' and beta'' are solved for together,
+    /// beta' - reach beta'' = rest with beta'' the slope of the element's own polynomial, which has no
+    /// fast mode.
     fn differentiate_beta(&mut self) {
         let m = self.stages;
         for first in (0..self.stations.len()).step_by(m) {
             let inverse = 1.0 / self.steps[first];
-            let reach = self.reach[first..first + m].iter().fold(0.0_f64, |a, r| a.max(r.abs()));
-            let (beta, slope) = (&self.beta[first..first + m], &self.beta_slope[first..first + m]);
-            let ratio = reach * inverse;
+            let own = first..first + m;
+            let reach = &self.reach[own.clone()];
+            let largest = reach.iter().fold(0.0_f64, |a, r| a.max(r.abs()));
             let w = &self.weights;
-            let out = &mut self.beta_curvature[first..first + m];
+            let slope = &mut self.beta_slope[own.clone()];
+            let curvature = &mut self.beta_curvature[own.clone()];
             if self.blunt {
-                out.fill(0.0);
-            } else if ratio * w.gain[0] < 0.4 {
+                curvature.fill(0.0);
+            } else if largest * inverse * w.hermite_gain < 0.3 {
+                let beta = &self.beta[own];
                 for j in 0..m {
                     let mut sum = 0.0;
                     for l in 0..m {
                         sum += w.by_value[j * m + l] * beta[l] * inverse + w.by_slope[j * m + l] * slope[l];
                     }
-                    out[j] = sum * inverse;
+                    curvature[j] = sum * inverse;
                 }
-            } else if ratio * w.gain[1] < 0.6 {
-                for j in 0..m {
-                    let mut sum = 0.0;
-                    for l in 0..m {
-                        sum += w.plain[j * m + l] * slope[l];
-                    }
-                    out[j] = sum * inverse;
-                }
-            } else if ratio * w.gain[2] < 0.8 {
-                let sum: f64 = (0..m).map(|l| w.line[l] * slope[l]).sum();
-                out.fill(sum * inverse);
             } else {
-                out.fill(0.0);
+                let mut matrix = [[0.0; MOST_STAGES + 1]; MOST_STAGES];
+                for j in 0..m {
+                    for l in 0..m {
+                        matrix[j][l] = -reach[j] * w.plain[j * m + l] * inverse;
+                    }
+                    matrix[j][j] += 1.0;
+                    matrix[j][m] = slope[j] - reach[j] * curvature[j];
+                }
+                if solve_small(&mut matrix, m) {
+                    for j in 0..m {
+                        slope[j] = matrix[j][m];
+                    }
+                    for j in 0..m {
+                        curvature[j] = (0..m).map(|l| w.plain[j * m + l] * slope[l]).sum::<f64>() * inverse;
+                    }
+                }
             }
         }
     }
@@ -847,7 +877,7 @@ impl Problem<N, Q> for Equilibrium {
             let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
             let rate_gradient = rate_gradient(direction, rate, &by_state);
             let curved = apply3(&solved.inverse, solved.balance.by_curvature);
-            let reach = solved.balance.swelling.slope * curved[0];
+            let reach = -(solved.balance.swelling.slope * curved[0]);
             let drift = self.drift_of(block, direction, contact, &solved, &load);
 
             for lane in 0..LANES {

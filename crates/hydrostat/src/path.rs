@@ -274,9 +274,13 @@ impl Stepper<'_> {
                 weights.iter().zip(&c.nodes).zip(&here.tangent).map(|((w, z), t)| w * z[0] * t).sum()
             };
             let slide = -dot(&self.correction) / (dot(&self.response) + here.rise);
-            let totals = self.engine.system.totals(&self.engine.solution.mesh);
-            for q in 0..Q {
-                self.engine.tip[q] = totals[q] + self.correction.total[q] + slide * self.response.total[q];
+            self.engine.system.quadratures(&self.engine.solution.mesh, &mut self.engine.spans);
+            self.engine.tip = [0.0; Q];
+            for (i, span) in self.engine.spans.iter_mut().enumerate() {
+                for q in 0..Q {
+                    span[q] += self.correction.by_element[i][q] + slide * self.response.by_element[i][q];
+                    self.engine.tip[q] += span[q];
+                }
             }
             self.engine.solution.add(&self.correction, 1.0);
             self.engine.solution.add(&self.response, slide);
