@@ -96,8 +96,15 @@ impl Mesh {
     }
 
     /// A new mesh on which every element would have the same `error`, given the present ones, an
-    /// order `order` of the local error, and a sum of errors `target`. Pinned nodes stay.
-    pub fn redistributed(&self, error: &[f64], order: f64, target: f64, limits: Limits) -> Self {
+    /// order `order` of the local error, and a sum of errors `target`. Pinned nodes stay. No element is made shorter than `shortest` says for the one it lies in.
+    pub fn redistributed(
+        &self,
+        error: &[f64],
+        shortest: &[f64],
+        order: f64,
+        target: f64,
+        limits: Limits,
+    ) -> Self {
         let n = self.elements();
         // What is far below its share says nothing about the solution: it may be rounding.
         let floor = 1e-3 * target / n as f64;
@@ -115,6 +122,9 @@ impl Mesh {
                 density[i] = density[i].min(limits.cut * typical / self.step(i));
             }
         }
+        for i in 0..n {
+            density[i] = density[i].max(1e-300);
+        }
         let mean: f64 = (0..n).map(|i| density[i] * self.step(i)).sum();
         let least = if mean > 0.0 { limits.least * mean } else { 1.0 };
         for d in &mut density {
@@ -124,6 +134,11 @@ impl Mesh {
         let wanted = (weight.powf(order) / target).powf(1.0 / (order - 1.0));
         let most = limits.most.min((n as f64 * limits.growth).ceil() as usize) as f64;
         let wanted = wanted.clamp(limits.fewest as f64, most.max(limits.fewest as f64));
+        // Here the density is a number of new elements a length, so it can be capped.
+        let per_length = wanted / weight;
+        for i in 0..n {
+            density[i] = (density[i] * per_length).min(1.0 / shortest[i]);
+        }
         let mut mesh = Self { nodes: vec![0.0], pinned: vec![true] };
         let mut start = 0;
         while start < n {
@@ -132,7 +147,7 @@ impl Mesh {
                 end += 1;
             }
             let share: f64 = (start..end).map(|i| density[i] * self.step(i)).sum();
-            let count = ((wanted * share / weight - 0.02).ceil() as usize).max(1);
+            let count = ((share - 0.02).ceil() as usize).max(1);
             let mut i = start;
             let mut passed = 0.0;
             for k in 1..count {

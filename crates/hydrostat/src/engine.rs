@@ -218,8 +218,11 @@ impl Engine {
             halvings = 0;
             self.solution.add(&self.correction, applied);
             let [x, y] = self.system.totals(&self.solution.mesh);
-            self.tip = [x + dx, y + dy];
-            let moved = dx.hypot(dy).max(0.1 * size);
+            let tip = [x + dx, y + dy];
+            // beta' runs a round behind: what it still moves shows from round to round.
+            let drifted = if round > 1 { (tip[0] - self.tip[0]).hypot(tip[1] - self.tip[1]) } else { 0.0 };
+            self.tip = tip;
+            let moved = dx.hypot(dy).max(0.1 * size).max(0.1 * drifted);
             self.last = size;
             if self.trace {
                 eprintln!(
@@ -410,7 +413,9 @@ impl Engine {
 
     pub(crate) fn refine(&mut self, target: f64) {
         let limits = Limits { fewest: 4, most: 2000, growth: 6.0, cut: 8.0, least: 0.2 };
-        let mesh = self.solution.mesh.redistributed(&self.errors, (2 * M + 1) as f64, target, limits);
+        let shortest: Vec<f64> =
+            (0..self.solution.mesh.elements()).map(|i| self.equations.shortest_element(i)).collect();
+        let mesh = self.solution.mesh.redistributed(&self.errors, &shortest, (2 * M + 1) as f64, target, limits);
         self.move_to(mesh);
     }
 
@@ -430,7 +435,7 @@ impl Engine {
             if estimate <= tolerance && goal <= 3.0 * tolerance {
                 return Ok(estimate);
             }
-            if attempt > 2 && estimate < best.as_ref().map_or(WORST, |b| b.0) {
+            if attempt > 0 && estimate < best.as_ref().map_or(WORST, |b| b.0) {
                 best = Some((estimate, self.solution.clone(), self.equations.clone(), self.tip));
             }
             self.refine(0.2 * tolerance);
@@ -440,6 +445,8 @@ impl Engine {
                 self.solution = solution;
                 self.equations = equations;
                 self.tip = tip;
+                self.spans.clear();
+                self.linearise(false)?;
                 Ok(estimate)
             }
             None => Err(Trouble::Mesh(estimate)),

@@ -45,6 +45,8 @@ pub(crate) struct SectionFailure {
     pub(crate) openness: f64,
     /// Stretch when it failed.
     pub(crate) nu: f64,
+    /// Determinant of the section law over that of the slack one.
+    pub(crate) regularity: f64,
 }
 
 /// Weights that give beta'' at the stages of an element of length one.
@@ -72,6 +74,24 @@ impl Differentiation {
             by_value: flat(&gauss.hermite[0]),
             by_slope: flat(&gauss.hermite[1]),
             plain: flat(&gauss.d),
+        }
+    }
+
+    /// Slope of the polynomial through `values` on an element of length 1/`inverse`.
+    fn slope_of(&self, values: &[f64], inverse: f64, out: &mut [f64]) {
+        let m = values.len();
+        for j in 0..m {
+            out[j] = (0..m).map(|l| self.plain[j * m + l] * values[l]).sum::<f64>() * inverse;
+        }
+    }
+}
+
+/// Puts `from` plus the solution of the equations into `slope`, which stays when they are singular.
+fn solve_for_slope(matrix: &mut [[f64; MOST_STAGES + 1]; MOST_STAGES], slope: &mut [f64], from: &[f64]) {
+    let m = slope.len();
+    if solve_small(matrix, m) {
+        for j in 0..m {
+            slope[j] = from[j] + matrix[j][m];
         }
     }
 }
@@ -182,6 +202,8 @@ pub(crate) struct Equilibrium {
     pub(crate) blunt: bool,
     /// d beta' / d beta'' of the closed form, over L: the length on which a fast mode would live.
     reach: Vec<f64>,
+    /// beta' that the last evaluation used.
+    beta_before: Vec<f64>,
     drifts: Vec<[f64; N]>,
     /// Load switches a station.
     pub(crate) switches: Vec<[f64; 3]>,
@@ -215,6 +237,7 @@ impl Equilibrium {
             beta: Vec::new(),
             blunt: false,
             reach: Vec::new(),
+            beta_before: Vec::new(),
             drifts: Vec::new(),
             switches: Vec::new(),
             evaluations: 0,
@@ -502,13 +525,19 @@ impl Equilibrium {
         self.tensions[c] * self.fraction[1]
     }
 
+    /// The shortest part of element `i` that beta' can still be differentiated on.
+    pub(crate) fn shortest_element(&self, i: usize) -> f64 {
+        let own = i * self.stages..(i + 1) * self.stages;
+        (4.0 * self.reach[own].iter().fold(0.0_f64, |m, r| m.max(r.abs()))).max(1e-6)
+    }
+
     /// beta'' at the stations from beta and beta', element by element.
     ///
     /// beta'' feeds back into beta' as `reach` beta''. Where a step is long against `reach` the
     /// sharpest formula serves, one round behind. Where it is not, lagging would excite the fast mode
     /// that section 8.1 of the model notes excludes: there beta' and beta'' are solved for together,
-    /// beta' - reach beta'' = rest with beta'' the slope of the element's own polynomial, which has no
-    /// fast mode.
+    /// and where `reach` is a good part of the step, beta' is the slope of the element's own
+    /// polynomial through beta, which has no fast mode, found by Newton along with everything else.
     fn differentiate_beta(&mut self) {
         let m = self.stages;
         for first in (0..self.stations.len()).step_by(m) {
@@ -530,7 +559,8 @@ impl Equilibrium {
                     }
                     curvature[j] = sum * inverse;
                 }
-            } else {
+            } else if largest * inverse < 0.05 {
+                // beta' - reach beta'' = rest, with beta'' the slope of the polynomial through beta'.
                 let mut matrix = [[0.0; MOST_STAGES + 1]; MOST_STAGES];
                 for j in 0..m {
                     for l in 0..m {
@@ -539,14 +569,24 @@ impl Equilibrium {
                     matrix[j][j] += 1.0;
                     matrix[j][m] = slope[j] - reach[j] * curvature[j];
                 }
-                if solve_small(&mut matrix, m) {
-                    for j in 0..m {
-                        slope[j] = matrix[j][m];
+                solve_for_slope(&mut matrix, slope, &[0.0; MOST_STAGES]);
+                w.slope_of(slope, inverse, curvature);
+            } else {
+                // One Newton step on beta' = D beta(nu(z, beta')) / h: d beta / d beta' is `reach`.
+                let beta = &self.beta[own];
+                let mut matrix = [[0.0; MOST_STAGES + 1]; MOST_STAGES];
+                for j in 0..m {
+                    let before = self.beta_before[first + j];
+                    matrix[j][m] = -before;
+                    for l in 0..m {
+                        let d = w.plain[j * m + l] * inverse;
+                        matrix[j][l] = -d * reach[l];
+                        matrix[j][m] += d * beta[l];
                     }
-                    for j in 0..m {
-                        curvature[j] = (0..m).map(|l| w.plain[j * m + l] * slope[l]).sum::<f64>() * inverse;
-                    }
+                    matrix[j][j] += 1.0;
                 }
+                solve_for_slope(&mut matrix, slope, &self.beta_before[first..first + m]);
+                w.slope_of(slope, inverse, curvature);
             }
         }
     }
@@ -585,7 +625,12 @@ impl Equilibrium {
             );
             let fine = solved.step < 1e-9 && solved.regularity > 0.0 && solved.balance.openness > 0.0;
             if !fine {
-                return Err(SectionFailure { s, openness: solved.balance.openness, nu: solved.strain[0] });
+                return Err(SectionFailure {
+                    s,
+                    openness: solved.balance.openness,
+                    nu: solved.strain[0],
+                    regularity: solved.regularity,
+                });
             }
             strain = solved.strain;
             let load = self.load(&place, [cos, sin], &solved, beta_slope);
@@ -615,7 +660,7 @@ impl Equilibrium {
                 break;
             }
         }
-        out.ok_or(SectionFailure { s, openness: 1.0, nu: strain[0] })
+        out.ok_or(SectionFailure { s, openness: 1.0, nu: strain[0], regularity: 1.0 })
     }
 
     #[inline(always)]
@@ -779,6 +824,7 @@ impl Problem<N, Q> for Equilibrium {
         let count = z.len();
         self.evaluations += count;
         self.nearness = Nearness::FAR;
+        self.beta_before.clone_from(&self.beta_slope);
         let cable_count = self.tensions.len();
         let fraction = Lanes::of(self.fraction[0]);
         let mut pulled: [CableAt<Lanes>; MOST_IN_PLACE] = [blank_cable(); MOST_IN_PLACE];
@@ -846,25 +892,12 @@ impl Problem<N, Q> for Equilibrium {
                     && solved.balance.openness.0[lane] > 0.0
                     && solved.strain[0].0[lane] > 0.0;
                 if !fine {
-                    if std::env::var("DBG").is_ok() {
-                        eprintln!(
-                            "FAIL s {} frac {:?} step {:.2e} reg {:.3e} open {:.3} strain {:?} p {:.3} guess {:?} contact {:?}",
-                            self.stations[(block * LANES + lane).min(count - 1)],
-                            self.fraction,
-                            solved.step.0[lane],
-                            solved.regularity.0[lane],
-                            solved.balance.openness.0[lane],
-                            solved.strain.map(|v| v.0[lane]),
-                            beta_along[0].0[lane],
-                            guess.map(|v| v.0[lane]),
-                            contact.map(|v| v.0[lane])
-                        );
-                    }
                     let k = (block * LANES + lane).min(count - 1);
                     return Err(SectionFailure {
                         s: self.stations[k],
                         openness: solved.balance.openness.0[lane],
                         nu: solved.strain[0].0[lane],
+                        regularity: solved.regularity.0[lane],
                     });
                 }
             }

@@ -11,7 +11,7 @@ use crate::verdict::{Phase, Verdict, VerdictKind};
 /// Fractions start here rather than at zero, where a tangent by the fraction is not defined.
 const START: f64 = 1e-12;
 /// Error of the tip over L that is kept along the path.
-const LOOSE: f64 = 1e-4;
+pub(crate) const LOOSE: f64 = 1e-4;
 
 /// How finely a path is followed.
 #[derive(Debug, Clone, Copy)]
@@ -266,7 +266,7 @@ impl Stepper<'_> {
         let weights = self.weights();
         let mut done = false;
         let mut before = f64::INFINITY;
-        for round in 0..8 {
+        for round in 0..12 {
             self.set(fraction);
             self.linearise()?;
             self.engine.system.solve(&self.engine.solution, 0, &mut self.correction);
@@ -289,7 +289,7 @@ impl Stepper<'_> {
                 .map(|i| (self.correction.nodes[i][0] + slide * self.response.nodes[i][0]).abs())
                 .fold(slide.abs(), f64::max);
             self.engine.last = size;
-            if !size.is_finite() || size > 1.0 || (round > 2 && size > before) {
+            if !size.is_finite() || size > 1.0 || (round > 3 && size > 10.0 * before) {
                 return Err(Trouble::Stalled(size));
             }
             before = size;
@@ -317,6 +317,11 @@ impl Stepper<'_> {
 
     /// Refines when the mesh no longer carries the path's tolerance.
     fn keep_accuracy(&mut self) -> Result<(), Trouble> {
+        // Nodes follow the kinks, so that corrections do not hop across them.
+        let kinks = self.engine.kinks(1e-3);
+        if self.engine.pin(&kinks, 1e-3) {
+            self.engine.newton(1e-6, 12)?;
+        }
         for _ in 0..4 {
             let estimate = self.engine.estimate(LOOSE)?;
             if estimate <= LOOSE {
@@ -392,13 +397,23 @@ impl Stepper<'_> {
         };
         let volume = self.engine.equations.volume();
         let readings = self.engine.equations.arm().readings;
-        let crushed = volume == Volume::None && near.nu.0 < 0.1;
-        if near.openness.0 < 0.1 {
-            self.end(VerdictKind::CableFold, fraction, Some(near.openness.1))
-        } else if crushed {
-            self.end(VerdictKind::SectionCrushed, fraction, Some(near.nu.1))
-        } else if near.regularity.0 < 0.1 {
-            self.end(VerdictKind::NoSectionSolution, fraction, Some(near.regularity.1))
+        let mut openness = near.openness;
+        let mut nu = near.nu;
+        let mut regularity = near.regularity;
+        if let Some(f) = failed {
+            // The failure may be at an end, which is no station, or just past the limit.
+            for (least, value) in [(&mut openness, f.openness), (&mut nu, f.nu), (&mut regularity, f.regularity)] {
+                if value.abs() < least.0 {
+                    *least = (value.abs(), f.s);
+                }
+            }
+        }
+        if openness.0 < 0.1 {
+            self.end(VerdictKind::CableFold, fraction, Some(openness.1))
+        } else if volume == Volume::None && nu.0 < 0.1 {
+            self.end(VerdictKind::SectionCrushed, fraction, Some(nu.1))
+        } else if regularity.0 < 0.15 {
+            self.end(VerdictKind::NoSectionSolution, fraction, Some(regularity.1))
         } else if readings.load_can_jump() && failed.is_none() {
             self.end(VerdictKind::LoadJump, fraction, self.engine.nearest_switch())
         } else {

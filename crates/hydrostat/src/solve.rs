@@ -3,7 +3,7 @@
 use crate::arm::Arm;
 use crate::configuration::{Configuration, Statistics};
 use crate::engine::{Engine, M, Trouble};
-use crate::path::{Pace, Travelled, follow};
+use crate::path::{LOOSE, Pace, Travelled, follow};
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
 
 /// How a solve is done.
@@ -94,8 +94,14 @@ impl Solver {
 
     /// The verdict with the last good point, which the engine holds, settled and read.
     fn no_equilibrium(&mut self, verdict: Verdict) -> SolveError {
-        let estimate = self.engine.settle(self.options.tol.max(1e-6)).or_else(|_| self.engine.estimate(1e-6));
-        let last_good = estimate.ok().and_then(|e| self.read(e, Travelled::default()).ok());
+        let kept = (self.engine.solution.clone(), self.engine.equations.clone());
+        let settled = self.engine.settle(self.options.tol.max(1e-6)).ok();
+        let mut last_good = settled.and_then(|e| self.read(e, Travelled::default()).ok());
+        if last_good.is_none() {
+            // Right at a limit a finer mesh may already be past it: the path's own point has to do.
+            (self.engine.solution, self.engine.equations) = kept;
+            last_good = self.read(LOOSE, Travelled::default()).ok();
+        }
         SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good }))
     }
 
