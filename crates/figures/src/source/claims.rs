@@ -230,35 +230,34 @@ fn grows_along(study: &Study) -> Claim {
 }
 
 fn locally_smaller(study: &Study) -> Claim {
-    let mut parts = Vec::new();
-    let (mut held, mut looked) = (0.0, 0.0);
-    for row in [&study.faster, &study.faster_highest] {
-        for pair in row.windows(2) {
-            let (slow, fast) = (alphas(&pair[0]), alphas(&pair[1]));
-            let smaller = share(slow.iter().zip(&fast).map(|(s, f)| f < s));
-            held += smaller;
-            looked += 1.0;
-            parts.push(format!(
-                "{:.0} % of the length from {} to {} m/s at {:.1} N",
-                100.0 * smaller,
-                speed(&pair[0]),
-                speed(&pair[1]),
-                tension(&pair[0])
-            ));
-        }
-    }
+    let rows = [&study.faster, &study.faster_highest];
+    // For each tension the shares of the length over which alpha falls from each speed to the next.
+    let shares = rows.map(|row| {
+        let angles: Vec<Vec<f64>> = row.iter().map(alphas).collect();
+        angles.windows(2).map(|w| share(w[0].iter().zip(&w[1]).map(|(slow, fast)| fast < slow))).collect::<Vec<_>>()
+    });
+    let all = || shares.iter().flatten();
+    let list = |i: usize| {
+        let percent = joined(shares[i].iter().map(|s| format!("{:.0}", 100.0 * s)));
+        format!("{percent} % at {:.1} N", rows[i].first().map_or(0.0, tension))
+    };
     let middles = joined(study.faster.iter().map(|c| format!("{:.2}", c.at(0.5 * c.arm.length).alpha.to_degrees())));
     let bases = joined(study.faster.iter().map(|c| format!("{:.2}", c.at(0.0).alpha.to_degrees())));
     Claim {
         statement: "alpha(s) is locally smaller for the faster stream (1c).",
-        finding: match held / looked {
-            1.0 => Finding::Holds,
-            0.0 => Finding::DoesNotHold,
-            _ => Finding::InPart,
+        finding: if all().all(|s| *s == 1.0) {
+            Finding::Holds
+        } else if all().all(|s| *s == 0.0) {
+            Finding::DoesNotHold
+        } else {
+            Finding::InPart
         },
         evidence: format!(
-            "It is smaller over {}. At {} N alpha(L/2) = {middles} deg, but at the base alpha(0) = {bases} deg.",
-            parts.join(", "),
+            "From each of {} m/s to the next it becomes smaller over this share of the length: {}, {}. At {} N \
+             alpha(L/2) = {middles} deg, but at the base, where drag shears the section, alpha(0) = {bases} deg.",
+            joined(study.faster.iter().map(|c| speed(c).to_string())),
+            list(0),
+            list(1),
             study.faster.first().map_or(0.0, tension),
         ),
     }
