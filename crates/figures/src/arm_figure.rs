@@ -48,9 +48,11 @@ pub fn arm_figure(configuration: &Configuration, note: Option<&str>) -> Scene {
 
     let title = format!("{}: static shape", arm.name);
     let mut scene = Scene::new(WIDTH, axes.frame.bottom + BELOW + MARGIN, title);
-    scene.text(&Label::plain(&arm.name), title_at, Anchor::Start, TITLE_SIZE);
+    let title = Label::plain(&arm.name);
+    scene.text(&title, title_at, Anchor::Start, fitting(&title, TITLE_SIZE));
     if let (Some(note), Some(at)) = (note, note_at) {
-        scene.text_in(&Label::plain(note), at, Anchor::Start, TEXT_SIZE, series(0), false);
+        let note = Label::plain(note);
+        scene.text_in(&note, at, Anchor::Start, fitting(&note, TEXT_SIZE), series(0), false);
     }
     for entry in &legend {
         entry.draw(&mut scene);
@@ -69,6 +71,11 @@ pub fn arm_figure(configuration: &Configuration, note: Option<&str>) -> Scene {
     outline.occupy(&mut page, &axes);
     draw_tip(&mut scene, configuration, axes.at(outline.tip()), &mut page);
     scene
+}
+
+/// `size`, or what makes the text fit the page.
+fn fitting(label: &Label, size: f64) -> f64 {
+    size.min(size * (WIDTH - LEFT - MARGIN) / label.width(size).max(1.0))
 }
 
 /// Axes that show the arm and the arrows at its tip.
@@ -187,6 +194,15 @@ impl Entry {
     }
 }
 
+/// A name at the length that a legend can bear.
+fn clipped(name: &str) -> String {
+    const MOST: usize = 40;
+    if name.chars().count() <= MOST {
+        return name.to_owned();
+    }
+    name.chars().take(MOST).chain(['.', '.', '.']).collect()
+}
+
 /// The entries, laid out in rows below `top`, and where the last row ends.
 fn legend(configuration: &Configuration, strokes: &[Stroke], top: f64) -> (Vec<Entry>, f64) {
     let arm = &configuration.arm;
@@ -196,7 +212,7 @@ fn legend(configuration: &Configuration, strokes: &[Stroke], top: f64) -> (Vec<E
         .zip(strokes)
         .map(|(cable, stroke)| {
             let state = if cable.tension > 0.0 { format!("{} N", short(cable.tension)) } else { "slack".to_owned() };
-            (Sample::Line(*stroke), Label::plain(format!("{}: {state}", cable.name)))
+            (Sample::Line(*stroke), Label::plain(format!("{}: {state}", clipped(&cable.name))))
         })
         .collect();
     if arm.flow.speed > 0.0 && arm.flow.density > 0.0 {

@@ -85,10 +85,10 @@ impl Occupied {
     /// preference for the direction `towards` (rad, y up). It is taken from then on.
     pub(crate) fn place(&mut self, anchor: Point, width: f64, height: f64, towards: f64) -> Rect {
         const DIRECTIONS: usize = 48;
-        const MARGIN: f64 = 2.5;
+        const MARGIN: f64 = 3.5;
         let mut best: Option<(f64, Rect)> = None;
         for ring in 0..60 {
-            let gap = 4.0 + 3.0 * f64::from(ring);
+            let gap = 5.0 + 3.0 * f64::from(ring);
             // Later rings only cost more.
             if best.is_some_and(|(cost, _)| cost < gap) {
                 break;

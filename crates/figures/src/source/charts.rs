@@ -7,7 +7,7 @@ use crate::arm_figure::{degrees, place_label, short};
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, Label};
 use crate::outline::{Outline, Style, bounds};
-use crate::palette::{Color, GREY, INK, ordered, series};
+use crate::palette::{Color, GREY, INK, WATER, ordered, series};
 use crate::placement::{Occupied, Rect};
 use crate::scene::{Anchor, Scene, Stroke};
 
@@ -28,7 +28,7 @@ pub(super) fn raised(study: &Study) -> Scene {
         .map(|(i, c)| {
             let value = if tension(c) == 0.0 { "0".to_owned() } else { short(tension(c)) };
             let label = Label::math(&format!("{value} N: $α$($L$) = {}", degrees(c.tip().alpha)));
-            (c, ordered(i, count), label)
+            Member { configuration: c, color: ordered(i, count), label, towards: c.tip().theta }
         })
         .collect();
     arms("Fig. 1a", &heading, &shapes)
@@ -43,8 +43,10 @@ pub(super) fn faster(study: &Study) -> Scene {
         .iter()
         .enumerate()
         .map(|(i, c)| {
-            let label = Label::math(&format!("{} m/s: $α$($L$) = {}", speed(c), degrees(c.tip().alpha)));
-            (c, speed_color(i), label)
+            // Four decimals: with two, the tips would seem to turn alike.
+            let angle = c.tip().alpha.to_degrees();
+            let label = Label::math(&format!("{} m/s: $α$($L$) = {angle:.4}°", speed(c)));
+            Member { configuration: c, color: speed_color(i), label, towards: 0.6 }
         })
         .collect();
     arms("Fig. 1b", &heading, &shapes)
@@ -55,28 +57,37 @@ fn speed_color(index: usize) -> Color {
     [INK, series(1), series(0), series(2)][index % 4]
 }
 
+/// One arm among several.
+struct Member<'a> {
+    configuration: &'a Configuration,
+    color: Color,
+    label: Label,
+    /// Where the label should go, seen from the tip, rad.
+    towards: f64,
+}
+
 /// Several arms on equal axes, each with a label at its tip.
-fn arms(part: &str, heading: &Label, shapes: &[(&Configuration, Color, Label)]) -> Scene {
-    let outlines: Vec<Outline> = shapes.iter().map(|(c, ..)| Outline::new(c, 26)).collect();
+fn arms(part: &str, heading: &Label, shapes: &[Member<'_>]) -> Scene {
+    let outlines: Vec<Outline> = shapes.iter().map(|m| Outline::new(m.configuration, 26)).collect();
     let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).collect();
     let [x, y] = bounds(&all);
     let pad = 0.05 * (x[1] - x[0]).max(y[1] - y[0]);
-    let top = MARGIN + 2.0 * LINE + 4.0;
-    let room = [[x[0] - pad, x[1] + pad], [y[0] - pad, y[1] + 2.0 * pad]];
+    let top = MARGIN + 2.0 * LINE + 6.0;
+    let room = [[x[0] - pad, x[1] + 2.0 * pad], [y[0] - pad, y[1] + 3.0 * pad]];
     let axes = Axes::equal(LEFT, top, WIDTH - LEFT - MARGIN, [150.0, 400.0], room[0], room[1]);
     let mut scene = Scene::new(WIDTH, axes.frame.bottom + BELOW + LINE + MARGIN, format!("{part}: {heading}"));
     header(&mut scene, part, heading);
-    cable_key(&mut scene, MARGIN + LINE + CAP_HEIGHT * TEXT_SIZE);
+    cable_key(&mut scene, MARGIN + LINE + 2.0 + CAP_HEIGHT * TEXT_SIZE);
     footer(&mut scene);
     axes.draw(&mut scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
     let mut page = Occupied::new(axes.frame.grown(-3.0));
-    for (outline, (c, color, _)) in outlines.iter().zip(shapes) {
+    for (outline, Member { configuration, color, .. }) in outlines.iter().zip(shapes) {
         let style = Style {
             fill: color.with_opacity(0.07),
             surface: Stroke::solid(*color, 0.9),
             sections: Stroke::solid(color.with_opacity(0.45), 0.35),
             centreline: Stroke::solid(color.with_opacity(0.0), 0.1),
-            cables: c
+            cables: configuration
                 .cables
                 .iter()
                 .enumerate()
@@ -86,10 +97,13 @@ fn arms(part: &str, heading: &Label, shapes: &[(&Configuration, Color, Label)]) 
         outline.draw(&mut scene, &axes, &style);
         outline.occupy(&mut page, &axes);
     }
-    for (outline, (c, color, label)) in outlines.iter().zip(shapes) {
+    // From the right to the left: the tips fan out that way, and so their labels stay beside them.
+    let mut labelled: Vec<_> = outlines.iter().zip(shapes).collect();
+    labelled.sort_by(|a, b| b.0.tip()[0].total_cmp(&a.0.tip()[0]));
+    for (outline, Member { color, label, towards, .. }) in labelled {
         let tip = axes.at(outline.tip());
         scene.dot(tip, 1.6, *color);
-        place_label(&mut scene, &mut page, label, color.towards(INK, 0.25), tip, c.tip().theta);
+        place_label(&mut scene, &mut page, label, color.towards(INK, 0.25), tip, *towards);
     }
     scene
 }
@@ -119,11 +133,13 @@ fn cable_key(scene: &mut Scene, baseline: f64) {
         scene.text(&label, [x + 22.0, baseline], Anchor::Start, TEXT_SIZE);
         x += 22.0 + label.width(TEXT_SIZE) + 16.0;
     }
+    scene.arrow([x, middle], [x + 18.0, middle], WATER, 1.2);
+    scene.text(&Label::plain("stream"), [x + 22.0, baseline], Anchor::Start, TEXT_SIZE);
 }
 
 /// Fig. 1c: alpha(s), whole on the left, enlarged where the speeds part on the right.
 pub(super) fn angles(study: &Study) -> Scene {
-    let top = MARGIN + 3.0 * LINE + 6.0;
+    let top = MARGIN + 3.0 * LINE + 8.0;
     let height = 190.0;
     let gap = 46.0;
     let width = 0.5 * (WIDTH - LEFT - MARGIN - gap);
@@ -178,7 +194,7 @@ fn curve(c: &Configuration) -> Vec<[f64; 2]> {
 
 fn angle_key(scene: &mut Scene, study: &Study, rows: &[&Vec<Configuration>; 2]) {
     for (line, row) in [1, 0].into_iter().enumerate() {
-        let baseline = MARGIN + (line as f64 + 1.0) * LINE + CAP_HEIGHT * TEXT_SIZE;
+        let baseline = MARGIN + 2.0 + (line as f64 + 1.0) * LINE + CAP_HEIGHT * TEXT_SIZE;
         let middle = baseline - 0.5 * CAP_HEIGHT * TEXT_SIZE;
         let value = rows[row].first().map_or(0.0, tension);
         let name = Label::math(&format!("$T_1$ = {} N:", short(value)));
