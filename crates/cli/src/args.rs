@@ -65,7 +65,7 @@ pub(crate) struct SolveArgs {
     /// Speed of the stream, m/s
     #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
     pub(crate) flow_speed: Option<String>,
-    /// Override a value of the arm file: a dotted path and its value, as in cable[0].tension="20 N"
+    /// Override a value of the arm file: a dotted path and its value, as in `cable[0].tension="20 N"`
     #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
     pub(crate) set: Vec<String>,
     /// Error of the tip position over the length that is asked for, from 1e-12 to 1e-2

@@ -95,6 +95,11 @@ impl Occupied {
             }
             for k in 0..DIRECTIONS {
                 let turn = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
+                let wish = gap + 8.0 * (1.0 - turn.cos());
+                // Conflicts only add to what was wished for, and take time to count.
+                if best.is_some_and(|(least, _)| least <= wish) {
+                    continue;
+                }
                 let (sin, cos) = (towards + turn).sin_cos();
                 // The label's centre, such that its border is `gap` away from the anchor.
                 let reach = (0.5 * width * cos).hypot(0.5 * height * sin) + gap;
@@ -105,9 +110,8 @@ impl Occupied {
                     top: cy - 0.5 * height,
                     bottom: cy + 0.5 * height,
                 };
-                let off = 1.0 - turn.cos();
                 let crossed = self.crossed(anchor, rect.nearest(anchor));
-                let cost = gap + 8.0 * off + crossed + 1e3 * self.conflicts(&rect.grown(MARGIN));
+                let cost = wish + crossed + 1e3 * self.conflicts(&rect.grown(MARGIN));
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, rect));
                 }
