@@ -17,7 +17,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
     let _ = writeln!(
         out,
         "\nOf the figure's parameters only the stream of {SPEED} m/s is published, and of its results {TIP_ANGLE} deg at \
-         the highest\ntension. The arm `paper` is a set found by trial; with it that tension is {:.4} N.",
+         the highest\ntension. The arm `paper` is a set found by trial; with it that tension is {:.2} N.",
         study.highest_tension()
     );
     let _ = writeln!(out, "\nWritten: {}", files.join(", "));

@@ -57,6 +57,11 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
     for warning in &warnings {
         eprintln!("warning: {}", warning.message());
     }
+    let asked = args.tol * configuration.arm.length;
+    if configuration.error_estimate > asked {
+        let [found, asked] = [configuration.error_estimate, asked].map(|metres| 1e3 * metres);
+        eprintln!("warning: the tip error, about {found:.1e} mm, is above the {asked:.1e} mm asked for by --tol");
+    }
     if configuration.stable == Some(false) {
         eprintln!("warning: this equilibrium is unstable: the arm would leave it at the slightest push");
     }
@@ -65,8 +70,10 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
 
 /// JSON gets the verdict with the last good shape; text and CSV have nothing to say.
 fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium) -> anyhow::Result<()> {
-    if let (Some(plot), Some(last_good)) = (&args.plot, &failure.last_good) {
-        draw(last_good, Some(&note(&failure.verdict)), plot)?;
+    match (&args.plot, &failure.last_good) {
+        (Some(plot), Some(last_good)) => draw(last_good, Some(&note(&failure.verdict)), plot)?,
+        (Some(plot), None) => eprintln!("warning: no good shape on the way, {} is not drawn", plot.display()),
+        (None, _) => {}
     }
     if args.format == Format::Json {
         let warnings = failure.last_good.as_ref().map(Configuration::warnings).unwrap_or_default();

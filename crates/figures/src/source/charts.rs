@@ -43,9 +43,9 @@ pub(super) fn faster(study: &Study) -> Scene {
         .iter()
         .enumerate()
         .map(|(i, c)| {
-            // Four decimals: with two, the tips would seem to turn alike.
+            // Three decimals: with two, the tips would seem to turn alike.
             let angle = c.tip().alpha.to_degrees();
-            let label = Label::math(&format!("{} m/s: $α$($L$) = {angle:.4}°", speed(c)));
+            let label = Label::math(&format!("{} m/s: $α$($L$) = {angle:.3}°", speed(c)));
             Member { configuration: c, color: speed_color(i), label, towards: 0.6 }
         })
         .collect();

@@ -2,7 +2,7 @@
 
 use hydrostat::{Arm, Configuration, Volume};
 
-use super::{SPEED, Study, StudyError, TIP_ANGLE, loaded, solved, speed, tension, tip_angle};
+use super::{RESOLUTION, SPEED, Study, StudyError, TIP_ANGLE, loaded, solved, speed, tension, tip_angle};
 
 /// What became of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -112,8 +112,8 @@ fn tip_rises(study: &Study) -> Claim {
         statement: "alpha(L) rises gradually with the tension, to 72.25 deg at the highest (1a).",
         finding: Finding::of(rising(&angles), angles.len() - 1),
         evidence: format!(
-            "alpha(L) = {} deg; {TIP_ANGLE} deg is reached at T1 = {:.4} N (the tension is not published; with this \
-             arm alpha(L) would go on rising).",
+            "alpha(L) = {} deg; {TIP_ANGLE} deg is reached at T1 = {:.2} N (the tension is not \
+             published).",
             joined(angles.iter().map(|v| format!("{v:.2}"))),
             study.highest_tension(),
         ),
@@ -162,19 +162,19 @@ fn tip_turns_less(study: &Study) -> Claim {
     let rows = [&study.faster, &study.faster_highest];
     let angles = rows.map(|row| row.iter().map(tip_angle).collect::<Vec<_>>());
     let steps: usize = angles.iter().map(|row| row.len() - 1).sum();
-    let rises: usize = angles.iter().map(|row| rising(row)).sum();
+    let falls: usize = angles.iter().map(|row| row.windows(2).filter(|w| w[1] < w[0] - RESOLUTION).count()).sum();
     let words = |i: usize| {
         format!(
             "at {:.1} N {} deg",
             rows[i].first().map_or(0.0, tension),
-            joined(angles[i].iter().map(|v| format!("{v:.4}")))
+            joined(angles[i].iter().map(|v| format!("{v:.3}")))
         )
     };
     Claim {
         statement: "Therefore the tip section turns less in a faster stream, alpha(L) (1b).",
-        finding: Finding::of(steps - rises, steps),
+        finding: Finding::of(falls, steps),
         evidence: format!(
-            "In {} m/s: {}; {}: no more than {:.4} deg apart, because nothing but the cable loads the tip section.",
+            "In {} m/s: {}; {}: no more than {:.3} deg apart, because nothing but the cable loads the tip section.",
             joined(study.faster.iter().map(|c| speed(c).to_string())),
             words(0),
             words(1),

@@ -26,8 +26,10 @@ const TENSIONS: [f64; 5] = [0.0, 5.0, 10.0, 20.0, 40.0];
 const FIXED_TENSION: f64 = 40.0;
 /// The speeds compared, m/s: [`SPEED`] is published, the others are ours.
 const SPEEDS: [f64; 4] = [0.0, SPEED, 1.0, 2.0];
-/// Tip error over L: far below the millionth of a degree to which the highest tension is found.
-const TOL: f64 = 1e-8;
+/// Tip error over L that is asked for. alpha(L), a strain, is then good to about [`RESOLUTION`].
+const TOL: f64 = 1e-9;
+/// Differences of alpha(L) below this are not told apart, deg.
+const RESOLUTION: f64 = 1e-4;
 
 /// Why the study could not be made.
 #[derive(Debug, Clone, thiserror::Error)]

@@ -4,7 +4,7 @@ use hydrostat::{Arm, Configuration};
 
 use super::{SPEED, StudyError, TIP_ANGLE, solved, tension, tip_angle};
 
-/// How near alpha(L) has to come, deg.
+/// How near alpha(L) as solved has to come, deg.
 const CLOSE: f64 = 1e-6;
 
 /// The shape at that tension.
