@@ -132,6 +132,11 @@ impl Occupied {
         2.0 * lines as f64 + 100.0 * boxes as f64
     }
 
+    /// Whether a label may go there.
+    pub(crate) fn is_free(&self, rect: &Rect) -> bool {
+        self.conflicts(rect) == 0.0
+    }
+
     fn conflicts(&self, rect: &Rect) -> f64 {
         let lines = self.lines.iter().filter(|[a, b]| rect.meets(*a, *b)).count();
         let boxes = self.boxes.iter().filter(|b| b.overlaps(rect)).count();

@@ -9,7 +9,7 @@ use crate::font::{CAP_HEIGHT, Label};
 use crate::outline::{Outline, Style, bounds};
 use crate::palette::{Color, GREY, INK, WATER, ordered, series};
 use crate::placement::{Occupied, Rect};
-use crate::scene::{Anchor, Scene, Stroke};
+use crate::scene::{Anchor, Point, Scene, Stroke};
 
 const WIDTH: f64 = 450.0;
 const MARGIN: f64 = 10.0;
@@ -28,7 +28,7 @@ pub(super) fn raised(study: &Study) -> Scene {
         .map(|(i, c)| {
             let value = if tension(c) == 0.0 { "0".to_owned() } else { short(tension(c)) };
             let label = Label::math(&format!("{value} N: $α$($L$) = {}", degrees(c.tip().alpha)));
-            Member { configuration: c, color: ordered(i, count), label, towards: c.tip().theta }
+            Member { configuration: c, color: ordered(i, count), label }
         })
         .collect();
     arms("Fig. 1a", &heading, &shapes)
@@ -46,7 +46,7 @@ pub(super) fn faster(study: &Study) -> Scene {
             // Three decimals: with two, the tips would seem to turn alike.
             let angle = c.tip().alpha.to_degrees();
             let label = Label::math(&format!("{} m/s: $α$($L$) = {angle:.3}°", speed(c)));
-            Member { configuration: c, color: speed_color(i), label, towards: 0.6 }
+            Member { configuration: c, color: speed_color(i), label }
         })
         .collect();
     arms("Fig. 1b", &heading, &shapes)
@@ -62,8 +62,6 @@ struct Member<'a> {
     configuration: &'a Configuration,
     color: Color,
     label: Label,
-    /// Where the label should go, seen from the tip, rad.
-    towards: f64,
 }
 
 /// Several arms on equal axes, each with a label at its tip.
@@ -73,7 +71,7 @@ fn arms(part: &str, heading: &Label, shapes: &[Member<'_>]) -> Scene {
     let [x, y] = bounds(&all);
     let pad = 0.05 * (x[1] - x[0]).max(y[1] - y[0]);
     let top = MARGIN + 2.0 * LINE + 6.0;
-    let room = [[x[0] - pad, x[1] + 2.0 * pad], [y[0] - pad, y[1] + 3.0 * pad]];
+    let room = [[x[0] - pad, x[1] + 3.0 * pad], [y[0] - pad, y[1] + 3.5 * pad]];
     let axes = Axes::equal(LEFT, top, WIDTH - LEFT - MARGIN, [150.0, 400.0], room[0], room[1]);
     let mut scene = Scene::new(WIDTH, axes.frame.bottom + BELOW + LINE + MARGIN, format!("{part}: {heading}"));
     header(&mut scene, part, heading);
@@ -97,15 +95,44 @@ fn arms(part: &str, heading: &Label, shapes: &[Member<'_>]) -> Scene {
         outline.draw(&mut scene, &axes, &style);
         outline.occupy(&mut page, &axes);
     }
-    // From the right to the left: the tips fan out that way, and so their labels stay beside them.
-    let mut labelled: Vec<_> = outlines.iter().zip(shapes).collect();
-    labelled.sort_by(|a, b| b.0.tip()[0].total_cmp(&a.0.tip()[0]));
-    for (outline, Member { color, label, towards, .. }) in labelled {
-        let tip = axes.at(outline.tip());
-        scene.dot(tip, 1.6, *color);
-        place_label(&mut scene, &mut page, label, color.towards(INK, 0.25), tip, *towards);
+    let tips: Vec<Point> = outlines.iter().map(|o| axes.at(o.tip())).collect();
+    for (tip, member) in tips.iter().zip(shapes) {
+        scene.dot(*tip, 1.6, member.color);
+    }
+    if !(crowded(&tips) && label_in_column(&mut scene, &page, axes.frame, &tips, shapes)) {
+        for (tip, Member { configuration, color, label }) in tips.iter().zip(shapes) {
+            let towards = configuration.tip().theta;
+            place_label(&mut scene, &mut page, label, color.towards(INK, 0.25), *tip, towards);
+        }
     }
     scene
+}
+
+/// Whether labels beside the tips would be in each other's way.
+fn crowded(tips: &[Point]) -> bool {
+    tips.windows(2).any(|w| (w[0][0] - w[1][0]).hypot(w[0][1] - w[1][1]) < 2.0 * TEXT_SIZE)
+}
+
+/// Labels one below the other in the upper right corner, joined to their tips by lines that do not
+/// cross. Draws nothing and says so if that corner is not free.
+fn label_in_column(scene: &mut Scene, page: &Occupied, frame: Rect, tips: &[Point], shapes: &[Member<'_>]) -> bool {
+    const INSET: f64 = 6.0;
+    let widest = shapes.iter().map(|m| m.label.width(TEXT_SIZE)).fold(0.0, f64::max);
+    let (top, right) = (frame.top + INSET, frame.right - INSET);
+    let column = Rect { left: right - widest, top, right, bottom: top + LINE * shapes.len() as f64 };
+    if !page.is_free(&column) {
+        return false;
+    }
+    let mut order: Vec<usize> = (0..shapes.len()).collect();
+    order.sort_by(|a, b| tips[*a][1].total_cmp(&tips[*b][1]));
+    for (row, index) in order.into_iter().enumerate() {
+        let Member { color, label, .. } = &shapes[index];
+        let middle = top + LINE * (row as f64 + 0.5);
+        scene.line(&[tips[index], [column.left - 3.0, middle]], Stroke::solid(*color, 0.4));
+        let baseline = middle + 0.5 * CAP_HEIGHT * TEXT_SIZE;
+        scene.text_in(label, [column.left, baseline], Anchor::Start, TEXT_SIZE, color.towards(INK, 0.25), false);
+    }
+    true
 }
 
 const CABLE_DASH: [f64; 2] = [2.5, 1.8];
