@@ -1,0 +1,148 @@
+//! Arguments, and the help that teaches them.
+
+use std::path::PathBuf;
+
+use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+
+const EXIT: &str = "\
+Exit status:
+  0  solved
+  2  the request is wrong: arguments, arm file, an output path that cannot be written
+  3  the arm has no such equilibrium, or it was not found; standard error says why
+  1  anything else";
+
+const EXAMPLES: &str = "\
+Examples:
+  hydrostat                                             remake the source's figure in ./figures
+  hydrostat solve paper --plot paper.svg                solve a shipped arm and draw it
+  hydrostat solve silicone --tension 0.5,0 --flow-speed 0.2
+  hydrostat arms silicone > my.toml                     start an arm file of your own
+  hydrostat check my.toml                               see what it means
+  hydrostat solve my.toml --format csv --stations 101 -o my.csv";
+
+/// The static shape of a soft arm under water: driven by cables, keeping its volume, in a stream.
+///
+/// Without a command, solves the arm of the source's figure, prints what its text claims beside
+/// what the numbers say, and writes the figure into ./figures.
+#[derive(Debug, Parser)]
+#[command(name = "hydrostat", version, after_help = format!("{EXAMPLES}\n\n{EXIT}"), disable_help_subcommand = true)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Solve an arm: shape, forces, cable strokes
+    Solve(SolveArgs),
+    /// Remake the source's Fig. 1a, 1b and 1c as SVG, PNG and CSV
+    Figures(FiguresArgs),
+    /// List the arms that ship with the program, or print one as TOML
+    Arms(ArmsArgs),
+    /// Read an arm file and say what it means: units, defaults, Cauchy number, tension limits
+    Check(CheckArgs),
+}
+
+/// Solves the arm under its loads and prints tip, cables, base reaction and margins.
+///
+/// Results go to standard output, warnings to standard error. Numbers in --tension, --flow-speed
+/// and --set are in SI units (angles in degrees), or have a unit: "20 N", "0.5 m/s", "8 mm".
+#[derive(Debug, ClapArgs)]
+#[command(after_help = format!("\
+Examples:
+  hydrostat solve paper --tension 20,0
+  hydrostat solve paper --tension \"20 N,0\" --flow-speed \"50 cm/s\" --plot arm.png
+  hydrostat solve octopus --set flow.law=quadratic-drag --set flow.direction=\"90 deg\" --flow-speed 0.1
+  hydrostat solve my.toml --set cable[1].tension=0.4 --set model.volume=circular --format json
+
+{EXIT}"))]
+pub(crate) struct SolveArgs {
+    /// An arm file, or the name of a shipped arm (see `hydrostat arms`)
+    pub(crate) arm: String,
+    /// Tensions of all cables, in their order, N; as in 20,0
+    #[arg(long, value_name = "T,T,...", value_delimiter = ',', allow_hyphen_values = true)]
+    pub(crate) tension: Option<Vec<String>>,
+    /// Speed of the stream, m/s
+    #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
+    pub(crate) flow_speed: Option<String>,
+    /// Override a value of the arm file: a dotted path and its value, as in `cable[0].tension="20 N"`
+    #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
+    pub(crate) set: Vec<String>,
+    /// Error of the tip position over the length that is asked for, from 1e-12 to 1e-2
+    #[arg(long, value_name = "TOL", default_value = "1e-8", allow_hyphen_values = true)]
+    pub(crate) tol: f64,
+    /// Report N equally spaced stations (at least 2) in place of the nodes of the mesh
+    #[arg(long, value_name = "N", value_parser = stations)]
+    pub(crate) stations: Option<usize>,
+    /// text: a summary; json: everything; csv: the stations
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub(crate) format: Format,
+    /// Write the result to FILE in place of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Draw the arm to scale; FILE ends in .svg or .png
+    #[arg(long, value_name = "FILE", value_parser = picture)]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum Format {
+    #[default]
+    Text,
+    Json,
+    Csv,
+}
+
+/// Remakes the source's Fig. 1a, 1b and 1c: nine files, each part as SVG, PNG and CSV.
+///
+/// Of the figure's parameters only the speed of the stream, 0.5 m/s, and alpha(L) = 72.25 deg at
+/// the highest tension are published; the rest was found by trial.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct FiguresArgs {
+    /// The directory, made if it is not there
+    #[arg(short, long, value_name = "DIR", default_value = "figures")]
+    pub(crate) output: PathBuf,
+}
+
+/// Lists the arms that ship with the program. With a name, prints that arm as TOML, to start from.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct ArmsArgs {
+    /// The arm to print
+    pub(crate) name: Option<String>,
+}
+
+/// Reads an arm file and prints what it means: units resolved, defaults filled in, the Cauchy
+/// number of its stream, and the tension at which each cable ends what a section can carry.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct CheckArgs {
+    /// An arm file, or the name of a shipped arm
+    pub(crate) arm: String,
+}
+
+/// A number of stations.
+fn stations(text: &str) -> Result<usize, String> {
+    const MOST: usize = 1_000_000;
+    match text.parse() {
+        Ok(n) if (2..=MOST).contains(&n) => Ok(n),
+        _ => Err(format!("expected a whole number from 2 to {MOST}")),
+    }
+}
+
+/// A path whose ending says what to draw.
+fn picture(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    if is_png(&path) || has_ending(&path, "svg") {
+        Ok(path)
+    } else {
+        Err("expected a file name that ends in .svg or .png".to_owned())
+    }
+}
+
+/// Whether `path` asks for a PNG.
+pub(crate) fn is_png(path: &std::path::Path) -> bool {
+    has_ending(path, "png")
+}
+
+fn has_ending(path: &std::path::Path, ending: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending))
+}

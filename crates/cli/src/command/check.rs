@@ -1,0 +1,78 @@
+//! `hydrostat check`: what an arm file means.
+
+use std::fmt::Write as _;
+
+use hydrostat::{Arm, FlowLaw, Material};
+use hydrostat_files::arm_to_toml;
+
+use super::limits::{Limit, limits};
+use super::summary::number;
+use crate::args::CheckArgs;
+use crate::output;
+use crate::request::{self, Overrides};
+
+pub(crate) fn run(args: &CheckArgs) -> anyhow::Result<()> {
+    let none = Overrides { settings: &[], tensions: None, flow_speed: None };
+    let arm = request::arm(&args.arm, &none)?;
+    let mut out = String::new();
+    let _ = writeln!(out, "# {}: a valid arm. In full, in SI units and degrees:\n", arm.name);
+    out.push_str(&arm_to_toml(&arm));
+    out.push('\n');
+    cauchy(&mut out, &arm);
+    tension_limits(&mut out, &arm);
+    Ok(output::print(&out)?)
+}
+
+/// The stream against the bending stiffness, Ca = 1/2 rho C_n D U^2 L^3 / (EI), with the section at
+/// the base and the one at half length: a tapered arm has no single D and EI.
+fn cauchy(out: &mut String, arm: &Arm) {
+    let (law, cn) = match arm.flow.law {
+        FlowLaw::Momentum => ("C_n = pi for the momentum law", std::f64::consts::PI),
+        FlowLaw::QuadraticDrag { cn, .. } => ("C_n of the arm file", cn),
+    };
+    let _ = writeln!(
+        out,
+        "# Cauchy number Ca = 1/2 rho C_n D U^2 L^3 / (C3 A), {law}; the stream bends the arm from Ca = 1 on:"
+    );
+    for (place, s) in [("at the base", 0.0), ("at half length", 0.5 * arm.length)] {
+        let radius = arm.radius.at(s, arm.length).value;
+        let stiffness = bending_stiffness(arm, s);
+        let ca = 0.5 * arm.flow.density * cn * 2.0 * radius * arm.flow.speed.powi(2) * arm.length.powi(3) / stiffness;
+        let _ = writeln!(
+            out,
+            "#   with D = {} mm and EI = C3 A = {} N m2 {place}: Ca = {}",
+            number(2e3 * radius),
+            number(stiffness),
+            number(ca)
+        );
+    }
+}
+
+/// EI = C3 A of the unloaded section at `s` (m), N m2.
+fn bending_stiffness(arm: &Arm, s: f64) -> f64 {
+    let r2 = arm.radius.at(s, arm.length).value.powi(2);
+    let in2 = arm.inner_radius.at(s, arm.length).value.powi(2);
+    let c3 = match &arm.material {
+        Material::Homogeneous { young, .. } => 0.25 * young * (r2 + in2),
+        Material::Coefficients { c3, .. } => c3.at(s, arm.length).value,
+    };
+    c3 * std::f64::consts::PI * (r2 - in2)
+}
+
+fn tension_limits(out: &mut String, arm: &Arm) {
+    if arm.cables.is_empty() {
+        return;
+    }
+    let _ = writeln!(out, "# The most tension that the arm carries in still water without other loads:");
+    for (who, limit) in limits(arm) {
+        let text = match limit {
+            Limit::Reached { tension, why, s: Some(s) } => {
+                format!("{} N, then {why} at s = {} mm", number(tension), number(1e3 * s))
+            }
+            Limit::Reached { tension, why, s: None } => format!("{} N, then {why}", number(tension)),
+            Limit::NoneBelow(tension) => format!("no limit below {} N", number(tension)),
+            Limit::Unknown(tension) => format!("not established; shapes were found up to {} N", number(tension)),
+        };
+        let _ = writeln!(out, "#   {who}: {text}");
+    }
+}

@@ -1,0 +1,88 @@
+//! A solved arm in a few lines for people.
+
+use std::fmt::Write as _;
+
+use hydrostat::{Configuration, Wrench};
+
+pub(super) fn summary(c: &Configuration) -> String {
+    let arm = &c.arm;
+    let tip = c.tip();
+    let mut out = String::new();
+    let mut row = |name: &str, text: &str| {
+        let _ = writeln!(out, "{name:<15}{text}");
+    };
+    let stability = match c.stable {
+        Some(true) => ", stable",
+        Some(false) => ", UNSTABLE",
+        None => "",
+    };
+    let stream = match arm.flow.speed {
+        0.0 => "still water".to_owned(),
+        speed => format!("stream {speed} m/s at {} deg", number(arm.flow.direction.to_degrees())),
+    };
+    row("arm", &format!("{}, {} mm, {stream}{stability}", arm.name, number(1e3 * arm.length)));
+    row("tip", &format!("x {:.4} mm, y {:.4} mm, turned by {}", 1e3 * tip.x, 1e3 * tip.y, degrees(tip.theta)));
+    row("tip section", &format!("alpha(L) {}", degrees(tip.alpha)));
+    let widest = c.cables.iter().map(|cable| cable.name.chars().count()).max().unwrap_or(0);
+    for (i, cable) in c.cables.iter().enumerate() {
+        let text = format!(
+            "{:widest$}  tension {} N, length {:.3} mm, reeled in by {:.3} mm",
+            cable.name,
+            number(cable.tension),
+            1e3 * cable.length,
+            1e3 * cable.stroke + 0.0
+        );
+        row(if i == 0 { "cables" } else { "" }, &text);
+    }
+    row("base reaction", &wrench(&c.base_reaction));
+    if let Some(unmet) = &c.unmet {
+        row("unmet at tip", &wrench(unmet));
+    }
+    let fold = c.fold_margin();
+    row("fold margin", &format!("{:.3}, least at s = {:.1} mm (the surface folds at 0)", fold.value, 1e3 * fold.s));
+    row("tip error", &format!("about {:.1e} mm", 1e3 * c.error_estimate));
+    let s = &c.statistics;
+    row(
+        "work",
+        &format!(
+            "{} elements of {} stages, {} Newton rounds on {} {}, {}, {} sections",
+            s.elements,
+            s.stages,
+            s.newton_rounds,
+            s.meshes,
+            if s.meshes == 1 { "mesh" } else { "meshes" },
+            if s.load_steps == 0 { "no load steps".to_owned() } else { format!("{} load steps", s.load_steps) },
+            s.evaluations
+        ),
+    );
+    out
+}
+
+fn wrench(w: &Wrench) -> String {
+    format!("force ({}, {}) N, moment {} N m", signed(w.force[0]), signed(w.force[1]), signed(w.moment))
+}
+
+/// Five digits that matter, without the sign of a zero.
+fn signed(value: f64) -> String {
+    number(if value.abs() < 1e-12 { 0.0 } else { value })
+}
+
+fn degrees(angle: f64) -> String {
+    let text = format!("{:.4} deg", angle.to_degrees());
+    if text == "-0.0000 deg" { "0.0000 deg".to_owned() } else { text }
+}
+
+/// A number with five digits that matter.
+pub(super) fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{}", value + 0.0);
+    }
+    let power = value.abs().log10().floor();
+    if !(-4.0..6.0).contains(&power) {
+        return format!("{value:.4e}");
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 8")]
+    let decimals = (4.0 - power).clamp(0.0, 8.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}

@@ -1,0 +1,79 @@
+//! The one place that turns errors into messages and exit codes.
+
+use std::io;
+use std::process::ExitCode;
+
+use hydrostat::SolveError;
+use hydrostat_figures::source::StudyError;
+use hydrostat_files::{FileError, WriteError};
+
+use crate::request::WrongRequest;
+
+/// Arguments, arm file or output path are wrong.
+const WRONG_REQUEST: u8 = 2;
+/// The arm has no such equilibrium, or it was not found.
+const NO_EQUILIBRIUM: u8 = 3;
+/// Anything else.
+const OTHER: u8 = 1;
+
+/// Of a command's outcome; says on standard error what went wrong.
+pub(crate) fn of(result: anyhow::Result<()>) -> ExitCode {
+    let Err(error) = result else { return ExitCode::SUCCESS };
+    if is_broken_pipe(&error) {
+        // Whoever read standard output has seen enough: `hydrostat arms | head -1` is no failure.
+        return ExitCode::SUCCESS;
+    }
+    // The first message says it all: those of the libraries carry what caused them.
+    eprintln!("error: {error}");
+    if let Some(advice) = advice(&error) {
+        eprintln!("try: {advice}");
+    }
+    ExitCode::from(code(&error))
+}
+
+/// Of arguments that the parser refused, or of a request for help.
+pub(crate) fn of_usage(error: &clap::Error) -> ExitCode {
+    if error.use_stderr() { ExitCode::from(WRONG_REQUEST) } else { ExitCode::SUCCESS }
+}
+
+/// Of a panic, whose message has been printed.
+pub(crate) fn defect() -> ExitCode {
+    eprintln!("error: this is a defect of the program, not of the request");
+    ExitCode::from(OTHER)
+}
+
+fn code(error: &anyhow::Error) -> u8 {
+    for cause in error.chain() {
+        if let Some(solve) = solve_error(cause) {
+            return match solve {
+                SolveError::Arm(_) | SolveError::Option { .. } => WRONG_REQUEST,
+                SolveError::NoEquilibrium(_) => NO_EQUILIBRIUM,
+            };
+        }
+        if cause.is::<WrongRequest>() || cause.is::<FileError>() || cause.is::<WriteError>() {
+            return WRONG_REQUEST;
+        }
+    }
+    OTHER
+}
+
+fn advice(error: &anyhow::Error) -> Option<&'static str> {
+    error.chain().find_map(solve_error).and_then(|solve| match solve {
+        SolveError::NoEquilibrium(failure) => Some(failure.verdict.advice()),
+        _ => None,
+    })
+}
+
+fn solve_error<'a>(cause: &'a (dyn std::error::Error + 'static)) -> Option<&'a SolveError> {
+    match cause.downcast_ref::<StudyError>() {
+        Some(StudyError::Solve { source, .. }) => Some(source),
+        _ => cause.downcast_ref::<SolveError>(),
+    }
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    let kind = |cause: &(dyn std::error::Error + 'static)| cause.downcast_ref::<io::Error>().map(io::Error::kind);
+    // Only standard output is a pipe that may break; files fail with `WriteError`.
+    !error.chain().any(<dyn std::error::Error>::is::<WriteError>)
+        && error.chain().filter_map(kind).any(|k| k == io::ErrorKind::BrokenPipe)
+}

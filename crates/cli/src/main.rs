@@ -1,0 +1,37 @@
+//! The program `hydrostat`: the static shape of a soft arm under water.
+
+mod args;
+mod command;
+mod exit;
+mod output;
+mod request;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Args, Command};
+
+fn main() -> ExitCode {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => {
+            // Help and version go to standard output, usage errors to standard error; a reader that
+            // has gone away has seen enough.
+            let _ = error.print();
+            return exit::of_usage(&error);
+        }
+    };
+    // A defect should not look like a verdict: whatever panics ends with the status of "anything else".
+    let outcome = std::panic::catch_unwind(|| match args.command {
+        None => command::main_job::run(),
+        Some(Command::Solve(args)) => command::solve::run(&args),
+        Some(Command::Figures(args)) => command::figures::run(&args),
+        Some(Command::Arms(args)) => command::arms::run(&args),
+        Some(Command::Check(args)) => command::check::run(&args),
+    });
+    match outcome {
+        Ok(result) => exit::of(result),
+        Err(_) => exit::defect(),
+    }
+}

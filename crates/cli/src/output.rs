@@ -1,0 +1,61 @@
+//! Standard output and output files.
+
+use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use hydrostat_files::{WriteError, write_whole};
+
+/// Writes a result to standard output or to the file asked for instead.
+pub(crate) fn put(file: Option<&Path>, text: &str) -> anyhow::Result<()> {
+    match file {
+        Some(path) => write_whole(path, text.as_bytes())?,
+        None => print(text)?,
+    }
+    Ok(())
+}
+
+/// Writes to standard output.
+pub(crate) fn print(text: &str) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    out.flush()
+}
+
+/// Says before the work whether `path` can be written after it.
+///
+/// # Errors
+/// The error that the write would give.
+pub(crate) fn check_writable(path: &Path) -> Result<(), WriteError> {
+    probe(path).map_err(|source| WriteError { path: path.to_owned(), source })
+}
+
+fn probe(path: &Path) -> io::Result<()> {
+    if path.file_name().is_none() {
+        return Err(io::ErrorKind::InvalidInput.into());
+    }
+    match fs::metadata(path) {
+        Ok(present) if present.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+        Ok(present) if present.permissions().readonly() => return Err(io::ErrorKind::PermissionDenied.into()),
+        // A device or a pipe is written straight; opening it twice could disturb its reader.
+        Ok(present) if !present.is_file() => return Ok(()),
+        Ok(_) | Err(_) => {}
+    }
+    let directory = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let probe: PathBuf = directory.join(format!(".hydrostat-{}.tmp", std::process::id()));
+    OpenOptions::new().write(true).create_new(true).open(&probe)?;
+    fs::remove_file(&probe)
+}
+
+/// Makes the directory `path` if it is not there and says whether files can be made in it.
+///
+/// # Errors
+/// [`WriteError`] with the directory.
+pub(crate) fn make_directory(path: &Path) -> Result<(), WriteError> {
+    fs::create_dir_all(path)
+        .and_then(|()| probe(&path.join("fig1a.svg")))
+        .map_err(|source| WriteError { path: path.to_owned(), source })
+}

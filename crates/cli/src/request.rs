@@ -1,0 +1,112 @@
+//! What the user asked for, before anything is solved.
+
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
+
+use hydrostat::{Arm, ArmError};
+use hydrostat_files::{ArmFile, shipped};
+
+/// A request that cannot be meant.
+#[derive(Debug)]
+pub(crate) enum WrongRequest {
+    /// Neither a file nor the name of a shipped arm.
+    UnknownArm(String),
+    /// `--set` without `=`.
+    Setting(String),
+    /// Tensions that do not fit the cables.
+    Tensions(ArmError),
+    /// Two outputs in one file.
+    SamePath(PathBuf),
+}
+
+impl std::fmt::Display for WrongRequest {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::UnknownArm(name) => {
+                write!(f, "`{name}` is neither a file nor an arm that ships with the program (")?;
+                for (i, shipped) in shipped::names().enumerate() {
+                    write!(f, "{}{shipped}", if i == 0 { "" } else { ", " })?;
+                }
+                f.write_str(")")?;
+                match nearest(name) {
+                    Some(near) => write!(f, "; did you mean `{near}`?"),
+                    None => Ok(()),
+                }
+            }
+            Self::Setting(text) => {
+                write!(f, "--set {text}: expected KEY=VALUE, such as flow.speed=0.5 or cable[0].tension=\"20 N\"")
+            }
+            Self::Tensions(error) => write!(f, "--tension: {error}"),
+            Self::SamePath(path) => write!(f, "-o and --plot both name {}; give them different files", path.display()),
+        }
+    }
+}
+
+impl std::error::Error for WrongRequest {}
+
+fn nearest(name: &str) -> Option<&'static str> {
+    let score = |candidate: &str| strsim::jaro_winkler(name, candidate);
+    shipped::names().max_by(|a, b| score(a).total_cmp(&score(b))).filter(|best| score(best) > 0.75)
+}
+
+/// The arm file that `arm` names: a file if there is one or if it looks like a path, else an arm
+/// that ships with the program. A file of the name of a shipped arm wins, as a file's contents are
+/// the user's.
+pub(crate) fn arm_file(arm: &str) -> anyhow::Result<ArmFile> {
+    let path = Path::new(arm);
+    let looks_like_path =
+        arm.contains('/') || arm.contains(MAIN_SEPARATOR) || path.extension().is_some_and(|e| e == "toml");
+    if looks_like_path || path.is_file() {
+        return Ok(ArmFile::read(path)?);
+    }
+    match shipped::get(arm) {
+        Some(text) => Ok(ArmFile::parse(text, arm)?),
+        None => Err(WrongRequest::UnknownArm(arm.to_owned()).into()),
+    }
+}
+
+/// What overrides an arm file, in this order.
+pub(crate) struct Overrides<'a> {
+    /// `KEY=VALUE`.
+    pub(crate) settings: &'a [String],
+    /// One a cable.
+    pub(crate) tensions: Option<&'a [String]>,
+    pub(crate) flow_speed: Option<&'a str>,
+}
+
+/// The arm that `arm` with its overrides means.
+pub(crate) fn arm(arm: &str, overrides: &Overrides<'_>) -> anyhow::Result<Arm> {
+    let mut file = arm_file(arm)?;
+    for setting in overrides.settings {
+        let Some((key, value)) = setting.split_once('=') else {
+            return Err(WrongRequest::Setting(setting.clone()).into());
+        };
+        file.set(key.trim(), value.trim())?;
+    }
+    if let Some(speed) = overrides.flow_speed {
+        file.set("flow.speed", speed)?;
+    }
+    if let Some(tensions) = overrides.tensions {
+        let cables = cables(&file);
+        if tensions.len() != cables {
+            // An arm that is wrong without them is the first thing to mend.
+            file.arm()?;
+            let error = ArmError::TensionCount { cables, given: tensions.len() };
+            return Err(WrongRequest::Tensions(error).into());
+        }
+        for (i, tension) in tensions.iter().enumerate() {
+            file.set(&format!("cable[{i}].tension"), tension.trim())?;
+        }
+    }
+    Ok(file.arm()?)
+}
+
+/// How many cables the file has, even while their present tensions are refused.
+fn cables(file: &ArmFile) -> usize {
+    // Far more than an arm has; counting is for a message.
+    const MOST: usize = 1000;
+    if let Ok(arm) = file.arm() {
+        return arm.cables.len();
+    }
+    let mut probe = file.clone();
+    (0..MOST).take_while(|i| probe.set(&format!("cable[{i}].tension"), "0").is_ok()).count()
+}

@@ -1,0 +1,142 @@
+//! The other commands: the main job, figures, arms, check, help.
+
+use std::io::Read as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use super::{directory, files, hydrostat, hydrostat_in, picture, solved};
+
+const NINE: [&str; 9] = [
+    "fig1a.csv",
+    "fig1a.png",
+    "fig1a.svg",
+    "fig1b.csv",
+    "fig1b.png",
+    "fig1b.svg",
+    "fig1c.csv",
+    "fig1c.png",
+    "fig1c.svg",
+];
+
+fn check_figures(directory: &Path) {
+    assert_eq!(files(directory), NINE);
+    for name in NINE {
+        let bytes = std::fs::read(directory.join(name)).unwrap();
+        match name.rsplit('.').next() {
+            Some("png") => assert!(picture(&bytes).0 > 1000),
+            Some("svg") => assert!(bytes.starts_with(b"<svg") && bytes.ends_with(b"</svg>\n")),
+            _ => {
+                let text = String::from_utf8(bytes).unwrap();
+                let columns = text.lines().next().unwrap().split(',').count();
+                assert!(text.lines().count() > 800, "{name}");
+                for row in text.lines().skip(1) {
+                    assert_eq!(row.split(',').filter(|cell| cell.parse::<f64>().is_ok()).count(), columns);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn alone_it_prints_the_claims_and_writes_the_figures() {
+    let directory = directory();
+    let run = hydrostat_in(directory.path(), &[]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    for words in ["holds in part", "72.25 deg is reached at T1 = 86.24", "det F", "found by trial", "figures/fig1c.csv"]
+    {
+        let text = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains(words), "{words}:\n{}", run.out);
+    }
+    assert!(run.out.lines().all(|line| line.chars().count() <= 120 || line.starts_with("Written")));
+    check_figures(&directory.path().join("figures"));
+}
+
+#[test]
+fn figures_go_where_they_are_asked_to() {
+    let directory = directory();
+    let run = hydrostat_in(directory.path(), &["figures", "-o", "deep/er"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert_eq!(run.out.lines().count(), 9);
+    check_figures(&directory.path().join("deep/er"));
+    let svg = std::fs::read_to_string(directory.path().join("deep/er/fig1a.svg")).unwrap();
+    assert!(svg.contains("α(L) = 72.25°") && svg.contains("α(L) = 0.00°"));
+}
+
+#[test]
+fn shipped_arms_are_listed_printed_and_valid() {
+    let list = solved(&["arms"]).out;
+    let names: Vec<&str> = list.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
+    assert_eq!(names, ["paper", "silicone", "multi-bending", "octopus"]);
+    let directory = directory();
+    for name in names {
+        let text = solved(&["arms", name]).out;
+        std::fs::write(directory.path().join("copy.toml"), text).unwrap();
+        for args in [["solve", "copy.toml"], ["check", "copy.toml"]] {
+            let run = hydrostat_in(directory.path(), &args);
+            assert_eq!(run.code, 0, "{name}: {}", run.err);
+        }
+    }
+}
+
+#[test]
+fn check_says_what_the_file_means_and_can_be_read_back() {
+    let directory = directory();
+    let text = "[arm]\nlength = \"10 cm\"\nradius = 0.01\n[material]\nyoung = \"100 kPa\"\n[flow]\nspeed = 1\n\
+                [[cable]]\nname = \"pull\"\noffset = 0.005\n";
+    std::fs::write(directory.path().join("mine.toml"), text).unwrap();
+    let run = hydrostat_in(directory.path(), &["check", "mine.toml"]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""));
+    for words in ["length = 0.1\n", "young = 100000.0", "poisson = 0.5", "volume = \"planar\""] {
+        assert!(run.out.contains(words), "{words}:\n{}", run.out);
+    }
+    // Ca = 1/2 rho pi 2R U^2 L^3 / (pi E R^4 / 4) = 4 rho U^2 L^3 / (E R^3).
+    assert!(run.out.contains("Ca = 40\n"), "{}", run.out);
+    // Uniform arm, one cable at half the radius: the section law folds it shut near half of C1 A.
+    assert!(run.out.contains("pull alone: "), "{}", run.out);
+    std::fs::write(directory.path().join("again.toml"), &run.out).unwrap();
+    let again = hydrostat_in(directory.path(), &["check", "again.toml"]);
+    assert_eq!((again.code, again.out), (0, run.out));
+}
+
+#[test]
+fn help_teaches() {
+    let help = solved(&["--help"]).out;
+    for words in ["solve", "figures", "arms", "check", "Exit status", "Examples"] {
+        assert!(help.contains(words), "{words}");
+    }
+    let help = solved(&["solve", "--help"]).out;
+    for words in ["--tension", "--flow-speed", "--set", "--tol", "--stations", "--format", "--plot", "Exit status"] {
+        assert!(help.contains(words), "{words}");
+    }
+    for command in ["figures", "arms", "check"] {
+        solved(&[command, "--help"]);
+    }
+    let version = solved(&["--version"]).out;
+    assert_eq!(version, format!("hydrostat {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_hydrostat"))
+        .args(["solve", "paper", "--format", "csv", "--stations", "50000"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut first = [0; 3];
+    child.stdout.take().unwrap().read_exact(&mut first).unwrap();
+    assert_eq!(&first, b"s_m");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(!String::from_utf8(output.stderr).unwrap().contains("panicked"));
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_a_failure_of_another_kind() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let status = Command::new(env!("CARGO_BIN_EXE_hydrostat")).arg("arms").stdout(full).stderr(Stdio::null()).status();
+    assert_eq!(status.unwrap().code(), Some(1));
+    // As a file that was asked for, it is a path that cannot be written.
+    assert_eq!(hydrostat(&["solve", "paper", "-o", "/dev/full"]).code, 2);
+}

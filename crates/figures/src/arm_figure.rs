@@ -1,0 +1,250 @@
+//! One arm drawn to scale.
+
+use hydrostat::Configuration;
+
+use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
+use crate::font::{CAP_HEIGHT, DESCENT, Label};
+use crate::outline::{Outline, Style};
+use crate::palette::{BODY, Color, GREY, INK, WATER, series};
+use crate::placement::Occupied;
+use crate::scene::{Anchor, Point, Scene, Stroke};
+
+const WIDTH: f64 = 450.0;
+const MARGIN: f64 = 10.0;
+const TITLE_SIZE: f64 = 10.0;
+const LINE: f64 = 14.0;
+const SECTIONS: usize = 41;
+const MAX_HEIGHT: f64 = 400.0;
+/// Length of the arrows at the tip, points.
+const ARROW: f64 = 26.0;
+
+/// A configuration drawn to scale: surface, section lines, centreline, cables as wide as they are
+/// tight (slack ones thin and dashed), directors and tangent at the tip with alpha(L), the stream
+/// and gravity. `note` is written under the title: say there if this is not the answer that was
+/// asked for.
+///
+/// ```
+/// let configuration = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
+/// let figure = hydrostat_figures::arm_figure(&configuration, None);
+/// assert!(figure.svg().starts_with("<svg"));
+/// assert_eq!(&figure.png().unwrap()[1..4], b"PNG");
+/// ```
+pub fn arm_figure(configuration: &Configuration, note: Option<&str>) -> Scene {
+    let arm = &configuration.arm;
+    let outline = Outline::new(configuration, SECTIONS);
+    let strokes = cable_strokes(configuration);
+
+    let mut top = MARGIN + CAP_HEIGHT * TITLE_SIZE;
+    let title_at = [LEFT, top];
+    let note_at = note.map(|_| {
+        top += LINE;
+        [LEFT, top]
+    });
+    top += 8.0;
+    let (legend, legend_bottom) = legend(configuration, &strokes, top);
+    let frame_top = legend_bottom + 6.0;
+
+    let axes = axes_around(&outline, configuration.tip().theta, frame_top);
+
+    let title = format!("{}: static shape", arm.name);
+    let mut scene = Scene::new(WIDTH, axes.frame.bottom + BELOW + MARGIN, title);
+    let title = Label::plain(&arm.name);
+    scene.text(&title, title_at, Anchor::Start, fitting(&title, TITLE_SIZE));
+    if let (Some(note), Some(at)) = (note, note_at) {
+        let note = Label::plain(note);
+        scene.text_in(&note, at, Anchor::Start, fitting(&note, TEXT_SIZE), series(0), false);
+    }
+    for entry in &legend {
+        entry.draw(&mut scene);
+    }
+    axes.draw(&mut scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
+    let style = Style {
+        fill: BODY.with_opacity(0.6),
+        surface: Stroke::solid(INK, 0.8),
+        sections: Stroke::solid(GREY, 0.4),
+        centreline: Stroke::dashed(GREY, 0.6, [6.0, 1.5]),
+        cables: strokes,
+    };
+    outline.draw(&mut scene, &axes, &style);
+
+    let mut page = Occupied::new(axes.frame.grown(-3.0));
+    outline.occupy(&mut page, &axes);
+    draw_tip(&mut scene, configuration, axes.at(outline.tip()), &mut page);
+    scene
+}
+
+/// `size`, or what makes the text fit the page.
+fn fitting(label: &Label, size: f64) -> f64 {
+    size.min(size * (WIDTH - LEFT - MARGIN) / label.width(size).max(1.0))
+}
+
+/// Axes that show the arm and the arrows at its tip.
+fn axes_around(outline: &Outline, theta: f64, top: f64) -> Axes {
+    let width = WIDTH - LEFT - MARGIN;
+    let [x, y] = outline.bounds();
+    let extent = (x[1] - x[0]).max(y[1] - y[0]);
+    // The arrows are sized on the page; on a scale that is a little too coarse they need no less.
+    let arrow = 1.5 * ARROW * extent / width.min(MAX_HEIGHT);
+    let [tip_x, tip_y] = outline.tip();
+    let ends = [0.0, 0.5].map(|turn| theta + turn * std::f64::consts::PI);
+    let arrows = ends.map(|angle| [tip_x + arrow * angle.cos(), tip_y + arrow * angle.sin()]);
+    let pad = 0.05 * extent;
+    let grown = |range: [f64; 2], axis: usize| {
+        let low = arrows.iter().map(|p| p[axis]).fold(range[0] - pad, f64::min);
+        let high = arrows.iter().map(|p| p[axis]).fold(range[1] + pad, f64::max);
+        [low, high]
+    };
+    Axes::equal(LEFT, top, width, [110.0, MAX_HEIGHT], grown(x, 0), grown(y, 1))
+}
+
+/// Line styles: as wide as the tension is large among the cables, dashed when slack.
+fn cable_strokes(configuration: &Configuration) -> Vec<Stroke> {
+    let largest = configuration.cables.iter().map(|c| c.tension).fold(0.0, f64::max);
+    let stroke = |(i, tension): (usize, f64)| {
+        if tension > 0.0 {
+            Stroke::solid(series(i), 0.7 + 1.1 * tension / largest)
+        } else {
+            Stroke::dashed(series(i), 0.6, [3.0, 2.0])
+        }
+    };
+    configuration.cables.iter().map(|c| c.tension).enumerate().map(stroke).collect()
+}
+
+/// Directors a and b and the tangent t at the tip, with the angle from a to t.
+fn draw_tip(scene: &mut Scene, configuration: &Configuration, tip: Point, page: &mut Occupied) {
+    let at = configuration.tip();
+    let end = |angle: f64, length: f64| [tip[0] + length * angle.cos(), tip[1] - length * angle.sin()];
+    let quarter = std::f64::consts::FRAC_PI_2;
+    // Without an angle that can be seen, t would cover a.
+    let turned = at.alpha.abs() > 0.02;
+    let mut arrows = vec![(at.theta, "$a$", INK), (at.theta + quarter, "$b$", INK)];
+    if turned {
+        arrows.push((at.theta + at.alpha, "$t$", series(2)));
+    }
+    for (angle, _, color) in &arrows {
+        scene.arrow(tip, end(*angle, ARROW), *color, 0.9);
+        page.add_line(&[tip, end(*angle, ARROW)]);
+    }
+    if turned {
+        let arc: Vec<Point> = (0..=24).map(|k| end(at.theta + at.alpha * f64::from(k) / 24.0, 0.55 * ARROW)).collect();
+        scene.line(&arc, Stroke::solid(series(2), 0.7));
+        page.add_line(&arc);
+    }
+    for (angle, name, color) in arrows {
+        let label = Label::math(name);
+        let rect = page.place(end(angle, ARROW), label.width(TEXT_SIZE), 0.55 * TEXT_SIZE, angle);
+        scene.text_in(&label, [rect.left, rect.bottom], Anchor::Start, TEXT_SIZE, color, false);
+    }
+    let label = Label::math(&format!("$α$($L$) = {}", degrees(at.alpha)));
+    place_label(scene, page, &label, INK, tip, at.theta);
+}
+
+/// Puts a label near `anchor`, joined to it by a thin line if it had to go far.
+pub(crate) fn place_label(
+    scene: &mut Scene,
+    page: &mut Occupied,
+    label: &Label,
+    color: Color,
+    anchor: Point,
+    towards: f64,
+) {
+    let height = (CAP_HEIGHT + DESCENT) * TEXT_SIZE;
+    let rect = page.place(anchor, label.width(TEXT_SIZE), height, towards);
+    let near = rect.nearest(anchor);
+    if (near[0] - anchor[0]).hypot(near[1] - anchor[1]) > 9.0 {
+        scene.line(&[anchor, near], Stroke::solid(color, 0.4));
+    }
+    scene.text_in(label, [rect.left, rect.bottom - DESCENT * TEXT_SIZE], Anchor::Start, TEXT_SIZE, color, false);
+}
+
+/// An angle (rad) as people read it.
+pub(crate) fn degrees(angle: f64) -> String {
+    let value = format!("{:.2}°", angle.to_degrees());
+    if value == "-0.00°" { "0.00°".to_owned() } else { value.replace('-', "\u{2212}") }
+}
+
+/// A sample and its meaning, above the frame where no data are.
+struct Entry {
+    at: Point,
+    sample: Sample,
+    label: Label,
+}
+
+enum Sample {
+    Line(Stroke),
+    /// A direction in the plane, rad.
+    Arrow(f64, Color),
+}
+
+const SAMPLE: f64 = 18.0;
+
+impl Entry {
+    fn draw(&self, scene: &mut Scene) {
+        let [x, y] = self.at;
+        let middle = y - 0.5 * CAP_HEIGHT * TEXT_SIZE;
+        match self.sample {
+            Sample::Line(stroke) => scene.line(&[[x, middle], [x + SAMPLE, middle]], stroke),
+            Sample::Arrow(angle, color) => {
+                let (dx, dy) = (0.36 * SAMPLE * angle.cos(), -0.36 * SAMPLE * angle.sin());
+                let centre = x + 0.5 * SAMPLE;
+                scene.arrow([centre - dx, middle - dy], [centre + dx, middle + dy], color, 1.2);
+            }
+        }
+        scene.text(&self.label, [x + SAMPLE + 4.0, y], Anchor::Start, TEXT_SIZE);
+    }
+}
+
+/// A name at the length that a legend can bear.
+fn clipped(name: &str) -> String {
+    const MOST: usize = 40;
+    if name.chars().count() <= MOST {
+        return name.to_owned();
+    }
+    name.chars().take(MOST).chain(['.', '.', '.']).collect()
+}
+
+/// The entries, laid out in rows below `top`, and where the last row ends.
+fn legend(configuration: &Configuration, strokes: &[Stroke], top: f64) -> (Vec<Entry>, f64) {
+    let arm = &configuration.arm;
+    let mut entries: Vec<(Sample, Label)> = configuration
+        .cables
+        .iter()
+        .zip(strokes)
+        .map(|(cable, stroke)| {
+            let state = if cable.tension > 0.0 { format!("{} N", short(cable.tension)) } else { "slack".to_owned() };
+            (Sample::Line(*stroke), Label::plain(format!("{}: {state}", clipped(&cable.name))))
+        })
+        .collect();
+    if arm.flow.speed > 0.0 && arm.flow.density > 0.0 {
+        let label = Label::plain(format!("stream {} m/s", short(arm.flow.speed)));
+        entries.push((Sample::Arrow(arm.flow.direction, WATER), label));
+    }
+    if let Some(gravity) = &arm.gravity {
+        entries.push((Sample::Arrow(gravity.direction, GREY), Label::plain("gravity")));
+    }
+    let mut y = top + LINE - 2.0;
+    let mut x = LEFT;
+    let mut out = Vec::new();
+    for (sample, label) in entries {
+        let width = SAMPLE + 4.0 + label.width(TEXT_SIZE);
+        if x > LEFT && x + width > WIDTH - MARGIN {
+            x = LEFT;
+            y += LINE;
+        }
+        out.push(Entry { at: [x, y], sample, label });
+        x += width + 16.0;
+    }
+    let bottom = if out.is_empty() { top } else { y + 2.0 };
+    (out, bottom)
+}
+
+/// A number with at most four digits that matter.
+pub(crate) fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 12")]
+    let decimals = (3.0 - value.abs().log10().floor()).clamp(0.0, 12.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}

@@ -1,0 +1,23 @@
+//! Drawings of soft arms, as SVG and PNG from one description.
+//!
+//! A [`Scene`] is what a figure shows: lines, areas and text on a page measured in points. Its
+//! [`svg`](Scene::svg) and [`png`](Scene::png) cannot disagree, because text becomes glyph
+//! outlines before either is made; that also needs no font on the machine that shows the figure.
+//!
+//! [`arm_figure`] draws one configuration to scale. [`source`] solves what the source's Fig. 1
+//! shows, judges what its text says about it, and draws the three parts.
+
+mod arm_figure;
+mod axes;
+mod font;
+mod outline;
+mod palette;
+mod placement;
+mod png;
+mod scene;
+pub mod source;
+mod svg;
+
+pub use arm_figure::arm_figure;
+pub use png::PngError;
+pub use scene::Scene;

@@ -1,0 +1,157 @@
+//! What a figure shows, before it is SVG or PNG.
+
+use crate::font::Label;
+use crate::palette::{Color, INK};
+
+/// A place on the page: points (1/72 inch) from its left and upper edge.
+pub(crate) type Point = [f64; 2];
+
+/// A piece of a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Segment {
+    Move(Point),
+    Line(Point),
+    /// Control point, end.
+    Quad(Point, Point),
+    Close,
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stroke {
+    pub(crate) color: Color,
+    /// Points.
+    pub(crate) width: f64,
+    /// Lengths of dash and gap, points.
+    pub(crate) dash: Option<[f64; 2]>,
+}
+
+impl Stroke {
+    pub(crate) const fn solid(color: Color, width: f64) -> Self {
+        Self { color, width, dash: None }
+    }
+
+    pub(crate) const fn dashed(color: Color, width: f64, dash: [f64; 2]) -> Self {
+        Self { color, width, dash: Some(dash) }
+    }
+}
+
+/// One thing drawn. Later ones cover earlier ones.
+#[derive(Debug, Clone)]
+pub(crate) struct Item {
+    pub(crate) path: Vec<Segment>,
+    pub(crate) fill: Option<Color>,
+    pub(crate) stroke: Option<Stroke>,
+    /// What the glyphs of this item say; `None` for everything but text.
+    pub(crate) says: Option<String>,
+}
+
+/// Where a text's reference point lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A figure: lines, areas and text on a white page.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Points.
+    pub(crate) width: f64,
+    /// Points.
+    pub(crate) height: f64,
+    /// For readers that cannot see it.
+    pub(crate) title: String,
+    pub(crate) items: Vec<Item>,
+}
+
+impl Scene {
+    pub(crate) fn new(width: f64, height: f64, title: impl Into<String>) -> Self {
+        Self { width, height, title: title.into(), items: Vec::new() }
+    }
+
+    /// Width and height of the page in points (1/72 inch).
+    pub fn size(&self) -> [f64; 2] {
+        [self.width, self.height]
+    }
+
+    /// The texts on the page, in the order in which they were drawn.
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
+        self.items.iter().filter_map(|item| item.says.as_deref())
+    }
+
+    fn push(&mut self, path: Vec<Segment>, fill: Option<Color>, stroke: Option<Stroke>) {
+        if path.len() > 1 {
+            self.items.push(Item { path, fill, stroke, says: None });
+        }
+    }
+
+    /// An open line through `points`.
+    pub(crate) fn line(&mut self, points: &[Point], stroke: Stroke) {
+        self.push(path(points), None, Some(stroke));
+    }
+
+    /// A closed area.
+    pub(crate) fn area(&mut self, points: &[Point], fill: Option<Color>, stroke: Option<Stroke>) {
+        let mut path = path(points);
+        path.push(Segment::Close);
+        self.push(path, fill, stroke);
+    }
+
+    /// A line from `from` to `to` with a head at `to`.
+    pub(crate) fn arrow(&mut self, from: Point, to: Point, color: Color, width: f64) {
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let length = dx.hypot(dy);
+        if length <= 0.0 {
+            return;
+        }
+        let (ux, uy) = (dx / length, dy / length);
+        let head = (3.0 + 2.0 * width).min(length);
+        let half = 0.42 * head;
+        let neck = [to[0] - head * ux, to[1] - head * uy];
+        self.line(&[from, [neck[0] + 0.3 * head * ux, neck[1] + 0.3 * head * uy]], Stroke::solid(color, width));
+        let wings = [[neck[0] - half * uy, neck[1] + half * ux], to, [neck[0] + half * uy, neck[1] - half * ux]];
+        self.area(&wings, Some(color), None);
+    }
+
+    /// A dot of `radius` points.
+    pub(crate) fn dot(&mut self, at: Point, radius: f64, fill: Color) {
+        let points: Vec<Point> = (0..24)
+            .map(|k| {
+                let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 24.0).sin_cos();
+                [at[0] + radius * cos, at[1] + radius * sin]
+            })
+            .collect();
+        self.area(&points, Some(fill), None);
+    }
+
+    /// Text whose baseline starts, is centred or ends at `at`.
+    pub(crate) fn text(&mut self, label: &Label, at: Point, anchor: Anchor, size: f64) {
+        self.text_in(label, at, anchor, size, INK, false);
+    }
+
+    /// [`Scene::text`] in a colour; `upright` text runs from bottom to top.
+    pub(crate) fn text_in(&mut self, label: &Label, at: Point, anchor: Anchor, size: f64, color: Color, upright: bool) {
+        let back = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => 0.5 * label.width(size),
+            Anchor::End => label.width(size),
+        };
+        let place = |[x, y]: Point| {
+            let x = x - back;
+            if upright { [at[0] + y, at[1] - x] } else { [at[0] + x, at[1] + y] }
+        };
+        let path = label.outline(size).into_iter().map(|segment| match segment {
+            Segment::Move(p) => Segment::Move(place(p)),
+            Segment::Line(p) => Segment::Line(place(p)),
+            Segment::Quad(c, p) => Segment::Quad(place(c), place(p)),
+            Segment::Close => Segment::Close,
+        });
+        self.items.push(Item { path: path.collect(), fill: Some(color), stroke: None, says: Some(label.to_string()) });
+    }
+}
+
+fn path(points: &[Point]) -> Vec<Segment> {
+    points.iter().enumerate().map(|(i, p)| if i == 0 { Segment::Move(*p) } else { Segment::Line(*p) }).collect()
+}

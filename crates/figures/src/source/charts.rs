@@ -1,0 +1,237 @@
+//! Drawings of Fig. 1a, 1b and 1c.
+
+use hydrostat::Configuration;
+
+use super::{SPEED, Study, speed, tension};
+use crate::arm_figure::{degrees, place_label, short};
+use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
+use crate::font::{CAP_HEIGHT, Label};
+use crate::outline::{Outline, Style, bounds};
+use crate::palette::{Color, GREY, INK, WATER, ordered, series};
+use crate::placement::{Occupied, Rect};
+use crate::scene::{Anchor, Point, Scene, Stroke};
+
+const WIDTH: f64 = 450.0;
+const MARGIN: f64 = 10.0;
+const LINE: f64 = 13.0;
+/// Said on every part: the numbers are not the source's.
+const NOTE: &str = "Parameters found by trial; published are only the stream of 0.5 m/s and 72.25°.";
+
+/// Fig. 1a: tension raised in one stream.
+pub(super) fn raised(study: &Study) -> Scene {
+    let heading = Label::math(&format!("Tension $T_1$ raised in a stream of {SPEED} m/s"));
+    let count = study.raised.len();
+    let shapes: Vec<_> = study
+        .raised
+        .iter()
+        .enumerate()
+        .map(|(i, c)| {
+            let value = if tension(c) == 0.0 { "0".to_owned() } else { short(tension(c)) };
+            let label = Label::math(&format!("{value} N: $α$($L$) = {}", degrees(c.tip().alpha)));
+            Member { configuration: c, color: ordered(i, count), label }
+        })
+        .collect();
+    arms("Fig. 1a", &heading, &shapes)
+}
+
+/// Fig. 1b: one tension in ever faster streams.
+pub(super) fn faster(study: &Study) -> Scene {
+    let value = study.faster.first().map_or(0.0, tension);
+    let heading = Label::math(&format!("Streams of several speeds, tension $T_1$ = {} N", short(value)));
+    let shapes: Vec<_> = study
+        .faster
+        .iter()
+        .enumerate()
+        .map(|(i, c)| {
+            // Three decimals: with two, the tips would seem to turn alike.
+            let angle = c.tip().alpha.to_degrees();
+            let label = Label::math(&format!("{} m/s: $α$($L$) = {angle:.3}°", speed(c)));
+            Member { configuration: c, color: speed_color(i), label }
+        })
+        .collect();
+    arms("Fig. 1b", &heading, &shapes)
+}
+
+/// The colour of the speed `index`; 0.5 m/s is the blue one, as in the source.
+fn speed_color(index: usize) -> Color {
+    [INK, series(1), series(0), series(2)][index % 4]
+}
+
+/// One arm among several.
+struct Member<'a> {
+    configuration: &'a Configuration,
+    color: Color,
+    label: Label,
+}
+
+/// Several arms on equal axes, each with a label at its tip.
+fn arms(part: &str, heading: &Label, shapes: &[Member<'_>]) -> Scene {
+    let outlines: Vec<Outline> = shapes.iter().map(|m| Outline::new(m.configuration, 26)).collect();
+    let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).collect();
+    let [x, y] = bounds(&all);
+    let pad = 0.05 * (x[1] - x[0]).max(y[1] - y[0]);
+    let top = MARGIN + 2.0 * LINE + 6.0;
+    let room = [[x[0] - pad, x[1] + 3.0 * pad], [y[0] - pad, y[1] + 3.5 * pad]];
+    let axes = Axes::equal(LEFT, top, WIDTH - LEFT - MARGIN, [150.0, 400.0], room[0], room[1]);
+    let mut scene = Scene::new(WIDTH, axes.frame.bottom + BELOW + LINE + MARGIN, format!("{part}: {heading}"));
+    header(&mut scene, part, heading);
+    cable_key(&mut scene, MARGIN + LINE + 2.0 + CAP_HEIGHT * TEXT_SIZE);
+    footer(&mut scene);
+    axes.draw(&mut scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
+    let mut page = Occupied::new(axes.frame.grown(-3.0));
+    for (outline, Member { configuration, color, .. }) in outlines.iter().zip(shapes) {
+        let style = Style {
+            fill: color.with_opacity(0.07),
+            surface: Stroke::solid(*color, 0.9),
+            sections: Stroke::solid(color.with_opacity(0.45), 0.35),
+            centreline: Stroke::solid(color.with_opacity(0.0), 0.1),
+            cables: configuration
+                .cables
+                .iter()
+                .enumerate()
+                .map(|(i, _)| if i == 0 { Stroke::solid(*color, 0.6) } else { Stroke::dashed(*color, 0.5, CABLE_DASH) })
+                .collect(),
+        };
+        outline.draw(&mut scene, &axes, &style);
+        outline.occupy(&mut page, &axes);
+    }
+    let tips: Vec<Point> = outlines.iter().map(|o| axes.at(o.tip())).collect();
+    for (tip, member) in tips.iter().zip(shapes) {
+        scene.dot(*tip, 1.6, member.color);
+    }
+    if !(crowded(&tips) && label_in_column(&mut scene, &page, axes.frame, &tips, shapes)) {
+        for (tip, Member { configuration, color, label }) in tips.iter().zip(shapes) {
+            let towards = configuration.tip().theta;
+            place_label(&mut scene, &mut page, label, color.towards(INK, 0.25), *tip, towards);
+        }
+    }
+    scene
+}
+
+/// Whether labels beside the tips would be in each other's way.
+fn crowded(tips: &[Point]) -> bool {
+    tips.windows(2).any(|w| (w[0][0] - w[1][0]).hypot(w[0][1] - w[1][1]) < 2.0 * TEXT_SIZE)
+}
+
+/// Labels one below the other in the upper right corner, joined to their tips by lines that do not
+/// cross. Draws nothing and says so if that corner is not free.
+fn label_in_column(scene: &mut Scene, page: &Occupied, frame: Rect, tips: &[Point], shapes: &[Member<'_>]) -> bool {
+    const INSET: f64 = 6.0;
+    let widest = shapes.iter().map(|m| m.label.width(TEXT_SIZE)).fold(0.0, f64::max);
+    let (top, right) = (frame.top + INSET, frame.right - INSET);
+    let column = Rect { left: right - widest, top, right, bottom: top + LINE * shapes.len() as f64 };
+    if !page.is_free(&column) {
+        return false;
+    }
+    let mut order: Vec<usize> = (0..shapes.len()).collect();
+    order.sort_by(|a, b| tips[*a][1].total_cmp(&tips[*b][1]));
+    for (row, index) in order.into_iter().enumerate() {
+        let Member { color, label, .. } = &shapes[index];
+        let middle = top + LINE * (row as f64 + 0.5);
+        scene.line(&[tips[index], [column.left - 3.0, middle]], Stroke::solid(*color, 0.4));
+        let baseline = middle + 0.5 * CAP_HEIGHT * TEXT_SIZE;
+        scene.text_in(label, [column.left, baseline], Anchor::Start, TEXT_SIZE, color.towards(INK, 0.25), false);
+    }
+    true
+}
+
+const CABLE_DASH: [f64; 2] = [2.5, 1.8];
+
+fn header(scene: &mut Scene, part: &str, heading: &Label) {
+    let label = Label::plain(format!("{part}   ")).and(heading.clone());
+    scene.text(&label, [LEFT, MARGIN + CAP_HEIGHT * 9.5], Anchor::Start, 9.5);
+}
+
+fn footer(scene: &mut Scene) {
+    let at = [LEFT, scene.height - MARGIN];
+    scene.text_in(&Label::plain(NOTE), at, Anchor::Start, 7.0, GREY, false);
+}
+
+fn cable_key(scene: &mut Scene, baseline: f64) {
+    let middle = baseline - 0.5 * CAP_HEIGHT * TEXT_SIZE;
+    let mut x = LEFT;
+    for (text, stroke) in [
+        ("pulled cable", Stroke::solid(INK, 0.6)),
+        ("slack cable", Stroke::dashed(INK, 0.5, CABLE_DASH)),
+        ("section", Stroke::solid(INK.with_opacity(0.45), 0.35)),
+    ] {
+        scene.line(&[[x, middle], [x + 18.0, middle]], stroke);
+        let label = Label::plain(text);
+        scene.text(&label, [x + 22.0, baseline], Anchor::Start, TEXT_SIZE);
+        x += 22.0 + label.width(TEXT_SIZE) + 16.0;
+    }
+    scene.arrow([x, middle], [x + 18.0, middle], WATER, 1.2);
+    scene.text(&Label::plain("stream"), [x + 22.0, baseline], Anchor::Start, TEXT_SIZE);
+}
+
+/// Fig. 1c: alpha(s), whole on the left, enlarged where the speeds part on the right.
+pub(super) fn angles(study: &Study) -> Scene {
+    let top = MARGIN + 3.0 * LINE + 8.0;
+    let height = 190.0;
+    let gap = 46.0;
+    let width = 0.5 * (WIDTH - LEFT - MARGIN - gap);
+    let frame = |left: f64| Rect { left, top, right: left + width, bottom: top + height };
+    let rows = [&study.faster, &study.faster_highest];
+    let length = 1e3 * study.faster.first().map_or(1.0, |c| c.arm.length);
+    let curves: Vec<(usize, usize, Vec<[f64; 2]>)> = rows
+        .iter()
+        .enumerate()
+        .flat_map(|(row, shapes)| shapes.iter().enumerate().map(move |(i, c)| (row, i, curve(c))))
+        .collect();
+    let largest = |upto: f64| {
+        let shown = curves.iter().flat_map(|(.., c)| c).filter(|p| p[0] <= upto * length);
+        shown.map(|p| p[1]).fold(0.0, f64::max)
+    };
+    let lowest = curves.iter().flat_map(|(.., c)| c).map(|p| p[1]).fold(0.0, f64::min);
+    let whole = Axes::new(frame(LEFT), [0.0, length], [0.0_f64.min(1.05 * lowest), 1.08 * largest(1.0)]);
+    let low = [1.15 * lowest - 0.1, 1.08 * largest(0.6)];
+    let enlarged = Axes::new(frame(LEFT + width + gap), [0.0, length], low);
+
+    let heading = Label::math("Section rotation $α$($s$) along the arm");
+    let mut scene = Scene::new(WIDTH, top + height + BELOW + LINE + MARGIN, format!("Fig. 1c: {heading}"));
+    header(&mut scene, "Fig. 1c", &heading);
+    footer(&mut scene);
+    angle_key(&mut scene, study, &rows);
+    for (axes, title) in [(&whole, "$α$ (°)"), (&enlarged, "$α$ (°), enlarged")] {
+        axes.draw(&mut scene, &Label::math("$s$ (mm)"), &Label::math(title));
+        for (row, i, points) in &curves {
+            for part in axes.clipped(points) {
+                scene.line(&part, angle_stroke(*row, *i));
+            }
+        }
+    }
+    // Zero is where the section stands across the centreline.
+    let zero = [[0.0, 0.0], [length, 0.0]];
+    scene.line(&enlarged.all(&zero), Stroke::solid(GREY.with_opacity(0.6), 0.4));
+    scene
+}
+
+fn angle_stroke(row: usize, index: usize) -> Stroke {
+    let color = speed_color(index);
+    if row == 1 { Stroke::solid(color, 1.0) } else { Stroke::dashed(color, 1.0, [4.0, 2.0]) }
+}
+
+/// alpha (deg) over s (mm).
+fn curve(c: &Configuration) -> Vec<[f64; 2]> {
+    let mut places: Vec<f64> = (0..=400).map(|k| c.arm.length * f64::from(k) / 400.0).collect();
+    places.extend(&c.stations.s);
+    places.sort_by(f64::total_cmp);
+    places.iter().map(|s| [1e3 * s, c.at(*s).alpha.to_degrees()]).collect()
+}
+
+fn angle_key(scene: &mut Scene, study: &Study, rows: &[&Vec<Configuration>; 2]) {
+    for (line, row) in [1, 0].into_iter().enumerate() {
+        let baseline = MARGIN + 2.0 + (line as f64 + 1.0) * LINE + CAP_HEIGHT * TEXT_SIZE;
+        let middle = baseline - 0.5 * CAP_HEIGHT * TEXT_SIZE;
+        let value = rows[row].first().map_or(0.0, tension);
+        let name = Label::math(&format!("$T_1$ = {} N:", short(value)));
+        scene.text(&name, [LEFT, baseline], Anchor::Start, TEXT_SIZE);
+        let mut x = LEFT + 68.0;
+        for (i, c) in study.faster.iter().enumerate() {
+            scene.line(&[[x, middle], [x + 18.0, middle]], angle_stroke(row, i));
+            let label = Label::plain(format!("{} m/s", speed(c)));
+            scene.text(&label, [x + 22.0, baseline], Anchor::Start, TEXT_SIZE);
+            x += 76.0;
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! A scene as SVG.
+
+use std::fmt::Write as _;
+
+use crate::palette::Color;
+use crate::scene::{Item, Scene, Segment};
+
+impl Scene {
+    /// The figure as an SVG document. Text is drawn as outlines and named in `aria-label`, so that
+    /// it looks the same everywhere and can still be read and searched.
+    pub fn svg(&self) -> String {
+        let [w, h] = [number(self.width), number(self.height)];
+        let mut out = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}pt\" height=\"{h}pt\" viewBox=\"0 0 {w} {h}\" \
+             role=\"img\">\n<title>{}</title>\n<rect width=\"{w}\" height=\"{h}\" fill=\"#fff\"/>\n",
+            escaped(&self.title)
+        );
+        for item in &self.items {
+            write_item(&mut out, item);
+        }
+        out.push_str("</svg>\n");
+        out
+    }
+}
+
+fn write_item(out: &mut String, item: &Item) {
+    out.push_str("<path");
+    if let Some(text) = &item.says {
+        let _ = write!(out, " role=\"text\" aria-label=\"{}\"", escaped(text));
+    }
+    match item.fill {
+        Some(color) => paint(out, "fill", color),
+        None => out.push_str(" fill=\"none\""),
+    }
+    if let Some(stroke) = item.stroke {
+        paint(out, "stroke", stroke.color);
+        let _ = write!(out, " stroke-width=\"{}\" stroke-linejoin=\"round\"", number(stroke.width));
+        match stroke.dash {
+            Some([dash, gap]) => {
+                let _ = write!(out, " stroke-dasharray=\"{} {}\"", number(dash), number(gap));
+            }
+            None => out.push_str(" stroke-linecap=\"round\""),
+        }
+    }
+    out.push_str(" d=\"");
+    for segment in &item.path {
+        match segment {
+            Segment::Move([x, y]) => {
+                let _ = write!(out, "M{} {}", number(*x), number(*y));
+            }
+            Segment::Line([x, y]) => {
+                let _ = write!(out, "L{} {}", number(*x), number(*y));
+            }
+            Segment::Quad([cx, cy], [x, y]) => {
+                let _ = write!(out, "Q{} {} {} {}", number(*cx), number(*cy), number(*x), number(*y));
+            }
+            Segment::Close => out.push('Z'),
+        }
+    }
+    out.push_str("\"/>\n");
+}
+
+fn paint(out: &mut String, what: &str, color: Color) {
+    let [r, g, b] = color.rgb;
+    let _ = write!(out, " {what}=\"#{r:02x}{g:02x}{b:02x}\"");
+    if color.opacity < 1.0 {
+        let _ = write!(out, " {what}-opacity=\"{}\"", number(color.opacity));
+    }
+}
+
+/// A hundredth of a point is finer than any print.
+fn number(value: f64) -> String {
+    let mut text = format!("{value:.2}");
+    if text.contains('.') {
+        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+    }
+    if text == "-0" { "0".to_owned() } else { text }
+}
+
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            // XML has no way to write most control characters.
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(number(12.0), "12");
+        assert_eq!(number(0.125_4), "0.13");
+        assert_eq!(number(-0.001), "0");
+        assert_eq!(number(100.5), "100.5");
+    }
+
+    #[test]
+    fn text_is_escaped() {
+        assert_eq!(escaped("a<b & \"c\"\u{7}"), "a&lt;b &amp; &quot;c&quot; ");
+    }
+}

@@ -1,0 +1,103 @@
+//! What the drawings hold, and that their two forms are pictures.
+
+use hydrostat::{Arm, Cable, Gravity, Material, Profile};
+use hydrostat_figures::arm_figure;
+use hydrostat_figures::source::Finding::{Holds, InPart, Open};
+use hydrostat_figures::source::{Finding, Study, StudyError, TIP_ANGLE};
+
+fn arm() -> Arm {
+    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    "two <cables> & more".clone_into(&mut arm.name);
+    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.3));
+    arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)));
+    arm.flow.speed = 0.1;
+    arm.gravity = Some(Gravity::default());
+    arm
+}
+
+fn source_arm() -> Arm {
+    let mut arm = Arm::cone(0.2, 0.010, 0.0008, 500e3, 0.5);
+    arm.material = Material::Coefficients { c1: 500e3.into(), c2: (500e3 / 3.0).into(), c3: 150.0.into() };
+    arm.cables.push(Cable::new("left", Profile::linear(0.008, 0.0001)));
+    arm.cables.push(Cable::new("right", Profile::linear(-0.008, -0.0001)));
+    arm
+}
+
+#[test]
+fn an_arm_is_drawn_with_what_acts_on_it() {
+    let figure = arm_figure(&arm().solve().unwrap(), Some("a note"));
+    let texts: Vec<&str> = figure.texts().collect();
+    for text in ["two <cables> & more", "a note", "left: 0.3 N", "right: slack", "stream 0.1 m/s", "gravity", "x (mm)"]
+    {
+        assert!(texts.contains(&text), "{text}: {texts:?}");
+    }
+    assert!(texts.iter().any(|t| t.starts_with("α(L) = ")));
+}
+
+#[test]
+fn svg_is_escaped_and_of_the_page_size() {
+    let figure = arm_figure(&arm().solve().unwrap(), None);
+    let svg = figure.svg();
+    assert!(svg.contains("aria-label=\"two &lt;cables&gt; &amp; more\""));
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    let [width, height] = figure.size();
+    assert!(width > 300.0 && height > 100.0);
+    assert!(svg.contains(&format!("width=\"{width}pt\"")));
+}
+
+#[test]
+fn png_has_300_dots_an_inch() {
+    let figure = arm_figure(&arm().solve().unwrap(), None);
+    let bytes = figure.png().unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    assert!((f64::from(info.width) - figure.size()[0] / 72.0 * 300.0).abs() <= 0.5);
+    assert!((f64::from(info.height) - figure.size()[1] / 72.0 * 300.0).abs() <= 0.5);
+    // Mostly paper, but not only.
+    let dark = pixels.iter().filter(|p| **p < 128).count() as f64 / pixels.len() as f64;
+    assert!(dark > 0.002 && dark < 0.3, "{dark}");
+}
+
+#[test]
+fn arms_of_every_kind_can_be_drawn() {
+    let mut bare = Arm::cone(0.1, 0.01, 0.01, 1e5, 0.5);
+    arm_figure(&bare.solve().unwrap(), None).png().unwrap();
+    bare.base.angle = 2.0;
+    arm_figure(&bare.solve().unwrap(), None).png().unwrap();
+    let mut many = bare.clone();
+    for i in 0..12 {
+        let name = format!("a cable with a rather long name, {i}");
+        let cable = Cable::new(name, 0.0008 * f64::from(i - 6)).ending_at(0.5 + 0.04 * f64::from(i));
+        many.cables.push(cable.pulled(0.1 * f64::from(i)));
+    }
+    let figure = arm_figure(&many.solve().unwrap(), None);
+    assert_eq!(figure.texts().filter(|t| t.contains("long name")).count(), 12);
+    figure.png().unwrap();
+}
+
+#[test]
+fn the_study_finds_the_published_angle_and_judges_the_claims() {
+    let study = Study::of(&source_arm()).unwrap();
+    let angle = study.raised.last().unwrap().tip().alpha.to_degrees();
+    assert!((angle - TIP_ANGLE).abs() <= 1e-6, "{angle}");
+    assert!((study.highest_tension() - 86.24).abs() < 0.01, "{}", study.highest_tension());
+    let found: Vec<Finding> = study.claims.iter().map(|c| c.finding).collect();
+    assert_eq!(found, [Holds, Holds, Holds, Holds, Holds, InPart, InPart, InPart, InPart, Open]);
+    assert!(study.claims.iter().all(|c| !c.evidence.contains("NaN")));
+    let figures = study.figures();
+    assert_eq!(figures.each_ref().map(|f| f.name), ["fig1a", "fig1b", "fig1c"]);
+    assert!(figures[0].scene.texts().any(|t| t.ends_with("α(L) = 72.25°")));
+    for figure in &figures {
+        assert!(!figure.csv.contains("NaN") && !figure.scene.svg().contains("NaN"), "{}", figure.name);
+    }
+}
+
+#[test]
+fn a_study_needs_a_cable_and_a_tension_that_turns_the_tip() {
+    let mut arm = source_arm();
+    arm.cables[0].max_tension = Some(50.0);
+    assert!(matches!(Study::of(&arm), Err(StudyError::NoTension { largest: 50.0, .. })));
+    arm.cables.clear();
+    assert!(matches!(Study::of(&arm), Err(StudyError::NoCable { .. })));
+}
