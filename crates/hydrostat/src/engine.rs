@@ -3,7 +3,7 @@
 use hydrostat_bvp::{Collocation, Correction, Gauss, Limits, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
-use crate::equilibrium::{Equilibrium, N, Nearness, Q, SectionFailure};
+use crate::equilibrium::{AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
 use crate::verdict::Phase;
 
 /// Stages of the solve, and of the check that estimates its error.
@@ -121,36 +121,42 @@ impl Engine {
         }
     }
 
-    /// Whether the section law has strains at both ends, which are no stations.
-    pub(crate) fn ends_fine(&self) -> Result<(), Trouble> {
+    /// The section at an end, which is no station.
+    fn at_end(&self, tip: bool) -> Result<AtPlace, SectionFailure> {
         let n = self.solution.mesh.elements();
-        for (s, z, k, from_left) in
-            [(0.0, self.solution.nodes[0], 0, false), (1.0, self.solution.nodes[n], n * M - 1, true)]
-        {
-            let (i, x) = if from_left { (n - 1, 1.0) } else { (0, 0.0) };
-            let w = self.system.gauss.cardinals(x);
-            let mut strain = [0.0; 3];
-            let mut beta = [0.0; 2];
-            for j in 0..M {
-                let own = self.equations.strain(i * M + j);
-                for a in 0..3 {
-                    strain[a] += w[j] * own[a];
-                }
-                beta[0] += w[j] * self.equations.beta_slope[i * M + j];
-                beta[1] += w[j] * self.equations.beta_curvature[i * M + j];
+        let (s, i, k, x) = if tip { (1.0, n - 1, n * M - 1, 1.0) } else { (0.0, 0, 0, 0.0) };
+        let z = self.solution.nodes[if tip { n } else { 0 }];
+        let w = self.system.gauss.cardinals(x);
+        let mut strain = [0.0; 3];
+        let mut beta = [0.0; 2];
+        for j in 0..M {
+            let own = self.equations.strain(i * M + j);
+            for a in 0..3 {
+                strain[a] += w[j] * own[a];
             }
-            self.equations
-                .at_place(s, from_left, z, strain, beta)
-                .or_else(|_| self.equations.at_place(s, from_left, z, self.equations.strain(k), beta))
-                .map_err(Trouble::Section)?;
+            beta[0] += w[j] * self.equations.beta_slope[i * M + j];
+            beta[1] += w[j] * self.equations.beta_curvature[i * M + j];
         }
-        Ok(())
+        self.equations
+            .at_place(s, tip, z, strain, beta)
+            .or_else(|_| self.equations.at_place(s, tip, z, self.equations.strain(k), beta))
     }
 
-    /// How near the limits of the section law the stations are.
+    /// Whether the section law has strains at both ends.
+    pub(crate) fn ends_fine(&self) -> Result<(), Trouble> {
+        self.at_end(false).and_then(|_| self.at_end(true)).map(|_| ()).map_err(Trouble::Section)
+    }
+
+    /// How near the limits of the section law stations and ends are.
     pub(crate) fn nearest_limits(&mut self) -> Nearness {
         let _ = self.refresh();
-        self.equations.nearness
+        let mut near = self.equations.nearness;
+        for (tip, s) in [(false, 0.0), (true, 1.0)] {
+            if let Ok(end) = self.at_end(tip) {
+                near.note(s, end.openness, end.strain[0], end.regularity);
+            }
+        }
+        near
     }
 
     /// Where the switch of the load that can jump is nearest to its jump.
@@ -232,17 +238,15 @@ impl Engine {
                     self.system.determinant()
                 );
             }
-            if moved <= tolerance {
+            let stop = round == most || (clamped && round >= 4 && size > 3.0);
+            if moved <= tolerance || stop {
                 self.system.quadratures(&self.solution.mesh, &mut self.spans);
                 for (span, change) in self.spans.iter_mut().zip(&self.correction.by_element) {
                     for q in 0..Q {
                         span[q] += change[q];
                     }
                 }
-                return Ok(());
-            }
-            if round == most || (clamped && round >= 4 && size > 3.0) {
-                return Err(Trouble::Stalled(size));
+                return if moved <= tolerance { Ok(()) } else { Err(Trouble::Stalled(size)) };
             }
         }
     }

@@ -134,7 +134,7 @@ impl Nearness {
     const FAR: Self = Self { openness: (1.0, 0.0), nu: (f64::INFINITY, 0.0), regularity: (f64::INFINITY, 0.0) };
 
     #[inline(always)]
-    fn note(&mut self, s: f64, openness: f64, nu: f64, regularity: f64) {
+    pub(crate) fn note(&mut self, s: f64, openness: f64, nu: f64, regularity: f64) {
         for (least, value) in [(&mut self.openness, openness), (&mut self.nu, nu), (&mut self.regularity, regularity)] {
             if value < least.0 {
                 *least = (value, s);
@@ -612,7 +612,7 @@ impl Equilibrium {
         let (sin, cos) = z[0].sin_cos();
         let contact = [cos * z[1] + sin * z[2], cos * z[2] - sin * z[1], z[3]];
         let mut strain = guess;
-        let mut out = None;
+        let mut out: Option<AtPlace> = None;
         for _ in 0..30 {
             let solved = solve_section(
                 self.volume,
@@ -642,7 +642,8 @@ impl Equilibrium {
                 beta: solved.balance.swelling.beta,
                 beta_slope,
                 contact: [0, 1, 2].map(|k| contact[k] - solved.balance.cables[k]),
-                switches: load.switches,
+                openness: solved.balance.openness,
+                regularity: solved.regularity,
                 local: {
                     let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
                     let [nu, eta, _] = solved.strain;
@@ -684,7 +685,10 @@ pub(crate) struct AtPlace {
     pub(crate) beta_slope: f64,
     /// n.a, n.b, m: what the body carries.
     pub(crate) contact: [f64; 3],
-    pub(crate) switches: [f64; 3],
+    /// Smallest tau.a / nu of the pulled cables.
+    pub(crate) openness: f64,
+    /// Determinant of the section law over that of the slack one.
+    pub(crate) regularity: f64,
     pub(crate) local: Local<N, Q>,
     /// Undeformed radius.
     pub(crate) radius: f64,

@@ -13,6 +13,17 @@ const START: f64 = 1e-12;
 /// Error of the tip over L that is kept along the path.
 pub(crate) const LOOSE: f64 = 1e-4;
 
+/// Corrections (rad) that may go on hopping across a kink of the load.
+const HOP: f64 = 1e-4;
+
+/// Newton along the path, where hopping across a kink is good enough.
+fn roughly(result: Result<(), Trouble>) -> Result<(), Trouble> {
+    match result {
+        Err(Trouble::Stalled(size)) if size <= HOP => Ok(()),
+        other => other,
+    }
+}
+
 /// How finely a path is followed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pace {
@@ -104,10 +115,20 @@ impl Stepper<'_> {
         let mut step = 0.1_f64.min(pace.longest);
         // Turning the determinant's sign without turning back is believed only on a short step.
         let mut suspicion = 0;
+        // A turn of the determinant seen from here on the shortest steps.
+        let mut turned = false;
         loop {
             if travelled.steps >= pace.most || step < 1e-8 {
                 let residual = self.engine.last;
                 self.restore(&here);
+                if turned {
+                    // A kink of the load can turn the path back in a corner, where no tangent is level.
+                    self.set(here.fraction);
+                    let near = self.engine.nearest_limits();
+                    if near.openness.0 > 0.1 && near.regularity.0 > 0.15 {
+                        return Err(self.end(VerdictKind::LimitPoint, here.fraction, None));
+                    }
+                }
                 return Err(self.give_up(Some(&here), here.fraction, residual));
             }
             let attempt = self.advance(&here, step, pace);
@@ -132,16 +153,19 @@ impl Stepper<'_> {
                         self.restore(&here);
                         return Err(self.end(VerdictKind::LimitPoint, limit, None));
                     }
-                    if next.sign != here.sign && suspicion < 12 {
-                        suspicion += 1;
-                        step *= 0.25;
-                        self.restore(&here);
-                        continue;
-                    }
                     if next.sign != here.sign {
+                        let corner = self.cosine(&here, &next) < 0.999;
+                        turned |= corner;
+                        if suspicion < 12 || corner {
+                            suspicion += 1;
+                            step *= 0.25;
+                            self.restore(&here);
+                            continue;
+                        }
                         travelled.crossings += 1;
                     }
                     suspicion = 0;
+                    turned = false;
                     travelled.steps += 1;
                     if self.engine.trace {
                         eprintln!(
@@ -160,6 +184,7 @@ impl Stepper<'_> {
                     if self.engine.trace {
                         eprintln!("path {:?} {:.6} step {step:.2e} {trouble:?}", self.phase, here.fraction);
                     }
+                    turned |= step < 1e-4 && self.engine.system.determinant().sign != here.sign;
                     self.last_trouble = Some(trouble);
                     step *= 0.4;
                     self.restore(&here);
@@ -248,7 +273,7 @@ impl Stepper<'_> {
             self.predict(here, (1.0 - here.fraction) / here.rise)?;
             self.set(1.0);
             let from = self.engine.solution.clone();
-            self.engine.newton(1e-6, 9)?;
+            roughly(self.engine.newton(1e-6, 9))?;
             let moved = largest_turn(&from, &self.engine.solution);
             if moved > 0.15 {
                 return Err(Trouble::Stalled(moved));
@@ -298,7 +323,8 @@ impl Stepper<'_> {
                 break;
             }
         }
-        if !done {
+        // Across a kink corrections can hop between two points that are nearer than a path needs.
+        if !done && before > HOP {
             return Err(Trouble::Stalled(before));
         }
         let moved = largest_turn(&from, &self.engine.solution);
@@ -320,7 +346,7 @@ impl Stepper<'_> {
         // Nodes follow the kinks, so that corrections do not hop across them.
         let kinks = self.engine.kinks(1e-3);
         if self.engine.pin(&kinks, 1e-3) {
-            self.engine.newton(1e-6, 12)?;
+            roughly(self.engine.newton(1e-6, 12))?;
         }
         for _ in 0..4 {
             let estimate = self.engine.estimate(LOOSE)?;
@@ -328,7 +354,7 @@ impl Stepper<'_> {
                 return Ok(());
             }
             self.engine.refine(0.05 * LOOSE);
-            self.engine.newton(1e-6, 12)?;
+            roughly(self.engine.newton(1e-6, 12))?;
         }
         Ok(())
     }
