@@ -123,12 +123,12 @@ fn loaded(volume: Volume) -> Configuration {
 
 #[test]
 fn volume_laws_keep_what_they_say_everywhere() {
-    let kept: [(Volume, fn(f64, f64) -> f64); 3] = [
-        (Volume::Planar, |nu, beta| nu * beta),
-        (Volume::Circular, |nu, beta| nu * beta * beta),
-        (Volume::None, |_, beta| beta),
-    ];
-    for (volume, kept) in kept {
+    for volume in [Volume::Planar, Volume::Circular, Volume::None] {
+        let kept = |nu: f64, beta: f64| match volume {
+            Volume::Planar => nu * beta,
+            Volume::Circular => nu * beta * beta,
+            Volume::None => beta,
+        };
         let solved = loaded(volume);
         for (nu, beta) in solved.stations.nu.iter().zip(&solved.stations.beta) {
             assert!((kept(*nu, *beta) - 1.0).abs() < 1e-14, "{volume:?}: nu {nu}, beta {beta}");
