@@ -32,7 +32,6 @@ fn a_straight_column_below_its_load_is_not_called_unstable() {
 }
 
 #[test]
-#[ignore = "the path does not cross the bifurcation: not_found at load fraction 1/share = 0.999001, 0.909091, 0.5"]
 fn a_straight_column_above_its_load_is_unstable() {
     check_straight_columns(&[1.001, 1.1, 2.0]);
 }
@@ -102,7 +101,6 @@ fn a_heavy_column_stands_up_to_its_greatest_weight() {
 }
 
 #[test]
-#[ignore = "leaves the upright branch: tip aside by 0.021 at 1.0001 and 0.21 at 1.01; not_found at fraction 0.5 for 2.0"]
 fn a_heavier_column_stays_upright_and_is_unstable() {
     check_heavy_columns(&[1.0001, 1.01, 2.0]);
 }
