@@ -18,6 +18,8 @@ pub struct Gauss<const M: usize> {
     /// Second derivative at `c[j]` of the polynomial of degree 2M-1 that has given values and
     /// slopes at all stages: `hermite[0][j][l]` weighs values, `hermite[1][j][l]` slopes.
     pub hermite: [[[f64; M]; M]; 2],
+    /// `legendre[n][j]`: weight of P_n in `l_j`, `(2n+1) b_j P_n(c_j)`.
+    legendre: [[f64; M]; M],
 }
 
 impl<const M: usize> Gauss<M> {
@@ -41,7 +43,12 @@ impl<const M: usize> Gauss<M> {
             c[j] = 0.5 * (1.0 + x);
             b[j] = 1.0 / ((1.0 - x * x) * slope * slope);
         }
-        let mut gauss = Self { c, b, a: [[0.0; M]; M], d: [[0.0; M]; M], hermite: [[[0.0; M]; M]; 2] };
+        let mut gauss = Self { c, b, a: [[0.0; M]; M], d: [[0.0; M]; M], hermite: [[[0.0; M]; M]; 2], legendre: [[0.0; M]; M] };
+        for n in 0..M {
+            for j in 0..M {
+                gauss.legendre[n][j] = (2 * n + 1) as f64 * gauss.b[j] * legendre(n, 2.0 * c[j] - 1.0).0;
+            }
+        }
         for j in 0..M {
             gauss.a[j] = gauss.integrals(c[j]);
             gauss.d[j] = gauss.slopes(c[j]);
@@ -51,23 +58,28 @@ impl<const M: usize> Gauss<M> {
     }
 
     /// Values of the cardinal polynomials at `x`: interpolation weights.
+    #[inline]
     pub fn cardinals(&self, x: f64) -> [f64; M] {
-        self.series(|n| legendre(n, 2.0 * x - 1.0).0)
+        let mut p = [0.0; M];
+        legendre_up_to(2.0 * x - 1.0, &mut p);
+        self.combine(&p)
     }
 
     /// Slopes of the cardinal polynomials at `x`.
     pub fn slopes(&self, x: f64) -> [f64; M] {
-        self.series(|n| 2.0 * legendre(n, 2.0 * x - 1.0).1)
+        self.combine(&std::array::from_fn(|n| 2.0 * legendre(n, 2.0 * x - 1.0).1))
     }
 
     /// Integrals of the cardinal polynomials from 0 to `x`.
     pub fn integrals(&self, x: f64) -> [f64; M] {
         let t = 2.0 * x - 1.0;
-        self.series(
-            |n| {
-                if n == 0 { x } else { (legendre(n + 1, t).0 - legendre(n - 1, t).0) / (2.0 * (2 * n + 1) as f64) }
-            },
-        )
+        self.combine(&std::array::from_fn(|n| {
+            if n == 0 {
+                x
+            } else {
+                (legendre(n + 1, t).0 - legendre(n - 1, t).0) / (2.0 * (2 * n + 1) as f64)
+            }
+        }))
     }
 
     /// From H_l = (1 - 2 (x - c_l) l_l'(c_l)) l_l^2 for values and (x - c_l) l_l^2 for slopes.
@@ -91,12 +103,12 @@ impl<const M: usize> Gauss<M> {
         out
     }
 
-    fn series(&self, of: impl Fn(usize) -> f64) -> [f64; M] {
+    #[inline]
+    fn combine(&self, of: &[f64; M]) -> [f64; M] {
         let mut out = [0.0; M];
         for n in 0..M {
-            let value = (2 * n + 1) as f64 * of(n);
             for j in 0..M {
-                out[j] += self.b[j] * legendre(n, 2.0 * self.c[j] - 1.0).0 * value;
+                out[j] += self.legendre[n][j] * of[n];
             }
         }
         out
@@ -106,6 +118,21 @@ impl<const M: usize> Gauss<M> {
 impl<const M: usize> Default for Gauss<M> {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// P_0 to P_{M-1} at `x`.
+#[inline]
+fn legendre_up_to<const M: usize>(x: f64, out: &mut [f64; M]) {
+    for n in 0..M {
+        out[n] = match n {
+            0 => 1.0,
+            1 => x,
+            _ => {
+                let k = (n - 1) as f64;
+                ((2.0 * k + 1.0) * x * out[n - 1] - k * out[n - 2]) / (k + 1.0)
+            }
+        };
     }
 }
 

@@ -423,13 +423,18 @@ impl Engine {
         self.move_to(mesh);
     }
 
-    /// Refines until the estimate meets `tolerance` (tip position over L). Where that cannot be had,
+    /// Refines until the estimate meets `tolerance` (tip position over L); `warm` when the mesh is
+    /// already one that met it nearby. Where that cannot be had,
     /// the best there is, if it is good to [`WORST`].
-    pub(crate) fn settle(&mut self, tolerance: f64) -> Result<f64, Trouble> {
+    pub(crate) fn settle(&mut self, tolerance: f64, warm: bool) -> Result<f64, Trouble> {
         let mut estimate = f64::INFINITY;
         let mut best: Option<(f64, Guess, Equilibrium, [f64; 2])> = None;
         for attempt in 0..10 {
-            let goal = if attempt == 0 { 1e-3 } else { (1e-4 * estimate).clamp(3.0 * tolerance, 1e-3) };
+            let goal = match (attempt, warm) {
+                (0, true) => 3.0 * tolerance,
+                (0, false) => tolerance.max(1e-3),
+                _ => (1e-4 * estimate).clamp(3.0 * tolerance, tolerance.max(1e-3)),
+            };
             let outcome = self.converge(goal, tolerance).and_then(|()| self.estimate(tolerance));
             estimate = match (outcome, &best) {
                 (Ok(estimate), _) => estimate,
@@ -497,6 +502,18 @@ impl Engine {
             }
         }
         false
+    }
+
+    /// Takes other tensions, stream or loads for the same arm.
+    pub(crate) fn set_loads(&mut self, arm: &Arm) {
+        self.equations.set_loads(arm);
+        self.check_equations.set_loads(arm);
+    }
+
+    pub(crate) fn reset_statistics(&mut self) {
+        self.rounds = 0;
+        self.meshes = 0;
+        self.equations.evaluations = 0;
     }
 
     pub(crate) fn set_phase(&mut self, phase: Phase, fraction: f64) {

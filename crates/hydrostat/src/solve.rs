@@ -24,6 +24,8 @@ impl Default for Options {
 pub struct Solver {
     engine: Engine,
     options: Options,
+    /// Whether the engine holds a configuration at whole loads.
+    settled: bool,
 }
 
 impl Solver {
@@ -36,7 +38,7 @@ impl Solver {
         if !(options.tol >= 1e-12 && options.tol <= 1e-2) {
             return Err(SolveError::Option { option: "tol", value: options.tol, expected: "in [1e-12, 1e-2]" });
         }
-        Ok(Self { engine: Engine::new(arm), options })
+        Ok(Self { engine: Engine::new(arm), options, settled: false })
     }
 
     /// Solves from the unloaded arm.
@@ -44,18 +46,72 @@ impl Solver {
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
     pub fn solve(&mut self) -> Result<Configuration, SolveError> {
-        self.engine.rounds = 0;
-        self.engine.meshes = 0;
-        self.engine.equations.evaluations = 0;
+        self.settled = false;
+        self.engine.reset_statistics();
         self.engine.set_phase(Phase::Tension, 1.0);
-        let direct = self.engine.start_from_cables(8).and_then(|()| self.engine.settle(self.options.tol));
+        let direct = self.engine.start_from_cables(8).and_then(|()| self.engine.settle(self.options.tol, false));
         if let Ok(estimate) = direct
             && !self.engine.may_have_left_the_branch()
             && let Ok(configuration) = self.read(estimate, Travelled::default())
         {
+            self.settled = true;
             return Ok(configuration);
         }
         self.solve_along_the_path(Pace::BRISK)
+    }
+
+    /// Sets all tensions (N), in the order of the cables.
+    ///
+    /// # Errors
+    /// [`SolveError::Arm`] when their number is wrong or one of them is.
+    pub fn set_tensions(&mut self, tensions: &[f64]) -> Result<(), SolveError> {
+        let mut arm = self.engine.equations.arm().clone();
+        arm.set_tensions(tensions)?;
+        arm.check()?;
+        self.engine.set_loads(&arm);
+        Ok(())
+    }
+
+    /// Sets the speed of the stream (m/s).
+    ///
+    /// # Errors
+    /// [`SolveError::Arm`] when it is negative or not finite.
+    pub fn set_flow_speed(&mut self, speed: f64) -> Result<(), SolveError> {
+        let mut arm = self.engine.equations.arm().clone();
+        arm.flow.speed = speed;
+        arm.check()?;
+        self.engine.set_loads(&arm);
+        Ok(())
+    }
+
+    /// Solves again from the last configuration, after a small change of tensions or stream: a few
+    /// Newton rounds on the mesh there is. Falls back to [`Solver::solve`] when the arm moves further
+    /// than a small change moves it, or when nothing was solved before.
+    ///
+    /// # Errors
+    /// [`SolveError::NoEquilibrium`].
+    pub fn resolve(&mut self) -> Result<Configuration, SolveError> {
+        if !self.settled {
+            return self.solve();
+        }
+        self.settled = false;
+        self.engine.reset_statistics();
+        let before = self.engine.solution.nodes[self.engine.solution.mesh.elements()][0];
+        let sign = self.engine.system.determinant().sign;
+        let Ok(estimate) = self.engine.settle(self.options.tol, true) else { return self.solve() };
+        let turned = self.engine.solution.nodes[self.engine.solution.mesh.elements()][0] - before;
+        if self.engine.system.determinant().sign != sign || turned.abs() > 0.2 {
+            return self.solve();
+        }
+        let mut configuration = match self.read(estimate, Travelled::default()) {
+            Ok(configuration) => configuration,
+            Err(_) => return self.solve(),
+        };
+        if sign < 0.0 {
+            configuration.stable = Some(false);
+        }
+        self.settled = true;
+        Ok(configuration)
     }
 
     /// Follows the path of section 7 of the model notes, whatever a direct solve would give.
@@ -66,7 +122,7 @@ impl Solver {
         };
         let before = self.engine.tip;
         let sign = self.engine.system.determinant().sign;
-        let settled = self.engine.settle(self.options.tol);
+        let settled = self.engine.settle(self.options.tol, false);
         let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
         match settled {
             Ok(estimate) if moved < 0.05 && self.engine.system.determinant().sign == sign => {
@@ -75,6 +131,7 @@ impl Solver {
                 if travelled.crossings > 0 || sign < 0.0 {
                     configuration.stable = Some(false);
                 }
+                self.settled = true;
                 Ok(configuration)
             }
             _ => Err(self.no_equilibrium(self.last_verdict(None))),
@@ -95,7 +152,7 @@ impl Solver {
     /// The verdict with the last good point, which the engine holds, settled and read.
     fn no_equilibrium(&mut self, verdict: Verdict) -> SolveError {
         let kept = (self.engine.solution.clone(), self.engine.equations.clone());
-        let settled = self.engine.settle(self.options.tol.max(1e-6)).ok();
+        let settled = self.engine.settle(self.options.tol.max(1e-6), false).ok();
         let mut last_good = settled.and_then(|e| self.read(e, Travelled::default()).ok());
         if last_good.is_none() {
             // Right at a limit a finer mesh may already be past it: the path's own point has to do.

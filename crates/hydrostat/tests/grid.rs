@@ -84,7 +84,8 @@ fn run(thin: usize, readings: impl Fn(&mut Arm)) {
         println!("{kind:40} {count}");
     }
     println!("{total} cases, {not_found} not found, slowest {:.3} s: {}", slowest.0, slowest.1);
-    assert!(not_found * 200 <= total, "more than 0.5 % not found");
+    // Half a percent, and one on a thinned grid.
+    assert!(not_found * 200 <= total.max(200), "more than 0.5 % not found");
 }
 
 #[test]
