@@ -43,7 +43,8 @@ impl<const M: usize> Gauss<M> {
             c[j] = 0.5 * (1.0 + x);
             b[j] = 1.0 / ((1.0 - x * x) * slope * slope);
         }
-        let mut gauss = Self { c, b, a: [[0.0; M]; M], d: [[0.0; M]; M], hermite: [[[0.0; M]; M]; 2], legendre: [[0.0; M]; M] };
+        let mut gauss =
+            Self { c, b, a: [[0.0; M]; M], d: [[0.0; M]; M], hermite: [[[0.0; M]; M]; 2], legendre: [[0.0; M]; M] };
         for n in 0..M {
             for j in 0..M {
                 gauss.legendre[n][j] = (2 * n + 1) as f64 * gauss.b[j] * legendre(n, 2.0 * c[j] - 1.0).0;
@@ -74,11 +75,7 @@ impl<const M: usize> Gauss<M> {
     pub fn integrals(&self, x: f64) -> [f64; M] {
         let t = 2.0 * x - 1.0;
         self.combine(&std::array::from_fn(|n| {
-            if n == 0 {
-                x
-            } else {
-                (legendre(n + 1, t).0 - legendre(n - 1, t).0) / (2.0 * (2 * n + 1) as f64)
-            }
+            if n == 0 { x } else { (legendre(n + 1, t).0 - legendre(n - 1, t).0) / (2.0 * (2 * n + 1) as f64) }
         }))
     }
 

@@ -126,6 +126,8 @@ impl Stepper<'_> {
         let mut suspicion = 0;
         // A turn of the determinant seen from here on the shortest steps.
         let mut turned = false;
+        // A point before this one whose tangent climbed clearly more.
+        let mut steeper = (here.fraction, here.rise);
         loop {
             if travelled.steps >= pace.most || step < 1e-8 {
                 let residual = self.engine.last;
@@ -135,10 +137,20 @@ impl Stepper<'_> {
                     self.set(here.fraction);
                     let near = self.engine.nearest_limits();
                     if near.openness.0 > 0.1 && near.regularity.0 > 0.15 {
-                        return Err(self.end(VerdictKind::LimitPoint, here.fraction, None));
+                        let jumps = self.engine.equations.arm().readings.load_can_jump();
+                        let kind = if jumps { VerdictKind::LoadJump } else { VerdictKind::LimitPoint };
+                        let s = if jumps { self.engine.nearest_switch() } else { None };
+                        return Err(self.end(kind, here.fraction, s));
                     }
                 }
-                return Err(self.give_up(Some(&here), here.fraction, residual));
+                let end = self.give_up(Some(&here), here.fraction, residual);
+                // Towards a fold the square of the climb falls to zero linearly in the load.
+                let fall = steeper.1.powi(2) - here.rise.powi(2);
+                let ahead = (here.fraction - steeper.0) * here.rise.powi(2) / fall;
+                if end.verdict.kind == VerdictKind::NotFound && here.rise < 0.1 && fall > 0.0 && ahead < 1e-3 {
+                    return Err(self.end(VerdictKind::LimitPoint, here.fraction + ahead, None));
+                }
+                return Err(end);
             }
             let attempt = self.advance(&here, step, pace);
             match attempt {
@@ -180,6 +192,11 @@ impl Stepper<'_> {
                     suspicion = 0;
                     turned = false;
                     travelled.steps += 1;
+                    if here.rise > 1.3 * next.rise {
+                        steeper = (here.fraction, here.rise);
+                    } else if here.rise < next.rise {
+                        steeper = (next.fraction, next.rise);
+                    }
                     if self.engine.trace {
                         eprintln!(
                             "path {:?} {:.6} -> {:.6} step {step:.2e} rise {:.3} n {}",
