@@ -97,14 +97,7 @@ impl Mesh {
 
     /// A new mesh on which every element would have the same `error`, given the present ones, an
     /// order `order` of the local error, and a sum of errors `target`. Pinned nodes stay. No element is made shorter than `shortest` says for the one it lies in.
-    pub fn redistributed(
-        &self,
-        error: &[f64],
-        shortest: &[f64],
-        order: f64,
-        target: f64,
-        limits: Limits,
-    ) -> Self {
+    pub fn redistributed(&self, error: &[f64], shortest: &[f64], order: f64, target: f64, limits: Limits) -> Self {
         let n = self.elements();
         // What is far below its share says nothing about the solution: it may be rounding.
         let floor = 1e-3 * target / n as f64;

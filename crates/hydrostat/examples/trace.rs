@@ -3,7 +3,8 @@
 use hydrostat::*;
 fn main() {
     let a: Vec<String> = std::env::args().collect();
-    let mut arm = hydrostat_files::ArmFile::parse(hydrostat_files::shipped::get(&a[1]).unwrap(), "x").unwrap().arm().unwrap();
+    let mut arm =
+        hydrostat_files::ArmFile::parse(hydrostat_files::shipped::get(&a[1]).unwrap(), "x").unwrap().arm().unwrap();
     let k: f64 = a[3].parse().unwrap();
     let n = arm.length;
     for c in &mut arm.cables {
@@ -17,8 +18,12 @@ fn main() {
     let r = Solver::new(&arm, Options::default()).unwrap().solve();
     let e = t.elapsed();
     match r {
-        Ok(c) => println!("ok {:?} est {:.1e} {:?} {e:?} {:?}", c.tip(), c.error_estimate / n, c.statistics, c.warnings()),
-        Err(SolveError::NoEquilibrium(n)) => println!("{:?} {} {e:?} last good {}", n.verdict, n.verdict.message(), n.last_good.is_some()),
+        Ok(c) => {
+            println!("ok {:?} est {:.1e} {:?} {e:?} {:?}", c.tip(), c.error_estimate / n, c.statistics, c.warnings())
+        }
+        Err(SolveError::NoEquilibrium(n)) => {
+            println!("{:?} {} {e:?} last good {}", n.verdict, n.verdict.message(), n.last_good.is_some())
+        }
         Err(e) => println!("{e}"),
     }
 }

@@ -132,6 +132,7 @@
 
 pub mod arm;
 mod cable;
+pub mod cases;
 pub mod configuration;
 mod dense;
 mod engine;

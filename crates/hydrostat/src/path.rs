@@ -13,6 +13,9 @@ const START: f64 = 1e-12;
 /// Error of the tip over L that is kept along the path.
 pub(crate) const LOOSE: f64 = 1e-4;
 
+/// Largest turn a unit of load (rad) on a branch that nothing but the load moves along: rounding.
+const SYMMETRIC: f64 = 1e-10;
+
 /// Corrections (rad) that may go on hopping across a kink of the load.
 const HOP: f64 = 1e-4;
 
@@ -62,6 +65,12 @@ struct Point {
     tangent: Vec<f64>,
     rise: f64,
     sign: f64,
+}
+
+impl Point {
+    fn is_symmetric(&self) -> bool {
+        self.tangent.iter().all(|t| t.abs() < SYMMETRIC)
+    }
 }
 
 struct Stepper<'e> {
@@ -135,7 +144,8 @@ impl Stepper<'_> {
             match attempt {
                 Ok(Reached::Whole) => {
                     let sign = self.engine.system.determinant().sign;
-                    if sign != here.sign && suspicion < 12 && 1.0 - here.fraction > 1e-9 {
+                    let straight_on = here.is_symmetric() && largest_turn_between(&here, self.engine) < 1e-9;
+                    if sign != here.sign && !straight_on && suspicion < 6 && 1.0 - here.fraction > 1e-9 {
                         suspicion += 1;
                         step = 0.25 * step.min((1.0 - here.fraction) / here.rise.max(1e-3));
                         self.restore(&here);
@@ -154,9 +164,12 @@ impl Stepper<'_> {
                         return Err(self.end(VerdictKind::LimitPoint, limit, None));
                     }
                     if next.sign != here.sign {
+                        // On a symmetric branch nothing turns but the load: the bifurcation is
+                        // passed at once, because near it rounding would lead off the branch.
+                        let straight_on = here.is_symmetric() && next.is_symmetric();
                         let corner = self.cosine(&here, &next) < 0.999;
                         turned |= corner;
-                        if suspicion < 12 || corner {
+                        if !straight_on && (suspicion < 6 || corner) {
                             suspicion += 1;
                             step *= 0.25;
                             self.restore(&here);
@@ -446,6 +459,15 @@ impl Stepper<'_> {
             self.end(VerdictKind::NotFound, fraction, failed.map(|f| f.s))
         }
     }
+}
+
+fn largest_turn_between(here: &Point, engine: &Engine) -> f64 {
+    engine.solution.mesh.nodes().iter().zip(&engine.solution.nodes).fold(0.0, |m, (s, z)| {
+        let e = here.solution.mesh.element_of(*s);
+        let x = (s - here.solution.mesh.nodes()[e]) / here.solution.mesh.step(e);
+        let before = here.solution.nodes[e][0] * (1.0 - x) + here.solution.nodes[e + 1][0] * x;
+        f64::max(m, (z[0] - before).abs())
+    })
 }
 
 fn largest_turn(a: &Solution<N, M>, b: &Solution<N, M>) -> f64 {

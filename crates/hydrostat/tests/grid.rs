@@ -18,11 +18,9 @@ fn cases(arm: &Arm, thin: usize) -> Vec<(String, Arm)> {
     let mut index = 0;
     for side in ["left", "right", "all"] {
         for k in 0..=12 {
-            for (speed, direction) in std::iter::once((0.0, 0.0)).chain(
-                [0.05, 0.1, 0.3, 0.5, 1.0]
-                    .iter()
-                    .flat_map(|v| [0.0_f64, 60.0, 90.0, 180.0].map(|d| (*v, d))),
-            ) {
+            for (speed, direction) in std::iter::once((0.0, 0.0))
+                .chain([0.05, 0.1, 0.3, 0.5, 1.0].iter().flat_map(|v| [0.0_f64, 60.0, 90.0, 180.0].map(|d| (*v, d))))
+            {
                 for gravity in [false, true] {
                     index += 1;
                     if index % thin != 0 {
