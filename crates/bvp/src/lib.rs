@@ -70,7 +70,7 @@
 //! let d = 0.01_f64;
 //! let mut problem = Layer { thickness: d };
 //! let mut system = Collocation::<2, 4, 1>::new(); // 4 stages: order 8 at the nodes
-//! let mut solution = Solution::constant(Mesh::uniform(80, &[]), [0.0, 0.0]);
+//! let mut solution = Solution::constant(Mesh::uniform(200, &[]), [0.0, 0.0]);
 //! let mut correction = Correction::default();
 //!
 //! for round in 0.. {
