@@ -33,8 +33,7 @@ fn configuration() -> Configuration {
     out.base_reaction = Wrench { force: [1.0, -2.0], moment: 3.0 };
     out.error_estimate = 1e-9;
     out.stable = None;
-    out.statistics =
-        Statistics { elements: 2, stages: 3, newton_rounds: 4, meshes: 1, load_steps: 0, evaluations: 24 };
+    out.statistics = Statistics { elements: 2, stages: 3, newton_rounds: 4, meshes: 1, load_steps: 0, evaluations: 24 };
     out
 }
 
