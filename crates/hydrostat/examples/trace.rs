@@ -1,6 +1,6 @@
 //! Solves one case of the grid: arm, side, k of 12, speed, direction, gravity.
 #![allow(missing_docs)]
-use hydrostat::*;
+use hydrostat::{Gravity, Options, SolveError, Solver};
 fn main() {
     let a: Vec<String> = std::env::args().collect();
     let mut arm =
