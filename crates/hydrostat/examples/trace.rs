@@ -1,6 +1,6 @@
 //! Solves one case of the grid: arm, side, k of 12, speed, direction, gravity.
 #![allow(missing_docs)]
-use hydrostat::*;
+use hydrostat::{Gravity, Options, SolveError, Solver};
 fn main() {
     let a: Vec<String> = std::env::args().collect();
     let mut arm =
@@ -19,10 +19,10 @@ fn main() {
     let e = t.elapsed();
     match r {
         Ok(c) => {
-            println!("ok {:?} est {:.1e} {:?} {e:?} {:?}", c.tip(), c.error_estimate / n, c.statistics, c.warnings())
+            println!("ok {:?} est {:.1e} {:?} {e:?} {:?}", c.tip(), c.error_estimate / n, c.statistics, c.warnings());
         }
         Err(SolveError::NoEquilibrium(n)) => {
-            println!("{:?} {} {e:?} last good {}", n.verdict, n.verdict.message(), n.last_good.is_some())
+            println!("{:?} {} {e:?} last good {}", n.verdict, n.verdict.message(), n.last_good.is_some());
         }
         Err(e) => println!("{e}"),
     }

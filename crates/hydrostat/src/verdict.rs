@@ -72,7 +72,7 @@ pub struct Verdict {
 impl Verdict {
     /// What happened, in a sentence with its numbers.
     pub fn message(&self) -> String {
-        let place = self.s.map_or_else(String::new, |s| format!(" at s = {:.4} m", s));
+        let place = self.s.map_or_else(String::new, |s| format!(" at s = {s:.4} m"));
         let load = match self.phase {
             Phase::Loads => format!("{:.6} of the stream, weight and tip loads (cables slack)", self.load_fraction),
             Phase::Tension => format!("{:.6} of the tensions (all other loads whole)", self.load_fraction),
