@@ -97,6 +97,7 @@ struct Element<const N: usize, const M: usize> {
 
 /// The right conditions carried to a node, reduced: `z[pivot[r]] + sum_free rows[r][free] z[free] = load[r]`.
 #[derive(Debug, Clone, Copy)]
+#[allow(clippy::struct_field_names, reason = "the rows are what the struct is named for")]
 struct Rows<const N: usize> {
     rows: Block<N>,
     load: [[f64; 2]; N],

@@ -11,13 +11,19 @@ pub struct Mesh {
 /// The shortest element that any operation here makes.
 const SHORTEST: f64 = 1e-7;
 
+/// The number of elements that `count` stands for: at least one, and no more than anyone can solve on.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to what fits")]
+fn whole(count: f64) -> usize {
+    count.ceil().clamp(1.0, 1e6) as usize
+}
+
 impl Mesh {
     /// At least `elements` elements, uniform between the `breaks` (in (0, 1), increasing), which are pinned.
     pub fn uniform(elements: usize, breaks: &[f64]) -> Self {
         let mut mesh = Self { nodes: vec![0.0], pinned: vec![true] };
         let mut from = 0.0;
         for &to in breaks.iter().chain(std::iter::once(&1.0)) {
-            let count = (((to - from) * elements as f64).ceil() as usize).max(1);
+            let count = whole((to - from) * elements as f64);
             mesh.fill(from, to, count, |t| t);
             from = to;
         }
@@ -125,7 +131,7 @@ impl Mesh {
         }
         let weight: f64 = (0..n).map(|i| density[i] * self.step(i)).sum();
         let wanted = (weight.powf(order) / target).powf(1.0 / (order - 1.0));
-        let most = limits.most.min((n as f64 * limits.growth).ceil() as usize) as f64;
+        let most = limits.most.min(whole(n as f64 * limits.growth)) as f64;
         let wanted = wanted.clamp(limits.fewest as f64, most.max(limits.fewest as f64));
         // Here the density is a number of new elements a length, so it can be capped.
         let per_length = wanted / weight;
@@ -140,7 +146,7 @@ impl Mesh {
                 end += 1;
             }
             let share: f64 = (start..end).map(|i| density[i] * self.step(i)).sum();
-            let count = ((share - 0.02).ceil() as usize).max(1);
+            let count = whole(share - 0.02);
             let mut i = start;
             let mut passed = 0.0;
             for k in 1..count {

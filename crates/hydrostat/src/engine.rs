@@ -20,7 +20,7 @@ pub(crate) enum Trouble {
     Section(SectionFailure),
     Singular,
     Stalled(f64),
-    Mesh(f64),
+    Mesh,
 }
 
 #[derive(Debug, Clone)]
@@ -43,7 +43,6 @@ pub(crate) struct Engine {
     pub(crate) last: f64,
     /// Tip position over L at the last round.
     pub(crate) tip: [f64; 2],
-    pub(crate) trace: bool,
 }
 
 impl Engine {
@@ -67,7 +66,6 @@ impl Engine {
             meshes: 0,
             last: 0.0,
             tip: [0.0; 2],
-            trace: std::env::var_os("TRACE").is_some(),
         }
     }
 
@@ -230,14 +228,6 @@ impl Engine {
             self.tip = tip;
             let moved = dx.hypot(dy).max(0.1 * size).max(0.1 * drifted);
             self.last = size;
-            if self.trace {
-                eprintln!(
-                    "  round {round} n {} size {size:.2e} tip {:.2e} det {:?}",
-                    self.solution.mesh.elements(),
-                    dx.hypot(dy),
-                    self.system.determinant()
-                );
-            }
             let stop = round == most || (clamped && round >= 4 && size > 3.0);
             if moved <= tolerance || stop {
                 self.system.quadratures(&self.solution.mesh, &mut self.spans);
@@ -262,7 +252,7 @@ impl Engine {
     pub(crate) fn estimate(&mut self, tolerance: f64) -> Result<f64, Trouble> {
         if self.spans.len() != self.solution.mesh.elements() {
             // The last Newton rounds on this mesh did not converge: there is nothing to compare with.
-            return Err(Trouble::Mesh(f64::INFINITY));
+            return Err(Trouble::Mesh);
         }
         let mut finer = self.solution.with_stages(&self.system.gauss, &self.check.gauss);
         self.check.stations(&finer.mesh, &mut self.check_stations);
@@ -294,9 +284,6 @@ impl Engine {
             // from there leaves the square of that in the comparison: a second one removes it.
             finer.add(&self.check_correction, 1.0);
             estimate = self.compare(&finer)?;
-        }
-        if self.trace {
-            eprintln!("  estimate {estimate:.2e} contributions {contributed:.2e}");
         }
         Ok(estimate)
     }
@@ -458,7 +445,7 @@ impl Engine {
                 self.linearise(false)?;
                 Ok(estimate)
             }
-            None => Err(Trouble::Mesh(estimate)),
+            None => Err(Trouble::Mesh),
         }
     }
 
@@ -504,6 +491,19 @@ impl Engine {
         false
     }
 
+    /// How far the tip (over L) would move, to first order, if the stream's tangential load were
+    /// `factor` of what it is. Leaves the solution as it is; the factorisation is that of the question.
+    pub(crate) fn shift_by_tangential_load(&mut self, factor: f64) -> Option<f64> {
+        let kept = self.equations.clone();
+        self.equations.set_tangential_factor(factor);
+        let answer = self.linearise(false).ok().map(|()| {
+            self.system.solve(&self.solution, 0, &mut self.correction);
+            self.correction.total[0].hypot(self.correction.total[1])
+        });
+        self.equations = kept;
+        answer
+    }
+
     /// Takes other tensions, stream or loads for the same arm.
     pub(crate) fn set_loads(&mut self, arm: &Arm) {
         self.equations.set_loads(arm);
@@ -518,45 +518,5 @@ impl Engine {
 
     pub(crate) fn set_phase(&mut self, phase: Phase, fraction: f64) {
         self.equations.set_phase(phase, fraction);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Cable, Material, Profile};
-
-    pub(crate) fn paper(tension: f64, speed: f64) -> Arm {
-        let mut arm = Arm::cone(0.2, 0.010, 0.0008, 500e3, 0.5);
-        arm.material = Material::Coefficients { c1: 500e3.into(), c2: (500e3 / 3.0).into(), c3: 150.0.into() };
-        arm.density = 1080.0;
-        arm.cables.push(Cable::new("left", Profile::linear(0.008, 0.0001)).pulled(tension));
-        arm.cables.push(Cable::new("right", Profile::linear(-0.008, -0.0001)));
-        arm.flow.speed = speed;
-        arm
-    }
-
-    #[test]
-    fn look() {
-        for (t, v) in [(40.0, 0.5), (40.0, 0.0), (86.2, 0.5), (100.0, 0.5)] {
-            let arm = paper(t, v);
-            let mut e = Engine::new(&arm);
-            e.trace = true;
-            eprintln!("T {t} v {v}");
-            let start = std::time::Instant::now();
-            let n = std::env::var("N0").map_or(6, |v| v.parse().unwrap());
-            if let Err(f) = e.start_from_cables(n) {
-                eprintln!("start {f:?}");
-                continue;
-            }
-            let r = e.settle(1e-8);
-            eprintln!(
-                "{r:?} tip {:?} rounds {} evals {} {:?}",
-                e.tip,
-                e.rounds,
-                e.equations.evaluations,
-                start.elapsed()
-            );
-        }
     }
 }

@@ -823,6 +823,7 @@ fn slopes<R: Real>(
 impl Problem<N, Q> for Equilibrium {
     type Failure = SectionFailure;
 
+    #[allow(clippy::too_many_lines, reason = "one pass over the stations: gather, solve, spread")]
     #[inline(always)]
     fn slopes(&mut self, z: &[[f64; N]], out: &mut [Local<N, Q>]) -> Result<(), SectionFailure> {
         let count = z.len();

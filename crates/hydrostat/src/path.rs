@@ -197,23 +197,10 @@ impl Stepper<'_> {
                     } else if here.rise < next.rise {
                         steeper = (next.fraction, next.rise);
                     }
-                    if self.engine.trace {
-                        eprintln!(
-                            "path {:?} {:.6} -> {:.6} step {step:.2e} rise {:.3} n {}",
-                            self.phase,
-                            here.fraction,
-                            next.fraction,
-                            next.rise,
-                            next.solution.mesh.elements()
-                        );
-                    }
                     here = *next;
                     step = (step * 1.6).min(pace.longest);
                 }
                 Err(trouble) => {
-                    if self.engine.trace {
-                        eprintln!("path {:?} {:.6} step {step:.2e} {trouble:?}", self.phase, here.fraction);
-                    }
                     turned |= step < 1e-4 && self.engine.system.determinant().sign != here.sign;
                     self.last_trouble = Some(trouble);
                     step *= 0.4;
@@ -273,7 +260,9 @@ impl Stepper<'_> {
             }
             if along < 0.0 {
                 rise = -rise;
-                tangent.iter_mut().for_each(|t| *t = -*t);
+                for t in &mut tangent {
+                    *t = -*t;
+                }
             }
         }
         Ok(Point {

@@ -1,10 +1,13 @@
 //! From an arm to its configuration.
 
-use crate::arm::Arm;
+use crate::arm::{Arm, FlowLaw};
 use crate::configuration::{Configuration, Statistics};
 use crate::engine::{Engine, M, Trouble};
 use crate::path::{LOOSE, Pace, Travelled, follow};
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
+
+/// The largest tangential drag coefficient that is published for such arms.
+const PUBLISHED_CT: f64 = 0.03;
 
 /// How a solve is done.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +29,8 @@ pub struct Solver {
     options: Options,
     /// Whether the engine holds a configuration at whole loads.
     settled: bool,
+    /// Sign of the determinant of the last configuration.
+    sign: f64,
 }
 
 impl Solver {
@@ -38,7 +43,7 @@ impl Solver {
         if !(options.tol >= 1e-12 && options.tol <= 1e-2) {
             return Err(SolveError::Option { option: "tol", value: options.tol, expected: "in [1e-12, 1e-2]" });
         }
-        Ok(Self { engine: Engine::new(arm), options, settled: false })
+        Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0 })
     }
 
     /// Solves from the unloaded arm.
@@ -52,9 +57,11 @@ impl Solver {
         let direct = self.engine.start_from_cables(8).and_then(|()| self.engine.settle(self.options.tol, false));
         if let Ok(estimate) = direct
             && !self.engine.may_have_left_the_branch()
-            && let Ok(configuration) = self.read(estimate, Travelled::default())
+            && let Ok(mut configuration) = self.read(estimate, Travelled::default())
         {
             self.settled = true;
+            self.sign = 1.0;
+            configuration.tangential_shift = self.tangential_shift();
             return Ok(configuration);
         }
         self.solve_along_the_path(Pace::BRISK)
@@ -97,16 +104,13 @@ impl Solver {
         self.settled = false;
         self.engine.reset_statistics();
         let before = self.engine.solution.nodes[self.engine.solution.mesh.elements()][0];
-        let sign = self.engine.system.determinant().sign;
+        let sign = self.sign;
         let Ok(estimate) = self.engine.settle(self.options.tol, true) else { return self.solve() };
         let turned = self.engine.solution.nodes[self.engine.solution.mesh.elements()][0] - before;
         if self.engine.system.determinant().sign != sign || turned.abs() > 0.2 {
             return self.solve();
         }
-        let mut configuration = match self.read(estimate, Travelled::default()) {
-            Ok(configuration) => configuration,
-            Err(_) => return self.solve(),
-        };
+        let Ok(mut configuration) = self.read(estimate, Travelled::default()) else { return self.solve() };
         if sign < 0.0 {
             configuration.stable = Some(false);
         }
@@ -132,10 +136,22 @@ impl Solver {
                     configuration.stable = Some(false);
                 }
                 self.settled = true;
+                self.sign = sign;
+                configuration.tangential_shift = self.tangential_shift();
                 Ok(configuration)
             }
             _ => Err(self.no_equilibrium(self.last_verdict(None))),
         }
+    }
+
+    /// How far the tip would move with the tangential coefficient of published arms instead of the
+    /// momentum law's. `None` where that law does not act.
+    fn tangential_shift(&mut self) -> Option<f64> {
+        let arm = self.engine.equations.arm();
+        let layer = arm.readings.layer_mean.factor();
+        (arm.flow.law == FlowLaw::Momentum && arm.flow.speed > 0.0 && arm.flow.density > 0.0)
+            .then(|| PUBLISHED_CT / (layer * layer))
+            .and_then(|factor| self.engine.shift_by_tangential_load(factor))
     }
 
     fn last_verdict(&self, load_fraction: Option<f64>) -> Verdict {
