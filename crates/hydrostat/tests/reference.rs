@@ -74,8 +74,8 @@ fn configurations_agree_with_an_independent_solver() {
     // The estimate: true errors at most 3 estimates in 95 % of cases and never more than 10, and
     // the median estimate at most 30 true errors.
     ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let at = |share: f64| ratios[((ratios.len() - 1) as f64 * share) as usize];
-    println!("true error over estimate: median {:.2}, 95 % {:.2}, worst {:?}", at(0.5).0, at(0.95).0, at(1.0));
+    let at = |percent: usize| ratios[(ratios.len() - 1) * percent / 100];
+    println!("true error over estimate: median {:.2}, 95 % {:.2}, worst {:?}", at(50).0, at(95).0, at(100));
     assert!(ratios.len() > 120);
-    assert!(at(0.95).0 <= 3.0 && at(1.0).0 <= 10.0 && at(0.5).0 >= 1.0 / 30.0, "{:?}", &ratios[ratios.len() - 8..]);
+    assert!(at(95).0 <= 3.0 && at(100).0 <= 10.0 && at(50).0 >= 1.0 / 30.0, "{:?}", &ratios[ratios.len() - 8..]);
 }
