@@ -19,7 +19,7 @@ pub struct Configuration {
     /// What support and cable anchors exert on the arm at the base: force in space (N) and moment
     /// about r(0) (N m).
     pub base_reaction: Wrench,
-    /// With [`Support::UnstrainedBase`](crate::Support::UnstrainedBase): n_f(L), m_f(L) less the tip loads.
+    /// With [`Support::UnstrainedBase`]: n_f(L), m_f(L) less the tip loads.
     pub unmet: Option<Wrench>,
     /// Estimated error of the tip position, m.
     pub error_estimate: f64,
