@@ -36,19 +36,7 @@ impl Dense {
 
     /// Strains, beta' and beta'' of element `i` at `x` in [0, 1], from its stages.
     fn guess(&self, i: usize, x: f64) -> ([f64; 3], [f64; 2]) {
-        let w = self.gauss.cardinals(x);
-        let mut strain = [0.0; 3];
-        let mut beta = [0.0; 2];
-        for j in 0..M {
-            let k = i * M + j;
-            let own = self.equations.strain(k);
-            for a in 0..3 {
-                strain[a] += w[j] * own[a];
-            }
-            beta[0] += w[j] * self.equations.beta_slope[k];
-            beta[1] += w[j] * self.equations.beta_curvature[k];
-        }
-        (strain, beta)
+        self.equations.remembered(i, &self.gauss.cardinals(x))
     }
 
     fn section(&self, i: usize, s: f64, from_left: bool, z: [f64; N]) -> Result<AtPlace, SectionFailure> {

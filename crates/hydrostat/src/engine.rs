@@ -23,6 +23,15 @@ pub(crate) enum Trouble {
     Mesh,
 }
 
+impl From<RoundError<SectionFailure>> for Trouble {
+    fn from(error: RoundError<SectionFailure>) -> Self {
+        match error {
+            RoundError::Slopes(failure) => Self::Section(failure),
+            RoundError::Singular(_) => Self::Singular,
+        }
+    }
+}
+
 #[derive(Debug, Clone)]
 pub(crate) struct Engine {
     pub(crate) equations: Equilibrium,
@@ -72,33 +81,23 @@ impl Engine {
     /// Strains from the cables alone (no stream, weight or tip load): a start that is exact when
     /// nothing else acts.
     pub(crate) fn start_from_cables(&mut self, elements: usize) -> Result<(), Trouble> {
-        let mesh = Mesh::uniform(elements, &self.breaks);
-        self.meshes += 1;
-        self.system.stations(&mesh, &mut self.stations);
-        let reference: Vec<[f64; 3]> = self.stations.iter().map(|s| self.equations.reference_strain(*s)).collect();
-        self.equations.place_stations(&self.stations, &mesh, |k| (reference[k], 0.0, 0.0));
-        let angle = self.equations.arm().base.angle;
-        self.solution = Solution::constant(mesh, [angle, 0.0, 0.0, 0.0]);
+        self.place_unloaded(elements);
         self.equations.blunt = true;
         let strains = self.strains_from_cables();
         self.equations.blunt = false;
         strains?;
-        let n = self.solution.mesh.elements();
-        for i in 0..n {
-            let h = self.solution.mesh.step(i);
-            let mut next = self.solution.nodes[i];
-            for j in 0..M {
-                let mu = self.system.locals()[i * M + j].slope[0];
-                self.solution.slopes[i][j] = [mu, 0.0, 0.0, 0.0];
-                next[0] += h * self.system.gauss.b[j] * mu;
-            }
-            self.solution.nodes[i + 1] = next;
-        }
+        self.turn_by(|this, k| this.system.locals()[k].slope[0]);
         Ok(())
     }
 
     /// The unloaded arm: reference strains, nothing carried.
     pub(crate) fn start_unloaded(&mut self, elements: usize) {
+        self.place_unloaded(elements);
+        self.turn_by(|this, k| this.equations.strain(k)[2]);
+    }
+
+    /// Stations on a uniform mesh, each with the reference strains, and nothing carried.
+    fn place_unloaded(&mut self, elements: usize) {
         let mesh = Mesh::uniform(elements, &self.breaks);
         self.meshes += 1;
         self.system.stations(&mesh, &mut self.stations);
@@ -106,12 +105,15 @@ impl Engine {
         self.equations.place_stations(&self.stations, &mesh, |k| (reference[k], 0.0, 0.0));
         let angle = self.equations.arm().base.angle;
         self.solution = Solution::constant(mesh, [angle, 0.0, 0.0, 0.0]);
-        let n = self.solution.mesh.elements();
-        for i in 0..n {
+    }
+
+    /// Turns the sections by the bending strain `mu` of each station, from the base.
+    fn turn_by(&mut self, mu: impl Fn(&Self, usize) -> f64) {
+        for i in 0..self.solution.mesh.elements() {
             let h = self.solution.mesh.step(i);
             let mut next = self.solution.nodes[i];
             for j in 0..M {
-                let mu = reference[i * M + j][2];
+                let mu = mu(self, i * M + j);
                 self.solution.slopes[i][j] = [mu, 0.0, 0.0, 0.0];
                 next[0] += h * self.system.gauss.b[j] * mu;
             }
@@ -124,17 +126,7 @@ impl Engine {
         let n = self.solution.mesh.elements();
         let (s, i, k, x) = if tip { (1.0, n - 1, n * M - 1, 1.0) } else { (0.0, 0, 0, 0.0) };
         let z = self.solution.nodes[if tip { n } else { 0 }];
-        let w = self.system.gauss.cardinals(x);
-        let mut strain = [0.0; 3];
-        let mut beta = [0.0; 2];
-        for j in 0..M {
-            let own = self.equations.strain(i * M + j);
-            for a in 0..3 {
-                strain[a] += w[j] * own[a];
-            }
-            beta[0] += w[j] * self.equations.beta_slope[i * M + j];
-            beta[1] += w[j] * self.equations.beta_curvature[i * M + j];
-        }
+        let (strain, beta) = self.equations.remembered(i, &self.system.gauss.cardinals(x));
         self.equations
             .at_place(s, tip, z, strain, beta)
             .or_else(|_| self.equations.at_place(s, tip, z, self.equations.strain(k), beta))
@@ -208,7 +200,7 @@ impl Engine {
                     self.solution.add(&self.correction, -applied);
                     continue;
                 }
-                Err(RoundError::Singular(_)) => return Err(Trouble::Singular),
+                Err(singular) => return Err(singular.into()),
             }
             self.rounds += 1;
             round += 1;
@@ -261,17 +253,8 @@ impl Engine {
         self.check_equations.fraction = own.fraction;
         self.check_equations.phase = own.phase;
         self.check_equations.place_stations(&self.check_stations, &finer.mesh, |k| {
-            let (i, w) = (k / K, &weights[k % K]);
-            let mut out = ([0.0; 3], 0.0, 0.0);
-            for j in 0..M {
-                let strain = own.strain(i * M + j);
-                for a in 0..3 {
-                    out.0[a] += w[j] * strain[a];
-                }
-                out.1 += w[j] * own.beta_slope[i * M + j];
-                out.2 += w[j] * own.beta_curvature[i * M + j];
-            }
-            out
+            let (strain, [slope, curvature]) = own.remembered(k / K, &weights[k % K]);
+            (strain, slope, curvature)
         });
         for _ in 0..2 {
             self.check.evaluate(&mut self.check_equations, &finer).map_err(Trouble::Section)?;
@@ -290,10 +273,7 @@ impl Engine {
 
     /// How far a Newton round with one more stage puts the tip from where the solve has it.
     fn compare(&mut self, finer: &Solution<N, K>) -> Result<f64, Trouble> {
-        self.check.linearise(&mut self.check_equations, finer, false).map_err(|e| match e {
-            RoundError::Slopes(failure) => Trouble::Section(failure),
-            RoundError::Singular(_) => Trouble::Singular,
-        })?;
+        self.check.linearise(&mut self.check_equations, finer, false)?;
         self.rounds += 1;
         self.check.solve(finer, 0, &mut self.check_correction);
         let total = self.check.totals(&finer.mesh);
@@ -312,16 +292,8 @@ impl Engine {
         for s in &self.stations {
             let e = old.mesh.element_of(*s);
             let w = gauss.cardinals((s - old.mesh.nodes()[e]) / old.mesh.step(e));
-            let mut out = ([0.0; 3], 0.0, 0.0);
-            for j in 0..M {
-                let strain = self.equations.strain(e * M + j);
-                for a in 0..3 {
-                    out.0[a] += w[j] * strain[a];
-                }
-                out.1 += w[j] * self.equations.beta_slope[e * M + j];
-                out.2 += w[j] * self.equations.beta_curvature[e * M + j];
-            }
-            guesses.push(out);
+            let (strain, [slope, curvature]) = self.equations.remembered(e, &w);
+            guesses.push((strain, slope, curvature));
         }
         let moved = old.on(gauss, mesh);
         self.equations.place_stations(&self.stations, &moved.mesh, |k| guesses[k]);
@@ -379,17 +351,14 @@ impl Engine {
         out
     }
 
+    /// Moves nodes onto `kinks` that no pinned node is within `tolerance` of; whether any moved.
     pub(crate) fn pin(&mut self, kinks: &[f64], tolerance: f64) -> bool {
         let mesh = &self.solution.mesh;
-        let near = |s: f64| {
-            let i = mesh.element_of(s);
-            (s - mesh.nodes()[i]).min(mesh.nodes()[i + 1] - s)
-        };
         let stray = kinks.iter().any(|s| {
             let i = mesh.element_of(*s);
             let (l, r) = (s - mesh.nodes()[i], mesh.nodes()[i + 1] - s);
             let nearest = if l < r { i } else { i + 1 };
-            !(near(*s) < tolerance && (mesh.is_pinned(nearest)))
+            !(l.min(r) < tolerance && mesh.is_pinned(nearest))
         });
         if stray {
             let mut mesh = mesh.clone();

@@ -454,6 +454,22 @@ impl Equilibrium {
         [0, 1, 2].map(|a| self.memory[k / LANES].strain[a].0[k % LANES])
     }
 
+    /// Strains, and beta' and beta'', between the stages of element `i`, weighed by `weights`.
+    pub(crate) fn remembered<const M: usize>(&self, i: usize, weights: &[f64; M]) -> ([f64; 3], [f64; 2]) {
+        let mut strain = [0.0; 3];
+        let mut beta = [0.0; 2];
+        for (j, w) in weights.iter().enumerate() {
+            let k = i * M + j;
+            let own = self.strain(k);
+            for a in 0..3 {
+                strain[a] += w * own[a];
+            }
+            beta[0] += w * self.beta_slope[k];
+            beta[1] += w * self.beta_curvature[k];
+        }
+        (strain, beta)
+    }
+
     /// Strains of the unloaded arm at `s` (over L), mu times L.
     pub(crate) fn reference_strain(&self, s: f64) -> [f64; 3] {
         self.place(s).stiffness.reference
@@ -634,7 +650,7 @@ impl Equilibrium {
             }
             strain = solved.strain;
             let load = self.load(&place, [cos, sin], &solved, beta_slope);
-            let slopes = slopes(&place, [cos, sin], z, contact, &solved, &load);
+            let slopes = slopes(&place, [cos, sin], contact, &solved, &load);
             let change = (slopes.beta_slope - beta_slope).abs();
             beta_slope = slopes.beta_slope;
             out = Some(AtPlace {
@@ -802,7 +818,6 @@ struct Slopes<R> {
 fn slopes<R: Real>(
     place: &Place<R>,
     [cos, sin]: [R; 2],
-    _z: [R; N],
     contact: [R; 3],
     solved: &Solved<R>,
     load: &Load<R>,
@@ -907,7 +922,7 @@ impl Problem<N, Q> for Equilibrium {
                 }
             }
             let load = self.load(&place, direction, &solved, beta_along[0]);
-            let slopes = slopes(&place, direction, state, contact, &solved, &load);
+            let slopes = slopes(&place, direction, contact, &solved, &load);
 
             let by_state = strain_by_state(&solved.inverse, direction, contact);
             let jacobian = jacobian(direction, contact, &solved, &load, &by_state);
@@ -916,7 +931,7 @@ impl Problem<N, Q> for Equilibrium {
             let rate_gradient = rate_gradient(direction, rate, &by_state);
             let curved = apply3(&solved.inverse, solved.balance.by_curvature);
             let reach = -(solved.balance.swelling.slope * curved[0]);
-            let drift = self.drift_of(block, direction, contact, &solved, &load);
+            let drift = self.drift_of(block, contact, &solved, &load);
 
             for lane in 0..LANES {
                 let k = block * LANES + lane;
@@ -1033,14 +1048,7 @@ impl Equilibrium {
 
     /// d z' / d fraction of the phase at fixed z.
     #[inline(always)]
-    fn drift_of(
-        &self,
-        block: usize,
-        _direction: [Lanes; 2],
-        contact: [Lanes; 3],
-        solved: &Solved<Lanes>,
-        load: &Load<Lanes>,
-    ) -> [Lanes; N] {
+    fn drift_of(&self, block: usize, contact: [Lanes; 3], solved: &Solved<Lanes>, load: &Load<Lanes>) -> [Lanes; N] {
         let zero = Lanes::of(0.0);
         match self.phase {
             Phase::Loads => {

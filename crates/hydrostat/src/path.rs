@@ -1,7 +1,7 @@
 //! The path that defines the answer: from the unloaded arm, loads first, then tensions (section 7 of
 //! the model notes), followed by arclength so that no fold is stepped over unseen.
 
-use hydrostat_bvp::{Correction, RoundError, Solution};
+use hydrostat_bvp::{Correction, Solution};
 
 use crate::engine::{Engine, M, Trouble};
 use crate::equilibrium::{Equilibrium, N, Q};
@@ -487,10 +487,7 @@ impl Engine {
     /// Factorises at the present solution.
     pub(crate) fn linearise(&mut self, parameter: bool) -> Result<(), Trouble> {
         self.rounds += 1;
-        self.system.linearise(&mut self.equations, &self.solution, parameter).map_err(|e| match e {
-            RoundError::Slopes(failure) => Trouble::Section(failure),
-            RoundError::Singular(_) => Trouble::Singular,
-        })
+        Ok(self.system.linearise(&mut self.equations, &self.solution, parameter)?)
     }
 }
 
