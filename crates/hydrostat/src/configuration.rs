@@ -281,7 +281,7 @@ impl Configuration {
                 for (c, cable) in cables.iter_mut().enumerate() {
                     if places[k] < dense.equations.cable_end(c) {
                         let [now, unloaded] =
-                            dense.equations.cable_stretch(c, places[k], strain, dense.equations.beta_slope[k]);
+                            dense.equations.cable_stretch(c, places[k], strain, dense.equations.beta.slope[k]);
                         cable.length += weight * now;
                         cable.stroke += weight * (unloaded - now);
                     }

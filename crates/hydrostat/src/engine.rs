@@ -82,9 +82,9 @@ impl Engine {
     /// nothing else acts.
     pub(crate) fn start_from_cables(&mut self, elements: usize) -> Result<(), Trouble> {
         self.place_unloaded(elements);
-        self.equations.blunt = true;
+        self.equations.beta.blunt = true;
         let strains = self.strains_from_cables();
-        self.equations.blunt = false;
+        self.equations.beta.blunt = false;
         strains?;
         self.turn_by(|this, k| this.system.locals()[k].slope[0]);
         Ok(())

@@ -15,6 +15,7 @@
 use hydrostat_bvp::{Condition, Gauss, Local, Problem};
 
 use crate::arm::{Arm, Cavity, Material};
+use crate::beta_along::BetaAlong;
 use crate::cable::{Offset, tangent};
 use crate::flow::Law;
 use crate::loads::{Body, Load, Water, load};
@@ -47,76 +48,6 @@ pub(crate) struct SectionFailure {
     pub(crate) nu: f64,
     /// Determinant of the section law over that of the slack one.
     pub(crate) regularity: f64,
-}
-
-/// Weights that give beta'' at the stages of an element of length one.
-#[derive(Debug, Clone)]
-struct Differentiation {
-    /// From the polynomial through beta and beta' at all stages.
-    by_value: Vec<f64>,
-    by_slope: Vec<f64>,
-    /// From the polynomial through beta'.
-    plain: Vec<f64>,
-    /// Largest row sum of `by_slope`: how it amplifies what beta' is off by.
-    hermite_gain: f64,
-}
-
-/// No method here has more stages.
-const MOST_STAGES: usize = 6;
-
-impl Differentiation {
-    fn new<const M: usize>(gauss: &Gauss<M>) -> Self {
-        const { assert!(M <= MOST_STAGES) };
-        let flat = |m: &[[f64; M]; M]| m.iter().flatten().copied().collect::<Vec<f64>>();
-        let rows = gauss.hermite[1].iter().map(|row| row.iter().map(|v| v.abs()).sum::<f64>());
-        Self {
-            hermite_gain: rows.fold(0.0, f64::max),
-            by_value: flat(&gauss.hermite[0]),
-            by_slope: flat(&gauss.hermite[1]),
-            plain: flat(&gauss.d),
-        }
-    }
-
-    /// Slope of the polynomial through `values` on an element of length 1/`inverse`.
-    fn slope_of(&self, values: &[f64], inverse: f64, out: &mut [f64]) {
-        let m = values.len();
-        for j in 0..m {
-            out[j] = (0..m).map(|l| self.plain[j * m + l] * values[l]).sum::<f64>() * inverse;
-        }
-    }
-}
-
-/// Puts `from` plus the solution of the equations into `slope`, which stays when they are singular.
-fn solve_for_slope(matrix: &mut [[f64; MOST_STAGES + 1]; MOST_STAGES], slope: &mut [f64], from: &[f64]) {
-    let m = slope.len();
-    if solve_small(matrix, m) {
-        for j in 0..m {
-            slope[j] = from[j] + matrix[j][m];
-        }
-    }
-}
-
-/// Solves `m` equations whose right side is column `m`, by elimination with row pivoting.
-fn solve_small(a: &mut [[f64; MOST_STAGES + 1]; MOST_STAGES], m: usize) -> bool {
-    for k in 0..m {
-        let best = (k..m).max_by(|i, j| a[*i][k].abs().total_cmp(&a[*j][k].abs())).unwrap_or(k);
-        if a[best][k].abs() < 1e-12 || !a[best][k].is_finite() {
-            return false;
-        }
-        a.swap(k, best);
-        for i in 0..m {
-            if i != k {
-                let f = a[i][k] / a[k][k];
-                for c in k..=m {
-                    a[i][c] -= f * a[k][c];
-                }
-            }
-        }
-    }
-    for k in 0..m {
-        a[k][m] /= a[k][k];
-    }
-    true
 }
 
 /// How near the limits of the section law the stations came, each with its place (over L).
@@ -186,24 +117,13 @@ pub(crate) struct Equilibrium {
     /// The phase whose fraction is the parameter.
     pub(crate) phase: Phase,
     stages: usize,
-    /// Weights that differentiate beta along an element, by stage.
-    weights: Differentiation,
     stations: Vec<f64>,
     /// Element length of each station.
     steps: Vec<f64>,
     places: Vec<Place<Lanes>>,
     cables: Vec<CableAt<Lanes>>,
     memory: Vec<Memory<Lanes>>,
-    /// beta' and beta'' a station, one Newton round behind.
-    pub(crate) beta_slope: Vec<f64>,
-    pub(crate) beta_curvature: Vec<f64>,
-    beta: Vec<f64>,
-    /// Leave beta'' out: for first guesses on meshes that may be too coarse to differentiate on.
-    pub(crate) blunt: bool,
-    /// d beta' / d beta'' of the closed form, over L: the length on which a fast mode would live.
-    reach: Vec<f64>,
-    /// beta' that the last evaluation used.
-    beta_before: Vec<f64>,
+    pub(crate) beta: BetaAlong,
     drifts: Vec<[f64; N]>,
     /// Load switches a station.
     pub(crate) switches: Vec<[f64; 3]>,
@@ -226,18 +146,12 @@ impl Equilibrium {
             fraction: [1.0, 1.0],
             phase: Phase::Tension,
             stages: M,
-            weights: Differentiation::new(gauss),
             stations: Vec::new(),
             steps: Vec::new(),
             places: Vec::new(),
             cables: Vec::new(),
             memory: Vec::new(),
-            beta_slope: Vec::new(),
-            beta_curvature: Vec::new(),
-            beta: Vec::new(),
-            blunt: false,
-            reach: Vec::new(),
-            beta_before: Vec::new(),
+            beta: BetaAlong::new(gauss),
             drifts: Vec::new(),
             switches: Vec::new(),
             evaluations: 0,
@@ -403,10 +317,7 @@ impl Equilibrium {
         self.places.clear();
         self.cables.clear();
         self.memory.clear();
-        self.beta_slope.resize(count, 0.0);
-        self.beta_curvature.resize(count, 0.0);
-        self.beta.resize(count, 1.0);
-        self.reach.resize(count, 0.0);
+        self.beta.resize(count);
         self.switches.resize(count, [0.0; 3]);
         self.drifts.resize(count, [0.0; N]);
         let zero = Lanes::of(0.0);
@@ -437,8 +348,7 @@ impl Equilibrium {
                 for a in 0..3 {
                     memory.strain[a].0[lane] = strain[a];
                 }
-                self.beta_slope[k] = slope;
-                self.beta_curvature[k] = curvature;
+                self.beta.start(k, slope, curvature);
             }
             self.places.push(place);
             self.memory.push(memory);
@@ -464,8 +374,8 @@ impl Equilibrium {
             for a in 0..3 {
                 strain[a] += w * own[a];
             }
-            beta[0] += w * self.beta_slope[k];
-            beta[1] += w * self.beta_curvature[k];
+            beta[0] += w * self.beta.slope[k];
+            beta[1] += w * self.beta.curvature[k];
         }
         (strain, beta)
     }
@@ -503,15 +413,16 @@ impl Equilibrium {
         let (block, lane) = (k / LANES, k % LANES);
         let place = &self.places[block];
         let [nu, eta, _] = self.strain(k);
-        let stiffness = place.stiffness.value[2].0[lane] * self.beta[k] * self.beta[k];
+        let stiffness = place.stiffness.value[2].0[lane] * self.beta.value[k] * self.beta.value[k];
         let alpha = eta.atan2(nu);
         let (sin, cos) = (z[0] + alpha).sin_cos();
         let compression = -(cos * z[1] + sin * z[2]) * rest * rest / stiffness;
         let stream = self.water.stream;
         let speed_square = stream[0] * stream[0] + stream[1] * stream[1];
-        let drag = place.body.wetted.0[lane] * self.beta[k] * speed_square * nu.hypot(eta);
+        let drag = place.body.wetted.0[lane] * self.beta.value[k] * speed_square * nu.hypot(eta);
         let net = [0, 1].map(|c| {
-            place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * nu * self.beta[k] * self.beta[k]
+            place.body.weight[c].0[lane]
+                - place.body.displaced[c].0[lane] * nu * self.beta.value[k] * self.beta.value[k]
                 + place.body.force[c].0[lane]
         });
         let cube = rest * rest * rest / stiffness;
@@ -544,67 +455,7 @@ impl Equilibrium {
     /// The shortest part of element `i` that beta' can still be differentiated on.
     pub(crate) fn shortest_element(&self, i: usize) -> f64 {
         let own = i * self.stages..(i + 1) * self.stages;
-        (4.0 * self.reach[own].iter().fold(0.0_f64, |m, r| m.max(r.abs()))).max(1e-6)
-    }
-
-    /// beta'' at the stations from beta and beta', element by element.
-    ///
-    /// beta'' feeds back into beta' as `reach` beta''. Where a step is long against `reach` the
-    /// sharpest formula serves, one round behind. Where it is not, lagging would excite the fast mode
-    /// that section 8.1 of the model notes excludes: there beta' and beta'' are solved for together,
-    /// and where `reach` is a good part of the step, beta' is the slope of the element's own
-    /// polynomial through beta, which has no fast mode, found by Newton along with everything else.
-    fn differentiate_beta(&mut self) {
-        let m = self.stages;
-        for first in (0..self.stations.len()).step_by(m) {
-            let inverse = 1.0 / self.steps[first];
-            let own = first..first + m;
-            let reach = &self.reach[own.clone()];
-            let largest = reach.iter().fold(0.0_f64, |a, r| a.max(r.abs()));
-            let w = &self.weights;
-            let slope = &mut self.beta_slope[own.clone()];
-            let curvature = &mut self.beta_curvature[own.clone()];
-            if self.blunt {
-                curvature.fill(0.0);
-            } else if largest * inverse * w.hermite_gain < 0.3 {
-                let beta = &self.beta[own];
-                for j in 0..m {
-                    let mut sum = 0.0;
-                    for l in 0..m {
-                        sum += w.by_value[j * m + l] * beta[l] * inverse + w.by_slope[j * m + l] * slope[l];
-                    }
-                    curvature[j] = sum * inverse;
-                }
-            } else if largest * inverse < 0.05 {
-                // beta' - reach beta'' = rest, with beta'' the slope of the polynomial through beta'.
-                let mut matrix = [[0.0; MOST_STAGES + 1]; MOST_STAGES];
-                for j in 0..m {
-                    for l in 0..m {
-                        matrix[j][l] = -reach[j] * w.plain[j * m + l] * inverse;
-                    }
-                    matrix[j][j] += 1.0;
-                    matrix[j][m] = slope[j] - reach[j] * curvature[j];
-                }
-                solve_for_slope(&mut matrix, slope, &[0.0; MOST_STAGES]);
-                w.slope_of(slope, inverse, curvature);
-            } else {
-                // One Newton step on beta' = D beta(nu(z, beta')) / h: d beta / d beta' is `reach`.
-                let beta = &self.beta[own];
-                let mut matrix = [[0.0; MOST_STAGES + 1]; MOST_STAGES];
-                for j in 0..m {
-                    let before = self.beta_before[first + j];
-                    matrix[j][m] = -before;
-                    for l in 0..m {
-                        let d = w.plain[j * m + l] * inverse;
-                        matrix[j][l] = -d * reach[l];
-                        matrix[j][m] += d * beta[l];
-                    }
-                    matrix[j][j] += 1.0;
-                }
-                solve_for_slope(&mut matrix, slope, &self.beta_before[first..first + m]);
-                w.slope_of(slope, inverse, curvature);
-            }
-        }
+        (4.0 * self.beta.reach[own].iter().fold(0.0_f64, |m, r| m.max(r.abs()))).max(1e-6)
     }
 
     /// Solves section law and loads at one place, for output between stations: state `z`, guess of
@@ -688,6 +539,7 @@ impl Equilibrium {
             load.force[k] = load.force[k] * fraction;
             load.by_theta[k] = load.by_theta[k] * fraction;
             load.by_strain[k] = load.by_strain[k].map(|v| v * fraction);
+            load.by_beta_slope[k] = load.by_beta_slope[k] * fraction;
         }
         load
     }
@@ -844,7 +696,6 @@ impl Problem<N, Q> for Equilibrium {
         let count = z.len();
         self.evaluations += count;
         self.nearness = Nearness::FAR;
-        self.beta_before.clone_from(&self.beta_slope);
         let cable_count = self.tensions.len();
         let fraction = Lanes::of(self.fraction[0]);
         let mut pulled: [CableAt<Lanes>; MOST_IN_PLACE] = [blank_cable(); MOST_IN_PLACE];
@@ -866,8 +717,7 @@ impl Problem<N, Q> for Equilibrium {
                 let (sin, cos) = z[k][0].sin_cos();
                 direction[0].0[lane] = cos;
                 direction[1].0[lane] = sin;
-                beta_along[0].0[lane] = self.beta_slope[k];
-                beta_along[1].0[lane] = self.beta_curvature[k];
+                beta_along[1].0[lane] = self.beta.curvature[k];
             }
             let pulled = if cable_count > MOST_IN_PLACE { &mut many[..] } else { &mut pulled[..] };
             let mut used = 0;
@@ -898,11 +748,19 @@ impl Problem<N, Q> for Equilibrium {
                 guess[a] += move_by;
             }
             for lane in 0..LANES {
+                let k = (block * LANES + lane).min(count - 1);
+                let mut moved = z[k];
                 if leap.0[lane] > 0.3 || !leap.0[lane].is_finite() {
                     for a in 0..3 {
                         guess[a].0[lane] = memory.strain[a].0[lane];
                     }
+                    moved = [0.0; N];
+                } else {
+                    for a in 0..N {
+                        moved[a] -= memory.z[a].0[lane];
+                    }
                 }
+                beta_along[0].0[lane] = self.beta.follow(k, moved);
             }
 
             let solved = solve_section(self.volume, &place.stiffness, pulled, contact, guess, beta_along, 1e-6);
@@ -929,9 +787,20 @@ impl Problem<N, Q> for Equilibrium {
             let [nu, eta, _] = solved.strain;
             let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
             let rate_gradient = rate_gradient(direction, rate, &by_state);
-            let curved = apply3(&solved.inverse, solved.balance.by_curvature);
-            let reach = -(solved.balance.swelling.slope * curved[0]);
-            let drift = self.drift_of(block, contact, &solved, &load);
+            // What moves at fixed z with beta': the strains, and all that follows from them.
+            let strain_by_slope = apply3(&solved.inverse, solved.balance.by_curvature).map(|v| -v);
+            let [nu_p, eta_p, mu_p] = strain_by_slope;
+            let force_by_slope = |k: usize| {
+                let by = load.by_strain[k];
+                -(by[0] * nu_p + by[1] * eta_p + by[2] * mu_p + load.by_beta_slope[k])
+            };
+            let slope_by = [mu_p, force_by_slope(0), force_by_slope(1), contact[0] * eta_p - contact[1] * nu_p];
+            let rate_by = [nu_p * cos - eta_p * sin, nu_p * sin + eta_p * cos];
+            let swelling_slope = solved.balance.swelling.slope;
+            let reach = swelling_slope * nu_p;
+            let value_by = by_state[0].map(|v| swelling_slope * v);
+            let (drift, nu_drift) = self.drift_of(block, contact, &solved, &load);
+            let value_drift = swelling_slope * nu_drift;
 
             for lane in 0..LANES {
                 let k = block * LANES + lane;
@@ -958,14 +827,19 @@ impl Problem<N, Q> for Equilibrium {
                     solved.strain[0].0[lane],
                     solved.regularity.0[lane],
                 );
-                self.beta_slope[k] = slopes.beta_slope.0[lane];
-                self.beta[k] = solved.balance.swelling.beta.0[lane];
-                self.reach[k] = reach.0[lane];
+                self.beta.value[k] = solved.balance.swelling.beta.0[lane];
+                self.beta.closed[k] = slopes.beta_slope.0[lane];
+                self.beta.reach[k] = reach.0[lane];
+                let by = &mut self.beta.coupling[k];
+                by.slope = slope_by.map(|v| v.0[lane]);
+                by.rate = rate_by.map(|v| v.0[lane]);
+                by.value = value_by.map(|v| v.0[lane]);
+                by.value_drift = value_drift.0[lane];
                 self.switches[k] = [0, 1, 2].map(|w| load.switches[w].0[lane]);
             }
             self.memory[block] = Memory { z: state, strain: solved.strain, by_state };
         }
-        self.differentiate_beta();
+        self.beta.close(&self.steps, out, &mut self.drifts);
         Ok(())
     }
 
@@ -1046,16 +920,22 @@ impl Equilibrium {
         (load, turn)
     }
 
-    /// d z' / d fraction of the phase at fixed z.
+    /// d z' / d fraction of the phase, and that of nu, at fixed z and beta'.
     #[inline(always)]
-    fn drift_of(&self, block: usize, contact: [Lanes; 3], solved: &Solved<Lanes>, load: &Load<Lanes>) -> [Lanes; N] {
+    fn drift_of(
+        &self,
+        block: usize,
+        contact: [Lanes; 3],
+        solved: &Solved<Lanes>,
+        load: &Load<Lanes>,
+    ) -> ([Lanes; N], Lanes) {
         let zero = Lanes::of(0.0);
         match self.phase {
             Phase::Loads => {
                 let f = self.fraction[0];
                 let per = Lanes::of(if f == 0.0 { 0.0 } else { 1.0 / f });
                 let couple = self.places[block].body.couple;
-                [zero, -(load.force[0] * per), -(load.force[1] * per), -couple]
+                ([zero, -(load.force[0] * per), -(load.force[1] * per), -couple], zero)
             }
             Phase::Tension => {
                 let f = self.fraction[1];
@@ -1066,7 +946,7 @@ impl Equilibrium {
                         + load.by_strain[k][1] * strain[1]
                         + load.by_strain[k][2] * strain[2])
                 };
-                [strain[2], by(0), by(1), contact[0] * strain[1] - contact[1] * strain[0]]
+                ([strain[2], by(0), by(1), contact[0] * strain[1] - contact[1] * strain[0]], strain[0])
             }
         }
     }

@@ -131,6 +131,7 @@
 //! on it carries a [`Warning::TangentialLoad`], and [`FlowLaw::QuadraticDrag`] is the alternative.
 
 pub mod arm;
+mod beta_along;
 mod cable;
 pub mod cases;
 pub mod configuration;

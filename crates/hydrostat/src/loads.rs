@@ -43,6 +43,8 @@ pub(crate) struct Load<R> {
     pub(crate) by_theta: [R; 2],
     /// By nu, eta, mu.
     pub(crate) by_strain: [[R; 3]; 2],
+    /// By beta', which the lateral surface alone depends on.
+    pub(crate) by_beta_slope: [R; 2],
     /// Speeds whose change of sign kinks the load: along and across the surface, and, on the
     /// lateral surface, the tie of both sides, where it jumps. Over the stream's speed.
     pub(crate) switches: [R; 3],
@@ -55,6 +57,7 @@ struct Direction<R> {
     y: R,
     x_strain: [R; 3],
     y_strain: [R; 3],
+    y_beta_slope: R,
 }
 
 /// Unit vectors u, w = k x u in space and the turn of u by strain.
@@ -63,6 +66,7 @@ struct Frame<R> {
     u: [R; 2],
     w: [R; 2],
     turn: [R; 3],
+    turn_beta_slope: R,
 }
 
 impl<R: Real> Direction<R> {
@@ -73,7 +77,7 @@ impl<R: Real> Direction<R> {
         let u = [(cos * self.x - sin * self.y) * inverse, (sin * self.x + cos * self.y) * inverse];
         let f = inverse * inverse;
         let turn = [0, 1, 2].map(|k| (self.x * self.y_strain[k] - self.y * self.x_strain[k]) * f);
-        Frame { u, w: [-u[1], u[0]], turn }
+        Frame { u, w: [-u[1], u[0]], turn, turn_beta_slope: self.x * self.y_beta_slope * f }
     }
 }
 
@@ -94,9 +98,16 @@ pub(crate) fn load<R: Real>(
 ) -> Load<R> {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let [nu, eta, mu] = strain;
-    let centreline = Direction { x: nu, y: eta, x_strain: [one, zero, zero], y_strain: [zero, one, zero] };
+    let centreline =
+        Direction { x: nu, y: eta, x_strain: [one, zero, zero], y_strain: [zero, one, zero], y_beta_slope: zero };
     let along = centreline.frame(cos, sin);
-    let mut out = Load { force: body.force, by_theta: [zero; 2], by_strain: [[zero; 3]; 2], switches: [zero; 3] };
+    let mut out = Load {
+        force: body.force,
+        by_theta: [zero; 2],
+        by_strain: [[zero; 3]; 2],
+        by_beta_slope: [zero; 2],
+        switches: [zero; 3],
+    };
 
     if water.stream != [0.0; 2] {
         // S = pi rho_w beta R, times |r'| when the deformed length is wet.
@@ -121,6 +132,7 @@ pub(crate) fn load<R: Real>(
                         y: eta + sigma * (beta_slope * body.radius + swelling.beta * body.radius_slope),
                         x_strain: [one - sigma * swelling.slope * body.radius * mu, zero, -half_width],
                         y_strain: [sigma * body.radius_slope * swelling.slope, one, zero],
+                        y_beta_slope: sigma * body.radius,
                     }
                     .frame(cos, sin)
                 };
@@ -190,6 +202,7 @@ fn stream_load<R: Real>(
         let turned = s * ((tangential_turn - t.normal) * frame.u[k] + (t.normal_turn + tangential) * frame.w[k]);
         out.force[k] += s * per_s;
         out.by_theta[k] += turned;
+        out.by_beta_slope[k] += turned * frame.turn_beta_slope;
         for c in 0..3 {
             out.by_strain[k][c] += turned * frame.turn[c] + share * s_strain[c] * per_s;
         }
@@ -238,21 +251,25 @@ mod tests {
     }
 
     fn check(water: &Water, body: &Body<f64>) {
-        let at = |x: [f64; 4]| {
+        let at = |x: [f64; 5]| {
             let e = [x[1], x[2], x[3]];
-            load(water, body, [x[0].cos(), x[0].sin()], e, &swelling(Volume::Planar, e[0]), 0.3)
+            load(water, body, [x[0].cos(), x[0].sin()], e, &swelling(Volume::Planar, e[0]), x[4])
         };
         for theta in [0.9, 2.2, -1.4] {
-            let x = [theta, 0.9, 0.1, 3.0];
+            let x = [theta, 0.9, 0.1, 3.0, 0.3];
             let exact = at(x);
-            for c in 0..4 {
+            for c in 0..5 {
                 let (mut hi, mut lo) = (x, x);
                 hi[c] += 1e-6;
                 lo[c] -= 1e-6;
                 let (hi, lo) = (at(hi), at(lo));
                 for k in 0..2 {
                     let want = (hi.force[k] - lo.force[k]) / 2e-6;
-                    let got = if c == 0 { exact.by_theta[k] } else { exact.by_strain[k][c - 1] };
+                    let got = match c {
+                        0 => exact.by_theta[k],
+                        4 => exact.by_beta_slope[k],
+                        _ => exact.by_strain[k][c - 1],
+                    };
                     assert!((want - got).abs() < 2e-7, "{water:?} theta {theta} by {c}: {got} {want}");
                 }
             }

@@ -56,6 +56,9 @@ fn run(thin: usize, readings: impl Fn(&mut Arm)) {
             let start = Instant::now();
             let result = Solver::new(&arm, Options::default()).unwrap().solve();
             let took = start.elapsed().as_secs_f64();
+            if took > 2.0 {
+                println!("{label}: took {took:.1} s");
+            }
             if took > slowest.0 {
                 slowest = (took, label.clone());
             }
