@@ -5,55 +5,43 @@ use std::f64::consts::PI;
 
 use hydrostat_bvp::{Collocation, Condition, Correction, Local, Mesh, Problem, Solution};
 
-/// Newton from `solution`, undamped, until corrections stop falling. Returns the workspace at the end.
-fn newton<const N: usize, const M: usize, const Q: usize, P>(
-    problem: &mut P,
-    solution: &mut Solution<N, M>,
-) -> Collocation<N, M, Q>
-where
-    P: Problem<N, Q, Failure = Infallible> + AtStations,
-{
-    let mut system = Collocation::new();
-    let mut stations = Vec::new();
-    system.stations(&solution.mesh, &mut stations);
-    problem.place(stations);
-    let mut correction = Correction::default();
-    for _ in 0..12 {
-        system.linearise(problem, solution, false).unwrap();
-        system.solve(solution, 0, &mut correction);
-        solution.add(&correction, 1.0);
-        if (0..N).all(|a| correction.largest(a) < 1e-14) {
-            break;
-        }
+/// u'' = f(s, u), with u or u' given at each end.
+trait Equation {
+    /// f and its derivative by u.
+    fn bend(&self, s: f64, u: f64) -> [f64; 2];
+
+    /// What the quadrature adds up, and its derivative by u.
+    fn rate(&self, u: f64) -> [f64; 2] {
+        [u, 1.0]
     }
-    system.linearise(problem, solution, false).unwrap();
-    system
+
+    /// At s = 0 and s = 1: which of u, u' is given, and its value.
+    fn ends(&self) -> [(usize, f64); 2];
 }
 
-/// The solver hands over states only: where they are, a problem is told when the mesh is made.
-trait AtStations {
-    fn place(&mut self, stations: Vec<f64>);
+/// An equation as the solver takes it: states only, so that the places come from the mesh.
+struct Scalar<'e, E> {
+    equation: &'e E,
+    stations: Vec<f64>,
 }
 
-/// u'' = 3/2 u^2, u(0) = 4, u(1) = 1 of Stoer and Bulirsch, whose solution is 4/(1+s)^2.
-/// The quadrature is the integral of u: 2.
-#[derive(Default)]
-struct Parabola;
-
-impl AtStations for Parabola {
-    fn place(&mut self, _: Vec<f64>) {}
+fn given((a, value): (usize, f64), z: &[f64; 2]) -> Condition<2> {
+    let mut gradient = [0.0; 2];
+    gradient[a] = 1.0;
+    Condition { residual: z[a] - value, gradient, drift: 0.0 }
 }
 
-impl Problem<2, 1> for Parabola {
+impl<E: Equation> Problem<2, 1> for Scalar<'_, E> {
     type Failure = Infallible;
 
     fn slopes(&mut self, z: &[[f64; 2]], out: &mut [Local<2, 1>]) -> Result<(), Infallible> {
-        for (&[u, v], out) in z.iter().zip(out) {
+        for ((&[u, v], out), s) in z.iter().zip(out).zip(&self.stations) {
+            let ([bend, by_u], [rate, rate_by_u]) = (self.equation.bend(*s, u), self.equation.rate(u));
             *out = Local {
-                slope: [v, 1.5 * u * u],
-                jacobian: [[0.0, 1.0], [3.0 * u, 0.0]],
-                rate: [u],
-                rate_gradient: [[1.0, 0.0]],
+                slope: [v, bend],
+                jacobian: [[0.0, 1.0], [by_u, 0.0]],
+                rate: [rate],
+                rate_gradient: [[rate_by_u, 0.0]],
             };
         }
         Ok(())
@@ -66,11 +54,43 @@ impl Problem<2, 1> for Parabola {
     }
 
     fn left(&self, z: &[f64; 2], out: &mut [Condition<2>; 2]) {
-        out[0] = Condition { residual: z[0] - 4.0, gradient: [1.0, 0.0], drift: 0.0 };
+        out[0] = given(self.equation.ends()[0], z);
     }
 
     fn right(&self, z: &[f64; 2], out: &mut [Condition<2>; 2]) {
-        out[0] = Condition { residual: z[0] - 1.0, gradient: [1.0, 0.0], drift: 0.0 };
+        out[0] = given(self.equation.ends()[1], z);
+    }
+}
+
+/// Newton from `solution`, undamped, until corrections stop falling. Returns the workspace at the end.
+fn newton<const M: usize>(equation: &impl Equation, solution: &mut Solution<2, M>) -> Collocation<2, M, 1> {
+    let mut system = Collocation::new();
+    let mut problem = Scalar { equation, stations: Vec::new() };
+    system.stations(&solution.mesh, &mut problem.stations);
+    let mut correction = Correction::default();
+    for _ in 0..12 {
+        system.linearise(&mut problem, solution, false).unwrap();
+        system.solve(solution, 0, &mut correction);
+        solution.add(&correction, 1.0);
+        if (0..2).all(|a| correction.largest(a) < 1e-14) {
+            break;
+        }
+    }
+    system.linearise(&mut problem, solution, false).unwrap();
+    system
+}
+
+/// u'' = 3/2 u^2, u(0) = 4, u(1) = 1 of Stoer and Bulirsch, whose solution is 4/(1+s)^2.
+/// The quadrature is the integral of u: 2.
+struct Parabola;
+
+impl Equation for Parabola {
+    fn bend(&self, _: f64, u: f64) -> [f64; 2] {
+        [1.5 * u * u, 3.0 * u]
+    }
+
+    fn ends(&self) -> [(usize, f64); 2] {
+        [(0, 4.0), (0, 1.0)]
     }
 }
 
@@ -85,7 +105,7 @@ fn parabola_errors<const M: usize>(elements: usize) -> [f64; 2] {
     for slopes in &mut solution.slopes {
         *slopes = [[-3.0, 0.0]; M];
     }
-    let system = newton::<2, M, 1, _>(&mut Parabola, &mut solution);
+    let system = newton(&Parabola, &mut solution);
     let nodes = solution.nodes.iter().zip(solution.mesh.nodes()).fold(0.0_f64, |worst, (z, s)| {
         worst.max((z[0] - 4.0 / ((1.0 + s) * (1.0 + s))).abs()).max((z[1] + 8.0 / (1.0 + s).powi(3)).abs())
     });
@@ -117,13 +137,6 @@ fn the_order_is_twice_the_number_of_stages() {
 /// u'' = k^2 u - (k^2 + pi^2) cos(pi s): one solution of it grows by e^k, another decays as much.
 struct Layers {
     k: f64,
-    stations: Vec<f64>,
-}
-
-impl AtStations for Layers {
-    fn place(&mut self, stations: Vec<f64>) {
-        self.stations = stations;
-    }
 }
 
 impl Layers {
@@ -134,34 +147,14 @@ impl Layers {
     }
 }
 
-impl Problem<2, 1> for Layers {
-    type Failure = Infallible;
-
-    fn slopes(&mut self, z: &[[f64; 2]], out: &mut [Local<2, 1>]) -> Result<(), Infallible> {
+impl Equation for Layers {
+    fn bend(&self, s: f64, u: f64) -> [f64; 2] {
         let square = self.k * self.k;
-        for ((&[u, v], out), s) in z.iter().zip(out).zip(&self.stations) {
-            *out = Local {
-                slope: [v, square * u - (square + PI * PI) * (PI * s).cos()],
-                jacobian: [[0.0, 1.0], [square, 0.0]],
-                rate: [u],
-                rate_gradient: [[1.0, 0.0]],
-            };
-        }
-        Ok(())
+        [square * u - (square + PI * PI) * (PI * s).cos(), square]
     }
 
-    fn drift(&mut self, _: &mut [[f64; 2]]) {}
-
-    fn left_count(&self) -> usize {
-        1
-    }
-
-    fn left(&self, z: &[f64; 2], out: &mut [Condition<2>; 2]) {
-        out[0] = Condition { residual: z[0] - self.exact(0.0)[0], gradient: [1.0, 0.0], drift: 0.0 };
-    }
-
-    fn right(&self, z: &[f64; 2], out: &mut [Condition<2>; 2]) {
-        out[0] = Condition { residual: z[0] - self.exact(1.0)[0], gradient: [1.0, 0.0], drift: 0.0 };
+    fn ends(&self) -> [(usize, f64); 2] {
+        [(0, self.exact(0.0)[0]), (0, self.exact(1.0)[0])]
     }
 }
 
@@ -169,13 +162,13 @@ impl Problem<2, 1> for Layers {
 #[test]
 fn growing_and_decaying_solutions_are_solved_together() {
     for (k, inner) in [(50.0, 20), (300.0, 40), (1000.0, 60)] {
-        let mut problem = Layers { k, stations: Vec::new() };
+        let problem = Layers { k };
         // Nodes spaced by a tenth of the layer in both layers, wide between.
         let mut breaks: Vec<f64> = (1..=inner).map(|i| f64::from(i) * 0.5 / k).collect();
         let mirrored: Vec<f64> = breaks.iter().rev().map(|s| 1.0 - s).collect();
         breaks.extend(mirrored);
         let mut solution = Solution::<2, 4>::constant(Mesh::uniform(64, &breaks), [0.0; 2]);
-        let system = newton::<2, 4, 1, _>(&mut problem, &mut solution);
+        let system = newton(&problem, &mut solution);
         let worst = solution.nodes.iter().zip(solution.mesh.nodes()).fold(0.0_f64, |worst, (z, s)| {
             let exact = problem.exact(*s);
             worst.max((z[0] - exact[0]).abs()).max((z[1] - exact[1]).abs() / k)
@@ -190,9 +183,9 @@ fn growing_and_decaying_solutions_are_solved_together() {
 #[test]
 fn the_determinant_does_not_overflow() {
     for k in [1.0_f64, 50.0, 1000.0] {
-        let mut problem = Layers { k, stations: Vec::new() };
+        let problem = Layers { k };
         let mut solution = Solution::<2, 4>::constant(Mesh::uniform(2000, &[]), [0.0; 2]);
-        let found = newton::<2, 4, 1, _>(&mut problem, &mut solution).determinant();
+        let found = newton(&problem, &mut solution).determinant();
         let log = k + (-(-2.0 * k).exp()).ln_1p() - (2.0 * k).ln();
         assert_eq!(found.sign, 1.0);
         assert!((found.log - log).abs() < 1e-8 * (1.0 + log.abs()), "k {k}: {} for {log}", found.log);
@@ -204,37 +197,17 @@ struct Column {
     lambda: f64,
 }
 
-impl AtStations for Column {
-    fn place(&mut self, _: Vec<f64>) {}
-}
-
-impl Problem<2, 1> for Column {
-    type Failure = Infallible;
-
-    fn slopes(&mut self, z: &[[f64; 2]], out: &mut [Local<2, 1>]) -> Result<(), Infallible> {
-        for (&[theta, m], out) in z.iter().zip(out) {
-            *out = Local {
-                slope: [m, -self.lambda * theta.sin()],
-                jacobian: [[0.0, 1.0], [-self.lambda * theta.cos(), 0.0]],
-                rate: [theta.cos()],
-                rate_gradient: [[-theta.sin(), 0.0]],
-            };
-        }
-        Ok(())
+impl Equation for Column {
+    fn bend(&self, _: f64, theta: f64) -> [f64; 2] {
+        [-self.lambda * theta.sin(), -self.lambda * theta.cos()]
     }
 
-    fn drift(&mut self, _: &mut [[f64; 2]]) {}
-
-    fn left_count(&self) -> usize {
-        1
+    fn rate(&self, theta: f64) -> [f64; 2] {
+        [theta.cos(), -theta.sin()]
     }
 
-    fn left(&self, z: &[f64; 2], out: &mut [Condition<2>; 2]) {
-        out[0] = Condition { residual: z[0], gradient: [1.0, 0.0], drift: 0.0 };
-    }
-
-    fn right(&self, z: &[f64; 2], out: &mut [Condition<2>; 2]) {
-        out[0] = Condition { residual: z[1], gradient: [0.0, 1.0], drift: 0.0 };
+    fn ends(&self) -> [(usize, f64); 2] {
+        [(0, 0.0), (1, 0.0)]
     }
 }
 
@@ -247,7 +220,7 @@ fn the_determinant_changes_sign_at_each_eigenvalue() {
             let lambda = share * eigenvalue;
             for elements in [20, 37] {
                 let mut solution = Solution::<2, 4>::constant(Mesh::uniform(elements, &[]), [0.0; 2]);
-                let found = newton::<2, 4, 1, _>(&mut Column { lambda }, &mut solution).determinant();
+                let found = newton(&Column { lambda }, &mut solution).determinant();
                 let want = lambda.sqrt().cos();
                 assert_eq!(found.sign, want.signum(), "mode {mode}, {share}, {elements} elements");
                 let off = (found.log.exp() - want.abs()).abs();
@@ -270,7 +243,7 @@ fn the_bent_column_has_the_sign_of_the_straight_one_below_its_load() {
         let slope = |a: usize| (solution.nodes[i + 1][a] - solution.nodes[i][a]) / solution.mesh.step(i);
         solution.slopes[i] = [[slope(0), slope(1)]; 4];
     }
-    let system = newton::<2, 4, 1, _>(&mut Column { lambda }, &mut solution);
+    let system = newton(&Column { lambda }, &mut solution);
     assert!(solution.nodes[10][0] > 0.5);
     assert_eq!(system.determinant().sign, 1.0);
     // m^2/2 - lambda cos(theta) is constant along it.

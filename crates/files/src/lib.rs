@@ -21,5 +21,5 @@ pub use arm_file::ArmFile;
 pub use error::{FileError, Place};
 pub use output::{WriteError, write_whole};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY};
-pub use results::{Failure, Solution, stations_csv};
+pub use results::{Failure, Note, Solution, stations_csv};
 pub use written::{Inputs, arm_to_toml};

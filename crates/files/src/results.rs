@@ -18,7 +18,7 @@ pub struct Solution<'a> {
     version: &'static str,
     converged: bool,
     stable: Option<bool>,
-    warnings: Vec<Note>,
+    warnings: &'a [Note],
     tip: TipOut,
     stations: StationsOut<'a>,
     cables: Vec<CableOut<'a>>,
@@ -41,10 +41,34 @@ pub struct Failure<'a> {
     last_good: Option<Solution<'a>>,
 }
 
-#[derive(Debug, Clone, Serialize)]
-struct Note {
-    kind: &'static str,
-    message: String,
+/// Something that should be known about an answer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Note {
+    /// The name in results: `surface_fold` and so on.
+    pub kind: &'static str,
+    /// The note in a sentence.
+    pub message: String,
+}
+
+impl Note {
+    /// All notes on `configuration`, of which a tip error of `tol` over the length was asked for: its
+    /// warnings, and `tolerance_missed` where the estimate is above that.
+    pub fn all(configuration: &Configuration, tol: f64) -> Vec<Self> {
+        let mut notes: Vec<Self> = configuration.warnings().iter().map(Self::from).collect();
+        let asked = tol * configuration.arm.length;
+        if configuration.error_estimate > asked {
+            let [found, asked] = [configuration.error_estimate, asked].map(|metres| 1e3 * metres);
+            let message = format!("the tip error, about {found:.1e} mm, is above the {asked:.1e} mm asked for");
+            notes.push(Self { kind: "tolerance_missed", message });
+        }
+        notes
+    }
+}
+
+impl From<&Warning> for Note {
+    fn from(warning: &Warning) -> Self {
+        Self { kind: warning.kind(), message: warning.message() }
+    }
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -127,8 +151,8 @@ impl From<&Verdict> for VerdictOut {
 }
 
 impl<'a> Solution<'a> {
-    /// Of a configuration with its `fold_margin` (the least (nu - beta R |mu|)/nu) and its warnings.
-    pub fn new(configuration: &'a Configuration, fold_margin: f64, warnings: &[Warning]) -> Self {
+    /// Of a configuration with its `fold_margin` (the least (nu - beta R |mu|)/nu) and the notes on it.
+    pub fn new(configuration: &'a Configuration, fold_margin: f64, notes: &'a [Note]) -> Self {
         let Configuration {
             arm, stations: s, cables, base_reaction, unmet, error_estimate, stable, statistics, ..
         } = configuration;
@@ -138,7 +162,7 @@ impl<'a> Solution<'a> {
             version: env!("CARGO_PKG_VERSION"),
             converged: true,
             stable: *stable,
-            warnings: warnings.iter().map(|w| Note { kind: w.kind(), message: w.message() }).collect(),
+            warnings: notes,
             tip: TipOut { x: tip.x, y: tip.y, theta: tip.theta, alpha: tip.alpha },
             stations: StationsOut {
                 s: &s.s,
@@ -184,15 +208,15 @@ impl<'a> Solution<'a> {
 }
 
 impl<'a> Failure<'a> {
-    /// Of a verdict, with the fold margin and the warnings of its last good configuration (not used
+    /// Of a verdict, with the fold margin of its last good configuration and the notes on it (not used
     /// if there is none).
-    pub fn new(failure: &'a NoEquilibrium, fold_margin: f64, warnings: &[Warning]) -> Self {
+    pub fn new(failure: &'a NoEquilibrium, fold_margin: f64, notes: &'a [Note]) -> Self {
         Self {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             converged: false,
             verdict: (&failure.verdict).into(),
-            last_good: failure.last_good.as_ref().map(|c| Solution::new(c, fold_margin, warnings)),
+            last_good: failure.last_good.as_ref().map(|c| Solution::new(c, fold_margin, notes)),
         }
     }
 

@@ -1,20 +1,20 @@
 //! Files that are read, with their defaults, units and overrides.
 
+mod common;
+
 use hydrostat::{
     Arm, Cable, Cavity, Flow, FlowLaw, FlowSurface, Gravity, Material, Profile, Readings, Reference, Support, Volume,
 };
 use hydrostat_files::{ArmFile, shipped};
 
-const ARM: &str = "\
-[arm]
-length = 0.2
-radius = { base = 0.010, tip = 0.002 }
-[material]
-young = 110e3
-";
+use common::ARM;
 
 fn file(text: &str) -> ArmFile {
     ArmFile::parse(text, "dir/case.toml").unwrap()
+}
+
+fn shipped_file(name: &str) -> ArmFile {
+    ArmFile::parse(shipped::get(name).unwrap(), name).unwrap()
 }
 
 fn arm(text: &str) -> Arm {
@@ -146,7 +146,7 @@ fn shipped_arms_are_arms() {
     let names: Vec<&str> = shipped::names().collect();
     assert_eq!(names, ["paper", "silicone", "multi-bending", "octopus"]);
     for name in names {
-        let mut file = ArmFile::parse(shipped::get(name).unwrap(), name).unwrap();
+        let mut file = shipped_file(name);
         let arm = file.arm().unwrap();
         assert_eq!(arm.name, name);
         assert_eq!(arm.flow.law, FlowLaw::Momentum);
@@ -161,7 +161,7 @@ fn shipped_arms_are_arms() {
 
 #[test]
 fn the_shipped_numbers() {
-    let get = |name: &str| ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap();
+    let get = |name: &str| shipped_file(name).arm().unwrap();
     let paper = get("paper");
     assert_eq!((paper.length, paper.radius, paper.density), (0.2, Profile::linear(0.010, 0.0008), 1080.0));
     assert_eq!(paper.material, Material::Coefficients { c1: 500e3.into(), c2: (500e3 / 3.0).into(), c3: 150.0.into() });

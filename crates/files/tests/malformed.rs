@@ -1,16 +1,11 @@
 //! Files that are refused: every message names the file, the line, the key, what was expected and
 //! what was found.
 
+mod common;
+
 use hydrostat_files::{ArmFile, FileError, Place};
 
-/// Five lines that make an arm; a case goes on from line 6.
-const ARM: &str = "\
-[arm]
-length = 0.2
-radius = { base = 0.010, tip = 0.002 }
-[material]
-young = 110e3
-";
+use common::ARM;
 
 fn refusal(text: &str) -> FileError {
     match ArmFile::parse(text, "case.toml").and_then(|file| file.arm()) {

@@ -1,10 +1,12 @@
 //! JSON and CSV of results, and files on disk.
 
+use std::path::{Path, PathBuf};
+
 use hydrostat::{
     Arm, Cable, CableState, Configuration, NoEquilibrium, Phase, Profile, Stations, Statistics, Verdict, VerdictKind,
     Warning, Wrench,
 };
-use hydrostat_files::{ArmFile, Failure, Solution, stations_csv, write_whole};
+use hydrostat_files::{ArmFile, Failure, Note, Solution, stations_csv, write_whole};
 use serde_json::{Value, json};
 
 fn configuration() -> Configuration {
@@ -40,7 +42,8 @@ fn configuration() -> Configuration {
 #[test]
 fn the_document_of_an_answer() {
     let mut answer = configuration();
-    let text = Solution::new(&answer, 0.75, &[Warning::SealedCavity]).to_json().unwrap();
+    let notes = [Note::from(&Warning::SealedCavity)];
+    let text = Solution::new(&answer, 0.75, &notes).to_json().unwrap();
     assert!(!text.contains("NaN") && !text.contains('\n'));
     assert!(text.starts_with("{\"schema\":1,\"version\":\""));
     let got: Value = serde_json::from_str(&text).unwrap();
@@ -80,6 +83,21 @@ fn the_document_of_an_answer() {
     let got = serde_json::to_value(Solution::new(&answer, -0.1, &[])).unwrap();
     assert_eq!((&got["stable"], &got["warnings"]), (&json!(false), &json!([])));
     assert_eq!(got["unmet"], json!({ "force": [0.0, 0.5], "moment": 0.25 }));
+}
+
+#[test]
+fn a_tolerance_that_was_missed_is_noted() {
+    let mut answer = configuration();
+    answer.error_estimate = 1e-9;
+    let kinds = |answer: &Configuration, tol: f64| -> Vec<&str> {
+        Note::all(answer, tol).into_iter().map(|note| note.kind).collect()
+    };
+    // The arm is 0.2 m long.
+    let known = kinds(&answer, 6e-9);
+    assert!(!known.contains(&"tolerance_missed"), "{known:?}");
+    assert_eq!(kinds(&answer, 4e-9), [known, vec!["tolerance_missed"]].concat());
+    let last = Note::all(&answer, 4e-9).pop().unwrap();
+    assert_eq!(last.message, "the tip error, about 1.0e-6 mm, is above the 8.0e-7 mm asked for");
 }
 
 #[test]
@@ -142,19 +160,36 @@ fn rows_of_numbers_that_read_back() {
     assert_eq!(stations_csv(&ragged).lines().count(), 3);
 }
 
+/// A directory of a test, which goes with it.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
 #[test]
 fn files_appear_whole_or_not_at_all() {
-    let dir = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("write-{}", std::process::id()));
-    std::fs::create_dir_all(&dir).unwrap();
+    let scratch = Scratch::new("write");
+    let dir = &scratch.0;
     let target = dir.join("out.json");
     write_whole(&target, b"one").unwrap();
     write_whole(&target, b"two").unwrap();
     assert_eq!(std::fs::read(&target).unwrap(), b"two");
-    assert_eq!(std::fs::read_dir(&dir).unwrap().count(), 1, "nothing else is left");
+    assert_eq!(std::fs::read_dir(dir).unwrap().count(), 1, "nothing else is left");
 
     let missing = write_whole(dir.join("no/out.json"), b"x").unwrap_err().to_string();
     assert!(missing.contains("no/out.json") && missing.contains("make the directory"), "{missing}");
-    let directory = write_whole(&dir, b"x").unwrap_err().to_string();
+    let directory = write_whole(dir, b"x").unwrap_err().to_string();
     assert!(directory.contains("name a file in that directory"), "{directory}");
     assert!(write_whole("", b"x").is_err());
     assert!(write_whole("/", b"x").is_err());
@@ -168,15 +203,14 @@ fn files_appear_whole_or_not_at_all() {
     let locked = write_whole(&target, b"three").unwrap_err().to_string();
     assert!(locked.contains("that you may write to"), "{locked}");
     assert_eq!(std::fs::read(&target).unwrap(), b"two");
-    assert_eq!(std::fs::read_dir(&dir).unwrap().count(), 1, "nothing half-written is left");
-    std::fs::remove_dir_all(&dir).unwrap();
+    assert_eq!(std::fs::read_dir(dir).unwrap().count(), 1, "nothing half-written is left");
 }
 
 #[cfg(unix)]
 #[test]
 fn links_keep_pointing_and_devices_stay() {
-    let dir = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("link-{}", std::process::id()));
-    std::fs::create_dir_all(&dir).unwrap();
+    let scratch = Scratch::new("link");
+    let dir = &scratch.0;
     let (target, link) = (dir.join("target"), dir.join("link"));
     std::fs::write(&target, "old").unwrap();
     std::os::unix::fs::symlink(&target, &link).unwrap();
@@ -185,5 +219,4 @@ fn links_keep_pointing_and_devices_stay() {
     assert_eq!(std::fs::read(&target).unwrap(), b"new");
     write_whole("/dev/null", b"x").unwrap();
     assert!(!std::fs::metadata("/dev/null").unwrap().is_file());
-    std::fs::remove_dir_all(&dir).unwrap();
 }

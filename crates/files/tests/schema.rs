@@ -29,6 +29,10 @@ fn it_is_a_schema() {
 #[test]
 fn parser_and_schema_take_the_same() {
     let validator = jsonschema::validator_for(&schema::arm_schema()).unwrap();
+    let check = |text: &str, want: bool| {
+        assert_eq!(ArmFile::parse(text, "x").unwrap().arm().is_ok(), want, "{text}");
+        assert_eq!(valid(&validator, text), want, "{text}");
+    };
     let all = ["momentum", "quadratic-drag"].map(|law| format!("[flow]\nlaw = \"{law}\"\ncn = 1\nct = 0.1"));
     let good = [
         "",
@@ -45,9 +49,7 @@ fn parser_and_schema_take_the_same() {
         "[model]\nclosure = \"literal\"\nvolume = \"none\"\nsupport = \"unstrained-base\"",
     ];
     for text in good {
-        let text = format!("{ARM}{MATERIAL}{text}");
-        assert!(ArmFile::parse(&text, "x").unwrap().arm().is_ok(), "{text}");
-        assert!(valid(&validator, &text), "{text}");
+        check(&format!("{ARM}{MATERIAL}{text}"), true);
     }
     let bad = [
         "nme = \"x\"",
@@ -86,9 +88,7 @@ fn parser_and_schema_take_the_same() {
         "[gravity]\nacceleration = \"9.81\"",
     ];
     for text in bad {
-        let text = format!("{ARM}{MATERIAL}{text}");
-        assert!(ArmFile::parse(&text, "x").unwrap().arm().is_err(), "{text}");
-        assert!(!valid(&validator, &text), "{text}");
+        check(&format!("{ARM}{MATERIAL}{text}"), false);
     }
     let whole = [
         ("", false),
@@ -109,8 +109,7 @@ fn parser_and_schema_take_the_same() {
         ("arm = { length = 1, radius = 1, base = { z = 1 } }\n[material]\nyoung = 1", false),
     ];
     for (text, want) in whole {
-        assert_eq!(ArmFile::parse(text, "x").unwrap().arm().is_ok(), want, "{text}");
-        assert_eq!(valid(&validator, text), want, "{text}");
+        check(text, want);
     }
 }
 

@@ -313,7 +313,11 @@ pub enum ArmError {
         source: TableError,
     },
     /// A number of tensions that is not the number of cables.
-    #[error("the arm has {cables} cables, {given} tensions were given")]
+    #[error(
+        "the arm has {cables} cable{}, {given} tension{} given",
+        if *.cables == 1 { "" } else { "s" },
+        if *.given == 1 { " was" } else { "s were" }
+    )]
     TensionCount {
         /// Cables of the arm.
         cables: usize,

@@ -69,7 +69,7 @@ pub(crate) struct Pull<R> {
 /// n = n_f - sum T t_c, m = m_f + sum T y beta (t_c . a).
 ///
 /// `beta_slope` and `beta_curvature` are beta' and beta'' along the arm, held fixed in the
-/// derivatives by strain (they follow by iteration, section 8.1 of the model notes).
+/// derivatives by strain (they follow by iteration, `docs/model.md`, section 8, item 1).
 #[inline(always)]
 pub(crate) fn pull<R: Real>(
     tension: R,

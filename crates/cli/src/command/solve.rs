@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hydrostat::{Configuration, NoEquilibrium, Options, SolveError, Solver, Verdict};
 use hydrostat_figures::arm_figure;
-use hydrostat_files::{Failure, Solution, stations_csv, write_whole};
+use hydrostat_files::{Failure, Note, Solution, stations_csv, write_whole};
 
 use super::summary::summary;
 use crate::args::{Format, SolveArgs, is_png};
@@ -45,22 +45,17 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
     if let Some(plot) = &args.plot {
         draw(&configuration, None, plot)?;
     }
-    let warnings = configuration.warnings();
+    let notes = Note::all(&configuration, args.tol);
     let margin = configuration.fold_margin();
     resample(args, &mut configuration);
     let text = match args.format {
         Format::Text => summary(&configuration),
         Format::Csv => stations_csv(&configuration.stations),
-        Format::Json => line(Solution::new(&configuration, margin.value, &warnings).to_json()?),
+        Format::Json => line(Solution::new(&configuration, margin.value, &notes).to_json()?),
     };
     output::put(args.output.as_deref(), &text)?;
-    for warning in &warnings {
-        eprintln!("warning: {}", warning.message());
-    }
-    let asked = args.tol * configuration.arm.length;
-    if configuration.error_estimate > asked {
-        let [found, asked] = [configuration.error_estimate, asked].map(|metres| 1e3 * metres);
-        eprintln!("warning: the tip error, about {found:.1e} mm, is above the {asked:.1e} mm asked for by --tol");
+    for note in &notes {
+        eprintln!("warning: {}", note.message);
     }
     if configuration.stable == Some(false) {
         eprintln!("warning: this equilibrium is unstable: the arm would leave it at the slightest push");
@@ -76,12 +71,13 @@ fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium) -> anyhow::Resul
         (None, _) => {}
     }
     if args.format == Format::Json {
-        let warnings = failure.last_good.as_ref().map(Configuration::warnings).unwrap_or_default();
+        // A tolerance was asked of the answer, not of the last good shape.
+        let notes = failure.last_good.as_ref().map(|c| Note::all(c, f64::INFINITY)).unwrap_or_default();
         let margin = failure.last_good.as_ref().map_or(f64::NAN, |c| c.fold_margin().value);
         if let Some(last_good) = &mut failure.last_good {
             resample(args, last_good);
         }
-        let text = line(Failure::new(&failure, margin, &warnings).to_json()?);
+        let text = line(Failure::new(&failure, margin, &notes).to_json()?);
         output::put(args.output.as_deref(), &text)?;
     }
     Ok(())

@@ -1,0 +1,127 @@
+//! `docs/interface.md` says what the parser, the schema and the results do.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use hydrostat::VerdictKind::{CableFold, LimitPoint, LoadJump, NoSectionSolution, NotFound, SectionCrushed};
+use hydrostat::{Phase, Stations};
+use hydrostat_files::{ArmFile, Dimension, schema, stations_csv};
+use serde_json::Value;
+
+const PAGE: &str = include_str!("../../../docs/interface.md");
+
+/// The blocks of the page in a language.
+fn blocks(language: &str) -> Vec<&'static str> {
+    let fence = format!("```{language}\n");
+    PAGE.split(fence.as_str()).skip(1).map(|rest| rest.split("```").next().unwrap()).collect()
+}
+
+/// The part of the page below a heading of the third level.
+fn part(heading: &str) -> &'static str {
+    let start = format!("### {heading}\n");
+    let rest = PAGE.split_once(&start).unwrap_or_else(|| panic!("no heading {heading}")).1;
+    rest.split("\n#").next().unwrap()
+}
+
+/// The rows of a part's tables by their key, without it.
+fn rows(part: &'static str) -> BTreeMap<&'static str, Vec<&'static str>> {
+    let rows = part.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` | "));
+    rows.map(|(key, cells)| (key, cells.trim_end_matches('|').split(" | ").map(str::trim).collect())).collect()
+}
+
+/// Numbers are equal whether they are written as integers or not.
+fn plain(value: &Value) -> Value {
+    match value {
+        Value::Number(number) => Value::from(number.as_f64().unwrap()),
+        Value::Array(values) => values.iter().map(plain).collect(),
+        Value::Object(fields) => fields.iter().map(|(key, value)| (key.clone(), plain(value))).collect(),
+        other => other.clone(),
+    }
+}
+
+#[test]
+fn its_arm_files_are_read() {
+    let files = blocks("toml");
+    assert_eq!(files.len(), 3);
+    for text in files {
+        ArmFile::parse(text, "interface.md").unwrap().arm().unwrap_or_else(|e| panic!("{e}\n{text}"));
+    }
+}
+
+/// Every key of the schema has a row, no row has another, and defaults are those of the schema.
+#[test]
+fn its_tables_are_the_schema() {
+    let schema = schema::arm_schema();
+    let tables = schema["properties"].as_object().unwrap();
+    let documented = rows(part("The file"));
+    assert!(documented.keys().copied().eq(tables.keys().map(String::as_str).collect::<BTreeSet<_>>()));
+    let mut defaults = 0;
+    for (table, properties) in tables {
+        let (heading, keys) = match &properties["items"]["properties"] {
+            Value::Object(keys) => (format!("`[[{table}]]`"), keys),
+            _ => match &properties["properties"] {
+                Value::Object(keys) => (format!("`[{table}]`"), keys),
+                _ => continue,
+            },
+        };
+        let mut documented = rows(part(&heading));
+        for (key, property) in keys {
+            let cells = documented.remove(key.as_str()).unwrap_or_else(|| panic!("{heading}: no row for {key}"));
+            for word in property["enum"].as_array().into_iter().flatten().filter_map(Value::as_str) {
+                assert!(cells[0].contains(&format!("`\"{word}\"`")), "{heading} {key}: {word} in `{}`", cells[0]);
+            }
+            if let Some(default) = property.get("default") {
+                let text = format!("x = {}", cells[1].trim_matches('`'));
+                let written: Value = toml::from_str(&text).unwrap_or_else(|e| panic!("{heading} {key}: {e}"));
+                assert_eq!(plain(&written["x"]), plain(default), "{heading} {key}");
+                defaults += 1;
+            }
+        }
+        assert!(documented.is_empty(), "{heading}: {documented:?}");
+    }
+    assert_eq!(defaults, 25);
+}
+
+/// The file with every key has every key, but for those that exclude each other.
+#[test]
+fn its_largest_file_has_every_key() {
+    let files = blocks("toml");
+    let read = |text: &str| toml::from_str::<Value>(text).unwrap();
+    let (largest, other) = (read(files[1]), read(files[2]));
+    for (table, properties) in schema::arm_schema()["properties"].as_object().unwrap() {
+        assert!(largest.get(table).is_some(), "{table}");
+        let keys = properties["properties"].as_object().or(properties["items"]["properties"].as_object());
+        for key in keys.into_iter().flatten().map(|(key, _)| key) {
+            let one = largest[table].get(key).or(largest[table][0].get(key)).or(other[table].get(key));
+            assert!(one.is_some(), "{table}.{key}");
+        }
+    }
+}
+
+#[test]
+fn its_units_are_those_of_the_parser() {
+    for dimension in Dimension::ALL.into_iter().filter(|d| *d != Dimension::Number) {
+        let name = dimension.name().trim_start_matches("an ").trim_start_matches("a ");
+        let start = format!("| {name} | ");
+        let row = PAGE.lines().find(|line| line.starts_with(&start)).unwrap_or_else(|| panic!("no row for {name}"));
+        for unit in row.split('`').skip(1).step_by(2) {
+            assert!(dimension.parse(&format!("1 {unit}")).is_ok(), "{name}: {unit}");
+        }
+        let expected = dimension.expected();
+        let units = expected.rsplit("with one of ").next().unwrap().trim_end_matches(')').split(", ");
+        for unit in units {
+            assert!(row.contains(&format!("| {unit} |")) || row.contains(&format!("`{unit}`")), "{name}: {unit}");
+        }
+    }
+}
+
+#[test]
+fn its_names_are_those_of_the_results() {
+    let header = stations_csv(&Stations::default());
+    assert_eq!(blocks("csv"), [header]);
+    for kind in [CableFold, SectionCrushed, NoSectionSolution, LimitPoint, LoadJump, NotFound] {
+        assert!(PAGE.contains(&format!("\n| `{}` | ", kind.name())), "{}", kind.name());
+    }
+    for phase in [Phase::Loads, Phase::Tension] {
+        assert!(PAGE.contains(&format!("`{}`: ", phase.name())), "{}", phase.name());
+    }
+}
