@@ -116,18 +116,18 @@ fn inverse_in_order<const N: usize>(given: &Block<N>) -> Option<Block<N>> {
             fine &= pivot >= SMALL_PIVOT * m[i][k].abs();
         }
         let scale = 1.0 / m[k][k];
-        let mut own = m[k];
-        own[k] = 1.0;
+        // Column k is replaced by choice, not by storing into a row: a row that was stored in
+        // parts cannot be loaded as one vector until all of it has reached the cache.
+        let mut own = [0.0; N];
         for c in 0..N {
-            own[c] *= scale;
+            own[c] = scale * if c == k { 1.0 } else { m[k][c] };
         }
         for i in 0..N {
             if i != k {
-                let mut row = m[i];
-                let f = row[k];
-                row[k] = 0.0;
+                let f = m[i][k];
+                let mut row = [0.0; N];
                 for c in 0..N {
-                    row[c] -= f * own[c];
+                    row[c] = if c == k { 0.0 } else { m[i][c] } - f * own[c];
                 }
                 m[i] = row;
             }
