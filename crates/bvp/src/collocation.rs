@@ -6,7 +6,7 @@
 //! node. Carrying rows (rather than solutions) is what keeps problems with both fast growing and
 //! fast decaying solutions stable, where shooting from either end overflows.
 
-use crate::block::{Block, apply, inverse, product, subtract_product};
+use crate::block::{Block, add_scaled, apply, inverse, product, scaled, subtract_applied, subtract_product};
 use crate::gauss::Gauss;
 use crate::mesh::Mesh;
 use crate::problem::{Condition, Local, Problem};
@@ -88,8 +88,8 @@ impl<const N: usize, const M: usize> Solution<N, M> {
 struct Element<const N: usize, const M: usize> {
     /// d (stage slopes) / d z_i.
     response: [Block<N>; M],
-    /// Stage slopes due to the residual (row 0) and to the parameter (row 1), as columns 0 and 1.
-    load: [Block<N>; M],
+    /// Stage slopes due to the residual (0) and to the parameter (1).
+    load: [[[f64; N]; M]; 2],
     /// Transition `dz_{i+1} = g dz_i + affine[0] + affine[1] dlambda`.
     transition: Block<N>,
     affine: [[f64; N]; 2],
@@ -176,6 +176,19 @@ pub struct Collocation<const N: usize, const M: usize, const Q: usize> {
     /// Inverse of the left conditions joined with the rows at node 0.
     start: Block<N>,
     left_load: [[f64; 2]; N],
+    adjoint: Adjoint<N>,
+}
+
+/// Gradients of one total, kept for their memory.
+#[derive(Debug, Clone, Default)]
+#[allow(clippy::struct_field_names, reason = "what the gradients are by")]
+struct Adjoint<const N: usize> {
+    /// By the affine part of each element.
+    by_affine: Vec<[f64; N]>,
+    /// By the loads of the rows of each node.
+    by_rows: Vec<[f64; N]>,
+    /// By the state at each node.
+    by_node: Vec<[f64; N]>,
 }
 
 impl<const N: usize, const M: usize, const Q: usize> Default for Collocation<N, M, Q> {
@@ -198,6 +211,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             determinant: Determinant { sign: 0.0, log: 0.0 },
             start: [[0.0; N]; N],
             left_load: [[0.0; 2]; N],
+            adjoint: Adjoint::default(),
         }
     }
 
@@ -263,20 +277,22 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     ) -> Result<(), RoundError<P::Failure>> {
         self.evaluate(problem, solution).map_err(RoundError::Slopes)?;
         let n = solution.mesh.elements();
-        self.drifts.resize(n * M, [0.0; N]);
         if parameter {
+            self.drifts.resize(n * M, [0.0; N]);
             problem.drift(&mut self.drifts);
         }
-        self.condense(solution, parameter).map_err(RoundError::Singular)?;
+        let condensed = if parameter { self.condense::<2>(solution) } else { self.condense::<1>(solution) };
+        condensed.map_err(RoundError::Singular)?;
         self.carry_rows(problem, solution).map_err(RoundError::Singular)
     }
 
+    /// Eliminates the stages of every element, with the first `C` columns of the loads.
     #[inline(always)]
-    fn condense(&mut self, solution: &Solution<N, M>, parameter: bool) -> Result<(), Singular> {
+    fn condense<const C: usize>(&mut self, solution: &Solution<N, M>) -> Result<(), Singular> {
         let n = solution.mesh.elements();
         let empty = Element {
             response: [[[0.0; N]; N]; M],
-            load: [[[0.0; N]; N]; M],
+            load: [[[0.0; N]; M]; 2],
             transition: [[0.0; N]; N],
             affine: [[0.0; N]; 2],
         };
@@ -285,21 +301,17 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             let h = solution.mesh.step(i);
             let k = &solution.slopes[i];
             let locals = &self.locals[i * M..(i + 1) * M];
-            let drifts = &self.drifts[i * M..(i + 1) * M];
             let element = &mut self.elements[i];
-            let Element { response, load, .. } = element;
+            let mut load = [[[0.0; N]; M]; C];
             for j in 0..M {
-                response[j] = locals[j].jacobian;
                 for a in 0..N {
-                    let row = &mut load[j][a];
-                    *row = [0.0; N];
-                    row[0] = locals[j].slope[a] - k[j][a];
-                    if N > 1 && parameter {
-                        row[1] = drifts[j][a];
-                    }
+                    load[0][j][a] = locals[j].slope[a] - k[j][a];
+                }
+                if C > 1 {
+                    load[1][j] = self.drifts[i * M + j];
                 }
             }
-            if !eliminate(h, &self.gauss, locals, response, load) {
+            if !eliminate(h, &self.gauss, locals, &mut element.response, &mut load) {
                 return Err(Singular::Element(i));
             }
             let mut transition = [[0.0; N]; N];
@@ -310,16 +322,15 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             }
             for j in 0..M {
                 let w = h * self.gauss.b[j];
+                add_scaled(&mut transition, w, &element.response[j]);
                 for a in 0..N {
-                    for c in 0..N {
-                        transition[a][c] += w * response[j][a][c];
-                    }
-                    affine[0][a] += w * (k[j][a] + load[j][a][0]);
-                    if N > 1 {
-                        affine[1][a] += w * load[j][a][1];
+                    affine[0][a] += w * (k[j][a] + load[0][j][a]);
+                    if C > 1 {
+                        affine[1][a] += w * load[1][j][a];
                     }
                 }
             }
+            element.load[..C].copy_from_slice(&load);
             element.transition = transition;
             element.affine = affine;
         }
@@ -334,7 +345,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         self.right_count = right_count;
         let blank = Rows { rows: [[0.0; N]; N], load: [[0.0; 2]; N], pivot: [0; N], reduction: [[0.0; N]; N] };
         self.rows.resize(n + 1, blank);
-        let mut determinant = Determinant { sign: 1.0, log: 0.0 };
+        let mut determinant = Product::new();
 
         let mut conditions = [Condition::default(); N];
         problem.right(&solution.nodes[n], &mut conditions);
@@ -343,24 +354,27 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             carried.rows[r] = conditions[r].gradient;
             carried.load[r] = [-conditions[r].residual, -conditions[r].drift];
         }
-        self.rows[n] = reduce(carried, right_count, &mut determinant).ok_or(Singular::System)?;
+        self.rows[n] = reduce(carried, right_count, None, &mut determinant).ok_or(Singular::System)?;
         for i in (0..n).rev() {
             let next = &self.rows[i + 1];
             let element = &self.elements[i];
             let mut carried = blank;
             for r in 0..right_count {
                 let row = &next.rows[r];
+                let mut own = [0.0; N];
+                let mut load = next.load[r];
                 for b in 0..N {
                     for c in 0..N {
-                        carried.rows[r][c] += row[b] * element.transition[b][c];
+                        own[c] += row[b] * element.transition[b][c];
                     }
-                    carried.load[r][0] -= row[b] * element.affine[0][b];
-                    carried.load[r][1] -= row[b] * element.affine[1][b];
+                    load[0] -= row[b] * element.affine[0][b];
+                    load[1] -= row[b] * element.affine[1][b];
                 }
-                carried.load[r][0] += next.load[r][0];
-                carried.load[r][1] += next.load[r][1];
+                carried.rows[r] = own;
+                carried.load[r] = load;
             }
-            self.rows[i] = reduce(carried, right_count, &mut determinant).ok_or(Singular::System)?;
+            let pivots = Some(&next.pivot);
+            self.rows[i] = reduce(carried, right_count, pivots, &mut determinant).ok_or(Singular::System)?;
         }
 
         let mut conditions = [Condition::default(); N];
@@ -371,11 +385,9 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             self.left_load[r] = [-conditions[r].residual, -conditions[r].drift];
         }
         joined[left_count..N].copy_from_slice(&self.rows[0].rows[..right_count]);
-        let (sign, log) = sign_and_log(joined);
-        determinant.sign *= sign;
-        determinant.log += log;
-        self.determinant = determinant;
-        self.start = inverse(joined, 1e-300).ok_or(Singular::System)?;
+        multiply_by_determinant(joined, &mut determinant);
+        self.determinant = determinant.whole();
+        self.start = inverse(&joined, 1e-300).ok_or(Singular::System)?;
         Ok(())
     }
 
@@ -404,13 +416,14 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             // The carried rows, not the transition, decide the components they pivot on: this
             // stops what grows towards s = 1 from being amplified.
             let rows = &self.rows[i + 1];
+            for r in 0..self.right_count {
+                next[rows.pivot[r]] = 0.0;
+            }
             let mut pivots = [0.0; N];
             for r in 0..self.right_count {
                 let mut v = rows.load[r][column];
                 for c in 0..N {
-                    if !rows.pivot[..self.right_count].contains(&c) {
-                        v -= rows.rows[r][c] * next[c];
-                    }
+                    v -= rows.rows[r][c] * next[c];
                 }
                 pivots[r] = v;
             }
@@ -424,7 +437,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             for j in 0..M {
                 let mut k = apply(&element.response[j], &z);
                 for a in 0..N {
-                    k[a] += element.load[j][a][column];
+                    k[a] += element.load[column][j][a];
                 }
                 out.slopes[i][j] = k;
             }
@@ -480,59 +493,69 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     /// What each element's residual contributes to the Newton correction of the totals, as the sum
     /// over the `Q` totals of absolute values: the adjoint of [`Collocation::solve`]. To it comes
     /// the change of each element's own quadratures against `before`.
-    pub fn contributions(&self, mesh: &Mesh, before: &[[f64; Q]], out: &mut Vec<f64>) {
+    #[inline(always)]
+    pub fn contributions(&mut self, mesh: &Mesh, before: &[[f64; Q]], out: &mut Vec<f64>) {
         let n = mesh.elements();
         out.clear();
         out.resize(n, 0.0);
         let nr = self.right_count;
         let nl = N - nr;
-        // gradient of a total by the affine part of each element, and by the row loads of each node
-        let mut by_affine = vec![[0.0; N]; n];
-        let mut by_rows = vec![[0.0; N]; n + 1];
-        let mut by_node = vec![[0.0; N]; n + 1];
+        let Adjoint { by_affine, by_rows, by_node } = &mut self.adjoint;
         for q in 0..Q {
-            for v in by_affine.iter_mut().chain(&mut by_rows).chain(&mut by_node) {
-                *v = [0.0; N];
+            for (v, length) in [(&mut *by_affine, n), (&mut *by_rows, n + 1), (&mut *by_node, n + 1)] {
+                v.clear();
+                v.resize(length, [0.0; N]);
             }
             for i in 0..n {
                 let (element, h) = (&self.elements[i], mesh.step(i));
                 let mut own = -before[i][q];
+                let mut by_z = [0.0; N];
+                let mut by_slopes = [[0.0; N]; M];
                 for j in 0..M {
                     let weight = h * self.gauss.b[j];
-                    own += weight * self.locals[i * M + j].rate[q];
-                    let gradient = &self.locals[i * M + j].rate_gradient[q];
+                    let local = &self.locals[i * M + j];
+                    own += weight * local.rate[q];
+                    let mut gradient = local.rate_gradient[q];
                     for a in 0..N {
-                        by_node[i][a] += weight * gradient[a];
-                        let (mut own_a, w) = (0.0, weight * gradient[a] * h);
-                        for l in 0..M {
-                            own_a += self.gauss.a[j][l] * element.load[l][a][0];
-                            for c in 0..N {
-                                by_node[i][c] += w * self.gauss.a[j][l] * element.response[l][a][c];
-                            }
+                        gradient[a] *= weight;
+                        by_z[a] += gradient[a];
+                    }
+                    for l in 0..M {
+                        for a in 0..N {
+                            by_slopes[l][a] += h * self.gauss.a[j][l] * gradient[a];
                         }
-                        own += w * own_a;
                     }
                 }
+                for l in 0..M {
+                    for a in 0..N {
+                        own += by_slopes[l][a] * element.load[0][l][a];
+                        for c in 0..N {
+                            by_z[c] += by_slopes[l][a] * element.response[l][a][c];
+                        }
+                    }
+                }
+                by_node[i] = by_z;
                 out[i] += own.abs();
             }
             for i in (0..n).rev() {
                 let rows = &self.rows[i + 1];
-                let mut bar = by_node[i + 1];
+                // What the carried rows decide does not come through the transition.
+                let given = by_node[i + 1];
+                let mut bar = given;
                 for r in 0..nr {
-                    let p = rows.pivot[r];
-                    by_rows[i + 1][r] += bar[p];
+                    let decided = given[rows.pivot[r]];
+                    by_rows[i + 1][r] += decided;
                     for c in 0..N {
-                        if !rows.pivot[..nr].contains(&c) {
-                            bar[c] -= rows.rows[r][c] * bar[p];
-                        }
+                        bar[c] -= rows.rows[r][c] * decided;
                     }
                 }
+                for r in 0..nr {
+                    bar[rows.pivot[r]] = 0.0;
+                }
                 for a in 0..N {
-                    if !rows.pivot[..nr].contains(&a) {
-                        by_affine[i][a] += bar[a];
-                        for c in 0..N {
-                            by_node[i][c] += self.elements[i].transition[a][c] * bar[a];
-                        }
+                    by_affine[i][a] += bar[a];
+                    for c in 0..N {
+                        by_node[i][c] += self.elements[i].transition[a][c] * bar[a];
                     }
                 }
             }
@@ -544,7 +567,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             for i in 0..n {
                 let mut carried = [0.0; N];
                 for r in 0..nr {
-                    for c in 0..nr {
+                    for c in 0..N {
                         carried[c] += self.rows[i].reduction[r][c] * by_rows[i][r];
                     }
                 }
@@ -554,7 +577,10 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
                         by_affine[i][a] -= self.rows[i + 1].rows[r][a] * carried[r];
                     }
                 }
-                let total: f64 = (0..N).map(|a| by_affine[i][a] * self.elements[i].affine[0][a]).sum();
+                let mut total = 0.0;
+                for a in 0..N {
+                    total += by_affine[i][a] * self.elements[i].affine[0][a];
+                }
                 out[i] += total.abs();
             }
         }
@@ -562,65 +588,229 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
 }
 
 /// Eliminates the stages: on return `response` and `load` hold the stage slopes they lead to.
+///
+/// Of `load`, the columns are the right sides given; `response` is written only.
 #[inline(always)]
-pub(crate) fn eliminate<const N: usize, const M: usize, const Q: usize>(
+pub(crate) fn eliminate<const N: usize, const M: usize, const Q: usize, const C: usize>(
     h: f64,
     gauss: &Gauss<M>,
     locals: &[Local<N, Q>],
     response: &mut [Block<N>; M],
-    load: &mut [Block<N>; M],
+    load: &mut [[[f64; N]; M]; C],
 ) -> bool {
+    // Block row j of the equations is 1 - h J_j a_j., so all of the first row's blocks are multiples
+    // of J_0, and one product J_i R_0 a row serves the whole first step.
     let mut m = [[[[0.0; N]; N]; M]; M];
-    for j in 0..M {
-        for l in 0..M {
-            let w = -h * gauss.a[j][l];
-            for a in 0..N {
-                for c in 0..N {
-                    m[j][l][a][c] = w * locals[j].jacobian[a][c];
-                }
-            }
+    let mut first = scaled(-h * gauss.a[0][0], &locals[0].jacobian);
+    for a in 0..N {
+        first[a][a] += 1.0;
+    }
+    let Some(inv) = inverse(&first, 1e-10) else { return false };
+    let lead = product(&inv, &locals[0].jacobian);
+    response[0] = lead;
+    for l in 1..M {
+        m[0][l] = scaled(-h * gauss.a[0][l], &lead);
+    }
+    for column in load.iter_mut() {
+        column[0] = apply(&inv, &column[0]);
+    }
+    for i in 1..M {
+        let own = &locals[i].jacobian;
+        let next = product(own, &lead);
+        let f = h * gauss.a[i][0];
+        for l in 1..M {
+            let mut block = scaled(-h * gauss.a[i][l], own);
+            add_scaled(&mut block, -f * h * gauss.a[0][l], &next);
+            m[i][l] = block;
         }
         for a in 0..N {
-            m[j][j][a][a] += 1.0;
+            m[i][i][a][a] += 1.0;
+        }
+        let mut block = *own;
+        add_scaled(&mut block, f, &next);
+        response[i] = block;
+        let by = scaled(-f, own);
+        for column in load.iter_mut() {
+            let lead = column[0];
+            subtract_applied(&mut column[i], &by, &lead);
         }
     }
-    for j in 0..M {
-        let Some(inv) = inverse(m[j][j], 1e-10) else { return false };
+    for j in 1..M {
+        let Some(inv) = inverse(&m[j][j], 1e-10) else { return false };
         for l in j + 1..M {
             m[j][l] = product(&inv, &m[j][l]);
         }
         response[j] = product(&inv, &response[j]);
-        load[j] = product(&inv, &load[j]);
+        for column in load.iter_mut() {
+            column[j] = apply(&inv, &column[j]);
+        }
         for i in j + 1..M {
             let f = m[i][j];
             for l in j + 1..M {
                 let row = m[j][l];
                 subtract_product(&mut m[i][l], &f, &row);
             }
-            let (r, d) = (response[j], load[j]);
+            let r = response[j];
             subtract_product(&mut response[i], &f, &r);
-            subtract_product(&mut load[i], &f, &d);
+            for column in load.iter_mut() {
+                let lead = column[j];
+                subtract_applied(&mut column[i], &f, &lead);
+            }
         }
     }
     for j in (0..M).rev() {
         for l in j + 1..M {
-            let (r, d) = (response[l], load[l]);
+            let r = response[l];
             subtract_product(&mut response[j], &m[j][l], &r);
-            subtract_product(&mut load[j], &m[j][l], &d);
+            for column in load.iter_mut() {
+                let own = column[l];
+                subtract_applied(&mut column[j], &m[j][l], &own);
+            }
         }
     }
     true
 }
 
-/// Reduces carried rows to the identity on their pivot columns.
+/// A product of many factors that neither overflows nor takes a logarithm a factor.
+#[derive(Debug, Clone, Copy)]
+struct Product {
+    sign: f64,
+    log: f64,
+    rest: f64,
+}
+
+impl Product {
+    fn new() -> Self {
+        Self { sign: 1.0, log: 0.0, rest: 1.0 }
+    }
+
+    #[inline(always)]
+    fn times(&mut self, factor: f64) {
+        if factor < 0.0 {
+            self.sign = -self.sign;
+        }
+        let next = self.rest * factor.abs();
+        if (1e-100..1e100).contains(&next) {
+            self.rest = next;
+        } else {
+            self.spill(factor.abs());
+        }
+    }
+
+    /// Takes logarithms before the product leaves the range of numbers.
+    #[cold]
+    #[inline(never)]
+    fn spill(&mut self, factor: f64) {
+        if factor == 0.0 {
+            self.sign = 0.0;
+        }
+        self.log += self.rest.ln() + factor.ln();
+        self.rest = 1.0;
+    }
+
+    fn whole(self) -> Determinant {
+        Determinant { sign: self.sign, log: self.log + self.rest.ln() }
+    }
+}
+
+/// Reduces carried rows to the identity on their pivot columns: on those of the `last` node, where
+/// that divides by nothing small, and on the largest entries otherwise.
 #[inline(always)]
-fn reduce<const N: usize>(mut c: Rows<N>, count: usize, determinant: &mut Determinant) -> Option<Rows<N>> {
+fn reduce<const N: usize>(
+    carried: Rows<N>,
+    count: usize,
+    last: Option<&[usize; N]>,
+    determinant: &mut Product,
+) -> Option<Rows<N>> {
+    if let Some(pivots) = last
+        && let Some(reduced) = reduce_on(&carried, count, pivots, determinant)
+    {
+        return Some(reduced);
+    }
+    reduce_on_largest(carried, count, determinant)
+}
+
+/// The largest free entry that reduced rows may have on pivots that were not searched for.
+const LARGEST_FREE: f64 = 8.0;
+
+/// Reduces on given pivots; `None` when one is small or a free entry comes out large.
+#[inline(always)]
+fn reduce_on<const N: usize>(
+    carried: &Rows<N>,
+    count: usize,
+    pivots: &[usize; N],
+    determinant: &mut Product,
+) -> Option<Rows<N>> {
+    let mut c = *carried;
+    let mut product = *determinant;
+    for r in 0..N {
+        c.reduction[r] = [0.0; N];
+        c.reduction[r][r] = 1.0;
+    }
+    c.pivot = *pivots;
+    for r in 0..count {
+        let column = pivots[r];
+        let pivot = c.rows[r][column];
+        let mut largest = 0.0_f64;
+        for v in c.rows[r] {
+            largest = largest.max(v.abs());
+        }
+        // The negation also catches NaN.
+        #[allow(clippy::neg_cmp_op_on_partial_ord)]
+        if !(pivot.abs() * LARGEST_FREE > largest) {
+            return None;
+        }
+        product.times(pivot);
+        eliminate_column(&mut c, count, r, column, 1.0 / pivot);
+    }
+    let mut fine = true;
+    for r in 0..count {
+        for v in c.rows[r] {
+            fine &= v.abs() <= LARGEST_FREE;
+        }
+    }
+    if fine {
+        *determinant = product;
+    }
+    fine.then_some(c)
+}
+
+/// Scales row `r` to one in `column` and clears that column in the other rows.
+#[inline(always)]
+fn eliminate_column<const N: usize>(c: &mut Rows<N>, count: usize, r: usize, column: usize, scale: f64) {
+    let (mut own, mut load, mut reduction) = (c.rows[r], c.load[r], c.reduction[r]);
+    for k in 0..N {
+        own[k] *= scale;
+        reduction[k] *= scale;
+    }
+    load[0] *= scale;
+    load[1] *= scale;
+    own[column] = 1.0;
+    for i in 0..count {
+        if i != r {
+            let f = c.rows[i][column];
+            for k in 0..N {
+                c.rows[i][k] -= f * own[k];
+                c.reduction[i][k] -= f * reduction[k];
+            }
+            c.load[i][0] -= f * load[0];
+            c.load[i][1] -= f * load[1];
+            c.rows[i][column] = 0.0;
+        }
+    }
+    (c.rows[r], c.load[r], c.reduction[r]) = (own, load, reduction);
+}
+
+/// Reduces with a search for the largest entry of the remaining rows at every pivot, so that no
+/// column is divided by something small.
+#[cold]
+#[inline(never)]
+fn reduce_on_largest<const N: usize>(mut c: Rows<N>, count: usize, determinant: &mut Product) -> Option<Rows<N>> {
     for r in 0..N {
         c.reduction[r] = [0.0; N];
         c.reduction[r][r] = 1.0;
     }
     for r in 0..count {
-        // The largest entry of the remaining rows, so that no column is divided by something small.
         let (mut row, mut column, mut largest) = (r, 0, 0.0);
         for i in r..count {
             for col in 0..N {
@@ -640,44 +830,30 @@ fn reduce<const N: usize>(mut c: Rows<N>, count: usize, determinant: &mut Determ
         }
         c.pivot[r] = column;
         let pivot = c.rows[r][column];
-        determinant.sign *= pivot.signum();
-        determinant.log += largest.ln();
-        let scale = 1.0 / pivot;
-        for v in c.rows[r].iter_mut().chain(&mut c.load[r]).chain(&mut c.reduction[r]) {
-            *v *= scale;
-        }
-        let (own, load, reduction) = (c.rows[r], c.load[r], c.reduction[r]);
-        for i in 0..count {
-            if i != r {
-                let f = c.rows[i][column];
-                for k in 0..N {
-                    c.rows[i][k] -= f * own[k];
-                    c.reduction[i][k] -= f * reduction[k];
-                }
-                c.load[i][0] -= f * load[0];
-                c.load[i][1] -= f * load[1];
-                c.rows[i][column] = 0.0;
-            }
-        }
+        determinant.times(pivot);
+        eliminate_column(&mut c, count, r, column, 1.0 / pivot);
     }
     Some(c)
 }
 
-/// Sign and logarithm of a determinant.
+/// Multiplies by the determinant of a matrix.
 #[inline(always)]
-fn sign_and_log<const N: usize>(mut m: Block<N>) -> (f64, f64) {
-    let (mut sign, mut log) = (1.0, 0.0);
+fn multiply_by_determinant<const N: usize>(mut m: Block<N>, product: &mut Product) {
     for k in 0..N {
-        let best = (k..N).max_by(|i, j| m[*i][k].abs().total_cmp(&m[*j][k].abs())).unwrap_or(k);
-        if m[best][k] == 0.0 {
-            return (0.0, f64::NEG_INFINITY);
+        let mut best = k;
+        for i in k + 1..N {
+            if m[i][k].abs() > m[best][k].abs() {
+                best = i;
+            }
         }
         if best != k {
             m.swap(best, k);
-            sign = -sign;
+            product.sign = -product.sign;
         }
-        sign *= m[k][k].signum();
-        log += m[k][k].abs().ln();
+        product.times(m[k][k]);
+        if m[k][k] == 0.0 {
+            return;
+        }
         for i in k + 1..N {
             let f = m[i][k] / m[k][k];
             for c in k..N {
@@ -685,7 +861,6 @@ fn sign_and_log<const N: usize>(mut m: Block<N>) -> (f64, f64) {
             }
         }
     }
-    (sign, log)
 }
 
 impl<const N: usize, const M: usize> Solution<N, M> {

@@ -31,10 +31,10 @@ pub fn step<const N: usize, const M: usize, const Q: usize, E>(
             locals[j] = local(j, s + h * gauss.c[j], &state)?;
         }
         let mut response = [[[0.0; N]; N]; M];
-        let mut load = [[[0.0; N]; N]; M];
+        let mut load = [[[0.0; N]; M]; 1];
         for j in 0..M {
             for a in 0..N {
-                load[j][a][0] = locals[j].slope[a] - slopes[j][a];
+                load[0][j][a] = locals[j].slope[a] - slopes[j][a];
             }
         }
         if !eliminate(h, gauss, &locals, &mut response, &mut load) {
@@ -43,8 +43,8 @@ pub fn step<const N: usize, const M: usize, const Q: usize, E>(
         let mut size = 0.0_f64;
         for j in 0..M {
             for a in 0..N {
-                slopes[j][a] += load[j][a][0];
-                size = size.max(load[j][a][0].abs() / (1.0 + slopes[j][a].abs()));
+                slopes[j][a] += load[0][j][a];
+                size = size.max(load[0][j][a].abs() / (1.0 + slopes[j][a].abs()));
             }
         }
         if size * h.abs() < 1e-11 {

@@ -46,6 +46,7 @@ impl Differentiation {
     }
 
     /// Slope of the polynomial through `values` on an element of length 1/`inverse`.
+    #[inline(always)]
     fn slope_of(&self, values: &[f64], inverse: f64, out: &mut [f64]) {
         let m = values.len();
         for j in 0..m {
@@ -55,6 +56,7 @@ impl Differentiation {
 }
 
 /// Puts the solution of the equations into `slope`, which stays when they are singular.
+#[inline(always)]
 fn solve_for_slope(matrix: &mut [[f64; MOST_STAGES + 1]; MOST_STAGES], slope: &mut [f64]) {
     let m = slope.len();
     if solve_small(matrix, m) {
@@ -65,16 +67,23 @@ fn solve_for_slope(matrix: &mut [[f64; MOST_STAGES + 1]; MOST_STAGES], slope: &m
 }
 
 /// Solves `m` equations whose right side is column `m`, by elimination with row pivoting.
+#[inline(always)]
 fn solve_small(a: &mut [[f64; MOST_STAGES + 1]; MOST_STAGES], m: usize) -> bool {
     for k in 0..m {
-        let best = (k..m).max_by(|i, j| a[*i][k].abs().total_cmp(&a[*j][k].abs())).unwrap_or(k);
+        let mut best = k;
+        for i in k + 1..m {
+            if a[i][k].abs() > a[best][k].abs() {
+                best = i;
+            }
+        }
         if a[best][k].abs() < 1e-12 || !a[best][k].is_finite() {
             return false;
         }
         a.swap(k, best);
+        let inverse = 1.0 / a[k][k];
         for i in 0..m {
             if i != k {
-                let f = a[i][k] / a[k][k];
+                let f = a[i][k] * inverse;
                 for c in k..=m {
                     a[i][c] -= f * a[k][c];
                 }
@@ -168,7 +177,16 @@ impl BetaAlong {
     /// slopes, gradients and drifts what beta' adds to them.
     #[inline(always)]
     pub(crate) fn close(&mut self, steps: &[f64], out: &mut [Local<N, Q>], drifts: &mut [[f64; N]]) {
-        let m = self.stages;
+        // Loops of a length that the compiler knows are several times faster.
+        match self.stages {
+            4 => self.close_on(4, steps, out, drifts),
+            5 => self.close_on(5, steps, out, drifts),
+            m => self.close_on(m, steps, out, drifts),
+        }
+    }
+
+    #[inline(always)]
+    fn close_on(&mut self, m: usize, steps: &[f64], out: &mut [Local<N, Q>], drifts: &mut [[f64; N]]) {
         for first in (0..steps.len()).step_by(m) {
             let inverse = 1.0 / steps[first];
             let mut before = [0.0; MOST_STAGES];
@@ -178,7 +196,7 @@ impl BetaAlong {
                 let by = &self.coupling[first + j];
                 own_part[j] = dot(&by.value, &by.slope);
             }
-            self.next(first, inverse, &own_part);
+            self.next(m, first, inverse, &own_part);
             for j in 0..m {
                 let k = first + j;
                 let (mut value_slope, mut reach_slope, mut drift) = ([0.0; N], 0.0, 0.0);
@@ -231,8 +249,7 @@ impl BetaAlong {
     /// and where `reach` is a good part of the step, beta' is the slope of the element's own
     /// polynomial through beta, which has no fast mode, found by Newton along with everything else.
     #[inline(always)]
-    fn next(&mut self, first: usize, inverse: f64, own_part: &[f64; MOST_STAGES]) {
-        let m = self.stages;
+    fn next(&mut self, m: usize, first: usize, inverse: f64, own_part: &[f64; MOST_STAGES]) {
         let own = first..first + m;
         let w = &self.weights;
         let reach = &self.reach[own.clone()];

@@ -212,6 +212,25 @@ impl Stations {
         self.s.is_empty()
     }
 
+    fn reserve(&mut self, count: usize) {
+        for field in [
+            &mut self.s,
+            &mut self.x,
+            &mut self.y,
+            &mut self.theta,
+            &mut self.nu,
+            &mut self.eta,
+            &mut self.mu,
+            &mut self.beta,
+            &mut self.alpha,
+            &mut self.n_a,
+            &mut self.n_b,
+            &mut self.m,
+        ] {
+            field.reserve_exact(count);
+        }
+    }
+
     pub(crate) fn push(&mut self, station: &Station) {
         self.s.push(station.s);
         self.x.push(station.x);
@@ -241,6 +260,7 @@ impl Configuration {
         let mesh = &dense.solution.mesh;
         let n = mesh.elements();
         let mut stations = Stations::default();
+        stations.reserve(n + 1 + arm.cables.len());
         let mut fold = FoldMargin { value: 1.0, s: 0.0 };
         let (l, f) = (arm.length, dense.equations.units.force);
         let mut note = |s: f64, nu: f64, beta: f64, mu: f64, radius: f64| {
@@ -276,12 +296,10 @@ impl Configuration {
             for j in 0..M {
                 let k = i * M + j;
                 let weight = l * mesh.step(i) * engine.system.gauss.b[j];
-                let strain = dense.equations.strain(k);
-                energy += weight * dense.equations.strain_energy(places[k], strain);
+                energy += weight * dense.equations.strain_energy(k);
                 for (c, cable) in cables.iter_mut().enumerate() {
                     if places[k] < dense.equations.cable_end(c) {
-                        let [now, unloaded] =
-                            dense.equations.cable_stretch(c, places[k], strain, dense.equations.beta.slope[k]);
+                        let [now, unloaded] = dense.equations.cable_stretch(c, k);
                         cable.length += weight * now;
                         cable.stroke += weight * (unloaded - now);
                     }

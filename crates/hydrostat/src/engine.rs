@@ -3,6 +3,7 @@
 use hydrostat_bvp::{Collocation, Correction, Gauss, Limits, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
+use crate::dispatch::widest;
 use crate::equilibrium::{AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
 use crate::verdict::Phase;
 
@@ -54,6 +55,44 @@ pub(crate) struct Engine {
     pub(crate) tip: [f64; 2],
 }
 
+/// [`Collocation::evaluate`] in the processor's widest vectors.
+fn evaluate<const S: usize>(
+    system: &mut Collocation<N, S, Q>,
+    equations: &mut Equilibrium,
+    solution: &Solution<N, S>,
+) -> Result<(), SectionFailure> {
+    widest(
+        #[inline(always)]
+        || system.evaluate(equations, solution),
+    )
+}
+
+/// [`Collocation::linearise`] in the processor's widest vectors.
+fn linearise<const S: usize>(
+    system: &mut Collocation<N, S, Q>,
+    equations: &mut Equilibrium,
+    solution: &Solution<N, S>,
+    parameter: bool,
+) -> Result<(), RoundError<SectionFailure>> {
+    widest(
+        #[inline(always)]
+        || system.linearise(equations, solution, parameter),
+    )
+}
+
+/// [`Collocation::solve`] in the processor's widest vectors.
+pub(crate) fn solve<const S: usize>(
+    system: &Collocation<N, S, Q>,
+    solution: &Solution<N, S>,
+    column: usize,
+    correction: &mut Correction<N, S, Q>,
+) {
+    widest(
+        #[inline(always)]
+        || system.solve(solution, column, correction),
+    );
+}
+
 impl Engine {
     pub(crate) fn new(arm: &Arm) -> Self {
         let (gauss, check_gauss) = (Gauss::<M>::new(), Gauss::<K>::new());
@@ -101,8 +140,8 @@ impl Engine {
         let mesh = Mesh::uniform(elements, &self.breaks);
         self.meshes += 1;
         self.system.stations(&mesh, &mut self.stations);
-        let reference: Vec<[f64; 3]> = self.stations.iter().map(|s| self.equations.reference_strain(*s)).collect();
-        self.equations.place_stations(&self.stations, &mesh, |k| (reference[k], 0.0, 0.0));
+        self.equations.place_stations(&self.stations, &mesh, |_| ([0.0; 3], 0.0, 0.0));
+        self.equations.forget_strains();
         let angle = self.equations.arm().base.angle;
         self.solution = Solution::constant(mesh, [angle, 0.0, 0.0, 0.0]);
     }
@@ -162,12 +201,12 @@ impl Engine {
 
     fn strains_from_cables(&mut self) -> Result<(), Trouble> {
         let whole = self.equations.fraction;
-        let mut fine = self.system.evaluate(&mut self.equations, &self.solution).is_ok();
+        let mut fine = self.refresh().is_ok();
         if !fine {
             // Raise the tensions in steps, each from the strains of the last.
             for k in 1..=16 {
                 self.equations.fraction[1] = whole[1] * f64::from(k) / 16.0;
-                fine = self.system.evaluate(&mut self.equations, &self.solution).is_ok();
+                fine = self.refresh().is_ok();
                 if !fine {
                     break;
                 }
@@ -175,13 +214,12 @@ impl Engine {
             self.equations.fraction = whole;
         }
         for _ in 0..2 {
-            self.system.evaluate(&mut self.equations, &self.solution).map_err(Trouble::Section)?;
+            self.refresh().map_err(Trouble::Section)?;
         }
         Ok(())
     }
 
     /// Newton on the present mesh until the tip moves by less than `tolerance`.
-    #[inline(always)]
     pub(crate) fn newton(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
         let clamped = self.equations.arm().readings.support == crate::Support::Clamped;
         let most = if clamped { most } else { 60 };
@@ -189,7 +227,7 @@ impl Engine {
         let mut halvings = 0;
         let mut round = 0;
         loop {
-            match self.system.linearise(&mut self.equations, &self.solution, false) {
+            match linearise(&mut self.system, &mut self.equations, &self.solution, false) {
                 Ok(()) => {}
                 Err(RoundError::Slopes(failure)) => {
                     if applied == 0.0 || halvings == 8 {
@@ -204,7 +242,7 @@ impl Engine {
             }
             self.rounds += 1;
             round += 1;
-            self.system.solve(&self.solution, 0, &mut self.correction);
+            solve(&self.system, &self.solution, 0, &mut self.correction);
             let size = self.correction.largest(0);
             if !size.is_finite() {
                 return Err(Trouble::Singular);
@@ -233,14 +271,19 @@ impl Engine {
         }
     }
 
+    /// Factorises at the present solution.
+    pub(crate) fn linearise(&mut self, parameter: bool) -> Result<(), Trouble> {
+        self.rounds += 1;
+        Ok(linearise(&mut self.system, &mut self.equations, &self.solution, parameter)?)
+    }
+
     /// Brings stages, strains and switches up to date with the solution.
     pub(crate) fn refresh(&mut self) -> Result<(), SectionFailure> {
-        self.system.evaluate(&mut self.equations, &self.solution)
+        evaluate(&mut self.system, &mut self.equations, &self.solution)
     }
 
     /// Compares with one more stage an element: what the tip would move, over L. Fills the errors
     /// that each element contributes.
-    #[inline(always)]
     pub(crate) fn estimate(&mut self, tolerance: f64) -> Result<f64, Trouble> {
         if self.spans.len() != self.solution.mesh.elements() {
             // The last Newton rounds on this mesh did not converge: there is nothing to compare with.
@@ -257,10 +300,14 @@ impl Engine {
             (strain, slope, curvature)
         });
         for _ in 0..2 {
-            self.check.evaluate(&mut self.check_equations, &finer).map_err(Trouble::Section)?;
+            evaluate(&mut self.check, &mut self.check_equations, &finer).map_err(Trouble::Section)?;
         }
         let mut estimate = self.compare(&finer)?;
-        self.check.contributions(&finer.mesh, &self.spans, &mut self.errors);
+        let (check, spans, errors) = (&mut self.check, &self.spans, &mut self.errors);
+        widest(
+            #[inline(always)]
+            || check.contributions(&finer.mesh, spans, errors),
+        );
         let contributed: f64 = self.errors.iter().sum();
         if estimate > tolerance && contributed < tolerance {
             // Between nodes the polynomials are less accurate than at them, and one Newton round
@@ -273,9 +320,9 @@ impl Engine {
 
     /// How far a Newton round with one more stage puts the tip from where the solve has it.
     fn compare(&mut self, finer: &Solution<N, K>) -> Result<f64, Trouble> {
-        self.check.linearise(&mut self.check_equations, finer, false)?;
+        linearise(&mut self.check, &mut self.check_equations, finer, false)?;
         self.rounds += 1;
-        self.check.solve(finer, 0, &mut self.check_correction);
+        solve(&self.check, finer, 0, &mut self.check_correction);
         let total = self.check.totals(&finer.mesh);
         let [dx, dy] = self.check_correction.total;
         Ok((total[0] + dx - self.tip[0]).hypot(total[1] + dy - self.tip[1]))
@@ -307,6 +354,8 @@ impl Engine {
         let mesh = &self.solution.mesh;
         let switches = &self.equations.switches;
         let mut out: Vec<f64> = Vec::new();
+        let samples: [[f64; M]; SAMPLES + 1] =
+            std::array::from_fn(|p| self.system.gauss.cardinals(p as f64 / SAMPLES as f64));
         for w in 0..3 {
             let first = out.len();
             let mut before = (0.0, 0.0);
@@ -318,13 +367,11 @@ impl Engine {
                     before.1 = 0.0;
                     continue;
                 }
-                let at = |x: f64| -> f64 {
-                    let c = self.system.gauss.cardinals(x);
-                    (0..M).map(|j| c[j] * own[j]).sum()
-                };
+                let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
+                let at = |x: f64| weigh(&self.system.gauss.cardinals(x));
                 for p in 0..=SAMPLES {
                     let x = p as f64 / SAMPLES as f64;
-                    let now = (start + h * x, at(x));
+                    let now = (start + h * x, weigh(&samples[p]));
                     if before.1 * now.1 < 0.0 {
                         let (mut lo, mut hi) = (before, now);
                         while p > 0 && hi.0 - lo.0 > 0.01 * resolution {
@@ -450,7 +497,7 @@ impl Engine {
                 let k = i * M + j;
                 let s = self.equations.stations()[k];
                 let z = self.system.states()[k];
-                let mu = self.equations.reference_strain(s)[2];
+                let mu = self.equations.reference_strain(k)[2];
                 reference_angle += mesh.step(i) * self.system.gauss.b[j] * mu;
                 if self.equations.adversity(k, s, z, reference_angle) > 0.3 {
                     return true;
@@ -465,8 +512,9 @@ impl Engine {
     pub(crate) fn shift_by_tangential_load(&mut self, factor: f64) -> Option<f64> {
         let kept = self.equations.clone();
         self.equations.set_tangential_factor(factor);
-        let answer = self.linearise(false).ok().map(|()| {
-            self.system.solve(&self.solution, 0, &mut self.correction);
+        self.rounds += 1;
+        let answer = linearise(&mut self.system, &mut self.equations, &self.solution, false).ok().map(|()| {
+            solve(&self.system, &self.solution, 0, &mut self.correction);
             self.correction.total[0].hypot(self.correction.total[1])
         });
         self.equations = kept;

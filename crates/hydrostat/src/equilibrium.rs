@@ -22,6 +22,7 @@ use crate::loads::{Body, Load, Water, load};
 use crate::readings::{Support, Volume};
 use crate::real::{LANES, Lanes, Real};
 use crate::section::{Balance, CableAt, Stiffness, apply3, balance, inverse3};
+use crate::sincos::sin_cos;
 use crate::swelling::swelling;
 use crate::verdict::Phase;
 
@@ -218,15 +219,19 @@ impl Equilibrium {
         self.water.tangential_factor = factor;
     }
 
-    /// |tau| of cable `c` at `s` (over L) and given strains and beta', and at the reference strains.
-    pub(crate) fn cable_stretch(&self, c: usize, s: f64, strain: [f64; 3], beta_slope: f64) -> [f64; 2] {
-        let offset = self.offset(c, s);
-        let stiffness = self.place(s).stiffness;
-        let reference = swelling(self.volume, stiffness.reference[0]);
-        let reference_slope = reference.slope * stiffness.reference_slope[0];
+    /// |tau| of cable `c` at station `k`, now and at the reference strains.
+    pub(crate) fn cable_stretch(&self, c: usize, k: usize) -> [f64; 2] {
+        let (block, lane) = (k / LANES, k % LANES);
+        let at = &self.cables[block * self.tensions.len() + c].offset;
+        let offset = Offset { y: at.y.0[lane], slope: at.slope.0[lane], curvature: at.curvature.0[lane] };
+        let stiffness = &self.places[block].stiffness;
+        let reference_strain = stiffness.reference.map(|v| v.0[lane]);
+        let reference = swelling(self.volume, reference_strain[0]);
+        let reference_slope = reference.slope * stiffness.reference_slope[0].0[lane];
+        let strain = self.strain(k);
         [
-            tangent(&offset, strain, &swelling(self.volume, strain[0]), beta_slope).stretch,
-            tangent(&offset, stiffness.reference, &reference, reference_slope).stretch,
+            tangent(&offset, strain, &swelling(self.volume, strain[0]), self.beta.slope[k]).stretch,
+            tangent(&offset, reference_strain, &reference, reference_slope).stretch,
         ]
     }
 
@@ -235,11 +240,17 @@ impl Equilibrium {
         self.ends[c]
     }
 
-    /// Strain measure 1/2 (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A per length.
-    pub(crate) fn strain_energy(&self, s: f64, strain: [f64; 3]) -> f64 {
-        let stiffness = self.place(s).stiffness;
+    /// Strain measure 1/2 (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A per length at station `k`.
+    pub(crate) fn strain_energy(&self, k: usize) -> f64 {
+        let stiffness = &self.places[k / LANES].stiffness;
+        let strain = self.strain(k);
         let beta = swelling(self.volume, strain[0]).beta;
-        (0..3).map(|k| 0.5 * stiffness.value[k] * beta * beta * (strain[k] - stiffness.reference[k]).powi(2)).sum()
+        let mut sum = 0.0;
+        for a in 0..3 {
+            let strained = strain[a] - stiffness.reference[a].0[k % LANES];
+            sum += 0.5 * stiffness.value[a].0[k % LANES] * beta * beta * strained * strained;
+        }
+        sum
     }
 
     /// Data at `s` (over L).
@@ -310,49 +321,48 @@ impl Equilibrium {
     ) {
         let count = stations.len();
         let blocks = count.div_ceil(LANES);
-        self.stations.clear();
-        self.stations.extend_from_slice(stations);
+        let zero = Lanes::of(0.0);
+        let cable_count = self.tensions.len();
+        let memory = Memory { z: [zero; N], strain: [zero; 3], by_state: [[zero; N]; 3] };
+        self.memory.clear();
+        self.memory.resize(blocks, memory);
+        if self.places.len() < blocks {
+            let blank = splat(&self.place(stations[0]));
+            self.places.resize(blocks, blank);
+        }
+        self.places.truncate(blocks);
+        self.cables.resize(blocks * cable_count, blank_cable());
         self.steps.clear();
         self.steps.extend((0..count).map(|k| mesh.step(k / self.stages)));
-        self.places.clear();
-        self.cables.clear();
-        self.memory.clear();
         self.beta.resize(count);
         self.switches.resize(count, [0.0; 3]);
         self.drifts.resize(count, [0.0; N]);
-        let zero = Lanes::of(0.0);
-        let cable_count = self.tensions.len();
-        for block in 0..blocks {
-            let first = self.place(stations[block * LANES]);
-            let mut place = splat(&first);
-            let mut memory = Memory { z: [zero; N], strain: [zero; 3], by_state: [[zero; N]; 3] };
-            let base = self.cables.len();
-            let blank = CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero };
-            self.cables.resize(base + cable_count, blank);
-            for lane in 0..LANES {
-                let k = (block * LANES + lane).min(count - 1);
-                let s = stations[k];
-                if lane > 0 {
-                    set_lane(&mut place, lane, &self.place(s));
-                }
-                for c in 0..cable_count {
-                    let offset = self.offset(c, s);
-                    let runs = f64::from(u8::from(s <= self.ends[c]));
-                    let at = &mut self.cables[base + c];
-                    at.offset.y.0[lane] = offset.y;
-                    at.offset.slope.0[lane] = offset.slope;
-                    at.offset.curvature.0[lane] = offset.curvature;
-                    at.tension.0[lane] = runs;
-                }
-                let (strain, slope, curvature) = guess(k);
-                for a in 0..3 {
-                    memory.strain[a].0[lane] = strain[a];
-                }
-                self.beta.start(k, slope, curvature);
+        for lane in 0..blocks * LANES {
+            let k = lane.min(count - 1);
+            let (block, lane_in_block) = (lane / LANES, lane % LANES);
+            let (strain, slope, curvature) = guess(k);
+            for a in 0..3 {
+                self.memory[block].strain[a].0[lane_in_block] = strain[a];
             }
-            self.places.push(place);
-            self.memory.push(memory);
+            self.beta.start(k, slope, curvature);
+            let s = stations[k];
+            if k == lane && self.stations.get(k) == Some(&s) {
+                // A station that stays where it was keeps its data.
+                continue;
+            }
+            let place = self.place(s);
+            set_lane(&mut self.places[block], lane_in_block, &place);
+            for c in 0..cable_count {
+                let offset = self.offset(c, s);
+                let at = &mut self.cables[block * cable_count + c];
+                at.offset.y.0[lane_in_block] = offset.y;
+                at.offset.slope.0[lane_in_block] = offset.slope;
+                at.offset.curvature.0[lane_in_block] = offset.curvature;
+                at.tension.0[lane_in_block] = f64::from(u8::from(s <= self.ends[c]));
+            }
         }
+        self.stations.clear();
+        self.stations.extend_from_slice(stations);
     }
 
     pub(crate) fn stations(&self) -> &[f64] {
@@ -380,9 +390,16 @@ impl Equilibrium {
         (strain, beta)
     }
 
-    /// Strains of the unloaded arm at `s` (over L), mu times L.
-    pub(crate) fn reference_strain(&self, s: f64) -> [f64; 3] {
-        self.place(s).stiffness.reference
+    /// Strains of the unloaded arm at station `k`, mu times L.
+    pub(crate) fn reference_strain(&self, k: usize) -> [f64; 3] {
+        self.places[k / LANES].stiffness.reference.map(|v| v.0[k % LANES])
+    }
+
+    /// Takes the reference strains at every station.
+    pub(crate) fn forget_strains(&mut self) {
+        for (memory, place) in self.memory.iter_mut().zip(&self.places) {
+            memory.strain = place.stiffness.reference;
+        }
     }
 
     pub(crate) fn volume(&self) -> Volume {
@@ -479,8 +496,7 @@ impl Equilibrium {
         let (sin, cos) = z[0].sin_cos();
         let contact = [cos * z[1] + sin * z[2], cos * z[2] - sin * z[1], z[3]];
         let mut strain = guess;
-        let mut out: Option<AtPlace> = None;
-        for _ in 0..30 {
+        for round in 0.. {
             let solved = solve_section(
                 self.volume,
                 &place.stiffness,
@@ -504,31 +520,28 @@ impl Equilibrium {
             let slopes = slopes(&place, [cos, sin], contact, &solved, &load);
             let change = (slopes.beta_slope - beta_slope).abs();
             beta_slope = slopes.beta_slope;
-            out = Some(AtPlace {
-                strain,
-                beta: solved.balance.swelling.beta,
-                beta_slope,
-                contact: [0, 1, 2].map(|k| contact[k] - solved.balance.cables[k]),
-                openness: solved.balance.openness,
-                regularity: solved.regularity,
-                local: {
-                    let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
-                    let [nu, eta, _] = solved.strain;
-                    let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
-                    Local {
+            if change < 1e-13 || round == 29 {
+                let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
+                let [nu, eta, _] = solved.strain;
+                let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
+                return Ok(AtPlace {
+                    strain,
+                    beta: solved.balance.swelling.beta,
+                    beta_slope,
+                    contact: [0, 1, 2].map(|k| contact[k] - solved.balance.cables[k]),
+                    openness: solved.balance.openness,
+                    regularity: solved.regularity,
+                    local: Local {
                         slope: slopes.slope,
                         jacobian: jacobian([cos, sin], contact, &solved, &load, &by_state),
                         rate,
                         rate_gradient: rate_gradient([cos, sin], rate, &by_state),
-                    }
-                },
-                radius: place.body.radius,
-            });
-            if change < 1e-13 {
-                break;
+                    },
+                    radius: place.body.radius,
+                });
             }
         }
-        out.ok_or(SectionFailure { s, openness: 1.0, nu: strain[0], regularity: 1.0 })
+        unreachable!("the loop returns at its last round")
     }
 
     #[inline(always)]
@@ -707,18 +720,16 @@ impl Problem<N, Q> for Equilibrium {
             let mut place = self.places[block];
             place.body.couple = place.body.couple * fraction;
             let mut state = [Lanes::of(0.0); N];
-            let mut direction = [Lanes::of(0.0); 2];
             let mut beta_along = [Lanes::of(0.0); 2];
             for lane in 0..LANES {
                 let k = (block * LANES + lane).min(count - 1);
                 for a in 0..N {
                     state[a].0[lane] = z[k][a];
                 }
-                let (sin, cos) = z[k][0].sin_cos();
-                direction[0].0[lane] = cos;
-                direction[1].0[lane] = sin;
                 beta_along[1].0[lane] = self.beta.curvature[k];
             }
+            let (sin, cos) = sin_cos(state[0]);
+            let direction = [cos, sin];
             let pulled = if cable_count > MOST_IN_PLACE { &mut many[..] } else { &mut pulled[..] };
             let mut used = 0;
             for c in 0..cable_count {
@@ -731,7 +742,6 @@ impl Problem<N, Q> for Equilibrium {
                 }
             }
             let pulled = &pulled[..used];
-            let [cos, sin] = direction;
             let contact = [cos * state[1] + sin * state[2], cos * state[2] - sin * state[1], state[3]];
 
             // Start from the last strains moved along their tangent.

@@ -3,7 +3,7 @@
 
 use hydrostat_bvp::{Correction, Mesh, Solution};
 
-use crate::engine::{Engine, M, Trouble};
+use crate::engine::{Engine, M, Trouble, solve};
 use crate::equilibrium::{Equilibrium, N, Q};
 use crate::readings::Volume;
 use crate::verdict::{Phase, Verdict, VerdictKind};
@@ -266,7 +266,7 @@ impl Stepper<'_> {
     fn linearise(&mut self) -> Result<(), Trouble> {
         let engine = &mut *self.engine;
         engine.linearise(true)?;
-        engine.system.solve(&engine.solution, 1, &mut self.response);
+        solve(&engine.system, &engine.solution, 1, &mut self.response);
         Ok(())
     }
 
@@ -341,7 +341,7 @@ impl Stepper<'_> {
         for round in 0..12 {
             self.set(*fraction);
             self.linearise()?;
-            self.engine.system.solve(&self.engine.solution, 0, &mut self.correction);
+            solve(&self.engine.system, &self.engine.solution, 0, &mut self.correction);
             let dot = |c: &Correction<N, M, Q>| -> f64 { normal.iter().zip(&c.nodes).map(|(n, z)| n * z[0]).sum() };
             let slide = -dot(&self.correction) / (dot(&self.response) + here.rise);
             self.engine.system.quadratures(&self.engine.solution.mesh, &mut self.engine.spans);
@@ -561,14 +561,6 @@ fn largest_turn(a: &Solution<N, M>, b: &Solution<N, M>) -> f64 {
         return 0.0;
     }
     a.nodes.iter().zip(&b.nodes).fold(0.0, |m, (a, b)| f64::max(m, (a[0] - b[0]).abs()))
-}
-
-impl Engine {
-    /// Factorises at the present solution.
-    pub(crate) fn linearise(&mut self, parameter: bool) -> Result<(), Trouble> {
-        self.rounds += 1;
-        Ok(self.system.linearise(&mut self.equations, &self.solution, parameter)?)
-    }
 }
 
 #[cfg(test)]
