@@ -17,6 +17,9 @@ pub(crate) const LOOSE: f64 = 1e-4;
 /// Largest turn a unit of load (rad) on a branch that nothing but the load moves along: rounding.
 const SYMMETRIC: f64 = 1e-10;
 
+/// The most accurate that a path gets however short its steps, tip error over L.
+const FINEST: f64 = 1e-7;
+
 /// By how much of the steeper climb the mean climb of a step may differ from that of its two ends: two
 /// folds within one step would make them differ by far more.
 const EVEN: f64 = 0.15;
@@ -199,7 +202,6 @@ impl Stepper<'_> {
                     }
                     if next.rise < 0.0 {
                         let limit = self.limit_point(&here, &next, step, pace);
-                        self.restore(&here);
                         return Err(self.end(VerdictKind::LimitPoint, limit, None));
                     }
                     travelled.steps += 1;
@@ -387,7 +389,7 @@ impl Stepper<'_> {
             return Err(Trouble::Stalled(moved));
         }
         // What the mesh is off by must not be mistaken for a turn of the path.
-        let accuracy = (0.02 * step.abs()).clamp(1e-8, pace.accuracy);
+        let accuracy = (0.02 * step.abs()).clamp(FINEST, pace.accuracy);
         self.keep_accuracy(Some(here), &mut load, accuracy)?;
         self.engine.ends_fine()?;
         let next = self.point(load.fraction())?;
@@ -445,9 +447,14 @@ impl Stepper<'_> {
 
     /// Refines when the mesh no longer carries `accuracy`.
     fn keep_accuracy(&mut self, here: Option<&Point>, load: &mut Load, accuracy: f64) -> Result<(), Trouble> {
-        // Nodes follow the kinks, so that corrections do not hop across them.
-        let kinks = self.engine.kinks(1e-3);
-        if self.engine.pin(&kinks, 1e-3) {
+        // Nodes follow the kinks, so that corrections do not hop across them, and as closely as this
+        // accuracy needs, or it could not be had on any mesh.
+        let resolution = 0.1 * accuracy.sqrt();
+        for _ in 0..3 {
+            let kinks = self.engine.kinks(resolution.max(10.0 * accuracy));
+            if !self.engine.pin(&kinks, resolution) {
+                break;
+            }
             self.correct_again(here, load)?;
         }
         for _ in 0..4 {
@@ -482,33 +489,41 @@ impl Stepper<'_> {
         both / (first * second).sqrt()
     }
 
-    /// The largest fraction between two points whose tangents rise and fall.
+    /// The point with the largest fraction between two whose tangents rise and fall. The engine is left at it.
     fn limit_point(&mut self, here: &Point, next: &Point, step: f64, pace: Pace) -> f64 {
+        let pace = Pace { straightness: -1.0, accuracy: 1e-6_f64.min(pace.accuracy), ..pace };
         let (mut low, mut low_rise) = (0.0, here.rise);
         let (mut high, mut high_rise) = (step, next.rise);
-        let mut best = here.fraction.max(next.fraction);
-        for _ in 0..40 {
+        let mut best: Option<Point> = None;
+        for _ in 0..25 {
             let share = (low_rise / (low_rise - high_rise)).clamp(0.1, 0.9);
             let middle = low + share * (high - low);
-            match self.advance(here, middle, Pace { straightness: -1.0, ..pace }) {
+            match self.advance(here, middle, pace) {
                 Ok((point, Turn::None)) => {
-                    best = best.max(point.fraction);
-                    if point.rise < 0.0 {
-                        (high, high_rise) = (middle, point.rise);
+                    let rise = point.rise;
+                    if rise < 0.0 {
+                        (high, high_rise) = (middle, rise);
                     } else {
-                        (low, low_rise) = (middle, point.rise);
+                        (low, low_rise) = (middle, rise);
                     }
-                    if point.rise.abs() < 1e-7 {
+                    if best.as_ref().is_none_or(|b| point.fraction > b.fraction) {
+                        best = Some(point);
+                    }
+                    if rise.abs() < 1e-6 {
                         break;
                     }
                 }
                 _ => high = middle,
             }
-            if high - low < 1e-9 {
+            if high - low < 1e-7 {
                 break;
             }
         }
-        best.clamp(0.0, 1.0)
+        let best = best.filter(|b| b.fraction > here.fraction);
+        let limit = best.as_ref().unwrap_or(here);
+        self.restore(limit);
+        self.set(limit.fraction.min(1.0));
+        limit.fraction.max(next.fraction).clamp(0.0, 1.0)
     }
 
     fn end(&self, kind: VerdictKind, load_fraction: f64, s: Option<f64>) -> PathEnd {
@@ -520,9 +535,12 @@ impl Stepper<'_> {
     /// Names the limit that the last good point is at.
     fn give_up(&mut self, here: Option<&Point>, fraction: f64, residual: f64) -> PathEnd {
         self.engine.last = residual;
-        let Some(_) = here else {
+        if here.is_none() && self.engine.equations.arm().readings.load_can_jump() {
+            return self.end(VerdictKind::LoadJump, 0.0, self.engine.nearest_switch());
+        }
+        if here.is_none() {
             return self.end(VerdictKind::NotFound, 0.0, None);
-        };
+        }
         self.set(fraction);
         let near = self.engine.nearest_limits();
         let failed = match &self.last_trouble {

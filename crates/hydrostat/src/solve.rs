@@ -167,12 +167,27 @@ impl Solver {
 
     /// The verdict with the last good point, which the engine holds, settled and read.
     fn no_equilibrium(&mut self, verdict: Verdict) -> SolveError {
-        let kept = (self.engine.solution.clone(), self.engine.equations.clone());
-        let settled = self.engine.settle(self.options.tol.max(1e-6), false).ok();
-        let mut last_good = settled.and_then(|e| self.read(e, Travelled::default()).ok());
+        let kept = self.engine.clone();
+        // Right at a limit a finer mesh, or a place between stations, may already be past it.
+        let mut last_good = None;
+        for back in [0.0, 1e-5, 1e-4, 1e-3, 5e-3] {
+            let fraction = verdict.load_fraction * (1.0 - back);
+            if back > 0.0 {
+                self.engine.clone_from(&kept);
+                self.engine.set_phase(verdict.phase, fraction);
+            }
+            let settled = match self.engine.estimate(1e-6) {
+                Ok(estimate) if back == 0.0 && estimate < 1e-6 => Ok(estimate),
+                _ => self.engine.settle(self.options.tol.max(1e-6), true),
+            };
+            let moved = (self.engine.tip[0] - kept.tip[0]).hypot(self.engine.tip[1] - kept.tip[1]);
+            last_good = settled.ok().filter(|_| moved < 0.05).and_then(|e| self.read(e, Travelled::default()).ok());
+            if last_good.is_some() {
+                break;
+            }
+        }
         if last_good.is_none() {
-            // Right at a limit a finer mesh may already be past it: the path's own point has to do.
-            (self.engine.solution, self.engine.equations) = kept;
+            self.engine = kept;
             last_good = self.read(LOOSE, Travelled::default()).ok();
         }
         SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good }))
