@@ -418,8 +418,8 @@ impl Engine {
         false
     }
 
-    pub(crate) fn refine(&mut self, target: f64) {
-        let limits = Limits { fewest: 4, most: 2000, growth: 6.0, cut: 8.0, least: 0.2 };
+    pub(crate) fn refine(&mut self, target: f64, most: usize) {
+        let limits = Limits { fewest: 4, most, growth: 6.0, cut: 8.0, least: 0.2 };
         let shortest: Vec<f64> =
             (0..self.solution.mesh.elements()).map(|i| self.equations.shortest_element(i)).collect();
         let mesh = self.solution.mesh.redistributed(&self.errors, &shortest, (2 * M + 1) as f64, target, limits);
@@ -450,7 +450,7 @@ impl Engine {
             if attempt > 0 && estimate < best.as_ref().map_or(WORST, |b| b.0) {
                 best = Some((estimate, self.solution.clone(), self.equations.clone(), self.tip));
             }
-            self.refine(0.2 * tolerance);
+            self.refine(0.2 * tolerance, 2000);
         }
         match best {
             Some((estimate, solution, equations, tip)) => {

@@ -20,6 +20,12 @@ const SYMMETRIC: f64 = 1e-10;
 /// The most accurate that a path gets however short its steps, tip error over L.
 const FINEST: f64 = 1e-7;
 
+/// More elements than this serve only to meet what a path must be accurate to.
+const MANY: usize = 100;
+
+/// Two branches that come as near as this fraction meet.
+const MEET: f64 = 1e-3;
+
 /// By how much of the steeper climb the mean climb of a step may differ from that of its two ends: two
 /// folds within one step would make them differ by far more.
 const EVEN: f64 = 0.15;
@@ -46,14 +52,14 @@ pub(crate) struct Pace {
     pub(crate) longest: f64,
     /// Smallest cosine between the tangents at both ends of a step.
     pub(crate) straightness: f64,
-    /// Most steps.
+    /// Most steps, refused ones included.
     pub(crate) most: usize,
     /// Error of the tip over L that is kept.
     pub(crate) accuracy: f64,
 }
 
 impl Pace {
-    pub(crate) const BRISK: Self = Self { longest: 0.4, straightness: 0.94, most: 1500, accuracy: LOOSE };
+    pub(crate) const BRISK: Self = Self { longest: 0.4, straightness: 0.94, most: 300, accuracy: LOOSE };
 }
 
 /// What a path met.
@@ -62,6 +68,8 @@ pub(crate) struct Travelled {
     pub(crate) steps: usize,
     /// Times the determinant changed sign while the load went on rising: bifurcations passed.
     pub(crate) crossings: usize,
+    /// Whether it ended on a branch that nothing but the load moves along.
+    pub(crate) symmetric: bool,
 }
 
 /// Why a path ended early; the engine holds the last good point.
@@ -125,6 +133,9 @@ struct Stepper<'e> {
     last_trouble: Option<Trouble>,
     /// Sign of the climb times that of the determinant.
     orientation: f64,
+    /// Fraction of the last solution that was refused as the next point because it is on a branch of
+    /// the other orientation.
+    opposite: Option<f64>,
 }
 
 /// Follows both phases to whole loads.
@@ -145,6 +156,7 @@ pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, PathE
                 response: Correction::default(),
                 last_trouble: None,
                 orientation: 1.0,
+                opposite: None,
             };
             stepper.follow(pace, &mut travelled)?;
         }
@@ -179,10 +191,15 @@ impl Stepper<'_> {
         let mut step = 0.1_f64.min(pace.longest);
         // A point before this one whose tangent climbed clearly more.
         let mut steeper = (here.fraction, here.rise);
-        loop {
-            if travelled.steps >= pace.most || step < 1e-8 {
+        for attempt in 0.. {
+            if attempt >= pace.most || step < 1e-8 {
                 let residual = self.engine.last;
                 self.restore(&here);
+                // Two branches of opposite orientation end where they meet: the path turns back in a corner
+                // that the load's kinks make.
+                if self.opposite.is_some_and(|f| (f - here.fraction).abs() < MEET) {
+                    return Err(self.end(VerdictKind::LimitPoint, here.fraction, None));
+                }
                 let end = self.give_up(Some(&here), here.fraction, residual);
                 // Towards a fold the square of the climb falls to zero linearly in the load.
                 let fall = steeper.1.powi(2) - here.rise.powi(2);
@@ -206,6 +223,7 @@ impl Stepper<'_> {
                     }
                     travelled.steps += 1;
                     if next.fraction == 1.0 {
+                        travelled.symmetric = next.is_symmetric();
                         return Ok(());
                     }
                     if here.rise > 1.3 * next.rise {
@@ -223,6 +241,7 @@ impl Stepper<'_> {
                 }
             }
         }
+        unreachable!("the loop returns when its attempts are used up")
     }
 
     /// The point that a phase starts from. An arm that lies in the stream has tiny angles to it whose
@@ -244,7 +263,7 @@ impl Stepper<'_> {
         }
         for accuracy in [1e-5, 1e-6, 1e-7] {
             let kept = (self.engine.solution.clone(), self.engine.equations.clone());
-            if self.keep_accuracy(None, &mut Load::Fixed(fraction), accuracy).is_err() {
+            if self.keep_accuracy(None, &mut Load::Fixed(fraction), [accuracy, LOOSE]).is_err() {
                 (self.engine.solution, self.engine.equations) = kept;
                 return self.point(fraction);
             }
@@ -390,7 +409,7 @@ impl Stepper<'_> {
         }
         // What the mesh is off by must not be mistaken for a turn of the path.
         let accuracy = (0.02 * step.abs()).clamp(FINEST, pace.accuracy);
-        self.keep_accuracy(Some(here), &mut load, accuracy)?;
+        self.keep_accuracy(Some(here), &mut load, [accuracy, pace.accuracy])?;
         self.engine.ends_fine()?;
         let next = self.point(load.fraction())?;
         let cosine = self.cosine(here, &next);
@@ -402,6 +421,9 @@ impl Stepper<'_> {
         }
         let strict = if self.changed_sides(here) > 0.05 { 0.1 } else { 1.0 };
         let straight = 1.0 - cosine <= strict * (1.0 - pace.straightness);
+        if crossing {
+            self.opposite = Some(next.fraction);
+        }
         if step.abs() > CORNER && !(straight && self.unevenness(here, &next) <= strict * EVEN) {
             return Err(Trouble::Stalled(cosine - 2.0));
         }
@@ -445,8 +467,14 @@ impl Stepper<'_> {
         (mean - 0.5 * (a.rise + b.rise)).abs() / a.rise.abs().max(b.rise.abs())
     }
 
-    /// Refines when the mesh no longer carries `accuracy`.
-    fn keep_accuracy(&mut self, here: Option<&Point>, load: &mut Load, accuracy: f64) -> Result<(), Trouble> {
+    /// Refines when the mesh no longer carries `accuracy`, or, where that would take very many elements,
+    /// what is `enough`.
+    fn keep_accuracy(
+        &mut self,
+        here: Option<&Point>,
+        load: &mut Load,
+        [accuracy, enough]: [f64; 2],
+    ) -> Result<(), Trouble> {
         // Nodes follow the kinks, so that corrections do not hop across them, and as closely as this
         // accuracy needs, or it could not be had on any mesh.
         let resolution = 0.1 * accuracy.sqrt();
@@ -459,10 +487,11 @@ impl Stepper<'_> {
         }
         for _ in 0..4 {
             let estimate = self.engine.estimate(accuracy)?;
-            if estimate <= accuracy {
+            let many = self.engine.solution.mesh.elements() > MANY;
+            if estimate <= accuracy || (many && estimate <= enough) {
                 return Ok(());
             }
-            self.engine.refine(0.05 * accuracy);
+            self.engine.refine(0.05 * accuracy, 2 * MANY);
             self.correct_again(here, load)?;
         }
         Ok(())
@@ -626,7 +655,7 @@ mod tests {
 
     /// The answer is the one that small steps of arclength lead to.
     fn compare(count: usize) {
-        const SMALL: Pace = Pace { longest: 0.05, straightness: 0.995, most: 20_000, accuracy: 1e-7 };
+        const SMALL: Pace = Pace { longest: 0.05, straightness: 0.995, most: 30_000, accuracy: 1e-7 };
         let mut dice = Dice(7);
         let (mut solved, mut verdicts, mut direct) = (0, 0, 0);
         let mut wrong = Vec::new();

@@ -128,8 +128,11 @@ impl Solver {
         let sign = self.engine.system.determinant().sign;
         let settled = self.engine.settle(self.options.tol, false);
         let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
+        // A straight arm is as exact on a coarse mesh as on a fine one, its determinant is not.
+        let same = self.engine.system.determinant().sign == sign || travelled.symmetric;
+        let sign = self.engine.system.determinant().sign;
         match settled {
-            Ok(estimate) if moved < 0.05 && self.engine.system.determinant().sign == sign => {
+            Ok(estimate) if moved < 0.05 && same => {
                 let mut configuration =
                     self.read(estimate, travelled).map_err(|_| self.no_equilibrium(self.last_verdict(Some(1.0))))?;
                 if travelled.crossings > 0 || sign < 0.0 {
