@@ -1,5 +1,5 @@
 //! How the section stretch beta varies along the arm: beta', on which every cable's tangent depends,
-//! found by differentiating the section law implicitly (section 8.1 of the model notes).
+//! found by differentiating the section law implicitly (`docs/model.md`, section 8, item 1).
 //!
 //! Along a solution beta' = d/ds beta(nu(s, z(s), beta'(s))), which the section law gives in closed form
 //! but for the beta'' inside it. So beta' at a station has a value `Phi(z, beta', beta'')`, and all that
@@ -245,7 +245,7 @@ impl BetaAlong {
     ///
     /// beta'' feeds back into beta' as `reach` beta''. Where a step is long against `reach` the
     /// sharpest formula serves, one round behind. Where it is not, lagging would excite the fast mode
-    /// that section 8.1 of the model notes excludes: there beta' and beta'' are solved for together,
+    /// that `docs/model.md`, section 8, item 1 excludes: there beta' and beta'' are solved for together,
     /// and where `reach` is a good part of the step, beta' is the slope of the element's own
     /// polynomial through beta, which has no fast mode, found by Newton along with everything else.
     #[inline(always)]

@@ -1,4 +1,4 @@
-//! The differential equations and end conditions that the solver gets (section 7 of the model notes).
+//! The differential equations and end conditions that the solver gets (`docs/model.md`, section 7).
 //!
 //! Unknown along the arm are z = (theta, n_f, m_f), the section rotation and the part of the contact
 //! force and moment that balances everything but the cables:

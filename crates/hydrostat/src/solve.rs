@@ -118,7 +118,7 @@ impl Solver {
         Ok(configuration)
     }
 
-    /// Follows the path of section 7 of the model notes, whatever a direct solve would give.
+    /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
     pub(crate) fn solve_along_the_path(&mut self, pace: Pace) -> Result<Configuration, SolveError> {
         let travelled = match follow(&mut self.engine, pace) {
             Ok(travelled) => travelled,
