@@ -348,7 +348,8 @@ impl Engine {
     }
 
     /// Places inside (0, 1) where the load of the stream has a kink: where a switch changes sign.
-    /// Changes closer than `resolution` count as one, or cancel.
+    /// Changes closer than `resolution`, or than interpolation in an element tells apart, count as one, or
+    /// cancel: on both sides of a node on a kink the polynomials put it at slightly different places.
     pub(crate) fn kinks(&self, resolution: f64) -> Vec<f64> {
         const SAMPLES: usize = 8;
         let mesh = &self.solution.mesh;
@@ -361,6 +362,7 @@ impl Engine {
             let mut before = (0.0, 0.0);
             for i in 0..mesh.elements() {
                 let (start, h) = (mesh.nodes()[i], mesh.step(i));
+                let apart = resolution.max(1e-3 * h);
                 let own: [f64; M] = std::array::from_fn(|j| switches[i * M + j][w]);
                 let largest = own.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
                 if largest < 1e-6 {
@@ -380,7 +382,7 @@ impl Engine {
                             if v * lo.1 <= 0.0 { hi = (mid, v) } else { lo = (mid, v) }
                         }
                         let place = 0.5 * (lo.0 + hi.0);
-                        if out.len() > first && place - out[out.len() - 1] < resolution {
+                        if out.len() > first && place - out[out.len() - 1] < apart {
                             out.pop();
                         } else {
                             out.push(place);

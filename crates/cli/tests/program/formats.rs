@@ -47,7 +47,6 @@ fn json_is_one_document_with_everything() {
 
 /// Rounding keeps the tip of this arm from being known to a part in 1e12.
 #[test]
-#[ignore = "not_found at tol 1e-12 for paper at 86 N: settling stalls (last correction 5.7e-5 rad)"]
 fn a_tolerance_that_was_missed_is_a_warning_everywhere() {
     let run = solved(&["solve", "paper", "--tension", "86,0", "--tol", "1e-12", "--format", "json"]);
     let document = json(&run.out);
