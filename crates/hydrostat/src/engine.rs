@@ -52,7 +52,7 @@ pub(crate) struct Engine {
     pub(crate) meshes: usize,
     pub(crate) last: f64,
     /// Tip position over L at the last round.
-    pub(crate) tip: [f64; 2],
+    pub(crate) tip: [f64; Q],
 }
 
 /// [`Collocation::evaluate`] in the processor's widest vectors.
@@ -93,7 +93,32 @@ pub(crate) fn solve<const S: usize>(
     );
 }
 
+/// A solution with all that belongs to it, to come back to.
+#[derive(Debug, Clone)]
+pub(crate) struct State {
+    pub(crate) solution: Guess,
+    pub(crate) equations: Equilibrium,
+    spans: Vec<[f64; Q]>,
+    pub(crate) tip: [f64; Q],
+}
+
 impl Engine {
+    pub(crate) fn state(&self) -> State {
+        State {
+            solution: self.solution.clone(),
+            equations: self.equations.clone(),
+            spans: self.spans.clone(),
+            tip: self.tip,
+        }
+    }
+
+    pub(crate) fn restore(&mut self, state: &State) {
+        self.solution.clone_from(&state.solution);
+        self.equations.clone_from(&state.equations);
+        self.spans.clone_from(&state.spans);
+        self.tip = state.tip;
+    }
+
     pub(crate) fn new(arm: &Arm) -> Self {
         let (gauss, check_gauss) = (Gauss::<M>::new(), Gauss::<K>::new());
         let breaks: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
@@ -253,7 +278,7 @@ impl Engine {
             self.solution.add(&self.correction, applied);
             let [x, y] = self.system.totals(&self.solution.mesh);
             let tip = [x + dx, y + dy];
-            // beta' runs a round behind: what it still moves shows from round to round.
+            // beta'' runs a round behind: what it still moves shows from round to round.
             let drifted = if round > 1 { (tip[0] - self.tip[0]).hypot(tip[1] - self.tip[1]) } else { 0.0 };
             self.tip = tip;
             let moved = dx.hypot(dy).max(0.1 * size).max(0.1 * drifted);
@@ -433,7 +458,7 @@ impl Engine {
     /// the best there is, if it is good to [`WORST`].
     pub(crate) fn settle(&mut self, tolerance: f64, warm: bool) -> Result<f64, Trouble> {
         let mut estimate = f64::INFINITY;
-        let mut best: Option<(f64, Guess, Equilibrium, [f64; 2])> = None;
+        let mut best: Option<(f64, State)> = None;
         for attempt in 0..10 {
             let goal = match (attempt, warm) {
                 (0, true) => 3.0 * tolerance,
@@ -450,16 +475,13 @@ impl Engine {
                 return Ok(estimate);
             }
             if attempt > 0 && estimate < best.as_ref().map_or(WORST, |b| b.0) {
-                best = Some((estimate, self.solution.clone(), self.equations.clone(), self.tip));
+                best = Some((estimate, self.state()));
             }
             self.refine(0.2 * tolerance, 2000);
         }
         match best {
-            Some((estimate, solution, equations, tip)) => {
-                self.solution = solution;
-                self.equations = equations;
-                self.tip = tip;
-                self.spans.clear();
+            Some((estimate, state)) => {
+                self.restore(&state);
                 self.linearise(false)?;
                 Ok(estimate)
             }

@@ -3,8 +3,8 @@
 
 use hydrostat_bvp::{Correction, Mesh, Solution};
 
-use crate::engine::{Engine, M, Trouble, solve};
-use crate::equilibrium::{Equilibrium, N, Q};
+use crate::engine::{Engine, M, State, Trouble, solve};
+use crate::equilibrium::{N, Q};
 use crate::readings::Volume;
 use crate::verdict::{Phase, Verdict, VerdictKind};
 
@@ -72,41 +72,34 @@ pub(crate) struct Travelled {
     pub(crate) symmetric: bool,
 }
 
-/// Why a path ended early; the engine holds the last good point.
-#[derive(Debug, Clone)]
-pub(crate) struct PathEnd {
-    pub(crate) verdict: Verdict,
-}
-
 #[derive(Clone)]
 struct Point {
-    solution: Solution<N, M>,
-    equations: Equilibrium,
+    state: State,
     fraction: f64,
-    /// Unit tangent: theta at the nodes, and the fraction.
-    tangent: Vec<f64>,
-    /// Positive where the load rises along the path.
+    /// Change a unit of load.
+    response: Correction<N, M, Q>,
+    /// The fraction's part of the unit tangent, positive where the load rises along the path: `rise`
+    /// times `response` is the rest.
     rise: f64,
 }
 
 impl Point {
-    fn reverse(&mut self) {
-        self.rise = -self.rise;
-        self.tangent.iter_mut().for_each(|t| *t = -*t);
+    fn mesh(&self) -> &Mesh {
+        &self.state.solution.mesh
     }
 
     /// theta of the tangent at the nodes of another mesh: linear interpolation is enough to orient.
     fn tangent_on<'a>(&'a self, mesh: &'a Mesh) -> impl Iterator<Item = f64> + 'a {
-        let own = &self.solution.mesh;
+        let (own, response) = (self.mesh(), &self.response.nodes);
         mesh.nodes().iter().map(move |s| {
             let e = own.element_of(*s);
             let x = (s - own.nodes()[e]) / own.step(e);
-            self.tangent[e] + x * (self.tangent[e + 1] - self.tangent[e])
+            self.rise * (response[e][0] + x * (response[e + 1][0] - response[e][0]))
         })
     }
 
     fn is_symmetric(&self) -> bool {
-        self.tangent.iter().all(|t| t.abs() < SYMMETRIC)
+        (self.rise * self.response.largest(0)).abs() < SYMMETRIC
     }
 }
 
@@ -138,8 +131,8 @@ struct Stepper<'e> {
     opposite: Option<f64>,
 }
 
-/// Follows both phases to whole loads.
-pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, PathEnd> {
+/// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
+pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdict> {
     let mut travelled = Travelled::default();
     engine.set_phase(Phase::Loads, START);
     engine.start_unloaded(10);
@@ -175,18 +168,12 @@ enum Turn {
 }
 
 impl Stepper<'_> {
-    fn follow(&mut self, pace: Pace, travelled: &mut Travelled) -> Result<(), PathEnd> {
-        let mut here = match self.start() {
-            Ok(point) => point,
-            Err(trouble) => {
-                self.last_trouble = Some(trouble);
-                return Err(self.give_up(None, 0.0, 0.0));
-            }
-        };
+    fn follow(&mut self, pace: Pace, travelled: &mut Travelled) -> Result<(), Verdict> {
+        let Ok(mut here) = self.start() else { return Err(self.never_started()) };
         // Which side of zero the determinant is on is a matter of the branch, which way is up is not.
         if here.rise < 0.0 {
             self.orientation = -self.orientation;
-            here.reverse();
+            here.rise = -here.rise;
         }
         let mut step = 0.1_f64.min(pace.longest);
         // A point before this one whose tangent climbed clearly more.
@@ -194,17 +181,17 @@ impl Stepper<'_> {
         for attempt in 0.. {
             if attempt >= pace.most || step < 1e-8 {
                 let residual = self.engine.last;
-                self.restore(&here);
+                self.engine.restore(&here.state);
                 // Two branches of opposite orientation end where they meet: the path turns back in a corner
                 // that the load's kinks make.
                 if self.opposite.is_some_and(|f| (f - here.fraction).abs() < MEET) {
                     return Err(self.end(VerdictKind::LimitPoint, here.fraction, None));
                 }
-                let end = self.give_up(Some(&here), here.fraction, residual);
+                let end = self.give_up(here.fraction, residual);
                 // Towards a fold the square of the climb falls to zero linearly in the load.
                 let fall = steeper.1.powi(2) - here.rise.powi(2);
                 let ahead = (here.fraction - steeper.0) * here.rise.powi(2) / fall;
-                if end.verdict.kind == VerdictKind::NotFound && here.rise < 0.1 && fall > 0.0 && ahead < 1e-3 {
+                if end.kind == VerdictKind::NotFound && here.rise < 0.1 && fall > 0.0 && ahead < 1e-3 {
                     return Err(self.end(VerdictKind::LimitPoint, here.fraction + ahead, None));
                 }
                 return Err(end);
@@ -214,7 +201,7 @@ impl Stepper<'_> {
                     if turn == Turn::Crossing {
                         // The branch goes straight on through a bifurcation.
                         self.orientation = -self.orientation;
-                        next.reverse();
+                        next.rise = -next.rise;
                         travelled.crossings += 1;
                     }
                     if next.rise < 0.0 {
@@ -237,7 +224,7 @@ impl Stepper<'_> {
                 Err(trouble) => {
                     self.last_trouble = Some(trouble);
                     step *= 0.4;
-                    self.restore(&here);
+                    self.engine.restore(&here.state);
                 }
             }
         }
@@ -261,27 +248,27 @@ impl Stepper<'_> {
                 Err(trouble) => return Err(trouble),
             }
         }
-        for accuracy in [1e-5, 1e-6, 1e-7] {
-            let kept = (self.engine.solution.clone(), self.engine.equations.clone());
-            if self.keep_accuracy(None, &mut Load::Fixed(fraction), [accuracy, LOOSE]).is_err() {
-                (self.engine.solution, self.engine.equations) = kept;
-                return self.point(fraction);
-            }
-        }
-        let kept = (self.engine.solution.clone(), self.engine.equations.clone());
-        if self.engine.settle(1e-8, true).is_err() {
-            (self.engine.solution, self.engine.equations) = kept;
+        let refined = [1e-5, 1e-6, 1e-7].iter().all(|accuracy| {
+            self.or_back(|this| this.keep_accuracy(None, &mut Load::Fixed(fraction), [*accuracy, LOOSE]))
+        });
+        if refined {
+            self.or_back(|this| this.engine.settle(1e-8, true).map(|_| ()));
         }
         self.point(fraction)
     }
 
-    fn set(&mut self, fraction: f64) {
-        self.engine.set_phase(self.phase, fraction);
+    /// Does `work`, or comes back to where it started from; whether it was done.
+    fn or_back(&mut self, work: impl FnOnce(&mut Self) -> Result<(), Trouble>) -> bool {
+        let before = self.engine.state();
+        let done = work(self).is_ok();
+        if !done {
+            self.engine.restore(&before);
+        }
+        done
     }
 
-    fn restore(&mut self, point: &Point) {
-        self.engine.solution.clone_from(&point.solution);
-        self.engine.equations.clone_from(&point.equations);
+    fn set(&mut self, fraction: f64) {
+        self.engine.set_phase(self.phase, fraction);
     }
 
     fn linearise(&mut self) -> Result<(), Trouble> {
@@ -315,31 +302,23 @@ impl Stepper<'_> {
             return Err(Trouble::Singular);
         }
         let rise = self.orientation * self.engine.system.determinant().sign / norm;
-        Ok(Point {
-            solution: self.engine.solution.clone(),
-            equations: self.engine.equations.clone(),
-            fraction,
-            tangent: self.response.nodes.iter().map(|z| z[0] * rise).collect(),
-            rise,
-        })
+        Ok(Point { state: self.engine.state(), fraction, response: self.response.clone(), rise })
     }
 
-    /// Moves the solution along the tangent at `here`, whose response is recomputed.
-    fn predict(&mut self, here: &Point, step: f64) -> Result<f64, Trouble> {
-        self.restore(here);
-        self.set(here.fraction);
-        self.linearise()?;
+    /// Moves the solution from `here` along its tangent.
+    fn predict(&mut self, here: &Point, step: f64) -> f64 {
+        self.engine.restore(&here.state);
         let climb = step * here.rise;
-        self.engine.solution.add(&self.response, climb);
-        Ok(here.fraction + climb)
+        self.engine.solution.add(&here.response, climb);
+        here.fraction + climb
     }
 
     fn advance(&mut self, here: &Point, step: f64, pace: Pace) -> Result<(Point, Turn), Trouble> {
-        let mut fraction = self.predict(here, step)?;
+        let mut fraction = self.predict(here, step);
         if fraction >= 1.0 {
             // Land on whole loads, at fixed load; near a fold that is refused and the step shrinks.
             let step = (1.0 - here.fraction) / here.rise;
-            self.predict(here, step)?;
+            self.predict(here, step);
             self.set(1.0);
             let from = self.engine.solution.clone();
             roughly(self.engine.newton(1e-6, 9))?;
@@ -435,11 +414,11 @@ impl Stepper<'_> {
     fn changed_sides(&self, here: &Point) -> f64 {
         let mesh = &self.engine.solution.mesh;
         let gauss = &self.engine.system.gauss;
-        let (before, now) = (&here.equations.switches, &self.engine.equations.switches);
+        let (before, now) = (&here.state.equations.switches, &self.engine.equations.switches);
         let mut share = 0.0;
         for (k, s) in self.engine.equations.stations().iter().enumerate() {
-            let e = here.solution.mesh.element_of(*s);
-            let w = gauss.cardinals((s - here.solution.mesh.nodes()[e]) / here.solution.mesh.step(e));
+            let e = here.mesh().element_of(*s);
+            let w = gauss.cardinals((s - here.mesh().nodes()[e]) / here.mesh().step(e));
             let length = mesh.step(k / M) * gauss.b[k % M];
             for side in 0..2 {
                 let then: f64 = (0..M).map(|j| w[j] * before[e * M + j][side]).sum();
@@ -459,8 +438,8 @@ impl Stepper<'_> {
         let backwards = a.fraction > 1.0;
         let mut square = climb * climb;
         let gauss = &self.engine.system.gauss;
-        for ((s, z), w) in b.solution.mesh.nodes().iter().zip(&b.solution.nodes).zip(self.weights()) {
-            let before = a.solution.state_in(gauss, a.solution.mesh.element_of(*s), *s);
+        for ((s, z), w) in b.mesh().nodes().iter().zip(&b.state.solution.nodes).zip(self.weights()) {
+            let before = a.state.solution.state_in(gauss, a.mesh().element_of(*s), *s);
             square += w * (z[0] - before[0]).powi(2);
         }
         let mean = if backwards { -climb } else { climb } / square.sqrt();
@@ -508,12 +487,11 @@ impl Stepper<'_> {
 
     fn cosine(&self, a: &Point, b: &Point) -> f64 {
         // Both on the mesh of `b`, lengths included: a coarse mesh measures them coarsely.
-        let weights = self.weights();
         let (mut both, mut first, mut second) = (a.rise * b.rise, a.rise * a.rise, b.rise * b.rise);
-        for (i, carried) in a.tangent_on(&b.solution.mesh).enumerate() {
-            both += weights[i] * b.tangent[i] * carried;
-            first += weights[i] * carried * carried;
-            second += weights[i] * b.tangent[i] * b.tangent[i];
+        for ((carried, own), w) in a.tangent_on(b.mesh()).zip(b.tangent_on(b.mesh())).zip(self.weights()) {
+            both += w * own * carried;
+            first += w * carried * carried;
+            second += w * own * own;
         }
         both / (first * second).sqrt()
     }
@@ -550,26 +528,29 @@ impl Stepper<'_> {
         }
         let best = best.filter(|b| b.fraction > here.fraction);
         let limit = best.as_ref().unwrap_or(here);
-        self.restore(limit);
+        self.engine.restore(&limit.state);
         self.set(limit.fraction.min(1.0));
         limit.fraction.max(next.fraction).clamp(0.0, 1.0)
     }
 
-    fn end(&self, kind: VerdictKind, load_fraction: f64, s: Option<f64>) -> PathEnd {
+    fn end(&self, kind: VerdictKind, load_fraction: f64, s: Option<f64>) -> Verdict {
         let load_fraction = if load_fraction <= START { 0.0 } else { load_fraction.min(1.0) };
         let s = s.map(|s| s * self.engine.equations.units.length);
-        PathEnd { verdict: Verdict { kind, phase: self.phase, load_fraction, s, residual: self.engine.last } }
+        Verdict { kind, phase: self.phase, load_fraction, s, residual: self.engine.last }
+    }
+
+    fn never_started(&mut self) -> Verdict {
+        self.engine.last = 0.0;
+        if self.engine.equations.arm().readings.load_can_jump() {
+            self.end(VerdictKind::LoadJump, 0.0, self.engine.nearest_switch())
+        } else {
+            self.end(VerdictKind::NotFound, 0.0, None)
+        }
     }
 
     /// Names the limit that the last good point is at.
-    fn give_up(&mut self, here: Option<&Point>, fraction: f64, residual: f64) -> PathEnd {
+    fn give_up(&mut self, fraction: f64, residual: f64) -> Verdict {
         self.engine.last = residual;
-        if here.is_none() && self.engine.equations.arm().readings.load_can_jump() {
-            return self.end(VerdictKind::LoadJump, 0.0, self.engine.nearest_switch());
-        }
-        if here.is_none() {
-            return self.end(VerdictKind::NotFound, 0.0, None);
-        }
         self.set(fraction);
         let near = self.engine.nearest_limits();
         let failed = match &self.last_trouble {

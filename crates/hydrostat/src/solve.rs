@@ -122,7 +122,7 @@ impl Solver {
     pub(crate) fn solve_along_the_path(&mut self, pace: Pace) -> Result<Configuration, SolveError> {
         let travelled = match follow(&mut self.engine, pace) {
             Ok(travelled) => travelled,
-            Err(end) => return Err(self.no_equilibrium(end.verdict)),
+            Err(verdict) => return Err(self.no_equilibrium(verdict)),
         };
         let before = self.engine.tip;
         let sign = self.engine.system.determinant().sign;
@@ -170,19 +170,14 @@ impl Solver {
 
     /// The verdict with the last good point, which the engine holds, settled and read.
     fn no_equilibrium(&mut self, verdict: Verdict) -> SolveError {
-        let kept = self.engine.clone();
-        // Right at a limit a finer mesh, or a place between stations, may already be past it.
+        let kept = self.engine.state();
+        // Right at a limit the tangent is singular, and a finer mesh, or a place between stations, may
+        // already be past it.
         let mut last_good = None;
-        for back in [0.0, 1e-5, 1e-4, 1e-3, 5e-3] {
-            let fraction = verdict.load_fraction * (1.0 - back);
-            if back > 0.0 {
-                self.engine.clone_from(&kept);
-                self.engine.set_phase(verdict.phase, fraction);
-            }
-            let settled = match self.engine.estimate(1e-6) {
-                Ok(estimate) if back == 0.0 && estimate < 1e-6 => Ok(estimate),
-                _ => self.engine.settle(self.options.tol.max(1e-6), true),
-            };
+        for back in [1e-9, 1e-5, 1e-4, 1e-3, 5e-3] {
+            self.engine.restore(&kept);
+            self.engine.set_phase(verdict.phase, verdict.load_fraction * (1.0 - back));
+            let settled = self.engine.settle(self.options.tol.max(1e-6), true);
             let moved = (self.engine.tip[0] - kept.tip[0]).hypot(self.engine.tip[1] - kept.tip[1]);
             last_good = settled.ok().filter(|_| moved < 0.05).and_then(|e| self.read(e, Travelled::default()).ok());
             if last_good.is_some() {
@@ -190,7 +185,7 @@ impl Solver {
             }
         }
         if last_good.is_none() {
-            self.engine = kept;
+            self.engine.restore(&kept);
             last_good = self.read(LOOSE, Travelled::default()).ok();
         }
         SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good }))

@@ -61,7 +61,6 @@ fn the_tip_is_as_good_as_asked_for_and_the_estimate_says_so() {
 }
 
 #[test]
-#[ignore = "cone along a stream: 1.24e-11 at 1e-11 (estimates 1.9e-12, and 6.2e-13 for the answer compared with)"]
 fn the_tip_is_as_good_as_asked_for_near_rounding() {
     check_errors(11..=11);
 }
