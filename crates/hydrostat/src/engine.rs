@@ -14,6 +14,9 @@ const K: usize = M + 1;
 /// The worst estimate (tip over L) with which a solution is still an answer.
 const WORST: f64 = 1e-5;
 
+/// A tolerance down to which what Newton leaves is foreseen well enough not to wait for it.
+const TIGHT: f64 = 1e-9;
+
 pub(crate) type Guess = Solution<N, M>;
 
 #[derive(Debug, Clone)]
@@ -476,14 +479,15 @@ impl Engine {
         let mut best: Option<(f64, Guess, Equilibrium, [f64; 2])> = None;
         for attempt in 0..10 {
             let goal = match (attempt, warm) {
-                (0, true) => tolerance,
+                (0, true) if tolerance > TIGHT => tolerance,
+                (0, true) => 3.0 * tolerance,
                 (0, false) => tolerance.max(1e-3),
                 _ => (1e-4 * estimate).clamp(3.0 * tolerance, tolerance.max(1e-3)),
             };
             let fine = goal <= 3.0 * tolerance;
             let enough = fine.then_some(tolerance);
             // The warm mesh has met the tolerance before: nothing but Newton's rest can have been added.
-            let ahead = warm && attempt == 0;
+            let ahead = warm && attempt == 0 && tolerance > TIGHT;
             let outcome = self.converge(goal, tolerance, ahead).and_then(|()| self.estimate_unless(tolerance, enough));
             estimate = match (outcome, &best) {
                 (Ok(estimate), _) => estimate,
