@@ -2,7 +2,7 @@
 
 use crate::arm::Arm;
 use crate::dense::Dense;
-use crate::engine::{Engine, M};
+use crate::engine::{Engine, M, shift_by_tangential_load};
 use crate::equilibrium::{AtPlace, SectionFailure};
 use crate::flow::layer_profile;
 use crate::readings::Support;
@@ -28,7 +28,8 @@ pub struct Configuration {
     /// What the solve took.
     pub statistics: Statistics,
     pub(crate) fold: FoldMargin,
-    pub(crate) tangential_shift: Option<f64>,
+    /// The tangential coefficient to compare with, over that of the momentum law, where that acts.
+    pub(crate) tangential_factor: Option<f64>,
     energy: f64,
     dense: Box<Dense>,
 }
@@ -324,7 +325,7 @@ impl Configuration {
             stable: None,
             statistics,
             fold,
-            tangential_shift: None,
+            tangential_factor: None,
             energy: energy * f,
             dense,
         })
@@ -438,7 +439,8 @@ impl Configuration {
         if self.arm.cavity == crate::Cavity::Sealed && !self.arm.inner_radius.is_zero() {
             out.push(Warning::SealedCavity);
         }
-        if let Some(tip_shift) = self.tangential_shift
+        if let Some(factor) = self.tangential_factor
+            && let Some(tip_shift) = shift_by_tangential_load(&self.dense.equations, &self.dense.solution, factor)
             && tip_shift > 0.01
         {
             out.push(Warning::TangentialLoad { tip_shift });

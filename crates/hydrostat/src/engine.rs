@@ -14,6 +14,9 @@ const K: usize = M + 1;
 /// The worst estimate (tip over L) with which a solution is still an answer.
 const WORST: f64 = 1e-5;
 
+/// A tolerance down to which what Newton leaves is foreseen well enough not to wait for it.
+const TIGHT: f64 = 1e-9;
+
 pub(crate) type Guess = Solution<N, M>;
 
 #[derive(Debug, Clone)]
@@ -91,6 +94,16 @@ pub(crate) fn solve<const S: usize>(
         #[inline(always)]
         || system.solve(solution, column, correction),
     );
+}
+
+/// How far the tip (over L) would move, to first order, if the stream's tangential load on `solution`
+/// were `factor` of what it is.
+pub(crate) fn shift_by_tangential_load(equations: &Equilibrium, solution: &Guess, factor: f64) -> Option<f64> {
+    let (mut equations, mut system, mut correction) = (equations.clone(), Collocation::new(), Correction::default());
+    equations.set_tangential_factor(factor);
+    linearise(&mut system, &mut equations, solution, false).ok()?;
+    solve(&system, solution, 0, &mut correction);
+    Some(correction.total[0].hypot(correction.total[1]))
 }
 
 /// A solution with all that belongs to it, to come back to.
@@ -246,11 +259,18 @@ impl Engine {
 
     /// Newton on the present mesh until the tip moves by less than `tolerance`.
     pub(crate) fn newton(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
+        self.iterate(tolerance, most, false)
+    }
+
+    /// Newton until the tip moves by less than `tolerance`, or, looking `ahead`, until it would move by
+    /// less in the round to come.
+    fn iterate(&mut self, tolerance: f64, most: usize, ahead: bool) -> Result<(), Trouble> {
         let clamped = self.equations.arm().readings.support == crate::Support::Clamped;
         let most = if clamped { most } else { 60 };
         let mut applied = 0.0;
         let mut halvings = 0;
         let mut round = 0;
+        let mut before = 0.0;
         loop {
             match linearise(&mut self.system, &mut self.equations, &self.solution, false) {
                 Ok(()) => {}
@@ -281,7 +301,17 @@ impl Engine {
             // beta'' runs a round behind: what it still moves shows from round to round.
             let drifted = if round > 1 { (tip[0] - self.tip[0]).hypot(tip[1] - self.tip[1]) } else { 0.0 };
             self.tip = tip;
-            let moved = dx.hypot(dy).max(0.1 * size).max(0.1 * drifted);
+            let moved = if ahead {
+                // What is left falls with the square of the correction, but not below the share of beta'',
+                // which is a round behind, and no faster than it was seen to fall.
+                let seen = if round > 1 { size / before } else { 0.0 };
+                let rate =
+                    if applied < 1.0 { 1.0 } else { (10.0 * self.reached().max(size)).max(seen).clamp(0.05, 1.0) };
+                dx.hypot(dy).max(0.1 * size) * rate
+            } else {
+                dx.hypot(dy).max(0.1 * size).max(0.1 * drifted)
+            };
+            before = size;
             self.last = size;
             let stop = round == most || (clamped && round >= 4 && size > 3.0);
             if moved <= tolerance || stop {
@@ -294,6 +324,13 @@ impl Engine {
                 return if moved <= tolerance { Ok(()) } else { Err(Trouble::Stalled(size)) };
             }
         }
+    }
+
+    /// The largest change of the angle within an element by the last correction.
+    fn reached(&self) -> f64 {
+        let mesh = &self.solution.mesh;
+        let each = self.correction.slopes.iter().enumerate();
+        each.fold(0.0, |m, (i, k)| k.iter().fold(m, |m, k| f64::max(m, mesh.step(i) * k[0].abs())))
     }
 
     /// Factorises at the present solution.
@@ -310,6 +347,11 @@ impl Engine {
     /// Compares with one more stage an element: what the tip would move, over L. Fills the errors
     /// that each element contributes.
     pub(crate) fn estimate(&mut self, tolerance: f64) -> Result<f64, Trouble> {
+        self.estimate_unless(tolerance, None)
+    }
+
+    /// [`Engine::estimate`], without the errors of the elements when it is at most `enough`.
+    fn estimate_unless(&mut self, tolerance: f64, enough: Option<f64>) -> Result<f64, Trouble> {
         if self.spans.len() != self.solution.mesh.elements() {
             // The last Newton rounds on this mesh did not converge: there is nothing to compare with.
             return Err(Trouble::Mesh);
@@ -328,6 +370,9 @@ impl Engine {
             evaluate(&mut self.check, &mut self.check_equations, &finer).map_err(Trouble::Section)?;
         }
         let mut estimate = self.compare(&finer)?;
+        if enough.is_some_and(|enough| estimate <= enough) {
+            return Ok(estimate);
+        }
         let (check, spans, errors) = (&mut self.check, &self.spans, &mut self.errors);
         widest(
             #[inline(always)]
@@ -461,17 +506,22 @@ impl Engine {
         let mut best: Option<(f64, State)> = None;
         for attempt in 0..10 {
             let goal = match (attempt, warm) {
+                (0, true) if tolerance > TIGHT => tolerance,
                 (0, true) => 3.0 * tolerance,
                 (0, false) => tolerance.max(1e-3),
                 _ => (1e-4 * estimate).clamp(3.0 * tolerance, tolerance.max(1e-3)),
             };
-            let outcome = self.converge(goal, tolerance).and_then(|()| self.estimate(tolerance));
+            let fine = goal <= 3.0 * tolerance;
+            let enough = fine.then_some(tolerance);
+            // The warm mesh has met the tolerance before: nothing but Newton's rest can have been added.
+            let ahead = warm && attempt == 0 && tolerance > TIGHT;
+            let outcome = self.converge(goal, tolerance, ahead).and_then(|()| self.estimate_unless(tolerance, enough));
             estimate = match (outcome, &best) {
                 (Ok(estimate), _) => estimate,
                 (Err(trouble), None) => return Err(trouble),
                 (Err(_), Some(_)) => break,
             };
-            if estimate <= tolerance && goal <= 3.0 * tolerance {
+            if estimate <= tolerance && fine {
                 return Ok(estimate);
             }
             if attempt > 0 && estimate < best.as_ref().map_or(WORST, |b| b.0) {
@@ -490,15 +540,15 @@ impl Engine {
     }
 
     /// Newton on this mesh, with nodes moved onto the kinks of the load.
-    fn converge(&mut self, goal: f64, tolerance: f64) -> Result<(), Trouble> {
-        self.newton(goal, 14)?;
+    fn converge(&mut self, goal: f64, tolerance: f64, ahead: bool) -> Result<(), Trouble> {
+        self.iterate(goal, 14, ahead)?;
         let resolution = 0.05 * tolerance.sqrt();
         for _ in 0..4 {
             let kinks = self.kinks(10.0 * resolution);
             if !self.pin(&kinks, resolution) {
                 break;
             }
-            self.newton(goal, 14)?;
+            self.iterate(goal, 14, ahead)?;
         }
         Ok(())
     }
@@ -529,20 +579,6 @@ impl Engine {
             }
         }
         false
-    }
-
-    /// How far the tip (over L) would move, to first order, if the stream's tangential load were
-    /// `factor` of what it is. Leaves the solution as it is; the factorisation is that of the question.
-    pub(crate) fn shift_by_tangential_load(&mut self, factor: f64) -> Option<f64> {
-        let kept = self.equations.clone();
-        self.equations.set_tangential_factor(factor);
-        self.rounds += 1;
-        let answer = linearise(&mut self.system, &mut self.equations, &self.solution, false).ok().map(|()| {
-            solve(&self.system, &self.solution, 0, &mut self.correction);
-            self.correction.total[0].hypot(self.correction.total[1])
-        });
-        self.equations = kept;
-        answer
     }
 
     /// Takes other tensions, stream or loads for the same arm.

@@ -61,7 +61,7 @@ impl Solver {
         {
             self.settled = true;
             self.sign = 1.0;
-            configuration.tangential_shift = self.tangential_shift();
+            configuration.tangential_factor = self.tangential_factor();
             return Ok(configuration);
         }
         self.solve_along_the_path(Pace::BRISK)
@@ -140,21 +140,20 @@ impl Solver {
                 }
                 self.settled = true;
                 self.sign = sign;
-                configuration.tangential_shift = self.tangential_shift();
+                configuration.tangential_factor = self.tangential_factor();
                 Ok(configuration)
             }
             _ => Err(self.no_equilibrium(self.last_verdict(None))),
         }
     }
 
-    /// How far the tip would move with the tangential coefficient of published arms instead of the
-    /// momentum law's. `None` where that law does not act.
-    fn tangential_shift(&mut self) -> Option<f64> {
+    /// The tangential coefficient of published arms over the momentum law's. `None` where that law does
+    /// not act.
+    fn tangential_factor(&self) -> Option<f64> {
         let arm = self.engine.equations.arm();
         let layer = arm.readings.layer_mean.factor();
         (arm.flow.law == FlowLaw::Momentum && arm.flow.speed > 0.0 && arm.flow.density > 0.0)
             .then(|| PUBLISHED_CT / (layer * layer))
-            .and_then(|factor| self.engine.shift_by_tangential_load(factor))
     }
 
     fn last_verdict(&self, load_fraction: Option<f64>) -> Verdict {
