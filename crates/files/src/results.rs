@@ -3,7 +3,7 @@
 //! Numbers are written with the fewest digits that read back as the same number. What is not
 //! finite is `null` in JSON and an empty field in CSV.
 
-use hydrostat::{Configuration, NoEquilibrium, Stations, Verdict, Warning, Wrench};
+use hydrostat::{Configuration, NoEquilibrium, Stability, Stations, Verdict, Warning, Wrench};
 use serde::Serialize;
 
 use crate::written::Inputs;
@@ -156,12 +156,13 @@ impl<'a> Solution<'a> {
         let Configuration {
             arm, stations: s, cables, base_reaction, unmet, error_estimate, stable, statistics, ..
         } = configuration;
+        let stable = configuration.stability().map_or(*stable, Stability::is_stable);
         let tip = configuration.tip();
         Self {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             converged: true,
-            stable: *stable,
+            stable,
             warnings: notes,
             tip: TipOut { x: tip.x, y: tip.y, theta: tip.theta, alpha: tip.alpha },
             stations: StationsOut {

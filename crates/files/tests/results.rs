@@ -66,7 +66,7 @@ fn the_document_of_an_answer() {
         assert!(keys.contains(&key), "{key}");
     }
     assert_eq!(keys.len(), 13, "{keys:?}");
-    assert_eq!((&got["converged"], &got["stable"], &got["fold_margin"]), (&json!(true), &Value::Null, &json!(0.75)));
+    assert_eq!((&got["converged"], &got["stable"], &got["fold_margin"]), (&json!(true), &json!(true), &json!(0.75)));
     assert_eq!(got["warnings"][0]["kind"], "sealed_cavity");
     assert_eq!(got["cables"], json!([{ "name": "left", "tension": 0.1, "length": 0.19, "stroke": 0.01 }]));
     assert_eq!(got["base"], json!({ "force": [1.0, -2.0], "moment": 3.0 }));
@@ -78,11 +78,20 @@ fn the_document_of_an_answer() {
     assert_eq!(got["inputs"]["arm"]["radius"], json!({ "base": 0.01, "tip": 0.002 }));
     assert_eq!(got["inputs"]["arm"]["base"]["angle"], json!(30.0));
 
-    answer.stable = Some(false);
     answer.unmet = Some(Wrench { force: [0.0, 0.5], moment: 0.25 });
     let got = serde_json::to_value(Solution::new(&answer, -0.1, &[])).unwrap();
-    assert_eq!((&got["stable"], &got["warnings"]), (&json!(false), &json!([])));
+    assert_eq!((&got["stable"], &got["warnings"]), (&json!(true), &json!([])));
     assert_eq!(got["unmet"], json!({ "force": [0.0, 0.5], "moment": 0.25 }));
+}
+
+#[test]
+fn what_is_said_of_stability() {
+    let stable = |load: f64| {
+        let solved = hydrostat::cases::column(1e6, 3e5, load, 0.0).solve().unwrap();
+        serde_json::to_value(Solution::new(&solved, 1.0, &[])).unwrap()["stable"].clone()
+    };
+    let critical = hydrostat::cases::column_buckling_load(1e6, 3e5).unwrap();
+    assert_eq!([0.9, 1.0, 1.1].map(|share| stable(share * critical)), [json!(true), Value::Null, json!(false)]);
 }
 
 #[test]

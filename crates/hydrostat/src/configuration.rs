@@ -23,7 +23,8 @@ pub struct Configuration {
     pub unmet: Option<Wrench>,
     /// Estimated error of the tip position, m.
     pub error_estimate: f64,
-    /// `Some(false)`: unstable. `Some(true)`: stable against static divergence. `None`: not established.
+    /// What the solve came to know on its way: `Some(false)` where the path passed a bifurcation or the determinant says
+    /// that an odd number of directions is unstable, else `None`. [`Configuration::stability`] establishes it.
     pub stable: Option<bool>,
     /// What the solve took.
     pub statistics: Statistics,
@@ -329,6 +330,11 @@ impl Configuration {
             energy: energy * f,
             dense,
         })
+    }
+
+    /// What it takes to evaluate this configuration anywhere.
+    pub(crate) fn dense(&self) -> &Dense {
+        &self.dense
     }
 
     /// Where the tip is.

@@ -134,6 +134,7 @@ pub mod arm;
 mod beta_along;
 mod cable;
 pub mod cases;
+mod compliance;
 pub mod configuration;
 mod dense;
 mod dispatch;
@@ -148,6 +149,7 @@ mod real;
 mod section;
 mod sincos;
 pub mod solve;
+pub mod stability;
 mod swelling;
 pub mod verdict;
 
@@ -158,4 +160,5 @@ pub use configuration::{CableState, Configuration, FoldMargin, Station, Stations
 pub use profile::{Profile, Sample};
 pub use readings::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength};
 pub use solve::{Options, Solver};
+pub use stability::{Growth, Stability};
 pub use verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hydrostat::{Configuration, NoEquilibrium, Options, SolveError, Solver, Verdict};
+use hydrostat::{Configuration, NoEquilibrium, Options, SolveError, Solver, Stability, Verdict};
 use hydrostat_figures::arm_figure;
 use hydrostat_files::{Failure, Note, Solution, stations_csv, write_whole};
 
@@ -57,7 +57,7 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
     for note in &notes {
         eprintln!("warning: {}", note.message);
     }
-    if configuration.stable == Some(false) {
+    if configuration.stability().map_or(configuration.stable, Stability::is_stable) == Some(false) {
         eprintln!("warning: this equilibrium is unstable: the arm would leave it at the slightest push");
     }
     Ok(())

@@ -2,7 +2,19 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{Configuration, Wrench};
+use hydrostat::{Configuration, Stability, Wrench};
+
+/// What is known of the stability of `c`, in words.
+pub(super) fn stability(c: &Configuration) -> Option<String> {
+    match (c.stability(), c.stable) {
+        (Some(Stability::Stable), _) => Some("stable".to_owned()),
+        (Some(Stability::Unstable(1)), _) => Some("UNSTABLE in 1 direction".to_owned()),
+        (Some(Stability::Unstable(count)), _) => Some(format!("UNSTABLE in {count} directions")),
+        (Some(Stability::Marginal), _) => Some("marginal: neither stable nor unstable".to_owned()),
+        (None, Some(false)) => Some("UNSTABLE".to_owned()),
+        (None, _) => None,
+    }
+}
 
 pub(super) fn summary(c: &Configuration) -> String {
     let arm = &c.arm;
@@ -11,11 +23,7 @@ pub(super) fn summary(c: &Configuration) -> String {
     let mut row = |name: &str, text: &str| {
         let _ = writeln!(out, "{name:<15}{text}");
     };
-    let stability = match c.stable {
-        Some(true) => ", stable",
-        Some(false) => ", UNSTABLE",
-        None => "",
-    };
+    let stability = stability(c).map_or_else(String::new, |words| format!(", {words}"));
     let stream = match arm.flow.speed {
         0.0 => "still water".to_owned(),
         speed => format!("stream {speed} m/s at {} deg", number(arm.flow.direction.to_degrees())),

@@ -1,0 +1,369 @@
+//! How far a configuration gives way to small loads along it: the inverse of its full tangent.
+//!
+//! A load of the force (f_x, f_y) and the couple c per length moves the arm by (x, y, theta), to first
+//! order and in the solver's units, with the jacobian J(s) of the slopes (beta' among what it follows):
+//!
+//! ```text
+//! z' = J z - (0, f_x, f_y, c)      (x, y)' = G z        z = (theta, n_f, m_f)
+//! theta(0) = x(0) = y(0) = 0       the right conditions of the equilibrium, differentiated
+//! ```
+//!
+//! The map from loads to motion is compact. It is projected onto shifted Legendre polynomials,
+//! orthonormal on [0, 1], the same for each of the three fields: a matrix, whose leading blocks are
+//! the projections onto fewer polynomials. The condensed elements of the collocation and the sweep
+//! over the nodes that carries the right conditions are those of [`hydrostat_bvp::Collocation`], with
+//! all polynomials as columns at once.
+
+use hydrostat_bvp::{Collocation, Condition, Mesh};
+
+use crate::engine::M;
+use crate::equilibrium::{N, Q};
+
+/// Fields: the motion along e1, along e2, and the turn.
+pub(crate) const FIELDS: usize = 3;
+/// Conditions at the tip.
+const RIGHT: usize = N - 1;
+/// Stage slopes of an element.
+const SLOPES: usize = N * M;
+/// What an element depends on: the state at its left node, and the loads at its stages.
+const GIVEN: usize = N + FIELDS * M;
+
+/// Projection of the compliance onto polynomials: entry `[FIELDS k + f][FIELDS l + g]` is the part of polynomial
+/// `k` in the motion of field `f` under a load of the shape of polynomial `l` in field `g`.
+#[derive(Debug, Clone)]
+pub(crate) struct Compliance {
+    /// Polynomials a field.
+    pub(crate) functions: usize,
+    entries: Vec<f64>,
+}
+
+/// An element after its stages are eliminated.
+struct Element {
+    /// The state at its right node.
+    end: [[f64; GIVEN]; N],
+    /// Slopes of x and y, and theta, at each stage.
+    motion: [[[f64; GIVEN]; FIELDS]; M],
+}
+
+/// The right conditions carried to a node: `rows z = load`, the identity on the columns `pivot`.
+struct Rows {
+    rows: [[f64; N]; RIGHT],
+    pivot: [usize; RIGHT],
+}
+
+impl Compliance {
+    /// With `functions` polynomials a field, about the state of the last evaluation of `system` on
+    /// `mesh`. `None` where the linear system is singular.
+    #[inline(always)]
+    pub(crate) fn new(
+        system: &Collocation<N, M, Q>,
+        mesh: &Mesh,
+        right: &[Condition<N>; N],
+        functions: usize,
+    ) -> Option<Self> {
+        let n = mesh.elements();
+        let columns = FIELDS * functions;
+        let mut basis = vec![[[0.0; M]; 2]; n * functions];
+        let mut elements = Vec::with_capacity(n);
+        for i in 0..n {
+            let (start, h) = (mesh.nodes()[i], mesh.step(i));
+            for j in 0..M {
+                let own = &mut basis[i * functions..(i + 1) * functions];
+                polynomials(
+                    start + h * system.gauss.c[j],
+                    |k, value, rest| {
+                        own[k][0][j] = value;
+                        own[k][1][j] = rest;
+                    },
+                    functions,
+                );
+            }
+            elements.push(Element::new(system, i, h)?);
+        }
+        let basis_of = |i: usize| &basis[i * functions..(i + 1) * functions];
+
+        // From the tip: rows that every state meets.
+        let mut loads = vec![0.0; (n + 1) * RIGHT * columns];
+        let mut rows: Vec<Rows> = Vec::with_capacity(n + 1);
+        let tip = Rows { rows: [0, 1, 2].map(|r| right[r].gradient), pivot: [0; RIGHT] };
+        rows.push(tip.reduce(&mut loads[n * RIGHT * columns..], columns)?);
+        for i in (0..n).rev() {
+            let (own, next) = loads[i * RIGHT * columns..(i + 2) * RIGHT * columns].split_at_mut(RIGHT * columns);
+            let behind = rows.last()?;
+            let mut carried = Rows { rows: [[0.0; N]; RIGHT], pivot: [0; RIGHT] };
+            for r in 0..RIGHT {
+                let mut by = [0.0; GIVEN];
+                for b in 0..N {
+                    for c in 0..GIVEN {
+                        by[c] += behind.rows[r][b] * elements[i].end[b][c];
+                    }
+                }
+                carried.rows[r].copy_from_slice(&by[..N]);
+                let own = &mut own[r * columns..(r + 1) * columns];
+                own.copy_from_slice(&next[r * columns..(r + 1) * columns]);
+                add_loads(&by, -1.0, basis_of(i), own);
+            }
+            rows.push(carried.reduce(own, columns)?);
+        }
+        rows.reverse();
+
+        // From the base: theta(0) = 0 and the rows there.
+        let mut state = vec![0.0; N * columns];
+        let mut next = vec![0.0; N * columns];
+        base_state(&rows[0], &loads[..RIGHT * columns], columns, &mut state)?;
+        let mut entries = vec![0.0; columns * columns];
+        let mut moved = vec![0.0; columns];
+        for i in 0..n {
+            let (element, basis) = (&elements[i], basis_of(i));
+            let h = mesh.step(i);
+            for j in 0..M {
+                let weight = h * system.gauss.b[j];
+                for f in 0..FIELDS {
+                    moved.fill(0.0);
+                    let by = &element.motion[j][f];
+                    add_states(by, &state, &mut moved);
+                    add_loads(by, 1.0, basis, &mut moved);
+                    for k in 0..functions {
+                        // What x' adds at a place, x has from there to the tip.
+                        let test = weight * basis[k][usize::from(f < 2)][j];
+                        let row = &mut entries[(FIELDS * k + f) * columns..][..columns];
+                        for (entry, motion) in row.iter_mut().zip(&moved) {
+                            *entry += test * motion;
+                        }
+                    }
+                }
+            }
+            for a in 0..N {
+                let own = &mut next[a * columns..(a + 1) * columns];
+                own.fill(0.0);
+                add_states(&element.end[a], &state, own);
+                add_loads(&element.end[a], 1.0, basis, own);
+            }
+            rows[i + 1].impose(&loads[(i + 1) * RIGHT * columns..][..RIGHT * columns], columns, &mut next);
+            std::mem::swap(&mut state, &mut next);
+        }
+        Some(Self { functions, entries })
+    }
+
+    /// The entry of row `i` and column `j`.
+    pub(crate) fn entry(&self, i: usize, j: usize) -> f64 {
+        self.entries[i * FIELDS * self.functions + j]
+    }
+}
+
+/// `out += by[..N] state`.
+#[inline(always)]
+fn add_states(by: &[f64; GIVEN], state: &[f64], out: &mut [f64]) {
+    let columns = out.len();
+    for b in 0..N {
+        let f = by[b];
+        for (o, z) in out.iter_mut().zip(&state[b * columns..(b + 1) * columns]) {
+            *o += f * z;
+        }
+    }
+}
+
+/// `out += factor by[N..] loads`, the loads being the polynomials at the stages of the element.
+#[inline(always)]
+fn add_loads(by: &[f64; GIVEN], factor: f64, basis: &[[[f64; M]; 2]], out: &mut [f64]) {
+    for (out, polynomial) in out.chunks_exact_mut(FIELDS).zip(basis) {
+        for f in 0..FIELDS {
+            let mut sum = 0.0;
+            for j in 0..M {
+                sum += by[N + FIELDS * j + f] * polynomial[0][j];
+            }
+            out[f] += factor * sum;
+        }
+    }
+}
+
+/// Gives `out` the first `count` orthonormal polynomials on [0, 1] at `s`: index, value, and integral from `s` to 1.
+#[inline(always)]
+fn polynomials(s: f64, mut out: impl FnMut(usize, f64, f64), count: usize) {
+    let x = 2.0 * s - 1.0;
+    let (mut before, mut now) = (1.0, 1.0);
+    for k in 0..count {
+        let degree = k as f64;
+        let next = if k == 0 { x } else { ((2.0 * degree + 1.0) * x * now - degree * before) / (degree + 1.0) };
+        let norm = (2.0 * degree + 1.0).sqrt();
+        let rest = if k == 0 { 1.0 - s } else { norm * (before - next) / (2.0 * (2.0 * degree + 1.0)) };
+        out(k, norm * now, rest);
+        (before, now) = (now, next);
+    }
+}
+
+impl Element {
+    /// Solves k_j = J_j (z + h sum a_jl k_l) - (0, f_x, f_y, c)_j for the stage slopes k.
+    #[inline(always)]
+    fn new(system: &Collocation<N, M, Q>, i: usize, h: f64) -> Option<Self> {
+        let gauss = &system.gauss;
+        let locals = &system.locals()[i * M..(i + 1) * M];
+        let mut matrix = [[0.0; SLOPES]; SLOPES];
+        let mut given = [[0.0; GIVEN]; SLOPES];
+        for j in 0..M {
+            for a in 0..N {
+                let row = j * N + a;
+                matrix[row][row] = 1.0;
+                for l in 0..M {
+                    for b in 0..N {
+                        matrix[row][l * N + b] -= h * gauss.a[j][l] * locals[j].jacobian[a][b];
+                    }
+                }
+                given[row][..N].copy_from_slice(&locals[j].jacobian[a]);
+                if a > 0 {
+                    given[row][N + FIELDS * j + a - 1] = -1.0;
+                }
+            }
+        }
+        if !solve_in_place(&mut matrix, &mut given) {
+            return None;
+        }
+        // The state after the weights of a quadrature.
+        let state = |weights: &[f64; M]| {
+            let mut z = [[0.0; GIVEN]; N];
+            for a in 0..N {
+                z[a][a] = 1.0;
+                for l in 0..M {
+                    let w = h * weights[l];
+                    for c in 0..GIVEN {
+                        z[a][c] += w * given[l * N + a][c];
+                    }
+                }
+            }
+            z
+        };
+        let motion = std::array::from_fn(|j| {
+            let z = state(&gauss.a[j]);
+            let mut out = [[0.0; GIVEN], [0.0; GIVEN], z[0]];
+            for q in 0..Q {
+                for b in 0..N {
+                    for c in 0..GIVEN {
+                        out[q][c] += locals[j].rate_gradient[q][b] * z[b][c];
+                    }
+                }
+            }
+            out
+        });
+        Some(Self { end: state(&gauss.b), motion })
+    }
+}
+
+/// Solves `matrix x = right` into `right`, by elimination with row pivoting.
+#[inline(always)]
+fn solve_in_place<const S: usize, const C: usize>(matrix: &mut [[f64; S]; S], right: &mut [[f64; C]; S]) -> bool {
+    for k in 0..S {
+        let mut best = k;
+        for i in k + 1..S {
+            if matrix[i][k].abs() > matrix[best][k].abs() {
+                best = i;
+            }
+        }
+        matrix.swap(k, best);
+        right.swap(k, best);
+        let pivot = matrix[k][k];
+        if pivot == 0.0 || !pivot.is_finite() {
+            return false;
+        }
+        let (row, given) = (matrix[k], right[k]);
+        for i in k + 1..S {
+            let f = matrix[i][k] / pivot;
+            if f != 0.0 {
+                for c in 0..S {
+                    matrix[i][c] -= f * row[c];
+                }
+                for c in 0..C {
+                    right[i][c] -= f * given[c];
+                }
+            }
+        }
+    }
+    for k in (0..S).rev() {
+        let inverse = 1.0 / matrix[k][k];
+        let given = right[k].map(|v| v * inverse);
+        right[k] = given;
+        for i in 0..k {
+            let f = matrix[i][k];
+            for c in 0..C {
+                right[i][c] -= f * given[c];
+            }
+        }
+    }
+    true
+}
+
+impl Rows {
+    /// Reduced to the identity on pivot columns, each the largest entry that is left; `loads` follow.
+    #[inline(always)]
+    fn reduce(mut self, loads: &mut [f64], columns: usize) -> Option<Self> {
+        let mut done = [false; RIGHT];
+        for _ in 0..RIGHT {
+            let (mut row, mut column, mut largest) = (0, 0, 0.0);
+            for r in (0..RIGHT).filter(|r| !done[*r]) {
+                for c in 0..N {
+                    if self.rows[r][c].abs() > largest {
+                        (row, column, largest) = (r, c, self.rows[r][c].abs());
+                    }
+                }
+            }
+            if largest == 0.0 || !largest.is_finite() {
+                return None;
+            }
+            done[row] = true;
+            self.pivot[row] = column;
+            let scale = 1.0 / self.rows[row][column];
+            self.rows[row] = self.rows[row].map(|v| v * scale);
+            self.rows[row][column] = 1.0;
+            for v in &mut loads[row * columns..(row + 1) * columns] {
+                *v *= scale;
+            }
+            for r in 0..RIGHT {
+                if r != row {
+                    let f = self.rows[r][column];
+                    for c in 0..N {
+                        self.rows[r][c] -= f * self.rows[row][c];
+                    }
+                    self.rows[r][column] = 0.0;
+                    for c in 0..columns {
+                        loads[r * columns + c] -= f * loads[row * columns + c];
+                    }
+                }
+            }
+        }
+        Some(self)
+    }
+
+    /// The components of `state` that the rows pivot on, from the one that they leave free.
+    #[inline(always)]
+    fn impose(&self, loads: &[f64], columns: usize, state: &mut [f64]) {
+        let free = self.free();
+        for r in 0..RIGHT {
+            let f = self.rows[r][free];
+            for c in 0..columns {
+                state[self.pivot[r] * columns + c] = loads[r * columns + c] - f * state[free * columns + c];
+            }
+        }
+    }
+
+    /// The component that is no pivot.
+    fn free(&self) -> usize {
+        (0..N).find(|c| !self.pivot.contains(c)).unwrap_or(0)
+    }
+}
+
+/// The state at the base: theta = 0 and the rows.
+#[inline(always)]
+fn base_state(rows: &Rows, loads: &[f64], columns: usize, state: &mut [f64]) -> Option<()> {
+    let free = rows.free();
+    if let Some(r) = (0..RIGHT).find(|r| rows.pivot[*r] == 0) {
+        // theta + rows[free] z[free] = load
+        let f = rows.rows[r][free];
+        if f == 0.0 {
+            return None;
+        }
+        for c in 0..columns {
+            state[free * columns + c] = loads[r * columns + c] / f;
+        }
+    }
+    rows.impose(loads, columns, state);
+    Some(())
+}

@@ -1,0 +1,357 @@
+//! Whether an equilibrium is stable against static divergence, and in how many directions it is not.
+//!
+//! The tangent of an equilibrium is not symmetric: drag, loads that follow the arm and cables are no
+//! gradients, and neither is the section law. What is unstable is then a matter of motion, not of an
+//! energy, and the motion meant here is an overdamped one: a resistance to the velocity of the
+//! centreline over L, and to the rate of turn, with the coefficient one for both,
+//!
+//! ```text
+//! d (x, y, theta)/dt = K (x, y, theta)        K = -C^-1
+//! ```
+//!
+//! in lengths of L and forces of C3 A0/L^2 at the base, where K is the net linearised force and couple
+//! per length and C the compliance of [`crate::compliance`]: base clamped, loads at the tip and along the
+//! arm following as they do. A motion in proportion to exp(lambda t) has -C lambda u = u, so that each
+//! eigenvalue mu of C is a rate lambda = -1/mu. Each rate with a positive real part is a direction in
+//! which the arm leaves the equilibrium. Rates are given over the slowest decay of the same arm unloaded, which
+//! drops the coefficients' unit.
+//!
+//! The number of real positive rates is even where the determinant of the equilibrium is positive and odd where it is
+//! negative, whatever the metric; pairs of complex ones, which the metric does bear on, leave
+//! it as it is. Flutter, which takes inertia, is out of reach: Beck's column flutters where the overdamped one
+//! still creeps back.
+
+use hydrostat_bvp::{Collocation, Condition, Correction, Mesh, Problem, Solution};
+use nalgebra::DMatrix;
+use nalgebra::linalg::Schur;
+
+use crate::compliance::{Compliance, FIELDS};
+use crate::configuration::Configuration;
+use crate::dense::Dense;
+use crate::dispatch::widest;
+use crate::engine::{M, solve};
+use crate::equilibrium::{Equilibrium, N, Q};
+use crate::readings::Support;
+use crate::verdict::Phase;
+
+/// Rates whose real part is smaller, over the slowest decay of the unloaded arm, are neither growth nor decay.
+///
+/// Near a buckling load the scaled rate is about the share of the load that is missing or too much. A straight column at its
+/// exact load comes out below 1e-9. Of a hundred random arms, most of them bent, the first rate moves by up to 2e-6 of the
+/// larger of one and itself between solves to 1e-8 and to 1e-11, growing ones left out.
+const MARGIN: f64 = 1e-6;
+
+/// Rates this many times the smallest one are rounding: an eigenvalue of the compliance has no digit left there.
+const ROUNDING: f64 = 1e12;
+
+/// Most rates that are kept when fewer grow.
+const KEPT: usize = 6;
+
+/// Polynomials a field, and at least as many elements; more where the count of what grows is not settled.
+const POLYNOMIALS: [usize; 3] = [16, 24, 36];
+
+/// What becomes of an equilibrium after a small push, inertia aside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Stability {
+    /// Every motion decays.
+    Stable,
+    /// Motions in so many independent directions grow. A pair of complex rates counts as two: such a motion
+    /// grows as it swings, which an arm in a stream against it does, and depends on the resistance assumed.
+    Unstable(usize),
+    /// A motion neither grows nor decays within what can be told: the arm is at a buckling load.
+    Marginal,
+}
+
+impl Stability {
+    /// `Some` where it is established either way.
+    pub fn is_stable(self) -> Option<bool> {
+        match self {
+            Self::Stable => Some(true),
+            Self::Unstable(_) => Some(false),
+            Self::Marginal => None,
+        }
+    }
+}
+
+/// How fast small motions about an equilibrium grow or decay when they are overdamped.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Growth {
+    /// Real and imaginary part of the rates over the slowest decay of the unloaded arm, largest real part
+    /// first: all that grow, and at least six where there are as many.
+    pub rates: Vec<[f64; 2]>,
+}
+
+impl Growth {
+    /// What the rates say.
+    pub fn stability(&self) -> Stability {
+        match growing(&self.rates) {
+            0 if self.rates.first().is_some_and(|rate| rate[0] >= -MARGIN) => Stability::Marginal,
+            0 => Stability::Stable,
+            count => Stability::Unstable(count),
+        }
+    }
+}
+
+impl Configuration {
+    /// Whether this equilibrium is stable against static divergence, see [`Configuration::growth`].
+    /// `None` where that is not established.
+    pub fn stability(&self) -> Option<Stability> {
+        self.growth().map(|growth| growth.stability())
+    }
+
+    /// How fast small overdamped motions about this equilibrium grow or decay: of the velocity of the
+    /// centreline over L and of the rate of turn, each against a resistance of one along the whole arm.
+    ///
+    /// Computed when asked for, in one to two milliseconds. `None` with [`Support::UnstrainedBase`], whose arm is
+    /// no equilibrium at the tip, and where the number of growing motions does not settle as they are resolved more finely.
+    pub fn growth(&self) -> Option<Growth> {
+        growth(self.dense()).map(|(growth, _)| growth)
+    }
+}
+
+/// How many of `rates` grow.
+fn growing(rates: &[[f64; 2]]) -> usize {
+    rates.iter().filter(|rate| rate[0] > MARGIN).count()
+}
+
+/// The growth, and how many times it was resolved more finely.
+fn growth(dense: &Dense) -> Option<(Growth, usize)> {
+    if dense.equations.arm().readings.support == Support::UnstrainedBase {
+        return None;
+    }
+    for (level, functions) in POLYNOMIALS.into_iter().enumerate() {
+        let tangent = Tangent::new(dense, functions)?;
+        let unit = tangent.slowest_decay(functions)?;
+        let compliance = tangent.compliance(functions)?;
+        let mut rates = scaled_rates(&compliance, functions, unit)?;
+        let fewer = scaled_rates(&compliance, functions - functions / 4, unit)?;
+        let count = growing(&rates);
+        let marginal = rates.iter().any(|rate| rate[0].abs() <= MARGIN);
+        if count == growing(&fewer) && (marginal || (tangent.sign > 0.0) == count.is_multiple_of(2)) {
+            rates.truncate(count.max(KEPT));
+            return Some((Growth { rates }, level));
+        }
+    }
+    None
+}
+
+/// The rates -1/mu of the first `functions` polynomials over `unit`, largest real part first.
+fn scaled_rates(compliance: &Compliance, functions: usize, unit: f64) -> Option<Vec<[f64; 2]>> {
+    let size = FIELDS * functions;
+    let matrix = DMatrix::from_fn(size, size, |i, j| compliance.entry(i, j));
+    if !matrix.iter().all(|v| v.is_finite()) {
+        return None;
+    }
+    let eigenvalues = Schur::try_new(matrix, f64::EPSILON, 100 * size)?.complex_eigenvalues();
+    let largest = eigenvalues.iter().map(|mu| mu.norm()).fold(0.0, f64::max);
+    let mut rates: Vec<[f64; 2]> = eigenvalues
+        .iter()
+        .filter(|mu| mu.norm() * ROUNDING > largest)
+        .map(|mu| {
+            let factor = 1.0 / (unit * mu.norm_sqr());
+            [-mu.re * factor, mu.im * factor]
+        })
+        .collect();
+    rates.sort_by(|a, b| b[0].total_cmp(&a[0]));
+    Some(rates)
+}
+
+/// The linearised equations about a solution.
+struct Tangent {
+    equations: Equilibrium,
+    system: Collocation<N, M, Q>,
+    solution: Solution<N, M>,
+    /// Sign of the determinant.
+    sign: f64,
+}
+
+impl Tangent {
+    /// About the solution, on its own mesh with the elements cut so that there are at least `elements`.
+    fn new(dense: &Dense, elements: usize) -> Option<Self> {
+        let mut this = Self {
+            equations: dense.equations.clone(),
+            system: Collocation::new(),
+            solution: dense.solution.clone(),
+            sign: 0.0,
+        };
+        let parts = elements.div_ceil(dense.solution.mesh.elements());
+        if parts > 1 {
+            this.cut(parts);
+            let mut correction = Correction::default();
+            for _ in 0..2 {
+                this.linearise()?;
+                solve(&this.system, &this.solution, 0, &mut correction);
+                this.solution.add(&correction, 1.0);
+            }
+        }
+        this.linearise()?;
+        Some(this)
+    }
+
+    /// The slowest decay of the arm on the same mesh with no load at all: reference strains, nothing carried.
+    fn slowest_decay(&self, functions: usize) -> Option<f64> {
+        let mut equations = self.equations.clone();
+        equations.set_phase(Phase::Loads, 0.0);
+        equations.forget_strains();
+        let system = Collocation::new();
+        let base = [equations.arm().base.angle, 0.0, 0.0, 0.0];
+        let mut solution = Solution::constant(self.solution.mesh.clone(), base);
+        for i in 0..solution.mesh.elements() {
+            let h = solution.mesh.step(i);
+            let mut next = solution.nodes[i];
+            for j in 0..M {
+                let mu = equations.reference_strain(i * M + j)[2];
+                solution.slopes[i][j] = [mu, 0.0, 0.0, 0.0];
+                next[0] += h * system.gauss.b[j] * mu;
+            }
+            solution.nodes[i + 1] = next;
+        }
+        let mut unloaded = Self { equations, system, solution, sign: 0.0 };
+        unloaded.linearise()?;
+        let rates = scaled_rates(&unloaded.compliance(functions)?, functions, 1.0)?;
+        rates.first().map(|rate| -rate[0]).filter(|decay| *decay > 0.0)
+    }
+
+    fn cut(&mut self, parts: usize) {
+        let (old, gauss) = (&self.solution, &self.system.gauss);
+        let nodes = old.mesh.nodes();
+        let mut inner = Vec::with_capacity(parts * nodes.len());
+        for i in 0..old.mesh.elements() {
+            inner.extend((0..parts).map(|p| nodes[i] + old.mesh.step(i) * p as f64 / parts as f64));
+        }
+        let cut = old.on(gauss, Mesh::uniform(1, &inner[1..]));
+        let mut stations = Vec::new();
+        self.system.stations(&cut.mesh, &mut stations);
+        let guesses: Vec<_> = stations
+            .iter()
+            .map(|s| {
+                let e = old.mesh.element_of(*s);
+                let weights = gauss.cardinals((s - nodes[e]) / old.mesh.step(e));
+                let (strain, [slope, curvature]) = self.equations.remembered(e, &weights);
+                (strain, slope, curvature)
+            })
+            .collect();
+        self.equations.place_stations(&stations, &cut.mesh, |k| guesses[k]);
+        self.solution = cut;
+    }
+
+    fn linearise(&mut self) -> Option<()> {
+        let Self { equations, system, solution, sign } = self;
+        widest(
+            #[inline(always)]
+            || system.linearise(equations, solution, false),
+        )
+        .ok()?;
+        *sign = system.determinant().sign;
+        Some(())
+    }
+
+    fn compliance(&self, functions: usize) -> Option<Compliance> {
+        let mesh = &self.solution.mesh;
+        let mut right = [Condition::default(); N];
+        self.equations.right(&self.solution.nodes[mesh.elements()], &mut right);
+        widest(
+            #[inline(always)]
+            || Compliance::new(&self.system, mesh, &right, functions),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Arm, Cable, Gravity, Options, Profile, Solver};
+
+    /// A xorshift generator.
+    struct Dice(u64);
+
+    impl Dice {
+        fn roll(&mut self) -> f64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        }
+
+        fn between(&mut self, low: f64, high: f64) -> f64 {
+            low + (high - low) * self.roll()
+        }
+
+        fn one_of<T: Copy>(&mut self, of: &[T]) -> T {
+            let share = self.roll() * of.len() as f64;
+            *of.iter().enumerate().find(|(i, _)| share < (*i + 1) as f64).unwrap().1
+        }
+    }
+
+    /// Cones in a stream and in gravity from all sides, half of them with a slack cable so that
+    /// those against the stream or upright stay straight and unstable.
+    fn random_arm(dice: &mut Dice) -> Arm {
+        let length = dice.between(0.1, 0.4);
+        let base = length * dice.between(0.03, 0.06);
+        let tip = base * dice.between(0.1, 1.0);
+        let young = 10_f64.powf(dice.between(4.0, 5.7));
+        let mut arm = Arm::cone(length, base, tip, young, 0.5);
+        arm.density = dice.between(1000.0, 1150.0);
+        let share = dice.between(0.4, 0.8);
+        let most = 0.05 * young * std::f64::consts::PI * tip * tip;
+        let tension = dice.one_of(&[0.0, 1.0]) * most * dice.between(0.0, 1.5);
+        arm.cables.push(Cable::new("left", Profile::linear(share * base, share * tip)).pulled(tension));
+        arm.cables.push(Cable::new("right", Profile::linear(-share * base, -share * tip)));
+        arm.base.angle = dice.one_of(&[0.0, std::f64::consts::FRAC_PI_2]);
+        arm.flow.speed = dice.one_of(&[0.0, 1.0]) * dice.between(0.0, 1.0);
+        arm.flow.direction = dice.one_of(&[0.0_f64, 60.0, 90.0, 180.0, 270.0]).to_radians();
+        arm.gravity = dice.one_of(&[None, Some(Gravity::default())]);
+        arm
+    }
+
+    /// The counts are even where the determinant is positive and odd where it is negative, and stay when polynomials
+    /// and elements are doubled; and the first rate moves by little then, and with the tolerance of the solve.
+    #[test]
+    fn counts_on_random_arms_agree_with_the_determinant_and_with_twice_the_polynomials() {
+        let mut dice = Dice(11);
+        let (mut solved, mut unstable, mut pairs, mut refined, mut unsettled) = (0, 0, 0, 0, 0);
+        let mut by_tolerance = 0.0_f64;
+        let mut wrong = Vec::new();
+        for case in 0..300 {
+            let arm = random_arm(&mut dice);
+            let Ok(shape) = Solver::new(&arm, Options::default()).unwrap().solve() else { continue };
+            solved += 1;
+            let dense = shape.dense();
+            let Some((found, level)) = growth(dense) else {
+                unsettled += 1;
+                continue;
+            };
+            refined += usize::from(level > 0);
+            let count = growing(&found.rates);
+            unstable += usize::from(count > 0);
+            pairs += usize::from(count > 0 && found.rates[0][1] != 0.0);
+            let functions = 2 * POLYNOMIALS[level];
+            let tangent = Tangent::new(dense, functions).unwrap();
+            let compliance = tangent.compliance(functions).unwrap();
+            let finer = scaled_rates(&compliance, functions, tangent.slowest_decay(functions).unwrap()).unwrap();
+            let even = count.is_multiple_of(2);
+            let off = (found.rates[0][0] - finer[0][0]).hypot(found.rates[0][1].abs() - finer[0][1].abs());
+            if growing(&finer) != count
+                || (tangent.sign > 0.0) != even
+                || off > 0.02 * finer[0][0].hypot(finer[0][1]).max(0.1)
+            {
+                wrong.push(format!("{case}: sign {}, {:?}, finer {:?}", tangent.sign, found.rates, &finer[..6]));
+            }
+            if case < 100
+                && let Ok(sharp) = Solver::new(&arm, Options { tol: 1e-11 }).unwrap().solve()
+            {
+                let sharp = sharp.growth().unwrap().rates[0];
+                let off = (sharp[0] - found.rates[0][0]).abs() / sharp[0].abs().max(1.0);
+                if count == 0 {
+                    by_tolerance = by_tolerance.max(off);
+                }
+            }
+        }
+        println!(
+            "{solved} arms, {unstable} unstable, {pairs} first by a pair, {refined} refined, {unsettled} unsettled, \
+             tolerance moves the first rate by {by_tolerance:e}"
+        );
+        assert!(wrong.is_empty(), "{wrong:#?}");
+        assert!(unstable > 5 && unsettled <= 3 && by_tolerance < 1e-5);
+    }
+}
