@@ -239,7 +239,9 @@ fn cable(v: &Values, index: usize) -> Cable {
     Cable {
         name: v.text(&key("name")).unwrap_or_else(|| index.to_string()),
         offset: v.profile(&key("offset")).unwrap_or(Profile::Linear { base: 0.005, tip: 0.001 }),
-        tension: v.number(&key("tension")).unwrap_or_default(),
+        tension: v.number(&key("tension")).filter(|_| !v.has_stroke(index)).unwrap_or_default(),
+        stroke: v.number(&key("stroke")).filter(|_| v.has_stroke(index)),
+        stiffness: v.number(&key("stiffness")),
         max_tension: v.number(&key("max_tension")),
         end: v.number(&key("end")).unwrap_or(1.0),
     }

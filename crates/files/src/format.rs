@@ -112,10 +112,19 @@ const CABLE: &[Key] = &[
         "{ base = 0.005, tip = 0.001 }",
         "Signed offset in the straight arm, positive is left; inside the section as far as the cable runs.",
     ),
-    default("tension", Quantity(D::Force), "0", "Tension at the base, not negative."),
+    default("tension", Quantity(D::Force), "0", "Tension at the base, not negative; or stroke."),
+    optional(
+        "stroke",
+        Quantity(D::Length),
+        "In place of the tension: the length that is reeled in, of the cable's length in the unloaded arm; negative is paid out.",
+    ),
+    optional("stiffness", Quantity(D::Force), "EA of an elastic cable, with a stroke. Left out: it does not stretch."),
     optional("max_tension", Quantity(D::Force), "The largest tension that makes sense."),
     default("end", Quantity(D::Number), "1.0", "Where it is anchored, as a fraction of the length in (0, 1]."),
 ];
+
+/// Either of them, not both.
+pub(crate) const PULL: [&str; 2] = ["tension", "stroke"];
 
 /// Required with `law = "quadratic-drag"`.
 pub(crate) const DRAG: [&str; 2] = ["cn", "ct"];

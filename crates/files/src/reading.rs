@@ -6,7 +6,7 @@ use hydrostat::profile::TableError;
 use hydrostat::{ArmError, Profile};
 
 use crate::document::{Entry, Field, Node, Origin, segment};
-use crate::format::{self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_POINTS};
+use crate::format::{self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_POINTS, PULL};
 use crate::quantity::Dimension;
 
 /// What is wrong, without the names of files.
@@ -53,6 +53,7 @@ impl Values {
         values.table("", format::FILE, fields, Origin::Text(0))?;
         values.check_material()?;
         values.check_drag()?;
+        values.check_pull()?;
         Ok(values)
     }
 
@@ -252,6 +253,26 @@ impl Values {
                 Err(missing("young", expected))
             }
         }
+    }
+
+    /// A file gives a cable a tension or a stroke; an override of one takes the place of the other.
+    fn check_pull(&self) -> Result<(), Fault> {
+        for index in 0..self.cables {
+            let [tension, stroke] = PULL.map(|name| format!("cable[{index}].{name}"));
+            let by_setting = |key: &str| matches!(self.origin(key), Origin::Setting(_));
+            if self.has(&tension) && self.has(&stroke) && by_setting(&tension) == by_setting(&stroke) {
+                let expected = "either tension or stroke".to_owned();
+                return Err(value_fault(&stroke, self.origin(&stroke), expected, "both".to_owned()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether cable `index` is given by its stroke.
+    pub(crate) fn has_stroke(&self, index: usize) -> bool {
+        let [tension, stroke] = PULL.map(|name| format!("cable[{index}].{name}"));
+        let overridden = self.has(&tension) && matches!(self.origin(&tension), Origin::Setting(_));
+        self.has(&stroke) && !overridden
     }
 
     fn check_drag(&self) -> Result<(), Fault> {

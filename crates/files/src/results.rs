@@ -101,6 +101,16 @@ struct CableOut<'a> {
     tension: f64,
     length: f64,
     stroke: f64,
+    /// Only where the stroke was commanded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    command: Option<CommandOut>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct CommandOut {
+    stroke: f64,
+    length: f64,
+    slack: bool,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -181,7 +191,13 @@ impl<'a> Solution<'a> {
             },
             cables: cables
                 .iter()
-                .map(|c| CableOut { name: &c.name, tension: c.tension, length: c.length, stroke: c.stroke })
+                .map(|c| CableOut {
+                    name: &c.name,
+                    tension: c.tension,
+                    length: c.length,
+                    stroke: c.stroke,
+                    command: c.command.map(|c| CommandOut { stroke: c.stroke, length: c.length, slack: c.slack }),
+                })
                 .collect(),
             base: (*base_reaction).into(),
             unmet: unmet.map(Into::into),

@@ -257,11 +257,14 @@ fn material(material: &Material) -> Tree {
 }
 
 fn cable(cable: &hydrostat::Cable) -> Tree {
-    let mut keys = vec![
-        ("name", Tree::Text(cable.name.clone())),
-        ("offset", Tree::profile(&cable.offset)),
-        ("tension", Tree::Number(cable.tension)),
-    ];
+    let mut keys = vec![("name", Tree::Text(cable.name.clone())), ("offset", Tree::profile(&cable.offset))];
+    match cable.stroke {
+        Some(stroke) => keys.push(("stroke", Tree::Number(stroke))),
+        None => keys.push(("tension", Tree::Number(cable.tension))),
+    }
+    if let Some(stiffness) = cable.stiffness {
+        keys.push(("stiffness", Tree::Number(stiffness)));
+    }
     if let Some(max_tension) = cable.max_tension {
         keys.push(("max_tension", Tree::Number(max_tension)));
     }

@@ -120,8 +120,13 @@ pub struct Cable {
     pub name: String,
     /// Signed offset y(s) in the straight arm, left positive, m.
     pub offset: Profile,
-    /// Tension T >= 0, N.
+    /// Tension T >= 0, N. With a commanded stroke it follows from that, and what is given here does not count.
     pub tension: f64,
+    /// Commanded stroke, m: the length that is reeled in, of the cable's length at the reference strains; negative when
+    /// paid out. See [`crate::configuration::Command`].
+    pub stroke: Option<f64>,
+    /// Stiffness EA, N, of an elastic cable; `None` when it does not stretch. Matters only with a commanded stroke.
+    pub stiffness: Option<f64>,
     /// The largest tension that makes sense, N, if stated.
     pub max_tension: Option<f64>,
     /// Where it is anchored, as a fraction of the length in (0, 1].
@@ -131,12 +136,26 @@ pub struct Cable {
 impl Cable {
     /// A slack cable that runs to the tip.
     pub fn new(name: impl Into<String>, offset: impl Into<Profile>) -> Self {
-        Self { name: name.into(), offset: offset.into(), tension: 0.0, max_tension: None, end: 1.0 }
+        Self {
+            name: name.into(),
+            offset: offset.into(),
+            tension: 0.0,
+            stroke: None,
+            stiffness: None,
+            max_tension: None,
+            end: 1.0,
+        }
     }
 
     /// This cable pulled with `tension` (N).
     pub fn pulled(mut self, tension: f64) -> Self {
         self.tension = tension;
+        self
+    }
+
+    /// This cable reeled in by `stroke` (m), at whatever tension that takes.
+    pub fn reeled_in(mut self, stroke: f64) -> Self {
+        self.stroke = Some(stroke);
         self
     }
 
@@ -371,7 +390,7 @@ impl Arm {
         }
     }
 
-    /// Sets all tensions (N), in the order of the cables.
+    /// Sets all tensions (N), in the order of the cables; no stroke is commanded of them any more.
     ///
     /// # Errors
     /// [`ArmError::TensionCount`] when their number is not that of the cables.
@@ -381,6 +400,7 @@ impl Arm {
         }
         for (cable, tension) in self.cables.iter_mut().zip(tensions) {
             cable.tension = *tension;
+            cable.stroke = None;
         }
         Ok(())
     }
@@ -492,9 +512,19 @@ impl Arm {
         let key = |name: &str| format!("cable[{index}].{name}");
         cable.offset.check(&key("offset"), length)?;
         not_negative(&key("tension"), cable.tension)?;
+        if let Some(stroke) = cable.stroke {
+            finite(&key("stroke"), stroke)?;
+            if stroke.abs() >= length {
+                let expected = "shorter than the arm";
+                return Err(ArmError::OutOfRange { key: key("stroke"), value: stroke, expected });
+            }
+        }
+        if let Some(stiffness) = cable.stiffness {
+            positive(&key("stiffness"), stiffness)?;
+        }
         if let Some(max_tension) = cable.max_tension {
             positive(&key("max_tension"), max_tension)?;
-            if cable.tension > max_tension {
+            if cable.tension > max_tension && cable.stroke.is_none() {
                 return Err(ArmError::TensionAboveMax { key: key("tension"), tension: cable.tension, max_tension });
             }
         }

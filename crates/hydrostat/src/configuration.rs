@@ -113,6 +113,20 @@ pub struct CableState {
     pub length: f64,
     /// Length at the reference strains less present length, m: positive when reeled in.
     pub stroke: f64,
+    /// What was commanded, where the length was.
+    pub command: Option<Command>,
+}
+
+/// The length that was commanded of a cable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Command {
+    /// Stroke, m: of the length at the reference strains, what is reeled in.
+    pub stroke: f64,
+    /// The unstretched length that this leaves between base and anchor, m. The path of a slack cable,
+    /// [`CableState::length`], is shorter.
+    pub length: f64,
+    /// Whether the cable hangs slack: pulling it that far would take a push.
+    pub slack: bool,
 }
 
 /// The tip.
@@ -290,7 +304,7 @@ impl Configuration {
         let mut cables: Vec<CableState> = arm
             .cables
             .iter()
-            .map(|c| CableState { name: c.name.clone(), tension: c.tension, length: 0.0, stroke: 0.0 })
+            .map(|c| CableState { name: c.name.clone(), tension: c.tension, length: 0.0, stroke: 0.0, command: None })
             .collect();
         let mut energy = 0.0;
         let places = dense.equations.stations();
@@ -307,6 +321,14 @@ impl Configuration {
                     }
                 }
             }
+        }
+
+        for (state, cable) in cables.iter_mut().zip(&arm.cables) {
+            state.command = cable.stroke.map(|stroke| Command {
+                stroke,
+                length: state.length + state.stroke - stroke,
+                slack: cable.tension == 0.0,
+            });
         }
 
         let [_, n1, n2, m] = dense.solution.nodes[0];

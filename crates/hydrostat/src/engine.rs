@@ -36,6 +36,17 @@ impl From<RoundError<SectionFailure>> for Trouble {
     }
 }
 
+/// Corrections (rad) that may go on hopping across a kink of the load.
+pub(crate) const HOP: f64 = 1e-4;
+
+/// Newton along a path, where hopping across a kink is good enough.
+pub(crate) fn roughly(result: Result<(), Trouble>) -> Result<(), Trouble> {
+    match result {
+        Err(Trouble::Stalled(size)) if size <= HOP => Ok(()),
+        other => other,
+    }
+}
+
 #[derive(Debug, Clone)]
 pub(crate) struct Engine {
     pub(crate) equations: Equilibrium,
@@ -59,7 +70,7 @@ pub(crate) struct Engine {
 }
 
 /// [`Collocation::evaluate`] in the processor's widest vectors.
-fn evaluate<const S: usize>(
+pub(crate) fn evaluate<const S: usize>(
     system: &mut Collocation<N, S, Q>,
     equations: &mut Equilibrium,
     solution: &Solution<N, S>,
@@ -342,6 +353,14 @@ impl Engine {
     /// Brings stages, strains and switches up to date with the solution.
     pub(crate) fn refresh(&mut self) -> Result<(), SectionFailure> {
         evaluate(&mut self.system, &mut self.equations, &self.solution)
+    }
+
+    /// Takes tip and spans at the present solution, which Newton has converged to by other rounds than these.
+    pub(crate) fn take_stock(&mut self) -> Result<(), Trouble> {
+        self.linearise(false)?;
+        self.system.quadratures(&self.solution.mesh, &mut self.spans);
+        self.tip = self.system.totals(&self.solution.mesh);
+        Ok(())
     }
 
     /// Compares with one more stage an element: what the tip would move, over L. Fills the errors

@@ -242,6 +242,28 @@ impl Equilibrium {
         ]
     }
 
+    /// Length of the path of cable `c`, now and at the reference strains, over L, with the weights of the stages.
+    pub(crate) fn cable_lengths(&self, c: usize, weights: &[f64]) -> [f64; 2] {
+        let mut lengths = [0.0; 2];
+        for (k, s) in self.stations.iter().enumerate() {
+            if *s < self.ends[c] {
+                let weight = self.steps[k] * weights[k % self.stages];
+                let stretches = self.cable_stretch(c, k);
+                lengths[0] += weight * stretches[0];
+                lengths[1] += weight * stretches[1];
+            }
+        }
+        lengths
+    }
+
+    /// Stroke (over L) a unit of tension of cable `c` in the straight arm, by compression and bending.
+    pub(crate) fn cable_compliance(&self, c: usize) -> f64 {
+        (0..64).map(|k| (f64::from(k) + 0.5) / 64.0).filter(|s| *s < self.ends[c]).fold(0.0, |sum, s| {
+            let [axial, _, bending] = self.place(s).stiffness.value;
+            sum + (1.0 / axial + self.offset(c, s).y.powi(2) / bending) / 64.0
+        })
+    }
+
     /// Where cable `c` ends, over L.
     pub(crate) fn cable_end(&self, c: usize) -> f64 {
         self.ends[c]
@@ -468,6 +490,7 @@ impl Equilibrium {
         self.fraction = match phase {
             Phase::Loads => [fraction, 0.0],
             Phase::Tension => [1.0, fraction],
+            Phase::Stroke => [1.0, 1.0],
         };
     }
 
@@ -961,7 +984,7 @@ impl Equilibrium {
                 let couple = self.places[block].body.couple;
                 ([zero, -(load.force[0] * per), -(load.force[1] * per), -couple], zero)
             }
-            Phase::Tension => {
+            Phase::Tension | Phase::Stroke => {
                 let f = self.fraction[1];
                 let per = Lanes::of(if f == 0.0 { 0.0 } else { -1.0 / f });
                 let strain = apply3(&solved.inverse, solved.balance.cables.map(|v| v * per));

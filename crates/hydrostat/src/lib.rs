@@ -151,13 +151,16 @@ mod section;
 mod sincos;
 pub mod solve;
 pub mod stability;
+mod strokes;
 mod swelling;
 pub mod verdict;
 
 pub use arm::{
     Arm, ArmError, Base, Cable, Cavity, DistributedLoad, Flow, FlowLaw, Gravity, Material, Reference, TipLoad,
 };
-pub use configuration::{CableState, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench};
+pub use configuration::{
+    CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,
+};
 pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub use profile::{Profile, Sample};

@@ -10,6 +10,7 @@ mod small_steps;
 mod stepper;
 
 pub use circle::{Equilibria, Equilibrium};
+pub(crate) use limits::name_limit;
 pub(crate) use ramp::follow;
 pub use range::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 
@@ -38,9 +39,6 @@ const EVEN: f64 = 0.15;
 /// Steps shorter than this go round a corner of the path, which the load's kinks make where a whole part
 /// of the arm meets them at once, and through bifurcations.
 const CORNER: f64 = 1e-5;
-
-/// Corrections (rad) that may go on hopping across a kink of the load.
-const HOP: f64 = 1e-4;
 
 /// How finely a path is followed.
 #[derive(Debug, Clone, Copy)]

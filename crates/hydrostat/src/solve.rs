@@ -4,6 +4,7 @@ use crate::arm::{Arm, FlowLaw};
 use crate::configuration::{Configuration, Statistics};
 use crate::engine::{Engine, M, Trouble};
 use crate::path::{LOOSE, Pace, Travelled, follow};
+use crate::strokes::{Strokes, is_commanded, started};
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
 
 /// The largest tangential drag coefficient that is published for such arms.
@@ -31,6 +32,8 @@ pub struct Solver {
     settled: bool,
     /// Sign of the determinant of the last configuration.
     sign: f64,
+    /// Cables whose strokes are commanded, at the last configuration.
+    strokes: Option<Strokes>,
 }
 
 impl Solver {
@@ -43,7 +46,7 @@ impl Solver {
         if !(options.tol >= 1e-12 && options.tol <= 1e-2) {
             return Err(SolveError::Option { option: "tol", value: options.tol, expected: "in [1e-12, 1e-2]" });
         }
-        Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0 })
+        Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, strokes: None })
     }
 
     /// Solves from the unloaded arm.
@@ -51,6 +54,14 @@ impl Solver {
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
     pub fn solve(&mut self) -> Result<Configuration, SolveError> {
+        if self.engine.equations.arm().cables.iter().any(is_commanded) {
+            return self.solve_strokes();
+        }
+        self.solve_tensions()
+    }
+
+    /// With all tensions given.
+    fn solve_tensions(&mut self) -> Result<Configuration, SolveError> {
         self.settled = false;
         self.engine.reset_statistics();
         self.engine.set_phase(Phase::Tension, 1.0);
@@ -65,6 +76,88 @@ impl Solver {
             return Ok(configuration);
         }
         self.solve_along_the_path(Pace::BRISK)
+    }
+
+    /// With the strokes of some cables commanded: from the equilibrium with these slack, or hardly pulled where that
+    /// one gives no start.
+    fn solve_strokes(&mut self) -> Result<Configuration, SolveError> {
+        let arm = self.engine.equations.arm().clone();
+        let mut first = None;
+        for share in [0.0, 0.02, 0.2, 0.7] {
+            match self.solve_strokes_from(&arm, share) {
+                Err(SolveError::NoEquilibrium(no)) if is_start(&no.verdict) => {
+                    first = first.or(Some(SolveError::NoEquilibrium(no)));
+                }
+                other => return other,
+            }
+        }
+        Err(first.unwrap_or_else(|| self.no_equilibrium(self.last_verdict(Some(0.0)))))
+    }
+
+    fn solve_strokes_from(&mut self, arm: &Arm, share: f64) -> Result<Configuration, SolveError> {
+        self.strokes = None;
+        let start = started(arm, &self.engine.equations, share);
+        self.engine.set_loads(&start);
+        self.solve_tensions()?;
+        self.settled = false;
+        self.engine.reset_statistics();
+        let Ok(mut strokes) = Strokes::new(&mut self.engine, arm) else {
+            let verdict = Verdict { phase: Phase::Stroke, ..self.last_verdict(Some(0.0)) };
+            return Err(self.no_equilibrium(verdict));
+        };
+        if let Err(verdict) = strokes.follow(&mut self.engine) {
+            return Err(self.no_equilibrium(verdict));
+        }
+        let steps = strokes.steps;
+        let settled = strokes.settle(&mut self.engine, self.options.tol);
+        let travelled = Travelled { steps, ..Travelled::default() };
+        match settled.and_then(|estimate| self.read(estimate, travelled)) {
+            Ok(mut configuration) => {
+                configuration.tangential_factor = self.tangential_factor();
+                self.settled = true;
+                self.strokes = Some(strokes);
+                Ok(configuration)
+            }
+            Err(_) => {
+                let verdict = Verdict { phase: Phase::Stroke, ..self.last_verdict(Some(1.0)) };
+                Err(self.no_equilibrium(verdict))
+            }
+        }
+    }
+
+    /// After a small change of strokes, tensions or stream.
+    fn resolve_strokes(&mut self, mut strokes: Strokes) -> Result<Configuration, SolveError> {
+        self.settled = false;
+        self.engine.reset_statistics();
+        strokes.command(self.engine.equations.arm());
+        let tip = |engine: &Engine| engine.solution.nodes.last().map_or(0.0, |z| z[0]);
+        let before = tip(&self.engine);
+        let Ok(estimate) = strokes.settle(&mut self.engine, self.options.tol) else { return self.solve() };
+        if !strokes.kept_its_branch() || (tip(&self.engine) - before).abs() > 0.2 {
+            return self.solve();
+        }
+        let Ok(configuration) = self.read(estimate, Travelled::default()) else { return self.solve() };
+        self.settled = true;
+        self.strokes = Some(strokes);
+        Ok(configuration)
+    }
+
+    /// Commands the stroke (m, positive when reeled in) of cable `cable` in place of its tension.
+    ///
+    /// # Errors
+    /// [`SolveError::Arm`] when there is no such cable or the stroke is none.
+    pub fn set_stroke(&mut self, cable: usize, stroke: f64) -> Result<(), SolveError> {
+        let mut arm = self.engine.equations.arm().clone();
+        let cables = arm.cables.len();
+        let Some(own) = arm.cables.get_mut(cable) else {
+            return Err(crate::ArmError::TensionCount { cables, given: cable + 1 }.into());
+        };
+        // A cable that had a tension before starts anew.
+        self.settled &= own.stroke.is_some();
+        own.stroke = Some(stroke);
+        arm.check()?;
+        self.engine.set_loads(&arm);
+        Ok(())
     }
 
     /// Sets all tensions (N), in the order of the cables.
@@ -100,6 +193,9 @@ impl Solver {
     pub fn resolve(&mut self) -> Result<Configuration, SolveError> {
         if !self.settled {
             return self.solve();
+        }
+        if let Some(strokes) = self.strokes.take() {
+            return self.resolve_strokes(strokes);
         }
         self.settled = false;
         self.engine.reset_statistics();
@@ -181,7 +277,9 @@ impl Solver {
         let mut last_good = None;
         for back in [1e-9, 1e-5, 1e-4, 1e-3, 5e-3] {
             self.engine.restore(&kept);
-            self.engine.set_phase(verdict.phase, verdict.load_fraction * (1.0 - back));
+            if verdict.phase != Phase::Stroke {
+                self.engine.set_phase(verdict.phase, verdict.load_fraction * (1.0 - back));
+            }
             let settled = self.engine.settle(self.options.tol.max(1e-6), true);
             let moved = (self.engine.tip[0] - kept.tip[0]).hypot(self.engine.tip[1] - kept.tip[1]);
             last_good = settled.ok().filter(|_| moved < 0.05).and_then(|e| self.read(e, Travelled::default()).ok());
@@ -218,4 +316,10 @@ impl Arm {
     pub fn solve(&self) -> Result<Configuration, SolveError> {
         Solver::new(self, Options::default())?.solve()
     }
+}
+
+/// Whether a path of strokes did not get away from its start.
+fn is_start(verdict: &Verdict) -> bool {
+    let no_local_limit = matches!(verdict.kind, VerdictKind::NotFound | VerdictKind::LimitPoint);
+    verdict.phase == Phase::Stroke && no_local_limit && verdict.load_fraction < 0.05
 }

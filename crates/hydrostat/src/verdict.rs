@@ -34,22 +34,26 @@ impl VerdictKind {
     }
 }
 
-/// The two phases in which loads are raised from the unloaded arm: first everything but the
-/// cables, then the cables.
+/// The phases in which loads are raised from the unloaded arm: first everything but the cables, then
+/// the tensions, then the strokes of cables whose length is commanded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Phase {
     /// Stream, weight, tip and distributed loads are multiplied by the load fraction; cables are slack.
     Loads,
     /// All other loads are whole; tensions are multiplied by the load fraction.
     Tension,
+    /// Loads and given tensions are whole; cables with a commanded stroke are reeled from the strokes that they have
+    /// when slack to those commanded, the load fraction being the share of that way.
+    Stroke,
 }
 
 impl Phase {
-    /// The name in results: `loads` or `tension`.
+    /// The name in results: `loads`, `tension` or `stroke`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Loads => "loads",
             Self::Tension => "tension",
+            Self::Stroke => "stroke",
         }
     }
 }
@@ -76,6 +80,9 @@ impl Verdict {
         let load = match self.phase {
             Phase::Loads => format!("{:.6} of the stream, weight and tip loads (cables slack)", self.load_fraction),
             Phase::Tension => format!("{:.6} of the tensions (all other loads whole)", self.load_fraction),
+            Phase::Stroke => {
+                format!("{:.6} of the way from the slack cables' strokes to those commanded", self.load_fraction)
+            }
         };
         match self.kind {
             VerdictKind::CableFold => format!("a cable folds its side of the arm shut{place}, at {load}"),

@@ -56,6 +56,7 @@ impl Equilibrium {
             self.arm.clone_from(&other.arm);
             self.take_arm(varied.parameter.is_of_sections());
         }
+        self.tensions.clone_from(&other.tensions);
     }
 
     /// Varies nothing any more: the arm is `arm`, of the same geometry and material, with all angles less by whole
@@ -80,6 +81,17 @@ impl Equilibrium {
             }
             self.stations = stations;
         }
+    }
+
+    /// Ends what [`Equilibrium::vary`] began, where the arm is.
+    pub(crate) fn vary_nothing(&mut self) {
+        self.varied = None;
+    }
+
+    /// Sets the tension of one cable, N.
+    pub(crate) fn set_tension(&mut self, cable: usize, tension: f64) {
+        self.arm.cables[cable].tension = tension;
+        self.tensions[cable] = tension / self.units.force;
     }
 
     /// Where in the range the equations are.

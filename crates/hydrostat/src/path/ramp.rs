@@ -1,9 +1,9 @@
 //! The path that defines the answer: from the unloaded arm, loads first, then tensions (section 7 of
 //! `docs/model.md`).
 
-use super::stepper::{Along, Load, Point, Stepper, Turn, roughly};
+use super::stepper::{Along, Load, Point, Stepper, Turn};
 use super::{LOOSE, MEET, Pace, START, Travelled};
-use crate::engine::{Engine, Trouble};
+use crate::engine::{Engine, Trouble, roughly};
 use crate::verdict::{Phase, Verdict, VerdictKind};
 
 /// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
@@ -15,6 +15,7 @@ pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdi
         let moves = match phase {
             Phase::Loads => engine.equations.has_loads(),
             Phase::Tension => engine.equations.has_tension(),
+            Phase::Stroke => false,
         };
         if moves {
             let stepper = Stepper::new(engine, Along::Phase(phase), [f64::NEG_INFINITY, 1.0]);

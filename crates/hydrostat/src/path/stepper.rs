@@ -3,8 +3,8 @@
 
 use hydrostat_bvp::{Correction, Mesh, Solution};
 
-use super::{CORNER, EVEN, FINEST, HOP, LOOSE, MANY, Pace, SYMMETRIC};
-use crate::engine::{Engine, M, State, Trouble, solve};
+use super::{CORNER, EVEN, FINEST, LOOSE, MANY, Pace, SYMMETRIC};
+use crate::engine::{Engine, HOP, M, State, Trouble, roughly, solve};
 use crate::equilibrium::{N, Q};
 use crate::verdict::Phase;
 
@@ -55,14 +55,6 @@ impl Load {
         match self {
             Self::Fixed(fraction) | Self::Free(fraction) => fraction,
         }
-    }
-}
-
-/// Newton along the path, where hopping across a kink is good enough.
-pub(super) fn roughly(result: Result<(), Trouble>) -> Result<(), Trouble> {
-    match result {
-        Err(Trouble::Stalled(size)) if size <= HOP => Ok(()),
-        other => other,
     }
 }
 
