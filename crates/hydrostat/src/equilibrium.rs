@@ -12,15 +12,14 @@
 //! and at every s the section law gives (nu, eta, mu), see [`crate::section`]. The centreline r is a
 //! quadrature. Lengths are in units of L, forces in a unit of [`Units`].
 
-use hydrostat_bvp::{Condition, Gauss, Local, Problem};
+use hydrostat_bvp::{Condition, Gauss, Groups, LANES, Lanes, Local, Mesh, Problem, Real, each};
 
 use crate::arm::{Arm, Cavity, Material};
-use crate::beta_along::BetaAlong;
+use crate::beta_along::{BetaAlong, Coupling};
 use crate::cable::{Offset, tangent};
 use crate::flow::Law;
 use crate::loads::{Body, Load, Water, load};
 use crate::readings::{Support, Volume};
-use crate::real::{LANES, Lanes, Real};
 use crate::section::{Balance, CableAt, Stiffness, apply3, balance, inverse3};
 use crate::sincos::sin_cos;
 use crate::swelling::swelling;
@@ -75,9 +74,42 @@ impl Nearness {
     }
 }
 
+/// [`Nearness`] lane by lane: openness, stretch, determinant.
+struct NearnessLanes {
+    least: [Lanes; 3],
+    s: [Lanes; 3],
+}
+
+impl NearnessLanes {
+    #[inline(always)]
+    fn far() -> Self {
+        let infinity = Lanes::of(f64::INFINITY);
+        Self { least: [Lanes::of(1.0), infinity, infinity], s: [Lanes::of(0.0); 3] }
+    }
+
+    #[inline(always)]
+    fn note(&mut self, s: Lanes, values: [Lanes; 3]) {
+        for k in 0..3 {
+            self.s[k] = values[k].if_less(self.least[k], s, self.s[k]);
+            self.least[k] = values[k].min(self.least[k]);
+        }
+    }
+
+    /// The nearest of all lanes, of the equally near the first along the arm.
+    fn nearest(&self) -> Nearness {
+        let [openness, nu, regularity] = [0, 1, 2].map(|k| {
+            let each = (0..LANES).map(|lane| (self.least[k].0[lane], self.s[k].0[lane]));
+            each.reduce(|a, b| if b < a { b } else { a }).unwrap_or((f64::INFINITY, 0.0))
+        });
+        Nearness { openness, nu, regularity }
+    }
+}
+
 /// One place of the arm as data.
 #[derive(Debug, Clone, Copy)]
 struct Place<R> {
+    /// Over L.
+    s: R,
     stiffness: Stiffness<R>,
     body: Body<R>,
 }
@@ -103,6 +135,25 @@ pub(crate) struct Solved<R> {
     step: R,
 }
 
+impl Solved<Lanes> {
+    /// Whether all lanes are.
+    #[inline(always)]
+    fn fine(&self) -> bool {
+        let positive = self.regularity.min(self.balance.openness).min(self.strain[0]);
+        // A number that is none is below nothing.
+        self.step.all_below(STATION) & (-positive).all_below(0.0) & (-self.regularity).all_below(0.0)
+    }
+
+    #[inline(always)]
+    fn fine_in(&self, lane: usize) -> bool {
+        let positive = [self.regularity, self.balance.openness, self.strain[0]];
+        (self.step.0[lane] < STATION) & positive.iter().all(|v| v.0[lane] > 0.0)
+    }
+}
+
+/// The last Newton step of the section law that stations are content with.
+const STATION: f64 = 1e-6;
+
 /// Equations of one arm at given fractions of its loads.
 #[derive(Debug, Clone)]
 pub(crate) struct Equilibrium {
@@ -117,17 +168,18 @@ pub(crate) struct Equilibrium {
     pub(crate) fraction: [f64; 2],
     /// The phase whose fraction is the parameter.
     pub(crate) phase: Phase,
-    stages: usize,
+    /// How the stations stand in blocks of four.
+    groups: Groups,
     stations: Vec<f64>,
-    /// Element length of each station.
-    steps: Vec<f64>,
+    /// Element lengths, a group.
+    steps: Vec<Lanes>,
     places: Vec<Place<Lanes>>,
     cables: Vec<CableAt<Lanes>>,
     memory: Vec<Memory<Lanes>>,
     pub(crate) beta: BetaAlong,
-    drifts: Vec<[f64; N]>,
-    /// Load switches a station.
-    pub(crate) switches: Vec<[f64; 3]>,
+    drifts: Vec<[Lanes; N]>,
+    /// Load switches.
+    switches: Vec<[Lanes; 3]>,
     pub(crate) evaluations: usize,
     /// At the last evaluation.
     pub(crate) nearness: Nearness,
@@ -146,7 +198,7 @@ impl Equilibrium {
             arm: arm.clone(),
             fraction: [1.0, 1.0],
             phase: Phase::Tension,
-            stages: M,
+            groups: Groups { elements: 0, stages: M },
             stations: Vec::new(),
             steps: Vec::new(),
             places: Vec::new(),
@@ -172,12 +224,12 @@ impl Equilibrium {
         self.water = water(arm);
         self.set_tensions();
         if !same_water {
-            let stations = std::mem::take(&mut self.stations);
-            for (k, s) in stations.iter().enumerate() {
-                let place = self.place(*s);
-                set_lane(&mut self.places[k / LANES], k % LANES, &place);
+            for block in 0..self.places.len() {
+                for lane in 0..LANES {
+                    let place = self.place(self.stations[self.groups.station_in(block, lane)]);
+                    set_lane(&mut self.places[block], lane, &place);
+                }
             }
-            self.stations = stations;
         }
     }
 
@@ -219,19 +271,17 @@ impl Equilibrium {
         self.water.tangential_factor = factor;
     }
 
-    /// |tau| of cable `c` at station `k`, now and at the reference strains.
-    pub(crate) fn cable_stretch(&self, c: usize, k: usize) -> [f64; 2] {
-        let (block, lane) = (k / LANES, k % LANES);
-        let at = &self.cables[block * self.tensions.len() + c].offset;
-        let offset = Offset { y: at.y.0[lane], slope: at.slope.0[lane], curvature: at.curvature.0[lane] };
+    /// |tau| of cable `c` in a block of stations, now and at the reference strains.
+    #[inline(always)]
+    pub(crate) fn cable_stretch(&self, c: usize, block: usize) -> [Lanes; 2] {
+        let offset = &self.cables[block * self.tensions.len() + c].offset;
         let stiffness = &self.places[block].stiffness;
-        let reference_strain = stiffness.reference.map(|v| v.0[lane]);
-        let reference = swelling(self.volume, reference_strain[0]);
-        let reference_slope = reference.slope * stiffness.reference_slope[0].0[lane];
-        let strain = self.strain(k);
+        let reference = swelling(self.volume, stiffness.reference[0]);
+        let reference_slope = reference.slope * stiffness.reference_slope[0];
+        let strain = self.memory[block].strain;
         [
-            tangent(&offset, strain, &swelling(self.volume, strain[0]), self.beta.slope[k]).stretch,
-            tangent(&offset, reference_strain, &reference, reference_slope).stretch,
+            tangent(offset, strain, &swelling(self.volume, strain[0]), self.beta.slope[block]).stretch,
+            tangent(offset, stiffness.reference, &reference, reference_slope).stretch,
         ]
     }
 
@@ -240,17 +290,23 @@ impl Equilibrium {
         self.ends[c]
     }
 
-    /// Strain measure 1/2 (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A per length at station `k`.
-    pub(crate) fn strain_energy(&self, k: usize) -> f64 {
-        let stiffness = &self.places[k / LANES].stiffness;
-        let strain = self.strain(k);
+    /// Strain measure 1/2 (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A per length in a block of stations.
+    #[inline(always)]
+    pub(crate) fn strain_energy(&self, block: usize) -> Lanes {
+        let stiffness = &self.places[block].stiffness;
+        let strain = self.memory[block].strain;
         let beta = swelling(self.volume, strain[0]).beta;
-        let mut sum = 0.0;
+        let mut sum = Lanes::of(0.0);
         for a in 0..3 {
-            let strained = strain[a] - stiffness.reference[a].0[k % LANES];
-            sum += 0.5 * stiffness.value[a].0[k % LANES] * beta * beta * strained * strained;
+            let strained = strain[a] - stiffness.reference[a];
+            sum += Lanes::of(0.5) * stiffness.value[a] * beta * beta * strained * strained;
         }
         sum
+    }
+
+    /// How the stations stand in blocks.
+    pub(crate) fn groups(&self) -> Groups {
+        self.groups
     }
 
     /// Data at `s` (over L).
@@ -303,7 +359,7 @@ impl Equilibrium {
             force: [0, 1].map(|k| at(&arm.distributed.force[k]).value * load_unit),
             couple: at(&arm.distributed.couple).value / units.force,
         };
-        Place { stiffness, body }
+        Place { s, stiffness, body }
     }
 
     fn offset(&self, cable: usize, s: f64) -> Offset<f64> {
@@ -312,17 +368,19 @@ impl Equilibrium {
         Offset { y: p.value / l, slope: p.slope, curvature: p.curvature * l }
     }
 
-    /// Takes a new set of stations, `stages` an element, with guesses of the strains and of beta'.
+    /// Takes a new set of stations, those of `mesh`, with guesses of the strains and of beta'.
     pub(crate) fn place_stations(
         &mut self,
         stations: &[f64],
-        mesh: &hydrostat_bvp::Mesh,
+        mesh: &Mesh,
         guess: impl Fn(usize) -> ([f64; 3], f64, f64),
     ) {
-        let count = stations.len();
-        let blocks = count.div_ceil(LANES);
+        let stages = self.groups.stages;
+        let groups = Groups { elements: mesh.elements(), stages };
+        let blocks = groups.count() * stages;
         let zero = Lanes::of(0.0);
         let cable_count = self.tensions.len();
+        let before = std::mem::replace(&mut self.groups, groups).elements;
         let memory = Memory { z: [zero; N], strain: [zero; 3], by_state: [[zero; N]; 3] };
         self.memory.clear();
         self.memory.resize(blocks, memory);
@@ -332,37 +390,44 @@ impl Equilibrium {
         }
         self.places.truncate(blocks);
         self.cables.resize(blocks * cable_count, blank_cable());
-        self.steps.clear();
-        self.steps.extend((0..count).map(|k| mesh.step(k / self.stages)));
-        self.beta.resize(count);
-        self.switches.resize(count, [0.0; 3]);
-        self.drifts.resize(count, [0.0; N]);
-        for lane in 0..blocks * LANES {
-            let k = lane.min(count - 1);
-            let (block, lane_in_block) = (lane / LANES, lane % LANES);
-            let (strain, slope, curvature) = guess(k);
-            for a in 0..3 {
-                self.memory[block].strain[a].0[lane_in_block] = strain[a];
-            }
-            self.beta.start(k, slope, curvature);
-            let s = stations[k];
-            if k == lane && self.stations.get(k) == Some(&s) {
-                // A station that stays where it was keeps its data.
-                continue;
-            }
-            let place = self.place(s);
-            set_lane(&mut self.places[block], lane_in_block, &place);
-            for c in 0..cable_count {
-                let offset = self.offset(c, s);
-                let at = &mut self.cables[block * cable_count + c];
-                at.offset.y.0[lane_in_block] = offset.y;
-                at.offset.slope.0[lane_in_block] = offset.slope;
-                at.offset.curvature.0[lane_in_block] = offset.curvature;
-                at.tension.0[lane_in_block] = f64::from(u8::from(s <= self.ends[c]));
+        self.steps.resize(groups.count(), zero);
+        self.beta.resize(blocks);
+        self.switches.resize(blocks, [zero; 3]);
+        self.drifts.resize(blocks, [zero; N]);
+        for group in 0..groups.count() {
+            for lane in 0..LANES {
+                let i = groups.element(group, lane);
+                self.steps[group].0[lane] = mesh.step(i);
+                for j in 0..stages {
+                    let (block, k) = (group * stages + j, i * stages + j);
+                    let (strain, slope, curvature) = guess(k);
+                    for a in 0..3 {
+                        self.memory[block].strain[a].0[lane] = strain[a];
+                    }
+                    self.beta.start(block, lane, slope, curvature);
+                    // A station that stays where it was keeps its data.
+                    let own = group * LANES + lane == i && i < before;
+                    if !(own && self.stations[k] == stations[k]) {
+                        self.place_station(block, lane, stations[k]);
+                    }
+                }
             }
         }
         self.stations.clear();
         self.stations.extend_from_slice(stations);
+    }
+
+    /// Takes the data at `s` into a lane of a block.
+    fn place_station(&mut self, block: usize, lane: usize, s: f64) {
+        let place = self.place(s);
+        set_lane(&mut self.places[block], lane, &place);
+        let cable_count = self.tensions.len();
+        for c in 0..cable_count {
+            let offset = self.offset(c, s);
+            let at = &mut self.cables[block * cable_count + c];
+            at.set_offset(lane, &offset);
+            at.tension.0[lane] = f64::from(u8::from(s <= self.ends[c]));
+        }
     }
 
     pub(crate) fn stations(&self) -> &[f64] {
@@ -371,7 +436,14 @@ impl Equilibrium {
 
     /// Strains at station `k`.
     pub(crate) fn strain(&self, k: usize) -> [f64; 3] {
-        [0, 1, 2].map(|a| self.memory[k / LANES].strain[a].0[k % LANES])
+        let (block, lane) = self.groups.station(k);
+        self.memory[block].strain.map(|v| v.0[lane])
+    }
+
+    /// Switch `which` of the load at stage `j` of element `i`.
+    pub(crate) fn switch(&self, i: usize, j: usize, which: usize) -> f64 {
+        let (block, lane) = self.groups.at(i, j);
+        self.switches[block][which].0[lane]
     }
 
     /// Strains, and beta' and beta'', between the stages of element `i`, weighed by `weights`.
@@ -379,20 +451,20 @@ impl Equilibrium {
         let mut strain = [0.0; 3];
         let mut beta = [0.0; 2];
         for (j, w) in weights.iter().enumerate() {
-            let k = i * M + j;
-            let own = self.strain(k);
+            let (block, lane) = self.groups.at(i, j);
             for a in 0..3 {
-                strain[a] += w * own[a];
+                strain[a] += w * self.memory[block].strain[a].0[lane];
             }
-            beta[0] += w * self.beta.slope[k];
-            beta[1] += w * self.beta.curvature[k];
+            beta[0] += w * self.beta.slope[block].0[lane];
+            beta[1] += w * self.beta.curvature[block].0[lane];
         }
         (strain, beta)
     }
 
     /// Strains of the unloaded arm at station `k`, mu times L.
     pub(crate) fn reference_strain(&self, k: usize) -> [f64; 3] {
-        self.places[k / LANES].stiffness.reference.map(|v| v.0[k % LANES])
+        let (block, lane) = self.groups.station(k);
+        self.places[block].stiffness.reference.map(|v| v.0[lane])
     }
 
     /// Takes the reference strains at every station.
@@ -427,19 +499,19 @@ impl Equilibrium {
     /// arm (at the angle `unloaded`). Well below one, equilibria are unique.
     pub(crate) fn adversity(&self, k: usize, s: f64, z: [f64; N], unloaded: f64) -> f64 {
         let rest = 1.0 - s;
-        let (block, lane) = (k / LANES, k % LANES);
+        let (block, lane) = self.groups.station(k);
         let place = &self.places[block];
+        let beta = self.beta.value[block].0[lane];
         let [nu, eta, _] = self.strain(k);
-        let stiffness = place.stiffness.value[2].0[lane] * self.beta.value[k] * self.beta.value[k];
+        let stiffness = place.stiffness.value[2].0[lane] * beta * beta;
         let alpha = eta.atan2(nu);
         let (sin, cos) = (z[0] + alpha).sin_cos();
         let compression = -(cos * z[1] + sin * z[2]) * rest * rest / stiffness;
         let stream = self.water.stream;
         let speed_square = stream[0] * stream[0] + stream[1] * stream[1];
-        let drag = place.body.wetted.0[lane] * self.beta.value[k] * speed_square * nu.hypot(eta);
+        let drag = place.body.wetted.0[lane] * beta * speed_square * nu.hypot(eta);
         let net = [0, 1].map(|c| {
-            place.body.weight[c].0[lane]
-                - place.body.displaced[c].0[lane] * nu * self.beta.value[k] * self.beta.value[k]
+            place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * nu * beta * beta
                 + place.body.force[c].0[lane]
         });
         let cube = rest * rest * rest / stiffness;
@@ -471,64 +543,107 @@ impl Equilibrium {
 
     /// The shortest part of element `i` that beta' can still be differentiated on.
     pub(crate) fn shortest_element(&self, i: usize) -> f64 {
-        let own = i * self.stages..(i + 1) * self.stages;
-        (4.0 * self.beta.reach[own].iter().fold(0.0_f64, |m, r| m.max(r.abs()))).max(1e-6)
+        let reach = (0..self.groups.stages).map(|j| {
+            let (block, lane) = self.groups.at(i, j);
+            self.beta.reach[block].0[lane].abs()
+        });
+        (4.0 * reach.fold(0.0, f64::max)).max(1e-6)
     }
 
-    /// Solves section law and loads at one place, for output between stations: state `z`, guess of
-    /// the strains, beta' and beta''. `from_left` decides whether a cable that ends here still acts.
-    pub(crate) fn at_place(
-        &self,
-        s: f64,
-        from_left: bool,
-        z: [f64; N],
-        guess: [f64; 3],
-        [mut beta_slope, beta_curvature]: [f64; 2],
-    ) -> Result<AtPlace, SectionFailure> {
-        let mut place = self.place(s);
+    /// Solves section law and loads at one place, for output between stations.
+    pub(crate) fn at_place(&self, asked: &Asked) -> Result<AtPlace, SectionFailure> {
+        let mut place = self.place(asked.s);
         place.body.couple *= self.fraction[0];
-        let cables: Vec<CableAt<f64>> = (0..self.tensions.len())
-            .map(|c| {
-                let runs = if from_left { s <= self.ends[c] + 1e-12 } else { s < self.ends[c] - 1e-12 };
-                CableAt { offset: self.offset(c, s), tension: if runs { self.tension(c) } else { 0.0 } }
-            })
-            .collect();
-        let (sin, cos) = z[0].sin_cos();
-        let contact = [cos * z[1] + sin * z[2], cos * z[2] - sin * z[1], z[3]];
-        let mut strain = guess;
-        for round in 0.. {
-            let solved = solve_section(
-                self.volume,
-                &place.stiffness,
-                &cables,
-                contact,
-                strain,
-                [beta_slope, beta_curvature],
-                1e-13,
-            );
-            let fine = solved.step < 1e-9 && solved.regularity > 0.0 && solved.balance.openness > 0.0;
-            if !fine {
-                return Err(SectionFailure {
-                    s,
-                    openness: solved.balance.openness,
-                    nu: solved.strain[0],
-                    regularity: solved.regularity,
-                });
+        let pulled = (0..self.tensions.len()).filter(|c| self.acts_at(*c, asked));
+        let cables: Vec<CableAt<f64>> =
+            pulled.map(|c| CableAt { offset: self.offset(c, asked.s), tension: self.tension(c) }).collect();
+        let (sin, cos) = asked.z[0].sin_cos();
+        let (at, fine) = self.solve_place(&place, &cables, [cos, sin], asked.z, asked.strain, asked.beta);
+        if fine {
+            Ok(at)
+        } else {
+            Err(SectionFailure { s: asked.s, openness: at.openness, nu: at.strain[0], regularity: at.regularity })
+        }
+    }
+
+    /// [`Equilibrium::at_place`] at four places; `None` when one of them has no solution.
+    #[inline(always)]
+    pub(crate) fn at_places(&self, asked: &[Asked; LANES]) -> Option<AtPlace<Lanes>> {
+        let zero = Lanes::of(0.0);
+        let mut place = splat(&self.place(asked[0].s));
+        let mut cables = Vec::with_capacity(self.tensions.len());
+        let (mut z, mut strain, mut beta) = ([zero; N], [zero; 3], [zero; 2]);
+        for lane in 0..LANES {
+            let asked = &asked[lane];
+            if lane > 0 {
+                set_lane(&mut place, lane, &self.place(asked.s));
             }
+            for a in 0..N {
+                z[a].0[lane] = asked.z[a];
+            }
+            for a in 0..3 {
+                strain[a].0[lane] = asked.strain[a];
+            }
+            for a in 0..2 {
+                beta[a].0[lane] = asked.beta[a];
+            }
+        }
+        place.body.couple = place.body.couple * Lanes::of(self.fraction[0]);
+        for c in 0..self.tensions.len() {
+            let mut cable = blank_cable();
+            for lane in 0..LANES {
+                if self.acts_at(c, &asked[lane]) {
+                    cable.tension.0[lane] = self.tension(c);
+                }
+                cable.set_offset(lane, &self.offset(c, asked[lane].s));
+            }
+            if cable.tension != zero {
+                cables.push(cable);
+            }
+        }
+        let (sin, cos) = sin_cos(z[0]);
+        let (at, fine) = self.solve_place(&place, &cables, [cos, sin], z, strain, beta);
+        fine.then_some(at)
+    }
+
+    /// Whether cable `c` pulls at a place.
+    fn acts_at(&self, c: usize, asked: &Asked) -> bool {
+        let runs = if asked.from_left { asked.s <= self.ends[c] + 1e-12 } else { asked.s < self.ends[c] - 1e-12 };
+        runs && self.tension(c) != 0.0
+    }
+
+    /// Everything at places, and whether it could be solved at all of them.
+    #[inline(always)]
+    fn solve_place<R: Real>(
+        &self,
+        place: &Place<R>,
+        cables: &[CableAt<R>],
+        [cos, sin]: [R; 2],
+        z: [R; N],
+        mut strain: [R; 3],
+        [mut beta_slope, beta_curvature]: [R; 2],
+    ) -> (AtPlace<R>, bool) {
+        let contact = [cos * z[1] + sin * z[2], cos * z[2] - sin * z[1], z[3]];
+        for round in 0.. {
+            let beta = [beta_slope, beta_curvature];
+            let solved = solve_section(self.volume, &place.stiffness, cables, contact, strain, beta, 1e-13);
+            let fine = solved.step.all_below(1e-9)
+                && (-solved.regularity).all_below(0.0)
+                && (-solved.balance.openness).all_below(0.0);
             strain = solved.strain;
-            let load = self.load(&place, [cos, sin], &solved, beta_slope);
-            let slopes = slopes(&place, [cos, sin], contact, &solved, &load);
+            let load = self.load(place, [cos, sin], &solved, beta_slope);
+            let slopes = slopes(place.body.couple, [cos, sin], contact, &solved, &load);
             let change = (slopes.beta_slope - beta_slope).abs();
             beta_slope = slopes.beta_slope;
-            if change < 1e-13 || round == 29 {
+            if change.all_below(1e-13) || round == 29 || !fine {
                 let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
                 let [nu, eta, _] = solved.strain;
                 let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
-                return Ok(AtPlace {
+                let at = AtPlace {
                     strain,
                     beta: solved.balance.swelling.beta,
                     beta_slope,
-                    contact: [0, 1, 2].map(|k| contact[k] - solved.balance.cables[k]),
+                    contact: each(|k| contact[k] - solved.balance.cables[k]),
                     openness: solved.balance.openness,
                     regularity: solved.regularity,
                     local: Local {
@@ -538,7 +653,8 @@ impl Equilibrium {
                         rate_gradient: rate_gradient([cos, sin], rate, &by_state),
                     },
                     radius: place.body.radius,
-                });
+                };
+                return (at, fine);
             }
         }
         unreachable!("the loop returns at its last round")
@@ -551,28 +667,58 @@ impl Equilibrium {
         for k in 0..2 {
             load.force[k] = load.force[k] * fraction;
             load.by_theta[k] = load.by_theta[k] * fraction;
-            load.by_strain[k] = load.by_strain[k].map(|v| v * fraction);
+            load.by_strain[k] = each(|c| load.by_strain[k][c] * fraction);
             load.by_beta_slope[k] = load.by_beta_slope[k] * fraction;
         }
         load
     }
 }
 
-/// Everything at one place, in the solver's units.
-#[derive(Clone)]
-pub(crate) struct AtPlace {
+/// A place between stations, and what is known there.
+#[derive(Clone, Copy)]
+pub(crate) struct Asked {
+    /// Over L.
+    pub(crate) s: f64,
+    /// Decides whether a cable that ends here still acts.
+    pub(crate) from_left: bool,
+    pub(crate) z: [f64; N],
+    /// A guess of the strains.
     pub(crate) strain: [f64; 3],
-    pub(crate) beta: f64,
-    pub(crate) beta_slope: f64,
+    /// beta' and beta''.
+    pub(crate) beta: [f64; 2],
+}
+
+/// Everything at one place, or at four, in the solver's units.
+#[derive(Clone)]
+pub(crate) struct AtPlace<R = f64> {
+    pub(crate) strain: [R; 3],
+    pub(crate) beta: R,
+    pub(crate) beta_slope: R,
     /// n.a, n.b, m: what the body carries.
-    pub(crate) contact: [f64; 3],
+    pub(crate) contact: [R; 3],
     /// Smallest tau.a / nu of the pulled cables.
-    pub(crate) openness: f64,
+    pub(crate) openness: R,
     /// Determinant of the section law over that of the slack one.
-    pub(crate) regularity: f64,
-    pub(crate) local: Local<N, Q>,
+    pub(crate) regularity: R,
+    pub(crate) local: Local<N, Q, R>,
     /// Undeformed radius.
-    pub(crate) radius: f64,
+    pub(crate) radius: R,
+}
+
+impl AtPlace<Lanes> {
+    /// That of one of the four places.
+    pub(crate) fn lane(&self, lane: usize) -> AtPlace {
+        AtPlace {
+            strain: self.strain.map(|v| v.0[lane]),
+            beta: self.beta.0[lane],
+            beta_slope: self.beta_slope.0[lane],
+            contact: self.contact.map(|v| v.0[lane]),
+            openness: self.openness.0[lane],
+            regularity: self.regularity.0[lane],
+            local: self.local.lane(lane),
+            radius: self.radius.0[lane],
+        }
+    }
 }
 
 fn water(arm: &Arm) -> Water {
@@ -589,7 +735,7 @@ fn water(arm: &Arm) -> Water {
 
 /// Newton on the section law from a guess, every lane to `tolerance` or to its own limit.
 #[inline(always)]
-fn solve_section<R: Real + Lanewise>(
+fn solve_section<R: Real>(
     volume: Volume,
     stiffness: &Stiffness<R>,
     cables: &[CableAt<R>],
@@ -608,30 +754,15 @@ fn solve_section<R: Real + Lanewise>(
         }
         let balance = balance(volume, stiffness, cables, strain, beta_along);
         let (inverse, det) = inverse3(&balance.by_strain);
-        let rest = [0, 1, 2].map(|k| contact[k] - balance.carried[k]);
+        let rest = each(|k| contact[k] - balance.carried[k]);
         let step = apply3(&inverse, rest);
-        // Never more than halve nu, close a cable's side by more than two thirds, or leap.
         let mu_scale = one / (R::of(2.0) + strain[2].abs());
         let size = step[0].abs().max(step[1].abs()).max(step[2].abs() * mu_scale);
-        let mut share = one.min(R::of(0.5) * strain[0] / step[0].abs().max(R::of(1e-30)));
-        share = share.min(R::of(0.7) / size.max(R::of(1e-30)));
-        for cable in cables {
-            let lever = cable.offset.y * balance.swelling.beta;
-            let now = strain[0] - lever * strain[2];
-            let lever_nu = cable.offset.y * balance.swelling.slope;
-            let closing = (lever * step[2] + (lever_nu * strain[2] - one) * step[0]).max(R::of(1e-30));
-            let allowed = R::of(0.67) * now.abs() / closing;
-            let pulls = R::of(0.0).if_less(cable.tension, allowed, one);
-            share = share.min(pulls);
-            if round >= SWIFT {
-                // Turn no cable by more than a fraction of a radian a round.
-                let across = strain[1] + cable.offset.slope * balance.swelling.beta + cable.offset.y * beta_along[0];
-                let stretch = (now * now + across * across).sqrt();
-                let turning = (step[1] + cable.offset.slope * balance.swelling.slope * step[0]).abs();
-                let allowed = R::of(0.3) * stretch / turning.max(R::of(1e-30));
-                share = share.min(R::of(0.0).if_less(cable.tension, allowed, one));
-            }
-        }
+        let share = if round < SWIFT && is_short(&balance, cables, strain, step, size) {
+            one
+        } else {
+            share_of(&balance, cables, strain, step, size, (round >= SWIFT).then_some(beta_along[0]))
+        };
         for k in 0..3 {
             strain[k] += share * step[k];
         }
@@ -645,32 +776,53 @@ fn solve_section<R: Real + Lanewise>(
     unreachable!("the loop returns at its last round")
 }
 
-/// What a loop over lanes needs beyond arithmetic.
-trait Lanewise {
-    fn all_below(self, bound: f64) -> bool;
-    fn max(self, other: Self) -> Self;
+/// Whether [`share_of`] is one, in every lane and for little more than the section law's first rounds need.
+#[inline(always)]
+fn is_short<R: Real>(balance: &Balance<R>, cables: &[CableAt<R>], strain: [R; 3], step: [R; 3], size: R) -> bool {
+    let mut excess = (size - R::of(0.7)).max(step[0].abs() - R::of(0.5) * strain[0]);
+    for cable in cables {
+        let (now, closing) = side(balance, cable, strain, step);
+        excess = excess.max(closing - R::of(0.67) * now.abs());
+    }
+    excess.all_below(0.0)
 }
 
-impl Lanewise for f64 {
-    #[inline(always)]
-    fn all_below(self, bound: f64) -> bool {
-        self < bound
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        if self < other { other } else { self }
-    }
+/// tau . a of a cable, and how much of it a step takes away.
+#[inline(always)]
+fn side<R: Real>(balance: &Balance<R>, cable: &CableAt<R>, strain: [R; 3], step: [R; 3]) -> (R, R) {
+    let lever = cable.offset.y * balance.swelling.beta;
+    let lever_nu = cable.offset.y * balance.swelling.slope;
+    (strain[0] - lever * strain[2], lever * step[2] + (lever_nu * strain[2] - R::of(1.0)) * step[0])
 }
 
-impl Lanewise for Lanes {
-    #[inline(always)]
-    fn all_below(self, bound: f64) -> bool {
-        self.0.iter().all(|v| *v < bound)
+/// The share of a step of the section law that neither more than halves nu, nor closes a cable's side by more than
+/// two thirds, nor leaps; with beta' also turns no cable by more than a fraction of a radian.
+#[inline(always)]
+fn share_of<R: Real>(
+    balance: &Balance<R>,
+    cables: &[CableAt<R>],
+    strain: [R; 3],
+    step: [R; 3],
+    size: R,
+    turning_at: Option<R>,
+) -> R {
+    let one = R::of(1.0);
+    let mut share = one.min(R::of(0.5) * strain[0] / step[0].abs().max(R::of(1e-30)));
+    share = share.min(R::of(0.7) / size.max(R::of(1e-30)));
+    for cable in cables {
+        let (now, closing) = side(balance, cable, strain, step);
+        let allowed = R::of(0.67) * now.abs() / closing.max(R::of(1e-30));
+        share = share.min(R::of(0.0).if_less(cable.tension, allowed, one));
+        if let Some(beta_slope) = turning_at {
+            let swelling = &balance.swelling;
+            let across = strain[1] + cable.offset.slope * swelling.beta + cable.offset.y * beta_slope;
+            let stretch = (now * now + across * across).sqrt();
+            let turning = (step[1] + cable.offset.slope * swelling.slope * step[0]).abs();
+            let allowed = R::of(0.3) * stretch / turning.max(R::of(1e-30));
+            share = share.min(R::of(0.0).if_less(cable.tension, allowed, one));
+        }
     }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        self.if_less(other, other, self)
-    }
+    share
 }
 
 struct Slopes<R> {
@@ -680,22 +832,16 @@ struct Slopes<R> {
 
 /// z' at a station, and beta' by implicit differentiation of the section law.
 #[inline(always)]
-fn slopes<R: Real>(
-    place: &Place<R>,
-    [cos, sin]: [R; 2],
-    contact: [R; 3],
-    solved: &Solved<R>,
-    load: &Load<R>,
-) -> Slopes<R> {
+fn slopes<R: Real>(couple: R, [cos, sin]: [R; 2], contact: [R; 3], solved: &Solved<R>, load: &Load<R>) -> Slopes<R> {
     let [nu, eta, mu] = solved.strain;
     let [n_a, n_b, _] = contact;
     let f = load.force;
-    let m_slope = eta * n_a - nu * n_b - place.body.couple;
+    let m_slope = eta * n_a - nu * n_b - couple;
     // n_f . a and n_f . b turn with the directors.
     let f_a = cos * f[0] + sin * f[1];
     let f_b = cos * f[1] - sin * f[0];
     let contact_slope = [mu * n_b - f_a, -(mu * n_a + f_b), m_slope];
-    let rest = [0, 1, 2].map(|k| contact_slope[k] - solved.balance.along_s[k]);
+    let rest = each(|k| contact_slope[k] - solved.balance.along_s[k]);
     let strain_slope = apply3(&solved.inverse, rest);
     Slopes { slope: [mu, -f[0], -f[1], m_slope], beta_slope: solved.balance.swelling.slope * strain_slope[0] }
 }
@@ -703,158 +849,45 @@ fn slopes<R: Real>(
 impl Problem<N, Q> for Equilibrium {
     type Failure = SectionFailure;
 
-    #[allow(clippy::too_many_lines, reason = "one pass over the stations: gather, solve, spread")]
     #[inline(always)]
-    fn slopes(&mut self, z: &[[f64; N]], out: &mut [Local<N, Q>]) -> Result<(), SectionFailure> {
-        let count = z.len();
-        self.evaluations += count;
-        self.nearness = Nearness::FAR;
+    fn slopes<const FUSED: bool>(
+        &mut self,
+        groups: Groups,
+        z: &[[Lanes; N]],
+        out: &mut [Local<N, Q, Lanes>],
+    ) -> Result<(), SectionFailure> {
+        self.evaluations += groups.elements * groups.stages;
+        let mut near = NearnessLanes::far();
         let cable_count = self.tensions.len();
-        let fraction = Lanes::of(self.fraction[0]);
-        let mut pulled: [CableAt<Lanes>; MOST_IN_PLACE] = [blank_cable(); MOST_IN_PLACE];
+        let mut few: [CableAt<Lanes>; MOST_IN_PLACE] = [blank_cable(); MOST_IN_PLACE];
         let mut many: Vec<CableAt<Lanes>> = Vec::new();
         if cable_count > MOST_IN_PLACE {
             many.resize(cable_count, blank_cable());
         }
-        for block in 0..self.places.len() {
-            let mut place = self.places[block];
-            place.body.couple = place.body.couple * fraction;
-            let mut state = [Lanes::of(0.0); N];
-            let mut beta_along = [Lanes::of(0.0); 2];
-            for lane in 0..LANES {
-                let k = (block * LANES + lane).min(count - 1);
-                for a in 0..N {
-                    state[a].0[lane] = z[k][a];
-                }
-                beta_along[1].0[lane] = self.beta.curvature[k];
-            }
-            let (sin, cos) = sin_cos(state[0]);
-            let direction = [cos, sin];
-            let pulled = if cable_count > MOST_IN_PLACE { &mut many[..] } else { &mut pulled[..] };
+        let pulled = if cable_count > MOST_IN_PLACE { &mut many[..] } else { &mut few[..] };
+        for (block, (z, out)) in z.iter().zip(out.iter_mut()).enumerate() {
             let mut used = 0;
             for c in 0..cable_count {
                 let tension = self.tensions[c] * self.fraction[1];
                 if tension != 0.0 {
-                    let mut cable = self.cables[block * cable_count + c];
-                    cable.tension = cable.tension * Lanes::of(tension);
-                    pulled[used] = cable;
+                    pulled[used] = self.cables[block * cable_count + c];
+                    pulled[used].tension = pulled[used].tension * Lanes::of(tension);
                     used += 1;
                 }
             }
-            let pulled = &pulled[..used];
-            let contact = [cos * state[1] + sin * state[2], cos * state[2] - sin * state[1], state[3]];
-
-            // Start from the last strains moved along their tangent.
-            let memory = &self.memory[block];
-            let mut guess = memory.strain;
-            let mut leap = Lanes::of(0.0);
-            for a in 0..3 {
-                let mut move_by = Lanes::of(0.0);
-                for b in 0..N {
-                    move_by += memory.by_state[a][b] * (state[b] - memory.z[b]);
-                }
-                let size = if a == 2 { move_by.abs() / (Lanes::of(2.0) + guess[2].abs()) } else { move_by.abs() };
-                leap = leap.max(size);
-                guess[a] += move_by;
+            let solved = self.block(block, z, &pulled[..used], &mut near, out);
+            if solved.is_err() {
+                self.nearness = near.nearest();
+                return solved;
             }
-            for lane in 0..LANES {
-                let k = (block * LANES + lane).min(count - 1);
-                let mut moved = z[k];
-                if leap.0[lane] > 0.3 || !leap.0[lane].is_finite() {
-                    for a in 0..3 {
-                        guess[a].0[lane] = memory.strain[a].0[lane];
-                    }
-                    moved = [0.0; N];
-                } else {
-                    for a in 0..N {
-                        moved[a] -= memory.z[a].0[lane];
-                    }
-                }
-                beta_along[0].0[lane] = self.beta.follow(k, moved);
-            }
-
-            let solved = solve_section(self.volume, &place.stiffness, pulled, contact, guess, beta_along, 1e-6);
-            for lane in 0..LANES {
-                let fine = solved.step.0[lane] < 1e-6
-                    && solved.regularity.0[lane] > 0.0
-                    && solved.balance.openness.0[lane] > 0.0
-                    && solved.strain[0].0[lane] > 0.0;
-                if !fine {
-                    let k = (block * LANES + lane).min(count - 1);
-                    return Err(SectionFailure {
-                        s: self.stations[k],
-                        openness: solved.balance.openness.0[lane],
-                        nu: solved.strain[0].0[lane],
-                        regularity: solved.regularity.0[lane],
-                    });
-                }
-            }
-            let load = self.load(&place, direction, &solved, beta_along[0]);
-            let slopes = slopes(&place, direction, contact, &solved, &load);
-
-            let by_state = strain_by_state(&solved.inverse, direction, contact);
-            let jacobian = jacobian(direction, contact, &solved, &load, &by_state);
-            let [nu, eta, _] = solved.strain;
-            let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
-            let rate_gradient = rate_gradient(direction, rate, &by_state);
-            // What moves at fixed z with beta': the strains, and all that follows from them.
-            let strain_by_slope = apply3(&solved.inverse, solved.balance.by_curvature).map(|v| -v);
-            let [nu_p, eta_p, mu_p] = strain_by_slope;
-            let force_by_slope = |k: usize| {
-                let by = load.by_strain[k];
-                -(by[0] * nu_p + by[1] * eta_p + by[2] * mu_p + load.by_beta_slope[k])
-            };
-            let slope_by = [mu_p, force_by_slope(0), force_by_slope(1), contact[0] * eta_p - contact[1] * nu_p];
-            let rate_by = [nu_p * cos - eta_p * sin, nu_p * sin + eta_p * cos];
-            let swelling_slope = solved.balance.swelling.slope;
-            let reach = swelling_slope * nu_p;
-            let value_by = by_state[0].map(|v| swelling_slope * v);
-            let (drift, nu_drift) = self.drift_of(block, contact, &solved, &load);
-            let value_drift = swelling_slope * nu_drift;
-
-            for lane in 0..LANES {
-                let k = block * LANES + lane;
-                if k >= count {
-                    break;
-                }
-                let local = &mut out[k];
-                for a in 0..N {
-                    local.slope[a] = slopes.slope[a].0[lane];
-                    for b in 0..N {
-                        local.jacobian[a][b] = jacobian[a][b].0[lane];
-                    }
-                    self.drifts[k][a] = drift[a].0[lane];
-                }
-                for q in 0..Q {
-                    local.rate[q] = rate[q].0[lane];
-                    for b in 0..N {
-                        local.rate_gradient[q][b] = rate_gradient[q][b].0[lane];
-                    }
-                }
-                self.nearness.note(
-                    self.stations[k],
-                    solved.balance.openness.0[lane],
-                    solved.strain[0].0[lane],
-                    solved.regularity.0[lane],
-                );
-                self.beta.value[k] = solved.balance.swelling.beta.0[lane];
-                self.beta.closed[k] = slopes.beta_slope.0[lane];
-                self.beta.reach[k] = reach.0[lane];
-                let by = &mut self.beta.coupling[k];
-                by.slope = slope_by.map(|v| v.0[lane]);
-                by.rate = rate_by.map(|v| v.0[lane]);
-                by.value = value_by.map(|v| v.0[lane]);
-                by.value_drift = value_drift.0[lane];
-                self.switches[k] = [0, 1, 2].map(|w| load.switches[w].0[lane]);
-            }
-            self.memory[block] = Memory { z: state, strain: solved.strain, by_state };
         }
-        self.beta.close(&self.steps, out, &mut self.drifts);
+        self.nearness = near.nearest();
+        self.beta.close::<FUSED>(&self.steps, out, &mut self.drifts);
         Ok(())
     }
 
     #[inline(always)]
-    fn drift(&mut self, out: &mut [[f64; N]]) {
+    fn drift(&mut self, out: &mut [[Lanes; N]]) {
         out.copy_from_slice(&self.drifts);
     }
 
@@ -915,6 +948,103 @@ fn blank_cable() -> CableAt<Lanes> {
 }
 
 impl Equilibrium {
+    /// The stations of a block at the states `z`: all but what beta' adds.
+    #[inline(always)]
+    fn block(
+        &mut self,
+        block: usize,
+        z: &[Lanes; N],
+        pulled: &[CableAt<Lanes>],
+        near: &mut NearnessLanes,
+        out: &mut Local<N, Q, Lanes>,
+    ) -> Result<(), SectionFailure> {
+        let zero = Lanes::of(0.0);
+        let state = *z;
+        let place = &self.places[block];
+        let couple = place.body.couple * Lanes::of(self.fraction[0]);
+        let (sin, cos) = sin_cos(state[0]);
+        let direction = [cos, sin];
+        let contact = [cos * state[1] + sin * state[2], cos * state[2] - sin * state[1], state[3]];
+
+        // Start from the last strains moved along their tangent.
+        let memory = &self.memory[block];
+        let mut moved = [zero; N];
+        for a in 0..N {
+            moved[a] = state[a] - memory.z[a];
+        }
+        let mut guess = memory.strain;
+        let mut leap = zero;
+        for a in 0..3 {
+            let mut move_by = zero;
+            for b in 0..N {
+                move_by += memory.by_state[a][b] * moved[b];
+            }
+            let size = if a == 2 { move_by.abs() / (Lanes::of(2.0) + guess[2].abs()) } else { move_by.abs() };
+            leap = leap.max(size);
+            guess[a] += move_by;
+        }
+        let near_enough = Lanes::of(0.3);
+        for a in 0..3 {
+            guess[a] = leap.if_less(near_enough, guess[a], memory.strain[a]);
+        }
+        for a in 0..N {
+            moved[a] = leap.if_less(near_enough, moved[a], zero);
+        }
+        let beta_along = [self.beta.followed(block, &moved), self.beta.curvature[block]];
+
+        let solved = solve_section(self.volume, &place.stiffness, pulled, contact, guess, beta_along, STATION);
+        if !solved.fine() {
+            return Err(self.failure(block, &solved));
+        }
+        let load = self.load(place, direction, &solved, beta_along[0]);
+        let slopes = slopes(couple, direction, contact, &solved, &load);
+
+        let by_state = strain_by_state(&solved.inverse, direction, contact);
+        let [nu, eta, _] = solved.strain;
+        let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
+        out.slope = slopes.slope;
+        out.jacobian = jacobian(direction, contact, &solved, &load, &by_state);
+        out.rate = rate;
+        out.rate_gradient = rate_gradient(direction, rate, &by_state);
+        // What moves at fixed z with beta': the strains, and all that follows from them.
+        let less = apply3(&solved.inverse, solved.balance.by_curvature);
+        let [nu_p, eta_p, mu_p] = each(|k| -less[k]);
+        let force_by_slope = |k: usize| {
+            let by = load.by_strain[k];
+            -(by[0] * nu_p + by[1] * eta_p + by[2] * mu_p + load.by_beta_slope[k])
+        };
+        let swelling_slope = solved.balance.swelling.slope;
+        let (drift, nu_drift) = self.drift_of(block, contact, &solved, &load);
+        self.drifts[block] = drift;
+        self.beta.coupling[block] = Coupling {
+            slope: [mu_p, force_by_slope(0), force_by_slope(1), contact[0] * eta_p - contact[1] * nu_p],
+            rate: [nu_p * cos - eta_p * sin, nu_p * sin + eta_p * cos],
+            value: each(|a| swelling_slope * by_state[0][a]),
+            value_drift: swelling_slope * nu_drift,
+        };
+        self.beta.value[block] = solved.balance.swelling.beta;
+        self.beta.slope[block] = beta_along[0];
+        self.beta.closed[block] = slopes.beta_slope;
+        self.beta.reach[block] = swelling_slope * nu_p;
+        self.switches[block] = load.switches;
+        near.note(self.places[block].s, [solved.balance.openness, nu, solved.regularity]);
+        self.memory[block] = Memory { z: state, strain: solved.strain, by_state };
+        Ok(())
+    }
+
+    /// The first station of a block, along the arm, that could not be solved.
+    #[cold]
+    #[inline(never)]
+    fn failure(&self, block: usize, solved: &Solved<Lanes>) -> SectionFailure {
+        let lane = (0..LANES).find(|lane| !solved.fine_in(*lane)).unwrap_or(0);
+        SectionFailure {
+            s: self.places[block].s.0[lane],
+            openness: solved.balance.openness.0[lane],
+            nu: solved.strain[0].0[lane],
+            regularity: solved.regularity.0[lane],
+        }
+    }
+
     /// Force and moment on the tip at the present fraction, and their derivative by theta(L).
     pub(crate) fn tip_load(&self, theta: f64) -> ([f64; 3], [f64; 3]) {
         let (sin, cos) = theta.sin_cos();
@@ -950,7 +1080,7 @@ impl Equilibrium {
             Phase::Tension => {
                 let f = self.fraction[1];
                 let per = Lanes::of(if f == 0.0 { 0.0 } else { -1.0 / f });
-                let strain = apply3(&solved.inverse, solved.balance.cables.map(|v| v * per));
+                let strain = apply3(&solved.inverse, each(|k| solved.balance.cables[k] * per));
                 let by = |k: usize| {
                     -(load.by_strain[k][0] * strain[0]
                         + load.by_strain[k][1] * strain[1]
@@ -965,7 +1095,7 @@ impl Equilibrium {
 /// d(nu, eta, mu)/dz: the law depends on z through n_f.a, n_f.b and m_f alone.
 #[inline(always)]
 fn strain_by_state<R: Real>(inverse: &[[R; 3]; 3], [cos, sin]: [R; 2], [n_a, n_b, _]: [R; 3]) -> [[R; N]; 3] {
-    [0, 1, 2].map(|k| {
+    each(|k| {
         let e = inverse[k];
         [e[0] * n_b - e[1] * n_a, e[0] * cos - e[1] * sin, e[0] * sin + e[1] * cos, e[2]]
     })
@@ -1017,6 +1147,7 @@ fn splat(place: &Place<f64>) -> Place<Lanes> {
     let l = Lanes::of;
     let (s, b) = (&place.stiffness, &place.body);
     Place {
+        s: l(place.s),
         stiffness: Stiffness {
             value: s.value.map(l),
             slope: s.slope.map(l),
@@ -1037,6 +1168,7 @@ fn splat(place: &Place<f64>) -> Place<Lanes> {
 
 fn set_lane(out: &mut Place<Lanes>, lane: usize, place: &Place<f64>) {
     let (s, b) = (&place.stiffness, &place.body);
+    out.s.0[lane] = place.s;
     for k in 0..3 {
         out.stiffness.value[k].0[lane] = s.value[k];
         out.stiffness.slope[k].0[lane] = s.slope[k];

@@ -145,7 +145,6 @@ mod loads;
 mod path;
 pub mod profile;
 pub mod readings;
-mod real;
 mod section;
 mod sincos;
 pub mod solve;
