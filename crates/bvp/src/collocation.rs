@@ -150,6 +150,36 @@ impl<const N: usize, const M: usize, const Q: usize> Default for Correction<N, M
 }
 
 impl<const N: usize, const M: usize, const Q: usize> Correction<N, M, Q> {
+    /// Multiplies it by `factor`.
+    pub fn scale(&mut self, factor: f64) {
+        self.for_each(&Self::default(), |own, _| *own *= factor);
+    }
+
+    /// Adds `factor` times another correction on the same mesh.
+    pub fn add(&mut self, other: &Self, factor: f64) {
+        self.for_each(other, |own, other| *own += factor * other);
+    }
+
+    /// Every number with its counterpart, zero where there is none.
+    fn for_each(&mut self, other: &Self, mut change: impl FnMut(&mut f64, f64)) {
+        let z = [0.0; N];
+        for (i, own) in self.nodes.iter_mut().enumerate() {
+            let other = other.nodes.get(i).unwrap_or(&z);
+            own.iter_mut().zip(other).for_each(|(own, other)| change(own, *other));
+        }
+        for (i, own) in self.slopes.iter_mut().flatten().enumerate() {
+            let other = other.slopes.as_flattened().get(i).unwrap_or(&z);
+            own.iter_mut().zip(other).for_each(|(own, other)| change(own, *other));
+        }
+        for (i, own) in self.by_element.iter_mut().enumerate() {
+            let other = other.by_element.get(i).unwrap_or(&[0.0; Q]);
+            own.iter_mut().zip(other).for_each(|(own, other)| change(own, *other));
+        }
+        for (own, other) in self.total.iter_mut().zip(&other.total) {
+            change(own, *other);
+        }
+    }
+
     /// Largest change of component `a` at the nodes.
     pub fn largest(&self, a: usize) -> f64 {
         self.nodes.iter().fold(0.0, |m, z| if z[a].is_nan() { f64::NAN } else { f64::max(m, z[a].abs()) })

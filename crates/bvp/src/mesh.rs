@@ -65,6 +65,18 @@ impl Mesh {
         self.pinned.push(true);
     }
 
+    /// This mesh with every element cut into `parts` equal ones.
+    pub fn cut(&self, parts: usize) -> Self {
+        let mut mesh = Self { nodes: vec![0.0], pinned: vec![true] };
+        for i in 0..self.elements() {
+            mesh.fill(self.nodes[i], self.nodes[i + 1], parts.max(1), |t| t);
+            if let Some(last) = mesh.pinned.last_mut() {
+                *last = self.pinned[i + 1];
+            }
+        }
+        mesh
+    }
+
     /// Pins exactly `fixed` (breaks of the data) and `moving` (kinks of the solution), both inside
     /// (0, 1). A node that was pinned for a kink follows it; a free node close to a new kink is
     /// moved there, otherwise one is added; nodes pinned for what is gone become free.

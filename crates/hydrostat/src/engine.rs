@@ -390,6 +390,7 @@ impl Engine {
         let own = &self.equations;
         self.check_equations.fraction = own.fraction;
         self.check_equations.phase = own.phase;
+        self.check_equations.take_arm_of(own);
         self.check_equations.place_stations(&self.check_stations, &finer.mesh, |k| {
             let (strain, [slope, curvature]) = own.remembered(k / K, &weights[k % K]);
             (strain, slope, curvature)
@@ -620,6 +621,15 @@ impl Engine {
     pub(crate) fn set_loads(&mut self, arm: &Arm) {
         self.equations.set_loads(arm);
         self.check_equations.set_loads(arm);
+    }
+
+    /// Ends a path: `arm` stays, with all angles less by whole turns of the size `angle`.
+    pub(crate) fn hold(&mut self, arm: &Arm, angle: f64) {
+        self.equations.hold(arm, angle);
+        self.check_equations.hold(arm, angle);
+        for z in &mut self.solution.nodes {
+            z[0] -= angle;
+        }
     }
 
     pub(crate) fn reset_statistics(&mut self) {

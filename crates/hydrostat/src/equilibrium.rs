@@ -12,9 +12,11 @@
 //! and at every s the section law gives (nu, eta, mu), see [`crate::section`]. The centreline r is a
 //! quadrature. Lengths are in units of L, forces in a unit of [`Units`].
 
+mod varied;
+
 use hydrostat_bvp::{Condition, Gauss, Groups, LANES, Lanes, Local, Mesh, Problem, Real, each};
 
-use crate::arm::{Arm, Cavity, Material};
+use crate::arm::{Arm, Cavity, Material, TipLoad};
 use crate::beta_along::{BetaAlong, Coupling};
 use crate::cable::{Offset, tangent};
 use crate::flow::Law;
@@ -166,8 +168,11 @@ pub(crate) struct Equilibrium {
     ends: Vec<f64>,
     /// Fractions of the loads and of the tensions.
     pub(crate) fraction: [f64; 2],
-    /// The phase whose fraction is the parameter.
+    /// The phase whose fraction is the parameter, unless another one is varied.
     pub(crate) phase: Phase,
+    varied: Option<varied::Varied>,
+    /// A couple over s/L that takes the place of the parameter, at every station.
+    imposed: Option<Vec<f64>>,
     /// How the stations stand in blocks of four.
     groups: Groups,
     stations: Vec<f64>,
@@ -198,6 +203,8 @@ impl Equilibrium {
             arm: arm.clone(),
             fraction: [1.0, 1.0],
             phase: Phase::Tension,
+            varied: None,
+            imposed: None,
             groups: Groups { elements: 0, stages: M },
             stations: Vec::new(),
             steps: Vec::new(),
@@ -224,11 +231,16 @@ impl Equilibrium {
         self.water = water(arm);
         self.set_tensions();
         if !same_water {
-            for block in 0..self.places.len() {
-                for lane in 0..LANES {
-                    let place = self.place(self.stations[self.groups.station_in(block, lane)]);
-                    set_lane(&mut self.places[block], lane, &place);
-                }
+            self.take_sections();
+        }
+    }
+
+    /// Takes the arm's sections at all stations.
+    fn take_sections(&mut self) {
+        for block in 0..self.places.len() {
+            for lane in 0..LANES {
+                let place = self.place(self.stations[self.groups.station_in(block, lane)]);
+                set_lane(&mut self.places[block], lane, &place);
             }
         }
     }
@@ -888,7 +900,9 @@ impl Problem<N, Q> for Equilibrium {
 
     #[inline(always)]
     fn drift(&mut self, out: &mut [[Lanes; N]]) {
-        out.copy_from_slice(&self.drifts);
+        if !self.drift_by_share(out) {
+            out.copy_from_slice(&self.drifts);
+        }
     }
 
     fn left_count(&self) -> usize {
@@ -903,6 +917,7 @@ impl Problem<N, Q> for Equilibrium {
     fn left(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
         out[0].residual = z[0] - self.arm.base.angle;
         out[0].gradient[0] = 1.0;
+        out[0].drift = -self.base_turn();
         if self.arm.readings.support == Support::UnstrainedBase {
             let (sin, cos) = self.arm.base.angle.sin_cos();
             let mut at_base = [0.0; 3];
@@ -927,13 +942,14 @@ impl Problem<N, Q> for Equilibrium {
             return;
         }
         let (load, turn) = self.tip_load(z[0]);
+        let drift = self.tip_drift(z[0]);
         let per_fraction =
             if self.phase == Phase::Loads && self.fraction[0] != 0.0 { 1.0 / self.fraction[0] } else { 0.0 };
         for k in 0..3 {
             out[k].residual = z[k + 1] - load[k];
             out[k].gradient[k + 1] = 1.0;
             out[k].gradient[0] = -turn[k];
-            out[k].drift = -load[k] * per_fraction;
+            out[k].drift = -load[k] * per_fraction - drift[k];
         }
     }
 }
@@ -1047,8 +1063,11 @@ impl Equilibrium {
 
     /// Force and moment on the tip at the present fraction, and their derivative by theta(L).
     pub(crate) fn tip_load(&self, theta: f64) -> ([f64; 3], [f64; 3]) {
+        self.load_of(&self.arm.tip, theta)
+    }
+
+    fn load_of(&self, tip: &TipLoad, theta: f64) -> ([f64; 3], [f64; 3]) {
         let (sin, cos) = theta.sin_cos();
-        let tip = &self.arm.tip;
         let f = self.fraction[0] / self.units.force;
         let [fa, fb] = tip.follower;
         let load = [

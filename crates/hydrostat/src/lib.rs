@@ -142,7 +142,8 @@ mod engine;
 mod equilibrium;
 mod flow;
 mod loads;
-mod path;
+pub mod parameter;
+pub mod path;
 pub mod profile;
 pub mod readings;
 mod section;
@@ -156,6 +157,8 @@ pub use arm::{
     Arm, ArmError, Base, Cable, Cavity, DistributedLoad, Flow, FlowLaw, Gravity, Material, Reference, TipLoad,
 };
 pub use configuration::{CableState, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench};
+pub use parameter::Parameter;
+pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub use profile::{Profile, Sample};
 pub use readings::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength};
 pub use solve::{Options, Solver};

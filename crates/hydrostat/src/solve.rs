@@ -156,6 +156,12 @@ impl Solver {
             .then(|| PUBLISHED_CT / (layer * layer))
     }
 
+    /// The engine, which holds the last configuration.
+    pub(crate) fn engine_mut(&mut self) -> &mut Engine {
+        self.settled = false;
+        &mut self.engine
+    }
+
     fn last_verdict(&self, load_fraction: Option<f64>) -> Verdict {
         let jumps = self.engine.equations.arm().readings.load_can_jump();
         Verdict {

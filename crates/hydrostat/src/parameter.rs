@@ -1,0 +1,256 @@
+//! Quantities of an arm that a path varies, under the names that the arm file has for them.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::arm::{Arm, ArmError, Gravity, Material};
+
+/// One number of an arm that can be varied. Its name is the dotted key of the arm file.
+///
+/// ```
+/// use hydrostat::Parameter;
+///
+/// let parameter: Parameter = "cable[0].tension".parse().unwrap();
+/// assert_eq!(parameter, Parameter::Tension(0));
+/// assert_eq!(parameter.to_string(), "cable[0].tension");
+/// assert_eq!(parameter.unit(), "N");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Parameter {
+    /// Tension of a cable, N.
+    Tension(usize),
+    /// Speed of the stream, m/s.
+    FlowSpeed,
+    /// Direction of the stream from e1, rad.
+    FlowDirection,
+    /// Density of the water, kg/m3.
+    FlowDensity,
+    /// Gravity, m/s2.
+    GravityAcceleration,
+    /// Direction of gravity from e1, rad.
+    GravityDirection,
+    /// Dead force on the tip along e1 (0) or e2 (1), N.
+    TipForce(usize),
+    /// Moment on the tip, N m.
+    TipMoment,
+    /// Follower force on the tip along a (0) or b (1), N.
+    TipFollower(usize),
+    /// Angle of the base from e1, rad.
+    BaseAngle,
+    /// Density of the arm, kg/m3.
+    Density,
+    /// Young's modulus of a homogeneous arm, Pa.
+    Young,
+    /// Poisson's ratio of a homogeneous arm.
+    Poisson,
+    /// Shear correction of a homogeneous arm.
+    ShearFactor,
+}
+
+/// A name that no parameter has.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` is no quantity that a path can vary; those are {}", names().join(", "))]
+pub struct UnknownParameter {
+    /// The name given.
+    pub name: String,
+}
+
+/// A parameter that the arm at hand does not have.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Unfit {
+    /// A cable that is not there.
+    #[error("`{key}`: the arm has {cables} cables, counted from 0")]
+    Cable {
+        /// The parameter.
+        key: String,
+        /// Cables of the arm.
+        cables: usize,
+    },
+    /// A homogeneous material's property where the coefficients are given.
+    #[error("`{key}`: the arm gives c1, c2 and c3 in place of a homogeneous material")]
+    Coefficients {
+        /// The parameter.
+        key: String,
+    },
+}
+
+/// The names with an index written as `cable[0]`.
+fn names() -> Vec<String> {
+    let mut all: Vec<String> = PLAIN.iter().map(Parameter::to_string).collect();
+    all.insert(0, Parameter::Tension(0).to_string());
+    all
+}
+
+/// All but the cables'.
+const PLAIN: [Parameter; 15] = [
+    Parameter::FlowSpeed,
+    Parameter::FlowDirection,
+    Parameter::FlowDensity,
+    Parameter::GravityAcceleration,
+    Parameter::GravityDirection,
+    Parameter::TipForce(0),
+    Parameter::TipForce(1),
+    Parameter::TipMoment,
+    Parameter::TipFollower(0),
+    Parameter::TipFollower(1),
+    Parameter::BaseAngle,
+    Parameter::Density,
+    Parameter::Young,
+    Parameter::Poisson,
+    Parameter::ShearFactor,
+];
+
+impl fmt::Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tension(c) => write!(f, "cable[{c}].tension"),
+            Self::FlowSpeed => f.write_str("flow.speed"),
+            Self::FlowDirection => f.write_str("flow.direction"),
+            Self::FlowDensity => f.write_str("flow.density"),
+            Self::GravityAcceleration => f.write_str("gravity.acceleration"),
+            Self::GravityDirection => f.write_str("gravity.direction"),
+            Self::TipForce(k) => write!(f, "tip.force[{k}]"),
+            Self::TipMoment => f.write_str("tip.moment"),
+            Self::TipFollower(k) => write!(f, "tip.follower[{k}]"),
+            Self::BaseAngle => f.write_str("arm.base.angle"),
+            Self::Density => f.write_str("arm.density"),
+            Self::Young => f.write_str("material.young"),
+            Self::Poisson => f.write_str("material.poisson"),
+            Self::ShearFactor => f.write_str("material.shear_factor"),
+        }
+    }
+}
+
+impl FromStr for Parameter {
+    type Err = UnknownParameter;
+
+    fn from_str(name: &str) -> Result<Self, UnknownParameter> {
+        let cable = name.strip_prefix("cable[").and_then(|rest| rest.strip_suffix("].tension"));
+        if let Some(index) = cable.and_then(|index| index.parse().ok()) {
+            return Ok(Self::Tension(index));
+        }
+        PLAIN.into_iter().find(|p| p.to_string() == name).ok_or_else(|| UnknownParameter { name: name.to_owned() })
+    }
+}
+
+impl Parameter {
+    /// The unit of its values in the library; empty for a plain number.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) => "N",
+            Self::FlowSpeed => "m/s",
+            Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => "rad",
+            Self::FlowDensity | Self::Density => "kg/m3",
+            Self::GravityAcceleration => "m/s2",
+            Self::TipMoment => "N m",
+            Self::Young => "Pa",
+            Self::Poisson | Self::ShearFactor => "",
+        }
+    }
+
+    /// Its value in `arm`.
+    ///
+    /// # Errors
+    /// [`Unfit`] when the arm has no such quantity.
+    pub fn of(self, arm: &Arm) -> Result<f64, Unfit> {
+        let mut arm = arm.clone();
+        self.place(&mut arm).map(|value| *value)
+    }
+
+    /// Sets its value in `arm`; gravity that was left out points down.
+    ///
+    /// # Errors
+    /// [`Unfit`] when the arm has no such quantity.
+    pub fn set(self, arm: &mut Arm, value: f64) -> Result<(), Unfit> {
+        *self.place(arm)? = value;
+        Ok(())
+    }
+
+    fn place(self, arm: &mut Arm) -> Result<&mut f64, Unfit> {
+        let gravity = Gravity { acceleration: 0.0, ..Gravity::default() };
+        Ok(match self {
+            Self::Tension(c) => {
+                let cables = arm.cables.len();
+                let missing = || Unfit::Cable { key: self.to_string(), cables };
+                &mut arm.cables.get_mut(c).ok_or_else(missing)?.tension
+            }
+            Self::FlowSpeed => &mut arm.flow.speed,
+            Self::FlowDirection => &mut arm.flow.direction,
+            Self::FlowDensity => &mut arm.flow.density,
+            Self::GravityAcceleration => &mut arm.gravity.get_or_insert(gravity).acceleration,
+            Self::GravityDirection => &mut arm.gravity.get_or_insert(gravity).direction,
+            Self::TipForce(k) => &mut arm.tip.force[k.min(1)],
+            Self::TipMoment => &mut arm.tip.moment,
+            Self::TipFollower(k) => &mut arm.tip.follower[k.min(1)],
+            Self::BaseAngle => &mut arm.base.angle,
+            Self::Density => &mut arm.density,
+            Self::Young | Self::Poisson | Self::ShearFactor => match &mut arm.material {
+                Material::Homogeneous { young, poisson, shear_factor } => match self {
+                    Self::Young => young,
+                    Self::Poisson => poisson,
+                    _ => shear_factor,
+                },
+                Material::Coefficients { .. } => return Err(Unfit::Coefficients { key: self.to_string() }),
+            },
+        })
+    }
+
+    /// Whether the data of the sections depend on it.
+    pub(crate) fn is_of_sections(self) -> bool {
+        matches!(
+            self,
+            Self::FlowDensity
+                | Self::GravityAcceleration
+                | Self::GravityDirection
+                | Self::Density
+                | Self::Young
+                | Self::Poisson
+                | Self::ShearFactor
+        )
+    }
+
+    /// `arm` with this value, checked.
+    pub(crate) fn checked(self, arm: &Arm, value: f64) -> Result<Arm, Refused> {
+        let mut arm = arm.clone();
+        self.set(&mut arm, value)?;
+        arm.check()?;
+        Ok(arm)
+    }
+}
+
+/// Why an arm cannot have a value.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Refused {
+    /// It has no such quantity.
+    #[error(transparent)]
+    Unfit(#[from] Unfit),
+    /// It would be no arm.
+    #[error(transparent)]
+    Arm(#[from] ArmError),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_read_back() {
+        for parameter in PLAIN.into_iter().chain([Parameter::Tension(0), Parameter::Tension(13)]) {
+            assert_eq!(parameter.to_string().parse(), Ok(parameter));
+        }
+        for wrong in ["", "cable.tension", "cable[].tension", "cable[-1].tension", "tip.force", "flow.Speed"] {
+            assert!(wrong.parse::<Parameter>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_value_that_is_set_is_found() {
+        let mut arm = Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5);
+        arm.cables.push(crate::Cable::new("left", 0.001));
+        for (k, parameter) in PLAIN.into_iter().chain([Parameter::Tension(0)]).enumerate() {
+            parameter.set(&mut arm, k as f64).unwrap();
+            assert_eq!(parameter.of(&arm), Ok(k as f64));
+        }
+        assert!(matches!(Parameter::Tension(1).of(&arm), Err(Unfit::Cable { cables: 1, .. })));
+    }
+}

@@ -1,0 +1,311 @@
+//! All equilibria of an arm under its loads.
+//!
+//! Seen from the tip, the equations are an initial-value problem: with theta(L) given, so are the forces and the moment
+//! there, and with them the whole arm down to the angle at which its base would have to be held. The
+//! equilibria for all base angles therefore lie on one curve without branches, along which theta(L) only grows, and
+//! which repeats itself when theta(L) has grown by a full turn. Following that curve once round, with
+//! the base angle as the parameter, meets every equilibrium there is at the base angle asked for. Only
+//! where a section has no strains, or a load jumps, does the curve end: then it is followed from both ends.
+
+use std::f64::consts::TAU;
+
+use super::Pace;
+use super::stepper::{Along, Load, Point, Stepper, Turn};
+use crate::arm::Arm;
+use crate::configuration::{Configuration, Statistics};
+use crate::engine::{Engine, M, Trouble};
+use crate::parameter::Parameter;
+use crate::path::{PathEnd, PathError};
+use crate::readings::Support;
+use crate::solve::{Options, Solver};
+use crate::stability::Stability;
+use crate::verdict::{SolveError, VerdictKind};
+
+/// Base angles away from that asked for at which a solve may give the curve's first point, in turns.
+const STARTS: [f64; 8] = [0.0, 0.07, -0.07, 0.18, -0.18, 0.31, -0.31, 0.46];
+
+/// Most points of the curve.
+const MOST: usize = 5000;
+
+/// How finely the curve is followed.
+const PACE: Pace = Pace { longest: 0.25, straightness: 0.96, most: usize::MAX, accuracy: 1e-6 };
+
+/// One of several equilibria.
+#[derive(Debug, Clone)]
+pub struct Equilibrium {
+    /// The shape.
+    pub configuration: Configuration,
+    /// `None` where it is not established.
+    pub stability: Option<Stability>,
+}
+
+/// The equilibria of an arm under its loads.
+#[derive(Debug, Clone)]
+pub struct Equilibria {
+    /// In the order of theta at the tip.
+    pub found: Vec<Equilibrium>,
+    /// Whether these are all: the curve of equilibria was followed once round.
+    pub complete: bool,
+    /// Angles of the tip (rad) over which the curve was followed, where the base is at [`Equilibria::base_angles`].
+    pub tip_angles: [f64; 2],
+    /// Angles of the base (rad) that the ends of the curve followed belong to.
+    pub base_angles: [f64; 2],
+    /// Why the curve was not followed further, on its two sides; `None` on a side that was not needed.
+    pub ends: [Option<PathEnd>; 2],
+    /// Points of the curve.
+    pub steps: usize,
+}
+
+impl Arm {
+    /// All equilibria under the arm's loads, whether the path from the unloaded arm leads to them or not, each with
+    /// its stability. The tip position is good to `tol` L.
+    ///
+    /// The search is complete where [`Equilibria::complete`] says so: equilibria for all base angles lie on one
+    /// curve that closes after a full turn of the tip, and the curve was followed once round.
+    ///
+    /// ```
+    /// use hydrostat::Arm;
+    ///
+    /// // A soft arm that the stream meets from the tip.
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.flow.speed = 0.2;
+    /// arm.flow.direction = std::f64::consts::PI;
+    /// let all = arm.equilibria(1e-8).unwrap();
+    /// assert!(all.complete);
+    /// // Straight, bent down the stream to either side, and an unstable one between each of these.
+    /// assert_eq!(all.found.len(), 5);
+    /// ```
+    ///
+    /// # Errors
+    /// [`PathError::Start`] when no equilibrium was found at any base angle, [`PathError::Support`],
+    /// [`PathError::Option`].
+    pub fn equilibria(&self, tol: f64) -> Result<Equilibria, PathError> {
+        if !(1e-12..=1e-3).contains(&tol) {
+            return Err(PathError::Option { option: "tol", value: tol, expected: "in [1e-12, 1e-3]" });
+        }
+        if self.readings.support == Support::UnstrainedBase {
+            return Err(PathError::Support);
+        }
+        let (mut solver, turned) = start(self)?;
+        let asked = Asked { arm: self.clone(), turned, tol };
+        let engine = solver.engine_mut();
+        let base = self.base.angle + TAU * turned;
+        engine.equations.vary(Parameter::BaseAngle, base, base + TAU);
+        let whole = engine.state();
+        let mut out = Equilibria {
+            found: Vec::new(),
+            complete: false,
+            tip_angles: [0.0; 2],
+            base_angles: [base; 2],
+            ends: [None; 2],
+            steps: 0,
+        };
+        let forwards = follow(engine, &asked, 1.0, &mut out);
+        out.complete = forwards.is_none();
+        out.ends[1] = forwards;
+        if !out.complete {
+            engine.restore(&whole);
+            let backwards = follow(engine, &asked, -1.0, &mut out);
+            out.ends[0] = backwards;
+        }
+        out.found.sort_by(|a, b| a.configuration.tip().theta.total_cmp(&b.configuration.tip().theta));
+        out.found.dedup_by(|b, a| (b.configuration.tip().theta - a.configuration.tip().theta).abs() < 1e-7);
+        Ok(out)
+    }
+}
+
+/// What is searched for.
+struct Asked {
+    arm: Arm,
+    /// Where the curve starts, in turns of the base from the angle asked for.
+    turned: f64,
+    tol: f64,
+}
+
+/// A solve that succeeds, as near the base angle asked for as there is one, and how many turns away.
+fn start(arm: &Arm) -> Result<(Solver, f64), PathError> {
+    let mut first = None;
+    for turned in STARTS {
+        let mut held = arm.clone();
+        held.base.angle += TAU * turned;
+        let solved = Solver::new(&held, Options::default()).and_then(|mut solver| solver.solve().map(|_| solver));
+        match solved {
+            Ok(solver) => return Ok((solver, turned)),
+            Err(error @ SolveError::NoEquilibrium(_)) => first = first.or(Some(error)),
+            Err(error) => {
+                return Err(PathError::Start { parameter: Parameter::BaseAngle, value: arm.base.angle, source: error });
+            }
+        }
+    }
+    match first {
+        Some(source) => Err(PathError::Start { parameter: Parameter::BaseAngle, value: arm.base.angle, source }),
+        None => unreachable!("there are base angles to try"),
+    }
+}
+
+/// Follows the curve from the engine's configuration, towards larger (1) or smaller (-1) angles of the tip, for a full
+/// turn. What stopped it before that.
+fn follow(engine: &mut Engine, asked: &Asked, side: f64, out: &mut Equilibria) -> Option<PathEnd> {
+    let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
+    let mut stepper = Stepper::new(engine, Along::Range, unbounded);
+    let begun =
+        stepper.keep_accuracy(None, &mut Load::Fixed(0.0), [PACE.accuracy; 2]).and_then(|()| stepper.point(0.0));
+    let Ok(mut here) = begun else { return Some(PathEnd::Limit { kind: VerdictKind::NotFound, s: None }) };
+    let first = tip_angle(&here);
+    if side > 0.0 {
+        out.tip_angles = [first; 2];
+        if let Some(found) = at_whole_turns(&mut stepper, asked, &here, None) {
+            out.found.push(found);
+        }
+    }
+    if side * here.rise * here.response.nodes.last().map_or(1.0, |z| z[0]) < 0.0 {
+        stepper.orientation = -stepper.orientation;
+        here.rise = -here.rise;
+    }
+    let mut step = 0.05;
+    while step >= 1e-8 {
+        let advanced = stepper.advance(&here, step, PACE);
+        // Along the curve the angle of the tip only grows: what falls back has left it.
+        let grown = |next: &Point| side * (tip_angle(next) - tip_angle(&here)) > -1e-9;
+        let next = match advanced {
+            Ok((next, Turn::None)) if grown(&next) => next,
+            Ok(_) => {
+                step *= 0.4;
+                continue;
+            }
+            Err(trouble) => {
+                stepper.last_trouble = Some(trouble);
+                step *= 0.4;
+                continue;
+            }
+        };
+        out.steps += 1;
+        // Between two points the base angle rises or falls, or does both about an extreme.
+        let mut legs = vec![];
+        if next.rise * here.rise < 0.0 {
+            let (extreme, _) = stepper.limit_point(&here, &next, step, PACE);
+            legs.push((here.clone(), extreme.clone()));
+            legs.push((extreme, next.clone()));
+        } else {
+            legs.push((here.clone(), next.clone()));
+        }
+        let full = side * (tip_angle(&next) - first) >= TAU;
+        for (a, b) in &legs {
+            for turns in whole_turns_between(asked, a, b) {
+                let Some(point) = between(&mut stepper, a, b, turns - asked.turned) else { continue };
+                if side * (tip_angle(&point) - first) < TAU - 1e-6
+                    && let Some(found) = at_whole_turns(&mut stepper, asked, &point, Some(turns))
+                {
+                    out.found.push(found);
+                }
+            }
+        }
+        let end = usize::from(side > 0.0);
+        out.tip_angles[end] = tip_angle(&next);
+        out.base_angles[end] = stepper.engine.equations.value_at(next.fraction);
+        if full {
+            return None;
+        }
+        if out.steps >= MOST {
+            return Some(PathEnd::MostPoints);
+        }
+        here = next;
+        step = (step * 1.6).min(PACE.longest);
+    }
+    stepper.engine.restore(&here.state);
+    let residual = stepper.engine.last;
+    let (kind, s) = stepper.name_limit(here.fraction, residual);
+    let length = stepper.engine.equations.units.length;
+    Some(PathEnd::Limit { kind, s: s.map(|s| s * length) })
+}
+
+fn tip_angle(point: &Point) -> f64 {
+    point.state.solution.nodes.last().map_or(0.0, |z| z[0])
+}
+
+/// Turns of the base from the angle asked for, whole ones, that lie between two points.
+fn whole_turns_between(asked: &Asked, a: &Point, b: &Point) -> Vec<f64> {
+    let (mut low, mut high) = (a.fraction + asked.turned, b.fraction + asked.turned);
+    if low > high {
+        (low, high) = (high, low);
+    }
+    let mut out = Vec::new();
+    let mut turns = low.ceil();
+    // A point that is itself at a whole turn belongs to the leg that it ends.
+    while turns <= high {
+        if turns != a.fraction + asked.turned {
+            out.push(turns);
+        }
+        turns += 1.0;
+    }
+    out
+}
+
+/// The point between two at which the base has turned to `fraction`.
+fn between(stepper: &mut Stepper<'_>, a: &Point, b: &Point, fraction: f64) -> Option<Point> {
+    if b.fraction == fraction {
+        return Some(b.clone());
+    }
+    let (mut low, mut high) = (a.clone(), b.clone());
+    for _ in 0..40 {
+        let near = if (low.fraction - fraction).abs() < (high.fraction - fraction).abs() { &low } else { &high };
+        if let Ok((point, Turn::None)) = stepper.land(near, fraction, Pace { straightness: -1.0, ..PACE }) {
+            let angle = tip_angle(&point);
+            let (least, most) = (tip_angle(&low), tip_angle(&high));
+            if (angle - least) * (angle - most) <= 1e-12 {
+                return Some(point);
+            }
+        }
+        // Near an extreme a tangent does not lead there: halve the way, by the angle of the tip.
+        let step = 0.5 * distance(stepper, &low, &high);
+        let (middle, _) = stepper.advance(&low, step, Pace { straightness: -1.0, ..PACE }).ok()?;
+        if (middle.fraction - fraction) * (low.fraction - fraction) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    None
+}
+
+/// The length of the step between two points in the metric of the path.
+fn distance(stepper: &mut Stepper<'_>, a: &Point, b: &Point) -> f64 {
+    stepper.engine.restore(&b.state);
+    let weights = stepper.weights();
+    let mut square = (b.fraction - a.fraction).powi(2);
+    for ((s, z), w) in b.mesh().nodes().iter().zip(&b.state.solution.nodes).zip(weights) {
+        let before = a.state.solution.state_in(&stepper.engine.system.gauss, a.mesh().element_of(*s), *s);
+        square += w * (z[0] - before[0]).powi(2);
+    }
+    square.sqrt()
+}
+
+/// The configuration at a point where the base is whole turns from the angle asked for, at that angle itself. With no
+/// turns given, whether the point is one.
+fn at_whole_turns(stepper: &mut Stepper<'_>, asked: &Asked, point: &Point, turns: Option<f64>) -> Option<Equilibrium> {
+    let turns = turns.or_else(|| (asked.turned == 0.0 && point.fraction == 0.0).then_some(0.0))?;
+    let engine = &mut *stepper.engine;
+    engine.restore(&point.state);
+    engine.hold(&asked.arm, TAU * turns);
+    let before = engine.solution.nodes.last().map_or(0.0, |z| z[0]);
+    let estimate = settle(engine, asked.tol).ok()?;
+    let after = engine.solution.nodes.last().map_or(0.0, |z| z[0]);
+    let statistics = Statistics {
+        elements: engine.solution.mesh.elements(),
+        stages: M,
+        newton_rounds: engine.rounds,
+        meshes: engine.meshes,
+        load_steps: 0,
+        evaluations: engine.equations.evaluations,
+    };
+    let read = Configuration::read(engine, estimate * asked.arm.length, statistics).ok();
+    engine.restore(&point.state);
+    let configuration = read.filter(|_| (after - before).abs() < 0.05)?;
+    let stability = configuration.stability();
+    Some(Equilibrium { configuration, stability })
+}
+
+fn settle(engine: &mut Engine, tol: f64) -> Result<f64, Trouble> {
+    engine.newton(1e-6, 14)?;
+    engine.settle(tol, true)
+}

@@ -1,0 +1,140 @@
+//! The path that defines the answer: from the unloaded arm, loads first, then tensions (section 7 of
+//! `docs/model.md`).
+
+use super::stepper::{Along, Load, Point, Stepper, Turn, roughly};
+use super::{LOOSE, MEET, Pace, START, Travelled};
+use crate::engine::{Engine, Trouble};
+use crate::verdict::{Phase, Verdict, VerdictKind};
+
+/// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
+pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdict> {
+    let mut travelled = Travelled::default();
+    engine.set_phase(Phase::Loads, START);
+    engine.start_unloaded(10);
+    for phase in [Phase::Loads, Phase::Tension] {
+        let moves = match phase {
+            Phase::Loads => engine.equations.has_loads(),
+            Phase::Tension => engine.equations.has_tension(),
+        };
+        if moves {
+            let stepper = Stepper::new(engine, Along::Phase(phase), [f64::NEG_INFINITY, 1.0]);
+            Ramp { stepper, phase }.follow(pace, &mut travelled)?;
+        }
+        engine.set_phase(phase, 1.0);
+    }
+    Ok(travelled)
+}
+
+/// One phase of the path.
+struct Ramp<'e> {
+    stepper: Stepper<'e>,
+    phase: Phase,
+}
+
+impl Ramp<'_> {
+    fn follow(&mut self, pace: Pace, travelled: &mut Travelled) -> Result<(), Verdict> {
+        let Ok(mut here) = self.start() else { return Err(self.never_started()) };
+        // Which side of zero the determinant is on is a matter of the branch, which way is up is not.
+        if here.rise < 0.0 {
+            self.stepper.orientation = -self.stepper.orientation;
+            here.rise = -here.rise;
+        }
+        let mut step = 0.1_f64.min(pace.longest);
+        // A point before this one whose tangent climbed clearly more.
+        let mut steeper = (here.fraction, here.rise);
+        for attempt in 0.. {
+            if attempt >= pace.most || step < 1e-8 {
+                let residual = self.stepper.engine.last;
+                self.stepper.engine.restore(&here.state);
+                // Two branches of opposite orientation end where they meet: the path turns back in a corner
+                // that the load's kinks make.
+                if self.stepper.opposite.is_some_and(|f| (f - here.fraction).abs() < MEET) {
+                    return Err(self.end(VerdictKind::LimitPoint, here.fraction, None));
+                }
+                let (kind, s) = self.stepper.name_limit(here.fraction, residual);
+                let end = self.end(kind, here.fraction, s);
+                // Towards a fold the square of the climb falls to zero linearly in the load.
+                let fall = steeper.1.powi(2) - here.rise.powi(2);
+                let ahead = (here.fraction - steeper.0) * here.rise.powi(2) / fall;
+                if kind == VerdictKind::NotFound && here.rise < 0.1 && fall > 0.0 && ahead < 1e-3 {
+                    return Err(self.end(VerdictKind::LimitPoint, here.fraction + ahead, None));
+                }
+                return Err(end);
+            }
+            match self.stepper.advance(&here, step, pace) {
+                Ok((mut next, turn)) => {
+                    if turn == Turn::Crossing {
+                        // The branch goes straight on through a bifurcation.
+                        self.stepper.orientation = -self.stepper.orientation;
+                        next.rise = -next.rise;
+                        travelled.crossings += 1;
+                    }
+                    if next.rise < 0.0 {
+                        let (_, limit) = self.stepper.limit_point(&here, &next, step, pace);
+                        return Err(self.end(VerdictKind::LimitPoint, limit.clamp(0.0, 1.0), None));
+                    }
+                    travelled.steps += 1;
+                    if next.fraction == 1.0 {
+                        travelled.symmetric = next.is_symmetric();
+                        return Ok(());
+                    }
+                    if here.rise > 1.3 * next.rise {
+                        steeper = (here.fraction, here.rise);
+                    } else if here.rise < next.rise {
+                        steeper = (next.fraction, next.rise);
+                    }
+                    here = next;
+                    step = (step * 1.6).min(pace.longest);
+                }
+                Err(trouble) => {
+                    self.stepper.last_trouble = Some(trouble);
+                    step *= 0.4;
+                    self.stepper.engine.restore(&here.state);
+                }
+            }
+        }
+        unreachable!("the loop returns when its attempts are used up")
+    }
+
+    /// The point that a phase starts from. An arm that lies in the stream has tiny angles to it whose
+    /// signs decide where it goes, so this point is made more accurate, as far as that can be had.
+    fn start(&mut self) -> Result<Point, Trouble> {
+        let whole = self.stepper.engine.solution.clone();
+        let mut fraction = START;
+        loop {
+            self.stepper.set(fraction);
+            match roughly(self.stepper.engine.newton(1e-6, 12)) {
+                Ok(()) => break,
+                // Straight in line with the stream an arm has a kink all along, and corrections hop.
+                Err(_) if fraction > 1e-5 * START => {
+                    fraction *= 0.1;
+                    self.stepper.engine.solution.clone_from(&whole);
+                }
+                Err(trouble) => return Err(trouble),
+            }
+        }
+        let refined = [1e-5, 1e-6, 1e-7].iter().all(|accuracy| {
+            self.stepper.or_back(|this| this.keep_accuracy(None, &mut Load::Fixed(fraction), [*accuracy, LOOSE]))
+        });
+        if refined {
+            self.stepper.or_back(|this| this.engine.settle(1e-8, true).map(|_| ()));
+        }
+        self.stepper.point(fraction)
+    }
+
+    /// A verdict at `s` over L.
+    fn end(&self, kind: VerdictKind, load_fraction: f64, s: Option<f64>) -> Verdict {
+        let load_fraction = if load_fraction <= START { 0.0 } else { load_fraction.min(1.0) };
+        let s = s.map(|s| s * self.stepper.engine.equations.units.length);
+        Verdict { kind, phase: self.phase, load_fraction, s, residual: self.stepper.engine.last }
+    }
+
+    fn never_started(&mut self) -> Verdict {
+        self.stepper.engine.last = 0.0;
+        if self.stepper.engine.equations.arm().readings.load_can_jump() {
+            self.end(VerdictKind::LoadJump, 0.0, self.stepper.engine.nearest_switch())
+        } else {
+            self.end(VerdictKind::NotFound, 0.0, None)
+        }
+    }
+}
