@@ -372,7 +372,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         let condensed =
             if parameter { self.condense::<FUSED, 2>(solution) } else { self.condense::<FUSED, 1>(solution) };
         condensed.map_err(RoundError::Singular)?;
-        self.carry_rows(problem, solution).map_err(RoundError::Singular)
+        self.carry_rows::<P, FUSED>(problem, solution).map_err(RoundError::Singular)
     }
 
     /// Eliminates the stages of every element, with the first `C` columns of the loads.
@@ -447,7 +447,11 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     }
 
     #[inline(always)]
-    fn carry_rows<P: Problem<N, Q>>(&mut self, problem: &P, solution: &Solution<N, M>) -> Result<(), Singular> {
+    fn carry_rows<P: Problem<N, Q>, const FUSED: bool>(
+        &mut self,
+        problem: &P,
+        solution: &Solution<N, M>,
+    ) -> Result<(), Singular> {
         let n = solution.mesh.elements();
         let left_count = problem.left_count();
         let right_count = N - left_count;
@@ -458,32 +462,25 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
 
         let mut conditions = [Condition::default(); N];
         problem.right(&solution.nodes[n], &mut conditions);
-        let mut carried = blank;
+        let last = &mut self.rows[n];
         for r in 0..right_count {
-            carried.rows[r] = conditions[r].gradient;
-            carried.load[r] = [-conditions[r].residual, -conditions[r].drift];
+            last.rows[r] = conditions[r].gradient;
+            last.load[r] = [-conditions[r].residual, -conditions[r].drift];
         }
-        self.rows[n] = reduce(carried, right_count, None, &mut determinant).ok_or(Singular::System)?;
+        if !reduce_on_largest(last, right_count, &mut determinant) {
+            return Err(Singular::System);
+        }
         for i in (0..n).rev() {
-            let next = &self.rows[i + 1];
-            let element = &self.transitions[i];
-            let mut carried = blank;
-            for r in 0..right_count {
-                let row = &next.rows[r];
-                let mut own = [0.0; N];
-                let mut load = next.load[r];
-                for b in 0..N {
-                    for c in 0..N {
-                        own[c] += row[b] * element.by_state[b][c];
-                    }
-                    load[0] -= row[b] * element.affine[0][b];
-                    load[1] -= row[b] * element.affine[1][b];
+            let (before, behind) = self.rows.split_at_mut(i + 1);
+            let (own, next, transition) = (&mut before[i], &behind[0], &self.transitions[i]);
+            own.carry::<FUSED>(next, transition, right_count);
+            own.pivot = next.pivot;
+            if !reduce_on::<FUSED, N>(own, right_count, &mut determinant) {
+                own.carry::<FUSED>(next, transition, right_count);
+                if !reduce_on_largest(own, right_count, &mut determinant) {
+                    return Err(Singular::System);
                 }
-                carried.rows[r] = own;
-                carried.load[r] = load;
             }
-            let pivots = Some(&next.pivot);
-            self.rows[i] = reduce(carried, right_count, pivots, &mut determinant).ok_or(Singular::System)?;
         }
 
         let mut conditions = [Condition::default(); N];
@@ -979,43 +976,41 @@ impl Product {
     }
 }
 
-/// Reduces carried rows to the identity on their pivot columns: on those of the `last` node, where
-/// that divides by nothing small, and on the largest entries otherwise.
-#[inline(always)]
-fn reduce<const N: usize>(
-    carried: Rows<N>,
-    count: usize,
-    last: Option<&[usize; N]>,
-    determinant: &mut Product,
-) -> Option<Rows<N>> {
-    if let Some(pivots) = last
-        && let Some(reduced) = reduce_on(&carried, count, pivots, determinant)
-    {
-        return Some(reduced);
+impl<const N: usize> Rows<N> {
+    /// Takes the first `count` rows of the `next` node through the transition that leads there.
+    #[inline(always)]
+    fn carry<const FUSED: bool>(&mut self, next: &Self, transition: &Transition<N>, count: usize) {
+        for r in 0..count {
+            let row = &next.rows[r];
+            let mut own = [0.0; N];
+            let mut load = next.load[r];
+            for b in 0..N {
+                for c in 0..N {
+                    own[c] = own[c].plus::<FUSED>(row[b], transition.by_state[b][c]);
+                }
+                load[0] -= row[b] * transition.affine[0][b];
+                load[1] -= row[b] * transition.affine[1][b];
+            }
+            self.rows[r] = own;
+            self.load[r] = load;
+        }
     }
-    reduce_on_largest(carried, count, determinant)
 }
 
 /// The largest free entry that reduced rows may have on pivots that were not searched for.
 const LARGEST_FREE: f64 = 8.0;
 
-/// Reduces on given pivots; `None` when one is small or a free entry comes out large.
+/// Reduces carried rows to the identity on their pivots; false, with the rows spoilt, when one is small or a free
+/// entry comes out large.
 #[inline(always)]
-fn reduce_on<const N: usize>(
-    carried: &Rows<N>,
-    count: usize,
-    pivots: &[usize; N],
-    determinant: &mut Product,
-) -> Option<Rows<N>> {
-    let mut c = *carried;
+fn reduce_on<const FUSED: bool, const N: usize>(c: &mut Rows<N>, count: usize, determinant: &mut Product) -> bool {
     let mut product = *determinant;
     for r in 0..N {
         c.reduction[r] = [0.0; N];
         c.reduction[r][r] = 1.0;
     }
-    c.pivot = *pivots;
     for r in 0..count {
-        let column = pivots[r];
+        let column = c.pivot[r];
         let pivot = c.rows[r][column];
         let mut largest = 0.0_f64;
         for v in c.rows[r] {
@@ -1024,10 +1019,10 @@ fn reduce_on<const N: usize>(
         // The negation also catches NaN.
         #[allow(clippy::neg_cmp_op_on_partial_ord)]
         if !(pivot.abs() * LARGEST_FREE > largest) {
-            return None;
+            return false;
         }
         product.times(pivot);
-        eliminate_column(&mut c, count, r, column, 1.0 / pivot);
+        eliminate_column::<FUSED, N>(c, count, r, column, 1.0 / pivot);
     }
     let mut fine = true;
     for r in 0..count {
@@ -1038,12 +1033,18 @@ fn reduce_on<const N: usize>(
     if fine {
         *determinant = product;
     }
-    fine.then_some(c)
+    fine
 }
 
 /// Scales row `r` to one in `column` and clears that column in the other rows.
 #[inline(always)]
-fn eliminate_column<const N: usize>(c: &mut Rows<N>, count: usize, r: usize, column: usize, scale: f64) {
+fn eliminate_column<const FUSED: bool, const N: usize>(
+    c: &mut Rows<N>,
+    count: usize,
+    r: usize,
+    column: usize,
+    scale: f64,
+) {
     let (mut own, mut load, mut reduction) = (c.rows[r], c.load[r], c.reduction[r]);
     for k in 0..N {
         own[k] *= scale;
@@ -1056,8 +1057,8 @@ fn eliminate_column<const N: usize>(c: &mut Rows<N>, count: usize, r: usize, col
         if i != r {
             let f = c.rows[i][column];
             for k in 0..N {
-                c.rows[i][k] -= f * own[k];
-                c.reduction[i][k] -= f * reduction[k];
+                c.rows[i][k] = c.rows[i][k].plus::<FUSED>(-f, own[k]);
+                c.reduction[i][k] = c.reduction[i][k].plus::<FUSED>(-f, reduction[k]);
             }
             c.load[i][0] -= f * load[0];
             c.load[i][1] -= f * load[1];
@@ -1067,11 +1068,11 @@ fn eliminate_column<const N: usize>(c: &mut Rows<N>, count: usize, r: usize, col
     (c.rows[r], c.load[r], c.reduction[r]) = (own, load, reduction);
 }
 
-/// Reduces with a search for the largest entry of the remaining rows at every pivot, so that no
-/// column is divided by something small.
+/// Reduces on pivots of its own with a search for the largest entry of the remaining rows at every pivot, so that no
+/// column is divided by something small; false where the rows are singular.
 #[cold]
 #[inline(never)]
-fn reduce_on_largest<const N: usize>(mut c: Rows<N>, count: usize, determinant: &mut Product) -> Option<Rows<N>> {
+fn reduce_on_largest<const N: usize>(c: &mut Rows<N>, count: usize, determinant: &mut Product) -> bool {
     for r in 0..N {
         c.reduction[r] = [0.0; N];
         c.reduction[r][r] = 1.0;
@@ -1086,7 +1087,7 @@ fn reduce_on_largest<const N: usize>(mut c: Rows<N>, count: usize, determinant: 
             }
         }
         if largest == 0.0 || !largest.is_finite() {
-            return None;
+            return false;
         }
         if row != r {
             c.rows.swap(row, r);
@@ -1097,9 +1098,9 @@ fn reduce_on_largest<const N: usize>(mut c: Rows<N>, count: usize, determinant: 
         c.pivot[r] = column;
         let pivot = c.rows[r][column];
         determinant.times(pivot);
-        eliminate_column(&mut c, count, r, column, 1.0 / pivot);
+        eliminate_column::<false, N>(c, count, r, column, 1.0 / pivot);
     }
-    Some(c)
+    true
 }
 
 /// Multiplies by the determinant of a matrix.
