@@ -12,17 +12,28 @@
 //! and at every s the section law gives (nu, eta, mu), see [`crate::section`]. The centreline r is a
 //! quadrature. Lengths are in units of L, forces in a unit of [`Units`].
 
+mod at_place;
+mod gradients;
+mod nearness;
+mod places;
+mod strains;
 mod varied;
 
-use hydrostat_bvp::{Condition, Gauss, Groups, LANES, Lanes, Local, Mesh, Problem, Real, each};
+use hydrostat_bvp::{Condition, Gauss, Groups, LANES, Lanes, Local, Problem, Real, each};
 
-use crate::arm::{Arm, Cavity, Material, TipLoad};
+pub(crate) use self::at_place::{Asked, AtPlace};
+use self::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
+use self::nearness::NearnessLanes;
+pub(crate) use self::nearness::{Nearness, SectionFailure};
+use self::places::{Place, blank_cable};
+use self::strains::{STATION, Solved, solve_section};
+use crate::arm::{Arm, TipLoad};
 use crate::beta_along::{BetaAlong, Coupling};
-use crate::cable::{Offset, tangent};
+use crate::cable::tangent;
 use crate::flow::Law;
-use crate::loads::{Body, Load, Water, load};
+use crate::loads::{Load, Water, load};
 use crate::readings::{Support, Volume};
-use crate::section::{Balance, CableAt, Stiffness, apply3, balance, inverse3};
+use crate::section::{CableAt, apply3};
 use crate::sincos::sin_cos;
 use crate::swelling::swelling;
 use crate::verdict::Phase;
@@ -39,83 +50,6 @@ pub(crate) struct Units {
     pub(crate) force: f64,
 }
 
-/// Where a section law failed and how near each limit it was.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SectionFailure {
-    /// Over L.
-    pub(crate) s: f64,
-    /// Smallest tau.a / nu of the pulled cables.
-    pub(crate) openness: f64,
-    /// Stretch when it failed.
-    pub(crate) nu: f64,
-    /// Determinant of the section law over that of the slack one.
-    pub(crate) regularity: f64,
-}
-
-/// How near the limits of the section law the stations came, each with its place (over L).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Nearness {
-    /// Smallest tau.a / nu of a pulled cable.
-    pub(crate) openness: (f64, f64),
-    /// Smallest stretch.
-    pub(crate) nu: (f64, f64),
-    /// Smallest determinant of the section law over that of the slack one.
-    pub(crate) regularity: (f64, f64),
-}
-
-impl Nearness {
-    const FAR: Self = Self { openness: (1.0, 0.0), nu: (f64::INFINITY, 0.0), regularity: (f64::INFINITY, 0.0) };
-
-    #[inline(always)]
-    pub(crate) fn note(&mut self, s: f64, openness: f64, nu: f64, regularity: f64) {
-        for (least, value) in [(&mut self.openness, openness), (&mut self.nu, nu), (&mut self.regularity, regularity)] {
-            if value < least.0 {
-                *least = (value, s);
-            }
-        }
-    }
-}
-
-/// [`Nearness`] lane by lane: openness, stretch, determinant.
-struct NearnessLanes {
-    least: [Lanes; 3],
-    s: [Lanes; 3],
-}
-
-impl NearnessLanes {
-    #[inline(always)]
-    fn far() -> Self {
-        let infinity = Lanes::of(f64::INFINITY);
-        Self { least: [Lanes::of(1.0), infinity, infinity], s: [Lanes::of(0.0); 3] }
-    }
-
-    #[inline(always)]
-    fn note(&mut self, s: Lanes, values: [Lanes; 3]) {
-        for k in 0..3 {
-            self.s[k] = values[k].if_less(self.least[k], s, self.s[k]);
-            self.least[k] = values[k].min(self.least[k]);
-        }
-    }
-
-    /// The nearest of all lanes, of the equally near the first along the arm.
-    fn nearest(&self) -> Nearness {
-        let [openness, nu, regularity] = [0, 1, 2].map(|k| {
-            let each = (0..LANES).map(|lane| (self.least[k].0[lane], self.s[k].0[lane]));
-            each.reduce(|a, b| if b < a { b } else { a }).unwrap_or((f64::INFINITY, 0.0))
-        });
-        Nearness { openness, nu, regularity }
-    }
-}
-
-/// One place of the arm as data.
-#[derive(Debug, Clone, Copy)]
-struct Place<R> {
-    /// Over L.
-    s: R,
-    stiffness: Stiffness<R>,
-    body: Body<R>,
-}
-
 /// What the section law remembers from the last state at a station.
 #[derive(Debug, Clone, Copy)]
 struct Memory<R> {
@@ -124,37 +58,6 @@ struct Memory<R> {
     /// d strain / d z.
     by_state: [[R; N]; 3],
 }
-
-/// A station's strains and everything derived.
-#[derive(Clone, Copy)]
-pub(crate) struct Solved<R> {
-    pub(crate) strain: [R; 3],
-    pub(crate) balance: Balance<R>,
-    inverse: [[R; 3]; 3],
-    /// Determinant of the section law over that of the slack one: not above zero past a limit.
-    pub(crate) regularity: R,
-    /// Last Newton step.
-    step: R,
-}
-
-impl Solved<Lanes> {
-    /// Whether all lanes are.
-    #[inline(always)]
-    fn fine(&self) -> bool {
-        let positive = self.regularity.min(self.balance.openness).min(self.strain[0]);
-        // A number that is none is below nothing.
-        self.step.all_below(STATION) & (-positive).all_below(0.0) & (-self.regularity).all_below(0.0)
-    }
-
-    #[inline(always)]
-    fn fine_in(&self, lane: usize) -> bool {
-        let positive = [self.regularity, self.balance.openness, self.strain[0]];
-        (self.step.0[lane] < STATION) & positive.iter().all(|v| v.0[lane] > 0.0)
-    }
-}
-
-/// The last Newton step of the section law that stations are content with.
-const STATION: f64 = 1e-6;
 
 /// Equations of one arm at given fractions of its loads.
 #[derive(Debug, Clone)]
@@ -235,16 +138,6 @@ impl Equilibrium {
         }
     }
 
-    /// Takes the arm's sections at all stations.
-    fn take_sections(&mut self) {
-        for block in 0..self.places.len() {
-            for lane in 0..LANES {
-                let place = self.place(self.stations[self.groups.station_in(block, lane)]);
-                set_lane(&mut self.places[block], lane, &place);
-            }
-        }
-    }
-
     fn set_tensions(&mut self) {
         self.tensions = self.arm.cables.iter().map(|c| c.tension / self.units.force).collect();
     }
@@ -319,127 +212,6 @@ impl Equilibrium {
     /// How the stations stand in blocks.
     pub(crate) fn groups(&self) -> Groups {
         self.groups
-    }
-
-    /// Data at `s` (over L).
-    fn place(&self, s: f64) -> Place<f64> {
-        let (arm, units) = (&self.arm, self.units);
-        let l = units.length;
-        let at = |p: &crate::profile::Profile| p.at(s * l, l);
-        let (r, r_in) = (at(&arm.radius), at(&arm.inner_radius));
-        let pi = std::f64::consts::PI;
-        let area = pi * (r.value * r.value - r_in.value * r_in.value);
-        let area_slope = 2.0 * pi * (r.value * r.slope - r_in.value * r_in.slope);
-        let (c, c_slope) = match &arm.material {
-            Material::Homogeneous { young, poisson, shear_factor } => {
-                // C1 = E, C2 = k G, C3 = E I/A of a ring.
-                let square = r.value * r.value + r_in.value * r_in.value;
-                let square_slope = 2.0 * (r.value * r.slope + r_in.value * r_in.slope);
-                let shear = shear_factor * young / (2.0 * (1.0 + poisson));
-                ([*young, shear, young * square / 4.0], [0.0, 0.0, young * square_slope / 4.0])
-            }
-            Material::Coefficients { c1, c2, c3 } => {
-                let c = [at(c1), at(c2), at(c3)];
-                (c.map(|c| c.value), c.map(|c| c.slope))
-            }
-        };
-        // Stiffness in the units: C1 A0 / F, C2 A0 / F, C3 A0 / (F L^2).
-        let unit = [1.0 / units.force, 1.0 / units.force, 1.0 / (units.force * l * l)];
-        let reference = [at(&arm.reference.nu), at(&arm.reference.eta), at(&arm.reference.mu)];
-        let per_length = [1.0, 1.0, l];
-        let stiffness = Stiffness {
-            value: [0, 1, 2].map(|k| c[k] * area * unit[k]),
-            slope: [0, 1, 2].map(|k| (c_slope[k] * area + c[k] * area_slope) * unit[k] * l),
-            reference: [0, 1, 2].map(|k| reference[k].value * per_length[k]),
-            reference_slope: [0, 1, 2].map(|k| reference[k].slope * per_length[k] * l),
-        };
-        let load_unit = l / units.force;
-        let gravity = arm.gravity.map_or([0.0; 2], |g| {
-            let (sin, cos) = g.direction.sin_cos();
-            [g.acceleration * cos * load_unit, g.acceleration * sin * load_unit]
-        });
-        let outline = match arm.cavity {
-            Cavity::Flooded => area,
-            Cavity::Sealed => pi * r.value * r.value,
-        };
-        let body = Body {
-            radius: r.value / l,
-            radius_slope: r.slope,
-            wetted: pi * arm.flow.density * r.value * load_unit,
-            weight: gravity.map(|g| arm.density * area * g),
-            displaced: gravity.map(|g| arm.flow.density * outline * g),
-            force: [0, 1].map(|k| at(&arm.distributed.force[k]).value * load_unit),
-            couple: at(&arm.distributed.couple).value / units.force,
-        };
-        Place { s, stiffness, body }
-    }
-
-    fn offset(&self, cable: usize, s: f64) -> Offset<f64> {
-        let l = self.units.length;
-        let p = self.arm.cables[cable].offset.at(s * l, l);
-        Offset { y: p.value / l, slope: p.slope, curvature: p.curvature * l }
-    }
-
-    /// Takes a new set of stations, those of `mesh`, with guesses of the strains and of beta'.
-    pub(crate) fn place_stations(
-        &mut self,
-        stations: &[f64],
-        mesh: &Mesh,
-        guess: impl Fn(usize) -> ([f64; 3], f64, f64),
-    ) {
-        let stages = self.groups.stages;
-        let groups = Groups { elements: mesh.elements(), stages };
-        let blocks = groups.count() * stages;
-        let zero = Lanes::of(0.0);
-        let cable_count = self.tensions.len();
-        let before = std::mem::replace(&mut self.groups, groups).elements;
-        let memory = Memory { z: [zero; N], strain: [zero; 3], by_state: [[zero; N]; 3] };
-        self.memory.clear();
-        self.memory.resize(blocks, memory);
-        if self.places.len() < blocks {
-            let blank = splat(&self.place(stations[0]));
-            self.places.resize(blocks, blank);
-        }
-        self.places.truncate(blocks);
-        self.cables.resize(blocks * cable_count, blank_cable());
-        self.steps.resize(groups.count(), zero);
-        self.beta.resize(blocks);
-        self.switches.resize(blocks, [zero; 3]);
-        self.drifts.resize(blocks, [zero; N]);
-        for group in 0..groups.count() {
-            for lane in 0..LANES {
-                let i = groups.element(group, lane);
-                self.steps[group].0[lane] = mesh.step(i);
-                for j in 0..stages {
-                    let (block, k) = (group * stages + j, i * stages + j);
-                    let (strain, slope, curvature) = guess(k);
-                    for a in 0..3 {
-                        self.memory[block].strain[a].0[lane] = strain[a];
-                    }
-                    self.beta.start(block, lane, slope, curvature);
-                    // A station that stays where it was keeps its data.
-                    let own = group * LANES + lane == i && i < before;
-                    if !(own && self.stations[k] == stations[k]) {
-                        self.place_station(block, lane, stations[k]);
-                    }
-                }
-            }
-        }
-        self.stations.clear();
-        self.stations.extend_from_slice(stations);
-    }
-
-    /// Takes the data at `s` into a lane of a block.
-    fn place_station(&mut self, block: usize, lane: usize, s: f64) {
-        let place = self.place(s);
-        set_lane(&mut self.places[block], lane, &place);
-        let cable_count = self.tensions.len();
-        for c in 0..cable_count {
-            let offset = self.offset(c, s);
-            let at = &mut self.cables[block * cable_count + c];
-            at.set_offset(lane, &offset);
-            at.tension.0[lane] = f64::from(u8::from(s <= self.ends[c]));
-        }
     }
 
     pub(crate) fn stations(&self) -> &[f64] {
@@ -562,116 +334,6 @@ impl Equilibrium {
         (4.0 * reach.fold(0.0, f64::max)).max(1e-6)
     }
 
-    /// Solves section law and loads at one place, for output between stations.
-    pub(crate) fn at_place(&self, asked: &Asked) -> Result<AtPlace, SectionFailure> {
-        let mut place = self.place(asked.s);
-        place.body.couple *= self.fraction[0];
-        let pulled = (0..self.tensions.len()).filter(|c| self.acts_at(*c, asked));
-        let cables: Vec<CableAt<f64>> =
-            pulled.map(|c| CableAt { offset: self.offset(c, asked.s), tension: self.tension(c) }).collect();
-        let (sin, cos) = asked.z[0].sin_cos();
-        let (at, fine) = self.solve_place(&place, &cables, [cos, sin], asked.z, asked.strain, asked.beta);
-        if fine {
-            Ok(at)
-        } else {
-            Err(SectionFailure { s: asked.s, openness: at.openness, nu: at.strain[0], regularity: at.regularity })
-        }
-    }
-
-    /// [`Equilibrium::at_place`] at four places; `None` when one of them has no solution.
-    #[inline(always)]
-    pub(crate) fn at_places(&self, asked: &[Asked; LANES]) -> Option<AtPlace<Lanes>> {
-        let zero = Lanes::of(0.0);
-        let mut place = splat(&self.place(asked[0].s));
-        let mut cables = Vec::with_capacity(self.tensions.len());
-        let (mut z, mut strain, mut beta) = ([zero; N], [zero; 3], [zero; 2]);
-        for lane in 0..LANES {
-            let asked = &asked[lane];
-            if lane > 0 {
-                set_lane(&mut place, lane, &self.place(asked.s));
-            }
-            for a in 0..N {
-                z[a].0[lane] = asked.z[a];
-            }
-            for a in 0..3 {
-                strain[a].0[lane] = asked.strain[a];
-            }
-            for a in 0..2 {
-                beta[a].0[lane] = asked.beta[a];
-            }
-        }
-        place.body.couple = place.body.couple * Lanes::of(self.fraction[0]);
-        for c in 0..self.tensions.len() {
-            let mut cable = blank_cable();
-            for lane in 0..LANES {
-                if self.acts_at(c, &asked[lane]) {
-                    cable.tension.0[lane] = self.tension(c);
-                }
-                cable.set_offset(lane, &self.offset(c, asked[lane].s));
-            }
-            if cable.tension != zero {
-                cables.push(cable);
-            }
-        }
-        let (sin, cos) = sin_cos(z[0]);
-        let (at, fine) = self.solve_place(&place, &cables, [cos, sin], z, strain, beta);
-        fine.then_some(at)
-    }
-
-    /// Whether cable `c` pulls at a place.
-    fn acts_at(&self, c: usize, asked: &Asked) -> bool {
-        let runs = if asked.from_left { asked.s <= self.ends[c] + 1e-12 } else { asked.s < self.ends[c] - 1e-12 };
-        runs && self.tension(c) != 0.0
-    }
-
-    /// Everything at places, and whether it could be solved at all of them.
-    #[inline(always)]
-    fn solve_place<R: Real>(
-        &self,
-        place: &Place<R>,
-        cables: &[CableAt<R>],
-        [cos, sin]: [R; 2],
-        z: [R; N],
-        mut strain: [R; 3],
-        [mut beta_slope, beta_curvature]: [R; 2],
-    ) -> (AtPlace<R>, bool) {
-        let contact = [cos * z[1] + sin * z[2], cos * z[2] - sin * z[1], z[3]];
-        for round in 0.. {
-            let beta = [beta_slope, beta_curvature];
-            let solved = solve_section(self.volume, &place.stiffness, cables, contact, strain, beta, 1e-13);
-            let fine = solved.step.all_below(1e-9)
-                && (-solved.regularity).all_below(0.0)
-                && (-solved.balance.openness).all_below(0.0);
-            strain = solved.strain;
-            let load = self.load(place, [cos, sin], &solved, beta_slope);
-            let slopes = slopes(place.body.couple, [cos, sin], contact, &solved, &load);
-            let change = (slopes.beta_slope - beta_slope).abs();
-            beta_slope = slopes.beta_slope;
-            if change.all_below(1e-13) || round == 29 || !fine {
-                let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
-                let [nu, eta, _] = solved.strain;
-                let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
-                let at = AtPlace {
-                    strain,
-                    beta: solved.balance.swelling.beta,
-                    beta_slope,
-                    contact: each(|k| contact[k] - solved.balance.cables[k]),
-                    openness: solved.balance.openness,
-                    regularity: solved.regularity,
-                    local: Local {
-                        slope: slopes.slope,
-                        jacobian: jacobian([cos, sin], contact, &solved, &load, &by_state),
-                        rate,
-                        rate_gradient: rate_gradient([cos, sin], rate, &by_state),
-                    },
-                    radius: place.body.radius,
-                };
-                return (at, fine);
-            }
-        }
-        unreachable!("the loop returns at its last round")
-    }
-
     #[inline(always)]
     fn load<R: Real>(&self, place: &Place<R>, direction: [R; 2], solved: &Solved<R>, beta_slope: R) -> Load<R> {
         let mut load = load(&self.water, &place.body, direction, solved.strain, &solved.balance.swelling, beta_slope);
@@ -686,53 +348,6 @@ impl Equilibrium {
     }
 }
 
-/// A place between stations, and what is known there.
-#[derive(Clone, Copy)]
-pub(crate) struct Asked {
-    /// Over L.
-    pub(crate) s: f64,
-    /// Decides whether a cable that ends here still acts.
-    pub(crate) from_left: bool,
-    pub(crate) z: [f64; N],
-    /// A guess of the strains.
-    pub(crate) strain: [f64; 3],
-    /// beta' and beta''.
-    pub(crate) beta: [f64; 2],
-}
-
-/// Everything at one place, or at four, in the solver's units.
-#[derive(Clone)]
-pub(crate) struct AtPlace<R = f64> {
-    pub(crate) strain: [R; 3],
-    pub(crate) beta: R,
-    pub(crate) beta_slope: R,
-    /// n.a, n.b, m: what the body carries.
-    pub(crate) contact: [R; 3],
-    /// Smallest tau.a / nu of the pulled cables.
-    pub(crate) openness: R,
-    /// Determinant of the section law over that of the slack one.
-    pub(crate) regularity: R,
-    pub(crate) local: Local<N, Q, R>,
-    /// Undeformed radius.
-    pub(crate) radius: R,
-}
-
-impl AtPlace<Lanes> {
-    /// That of one of the four places.
-    pub(crate) fn lane(&self, lane: usize) -> AtPlace {
-        AtPlace {
-            strain: self.strain.map(|v| v.0[lane]),
-            beta: self.beta.0[lane],
-            beta_slope: self.beta_slope.0[lane],
-            contact: self.contact.map(|v| v.0[lane]),
-            openness: self.openness.0[lane],
-            regularity: self.regularity.0[lane],
-            local: self.local.lane(lane),
-            radius: self.radius.0[lane],
-        }
-    }
-}
-
 fn water(arm: &Arm) -> Water {
     let r = &arm.readings;
     Water {
@@ -743,119 +358,6 @@ fn water(arm: &Arm) -> Water {
         hydrostatics: r.hydrostatics,
         tangential_factor: 1.0,
     }
-}
-
-/// Newton on the section law from a guess, every lane to `tolerance` or to its own limit.
-#[inline(always)]
-fn solve_section<R: Real>(
-    volume: Volume,
-    stiffness: &Stiffness<R>,
-    cables: &[CableAt<R>],
-    contact: [R; 3],
-    guess: [R; 3],
-    beta_along: [R; 2],
-    tolerance: f64,
-) -> Solved<R> {
-    const SWIFT: usize = 8;
-    const MOST: usize = 80;
-    let mut strain = guess;
-    let one = R::of(1.0);
-    for round in 0.. {
-        if round == SWIFT {
-            strain = guess;
-        }
-        let balance = balance(volume, stiffness, cables, strain, beta_along);
-        let (inverse, det) = inverse3(&balance.by_strain);
-        let rest = each(|k| contact[k] - balance.carried[k]);
-        let step = apply3(&inverse, rest);
-        let mu_scale = one / (R::of(2.0) + strain[2].abs());
-        let size = step[0].abs().max(step[1].abs()).max(step[2].abs() * mu_scale);
-        let share = if round < SWIFT && is_short(&balance, cables, strain, step, size) {
-            one
-        } else {
-            share_of(&balance, cables, strain, step, size, (round >= SWIFT).then_some(beta_along[0]))
-        };
-        for k in 0..3 {
-            strain[k] += share * step[k];
-        }
-        let size = size.if_less(R::of(f64::INFINITY), size, R::of(f64::INFINITY));
-        if size.all_below(tolerance) || round == MOST {
-            let area = balance.swelling.beta * balance.swelling.beta;
-            let slack = stiffness.value[0] * stiffness.value[1] * stiffness.value[2] * area * area * area;
-            return Solved { strain, balance, inverse, regularity: det / slack, step: size };
-        }
-    }
-    unreachable!("the loop returns at its last round")
-}
-
-/// Whether [`share_of`] is one, in every lane and for little more than the section law's first rounds need.
-#[inline(always)]
-fn is_short<R: Real>(balance: &Balance<R>, cables: &[CableAt<R>], strain: [R; 3], step: [R; 3], size: R) -> bool {
-    let mut excess = (size - R::of(0.7)).max(step[0].abs() - R::of(0.5) * strain[0]);
-    for cable in cables {
-        let (now, closing) = side(balance, cable, strain, step);
-        excess = excess.max(closing - R::of(0.67) * now.abs());
-    }
-    excess.all_below(0.0)
-}
-
-/// tau . a of a cable, and how much of it a step takes away.
-#[inline(always)]
-fn side<R: Real>(balance: &Balance<R>, cable: &CableAt<R>, strain: [R; 3], step: [R; 3]) -> (R, R) {
-    let lever = cable.offset.y * balance.swelling.beta;
-    let lever_nu = cable.offset.y * balance.swelling.slope;
-    (strain[0] - lever * strain[2], lever * step[2] + (lever_nu * strain[2] - R::of(1.0)) * step[0])
-}
-
-/// The share of a step of the section law that neither more than halves nu, nor closes a cable's side by more than
-/// two thirds, nor leaps; with beta' also turns no cable by more than a fraction of a radian.
-#[inline(always)]
-fn share_of<R: Real>(
-    balance: &Balance<R>,
-    cables: &[CableAt<R>],
-    strain: [R; 3],
-    step: [R; 3],
-    size: R,
-    turning_at: Option<R>,
-) -> R {
-    let one = R::of(1.0);
-    let mut share = one.min(R::of(0.5) * strain[0] / step[0].abs().max(R::of(1e-30)));
-    share = share.min(R::of(0.7) / size.max(R::of(1e-30)));
-    for cable in cables {
-        let (now, closing) = side(balance, cable, strain, step);
-        let allowed = R::of(0.67) * now.abs() / closing.max(R::of(1e-30));
-        share = share.min(R::of(0.0).if_less(cable.tension, allowed, one));
-        if let Some(beta_slope) = turning_at {
-            let swelling = &balance.swelling;
-            let across = strain[1] + cable.offset.slope * swelling.beta + cable.offset.y * beta_slope;
-            let stretch = (now * now + across * across).sqrt();
-            let turning = (step[1] + cable.offset.slope * swelling.slope * step[0]).abs();
-            let allowed = R::of(0.3) * stretch / turning.max(R::of(1e-30));
-            share = share.min(R::of(0.0).if_less(cable.tension, allowed, one));
-        }
-    }
-    share
-}
-
-struct Slopes<R> {
-    slope: [R; N],
-    beta_slope: R,
-}
-
-/// z' at a station, and beta' by implicit differentiation of the section law.
-#[inline(always)]
-fn slopes<R: Real>(couple: R, [cos, sin]: [R; 2], contact: [R; 3], solved: &Solved<R>, load: &Load<R>) -> Slopes<R> {
-    let [nu, eta, mu] = solved.strain;
-    let [n_a, n_b, _] = contact;
-    let f = load.force;
-    let m_slope = eta * n_a - nu * n_b - couple;
-    // n_f . a and n_f . b turn with the directors.
-    let f_a = cos * f[0] + sin * f[1];
-    let f_b = cos * f[1] - sin * f[0];
-    let contact_slope = [mu * n_b - f_a, -(mu * n_a + f_b), m_slope];
-    let rest = each(|k| contact_slope[k] - solved.balance.along_s[k]);
-    let strain_slope = apply3(&solved.inverse, rest);
-    Slopes { slope: [mu, -f[0], -f[1], m_slope], beta_slope: solved.balance.swelling.slope * strain_slope[0] }
 }
 
 impl Problem<N, Q> for Equilibrium {
@@ -956,12 +458,6 @@ impl Problem<N, Q> for Equilibrium {
 
 /// Cables that fit on the stack; more are held in a vector.
 const MOST_IN_PLACE: usize = 8;
-
-#[inline(always)]
-fn blank_cable() -> CableAt<Lanes> {
-    let zero = Lanes([0.0; LANES]);
-    CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero }
-}
 
 impl Equilibrium {
     /// The stations of a block at the states `z`: all but what beta' adds.
@@ -1109,98 +605,4 @@ impl Equilibrium {
             }
         }
     }
-}
-
-/// d(nu, eta, mu)/dz: the law depends on z through n_f.a, n_f.b and m_f alone.
-#[inline(always)]
-fn strain_by_state<R: Real>(inverse: &[[R; 3]; 3], [cos, sin]: [R; 2], [n_a, n_b, _]: [R; 3]) -> [[R; N]; 3] {
-    each(|k| {
-        let e = inverse[k];
-        [e[0] * n_b - e[1] * n_a, e[0] * cos - e[1] * sin, e[0] * sin + e[1] * cos, e[2]]
-    })
-}
-
-#[inline(always)]
-fn jacobian<R: Real>(
-    [cos, sin]: [R; 2],
-    [n_a, n_b, _]: [R; 3],
-    solved: &Solved<R>,
-    load: &Load<R>,
-    by_state: &[[R; N]; 3],
-) -> [[R; N]; N] {
-    let zero = R::of(0.0);
-    let [nu, eta, _] = solved.strain;
-    let mut out = [[zero; N]; N];
-    out[0] = by_state[2];
-    for b in 0..N {
-        for k in 0..2 {
-            out[k + 1][b] = -(load.by_strain[k][0] * by_state[0][b]
-                + load.by_strain[k][1] * by_state[1][b]
-                + load.by_strain[k][2] * by_state[2][b]);
-        }
-        out[3][b] = n_a * by_state[1][b] - n_b * by_state[0][b];
-    }
-    for k in 0..2 {
-        out[k + 1][0] -= load.by_theta[k];
-    }
-    // n_a, n_b by theta: n_b, -n_a; by n_f: the directors.
-    out[3][0] += eta * n_b + nu * n_a;
-    out[3][1] += eta * cos + nu * sin;
-    out[3][2] += eta * sin - nu * cos;
-    out
-}
-
-#[inline(always)]
-fn rate_gradient<R: Real>([cos, sin]: [R; 2], rate: [R; 2], by_state: &[[R; N]; 3]) -> [[R; N]; Q] {
-    let mut out = [[R::of(0.0); N]; Q];
-    for b in 0..N {
-        out[0][b] = cos * by_state[0][b] - sin * by_state[1][b];
-        out[1][b] = sin * by_state[0][b] + cos * by_state[1][b];
-    }
-    out[0][0] -= rate[1];
-    out[1][0] += rate[0];
-    out
-}
-
-fn splat(place: &Place<f64>) -> Place<Lanes> {
-    let l = Lanes::of;
-    let (s, b) = (&place.stiffness, &place.body);
-    Place {
-        s: l(place.s),
-        stiffness: Stiffness {
-            value: s.value.map(l),
-            slope: s.slope.map(l),
-            reference: s.reference.map(l),
-            reference_slope: s.reference_slope.map(l),
-        },
-        body: Body {
-            radius: l(b.radius),
-            radius_slope: l(b.radius_slope),
-            wetted: l(b.wetted),
-            weight: b.weight.map(l),
-            displaced: b.displaced.map(l),
-            force: b.force.map(l),
-            couple: l(b.couple),
-        },
-    }
-}
-
-fn set_lane(out: &mut Place<Lanes>, lane: usize, place: &Place<f64>) {
-    let (s, b) = (&place.stiffness, &place.body);
-    out.s.0[lane] = place.s;
-    for k in 0..3 {
-        out.stiffness.value[k].0[lane] = s.value[k];
-        out.stiffness.slope[k].0[lane] = s.slope[k];
-        out.stiffness.reference[k].0[lane] = s.reference[k];
-        out.stiffness.reference_slope[k].0[lane] = s.reference_slope[k];
-    }
-    for k in 0..2 {
-        out.body.weight[k].0[lane] = b.weight[k];
-        out.body.displaced[k].0[lane] = b.displaced[k];
-        out.body.force[k].0[lane] = b.force[k];
-    }
-    out.body.radius.0[lane] = b.radius;
-    out.body.radius_slope.0[lane] = b.radius_slope;
-    out.body.wetted.0[lane] = b.wetted;
-    out.body.couple.0[lane] = b.couple;
 }
