@@ -1,48 +1,54 @@
-//! Small fixed matrices: products and inverses.
+//! Small fixed matrices of numbers, or of four numbers side by side: products and inverses.
+
+use crate::real::Real;
 
 /// An `N` by `N` matrix, row by row.
-pub(crate) type Block<const N: usize> = [[f64; N]; N];
+pub(crate) type Block<const N: usize, R = f64> = [[R; N]; N];
 
-/// `out += f m`, row by row so that a row is one vector.
+/// `out -= f m`, column by column, so that four blocks side by side stay in registers.
 #[inline(always)]
-pub(crate) fn add_product<const N: usize>(out: &mut Block<N>, f: &Block<N>, m: &Block<N>) {
-    for a in 0..N {
-        let mut row = out[a];
+pub(crate) fn subtract_product<const FUSED: bool, const N: usize, R: Real>(
+    out: &mut Block<N, R>,
+    f: &Block<N, R>,
+    m: &Block<N, R>,
+) {
+    for c in 0..N {
+        let mut column = [R::of(0.0); N];
         for b in 0..N {
-            for c in 0..N {
-                row[c] += f[a][b] * m[b][c];
-            }
+            column[b] = -m[b][c];
         }
-        out[a] = row;
+        for a in 0..N {
+            let mut sum = out[a][c];
+            for b in 0..N {
+                sum = sum.plus::<FUSED>(f[a][b], column[b]);
+            }
+            out[a][c] = sum;
+        }
     }
 }
 
-/// `out -= f m`.
+/// `out = f out`.
 #[inline(always)]
-pub(crate) fn subtract_product<const N: usize>(out: &mut Block<N>, f: &Block<N>, m: &Block<N>) {
-    for a in 0..N {
-        let mut row = out[a];
+pub(crate) fn multiply<const FUSED: bool, const N: usize, R: Real>(out: &mut Block<N, R>, f: &Block<N, R>) {
+    for c in 0..N {
+        let mut column = [R::of(0.0); N];
         for b in 0..N {
-            for c in 0..N {
-                row[c] -= f[a][b] * m[b][c];
-            }
+            column[b] = out[b][c];
         }
-        out[a] = row;
+        for a in 0..N {
+            let mut sum = f[a][0] * column[0];
+            for b in 1..N {
+                sum = sum.plus::<FUSED>(f[a][b], column[b]);
+            }
+            out[a][c] = sum;
+        }
     }
-}
-
-/// `f m`.
-#[inline(always)]
-pub(crate) fn product<const N: usize>(f: &Block<N>, m: &Block<N>) -> Block<N> {
-    let mut out = [[0.0; N]; N];
-    add_product(&mut out, f, m);
-    out
 }
 
 /// `f v`.
 #[inline(always)]
-pub(crate) fn apply<const N: usize>(f: &Block<N>, v: &[f64; N]) -> [f64; N] {
-    let mut out = [0.0; N];
+pub(crate) fn apply<const N: usize, R: Real>(f: &Block<N, R>, v: &[R; N]) -> [R; N] {
+    let mut out = [R::of(0.0); N];
     for a in 0..N {
         for b in 0..N {
             out[a] += f[a][b] * v[b];
@@ -53,31 +59,27 @@ pub(crate) fn apply<const N: usize>(f: &Block<N>, v: &[f64; N]) -> [f64; N] {
 
 /// `out += f m` for one number `f`.
 #[inline(always)]
-pub(crate) fn add_scaled<const N: usize>(out: &mut Block<N>, f: f64, m: &Block<N>) {
+pub(crate) fn add_scaled<const FUSED: bool, const N: usize, R: Real>(out: &mut Block<N, R>, f: R, m: &Block<N, R>) {
     for a in 0..N {
         for c in 0..N {
-            out[a][c] += f * m[a][c];
+            out[a][c] = out[a][c].plus::<FUSED>(f, m[a][c]);
         }
     }
 }
 
-/// `f m` for one number `f`.
-#[inline(always)]
-pub(crate) fn scaled<const N: usize>(f: f64, m: &Block<N>) -> Block<N> {
-    let mut out = [[0.0; N]; N];
-    add_scaled(&mut out, f, m);
-    out
-}
-
 /// `out -= f v`.
 #[inline(always)]
-pub(crate) fn subtract_applied<const N: usize>(out: &mut [f64; N], f: &Block<N>, v: &[f64; N]) {
+pub(crate) fn subtract_applied<const FUSED: bool, const N: usize, R: Real>(
+    out: &mut [R; N],
+    f: &Block<N, R>,
+    v: &[R; N],
+) {
     for a in 0..N {
-        let mut sum = 0.0;
+        let mut sum = out[a];
         for b in 0..N {
-            sum += f[a][b] * v[b];
+            sum = sum.plus::<FUSED>(f[a][b], -v[b]);
         }
-        out[a] -= sum;
+        out[a] = sum;
     }
 }
 
@@ -87,54 +89,57 @@ pub(crate) fn subtract_applied<const N: usize>(out: &mut [f64; N], f: &Block<N>,
 /// where that would divide by a small pivot, with pivoting.
 #[inline(always)]
 pub(crate) fn inverse<const N: usize>(m: &Block<N>, smallest: f64) -> Option<Block<N>> {
-    match inverse_in_order(m) {
-        Some(inverse) => Some(inverse),
-        None => inverse_with_pivoting(*m, smallest),
-    }
+    let mut inverse = *m;
+    let fine = invert_in_order::<false, N, f64>(&mut inverse);
+    if fine > 0.0 { Some(inverse) } else { inverse_with_pivoting(*m, smallest) }
 }
 
 /// A pivot below this share of what stands under it would lose digits.
 const SMALL_PIVOT: f64 = 0.1;
 
-/// Inverse in place by Gauss–Jordan elimination without exchanges; `None` when a pivot is small
-/// against the largest entry of the matrix given or against what stands under it.
+/// Inverse in place by Gauss–Jordan elimination without exchanges. Returns one, or zero where a pivot is
+/// small against the largest entry of the matrix given or against what stands under it.
 #[inline(always)]
-fn inverse_in_order<const N: usize>(given: &Block<N>) -> Option<Block<N>> {
-    let mut m = *given;
-    let mut columns = [0.0_f64; N];
-    for row in &m {
+pub(crate) fn invert_in_order<const FUSED: bool, const N: usize, R: Real>(m: &mut Block<N, R>) -> R {
+    let (zero, one) = (R::of(0.0), R::of(1.0));
+    let mut columns = [zero; N];
+    for row in m.iter() {
         for c in 0..N {
             columns[c] = columns[c].max(row[c].abs());
         }
     }
-    let largest = columns.iter().fold(0.0_f64, |a, b| a.max(*b));
-    let mut fine = largest < f64::INFINITY;
+    let mut largest = zero;
+    for column in columns {
+        largest = largest.max(column);
+    }
+    let mut fine = largest.if_less(R::of(f64::INFINITY), one, zero);
+    let least = R::of(1e-3) * largest;
     for k in 0..N {
         let pivot = m[k][k].abs();
-        fine &= pivot > 1e-3 * largest;
+        fine = least.if_less(pivot, fine, zero);
         for i in k + 1..N {
-            fine &= pivot >= SMALL_PIVOT * m[i][k].abs();
+            fine = pivot.if_less(R::of(SMALL_PIVOT) * m[i][k].abs(), zero, fine);
         }
-        let scale = 1.0 / m[k][k];
+        let scale = one / m[k][k];
         // Column k is replaced by choice, not by storing into a row: a row that was stored in
         // parts cannot be loaded as one vector until all of it has reached the cache.
-        let mut own = [0.0; N];
+        let mut own = [zero; N];
         for c in 0..N {
-            own[c] = scale * if c == k { 1.0 } else { m[k][c] };
+            own[c] = scale * if c == k { one } else { m[k][c] };
         }
         for i in 0..N {
             if i != k {
                 let f = m[i][k];
-                let mut row = [0.0; N];
+                let mut row = [zero; N];
                 for c in 0..N {
-                    row[c] = if c == k { 0.0 } else { m[i][c] } - f * own[c];
+                    row[c] = if c == k { zero } else { m[i][c] }.plus::<FUSED>(f, -own[c]);
                 }
                 m[i] = row;
             }
         }
         m[k] = own;
     }
-    fine.then_some(m)
+    fine
 }
 
 /// Inverse by Gauss–Jordan elimination with partial pivoting.

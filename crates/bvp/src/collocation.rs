@@ -1,15 +1,17 @@
 //! Gauss collocation: linearisation, condensation of the stages, and the sweep over the nodes.
 //!
 //! The unknowns of an element are the slopes at its `M` stages; they are eliminated element by
-//! element, which leaves `z_{i+1} = G_i z_i + g_i` between nodes. The conditions at s = 1 are then
+//! element, four elements side by side, which leaves `z_{i+1} = G_i z_i + g_i` between nodes. The conditions at s = 1 are then
 //! carried from node to node towards s = 0 as rows `C_i z_i = d_i`, reduced with pivoting at every
 //! node. Carrying rows (rather than solutions) is what keeps problems with both fast growing and
 //! fast decaying solutions stable, where shooting from either end overflows.
 
-use crate::block::{Block, add_scaled, apply, inverse, product, scaled, subtract_applied, subtract_product};
+use crate::block::{Block, add_scaled, apply, inverse, invert_in_order, multiply, subtract_applied, subtract_product};
 use crate::gauss::Gauss;
+use crate::groups::Groups;
 use crate::mesh::Mesh;
 use crate::problem::{Condition, Local, Problem};
+use crate::real::{LANES, Lanes, Real};
 
 /// A discrete solution: states at the nodes and slopes at the stages.
 #[derive(Debug, Clone)]
@@ -83,15 +85,19 @@ impl<const N: usize, const M: usize> Solution<N, M> {
     }
 }
 
-/// One element after its stages are eliminated.
+/// The stages of a group of elements after they are eliminated.
 #[derive(Debug, Clone, Copy)]
-struct Element<const N: usize, const M: usize> {
+struct Stages<const N: usize, const M: usize> {
     /// d (stage slopes) / d z_i.
-    response: [Block<N>; M],
+    response: [Block<N, Lanes>; M],
     /// Stage slopes due to the residual (0) and to the parameter (1).
-    load: [[[f64; N]; M]; 2],
-    /// Transition `dz_{i+1} = g dz_i + affine[0] + affine[1] dlambda`.
-    transition: Block<N>,
+    load: [[[Lanes; N]; M]; 2],
+}
+
+/// Transition of an element, `dz_{i+1} = g dz_i + affine[0] + affine[1] dlambda`.
+#[derive(Debug, Clone, Copy)]
+struct Transition<const N: usize> {
+    by_state: Block<N>,
     affine: [[f64; N]; 2],
 }
 
@@ -196,10 +202,16 @@ pub struct Determinant {
 pub struct Collocation<const N: usize, const M: usize, const Q: usize> {
     /// The method's points and weights.
     pub gauss: Gauss<M>,
-    states: Vec<[f64; N]>,
-    locals: Vec<Local<N, Q>>,
-    drifts: Vec<[f64; N]>,
-    elements: Vec<Element<N, M>>,
+    groups: Groups,
+    /// Element lengths, a group.
+    steps: Vec<Lanes>,
+    states: Vec<[Lanes; N]>,
+    locals: Vec<Local<N, Q, Lanes>>,
+    drifts: Vec<[Lanes; N]>,
+    stages: Vec<Stages<N, M>>,
+    transitions: Vec<Transition<N>>,
+    /// Memory of the elimination.
+    scratch: Box<[[Block<N, Lanes>; M]; M]>,
     rows: Vec<Rows<N>>,
     right_count: usize,
     determinant: Determinant,
@@ -232,10 +244,14 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     pub fn new() -> Self {
         Self {
             gauss: Gauss::new(),
+            groups: Groups { elements: 0, stages: M },
+            steps: Vec::new(),
             states: Vec::new(),
             locals: Vec::new(),
             drifts: Vec::new(),
-            elements: Vec::new(),
+            stages: Vec::new(),
+            transitions: Vec::new(),
+            scratch: Box::new([[[[Lanes::of(0.0); N]; N]; M]; M]),
             rows: Vec::new(),
             right_count: 0,
             determinant: Determinant { sign: 0.0, log: 0.0 },
@@ -254,14 +270,16 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         }
     }
 
-    /// States at the stages of the last [`Collocation::linearise`].
-    pub fn states(&self) -> &[[f64; N]] {
-        &self.states
+    /// State at stage `j` of element `i` of the last [`Collocation::linearise`].
+    pub fn state(&self, i: usize, j: usize) -> [f64; N] {
+        let (block, lane) = self.groups.at(i, j);
+        self.states[block].map(|v| v.0[lane])
     }
 
-    /// Slopes, rates and gradients at the stages of the last [`Collocation::linearise`].
-    pub fn locals(&self) -> &[Local<N, Q>] {
-        &self.locals
+    /// Slopes, rates and gradients at stage `j` of element `i` of the last [`Collocation::linearise`].
+    pub fn local(&self, i: usize, j: usize) -> Local<N, Q> {
+        let (block, lane) = self.groups.at(i, j);
+        self.locals[block].lane(lane)
     }
 
     /// Determinant at the last [`Collocation::linearise`].
@@ -275,22 +293,48 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     /// Those of [`Problem::slopes`].
     #[inline(always)]
     pub fn evaluate<P: Problem<N, Q>>(&mut self, problem: &mut P, solution: &Solution<N, M>) -> Result<(), P::Failure> {
-        let n = solution.mesh.elements();
-        self.states.resize(n * M, [0.0; N]);
-        self.locals.resize(n * M, Local::default());
-        for i in 0..n {
-            let (z, k, h) = (&solution.nodes[i], &solution.slopes[i], solution.mesh.step(i));
+        self.evaluate_with::<P, false>(problem, solution)
+    }
+
+    /// [`Collocation::evaluate`]; for `FUSED` see [`Collocation::linearise_with`].
+    ///
+    /// # Errors
+    /// Those of [`Problem::slopes`].
+    #[inline(always)]
+    pub fn evaluate_with<P: Problem<N, Q>, const FUSED: bool>(
+        &mut self,
+        problem: &mut P,
+        solution: &Solution<N, M>,
+    ) -> Result<(), P::Failure> {
+        let groups = Groups { elements: solution.mesh.elements(), stages: M };
+        self.groups = groups;
+        self.steps.resize(groups.count(), Lanes::of(0.0));
+        self.states.resize(groups.count() * M, [Lanes::of(0.0); N]);
+        self.locals.resize(groups.count() * M, Local::default());
+        for g in 0..groups.count() {
+            let mut h = Lanes::of(0.0);
+            let mut z = [Lanes::of(0.0); N];
+            for lane in 0..LANES {
+                let i = groups.element(g, lane);
+                h.0[lane] = solution.mesh.step(i);
+                for a in 0..N {
+                    z[a].0[lane] = solution.nodes[i][a];
+                }
+            }
+            let k = stage_slopes(groups, g, solution);
             for j in 0..M {
-                let mut out = *z;
+                let mut out = z;
                 for l in 0..M {
+                    let w = h * Lanes::of(self.gauss.a[j][l]);
                     for a in 0..N {
-                        out[a] += h * self.gauss.a[j][l] * k[l][a];
+                        out[a] += w * k[l][a];
                     }
                 }
-                self.states[i * M + j] = out;
+                self.states[g * M + j] = out;
             }
+            self.steps[g] = h;
         }
-        problem.slopes(&self.states, &mut self.locals)
+        problem.slopes::<FUSED>(groups, &self.states, &mut self.locals)
     }
 
     /// Evaluates the problem at `solution` and factorises its linearisation. With `parameter`, also
@@ -305,54 +349,81 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         solution: &Solution<N, M>,
         parameter: bool,
     ) -> Result<(), RoundError<P::Failure>> {
-        self.evaluate(problem, solution).map_err(RoundError::Slopes)?;
-        let n = solution.mesh.elements();
+        self.linearise_with::<P, false>(problem, solution, parameter)
+    }
+
+    /// [`Collocation::linearise`]; with `FUSED` in fused multiply-adds, which only pays where the caller is
+    /// compiled for a processor that has them.
+    ///
+    /// # Errors
+    /// [`RoundError`].
+    #[inline(always)]
+    pub fn linearise_with<P: Problem<N, Q>, const FUSED: bool>(
+        &mut self,
+        problem: &mut P,
+        solution: &Solution<N, M>,
+        parameter: bool,
+    ) -> Result<(), RoundError<P::Failure>> {
+        self.evaluate_with::<P, FUSED>(problem, solution).map_err(RoundError::Slopes)?;
         if parameter {
-            self.drifts.resize(n * M, [0.0; N]);
+            self.drifts.resize(self.locals.len(), [Lanes::of(0.0); N]);
             problem.drift(&mut self.drifts);
         }
-        let condensed = if parameter { self.condense::<2>(solution) } else { self.condense::<1>(solution) };
+        let condensed =
+            if parameter { self.condense::<FUSED, 2>(solution) } else { self.condense::<FUSED, 1>(solution) };
         condensed.map_err(RoundError::Singular)?;
-        self.carry_rows(problem, solution).map_err(RoundError::Singular)
+        self.carry_rows::<P, FUSED>(problem, solution).map_err(RoundError::Singular)
     }
 
     /// Eliminates the stages of every element, with the first `C` columns of the loads.
     #[inline(always)]
-    fn condense<const C: usize>(&mut self, solution: &Solution<N, M>) -> Result<(), Singular> {
-        let n = solution.mesh.elements();
-        let empty = Element {
-            response: [[[0.0; N]; N]; M],
-            load: [[[0.0; N]; M]; 2],
-            transition: [[0.0; N]; N],
-            affine: [[0.0; N]; 2],
-        };
-        self.elements.resize(n, empty);
-        for i in 0..n {
-            let h = solution.mesh.step(i);
-            let k = &solution.slopes[i];
-            let locals = &self.locals[i * M..(i + 1) * M];
-            let element = &mut self.elements[i];
-            let mut load = [[[0.0; N]; M]; C];
+    fn condense<const FUSED: bool, const C: usize>(&mut self, solution: &Solution<N, M>) -> Result<(), Singular> {
+        let groups = self.groups;
+        let zero = Lanes::of(0.0);
+        let empty = Stages { response: [[[zero; N]; N]; M], load: [[[zero; N]; M]; 2] };
+        self.stages.resize(groups.count(), empty);
+        self.transitions.resize(groups.elements, Transition { by_state: [[0.0; N]; N], affine: [[0.0; N]; 2] });
+        for g in 0..groups.count() {
+            let h = self.steps[g];
+            let k = stage_slopes(groups, g, solution);
+            let locals = &self.locals[g * M..(g + 1) * M];
+            let drifts = if C > 1 { &self.drifts[g * M..(g + 1) * M] } else { &[] };
+            let stages = &mut self.stages[g];
+            let mut given = [[[zero; N]; M]; C];
             for j in 0..M {
                 for a in 0..N {
-                    load[0][j][a] = locals[j].slope[a] - k[j][a];
+                    given[0][j][a] = locals[j].slope[a] - k[j][a];
                 }
                 if C > 1 {
-                    load[1][j] = self.drifts[i * M + j];
+                    given[1][j] = drifts[j];
                 }
             }
-            if !eliminate(h, &self.gauss, locals, &mut element.response, &mut load) {
-                return Err(Singular::Element(i));
+            stages.load[..C].copy_from_slice(&given);
+            let fine = eliminate_in_order::<FUSED, N, M, Q>(
+                h,
+                &self.gauss,
+                locals,
+                &mut self.scratch,
+                &mut stages.response,
+                &mut stages.load[..C],
+            );
+            if !(-fine).all_below(0.0) {
+                for lane in 0..LANES {
+                    let fine = fine.0[lane] > 0.0;
+                    if !fine && !eliminate_lane(lane, h, &self.gauss, locals, &given, stages) {
+                        return Err(Singular::Element(groups.element(g, lane)));
+                    }
+                }
             }
-            let mut transition = [[0.0; N]; N];
-            let mut affine = [[0.0; N]; 2];
+            let load = &stages.load;
+            let mut by_state = [[zero; N]; N];
+            let mut affine = [[zero; N]; C];
             for a in 0..N {
-                transition[a][a] = 1.0;
-                affine[0][a] = solution.nodes[i][a] - solution.nodes[i + 1][a];
+                by_state[a][a] = Lanes::of(1.0);
             }
             for j in 0..M {
-                let w = h * self.gauss.b[j];
-                add_scaled(&mut transition, w, &element.response[j]);
+                let w = h * Lanes::of(self.gauss.b[j]);
+                add_scaled::<FUSED, N, Lanes>(&mut by_state, w, &stages.response[j]);
                 for a in 0..N {
                     affine[0][a] += w * (k[j][a] + load[0][j][a]);
                     if C > 1 {
@@ -360,15 +431,27 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
                     }
                 }
             }
-            element.load[..C].copy_from_slice(&load);
-            element.transition = transition;
-            element.affine = affine;
+            for lane in 0..groups.filled(g) {
+                let i = g * LANES + lane;
+                let out = &mut self.transitions[i];
+                for a in 0..N {
+                    for b in 0..N {
+                        out.by_state[a][b] = by_state[a][b].0[lane];
+                    }
+                    out.affine[0][a] = solution.nodes[i][a] - solution.nodes[i + 1][a] + affine[0][a].0[lane];
+                    out.affine[1][a] = if C > 1 { affine[1][a].0[lane] } else { 0.0 };
+                }
+            }
         }
         Ok(())
     }
 
     #[inline(always)]
-    fn carry_rows<P: Problem<N, Q>>(&mut self, problem: &P, solution: &Solution<N, M>) -> Result<(), Singular> {
+    fn carry_rows<P: Problem<N, Q>, const FUSED: bool>(
+        &mut self,
+        problem: &P,
+        solution: &Solution<N, M>,
+    ) -> Result<(), Singular> {
         let n = solution.mesh.elements();
         let left_count = problem.left_count();
         let right_count = N - left_count;
@@ -379,32 +462,25 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
 
         let mut conditions = [Condition::default(); N];
         problem.right(&solution.nodes[n], &mut conditions);
-        let mut carried = blank;
+        let last = &mut self.rows[n];
         for r in 0..right_count {
-            carried.rows[r] = conditions[r].gradient;
-            carried.load[r] = [-conditions[r].residual, -conditions[r].drift];
+            last.rows[r] = conditions[r].gradient;
+            last.load[r] = [-conditions[r].residual, -conditions[r].drift];
         }
-        self.rows[n] = reduce(carried, right_count, None, &mut determinant).ok_or(Singular::System)?;
+        if !reduce_on_largest(last, right_count, &mut determinant) {
+            return Err(Singular::System);
+        }
         for i in (0..n).rev() {
-            let next = &self.rows[i + 1];
-            let element = &self.elements[i];
-            let mut carried = blank;
-            for r in 0..right_count {
-                let row = &next.rows[r];
-                let mut own = [0.0; N];
-                let mut load = next.load[r];
-                for b in 0..N {
-                    for c in 0..N {
-                        own[c] += row[b] * element.transition[b][c];
-                    }
-                    load[0] -= row[b] * element.affine[0][b];
-                    load[1] -= row[b] * element.affine[1][b];
+            let (before, behind) = self.rows.split_at_mut(i + 1);
+            let (own, next, transition) = (&mut before[i], &behind[0], &self.transitions[i]);
+            own.carry::<FUSED>(next, transition, right_count);
+            own.pivot = next.pivot;
+            if !reduce_on::<FUSED, N>(own, right_count, &mut determinant) {
+                own.carry::<FUSED>(next, transition, right_count);
+                if !reduce_on_largest(own, right_count, &mut determinant) {
+                    return Err(Singular::System);
                 }
-                carried.rows[r] = own;
-                carried.load[r] = load;
             }
-            let pivots = Some(&next.pivot);
-            self.rows[i] = reduce(carried, right_count, pivots, &mut determinant).ok_or(Singular::System)?;
         }
 
         let mut conditions = [Condition::default(); N];
@@ -437,9 +513,8 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         out.nodes[0] = apply(&self.start, &load);
         out.total = [0.0; Q];
         for i in 0..n {
-            let element = &self.elements[i];
-            let z = out.nodes[i];
-            let mut next = apply(&element.transition, &z);
+            let element = &self.transitions[i];
+            let mut next = apply(&element.by_state, &out.nodes[i]);
             for a in 0..N {
                 next[a] += element.affine[column][a];
             }
@@ -461,59 +536,86 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
                 next[rows.pivot[r]] = pivots[r];
             }
             out.nodes[i + 1] = next;
-
-            let h = solution.mesh.step(i);
-            out.by_element[i] = [0.0; Q];
-            for j in 0..M {
-                let mut k = apply(&element.response[j], &z);
+        }
+        let groups = self.groups;
+        for g in 0..groups.count() {
+            let (h, stages) = (self.steps[g], &self.stages[g]);
+            let mut z = [Lanes::of(0.0); N];
+            for lane in 0..LANES {
                 for a in 0..N {
-                    k[a] += element.load[column][j][a];
+                    z[a].0[lane] = out.nodes[groups.element(g, lane)][a];
                 }
-                out.slopes[i][j] = k;
             }
+            let mut k = [[Lanes::of(0.0); N]; M];
+            for j in 0..M {
+                k[j] = apply(&stages.response[j], &z);
+                for a in 0..N {
+                    k[j][a] += stages.load[column][j][a];
+                }
+            }
+            let mut quadrature = [Lanes::of(0.0); Q];
             for j in 0..M {
                 let mut dz = z;
                 for l in 0..M {
+                    let w = h * Lanes::of(self.gauss.a[j][l]);
                     for a in 0..N {
-                        dz[a] += h * self.gauss.a[j][l] * out.slopes[i][l][a];
+                        dz[a] += w * k[l][a];
                     }
                 }
-                let local = &self.locals[i * M + j];
+                let local = &self.locals[g * M + j];
                 for q in 0..Q {
-                    let mut rate = 0.0;
+                    let mut rate = Lanes::of(0.0);
                     for a in 0..N {
                         rate += local.rate_gradient[q][a] * dz[a];
                     }
-                    out.by_element[i][q] += h * self.gauss.b[j] * rate;
+                    quadrature[q] += h * Lanes::of(self.gauss.b[j]) * rate;
                 }
             }
-            for q in 0..Q {
-                out.total[q] += out.by_element[i][q];
+            for lane in 0..groups.filled(g) {
+                let i = g * LANES + lane;
+                for j in 0..M {
+                    for a in 0..N {
+                        out.slopes[i][j][a] = k[j][a].0[lane];
+                    }
+                }
+                for q in 0..Q {
+                    out.by_element[i][q] = quadrature[q].0[lane];
+                    out.total[q] += out.by_element[i][q];
+                }
             }
         }
     }
 
-    /// The quadratures over each element at the state of the last linearisation.
-    pub fn quadratures(&self, mesh: &Mesh, out: &mut Vec<[f64; Q]>) {
-        out.clear();
-        for i in 0..mesh.elements() {
-            let mut sum = [0.0; Q];
-            for j in 0..M {
-                for q in 0..Q {
-                    sum[q] += mesh.step(i) * self.gauss.b[j] * self.locals[i * M + j].rate[q];
-                }
+    /// The quadratures over the elements of group `g`.
+    #[inline(always)]
+    fn quadratures_of(&self, g: usize) -> [Lanes; Q] {
+        let mut sum = [Lanes::of(0.0); Q];
+        for j in 0..M {
+            let weight = self.steps[g] * Lanes::of(self.gauss.b[j]);
+            for q in 0..Q {
+                sum[q] += weight * self.locals[g * M + j].rate[q];
             }
-            out.push(sum);
+        }
+        sum
+    }
+
+    /// The quadratures over each element at the state of the last linearisation.
+    pub fn quadratures(&self, out: &mut Vec<[f64; Q]>) {
+        out.clear();
+        for g in 0..self.groups.count() {
+            let sum = self.quadratures_of(g);
+            out.extend((0..self.groups.filled(g)).map(|lane| sum.map(|v| v.0[lane])));
         }
     }
 
     /// The quadratures over [0, 1] at the state of the last linearisation.
-    pub fn totals(&self, mesh: &Mesh) -> [f64; Q] {
+    pub fn totals(&self) -> [f64; Q] {
         let mut total = [0.0; Q];
-        for i in 0..mesh.elements() {
-            for j in 0..M {
+        for g in 0..self.groups.count() {
+            let sum = self.quadratures_of(g);
+            for lane in 0..self.groups.filled(g) {
                 for q in 0..Q {
-                    total[q] += mesh.step(i) * self.gauss.b[j] * self.locals[i * M + j].rate[q];
+                    total[q] += sum[q].0[lane];
                 }
             }
         }
@@ -524,8 +626,9 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     /// over the `Q` totals of absolute values: the adjoint of [`Collocation::solve`]. To it comes
     /// the change of each element's own quadratures against `before`.
     #[inline(always)]
-    pub fn contributions(&mut self, mesh: &Mesh, before: &[[f64; Q]], out: &mut Vec<f64>) {
-        let n = mesh.elements();
+    pub fn contributions(&mut self, before: &[[f64; Q]], out: &mut Vec<f64>) {
+        let groups = self.groups;
+        let n = groups.elements;
         out.clear();
         out.resize(n, 0.0);
         let nr = self.right_count;
@@ -536,36 +639,40 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
                 v.clear();
                 v.resize(length, [0.0; N]);
             }
-            for i in 0..n {
-                let (element, h) = (&self.elements[i], mesh.step(i));
-                let mut own = -before[i][q];
-                let mut by_z = [0.0; N];
-                let mut by_slopes = [[0.0; N]; M];
+            for g in 0..groups.count() {
+                let (stages, h) = (&self.stages[g], self.steps[g]);
+                let mut own = Lanes::of(0.0);
+                let mut by_z = [Lanes::of(0.0); N];
+                let mut by_slopes = [[Lanes::of(0.0); N]; M];
                 for j in 0..M {
-                    let weight = h * self.gauss.b[j];
-                    let local = &self.locals[i * M + j];
+                    let weight = h * Lanes::of(self.gauss.b[j]);
+                    let local = &self.locals[g * M + j];
                     own += weight * local.rate[q];
                     let mut gradient = local.rate_gradient[q];
                     for a in 0..N {
-                        gradient[a] *= weight;
+                        gradient[a] = gradient[a] * weight;
                         by_z[a] += gradient[a];
                     }
                     for l in 0..M {
+                        let w = h * Lanes::of(self.gauss.a[j][l]);
                         for a in 0..N {
-                            by_slopes[l][a] += h * self.gauss.a[j][l] * gradient[a];
+                            by_slopes[l][a] += w * gradient[a];
                         }
                     }
                 }
                 for l in 0..M {
                     for a in 0..N {
-                        own += by_slopes[l][a] * element.load[0][l][a];
+                        own += by_slopes[l][a] * stages.load[0][l][a];
                         for c in 0..N {
-                            by_z[c] += by_slopes[l][a] * element.response[l][a][c];
+                            by_z[c] += by_slopes[l][a] * stages.response[l][a][c];
                         }
                     }
                 }
-                by_node[i] = by_z;
-                out[i] += own.abs();
+                for lane in 0..groups.filled(g) {
+                    let i = g * LANES + lane;
+                    by_node[i] = by_z.map(|v| v.0[lane]);
+                    out[i] += (own.0[lane] - before[i][q]).abs();
+                }
             }
             for i in (0..n).rev() {
                 let rows = &self.rows[i + 1];
@@ -585,7 +692,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
                 for a in 0..N {
                     by_affine[i][a] += bar[a];
                     for c in 0..N {
-                        by_node[i][c] += self.elements[i].transition[a][c] * bar[a];
+                        by_node[i][c] += self.transitions[i].by_state[a][c] * bar[a];
                     }
                 }
             }
@@ -609,7 +716,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
                 }
                 let mut total = 0.0;
                 for a in 0..N {
-                    total += by_affine[i][a] * self.elements[i].affine[0][a];
+                    total += by_affine[i][a] * self.transitions[i].affine[0][a];
                 }
                 out[i] += total.abs();
             }
@@ -617,88 +724,214 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     }
 }
 
-/// Eliminates the stages: on return `response` and `load` hold the stage slopes they lead to.
-///
-/// Of `load`, the columns are the right sides given; `response` is written only.
+/// Slopes at the stages of the elements of group `g`.
 #[inline(always)]
-pub(crate) fn eliminate<const N: usize, const M: usize, const Q: usize, const C: usize>(
+fn stage_slopes<const N: usize, const M: usize>(
+    groups: Groups,
+    g: usize,
+    solution: &Solution<N, M>,
+) -> [[Lanes; N]; M] {
+    let mut k = [[Lanes::of(0.0); N]; M];
+    for lane in 0..LANES {
+        let own = &solution.slopes[groups.element(g, lane)];
+        for j in 0..M {
+            for a in 0..N {
+                k[j][a].0[lane] = own[j][a];
+            }
+        }
+    }
+    k
+}
+
+/// Eliminates the stages of one element: on return `response` and `load` hold the stage slopes they
+/// lead to. Of `load`, the columns are the right sides given; `response` is written only.
+#[inline(always)]
+pub(crate) fn eliminate<const N: usize, const M: usize, const Q: usize>(
     h: f64,
     gauss: &Gauss<M>,
     locals: &[Local<N, Q>],
     response: &mut [Block<N>; M],
-    load: &mut [[[f64; N]; M]; C],
+    load: &mut [[[f64; N]; M]],
+) -> bool {
+    let mut m = [[[[0.0; N]; N]; M]; M];
+    let invert = |block: &mut Block<N>| match inverse(block, 1e-10) {
+        Some(inverse) => {
+            *block = inverse;
+            true
+        }
+        None => false,
+    };
+    eliminate_by::<f64, false, N, M, Q>(invert, h, gauss, locals, &mut m, response, load)
+}
+
+/// [`eliminate`] for four elements, without exchanges; one, or zero where that is not fine.
+#[inline(always)]
+fn eliminate_in_order<const FUSED: bool, const N: usize, const M: usize, const Q: usize>(
+    h: Lanes,
+    gauss: &Gauss<M>,
+    locals: &[Local<N, Q, Lanes>],
+    m: &mut [[Block<N, Lanes>; M]; M],
+    response: &mut [Block<N, Lanes>; M],
+    load: &mut [[[Lanes; N]; M]],
+) -> Lanes {
+    let mut fine = Lanes::of(1.0);
+    eliminate_by::<Lanes, FUSED, N, M, Q>(
+        #[inline(always)]
+        |block: &mut Block<N, Lanes>| {
+            fine = fine.min(invert_in_order::<FUSED, N, Lanes>(block));
+            true
+        },
+        h,
+        gauss,
+        locals,
+        m,
+        response,
+        load,
+    );
+    fine
+}
+
+/// [`eliminate`] for one of four elements, whose loads are `given`.
+#[cold]
+#[inline(never)]
+fn eliminate_lane<const N: usize, const M: usize, const Q: usize, const C: usize>(
+    lane: usize,
+    h: Lanes,
+    gauss: &Gauss<M>,
+    locals: &[Local<N, Q, Lanes>],
+    given: &[[[Lanes; N]; M]; C],
+    out: &mut Stages<N, M>,
+) -> bool {
+    let own: [Local<N, Q>; M] = std::array::from_fn(|j| locals[j].lane(lane));
+    let mut load = given.map(|column| column.map(|stage| stage.map(|v| v.0[lane])));
+    let mut response = [[[0.0; N]; N]; M];
+    let done = eliminate(h.0[lane], gauss, &own, &mut response, &mut load);
+    for j in 0..M {
+        for a in 0..N {
+            for b in 0..N {
+                out.response[j][a][b].0[lane] = response[j][a][b];
+            }
+            for column in 0..C {
+                out.load[column][j][a].0[lane] = load[column][j][a];
+            }
+        }
+    }
+    done
+}
+
+/// The elimination, given how a block is inverted in place. `m` is memory.
+#[inline(always)]
+fn eliminate_by<R: Real, const FUSED: bool, const N: usize, const M: usize, const Q: usize>(
+    mut invert: impl FnMut(&mut Block<N, R>) -> bool,
+    h: R,
+    gauss: &Gauss<M>,
+    locals: &[Local<N, Q, R>],
+    m: &mut [[Block<N, R>; M]; M],
+    response: &mut [Block<N, R>; M],
+    load: &mut [[[R; N]; M]],
 ) -> bool {
     // Block row j of the equations is 1 - h J_j a_j., so all of the first row's blocks are multiples
     // of J_0, and one product J_i R_0 a row serves the whole first step.
-    let mut m = [[[[0.0; N]; N]; M]; M];
-    let mut first = scaled(-h * gauss.a[0][0], &locals[0].jacobian);
+    let one = R::of(1.0);
+    let ha = |j: usize, l: usize| h * R::of(gauss.a[j][l]);
+    let locals = &locals[..M];
+    let inv = &mut m[0][0];
+    set_scaled(inv, -ha(0, 0), &locals[0].jacobian);
     for a in 0..N {
-        first[a][a] += 1.0;
+        inv[a][a] += one;
     }
-    let Some(inv) = inverse(&first, 1e-10) else { return false };
-    let lead = product(&inv, &locals[0].jacobian);
-    response[0] = lead;
-    for l in 1..M {
-        m[0][l] = scaled(-h * gauss.a[0][l], &lead);
+    if !invert(inv) {
+        return false;
     }
+    let (lead, rest) = response.split_at_mut(1);
+    let lead = &mut lead[0];
+    *lead = locals[0].jacobian;
+    multiply::<FUSED, N, R>(lead, &m[0][0]);
     for column in load.iter_mut() {
-        column[0] = apply(&inv, &column[0]);
+        column[0] = apply(&m[0][0], &column[0]);
+    }
+    for l in 1..M {
+        set_scaled(&mut m[0][l], -ha(0, l), lead);
     }
     for i in 1..M {
         let own = &locals[i].jacobian;
-        let next = product(own, &lead);
-        let f = h * gauss.a[i][0];
+        let f = ha(i, 0);
+        let mut next = *lead;
+        multiply::<FUSED, N, R>(&mut next, own);
         for l in 1..M {
-            let mut block = scaled(-h * gauss.a[i][l], own);
-            add_scaled(&mut block, -f * h * gauss.a[0][l], &next);
-            m[i][l] = block;
+            let block = &mut m[i][l];
+            let (by_own, by_next) = (-ha(i, l), -f * ha(0, l));
+            for a in 0..N {
+                for c in 0..N {
+                    block[a][c] = (by_own * own[a][c]).plus::<FUSED>(by_next, next[a][c]);
+                }
+            }
         }
         for a in 0..N {
-            m[i][i][a][a] += 1.0;
+            m[i][i][a][a] += one;
         }
-        let mut block = *own;
-        add_scaled(&mut block, f, &next);
-        response[i] = block;
-        let by = scaled(-f, own);
+        for a in 0..N {
+            for c in 0..N {
+                rest[i - 1][a][c] = own[a][c].plus::<FUSED>(f, next[a][c]);
+            }
+        }
         for column in load.iter_mut() {
-            let lead = column[0];
-            subtract_applied(&mut column[i], &by, &lead);
+            let lead = apply(own, &column[0]);
+            for a in 0..N {
+                column[i][a] = column[i][a].plus::<FUSED>(f, lead[a]);
+            }
         }
     }
     for j in 1..M {
-        let Some(inv) = inverse(&m[j][j], 1e-10) else { return false };
-        for l in j + 1..M {
-            m[j][l] = product(&inv, &m[j][l]);
+        let (upper, lower) = m.split_at_mut(j + 1);
+        let (inv, row) = upper[j].split_at_mut(j + 1);
+        let inv = &mut inv[j];
+        if !invert(inv) {
+            return false;
         }
-        response[j] = product(&inv, &response[j]);
+        for block in row.iter_mut() {
+            multiply::<FUSED, N, R>(block, inv);
+        }
+        let (own, others) = response.split_at_mut(j + 1);
+        let own = &mut own[j];
+        multiply::<FUSED, N, R>(own, inv);
         for column in load.iter_mut() {
-            column[j] = apply(&inv, &column[j]);
+            column[j] = apply(inv, &column[j]);
         }
         for i in j + 1..M {
-            let f = m[i][j];
-            for l in j + 1..M {
-                let row = m[j][l];
-                subtract_product(&mut m[i][l], &f, &row);
+            let (f, blocks) = lower[i - j - 1].split_at_mut(j + 1);
+            let f = &f[j];
+            for (block, of) in blocks.iter_mut().zip(row.iter()) {
+                subtract_product::<FUSED, N, R>(block, f, of);
             }
-            let r = response[j];
-            subtract_product(&mut response[i], &f, &r);
+            subtract_product::<FUSED, N, R>(&mut others[i - j - 1], f, own);
             for column in load.iter_mut() {
                 let lead = column[j];
-                subtract_applied(&mut column[i], &f, &lead);
+                subtract_applied::<FUSED, N, R>(&mut column[i], f, &lead);
             }
         }
     }
     for j in (0..M).rev() {
+        let (own, others) = response.split_at_mut(j + 1);
         for l in j + 1..M {
-            let r = response[l];
-            subtract_product(&mut response[j], &m[j][l], &r);
+            subtract_product::<FUSED, N, R>(&mut own[j], &m[j][l], &others[l - j - 1]);
             for column in load.iter_mut() {
-                let own = column[l];
-                subtract_applied(&mut column[j], &m[j][l], &own);
+                let other = column[l];
+                subtract_applied::<FUSED, N, R>(&mut column[j], &m[j][l], &other);
             }
         }
     }
     true
+}
+
+/// `out = f m` for one number `f`.
+#[inline(always)]
+fn set_scaled<const N: usize, R: Real>(out: &mut Block<N, R>, f: R, m: &Block<N, R>) {
+    for a in 0..N {
+        for c in 0..N {
+            out[a][c] = f * m[a][c];
+        }
+    }
 }
 
 /// A product of many factors that neither overflows nor takes a logarithm a factor.
@@ -743,43 +976,41 @@ impl Product {
     }
 }
 
-/// Reduces carried rows to the identity on their pivot columns: on those of the `last` node, where
-/// that divides by nothing small, and on the largest entries otherwise.
-#[inline(always)]
-fn reduce<const N: usize>(
-    carried: Rows<N>,
-    count: usize,
-    last: Option<&[usize; N]>,
-    determinant: &mut Product,
-) -> Option<Rows<N>> {
-    if let Some(pivots) = last
-        && let Some(reduced) = reduce_on(&carried, count, pivots, determinant)
-    {
-        return Some(reduced);
+impl<const N: usize> Rows<N> {
+    /// Takes the first `count` rows of the `next` node through the transition that leads there.
+    #[inline(always)]
+    fn carry<const FUSED: bool>(&mut self, next: &Self, transition: &Transition<N>, count: usize) {
+        for r in 0..count {
+            let row = &next.rows[r];
+            let mut own = [0.0; N];
+            let mut load = next.load[r];
+            for b in 0..N {
+                for c in 0..N {
+                    own[c] = own[c].plus::<FUSED>(row[b], transition.by_state[b][c]);
+                }
+                load[0] -= row[b] * transition.affine[0][b];
+                load[1] -= row[b] * transition.affine[1][b];
+            }
+            self.rows[r] = own;
+            self.load[r] = load;
+        }
     }
-    reduce_on_largest(carried, count, determinant)
 }
 
 /// The largest free entry that reduced rows may have on pivots that were not searched for.
 const LARGEST_FREE: f64 = 8.0;
 
-/// Reduces on given pivots; `None` when one is small or a free entry comes out large.
+/// Reduces carried rows to the identity on their pivots; false, with the rows spoilt, when one is small or a free
+/// entry comes out large.
 #[inline(always)]
-fn reduce_on<const N: usize>(
-    carried: &Rows<N>,
-    count: usize,
-    pivots: &[usize; N],
-    determinant: &mut Product,
-) -> Option<Rows<N>> {
-    let mut c = *carried;
+fn reduce_on<const FUSED: bool, const N: usize>(c: &mut Rows<N>, count: usize, determinant: &mut Product) -> bool {
     let mut product = *determinant;
     for r in 0..N {
         c.reduction[r] = [0.0; N];
         c.reduction[r][r] = 1.0;
     }
-    c.pivot = *pivots;
     for r in 0..count {
-        let column = pivots[r];
+        let column = c.pivot[r];
         let pivot = c.rows[r][column];
         let mut largest = 0.0_f64;
         for v in c.rows[r] {
@@ -788,10 +1019,10 @@ fn reduce_on<const N: usize>(
         // The negation also catches NaN.
         #[allow(clippy::neg_cmp_op_on_partial_ord)]
         if !(pivot.abs() * LARGEST_FREE > largest) {
-            return None;
+            return false;
         }
         product.times(pivot);
-        eliminate_column(&mut c, count, r, column, 1.0 / pivot);
+        eliminate_column::<FUSED, N>(c, count, r, column, 1.0 / pivot);
     }
     let mut fine = true;
     for r in 0..count {
@@ -802,12 +1033,18 @@ fn reduce_on<const N: usize>(
     if fine {
         *determinant = product;
     }
-    fine.then_some(c)
+    fine
 }
 
 /// Scales row `r` to one in `column` and clears that column in the other rows.
 #[inline(always)]
-fn eliminate_column<const N: usize>(c: &mut Rows<N>, count: usize, r: usize, column: usize, scale: f64) {
+fn eliminate_column<const FUSED: bool, const N: usize>(
+    c: &mut Rows<N>,
+    count: usize,
+    r: usize,
+    column: usize,
+    scale: f64,
+) {
     let (mut own, mut load, mut reduction) = (c.rows[r], c.load[r], c.reduction[r]);
     for k in 0..N {
         own[k] *= scale;
@@ -820,8 +1057,8 @@ fn eliminate_column<const N: usize>(c: &mut Rows<N>, count: usize, r: usize, col
         if i != r {
             let f = c.rows[i][column];
             for k in 0..N {
-                c.rows[i][k] -= f * own[k];
-                c.reduction[i][k] -= f * reduction[k];
+                c.rows[i][k] = c.rows[i][k].plus::<FUSED>(-f, own[k]);
+                c.reduction[i][k] = c.reduction[i][k].plus::<FUSED>(-f, reduction[k]);
             }
             c.load[i][0] -= f * load[0];
             c.load[i][1] -= f * load[1];
@@ -831,11 +1068,11 @@ fn eliminate_column<const N: usize>(c: &mut Rows<N>, count: usize, r: usize, col
     (c.rows[r], c.load[r], c.reduction[r]) = (own, load, reduction);
 }
 
-/// Reduces with a search for the largest entry of the remaining rows at every pivot, so that no
-/// column is divided by something small.
+/// Reduces on pivots of its own with a search for the largest entry of the remaining rows at every pivot, so that no
+/// column is divided by something small; false where the rows are singular.
 #[cold]
 #[inline(never)]
-fn reduce_on_largest<const N: usize>(mut c: Rows<N>, count: usize, determinant: &mut Product) -> Option<Rows<N>> {
+fn reduce_on_largest<const N: usize>(c: &mut Rows<N>, count: usize, determinant: &mut Product) -> bool {
     for r in 0..N {
         c.reduction[r] = [0.0; N];
         c.reduction[r][r] = 1.0;
@@ -850,7 +1087,7 @@ fn reduce_on_largest<const N: usize>(mut c: Rows<N>, count: usize, determinant: 
             }
         }
         if largest == 0.0 || !largest.is_finite() {
-            return None;
+            return false;
         }
         if row != r {
             c.rows.swap(row, r);
@@ -861,9 +1098,9 @@ fn reduce_on_largest<const N: usize>(mut c: Rows<N>, count: usize, determinant: 
         c.pivot[r] = column;
         let pivot = c.rows[r][column];
         determinant.times(pivot);
-        eliminate_column(&mut c, count, r, column, 1.0 / pivot);
+        eliminate_column::<false, N>(c, count, r, column, 1.0 / pivot);
     }
-    Some(c)
+    true
 }
 
 /// Multiplies by the determinant of a matrix.

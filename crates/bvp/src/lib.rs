@@ -3,7 +3,7 @@
 //! A [`Problem`] is a first-order system `z' = F(s, z)` of `N` equations with separated end
 //! conditions and `Q` quadratures `q' = g(s, z)`, integrals that the state does not depend on.
 //! [`Collocation`] linearises it about a [`Solution`] with `M` Gauss stages an element (order `2M`
-//! at the nodes), eliminates the stages element by element and carries the conditions at s = 1
+//! at the nodes), eliminates the stages element by element, four elements side by side, and carries the conditions at s = 1
 //! towards s = 0 as rows, which stays stable where growing and decaying solutions mix and shooting
 //! overflows. `N`, `M` and `Q` are constants of the types; nothing is allocated once the mesh has
 //! its size, and the crate has no dependencies.
@@ -29,29 +29,23 @@
 //! `u = sinh((1 - s) / d) / sinh(1 / d)`, its area `d tanh(1 / (2 d))`.
 //!
 //! ```
-//! use hydrostat_bvp::{Collocation, Condition, Correction, Local, Mesh, Problem, Solution};
+//! use hydrostat_bvp::{Collocation, Condition, Correction, Local, Mesh, OneByOne, Plain, Solution};
 //!
 //! struct Layer {
 //!     thickness: f64,
 //! }
 //!
-//! impl Problem<2, 1> for Layer {
+//! impl Plain<2, 1> for Layer {
 //!     type Failure = std::convert::Infallible; // this one has slopes at every state
 //!
-//!     fn slopes(&mut self, z: &[[f64; 2]], out: &mut [Local<2, 1>]) -> Result<(), Self::Failure> {
+//!     fn local(&mut self, _: usize, z: &[f64; 2]) -> Result<Local<2, 1>, Self::Failure> {
 //!         let k = 1.0 / self.thickness;
-//!         for (z, out) in z.iter().zip(out) {
-//!             out.slope = [k * z[1], k * z[0]];
-//!             out.jacobian = [[0.0, k], [k, 0.0]];
-//!             out.rate = [z[0]];
-//!             out.rate_gradient = [[1.0, 0.0]];
-//!         }
-//!         Ok(())
-//!     }
-//!
-//!     // No parameter to continue in.
-//!     fn drift(&mut self, out: &mut [[f64; 2]]) {
-//!         out.fill([0.0; 2]);
+//!         Ok(Local {
+//!             slope: [k * z[1], k * z[0]],
+//!             jacobian: [[0.0, k], [k, 0.0]],
+//!             rate: [z[0]],
+//!             rate_gradient: [[1.0, 0.0]],
+//!         })
 //!     }
 //!
 //!     fn left_count(&self) -> usize {
@@ -68,7 +62,7 @@
 //! }
 //!
 //! let d = 0.01_f64;
-//! let mut problem = Layer { thickness: d };
+//! let mut problem = OneByOne::new(Layer { thickness: d });
 //! let mut system = Collocation::<2, 4, 1>::new(); // 4 stages: order 8 at the nodes
 //! let mut solution = Solution::constant(Mesh::uniform(200, &[]), [0.0, 0.0]);
 //! let mut correction = Correction::default();
@@ -87,17 +81,21 @@
 //!     let exact = ((1.0 - s) / d).sinh() / (1.0 / d).sinh();
 //!     assert!((z[0] - exact).abs() < 1e-9);
 //! }
-//! let area = system.totals(&solution.mesh)[0]; // at the state of the last linearisation
+//! let area = system.totals()[0]; // at the state of the last linearisation
 //! assert!((area - d * (0.5 / d).tanh()).abs() < 1e-11);
 //! ```
 mod block;
 pub mod collocation;
 pub mod gauss;
+pub mod groups;
 pub mod mesh;
 pub mod problem;
+pub mod real;
 pub mod step;
 pub use collocation::{Collocation, Correction, Determinant, RoundError, Singular, Solution};
 pub use gauss::Gauss;
+pub use groups::Groups;
 pub use mesh::{Limits, Mesh};
-pub use problem::{Condition, Local, Problem};
+pub use problem::{Condition, Local, OneByOne, Plain, Problem};
+pub use real::{LANES, Lanes, Real, each};
 pub use step::step;

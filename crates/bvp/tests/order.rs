@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::f64::consts::PI;
 
-use hydrostat_bvp::{Collocation, Condition, Correction, Local, Mesh, Problem, Solution};
+use hydrostat_bvp::{Collocation, Condition, Correction, Local, Mesh, OneByOne, Plain, Solution};
 
 /// u'' = f(s, u), with u or u' given at each end.
 trait Equation {
@@ -31,23 +31,19 @@ fn given((a, value): (usize, f64), z: &[f64; 2]) -> Condition<2> {
     Condition { residual: z[a] - value, gradient, drift: 0.0 }
 }
 
-impl<E: Equation> Problem<2, 1> for Scalar<'_, E> {
+impl<E: Equation> Plain<2, 1> for Scalar<'_, E> {
     type Failure = Infallible;
 
-    fn slopes(&mut self, z: &[[f64; 2]], out: &mut [Local<2, 1>]) -> Result<(), Infallible> {
-        for ((&[u, v], out), s) in z.iter().zip(out).zip(&self.stations) {
-            let ([bend, by_u], [rate, rate_by_u]) = (self.equation.bend(*s, u), self.equation.rate(u));
-            *out = Local {
-                slope: [v, bend],
-                jacobian: [[0.0, 1.0], [by_u, 0.0]],
-                rate: [rate],
-                rate_gradient: [[rate_by_u, 0.0]],
-            };
-        }
-        Ok(())
+    fn local(&mut self, station: usize, &[u, v]: &[f64; 2]) -> Result<Local<2, 1>, Infallible> {
+        let s = self.stations[station];
+        let ([bend, by_u], [rate, rate_by_u]) = (self.equation.bend(s, u), self.equation.rate(u));
+        Ok(Local {
+            slope: [v, bend],
+            jacobian: [[0.0, 1.0], [by_u, 0.0]],
+            rate: [rate],
+            rate_gradient: [[rate_by_u, 0.0]],
+        })
     }
-
-    fn drift(&mut self, _: &mut [[f64; 2]]) {}
 
     fn left_count(&self) -> usize {
         1
@@ -65,8 +61,8 @@ impl<E: Equation> Problem<2, 1> for Scalar<'_, E> {
 /// Newton from `solution`, undamped, until corrections stop falling. Returns the workspace at the end.
 fn newton<const M: usize>(equation: &impl Equation, solution: &mut Solution<2, M>) -> Collocation<2, M, 1> {
     let mut system = Collocation::new();
-    let mut problem = Scalar { equation, stations: Vec::new() };
-    system.stations(&solution.mesh, &mut problem.stations);
+    let mut problem = OneByOne::new(Scalar { equation, stations: Vec::new() });
+    system.stations(&solution.mesh, &mut problem.problem.stations);
     let mut correction = Correction::default();
     for _ in 0..12 {
         system.linearise(&mut problem, solution, false).unwrap();
@@ -109,7 +105,7 @@ fn parabola_errors<const M: usize>(elements: usize) -> [f64; 2] {
     let nodes = solution.nodes.iter().zip(solution.mesh.nodes()).fold(0.0_f64, |worst, (z, s)| {
         worst.max((z[0] - 4.0 / ((1.0 + s) * (1.0 + s))).abs()).max((z[1] + 8.0 / (1.0 + s).powi(3)).abs())
     });
-    [nodes, (system.totals(&solution.mesh)[0] - 2.0).abs()]
+    [nodes, (system.totals()[0] - 2.0).abs()]
 }
 
 /// Halving the elements divides the errors by 2^(2M), until rounding.
@@ -174,7 +170,7 @@ fn growing_and_decaying_solutions_are_solved_together() {
             worst.max((z[0] - exact[0]).abs()).max((z[1] - exact[1]).abs() / k)
         });
         let total = 2.0 * (1.0 - (-k).exp()) / k;
-        let off = (system.totals(&solution.mesh)[0] - total).abs();
+        let off = (system.totals()[0] - total).abs();
         assert!(worst < 1e-8 && off < 1e-8, "k {k}: nodes {worst:e}, quadrature {off:e}");
     }
 }

@@ -13,120 +13,162 @@
 //! where w' and reach' are differentiated along an element. What is left out is reach times the slope
 //! of the change of beta', which is the fast mode that no shape of an arm has.
 
-use hydrostat_bvp::{Gauss, Local};
+use hydrostat_bvp::{Gauss, LANES, Lanes, Local, Real};
 
 use crate::equilibrium::{N, Q};
+
+/// No method here has more stages.
+const MOST_STAGES: usize = 5;
+
+/// Numbers by two stages.
+type Weights = [[f64; MOST_STAGES]; MOST_STAGES];
 
 /// Weights that give beta'' at the stages of an element of length one.
 #[derive(Debug, Clone)]
 struct Differentiation {
     /// From the polynomial through beta and beta' at all stages.
-    by_value: Vec<f64>,
-    by_slope: Vec<f64>,
+    by_value: Weights,
+    by_slope: Weights,
     /// From the polynomial through beta'.
-    plain: Vec<f64>,
+    plain: Weights,
     /// Largest row sum of `by_slope`: how it amplifies what beta' is off by.
     hermite_gain: f64,
 }
 
-/// No method here has more stages.
-const MOST_STAGES: usize = 6;
-
 impl Differentiation {
     fn new<const M: usize>(gauss: &Gauss<M>) -> Self {
-        const { assert!(M <= MOST_STAGES) };
-        let flat = |m: &[[f64; M]; M]| m.iter().flatten().copied().collect::<Vec<f64>>();
+        const { assert!(M == 4 || M == 5, "BetaAlong::close is compiled for these") };
+        let weights = |m: &[[f64; M]; M]| {
+            let mut out = [[0.0; MOST_STAGES]; MOST_STAGES];
+            for j in 0..M {
+                out[j][..M].copy_from_slice(&m[j]);
+            }
+            out
+        };
         let rows = gauss.hermite[1].iter().map(|row| row.iter().map(|v| v.abs()).sum::<f64>());
         Self {
             hermite_gain: rows.fold(0.0, f64::max),
-            by_value: flat(&gauss.hermite[0]),
-            by_slope: flat(&gauss.hermite[1]),
-            plain: flat(&gauss.d),
-        }
-    }
-
-    /// Slope of the polynomial through `values` on an element of length 1/`inverse`.
-    #[inline(always)]
-    fn slope_of(&self, values: &[f64], inverse: f64, out: &mut [f64]) {
-        let m = values.len();
-        for j in 0..m {
-            out[j] = (0..m).map(|l| self.plain[j * m + l] * values[l]).sum::<f64>() * inverse;
+            by_value: weights(&gauss.hermite[0]),
+            by_slope: weights(&gauss.hermite[1]),
+            plain: weights(&gauss.d),
         }
     }
 }
 
-/// Puts the solution of the equations into `slope`, which stays when they are singular.
+/// Solves the equations; where they are singular, `otherwise`.
 #[inline(always)]
-fn solve_for_slope(matrix: &mut [[f64; MOST_STAGES + 1]; MOST_STAGES], slope: &mut [f64]) {
-    let m = slope.len();
-    if solve_small(matrix, m) {
-        for j in 0..m {
-            slope[j] = matrix[j][m];
+fn solve_small<const M: usize>(matrix: &[[Lanes; M]; M], right: &[Lanes; M], otherwise: &[Lanes; M]) -> [Lanes; M] {
+    let (mut a, mut out) = (*matrix, *right);
+    let mut fine = ONE;
+    for k in 0..M {
+        let pivot = a[k][k].abs();
+        fine = Lanes::of(1e-12).if_less(pivot, fine, ZERO);
+        for i in k + 1..M {
+            fine = pivot.if_less(Lanes::of(0.1) * a[i][k].abs(), ZERO, fine);
+        }
+        let scale = ONE / a[k][k];
+        for c in k + 1..M {
+            a[k][c] = a[k][c] * scale;
+        }
+        out[k] = out[k] * scale;
+        for i in 0..M {
+            if i != k {
+                let f = a[i][k];
+                for c in k + 1..M {
+                    a[i][c] -= f * a[k][c];
+                }
+                let own = out[k];
+                out[i] -= f * own;
+            }
         }
     }
+    if !(-fine).all_below(0.0) {
+        for lane in 0..LANES {
+            if fine.0[lane] == 0.0 {
+                solve_lane(matrix, right, lane, otherwise, &mut out);
+            }
+        }
+    }
+    out
 }
 
-/// Solves `m` equations whose right side is column `m`, by elimination with row pivoting.
-#[inline(always)]
-fn solve_small(a: &mut [[f64; MOST_STAGES + 1]; MOST_STAGES], m: usize) -> bool {
-    for k in 0..m {
+/// [`solve_small`] in one lane, with row pivoting.
+#[cold]
+#[inline(never)]
+fn solve_lane<const M: usize>(
+    matrix: &[[Lanes; M]; M],
+    right: &[Lanes; M],
+    lane: usize,
+    otherwise: &[Lanes; M],
+    out: &mut [Lanes; M],
+) {
+    let mut a = matrix.map(|row| row.map(|v| v.0[lane]));
+    let mut own = right.map(|v| v.0[lane]);
+    for j in 0..M {
+        out[j].0[lane] = otherwise[j].0[lane];
+    }
+    for k in 0..M {
         let mut best = k;
-        for i in k + 1..m {
+        for i in k + 1..M {
             if a[i][k].abs() > a[best][k].abs() {
                 best = i;
             }
         }
         if a[best][k].abs() < 1e-12 || !a[best][k].is_finite() {
-            return false;
+            return;
         }
         a.swap(k, best);
+        own.swap(k, best);
         let inverse = 1.0 / a[k][k];
-        for i in 0..m {
+        for i in 0..M {
             if i != k {
                 let f = a[i][k] * inverse;
-                for c in k..=m {
+                for c in k..M {
                     a[i][c] -= f * a[k][c];
                 }
+                own[i] -= f * own[k];
             }
         }
     }
-    for k in 0..m {
-        a[k][m] /= a[k][k];
+    for j in 0..M {
+        out[j].0[lane] = own[j] / a[j][j];
     }
-    true
 }
 
 /// How beta and the slopes hang together at a station.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Coupling {
     /// d z' / d beta'.
-    pub(crate) slope: [f64; N],
+    pub(crate) slope: [Lanes; N],
     /// d (x', y') / d beta'.
-    pub(crate) rate: [f64; Q],
+    pub(crate) rate: [Lanes; Q],
     /// w = d beta / d z at fixed beta'.
-    pub(crate) value: [f64; N],
+    pub(crate) value: [Lanes; N],
     /// d beta / d parameter at fixed z and beta'.
-    pub(crate) value_drift: f64,
+    pub(crate) value_drift: Lanes,
 }
 
-/// beta, beta' and beta'' at the stations.
+const ZERO: Lanes = Lanes([0.0; LANES]);
+const ONE: Lanes = Lanes([1.0; LANES]);
+
+/// beta, beta' and beta'' at the stations, the same stage of four elements side by side.
 #[derive(Debug, Clone)]
 pub(crate) struct BetaAlong {
     weights: Differentiation,
     stages: usize,
     /// beta.
-    pub(crate) value: Vec<f64>,
+    pub(crate) value: Vec<Lanes>,
     /// beta'.
-    pub(crate) slope: Vec<f64>,
+    pub(crate) slope: Vec<Lanes>,
     /// beta'', one Newton round behind.
-    pub(crate) curvature: Vec<f64>,
+    pub(crate) curvature: Vec<Lanes>,
     /// beta' by the closed form.
-    pub(crate) closed: Vec<f64>,
+    pub(crate) closed: Vec<Lanes>,
     /// d beta' / d beta'' of the closed form, over L: the length on which a fast mode would live.
-    pub(crate) reach: Vec<f64>,
+    pub(crate) reach: Vec<Lanes>,
     pub(crate) coupling: Vec<Coupling>,
     /// d beta' / d z along with everything else.
-    by_state: Vec<[f64; N]>,
+    by_state: Vec<[Lanes; N]>,
     /// Leave beta'' out: for first guesses on meshes that may be too coarse to differentiate on.
     pub(crate) blunt: bool,
 }
@@ -147,101 +189,164 @@ impl BetaAlong {
         }
     }
 
-    pub(crate) fn resize(&mut self, count: usize) {
-        self.value.resize(count, 1.0);
-        self.slope.resize(count, 0.0);
-        self.curvature.resize(count, 0.0);
-        self.closed.resize(count, 0.0);
-        self.reach.resize(count, 0.0);
-        self.coupling.resize(count, Coupling::default());
-        self.by_state.resize(count, [0.0; N]);
+    /// Room for `blocks`, and no derivatives known at any.
+    pub(crate) fn resize(&mut self, blocks: usize) {
+        self.value.resize(blocks, ONE);
+        self.slope.resize(blocks, ZERO);
+        self.curvature.resize(blocks, ZERO);
+        self.closed.resize(blocks, ZERO);
+        self.reach.resize(blocks, ZERO);
+        let blank = Coupling { slope: [ZERO; N], rate: [ZERO; Q], value: [ZERO; N], value_drift: ZERO };
+        self.coupling.resize(blocks, blank);
+        self.by_state.clear();
+        self.by_state.resize(blocks, [ZERO; N]);
     }
 
-    /// First guesses at station `k`.
-    pub(crate) fn start(&mut self, k: usize, slope: f64, curvature: f64) {
-        self.slope[k] = slope;
-        self.curvature[k] = curvature;
-        self.by_state[k] = [0.0; N];
+    /// First guesses in a lane of a block.
+    pub(crate) fn start(&mut self, block: usize, lane: usize, slope: f64, curvature: f64) {
+        self.slope[block].0[lane] = slope;
+        self.curvature[block].0[lane] = curvature;
     }
 
-    /// beta' at station `k` after its state has moved.
+    /// beta' in `block` after its states have moved.
     #[inline(always)]
-    pub(crate) fn follow(&mut self, k: usize, moved: [f64; N]) -> f64 {
+    pub(crate) fn followed(&self, block: usize, moved: &[Lanes; N]) -> Lanes {
+        let mut slope = self.slope[block];
         for a in 0..N {
-            self.slope[k] += self.by_state[k][a] * moved[a];
+            slope += self.by_state[block][a] * moved[a];
         }
-        self.slope[k]
+        slope
     }
 
     /// Closes the loop: from what the slopes were evaluated with to the next beta' and beta'', and into
-    /// slopes, gradients and drifts what beta' adds to them.
+    /// slopes, gradients and drifts what beta' adds to them. `steps` are element lengths, a group.
     #[inline(always)]
-    pub(crate) fn close(&mut self, steps: &[f64], out: &mut [Local<N, Q>], drifts: &mut [[f64; N]]) {
+    pub(crate) fn close<const FUSED: bool>(
+        &mut self,
+        steps: &[Lanes],
+        out: &mut [Local<N, Q, Lanes>],
+        drifts: &mut [[Lanes; N]],
+    ) {
         // Loops of a length that the compiler knows are several times faster.
-        match self.stages {
-            4 => self.close_on(4, steps, out, drifts),
-            5 => self.close_on(5, steps, out, drifts),
-            m => self.close_on(m, steps, out, drifts),
+        if self.stages == 4 {
+            self.close_on::<FUSED, 4>(steps, out, drifts);
+        } else {
+            self.close_on::<FUSED, 5>(steps, out, drifts);
         }
     }
 
     #[inline(always)]
-    fn close_on(&mut self, m: usize, steps: &[f64], out: &mut [Local<N, Q>], drifts: &mut [[f64; N]]) {
-        for first in (0..steps.len()).step_by(m) {
-            let inverse = 1.0 / steps[first];
-            let mut before = [0.0; MOST_STAGES];
-            before[..m].copy_from_slice(&self.slope[first..first + m]);
-            let mut own_part = [0.0; MOST_STAGES];
-            for j in 0..m {
-                let by = &self.coupling[first + j];
-                own_part[j] = dot(&by.value, &by.slope);
-            }
-            self.next(m, first, inverse, &own_part);
-            for j in 0..m {
-                let k = first + j;
-                let (mut value_slope, mut reach_slope, mut drift) = ([0.0; N], 0.0, 0.0);
-                for l in 0..m {
-                    let d = self.weights.plain[j * m + l] * inverse;
-                    let other = &self.coupling[first + l];
-                    for a in 0..N {
-                        value_slope[a] += d * other.value[a];
-                    }
-                    reach_slope += d * self.reach[first + l];
-                    drift += d * other.value_drift;
-                }
-                let by = &self.coupling[k];
-                let own = 1.0 - own_part[j] - reach_slope;
-                // Far from a shape the linearisation may mean nothing: then beta' only lags.
-                let share = if own > 0.3 && !self.blunt { 1.0 / own } else { 0.0 };
-                let local = &mut out[k];
-                let mut by_state = value_slope;
-                for b in 0..N {
-                    for a in 0..N {
-                        by_state[a] += by.value[b] * local.jacobian[b][a];
-                    }
-                }
-                by_state = by_state.map(|v| share * v);
-                let drift = share * (drift + dot(&by.value, &drifts[k]));
-                let change = self.slope[k] - before[j];
-                for b in 0..N {
-                    local.slope[b] += by.slope[b] * change;
-                    drifts[k][b] += by.slope[b] * drift;
-                    for a in 0..N {
-                        local.jacobian[b][a] += by.slope[b] * by_state[a];
-                    }
-                }
-                for q in 0..Q {
-                    local.rate[q] += by.rate[q] * change;
-                    for a in 0..N {
-                        local.rate_gradient[q][a] += by.rate[q] * by_state[a];
-                    }
-                }
-                self.by_state[k] = by_state;
+    fn close_on<const FUSED: bool, const M: usize>(
+        &mut self,
+        steps: &[Lanes],
+        out: &mut [Local<N, Q, Lanes>],
+        drifts: &mut [[Lanes; N]],
+    ) {
+        let groups = steps
+            .iter()
+            .zip(self.value.as_chunks::<M>().0)
+            .zip(self.slope.as_chunks_mut::<M>().0)
+            .zip(self.curvature.as_chunks_mut::<M>().0)
+            .zip(self.closed.as_chunks::<M>().0)
+            .zip(self.reach.as_chunks::<M>().0)
+            .zip(self.coupling.as_chunks::<M>().0)
+            .zip(self.by_state.as_chunks_mut::<M>().0)
+            .zip(out.as_chunks_mut::<M>().0)
+            .zip(drifts.as_chunks_mut::<M>().0);
+        for (((((((((step, value), slope), curvature), closed), reach), coupling), by_state), out), drifts) in groups {
+            let group = Group { inverse: ONE / *step, value, closed, reach, coupling };
+            if self.blunt {
+                group.close_bluntly(slope, curvature, by_state, out);
+            } else {
+                group.close::<FUSED>(&self.weights, slope, curvature, by_state, out, drifts);
             }
         }
     }
+}
 
-    /// The next beta' and beta'' on the element whose first station is `first`.
+/// A group of elements of `M` stages.
+struct Group<'a, const M: usize> {
+    /// One over the steps.
+    inverse: Lanes,
+    value: &'a [Lanes; M],
+    closed: &'a [Lanes; M],
+    reach: &'a [Lanes; M],
+    coupling: &'a [Coupling; M],
+}
+
+impl<const M: usize> Group<'_, M> {
+    /// beta' lags, without beta''.
+    #[inline(always)]
+    fn close_bluntly(
+        &self,
+        slope: &mut [Lanes; M],
+        curvature: &mut [Lanes; M],
+        by_state: &mut [[Lanes; N]; M],
+        out: &mut [Local<N, Q, Lanes>; M],
+    ) {
+        for j in 0..M {
+            add_change(&self.coupling[j], self.closed[j] - slope[j], &mut out[j]);
+            slope[j] = self.closed[j];
+            curvature[j] = ZERO;
+            by_state[j] = [ZERO; N];
+        }
+    }
+
+    #[inline(always)]
+    fn close<const FUSED: bool>(
+        &self,
+        weights: &Differentiation,
+        slope: &mut [Lanes; M],
+        curvature: &mut [Lanes; M],
+        by_state: &mut [[Lanes; N]; M],
+        out: &mut [Local<N, Q, Lanes>; M],
+        drifts: &mut [[Lanes; N]; M],
+    ) {
+        let before = *slope;
+        let own_part: [Lanes; M] = each_stage(|j| dot(&self.coupling[j].value, &self.coupling[j].slope));
+        self.next(weights, &own_part, slope, curvature);
+        for j in 0..M {
+            let (mut along, mut reach_slope, mut drift) = ([ZERO; N], ZERO, ZERO);
+            for l in 0..M {
+                let d = Lanes::of(weights.plain[j][l]) * self.inverse;
+                let other = &self.coupling[l];
+                for a in 0..N {
+                    along[a] = along[a].plus::<FUSED>(d, other.value[a]);
+                }
+                reach_slope = reach_slope.plus::<FUSED>(d, self.reach[l]);
+                drift = drift.plus::<FUSED>(d, other.value_drift);
+            }
+            let by = &self.coupling[j];
+            let own = ONE - own_part[j] - reach_slope;
+            // Far from a shape the linearisation may mean nothing: then beta' only lags.
+            let share = Lanes::of(0.3).if_less(own, ONE / own, ZERO);
+            let local = &mut out[j];
+            for b in 0..N {
+                for a in 0..N {
+                    along[a] = along[a].plus::<FUSED>(by.value[b], local.jacobian[b][a]);
+                }
+            }
+            for a in 0..N {
+                along[a] = share * along[a];
+            }
+            let drift = share * (drift + dot(&by.value, &drifts[j]));
+            add_change(by, slope[j] - before[j], local);
+            for b in 0..N {
+                drifts[j][b] += by.slope[b] * drift;
+                for a in 0..N {
+                    local.jacobian[b][a] = local.jacobian[b][a].plus::<FUSED>(by.slope[b], along[a]);
+                }
+            }
+            for q in 0..Q {
+                for a in 0..N {
+                    local.rate_gradient[q][a] = local.rate_gradient[q][a].plus::<FUSED>(by.rate[q], along[a]);
+                }
+            }
+            by_state[j] = along;
+        }
+    }
+
+    /// The next beta' and beta''.
     ///
     /// beta'' feeds back into beta' as `reach` beta''. Where a step is long against `reach` the
     /// sharpest formula serves, one round behind. Where it is not, lagging would excite the fast mode
@@ -249,61 +354,105 @@ impl BetaAlong {
     /// and where `reach` is a good part of the step, beta' is the slope of the element's own
     /// polynomial through beta, which has no fast mode, found by Newton along with everything else.
     #[inline(always)]
-    fn next(&mut self, m: usize, first: usize, inverse: f64, own_part: &[f64; MOST_STAGES]) {
-        let own = first..first + m;
-        let w = &self.weights;
-        let reach = &self.reach[own.clone()];
-        let largest = reach.iter().fold(0.0_f64, |a, r| a.max(r.abs()));
-        let closed = &self.closed[own.clone()];
-        let beta = &self.value[own.clone()];
-        let slope = &mut self.slope[own.clone()];
-        let curvature = &mut self.curvature[own];
-        let mut matrix = [[0.0; MOST_STAGES + 1]; MOST_STAGES];
-        if self.blunt {
-            slope.copy_from_slice(closed);
-            curvature.fill(0.0);
-        } else if largest * inverse * w.hermite_gain < 0.3 {
-            for j in 0..m {
-                let share = 1.0 - own_part[j];
-                slope[j] += (closed[j] - slope[j]) / if share > 0.3 { share } else { 1.0 };
-            }
-            for j in 0..m {
-                let mut sum = 0.0;
-                for l in 0..m {
-                    sum += w.by_value[j * m + l] * beta[l] * inverse + w.by_slope[j * m + l] * slope[l];
-                }
-                curvature[j] = sum * inverse;
-            }
-        } else if largest * inverse < 0.05 {
-            // beta' - reach beta'' = rest, with beta'' the slope of the polynomial through beta'.
-            for j in 0..m {
-                for l in 0..m {
-                    matrix[j][l] = -reach[j] * w.plain[j * m + l] * inverse;
-                }
-                matrix[j][j] += 1.0;
-                matrix[j][m] = closed[j] - reach[j] * curvature[j];
-            }
-            solve_for_slope(&mut matrix, slope);
-            w.slope_of(slope, inverse, curvature);
-        } else {
-            // One Newton step on beta' = D beta(nu(z, beta')) / h: d beta / d beta' is `reach`.
-            for j in 0..m {
-                for l in 0..m {
-                    let d = w.plain[j * m + l] * inverse;
-                    matrix[j][l] = -d * reach[l];
-                    matrix[j][m] += d * (beta[l] - reach[l] * slope[l]);
-                }
-                matrix[j][j] += 1.0;
-            }
-            solve_for_slope(&mut matrix, slope);
-            w.slope_of(slope, inverse, curvature);
+    fn next(
+        &self,
+        weights: &Differentiation,
+        own_part: &[Lanes; M],
+        slope: &mut [Lanes; M],
+        curvature: &mut [Lanes; M],
+    ) {
+        let given = (*slope, *curvature);
+        let mut largest = ZERO;
+        for reach in self.reach {
+            largest = largest.max(reach.abs());
         }
+        let largest = largest * self.inverse;
+        let sharp = largest * Lanes::of(weights.hermite_gain);
+        let bound = Lanes::of(0.3);
+        for j in 0..M {
+            let share = ONE - own_part[j];
+            let share = bound.if_less(share, share, ONE);
+            slope[j] += (self.closed[j] - slope[j]) / share;
+        }
+        let over_step: [Lanes; M] = each_stage(|l| self.value[l] * self.inverse);
+        for j in 0..M {
+            let mut sum = ZERO;
+            for l in 0..M {
+                sum += Lanes::of(weights.by_value[j][l]) * over_step[l] + Lanes::of(weights.by_slope[j][l]) * slope[l];
+            }
+            curvature[j] = sum * self.inverse;
+        }
+        if !sharp.all_below(0.3) {
+            let (short, short_curvature) = self.next_on_short(weights, largest, given);
+            for j in 0..M {
+                slope[j] = sharp.if_less(bound, slope[j], short[j]);
+                curvature[j] = sharp.if_less(bound, curvature[j], short_curvature[j]);
+            }
+        }
+    }
+
+    /// The next beta' and beta'' where a step is not long against `reach`; `largest` is the largest `reach` over the
+    /// step.
+    #[inline(always)]
+    fn next_on_short(
+        &self,
+        weights: &Differentiation,
+        largest: Lanes,
+        (slope, curvature): ([Lanes; M], [Lanes; M]),
+    ) -> ([Lanes; M], [Lanes; M]) {
+        let bound = Lanes::of(0.05);
+        let mut matrix = [[ZERO; M]; M];
+        let mut right = [ZERO; M];
+        let rest: [Lanes; M] = each_stage(|l| (self.value[l] - self.reach[l] * slope[l]) * self.inverse);
+        let reach: [Lanes; M] = each_stage(|l| self.reach[l] * self.inverse);
+        for j in 0..M {
+            let mut sum = ZERO;
+            for l in 0..M {
+                let d = Lanes::of(weights.plain[j][l]);
+                sum += d * rest[l];
+                matrix[j][l] = -(largest.if_less(bound, reach[j], reach[l]) * d);
+            }
+            matrix[j][j] += ONE;
+            // beta' - reach beta'' = rest, with beta'' the slope of the polynomial through beta', or, on the
+            // shortest, one Newton step on beta' = D beta(nu(z, beta')) / h: d beta / d beta' is `reach`.
+            right[j] = largest.if_less(bound, self.closed[j] - self.reach[j] * curvature[j], sum);
+        }
+        let slope = solve_small(&matrix, &right, &slope);
+        let curvature = each_stage(|j| {
+            let mut sum = ZERO;
+            for l in 0..M {
+                sum += Lanes::of(weights.plain[j][l]) * slope[l];
+            }
+            sum * self.inverse
+        });
+        (slope, curvature)
     }
 }
 
+/// What a change of beta' adds to slopes and rates.
 #[inline(always)]
-fn dot(a: &[f64; N], b: &[f64; N]) -> f64 {
-    let mut sum = 0.0;
+fn add_change(by: &Coupling, change: Lanes, local: &mut Local<N, Q, Lanes>) {
+    for b in 0..N {
+        local.slope[b] += by.slope[b] * change;
+    }
+    for q in 0..Q {
+        local.rate[q] += by.rate[q] * change;
+    }
+}
+
+/// A number for every stage.
+#[inline(always)]
+fn each_stage<const M: usize>(mut f: impl FnMut(usize) -> Lanes) -> [Lanes; M] {
+    let mut out = [ZERO; M];
+    for j in 0..M {
+        out[j] = f(j);
+    }
+    out
+}
+
+#[inline(always)]
+fn dot(a: &[Lanes; N], b: &[Lanes; N]) -> Lanes {
+    let mut sum = ZERO;
     for k in 0..N {
         sum += a[k] * b[k];
     }

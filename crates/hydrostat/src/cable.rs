@@ -1,7 +1,7 @@
 //! A cable at a section: its tangent, and the force and moment it puts on the body. (5), (6).
 
-use crate::real::Real;
 use crate::swelling::Swelling;
+use hydrostat_bvp::{Real, each};
 
 /// Offset of a cable at a place: y, y', y''.
 #[derive(Debug, Clone, Copy, Default)]
@@ -103,6 +103,6 @@ pub(crate) fn pull<R: Real>(
         [-(lever * a_nu + tension * offset.y * swelling.slope * t.a), -(lever * a_eta), -(lever * a_mu)],
     ];
     let along_s = [tension * a_s, tension * b_s, -(lever * a_s + tension * offset.slope * swelling.beta * t.a)];
-    let by_curvature = [0, 1, 2].map(|k| offset.y * by_strain[k][1]);
+    let by_curvature = each(|k| offset.y * by_strain[k][1]);
     (Pull { load: [tension * t.a, tension * t.b, -(lever * t.a)], by_strain, along_s, by_curvature }, t)
 }

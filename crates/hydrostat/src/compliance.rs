@@ -197,7 +197,7 @@ impl Element {
     #[inline(always)]
     fn new(system: &Collocation<N, M, Q>, i: usize, h: f64) -> Option<Self> {
         let gauss = &system.gauss;
-        let locals = &system.locals()[i * M..(i + 1) * M];
+        let locals: [_; M] = std::array::from_fn(|j| system.local(i, j));
         let mut matrix = [[0.0; SLOPES]; SLOPES];
         let mut given = [[0.0; GIVEN]; SLOPES];
         for j in 0..M {

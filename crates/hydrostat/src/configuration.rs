@@ -3,7 +3,7 @@
 use crate::arm::Arm;
 use crate::dense::Dense;
 use crate::engine::{Engine, M, shift_by_tangential_load};
-use crate::equilibrium::{AtPlace, SectionFailure};
+use crate::equilibrium::SectionFailure;
 use crate::flow::layer_profile;
 use crate::readings::Support;
 
@@ -285,21 +285,19 @@ impl Configuration {
                 fold = FoldMargin { value, s: s * l };
             }
         };
-        let mut push = |place: (Station, AtPlace)| {
-            let (station, place) = place;
-            note(station.s / l, station.nu, station.beta, station.mu * l, place.radius);
-            stations.push(&station);
-        };
+        let mut nodes = Vec::with_capacity(n + 1 + arm.cables.len());
         for i in 0..n {
             let s = mesh.nodes()[i];
-            let cable_ends_here =
-                i > 0 && (0..arm.cables.len()).any(|c| (dense.equations.cable_end(c) - s).abs() < 1e-9);
-            if cable_ends_here {
-                push(dense.at(i - 1, s)?);
+            if i > 0 && (0..arm.cables.len()).any(|c| (dense.equations.cable_end(c) - s).abs() < 1e-9) {
+                nodes.push((i - 1, true));
             }
-            push(dense.at(i, s)?);
+            nodes.push((i, false));
         }
-        push(dense.at(n - 1, 1.0)?);
+        nodes.push((n - 1, true));
+        for (station, place) in dense.at_nodes(&nodes)? {
+            note(station.s / l, station.nu, station.beta, station.mu * l, place.radius);
+            stations.push(&station);
+        }
 
         let mut cables: Vec<CableState> = arm
             .cables
@@ -307,17 +305,20 @@ impl Configuration {
             .map(|c| CableState { name: c.name.clone(), tension: c.tension, length: 0.0, stroke: 0.0, command: None })
             .collect();
         let mut energy = 0.0;
-        let places = dense.equations.stations();
-        for i in 0..n {
-            for j in 0..M {
-                let k = i * M + j;
-                let weight = l * mesh.step(i) * engine.system.gauss.b[j];
-                energy += weight * dense.equations.strain_energy(k);
-                for (c, cable) in cables.iter_mut().enumerate() {
-                    if places[k] < dense.equations.cable_end(c) {
-                        let [now, unloaded] = dense.equations.cable_stretch(c, k);
-                        cable.length += weight * now;
-                        cable.stroke += weight * (unloaded - now);
+        let (equations, groups) = (&dense.equations, dense.equations.groups());
+        for block in 0..groups.count() * M {
+            let strained = equations.strain_energy(block);
+            let weight = |i: usize| l * mesh.step(i) * engine.system.gauss.b[block % M];
+            let own = (0..groups.filled(block / M)).map(|lane| (lane, groups.element(block / M, lane)));
+            for (lane, i) in own.clone() {
+                energy += weight(i) * strained.0[lane];
+            }
+            for (c, cable) in cables.iter_mut().enumerate() {
+                let [now, unloaded] = equations.cable_stretch(c, block);
+                for (lane, i) in own.clone() {
+                    if equations.stations()[i * M + block % M] < equations.cable_end(c) {
+                        cable.length += weight(i) * now.0[lane];
+                        cable.stroke += weight(i) * (unloaded.0[lane] - now.0[lane]);
                     }
                 }
             }

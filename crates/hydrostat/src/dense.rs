@@ -1,10 +1,11 @@
 //! A solution between its nodes.
 
-use hydrostat_bvp::{Gauss, Solution, step};
+use hydrostat_bvp::{Gauss, LANES, Solution, step};
 
 use crate::configuration::Station;
+use crate::dispatch::widest;
 use crate::engine::{Engine, M};
-use crate::equilibrium::{AtPlace, Equilibrium, N, Q, SectionFailure};
+use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Q, SectionFailure};
 
 /// What it takes to evaluate a configuration anywhere: the nodes, which are accurate to the order
 /// of the method, and enough of the stages to start from.
@@ -22,13 +23,13 @@ impl Dense {
     pub(crate) fn new(engine: &Engine) -> Self {
         let mesh = &engine.solution.mesh;
         let gauss = engine.system.gauss.clone();
+        let mut spans = Vec::with_capacity(mesh.elements());
+        engine.system.quadratures(&mut spans);
         let mut positions = vec![[0.0; Q]; mesh.elements() + 1];
         for i in 0..mesh.elements() {
             positions[i + 1] = positions[i];
-            for j in 0..M {
-                for q in 0..Q {
-                    positions[i + 1][q] += mesh.step(i) * gauss.b[j] * engine.system.locals()[i * M + j].rate[q];
-                }
+            for q in 0..Q {
+                positions[i + 1][q] += spans[i][q];
             }
         }
         Self { equations: engine.equations.clone(), solution: engine.solution.clone(), positions, gauss }
@@ -42,11 +43,43 @@ impl Dense {
     fn section(&self, i: usize, s: f64, from_left: bool, z: [f64; N]) -> Result<AtPlace, SectionFailure> {
         let mesh = &self.solution.mesh;
         let (strain, beta) = self.guess(i, (s - mesh.nodes()[i]) / mesh.step(i));
-        self.equations.at_place(s, from_left, z, strain, beta).or_else(|_| {
-            // Extrapolated strains can be off: start from the nearest stage instead.
-            let nearest = if from_left { i * M + M - 1 } else { i * M };
-            self.equations.at_place(s, from_left, z, self.equations.strain(nearest), beta)
-        })
+        let asked = Asked { s, from_left, z, strain, beta };
+        match self.equations.at_place(&asked) {
+            Err(_) => {
+                // Extrapolated strains can be off: start from the nearest stage instead.
+                let nearest = if from_left { i * M + M - 1 } else { i * M };
+                self.equations.at_place(&Asked { strain: self.equations.strain(nearest), ..asked })
+            }
+            found => found,
+        }
+    }
+
+    /// Everything at nodes, each the start of an element, or its end.
+    pub(crate) fn at_nodes(&self, nodes: &[(usize, bool)]) -> Result<Vec<(Station, AtPlace)>, SectionFailure> {
+        let mesh = &self.solution.mesh;
+        let weights = [self.gauss.cardinals(0.0), self.gauss.cardinals(1.0)];
+        let mut out = Vec::with_capacity(nodes.len());
+        for four in nodes.chunks(LANES) {
+            let asked: [Asked; LANES] = std::array::from_fn(|lane| {
+                let (i, end) = four[lane.min(four.len() - 1)];
+                let k = i + usize::from(end);
+                let (strain, beta) = self.equations.remembered(i, &weights[usize::from(end)]);
+                Asked { s: mesh.nodes()[k], from_left: end, z: self.solution.nodes[k], strain, beta }
+            });
+            let found = widest(
+                #[inline(always)]
+                || self.equations.at_places(&asked),
+            );
+            for (lane, (i, end)) in four.iter().enumerate() {
+                let Asked { s, z, .. } = asked[lane];
+                let place = match &found {
+                    Some(found) => found.lane(lane),
+                    None => self.section(*i, s, *end, z)?,
+                };
+                out.push((self.station(s, z, self.positions[*i + usize::from(*end)], &place), place));
+            }
+        }
+        Ok(out)
     }
 
     /// Everything at `s` (over L), as seen from element `i`, which holds it or ends there.

@@ -2,14 +2,32 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-struct Work<F>(F);
+/// Work that is compiled for more than one kind of processor.
+pub(crate) trait Work {
+    type Output;
+    /// Does it; `FUSED` says whether multiply and add are one instruction. Has to be inlined.
+    fn run<const FUSED: bool>(self) -> Self::Output;
+}
 
-impl<R, F: FnOnce() -> R> WithSimd for Work<F> {
+struct Any<F>(F);
+
+impl<R, F: FnOnce() -> R> Work for Any<F> {
     type Output = R;
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> R {
+        (self.0)()
+    }
+}
+
+struct Dispatched<W>(W);
+
+impl<W: Work> WithSimd for Dispatched<W> {
+    type Output = W::Output;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> R {
-        (self.0)()
+    fn with_simd<S: Simd>(self, _: S) -> W::Output {
+        // The vectors that are chosen between come with fused multiply-add.
+        if S::IS_SCALAR { self.0.run::<false>() } else { self.0.run::<true>() }
     }
 }
 
@@ -17,5 +35,11 @@ impl<R, F: FnOnce() -> R> WithSimd for Work<F> {
 /// and `work` itself has to be: write `widest(#[inline(always)] || ...)`.
 #[inline(always)]
 pub(crate) fn widest<R>(work: impl FnOnce() -> R) -> R {
-    Arch::new().dispatch(Work(work))
+    dispatch(Any(work))
+}
+
+/// [`widest`] for work that wants to know whether there is a fused multiply-add.
+#[inline(always)]
+pub(crate) fn dispatch<W: Work>(work: W) -> W::Output {
+    Arch::new().dispatch(Dispatched(work))
 }

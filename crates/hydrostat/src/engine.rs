@@ -3,8 +3,8 @@
 use hydrostat_bvp::{Collocation, Correction, Gauss, Limits, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
-use crate::dispatch::widest;
-use crate::equilibrium::{AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
+use crate::dispatch::{Work, dispatch, widest};
+use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
 use crate::verdict::Phase;
 
 /// Stages of the solve, and of the check that estimates its error.
@@ -69,29 +69,55 @@ pub(crate) struct Engine {
     pub(crate) tip: [f64; Q],
 }
 
+struct Evaluate<'a, const S: usize> {
+    system: &'a mut Collocation<N, S, Q>,
+    equations: &'a mut Equilibrium,
+    solution: &'a Solution<N, S>,
+}
+
+impl<const S: usize> Work for Evaluate<'_, S> {
+    type Output = Result<(), SectionFailure>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Self::Output {
+        self.system.evaluate_with::<_, FUSED>(self.equations, self.solution)
+    }
+}
+
 /// [`Collocation::evaluate`] in the processor's widest vectors.
 pub(crate) fn evaluate<const S: usize>(
     system: &mut Collocation<N, S, Q>,
     equations: &mut Equilibrium,
     solution: &Solution<N, S>,
 ) -> Result<(), SectionFailure> {
-    widest(
-        #[inline(always)]
-        || system.evaluate(equations, solution),
-    )
+    dispatch(Evaluate { system, equations, solution })
+}
+
+struct Linearise<'a, const S: usize> {
+    system: &'a mut Collocation<N, S, Q>,
+    equations: &'a mut Equilibrium,
+    solution: &'a Solution<N, S>,
+    parameter: bool,
+}
+
+impl<const S: usize> Work for Linearise<'_, S> {
+    type Output = Result<(), RoundError<SectionFailure>>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Self::Output {
+        let Self { system, equations, solution, parameter } = self;
+        system.linearise_with::<_, FUSED>(equations, solution, parameter)
+    }
 }
 
 /// [`Collocation::linearise`] in the processor's widest vectors.
-fn linearise<const S: usize>(
+pub(crate) fn linearise<const S: usize>(
     system: &mut Collocation<N, S, Q>,
     equations: &mut Equilibrium,
     solution: &Solution<N, S>,
     parameter: bool,
 ) -> Result<(), RoundError<SectionFailure>> {
-    widest(
-        #[inline(always)]
-        || system.linearise(equations, solution, parameter),
-    )
+    dispatch(Linearise { system, equations, solution, parameter })
 }
 
 /// [`Collocation::solve`] in the processor's widest vectors.
@@ -174,7 +200,7 @@ impl Engine {
         let strains = self.strains_from_cables();
         self.equations.beta.blunt = false;
         strains?;
-        self.turn_by(|this, k| this.system.locals()[k].slope[0]);
+        self.turn_by(|this, k| this.system.local(k / M, k % M).slope[0]);
         Ok(())
     }
 
@@ -215,9 +241,11 @@ impl Engine {
         let (s, i, k, x) = if tip { (1.0, n - 1, n * M - 1, 1.0) } else { (0.0, 0, 0, 0.0) };
         let z = self.solution.nodes[if tip { n } else { 0 }];
         let (strain, beta) = self.equations.remembered(i, &self.system.gauss.cardinals(x));
-        self.equations
-            .at_place(s, tip, z, strain, beta)
-            .or_else(|_| self.equations.at_place(s, tip, z, self.equations.strain(k), beta))
+        let asked = Asked { s, from_left: tip, z, strain, beta };
+        match self.equations.at_place(&asked) {
+            Err(_) => self.equations.at_place(&Asked { strain: self.equations.strain(k), ..asked }),
+            found => found,
+        }
     }
 
     /// Whether the section law has strains at both ends.
@@ -242,7 +270,7 @@ impl Engine {
         let which = if self.equations.arm().readings.flow_surface == crate::FlowSurface::Lateral { 2 } else { 0 };
         (0..self.equations.stations().len())
             .min_by(|a, b| {
-                let v = |k: usize| self.equations.switches[k][which].abs();
+                let v = |k: usize| self.equations.switch(k / M, k % M, which).abs();
                 v(*a).total_cmp(&v(*b))
             })
             .map(|k| self.equations.stations()[k])
@@ -307,7 +335,7 @@ impl Engine {
             applied = if size > 1.0 { 1.0 / size } else { 1.0 };
             halvings = 0;
             self.solution.add(&self.correction, applied);
-            let [x, y] = self.system.totals(&self.solution.mesh);
+            let [x, y] = self.system.totals();
             let tip = [x + dx, y + dy];
             // beta'' runs a round behind: what it still moves shows from round to round.
             let drifted = if round > 1 { (tip[0] - self.tip[0]).hypot(tip[1] - self.tip[1]) } else { 0.0 };
@@ -326,7 +354,7 @@ impl Engine {
             self.last = size;
             let stop = round == most || (clamped && round >= 4 && size > 3.0);
             if moved <= tolerance || stop {
-                self.system.quadratures(&self.solution.mesh, &mut self.spans);
+                self.system.quadratures(&mut self.spans);
                 for (span, change) in self.spans.iter_mut().zip(&self.correction.by_element) {
                     for q in 0..Q {
                         span[q] += change[q];
@@ -396,7 +424,7 @@ impl Engine {
         let (check, spans, errors) = (&mut self.check, &self.spans, &mut self.errors);
         widest(
             #[inline(always)]
-            || check.contributions(&finer.mesh, spans, errors),
+            || check.contributions(spans, errors),
         );
         let contributed: f64 = self.errors.iter().sum();
         if estimate > tolerance && contributed < tolerance {
@@ -413,7 +441,7 @@ impl Engine {
         linearise(&mut self.check, &mut self.check_equations, finer, false)?;
         self.rounds += 1;
         solve(&self.check, finer, 0, &mut self.check_correction);
-        let total = self.check.totals(&finer.mesh);
+        let total = self.check.totals();
         let [dx, dy] = self.check_correction.total;
         Ok((total[0] + dx - self.tip[0]).hypot(total[1] + dy - self.tip[1]))
     }
@@ -442,8 +470,10 @@ impl Engine {
     /// cancel: on both sides of a node on a kink the polynomials put it at slightly different places.
     pub(crate) fn kinks(&self, resolution: f64) -> Vec<f64> {
         const SAMPLES: usize = 8;
+        /// The cardinal polynomials' absolute values sum up to less everywhere on an element: what is nearer to its
+        /// value at a stage than one part in as many does not change sign.
+        const NORM: f64 = 3.0;
         let mesh = &self.solution.mesh;
-        let switches = &self.equations.switches;
         let mut out: Vec<f64> = Vec::new();
         let samples: [[f64; M]; SAMPLES + 1] =
             std::array::from_fn(|p| self.system.gauss.cardinals(p as f64 / SAMPLES as f64));
@@ -453,10 +483,15 @@ impl Engine {
             for i in 0..mesh.elements() {
                 let (start, h) = (mesh.nodes()[i], mesh.step(i));
                 let apart = resolution.max(1e-3 * h);
-                let own: [f64; M] = std::array::from_fn(|j| switches[i * M + j][w]);
+                let own: [f64; M] = std::array::from_fn(|j| self.equations.switch(i, j, w));
                 let largest = own.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
                 if largest < 1e-6 {
                     before.1 = 0.0;
+                    continue;
+                }
+                let spread = own.iter().fold(0.0_f64, |m, v| m.max((v - own[0]).abs()));
+                if own[0].abs() > NORM * spread && before.1 * own[0] >= 0.0 {
+                    before = (start + h, own[0]);
                     continue;
                 }
                 let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
@@ -590,7 +625,7 @@ impl Engine {
             for j in 0..M {
                 let k = i * M + j;
                 let s = self.equations.stations()[k];
-                let z = self.system.states()[k];
+                let z = self.system.state(i, j);
                 let mu = self.equations.reference_strain(k)[2];
                 reference_angle += mesh.step(i) * self.system.gauss.b[j] * mu;
                 if self.equations.adversity(k, s, z, reference_angle) > 0.3 {

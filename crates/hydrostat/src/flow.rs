@@ -5,7 +5,7 @@
 
 use crate::arm::FlowLaw;
 use crate::readings::EnteringSpeed;
-use crate::real::Real;
+use hydrostat_bvp::Real;
 
 /// Load over S = pi rho_w beta R (N/m per m2/s2) along u and w, with derivatives by the angle of u.
 #[derive(Clone, Copy)]

@@ -146,7 +146,6 @@ pub mod parameter;
 pub mod path;
 pub mod profile;
 pub mod readings;
-mod real;
 mod section;
 mod sincos;
 pub mod solve;

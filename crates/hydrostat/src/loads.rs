@@ -2,8 +2,8 @@
 
 use crate::flow::{Law, traction};
 use crate::readings::{FlowSurface, Hydrostatics, WettedLength};
-use crate::real::Real;
 use crate::swelling::Swelling;
+use hydrostat_bvp::{Real, each};
 
 /// What the loads need to know of the arm as a whole.
 #[derive(Debug, Clone, Copy)]
@@ -76,7 +76,7 @@ impl<R: Real> Direction<R> {
         let inverse = R::of(1.0) / square.sqrt();
         let u = [(cos * self.x - sin * self.y) * inverse, (sin * self.x + cos * self.y) * inverse];
         let f = inverse * inverse;
-        let turn = [0, 1, 2].map(|k| (self.x * self.y_strain[k] - self.y * self.x_strain[k]) * f);
+        let turn = each(|k| (self.x * self.y_strain[k] - self.y * self.x_strain[k]) * f);
         Frame { u, w: [-u[1], u[0]], turn, turn_beta_slope: self.x * self.y_beta_slope * f }
     }
 }
@@ -137,7 +137,7 @@ pub(crate) fn load<R: Real>(
                     .frame(cos, sin)
                 };
                 let (left, right) = (side(1.0), side(-1.0));
-                let stream = water.stream.map(R::of);
+                let stream: [R; 2] = each(|k| R::of(water.stream[k]));
                 // U . u_n with u_n = sigma k x u_t outward: the smaller is windward.
                 let (hit_left, hit_right) = (dot(stream, left.w), -dot(stream, right.w));
                 let half = R::of(0.5);
@@ -156,8 +156,8 @@ pub(crate) fn load<R: Real>(
     // Weight less buoyancy: f_h = (rho_arm - rho_w nu beta^2) pi (R^2 - R_in^2) g (solid or flooded).
     let volume = nu * swelling.beta * swelling.beta;
     let volume_nu = swelling.beta * (swelling.beta + R::of(2.0) * nu * swelling.slope);
-    let h = [0, 1].map(|k| body.weight[k] - body.displaced[k] * volume);
-    let h_nu = [0, 1].map(|k| -(body.displaced[k] * volume_nu));
+    let h: [R; 2] = each(|k| body.weight[k] - body.displaced[k] * volume);
+    let h_nu: [R; 2] = each(|k| -(body.displaced[k] * volume_nu));
     match water.hydrostatics {
         Hydrostatics::Archimedes => {
             for k in 0..2 {
@@ -191,7 +191,7 @@ fn stream_load<R: Real>(
     share: R,
     out: &mut Load<R>,
 ) {
-    let stream = water.stream.map(R::of);
+    let stream: [R; 2] = each(|k| R::of(water.stream[k]));
     let (u_t, u_n) = (dot(stream, frame.u), dot(stream, frame.w));
     let t = traction(water.law, u_t, u_n, normal_share);
     let factor = R::of(water.tangential_factor);

@@ -2,8 +2,8 @@
 
 use crate::cable::{Offset, pull};
 use crate::readings::Volume;
-use crate::real::Real;
 use crate::swelling::{Swelling, swelling};
+use hydrostat_bvp::{Lanes, Real};
 
 /// A section as the law sees it, per unit beta^2.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +23,16 @@ pub(crate) struct Stiffness<R> {
 pub(crate) struct CableAt<R> {
     pub(crate) offset: Offset<R>,
     pub(crate) tension: R,
+}
+
+impl CableAt<Lanes> {
+    /// Takes the offset in one of four sections.
+    #[inline(always)]
+    pub(crate) fn set_offset(&mut self, lane: usize, of: &Offset<f64>) {
+        self.offset.y.0[lane] = of.y;
+        self.offset.slope.0[lane] = of.slope;
+        self.offset.curvature.0[lane] = of.curvature;
+    }
 }
 
 /// The law and the cables together at given strains: `carried` equals (n_f.a, n_f.b, m_f) in equilibrium.

@@ -1,6 +1,6 @@
 //! Sine and cosine of four angles at once, to about one unit in the last place.
 
-use crate::real::{LANES, Lanes};
+use hydrostat_bvp::{LANES, Lanes};
 
 /// Angles beyond this go to the library: their multiple of pi/2 would no longer be exact.
 const FAR: f64 = 1e4;

@@ -29,7 +29,7 @@ use crate::compliance::{Compliance, FIELDS};
 use crate::configuration::Configuration;
 use crate::dense::Dense;
 use crate::dispatch::widest;
-use crate::engine::{M, solve};
+use crate::engine::{M, linearise, solve};
 use crate::equilibrium::{Equilibrium, N, Q};
 use crate::readings::Support;
 use crate::verdict::Phase;
@@ -237,11 +237,7 @@ impl Tangent {
 
     fn linearise(&mut self) -> Option<()> {
         let Self { equations, system, solution, sign } = self;
-        widest(
-            #[inline(always)]
-            || system.linearise(equations, solution, false),
-        )
-        .ok()?;
+        linearise(system, equations, solution, false).ok()?;
         *sign = system.determinant().sign;
         Some(())
     }

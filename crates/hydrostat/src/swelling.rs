@@ -1,7 +1,7 @@
 //! How a section swells as it is stretched: beta(nu), (15) and (16).
 
 use crate::readings::Volume;
-use crate::real::Real;
+use hydrostat_bvp::Real;
 
 /// Section stretch and its slope in the stretch.
 #[derive(Clone, Copy)]

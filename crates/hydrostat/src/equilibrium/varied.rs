@@ -1,11 +1,10 @@
 //! The equations of an arm whose loads, support or material follow one parameter over a range.
 
-use hydrostat_bvp::{Local, Problem};
+use hydrostat_bvp::{Local, Problem, Real};
 
-use super::{Equilibrium, LANES, Lanes, N, set_lane};
+use super::{Equilibrium, LANES, Lanes, N};
 use crate::arm::{Arm, TipLoad};
 use crate::parameter::Parameter;
-use crate::real::Real as _;
 
 /// Part of the range over which derivatives by the parameter are differences of, on either side: the error of
 /// the second order and rounding are alike then.
@@ -74,12 +73,7 @@ impl Equilibrium {
         self.water = super::water(&self.arm);
         self.set_tensions();
         if sections {
-            let stations = std::mem::take(&mut self.stations);
-            for (k, s) in stations.iter().enumerate() {
-                let place = self.place(*s);
-                set_lane(&mut self.places[k / LANES], k % LANES, &place);
-            }
-            self.stations = stations;
+            self.take_sections();
         }
     }
 
@@ -114,26 +108,28 @@ impl Equilibrium {
 
     /// d z' / d share at the state of the last evaluation. False where no parameter is varied or where a
     /// section has no strains so near.
-    pub(super) fn drift_by_share(&mut self, out: &mut [[f64; N]]) -> bool {
+    pub(super) fn drift_by_share(&mut self, out: &mut [[Lanes; N]]) -> bool {
         if let Some(couple) = &self.imposed {
-            for (drift, couple) in out.iter_mut().zip(couple) {
-                *drift = [0.0, 0.0, 0.0, -couple];
+            for (block, drift) in out.iter_mut().enumerate() {
+                *drift = [Lanes::of(0.0); N];
+                for lane in 0..LANES {
+                    drift[N - 1].0[lane] = -couple[self.groups.station_in(block, lane)];
+                }
             }
             return true;
         }
-        let state: Vec<[f64; N]> =
-            (0..out.len()).map(|k| std::array::from_fn(|a| self.memory[k / LANES].z[a].0[k % LANES])).collect();
+        let state: Vec<[Lanes; N]> = self.memory.iter().map(|memory| memory.z).collect();
         let mut sides = [vec![Local::default(); out.len()], vec![Local::default(); out.len()]];
         for (side, locals) in [-DIFFERENCE, DIFFERENCE].into_iter().zip(&mut sides) {
             let Some(mut moved) = self.moved_on(side) else { return false };
-            if moved.slopes(&state, locals).is_err() {
+            if moved.slopes::<false>(self.groups, &state, locals).is_err() {
                 return false;
             }
         }
         let [before, after] = &sides;
         for (k, drift) in out.iter_mut().enumerate() {
             for a in 0..N {
-                drift[a] = (after[k].slope[a] - before[k].slope[a]) / (2.0 * DIFFERENCE);
+                drift[a] = (after[k].slope[a] - before[k].slope[a]) / Lanes::of(2.0 * DIFFERENCE);
             }
         }
         true

@@ -208,7 +208,7 @@ impl<'e> Stepper<'e> {
             solve(&self.engine.system, &self.engine.solution, 0, &mut self.correction);
             let dot = |c: &Correction<N, M, Q>| -> f64 { normal.iter().zip(&c.nodes).map(|(n, z)| n * z[0]).sum() };
             let slide = -dot(&self.correction) / (dot(&self.response) + here.rise);
-            self.engine.system.quadratures(&self.engine.solution.mesh, &mut self.engine.spans);
+            self.engine.system.quadratures(&mut self.engine.spans);
             self.engine.tip = [0.0; Q];
             for (i, span) in self.engine.spans.iter_mut().enumerate() {
                 for q in 0..Q {
@@ -278,15 +278,15 @@ impl<'e> Stepper<'e> {
     fn changed_sides(&self, here: &Point) -> f64 {
         let mesh = &self.engine.solution.mesh;
         let gauss = &self.engine.system.gauss;
-        let (before, now) = (&here.state.equations.switches, &self.engine.equations.switches);
+        let (before, now) = (&here.state.equations, &self.engine.equations);
         let mut share = 0.0;
         for (k, s) in self.engine.equations.stations().iter().enumerate() {
             let e = here.mesh().element_of(*s);
             let w = gauss.cardinals((s - here.mesh().nodes()[e]) / here.mesh().step(e));
             let length = mesh.step(k / M) * gauss.b[k % M];
             for side in 0..2 {
-                let then: f64 = (0..M).map(|j| w[j] * before[e * M + j][side]).sum();
-                if then * now[k][side] < 0.0 {
+                let then: f64 = (0..M).map(|j| w[j] * before.switch(e, j, side)).sum();
+                if then * now.switch(k / M, k % M, side) < 0.0 {
                     share += length;
                 }
             }

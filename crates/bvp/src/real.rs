@@ -1,10 +1,11 @@
-//! Numbers that the equations are written in: one `f64`, or four stations side by side.
+//! Numbers that equations are written in: one `f64`, or the same quantity in four elements side by side.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// What the equations of the model need of a number. Comparisons choose lane by lane.
-pub(crate) trait Real:
+/// What equations need of a number. Comparisons choose lane by lane.
+pub trait Real:
     Copy
+    + Default
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
@@ -13,23 +14,37 @@ pub(crate) trait Real:
     + AddAssign
     + SubAssign
 {
+    /// `value` in every lane.
     fn of(value: f64) -> Self;
+    /// Square root.
     fn sqrt(self) -> Self;
+    /// Absolute value.
     fn abs(self) -> Self;
+    /// `self` where it is less than `other`, else `other`.
     fn min(self, other: Self) -> Self;
+    /// `other` where `self` is less, else `self`.
+    fn max(self, other: Self) -> Self;
     /// -1, 0 or 1.
     fn sign(self) -> Self;
     /// `yes` where `self < other`, else `no`.
     fn if_less(self, other: Self, yes: Self, no: Self) -> Self;
+    /// Whether `self < bound` in every lane.
+    fn all_below(self, bound: f64) -> bool;
+    /// `self + f m`, rounded once with `FUSED`: only for code compiled for a processor that can, because
+    /// others take a hundred times as long.
+    fn plus<const FUSED: bool>(self, f: Self, m: Self) -> Self;
 }
 
 /// Four numbers side by side, which the compiler turns into one vector.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(align(32))]
-pub(crate) struct Lanes(pub(crate) [f64; LANES]);
+pub struct Lanes(
+    /// The numbers.
+    pub [f64; LANES],
+);
 
-/// Stations in one [`Lanes`].
-pub(crate) const LANES: usize = 4;
+/// Elements in one [`Lanes`].
+pub const LANES: usize = 4;
 
 macro_rules! lanewise {
     ($trait:ident, $method:ident, $op:tt) => {
@@ -74,8 +89,9 @@ impl SubAssign for Lanes {
 }
 
 impl Lanes {
+    /// `f` of every number.
     #[inline(always)]
-    pub(crate) fn map(self, f: impl Fn(f64) -> f64) -> Self {
+    pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
         let mut out = self;
         for v in &mut out.0 {
             *v = f(*v);
@@ -85,6 +101,14 @@ impl Lanes {
 }
 
 impl Real for Lanes {
+    #[inline(always)]
+    fn plus<const FUSED: bool>(self, f: Self, m: Self) -> Self {
+        let mut out = self;
+        for i in 0..LANES {
+            out.0[i] = out.0[i].plus::<FUSED>(f.0[i], m.0[i]);
+        }
+        out
+    }
     #[inline(always)]
     fn of(value: f64) -> Self {
         Self([value; LANES])
@@ -102,6 +126,18 @@ impl Real for Lanes {
         self.if_less(other, self, other)
     }
     #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.if_less(other, other, self)
+    }
+    #[inline(always)]
+    fn all_below(self, bound: f64) -> bool {
+        let mut all = true;
+        for v in self.0 {
+            all &= v < bound;
+        }
+        all
+    }
+    #[inline(always)]
     fn sign(self) -> Self {
         self.map(sign)
     }
@@ -116,6 +152,10 @@ impl Real for Lanes {
 }
 
 impl Real for f64 {
+    #[inline(always)]
+    fn plus<const FUSED: bool>(self, f: Self, m: Self) -> Self {
+        if FUSED { f.mul_add(m, self) } else { self + f * m }
+    }
     #[inline(always)]
     fn of(value: f64) -> Self {
         value
@@ -133,6 +173,14 @@ impl Real for f64 {
         if self < other { self } else { other }
     }
     #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self < other { other } else { self }
+    }
+    #[inline(always)]
+    fn all_below(self, bound: f64) -> bool {
+        self < bound
+    }
+    #[inline(always)]
     fn sign(self) -> Self {
         sign(self)
     }
@@ -145,4 +193,18 @@ impl Real for f64 {
 #[inline(always)]
 fn sign(v: f64) -> f64 {
     f64::from(u8::from(v > 0.0)) - f64::from(u8::from(v < 0.0))
+}
+
+/// The numbers `f(0)` to `f(K - 1)`: `std::array::from_fn`, but always inlined, as all has to be that
+/// is compiled for more than one kind of processor.
+#[inline(always)]
+pub fn each<T: Copy + Default, const K: usize>(mut f: impl FnMut(usize) -> T) -> [T; K]
+where
+    [T; K]: Default,
+{
+    let mut out = <[T; K]>::default();
+    for k in 0..K {
+        out[k] = f(k);
+    }
+    out
 }

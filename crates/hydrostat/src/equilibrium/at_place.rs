@@ -1,0 +1,169 @@
+//! Everything at a place between stations, or at four of them.
+
+use hydrostat_bvp::{LANES, Lanes, Local, Real, each};
+
+use super::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
+use super::places::{Place, blank_cable, set_lane, splat};
+use super::strains::solve_section;
+use super::{Equilibrium, N, Q, SectionFailure};
+use crate::section::CableAt;
+use crate::sincos::sin_cos;
+
+/// A place between stations, and what is known there.
+#[derive(Clone, Copy)]
+pub(crate) struct Asked {
+    /// Over L.
+    pub(crate) s: f64,
+    /// Decides whether a cable that ends here still acts.
+    pub(crate) from_left: bool,
+    pub(crate) z: [f64; N],
+    /// A guess of the strains.
+    pub(crate) strain: [f64; 3],
+    /// beta' and beta''.
+    pub(crate) beta: [f64; 2],
+}
+
+/// Everything at one place, or at four, in the solver's units.
+#[derive(Clone)]
+pub(crate) struct AtPlace<R = f64> {
+    pub(crate) strain: [R; 3],
+    pub(crate) beta: R,
+    pub(crate) beta_slope: R,
+    /// n.a, n.b, m: what the body carries.
+    pub(crate) contact: [R; 3],
+    /// Smallest tau.a / nu of the pulled cables.
+    pub(crate) openness: R,
+    /// Determinant of the section law over that of the slack one.
+    pub(crate) regularity: R,
+    pub(crate) local: Local<N, Q, R>,
+    /// Undeformed radius.
+    pub(crate) radius: R,
+}
+
+impl AtPlace<Lanes> {
+    /// That of one of the four places.
+    pub(crate) fn lane(&self, lane: usize) -> AtPlace {
+        AtPlace {
+            strain: self.strain.map(|v| v.0[lane]),
+            beta: self.beta.0[lane],
+            beta_slope: self.beta_slope.0[lane],
+            contact: self.contact.map(|v| v.0[lane]),
+            openness: self.openness.0[lane],
+            regularity: self.regularity.0[lane],
+            local: self.local.lane(lane),
+            radius: self.radius.0[lane],
+        }
+    }
+}
+
+impl Equilibrium {
+    /// Solves section law and loads at one place, for output between stations.
+    pub(crate) fn at_place(&self, asked: &Asked) -> Result<AtPlace, SectionFailure> {
+        let mut place = self.place(asked.s);
+        place.body.couple *= self.fraction[0];
+        let pulled = (0..self.tensions.len()).filter(|c| self.acts_at(*c, asked));
+        let cables: Vec<CableAt<f64>> =
+            pulled.map(|c| CableAt { offset: self.offset(c, asked.s), tension: self.tension(c) }).collect();
+        let (sin, cos) = asked.z[0].sin_cos();
+        let (at, fine) = self.solve_place(&place, &cables, [cos, sin], asked.z, asked.strain, asked.beta);
+        if fine {
+            Ok(at)
+        } else {
+            Err(SectionFailure { s: asked.s, openness: at.openness, nu: at.strain[0], regularity: at.regularity })
+        }
+    }
+
+    /// [`Equilibrium::at_place`] at four places; `None` when one of them has no solution.
+    #[inline(always)]
+    pub(crate) fn at_places(&self, asked: &[Asked; LANES]) -> Option<AtPlace<Lanes>> {
+        let zero = Lanes::of(0.0);
+        let mut place = splat(&self.place(asked[0].s));
+        let mut cables = Vec::with_capacity(self.tensions.len());
+        let (mut z, mut strain, mut beta) = ([zero; N], [zero; 3], [zero; 2]);
+        for lane in 0..LANES {
+            let asked = &asked[lane];
+            if lane > 0 {
+                set_lane(&mut place, lane, &self.place(asked.s));
+            }
+            for a in 0..N {
+                z[a].0[lane] = asked.z[a];
+            }
+            for a in 0..3 {
+                strain[a].0[lane] = asked.strain[a];
+            }
+            for a in 0..2 {
+                beta[a].0[lane] = asked.beta[a];
+            }
+        }
+        place.body.couple = place.body.couple * Lanes::of(self.fraction[0]);
+        for c in 0..self.tensions.len() {
+            let mut cable = blank_cable();
+            for lane in 0..LANES {
+                if self.acts_at(c, &asked[lane]) {
+                    cable.tension.0[lane] = self.tension(c);
+                }
+                cable.set_offset(lane, &self.offset(c, asked[lane].s));
+            }
+            if cable.tension != zero {
+                cables.push(cable);
+            }
+        }
+        let (sin, cos) = sin_cos(z[0]);
+        let (at, fine) = self.solve_place(&place, &cables, [cos, sin], z, strain, beta);
+        fine.then_some(at)
+    }
+
+    /// Whether cable `c` pulls at a place.
+    fn acts_at(&self, c: usize, asked: &Asked) -> bool {
+        let runs = if asked.from_left { asked.s <= self.ends[c] + 1e-12 } else { asked.s < self.ends[c] - 1e-12 };
+        runs && self.tension(c) != 0.0
+    }
+
+    /// Everything at places, and whether it could be solved at all of them.
+    #[inline(always)]
+    fn solve_place<R: Real>(
+        &self,
+        place: &Place<R>,
+        cables: &[CableAt<R>],
+        [cos, sin]: [R; 2],
+        z: [R; N],
+        mut strain: [R; 3],
+        [mut beta_slope, beta_curvature]: [R; 2],
+    ) -> (AtPlace<R>, bool) {
+        let contact = [cos * z[1] + sin * z[2], cos * z[2] - sin * z[1], z[3]];
+        for round in 0.. {
+            let beta = [beta_slope, beta_curvature];
+            let solved = solve_section(self.volume, &place.stiffness, cables, contact, strain, beta, 1e-13);
+            let fine = solved.step.all_below(1e-9)
+                && (-solved.regularity).all_below(0.0)
+                && (-solved.balance.openness).all_below(0.0);
+            strain = solved.strain;
+            let load = self.load(place, [cos, sin], &solved, beta_slope);
+            let slopes = slopes(place.body.couple, [cos, sin], contact, &solved, &load);
+            let change = (slopes.beta_slope - beta_slope).abs();
+            beta_slope = slopes.beta_slope;
+            if change.all_below(1e-13) || round == 29 || !fine {
+                let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
+                let [nu, eta, _] = solved.strain;
+                let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
+                let at = AtPlace {
+                    strain,
+                    beta: solved.balance.swelling.beta,
+                    beta_slope,
+                    contact: each(|k| contact[k] - solved.balance.cables[k]),
+                    openness: solved.balance.openness,
+                    regularity: solved.regularity,
+                    local: Local {
+                        slope: slopes.slope,
+                        jacobian: jacobian([cos, sin], contact, &solved, &load, &by_state),
+                        rate,
+                        rate_gradient: rate_gradient([cos, sin], rate, &by_state),
+                    },
+                    radius: place.body.radius,
+                };
+                return (at, fine);
+            }
+        }
+        unreachable!("the loop returns at its last round")
+    }
+}

@@ -1,0 +1,90 @@
+//! Slopes of the state at a station, and their gradients.
+
+use hydrostat_bvp::{Real, each};
+
+use super::strains::Solved;
+use super::{N, Q};
+use crate::loads::Load;
+use crate::section::apply3;
+
+pub(super) struct Slopes<R> {
+    pub(super) slope: [R; N],
+    pub(super) beta_slope: R,
+}
+
+/// z' at a station, and beta' by implicit differentiation of the section law.
+#[inline(always)]
+pub(super) fn slopes<R: Real>(
+    couple: R,
+    [cos, sin]: [R; 2],
+    contact: [R; 3],
+    solved: &Solved<R>,
+    load: &Load<R>,
+) -> Slopes<R> {
+    let [nu, eta, mu] = solved.strain;
+    let [n_a, n_b, _] = contact;
+    let f = load.force;
+    let m_slope = eta * n_a - nu * n_b - couple;
+    // n_f . a and n_f . b turn with the directors.
+    let f_a = cos * f[0] + sin * f[1];
+    let f_b = cos * f[1] - sin * f[0];
+    let contact_slope = [mu * n_b - f_a, -(mu * n_a + f_b), m_slope];
+    let rest = each(|k| contact_slope[k] - solved.balance.along_s[k]);
+    let strain_slope = apply3(&solved.inverse, rest);
+    Slopes { slope: [mu, -f[0], -f[1], m_slope], beta_slope: solved.balance.swelling.slope * strain_slope[0] }
+}
+
+/// d(nu, eta, mu)/dz: the law depends on z through n_f.a, n_f.b and m_f alone.
+#[inline(always)]
+pub(super) fn strain_by_state<R: Real>(
+    inverse: &[[R; 3]; 3],
+    [cos, sin]: [R; 2],
+    [n_a, n_b, _]: [R; 3],
+) -> [[R; N]; 3] {
+    each(|k| {
+        let e = inverse[k];
+        [e[0] * n_b - e[1] * n_a, e[0] * cos - e[1] * sin, e[0] * sin + e[1] * cos, e[2]]
+    })
+}
+
+#[inline(always)]
+pub(super) fn jacobian<R: Real>(
+    [cos, sin]: [R; 2],
+    [n_a, n_b, _]: [R; 3],
+    solved: &Solved<R>,
+    load: &Load<R>,
+    by_state: &[[R; N]; 3],
+) -> [[R; N]; N] {
+    let zero = R::of(0.0);
+    let [nu, eta, _] = solved.strain;
+    let mut out = [[zero; N]; N];
+    out[0] = by_state[2];
+    for b in 0..N {
+        for k in 0..2 {
+            out[k + 1][b] = -(load.by_strain[k][0] * by_state[0][b]
+                + load.by_strain[k][1] * by_state[1][b]
+                + load.by_strain[k][2] * by_state[2][b]);
+        }
+        out[3][b] = n_a * by_state[1][b] - n_b * by_state[0][b];
+    }
+    for k in 0..2 {
+        out[k + 1][0] -= load.by_theta[k];
+    }
+    // n_a, n_b by theta: n_b, -n_a; by n_f: the directors.
+    out[3][0] += eta * n_b + nu * n_a;
+    out[3][1] += eta * cos + nu * sin;
+    out[3][2] += eta * sin - nu * cos;
+    out
+}
+
+#[inline(always)]
+pub(super) fn rate_gradient<R: Real>([cos, sin]: [R; 2], rate: [R; 2], by_state: &[[R; N]; 3]) -> [[R; N]; Q] {
+    let mut out = [[R::of(0.0); N]; Q];
+    for b in 0..N {
+        out[0][b] = cos * by_state[0][b] - sin * by_state[1][b];
+        out[1][b] = sin * by_state[0][b] + cos * by_state[1][b];
+    }
+    out[0][0] -= rate[1];
+    out[1][0] += rate[0];
+    out
+}

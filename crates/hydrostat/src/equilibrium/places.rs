@@ -1,0 +1,200 @@
+//! The data of an arm at the stations: sections and cables.
+
+use hydrostat_bvp::{Groups, LANES, Lanes, Mesh, Real};
+
+use super::{Equilibrium, Memory, N};
+use crate::arm::{Cavity, Material};
+use crate::cable::Offset;
+use crate::loads::Body;
+use crate::section::{CableAt, Stiffness};
+
+/// One place of the arm as data.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place<R> {
+    /// Over L.
+    pub(super) s: R,
+    pub(super) stiffness: Stiffness<R>,
+    pub(super) body: Body<R>,
+}
+
+impl Equilibrium {
+    /// Data at `s` (over L).
+    pub(super) fn place(&self, s: f64) -> Place<f64> {
+        let (arm, units) = (&self.arm, self.units);
+        let l = units.length;
+        let at = |p: &crate::profile::Profile| p.at(s * l, l);
+        let (r, r_in) = (at(&arm.radius), at(&arm.inner_radius));
+        let pi = std::f64::consts::PI;
+        let area = pi * (r.value * r.value - r_in.value * r_in.value);
+        let area_slope = 2.0 * pi * (r.value * r.slope - r_in.value * r_in.slope);
+        let (c, c_slope) = match &arm.material {
+            Material::Homogeneous { young, poisson, shear_factor } => {
+                // C1 = E, C2 = k G, C3 = E I/A of a ring.
+                let square = r.value * r.value + r_in.value * r_in.value;
+                let square_slope = 2.0 * (r.value * r.slope + r_in.value * r_in.slope);
+                let shear = shear_factor * young / (2.0 * (1.0 + poisson));
+                ([*young, shear, young * square / 4.0], [0.0, 0.0, young * square_slope / 4.0])
+            }
+            Material::Coefficients { c1, c2, c3 } => {
+                let c = [at(c1), at(c2), at(c3)];
+                (c.map(|c| c.value), c.map(|c| c.slope))
+            }
+        };
+        // Stiffness in the units: C1 A0 / F, C2 A0 / F, C3 A0 / (F L^2).
+        let unit = [1.0 / units.force, 1.0 / units.force, 1.0 / (units.force * l * l)];
+        let reference = [at(&arm.reference.nu), at(&arm.reference.eta), at(&arm.reference.mu)];
+        let per_length = [1.0, 1.0, l];
+        let stiffness = Stiffness {
+            value: [0, 1, 2].map(|k| c[k] * area * unit[k]),
+            slope: [0, 1, 2].map(|k| (c_slope[k] * area + c[k] * area_slope) * unit[k] * l),
+            reference: [0, 1, 2].map(|k| reference[k].value * per_length[k]),
+            reference_slope: [0, 1, 2].map(|k| reference[k].slope * per_length[k] * l),
+        };
+        let load_unit = l / units.force;
+        let gravity = arm.gravity.map_or([0.0; 2], |g| {
+            let (sin, cos) = g.direction.sin_cos();
+            [g.acceleration * cos * load_unit, g.acceleration * sin * load_unit]
+        });
+        let outline = match arm.cavity {
+            Cavity::Flooded => area,
+            Cavity::Sealed => pi * r.value * r.value,
+        };
+        let body = Body {
+            radius: r.value / l,
+            radius_slope: r.slope,
+            wetted: pi * arm.flow.density * r.value * load_unit,
+            weight: gravity.map(|g| arm.density * area * g),
+            displaced: gravity.map(|g| arm.flow.density * outline * g),
+            force: [0, 1].map(|k| at(&arm.distributed.force[k]).value * load_unit),
+            couple: at(&arm.distributed.couple).value / units.force,
+        };
+        Place { s, stiffness, body }
+    }
+
+    pub(super) fn offset(&self, cable: usize, s: f64) -> Offset<f64> {
+        let l = self.units.length;
+        let p = self.arm.cables[cable].offset.at(s * l, l);
+        Offset { y: p.value / l, slope: p.slope, curvature: p.curvature * l }
+    }
+
+    /// Takes a new set of stations, those of `mesh`, with guesses of the strains and of beta'.
+    pub(crate) fn place_stations(
+        &mut self,
+        stations: &[f64],
+        mesh: &Mesh,
+        guess: impl Fn(usize) -> ([f64; 3], f64, f64),
+    ) {
+        let stages = self.groups.stages;
+        let groups = Groups { elements: mesh.elements(), stages };
+        let blocks = groups.count() * stages;
+        let zero = Lanes::of(0.0);
+        let cable_count = self.tensions.len();
+        let before = std::mem::replace(&mut self.groups, groups).elements;
+        let memory = Memory { z: [zero; N], strain: [zero; 3], by_state: [[zero; N]; 3] };
+        self.memory.clear();
+        self.memory.resize(blocks, memory);
+        if self.places.len() < blocks {
+            let blank = splat(&self.place(stations[0]));
+            self.places.resize(blocks, blank);
+        }
+        self.places.truncate(blocks);
+        self.cables.resize(blocks * cable_count, blank_cable());
+        self.steps.resize(groups.count(), zero);
+        self.beta.resize(blocks);
+        self.switches.resize(blocks, [zero; 3]);
+        self.drifts.resize(blocks, [zero; N]);
+        for group in 0..groups.count() {
+            for lane in 0..LANES {
+                let i = groups.element(group, lane);
+                self.steps[group].0[lane] = mesh.step(i);
+                for j in 0..stages {
+                    let (block, k) = (group * stages + j, i * stages + j);
+                    let (strain, slope, curvature) = guess(k);
+                    for a in 0..3 {
+                        self.memory[block].strain[a].0[lane] = strain[a];
+                    }
+                    self.beta.start(block, lane, slope, curvature);
+                    // A station that stays where it was keeps its data.
+                    let own = group * LANES + lane == i && i < before;
+                    if !(own && self.stations[k] == stations[k]) {
+                        self.place_station(block, lane, stations[k]);
+                    }
+                }
+            }
+        }
+        self.stations.clear();
+        self.stations.extend_from_slice(stations);
+    }
+
+    /// Takes the data at `s` into a lane of a block.
+    fn place_station(&mut self, block: usize, lane: usize, s: f64) {
+        let place = self.place(s);
+        set_lane(&mut self.places[block], lane, &place);
+        let cable_count = self.tensions.len();
+        for c in 0..cable_count {
+            let offset = self.offset(c, s);
+            let at = &mut self.cables[block * cable_count + c];
+            at.set_offset(lane, &offset);
+            at.tension.0[lane] = f64::from(u8::from(s <= self.ends[c]));
+        }
+    }
+
+    /// Takes the arm's sections at all stations.
+    pub(super) fn take_sections(&mut self) {
+        for block in 0..self.places.len() {
+            for lane in 0..LANES {
+                let place = self.place(self.stations[self.groups.station_in(block, lane)]);
+                set_lane(&mut self.places[block], lane, &place);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn blank_cable() -> CableAt<Lanes> {
+    let zero = Lanes([0.0; LANES]);
+    CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero }
+}
+
+pub(super) fn splat(place: &Place<f64>) -> Place<Lanes> {
+    let l = Lanes::of;
+    let (s, b) = (&place.stiffness, &place.body);
+    Place {
+        s: l(place.s),
+        stiffness: Stiffness {
+            value: s.value.map(l),
+            slope: s.slope.map(l),
+            reference: s.reference.map(l),
+            reference_slope: s.reference_slope.map(l),
+        },
+        body: Body {
+            radius: l(b.radius),
+            radius_slope: l(b.radius_slope),
+            wetted: l(b.wetted),
+            weight: b.weight.map(l),
+            displaced: b.displaced.map(l),
+            force: b.force.map(l),
+            couple: l(b.couple),
+        },
+    }
+}
+
+pub(super) fn set_lane(out: &mut Place<Lanes>, lane: usize, place: &Place<f64>) {
+    let (s, b) = (&place.stiffness, &place.body);
+    out.s.0[lane] = place.s;
+    for k in 0..3 {
+        out.stiffness.value[k].0[lane] = s.value[k];
+        out.stiffness.slope[k].0[lane] = s.slope[k];
+        out.stiffness.reference[k].0[lane] = s.reference[k];
+        out.stiffness.reference_slope[k].0[lane] = s.reference_slope[k];
+    }
+    for k in 0..2 {
+        out.body.weight[k].0[lane] = b.weight[k];
+        out.body.displaced[k].0[lane] = b.displaced[k];
+        out.body.force[k].0[lane] = b.force[k];
+    }
+    out.body.radius.0[lane] = b.radius;
+    out.body.radius_slope.0[lane] = b.radius_slope;
+    out.body.wetted.0[lane] = b.wetted;
+    out.body.couple.0[lane] = b.couple;
+}
