@@ -310,18 +310,14 @@ impl Configuration {
             let strained = equations.strain_energy(block);
             let weight = |i: usize| l * mesh.step(i) * engine.system.gauss.b[block % M];
             let own = (0..groups.filled(block / M)).map(|lane| (lane, groups.element(block / M, lane)));
-            for (lane, i) in own.clone() {
+            for (lane, i) in own {
                 energy += weight(i) * strained.0[lane];
             }
-            for (c, cable) in cables.iter_mut().enumerate() {
-                let [now, unloaded] = equations.cable_stretch(c, block);
-                for (lane, i) in own.clone() {
-                    if equations.stations()[i * M + block % M] < equations.cable_end(c) {
-                        cable.length += weight(i) * now.0[lane];
-                        cable.stroke += weight(i) * (unloaded.0[lane] - now.0[lane]);
-                    }
-                }
-            }
+        }
+        for (c, cable) in cables.iter_mut().enumerate() {
+            let [now, unloaded] = equations.cable_lengths(c, &engine.system.gauss.b);
+            cable.length = l * now;
+            cable.stroke = l * (unloaded - now);
         }
 
         for (state, cable) in cables.iter_mut().zip(&arm.cables) {

@@ -386,8 +386,8 @@ impl Engine {
     /// Takes tip and spans at the present solution, which Newton has converged to by other rounds than these.
     pub(crate) fn take_stock(&mut self) -> Result<(), Trouble> {
         self.linearise(false)?;
-        self.system.quadratures(&self.solution.mesh, &mut self.spans);
-        self.tip = self.system.totals(&self.solution.mesh);
+        self.system.quadratures(&mut self.spans);
+        self.tip = self.system.totals();
         Ok(())
     }
 

@@ -178,7 +178,7 @@ impl Equilibrium {
 
     /// |tau| of cable `c` in a block of stations, now and at the reference strains.
     #[inline(always)]
-    pub(crate) fn cable_stretch(&self, c: usize, block: usize) -> [Lanes; 2] {
+    fn cable_stretch(&self, c: usize, block: usize) -> [Lanes; 2] {
         let offset = &self.cables[block * self.tensions.len() + c].offset;
         let stiffness = &self.places[block].stiffness;
         let reference = swelling(self.volume, stiffness.reference[0]);
@@ -193,12 +193,16 @@ impl Equilibrium {
     /// Length of the path of cable `c`, now and at the reference strains, over L, with the weights of the stages.
     pub(crate) fn cable_lengths(&self, c: usize, weights: &[f64]) -> [f64; 2] {
         let mut lengths = [0.0; 2];
-        for (k, s) in self.stations.iter().enumerate() {
-            if *s < self.ends[c] {
-                let weight = self.steps[k] * weights[k % self.stages];
-                let stretches = self.cable_stretch(c, k);
-                lengths[0] += weight * stretches[0];
-                lengths[1] += weight * stretches[1];
+        let groups = self.groups();
+        for block in 0..groups.count() * groups.stages {
+            let (group, stage) = (block / groups.stages, block % groups.stages);
+            let stretches = self.cable_stretch(c, block);
+            for lane in 0..groups.filled(group) {
+                if self.stations[groups.station_in(block, lane)] < self.ends[c] {
+                    let weight = self.steps[group].0[lane] * weights[stage];
+                    lengths[0] += weight * stretches[0].0[lane];
+                    lengths[1] += weight * stretches[1].0[lane];
+                }
             }
         }
         lengths
