@@ -17,6 +17,9 @@ const WORST: f64 = 1e-5;
 /// A tolerance down to which what Newton leaves is foreseen well enough not to wait for it.
 const TIGHT: f64 = 1e-9;
 
+/// Corrections of the tip (over L) that Newton is not asked to get below.
+const RESTLESS: f64 = 1e-11;
+
 pub(crate) type Guess = Solution<N, M>;
 
 #[derive(Debug, Clone)]
@@ -65,6 +68,8 @@ pub(crate) struct Engine {
     pub(crate) rounds: usize,
     pub(crate) meshes: usize,
     pub(crate) last: f64,
+    /// What the next round would have moved the tip by (over L) at most, where Newton stopped ahead of it.
+    rest: f64,
     /// Tip position over L at the last round.
     pub(crate) tip: [f64; Q],
 }
@@ -188,6 +193,7 @@ impl Engine {
             rounds: 0,
             meshes: 0,
             last: 0.0,
+            rest: 0.0,
             tip: [0.0; 2],
         }
     }
@@ -352,6 +358,7 @@ impl Engine {
             };
             before = size;
             self.last = size;
+            self.rest = if ahead { moved } else { 0.0 };
             let stop = round == most || (clamped && round >= 4 && size > 3.0);
             if moved <= tolerance || stop {
                 self.system.quadratures(&mut self.spans);
@@ -414,12 +421,13 @@ impl Engine {
             let (strain, [slope, curvature]) = own.remembered(k / K, &weights[k % K]);
             (strain, slope, curvature)
         });
-        for _ in 0..2 {
-            evaluate(&mut self.check, &mut self.check_equations, &finer).map_err(Trouble::Section)?;
-        }
+        // Once before the comparison linearises, so that beta' and beta'' are those of this state.
+        evaluate(&mut self.check, &mut self.check_equations, &finer).map_err(Trouble::Section)?;
         let mut estimate = self.compare(&finer)?;
-        if enough.is_some_and(|enough| estimate <= enough) {
-            return Ok(estimate);
+        // Where Newton stopped ahead of its last round, the comparison may miss what that would have moved.
+        let unseen = 0.1 * self.rest;
+        if enough.is_some_and(|enough| estimate.max(unseen) <= enough) {
+            return Ok(estimate.max(unseen));
         }
         let (check, spans, errors) = (&mut self.check, &self.spans, &mut self.errors);
         widest(
@@ -433,7 +441,7 @@ impl Engine {
             finer.add(&self.check_correction, 1.0);
             estimate = self.compare(&finer)?;
         }
-        Ok(estimate)
+        Ok(estimate.max(unseen))
     }
 
     /// How far a Newton round with one more stage puts the tip from where the solve has it.
@@ -559,12 +567,14 @@ impl Engine {
     pub(crate) fn settle(&mut self, tolerance: f64, warm: bool) -> Result<f64, Trouble> {
         let mut estimate = f64::INFINITY;
         let mut best: Option<(f64, State)> = None;
+        // What is left of beta'', a round behind, counts at tight tolerances, down to where rounding ends it.
+        let least = if tolerance > TIGHT { 3.0 * tolerance } else { (0.1 * tolerance).max(RESTLESS.min(3.0 * tolerance)) };
         for attempt in 0..10 {
             let goal = match (attempt, warm) {
                 (0, true) if tolerance > TIGHT => tolerance,
-                (0, true) => 3.0 * tolerance,
+                (0, true) => least,
                 (0, false) => tolerance.max(1e-3),
-                _ => (1e-4 * estimate).clamp(3.0 * tolerance, tolerance.max(1e-3)),
+                _ => (1e-4 * estimate).clamp(least, tolerance.max(1e-3)),
             };
             let fine = goal <= 3.0 * tolerance;
             let enough = fine.then_some(tolerance);

@@ -101,3 +101,52 @@ fn a_loose_tolerance_is_enough_for_a_rough_answer() {
         }
     }
 }
+
+/// The same for cold solves and for warm ones, after 1 % more tension, of a cone with two cables between still water and streams
+/// that bend it round.
+#[test]
+fn warm_estimates_are_as_honest_as_cold_ones() {
+    let mut ratios = Vec::new();
+    let mut slack = Vec::new();
+    for length in [0.2, 0.245] {
+        for pulled in [0.1, 0.3, 0.45, 0.6, 0.75] {
+            for speed in [0.0, 0.1, 0.3, 0.5, 0.8] {
+                let arm = |tension: f64| {
+                    let mut arm = Arm::cone(length, 0.010, 0.002, 110e3, 0.5);
+                    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(tension));
+                    arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)));
+                    arm.flow.speed = speed;
+                    arm
+                };
+                let (before, after) = (arm(pulled), arm(1.01 * pulled));
+                let sharp = |arm: &Arm| Solver::new(arm, Options { tol: 1e-12 }).unwrap().solve().ok();
+                let (Some(first), Some(second)) = (sharp(&before), sharp(&after)) else { continue };
+                for tol in [1e-6, 1e-8, 1e-10] {
+                    let mut solver = Solver::new(&before, Options { tol }).unwrap();
+                    let cold = solver.solve().unwrap();
+                    solver.set_tensions(&[1.01 * pulled, 0.0]).unwrap();
+                    let warm = solver.resolve().unwrap();
+                    for (solved, best, how) in [(cold, &first, "cold"), (warm, &second, "warm")] {
+                        let off = (solved.tip().x - best.tip().x).hypot(solved.tip().y - best.tip().y) / length;
+                        let estimate = solved.error_estimate / length;
+                        let own = best.error_estimate / length;
+                        assert!(estimate <= tol || tol < 1e-9, "estimate {estimate:e} for {tol:e}");
+                        if off > 3.0 * own {
+                            ratios.push(off / estimate);
+                            slack.push(estimate / off);
+                            if off > 3.0 * estimate {
+                                println!("{length} m, {pulled} N, {speed} m/s, {tol:e}, {how}: off {off:.1e}, estimate {estimate:.1e}, best {own:.1e}");
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    slack.sort_by(f64::total_cmp);
+    let (count, most) = (ratios.len(), ratios[ratios.len() - 1]);
+    let (usual, middle) = (ratios[count * 95 / 100], slack[count / 2]);
+    println!("{count} solves: error over estimate below {usual:.2} in 95 %, at most {most:.2}; median estimate {middle:.2} times the error");
+    assert!(count > 150 && usual < 3.0 && most < 10.0 && middle < 30.0);
+}
