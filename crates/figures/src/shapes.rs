@@ -1,0 +1,188 @@
+//! Several equilibria of one arm to scale.
+
+use hydrostat::{Arm, Configuration, Equilibria, Parameter, Path, PathPoint, Stability};
+
+use crate::arm_figure::fitting;
+use crate::axes::{Axes, BELOW, LEFT};
+use crate::chart::{Abscissa, Look};
+use crate::font::{CAP_HEIGHT, Label};
+use crate::legend::{Legend, MARGIN, Sample, WIDTH};
+use crate::outline::{Outline, Style, bounds};
+use crate::palette::{Color, INK, ordered, series};
+use crate::placement::Occupied;
+use crate::scene::{Anchor, Scene, Stroke};
+use crate::tip_labels::{TipLabel, draw_tip_labels};
+
+const TITLE_SIZE: f64 = 10.0;
+const MAX_HEIGHT: f64 = 400.0;
+/// Shapes on the branch that a path starts on, and on each that it switches to.
+const ALONG: [usize; 2] = [9, 3];
+
+/// One shape among several.
+struct Member<'a> {
+    configuration: &'a Configuration,
+    look: Look,
+    color: Color,
+    label: Label,
+}
+
+/// Shapes along a path, picked evenly, with those at limit points and bifurcations: stable ones solid, unstable ones
+/// dashed, those at events dotted, each with the value of the parameter.
+///
+/// ```
+/// use hydrostat::{Arm, Parameter, PathOptions};
+/// use hydrostat_figures::{Abscissa, path_shapes_figure};
+///
+/// let arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+/// let path = arm.path(Parameter::TipForce(1), [0.0, 0.02], &PathOptions::default()).unwrap();
+/// let over = Abscissa { name: "force".to_owned(), unit: "mN".to_owned(), per_si: 1e3 };
+/// assert!(path_shapes_figure(&path, &over, "a cone").texts().any(|text| text == "20 mN"));
+/// ```
+pub fn path_shapes_figure(path: &Path, over: &Abscissa, title: &str) -> Scene {
+    let mut picked: Vec<&PathPoint> = Vec::new();
+    for (branch, all) in path.branches.iter().enumerate() {
+        picked.extend(evenly(&all.points, path.range, ALONG[branch.min(1)]));
+    }
+    let count = picked.len();
+    let members: Vec<Member<'_>> = picked
+        .into_iter()
+        .enumerate()
+        .map(|(index, point)| Member {
+            configuration: &point.configuration,
+            look: Look::of(point.stability),
+            color: ordered(index, count),
+            label: Label::plain(over.text(point.value)),
+        })
+        .collect();
+    draw(&format!("{title}: shapes along the path"), title, &members, Some(path.parameter))
+}
+
+/// All equilibria under the same loads, numbered from 1: stable ones solid and filled, unstable ones dashed.
+///
+/// ```
+/// let mut arm = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+/// arm.tip.force = [-0.2, 0.0];
+/// let all = arm.equilibria(1e-6).unwrap();
+/// let figure = hydrostat_figures::equilibria_figure(&all, "a column");
+/// assert!(figure.texts().any(|text| text == "3"));
+/// ```
+pub fn equilibria_figure(all: &Equilibria, title: &str) -> Scene {
+    let stable = |index: usize| all.found[..index].iter().filter(|e| e.stability == Some(Stability::Stable)).count();
+    let members: Vec<Member<'_>> = all
+        .found
+        .iter()
+        .enumerate()
+        .map(|(index, one)| {
+            let look = Look::of(one.stability);
+            // Blue, green, ... for what can be met; the rest steps back.
+            let color = if look == Look::Stable { series([1, 2, 3, 4, 5][stable(index) % 5]) } else { series(0) };
+            Member { configuration: &one.configuration, look, color, label: Label::plain((index + 1).to_string()) }
+        })
+        .collect();
+    draw(&format!("{title}: all equilibria"), title, &members, None)
+}
+
+/// About `count` points at even distances, the first and the last, and all events.
+fn evenly(points: &[PathPoint], range: [f64; 2], count: usize) -> Vec<&PathPoint> {
+    let mut along = vec![0.0];
+    for pair in points.windows(2) {
+        let [a, b] = [&pair[0], &pair[1]];
+        let [p, q] = [a, b].map(|p| p.configuration.tip());
+        let moved = (q.x - p.x).hypot(q.y - p.y) / a.configuration.arm.length;
+        let varied = (b.value - a.value) / (range[1] - range[0]);
+        along.push(along[along.len() - 1] + moved.hypot(varied));
+    }
+    let whole = along.last().copied().unwrap_or(0.0);
+    let gap = whole / (count.max(2) - 1) as f64;
+    let events: Vec<f64> = points.iter().zip(&along).filter(|(p, _)| p.event.is_some()).map(|(_, at)| *at).collect();
+    let mut wanted: Vec<usize> = (0..points.len()).filter(|k| points[*k].event.is_some()).collect();
+    for k in 0..count {
+        let place = gap * k as f64;
+        let nearest = (0..points.len()).min_by(|a, b| (along[*a] - place).abs().total_cmp(&(along[*b] - place).abs()));
+        let ends = k == 0 || k + 1 == count;
+        // Beside an event there is no need for another shape.
+        let beside = |index: usize| events.iter().any(|at| (at - along[index]).abs() < 0.4 * gap);
+        wanted.extend(nearest.filter(|index| ends || !beside(*index)));
+    }
+    wanted.sort_unstable();
+    wanted.dedup();
+    wanted.into_iter().map(|k| &points[k]).collect()
+}
+
+fn surface(look: Look, color: Color) -> Stroke {
+    match look {
+        Look::Stable => Stroke::solid(color, 1.0),
+        Look::Unstable => Stroke::dashed(color, 0.9, [4.0, 2.2]),
+        Look::Unknown => Stroke::dashed(color, 0.9, [1.0, 1.6]),
+    }
+}
+
+fn draw(says: &str, title: &str, members: &[Member<'_>], varied: Option<Parameter>) -> Scene {
+    let outlines: Vec<Outline> = members.iter().map(|m| Outline::new(m.configuration, 0)).collect();
+    let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).collect();
+    let legend = legend(members, varied);
+    let baseline = MARGIN + CAP_HEIGHT * TITLE_SIZE;
+    let top = baseline + 8.0 + legend.height() + 6.0;
+    let axes = axes(&all, top);
+    let mut scene = Scene::new(WIDTH, axes.frame.bottom + BELOW + MARGIN, says);
+    let label = Label::plain(title);
+    scene.text(&label, [LEFT, baseline], Anchor::Start, fitting(&label, TITLE_SIZE));
+    legend.draw(&mut scene, baseline + 8.0);
+    axes.draw(&mut scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
+    let mut page = Occupied::new(axes.frame.grown(-3.0));
+    for (outline, Member { look, color, .. }) in outlines.iter().zip(members) {
+        let nothing = Stroke::solid(color.with_opacity(0.0), 0.1);
+        let style = Style {
+            fill: color.with_opacity(if *look == Look::Stable { 0.16 } else { 0.0 }),
+            surface: surface(*look, *color),
+            sections: nothing,
+            centreline: nothing,
+            cables: Vec::new(),
+        };
+        outline.draw(&mut scene, &axes, &style);
+        outline.occupy(&mut page, &axes);
+    }
+    let labels: Vec<TipLabel> = outlines
+        .iter()
+        .zip(members)
+        .map(|(outline, Member { configuration, color, label, .. })| TipLabel {
+            tip: axes.at(outline.tip()),
+            towards: configuration.tip().theta,
+            color: *color,
+            label: label.clone(),
+        })
+        .collect();
+    draw_tip_labels(&mut scene, &mut page, axes.frame, &labels);
+    scene
+}
+
+fn legend(members: &[Member<'_>], varied: Option<Parameter>) -> Legend {
+    let mut legend = Legend::default();
+    for look in [Look::Stable, Look::Unstable, Look::Unknown] {
+        let words = match look {
+            // At its events a path is neither stable nor unstable.
+            Look::Unknown if varied.is_some() => "limit point or bifurcation",
+            other => other.words(),
+        };
+        if members.iter().any(|m| m.look == look) {
+            legend.add(Sample::Line(surface(look, INK)), Label::plain(words));
+        }
+    }
+    if let Some(arm) = members.first().map(|m| &m.configuration.arm) {
+        legend.add_surroundings(&surroundings(arm, members), varied);
+    }
+    legend
+}
+
+/// The first arm, or one that shows a stream if any of them is in one.
+fn surroundings(first: &Arm, members: &[Member<'_>]) -> Arm {
+    members.iter().map(|m| &m.configuration.arm).find(|arm| arm.flow.speed > 0.0).unwrap_or(first).clone()
+}
+
+/// Axes of one scale round all points, with room for labels.
+fn axes(points: &[[f64; 2]], top: f64) -> Axes {
+    let [x, y] = bounds(points);
+    let pad = 0.07 * (x[1] - x[0]).max(y[1] - y[0]);
+    let grown = |range: [f64; 2]| [range[0] - pad, range[1] + pad];
+    Axes::equal(LEFT, top, WIDTH - LEFT - MARGIN, [150.0, MAX_HEIGHT], grown(x), grown(y))
+}
