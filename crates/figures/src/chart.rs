@@ -135,11 +135,9 @@ pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str
         .filter_map(|b| b.points.last())
         .collect();
 
-    let pieces: Vec<Vec<(Look, Vec<[f64; 2]>)>> =
-        path.branches.iter().map(|b| pieces(&b.points.iter().map(|p| (at(p), look(p))).collect::<Vec<_>>())).collect();
-    let shown = |look: Look| pieces.iter().flatten().any(|(piece, _)| *piece == look);
     let mut legend = Legend::default();
-    for look in LOOKS.into_iter().filter(|look| shown(*look)) {
+    let regular = || path.branches.iter().flat_map(|b| &b.points).filter_map(look);
+    for look in LOOKS.into_iter().filter(|wanted| regular().any(|look| look == *wanted)) {
         legend.add(Sample::Line(look.stroke()), Label::plain(look.words()));
     }
     for event in [Event::LimitPoint, Event::Bifurcation] {
@@ -153,12 +151,19 @@ pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str
     }
 
     let (mut scene, axes) = page(title, &legend, &all, over, quantity);
+    let pieces: Vec<Vec<(Look, Vec<Point>)>> = path
+        .branches
+        .iter()
+        .map(|branch| {
+            let looks: Vec<Option<Look>> = branch.points.iter().map(look).collect();
+            pieces(&looks, &smooth(&axes.all(&branch.points.iter().map(at).collect::<Vec<_>>())))
+        })
+        .collect();
     let mut occupied = Occupied::new(axes.frame.grown(-3.0));
     for wanted in [Look::Unknown, Look::Unstable, Look::Stable] {
-        for (_, points) in pieces.iter().flatten().filter(|(look, _)| *look == wanted) {
-            let smooth = smooth(&axes.all(points));
-            scene.line(&smooth, wanted.stroke());
-            occupied.add_line(&smooth);
+        for (_, line) in pieces.iter().flatten().filter(|(look, _)| *look == wanted) {
+            scene.line(line, wanted.stroke());
+            occupied.add_line(line);
         }
     }
     for point in &stopped {
@@ -245,62 +250,66 @@ fn look(point: &PathPoint) -> Option<Look> {
     point.event.is_none().then(|| Look::of(point.stability))
 }
 
-/// The points in pieces of one look each, which share their ends. Where it changes without an event, halfway.
-fn pieces(points: &[([f64; 2], Option<Look>)]) -> Vec<(Look, Vec<[f64; 2]>)> {
-    let mut out: Vec<(Look, Vec<[f64; 2]>)> = Vec::new();
-    let mut go = |look: Look, from: [f64; 2], to: [f64; 2]| match out.last_mut() {
-        Some((last, line)) if *last == look => line.push(to),
-        _ => out.push((look, vec![from, to])),
+/// The line between points, one part for each two of them, in pieces of one look each, which share their ends. Where the
+/// look changes without an event, it does so halfway.
+fn pieces(looks: &[Option<Look>], parts: &[Vec<Point>]) -> Vec<(Look, Vec<Point>)> {
+    let mut out: Vec<(Look, Vec<Point>)> = Vec::new();
+    let mut go = |look: Look, part: &[Point]| match out.last_mut() {
+        Some((last, line)) if *last == look => line.extend(part.iter().skip(1)),
+        _ => out.push((look, part.to_vec())),
     };
     let mut last = None;
-    for (k, pair) in points.windows(2).enumerate() {
-        let [(a, before), (b, after)] = [pair[0], pair[1]];
+    for (k, (pair, part)) in looks.windows(2).zip(parts).enumerate() {
+        let [before, after] = [pair[0], pair[1]];
         last = before.or(last);
         match (before, after) {
             (Some(before), Some(after)) if before != after => {
-                let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-                go(before, a, middle);
-                go(after, middle, b);
+                let middle = part.len() / 2;
+                go(before, &part[..=middle]);
+                go(after, &part[middle..]);
             }
-            (Some(look), _) | (None, Some(look)) => go(look, a, b),
+            (Some(look), _) | (None, Some(look)) => go(look, part),
             (None, None) => {
-                let next = points[k + 1..].iter().find_map(|(_, look)| *look);
-                go(next.or(last).unwrap_or(Look::Unknown), a, b);
+                let next = looks[k + 1..].iter().find_map(|look| *look);
+                go(next.or(last).unwrap_or(Look::Unknown), part);
             }
         }
     }
     out
 }
 
-/// A smooth line through `points` (centripetal Catmull and Rom).
-fn smooth(points: &[Point]) -> Vec<Point> {
-    const PARTS: u32 = 8;
-    let Some(first) = points.first() else { return Vec::new() };
-    let mut out = vec![*first];
-    let count = points.len();
-    for k in 0..count - 1 {
+/// A smooth line through `points` (centripetal Catmull and Rom), one part for each two of them.
+fn smooth(points: &[Point]) -> Vec<Vec<Point>> {
+    const STEPS: u32 = 10;
+    let last = points.len().saturating_sub(1);
+    let part = |k: usize| {
         let (b, c) = (points[k], points[k + 1]);
-        let (a, d) = (points[k.saturating_sub(1)], points[(k + 2).min(count - 1)]);
+        let (a, d) = (points[k.saturating_sub(1)], points[(k + 2).min(last)]);
         let gap = |p: Point, q: Point| (p[0] - q[0]).hypot(p[1] - q[1]).sqrt().max(1e-6);
         let (ab, bc, cd) = (gap(a, b), gap(b, c), gap(c, d));
-        // Slopes by the parameter of the middle piece, which runs from 0 to 1.
-        let slope = |axis: usize| {
-            let leave = (b[axis] - a[axis]) / ab - (c[axis] - a[axis]) / (ab + bc) + (c[axis] - b[axis]) / bc;
-            let reach = (c[axis] - b[axis]) / bc - (d[axis] - b[axis]) / (bc + cd) + (d[axis] - c[axis]) / cd;
-            [if k == 0 { c[axis] - b[axis] } else { bc * leave }, if k + 2 == count { c[axis] - b[axis] } else { bc * reach }]
+        // Slopes at both ends, by a parameter that runs from 0 to 1 between them.
+        let slopes = |axis: usize| {
+            let chord = c[axis] - b[axis];
+            let leave = (b[axis] - a[axis]) / ab - (c[axis] - a[axis]) / (ab + bc) + chord / bc;
+            let reach = chord / bc - (d[axis] - b[axis]) / (bc + cd) + (d[axis] - c[axis]) / cd;
+            let [leave, reach] = [bc * leave, bc * reach];
+            // An end has no neighbour: the curve bends there as evenly as its other end lets it.
+            match (k == 0, k + 1 == last) {
+                (true, true) => [chord; 2],
+                (true, false) => [1.5 * chord - 0.5 * reach, reach],
+                (false, true) => [leave, 1.5 * chord - 0.5 * leave],
+                (false, false) => [leave, reach],
+            }
         };
-        let slopes = [slope(0), slope(1)];
-        for part in 1..=PARTS {
-            let t = f64::from(part) / f64::from(PARTS);
-            let at = |axis: usize| {
-                let [leave, reach] = slopes[axis];
-                let (rise, fall) = (t * t * (3.0 - 2.0 * t), t * (1.0 - t));
-                b[axis] + rise * (c[axis] - b[axis]) + fall * ((1.0 - t) * leave - t * reach)
-            };
-            out.push([at(0), at(1)]);
-        }
-    }
-    out
+        let slopes = [slopes(0), slopes(1)];
+        let at = |t: f64, axis: usize| {
+            let [leave, reach] = slopes[axis];
+            let (rise, fall) = (t * t * (3.0 - 2.0 * t), t * (1.0 - t));
+            b[axis] + rise * (c[axis] - b[axis]) + fall * ((1.0 - t) * leave - t * reach)
+        };
+        (0..=STEPS).map(|step| f64::from(step) / f64::from(STEPS)).map(|t| [at(t, 0), at(t, 1)]).collect()
+    };
+    (0..last).map(part).collect()
 }
 
 #[cfg(test)]
@@ -311,33 +320,32 @@ mod tests {
     fn pieces_share_their_ends() {
         use Look::{Stable, Unstable};
         let at = |x: f64| [x, 0.0];
-        let path = [
-            (at(0.0), Some(Stable)),
-            (at(1.0), Some(Stable)),
-            (at(2.0), None),
-            (at(1.5), Some(Unstable)),
-            (at(1.0), None),
-            (at(1.1), None),
-            (at(2.0), Some(Stable)),
-        ];
-        let pieces = pieces(&path);
+        let places = [0.0, 1.0, 2.0, 1.5, 1.0, 1.1, 2.0];
+        let parts: Vec<Vec<Point>> = places.windows(2).map(|w| vec![at(w[0]), at(w[1])]).collect();
+        let looks = [Some(Stable), Some(Stable), None, Some(Unstable), None, None, Some(Stable)];
         let expected = [
             (Stable, vec![at(0.0), at(1.0), at(2.0)]),
             (Unstable, vec![at(2.0), at(1.5), at(1.0)]),
             (Stable, vec![at(1.0), at(1.1), at(2.0)]),
         ];
-        assert_eq!(pieces, expected);
-        assert_eq!(super::pieces(&[(at(0.0), Some(Stable)), (at(1.0), Some(Unstable))])[1].1, [at(0.5), at(1.0)]);
+        assert_eq!(pieces(&looks, &parts), expected);
+        let halves = pieces(&[Some(Stable), Some(Unstable)], &[vec![at(0.0), at(0.5), at(1.0)]]);
+        assert_eq!(halves, [(Stable, vec![at(0.0), at(0.5)]), (Unstable, vec![at(0.5), at(1.0)])]);
     }
 
     #[test]
     fn a_smooth_line_goes_through_its_points_and_keeps_lines_straight() {
         let points = [[0.0, 0.0], [1.0, 2.0], [3.0, 2.5], [3.0, 2.5], [2.0, 4.0]];
-        let line = smooth(&points);
-        assert!(points.iter().all(|p| line.iter().any(|q| (p[0] - q[0]).hypot(p[1] - q[1]) < 1e-9)));
-        assert!(line.iter().all(|p| p.iter().all(|x| x.is_finite())));
+        let parts = smooth(&points);
+        let near = |p: Point, q: Point| (p[0] - q[0]).hypot(p[1] - q[1]) < 1e-9;
+        assert_eq!(parts.len(), 4);
+        for (part, ends) in parts.iter().zip(points.windows(2)) {
+            assert!(near(part[0], ends[0]) && near(part[part.len() - 1], ends[1]));
+        }
+        assert!(parts.iter().flatten().flatten().all(|x| x.is_finite()));
         let straight = smooth(&[[0.0, 0.0], [1.0, 1.0], [5.0, 5.0], [6.0, 6.0]]);
-        assert!(straight.iter().all(|p| (p[0] - p[1]).abs() < 1e-12));
+        assert!(straight.iter().flatten().all(|p| (p[0] - p[1]).abs() < 1e-12));
+        assert!(smooth(&[[1.0, 1.0]]).is_empty() && smooth(&[]).is_empty());
     }
 
     #[test]

@@ -39,10 +39,7 @@ impl Mark {
         const PAPER: Color = Color { rgb: [255, 255, 255], opacity: 1.0 };
         match self {
             Self::Filled(color) => scene.dot([x, y], SIZE, color),
-            Self::Hollow(color) => {
-                scene.dot([x, y], SIZE, color);
-                scene.dot([x, y], SIZE - 0.8, PAPER);
-            }
+            Self::Hollow(color) => scene.ring([x, y], SIZE - 0.4, Stroke::solid(color, 0.8)),
             Self::Diamond(color) => {
                 let a = 1.5 * SIZE;
                 let corners = [[x - a, y], [x, y - a], [x + a, y], [x, y + a]];

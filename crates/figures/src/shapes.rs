@@ -1,6 +1,6 @@
 //! Several equilibria of one arm to scale.
 
-use hydrostat::{Arm, Configuration, Equilibria, Parameter, Path, PathPoint, Stability};
+use hydrostat::{Arm, Configuration, Equilibria, Event, Parameter, Path, PathPoint};
 
 use crate::arm_figure::fitting;
 use crate::axes::{Axes, BELOW, LEFT};
@@ -11,7 +11,7 @@ use crate::outline::{Outline, Style, bounds};
 use crate::palette::{Color, INK, ordered, series};
 use crate::placement::Occupied;
 use crate::scene::{Anchor, Scene, Stroke};
-use crate::tip_labels::{TipLabel, draw_tip_labels};
+use crate::tip_labels::{TipLabel, label_at_tips};
 
 const TITLE_SIZE: f64 = 10.0;
 const MAX_HEIGHT: f64 = 400.0;
@@ -54,7 +54,14 @@ pub fn path_shapes_figure(path: &Path, over: &Abscissa, title: &str) -> Scene {
             label: Label::plain(over.text(point.value)),
         })
         .collect();
-    draw(&format!("{title}: shapes along the path"), title, &members, Some(path.parameter))
+    let has = |event: Event| path.branches.iter().flat_map(|b| &b.points).any(|p| p.event == Some(event));
+    let marginal = match (has(Event::LimitPoint), has(Event::Bifurcation)) {
+        (true, true) => "limit point or bifurcation",
+        (true, false) => "limit point",
+        (false, true) => "bifurcation",
+        (false, false) => Look::Unknown.words(),
+    };
+    draw(&format!("{title}: shapes along the path"), title, &members, marginal, Some(path.parameter))
 }
 
 /// All equilibria under the same loads, numbered from 1: stable ones solid and filled, unstable ones dashed.
@@ -67,19 +74,18 @@ pub fn path_shapes_figure(path: &Path, over: &Abscissa, title: &str) -> Scene {
 /// assert!(figure.texts().any(|text| text == "3"));
 /// ```
 pub fn equilibria_figure(all: &Equilibria, title: &str) -> Scene {
-    let stable = |index: usize| all.found[..index].iter().filter(|e| e.stability == Some(Stability::Stable)).count();
     let members: Vec<Member<'_>> = all
         .found
         .iter()
         .enumerate()
-        .map(|(index, one)| {
-            let look = Look::of(one.stability);
-            // Blue, green, ... for what can be met; the rest steps back.
-            let color = if look == Look::Stable { series([1, 2, 3, 4, 5][stable(index) % 5]) } else { series(0) };
-            Member { configuration: &one.configuration, look, color, label: Label::plain((index + 1).to_string()) }
+        .map(|(index, one)| Member {
+                configuration: &one.configuration,
+                look: Look::of(one.stability),
+                color: series(index + 1),
+                label: Label::plain((index + 1).to_string()),
         })
         .collect();
-    draw(&format!("{title}: all equilibria"), title, &members, None)
+    draw(&format!("{title}: all equilibria"), title, &members, Look::Unknown.words(), None)
 }
 
 /// About `count` points at even distances, the first and the last, and all events.
@@ -117,10 +123,10 @@ fn surface(look: Look, color: Color) -> Stroke {
     }
 }
 
-fn draw(says: &str, title: &str, members: &[Member<'_>], varied: Option<Parameter>) -> Scene {
+fn draw(says: &str, title: &str, members: &[Member<'_>], unknown: &str, varied: Option<Parameter>) -> Scene {
     let outlines: Vec<Outline> = members.iter().map(|m| Outline::new(m.configuration, 0)).collect();
     let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).collect();
-    let legend = legend(members, varied);
+    let legend = legend(members, unknown, varied);
     let baseline = MARGIN + CAP_HEIGHT * TITLE_SIZE;
     let top = baseline + 8.0 + legend.height() + 6.0;
     let axes = axes(&all, top);
@@ -130,7 +136,10 @@ fn draw(says: &str, title: &str, members: &[Member<'_>], varied: Option<Paramete
     legend.draw(&mut scene, baseline + 8.0);
     axes.draw(&mut scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
     let mut page = Occupied::new(axes.frame.grown(-3.0));
-    for (outline, Member { look, color, .. }) in outlines.iter().zip(members) {
+    // What an arm can be met in lies on top.
+    let both = || outlines.iter().zip(members);
+    let (stable, others): (Vec<_>, Vec<_>) = both().partition(|(_, m)| m.look == Look::Stable);
+    for (outline, Member { look, color, .. }) in others.into_iter().chain(stable) {
         let nothing = Stroke::solid(color.with_opacity(0.0), 0.1);
         let style = Style {
             fill: color.with_opacity(if *look == Look::Stable { 0.16 } else { 0.0 }),
@@ -142,9 +151,7 @@ fn draw(says: &str, title: &str, members: &[Member<'_>], varied: Option<Paramete
         outline.draw(&mut scene, &axes, &style);
         outline.occupy(&mut page, &axes);
     }
-    let labels: Vec<TipLabel> = outlines
-        .iter()
-        .zip(members)
+    let labels: Vec<TipLabel> = both()
         .map(|(outline, Member { configuration, color, label, .. })| TipLabel {
             tip: axes.at(outline.tip()),
             towards: configuration.tip().theta,
@@ -152,18 +159,14 @@ fn draw(says: &str, title: &str, members: &[Member<'_>], varied: Option<Paramete
             label: label.clone(),
         })
         .collect();
-    draw_tip_labels(&mut scene, &mut page, axes.frame, &labels);
+    label_at_tips(&mut scene, &mut page, &labels);
     scene
 }
 
-fn legend(members: &[Member<'_>], varied: Option<Parameter>) -> Legend {
+fn legend(members: &[Member<'_>], unknown: &str, varied: Option<Parameter>) -> Legend {
     let mut legend = Legend::default();
     for look in [Look::Stable, Look::Unstable, Look::Unknown] {
-        let words = match look {
-            // At its events a path is neither stable nor unstable.
-            Look::Unknown if varied.is_some() => "limit point or bifurcation",
-            other => other.words(),
-        };
+        let words = if look == Look::Unknown { unknown } else { look.words() };
         if members.iter().any(|m| m.look == look) {
             legend.add(Sample::Line(surface(look, INK)), Label::plain(words));
         }

@@ -20,13 +20,22 @@ pub(crate) struct TipLabel {
 
 /// A dot on every tip, and the labels beside them; one below the other in a free corner where tips are crowded.
 pub(crate) fn draw_tip_labels(scene: &mut Scene, page: &mut Occupied, frame: Rect, labels: &[TipLabel]) {
+    if !(crowded(labels) && in_column(scene, page, frame, labels)) {
+        label_at_tips(scene, page, labels);
+    }
+}
+
+/// A dot on every tip, and each label at the free place next to it.
+pub(crate) fn label_at_tips(scene: &mut Scene, page: &mut Occupied, labels: &[TipLabel]) {
+    dots(scene, labels);
+    for TipLabel { tip, towards, color, label } in labels {
+        place_label(scene, page, label, color.towards(INK, 0.25), *tip, *towards);
+    }
+}
+
+fn dots(scene: &mut Scene, labels: &[TipLabel]) {
     for TipLabel { tip, color, .. } in labels {
         scene.dot(*tip, 1.6, *color);
-    }
-    if !(crowded(labels) && in_column(scene, page, frame, labels)) {
-        for TipLabel { tip, towards, color, label } in labels {
-            place_label(scene, page, label, color.towards(INK, 0.25), *tip, *towards);
-        }
     }
 }
 
@@ -36,16 +45,18 @@ fn crowded(labels: &[TipLabel]) -> bool {
     labels.windows(2).any(|w| apart(w[0].tip, w[1].tip) < 2.0 * TEXT_SIZE)
 }
 
-/// Labels one below the other in a right corner, joined to their tips by lines that do not
-/// cross. Draws nothing and says so if neither corner is free.
+/// Labels one below the other in the upper right corner, joined to their tips by lines that do not
+/// cross. Draws nothing and says so if that corner is not free.
 fn in_column(scene: &mut Scene, page: &Occupied, frame: Rect, labels: &[TipLabel]) -> bool {
     const INSET: f64 = 6.0;
     let widest = labels.iter().map(|l| l.label.width(TEXT_SIZE)).fold(0.0, f64::max);
     let height = LINE * labels.len() as f64;
-    let right = frame.right - INSET;
-    let corner = |top: f64| Rect { left: right - widest, top, right, bottom: top + height };
-    let corners = [corner(frame.top + INSET), corner(frame.bottom - INSET - height)];
-    let Some(column) = corners.into_iter().find(|column| page.is_free(column)) else { return false };
+    let (top, right) = (frame.top + INSET, frame.right - INSET);
+    let column = Rect { left: right - widest, top, right, bottom: top + height };
+    if !page.is_free(&column) {
+        return false;
+    }
+    dots(scene, labels);
     let mut order: Vec<&TipLabel> = labels.iter().collect();
     order.sort_by(|a, b| a.tip[1].total_cmp(&b.tip[1]));
     for (row, TipLabel { tip, color, label, .. }) in order.into_iter().enumerate() {

@@ -45,7 +45,7 @@ fn at_loads(args: &EquilibriaArgs, arm: &Arm) -> anyhow::Result<()> {
     };
     output::put(args.output.as_deref(), &text)?;
     if all.found.is_empty() {
-        return Err(NoAnswer(format!("no equilibrium was found; {}", extent(&all))).into());
+        return Err(NoAnswer(format!("no equilibrium was found; {}", extent(&all).replace('\n', " "))).into());
     }
     Ok(())
 }
@@ -56,6 +56,10 @@ fn search(arm: &Arm, tol: f64) -> anyhow::Result<Equilibria> {
         PathError::Start { source, .. } => {
             let message = format!("no equilibrium was found at any angle of the base; as it is held, {source}");
             anyhow::Error::new(source).context(message)
+        }
+        PathError::Option { option, value, expected } => {
+            let message = format!("--{option}: expected a number {expected}, found {value}");
+            anyhow::Error::new(error).context(message)
         }
         other => other.into(),
     })
@@ -135,14 +139,16 @@ fn counted(all: &Equilibria) -> String {
 
 /// Whether the search is complete, and what it covered.
 fn extent(all: &Equilibria) -> String {
-    let range = |[from, to]: [f64; 2]| format!("{} to {} deg", number(from.to_degrees()), number(to.to_degrees()));
+    // Hundredths, without those that rounding leaves of nothing.
+    let angle = |rad: f64| number((100.0 * rad.to_degrees()).round() / 100.0 + 0.0);
+    let range = |[from, to]: [f64; 2]| format!("{} to {} deg", angle(from), angle(to));
     let angles = format!("tip at {}, base at {}", range(all.tip_angles), range(all.base_angles));
     if all.complete {
-        return format!("complete: the curve of equilibria was followed once round ({angles})");
+        return format!("complete: the curve of equilibria was followed once round\n({angles})");
     }
     let ends: Vec<String> =
         (0..2).filter_map(|side| all.ends[side].map(|end| side_message(end, all.base_angles[side]))).collect();
-    format!("not complete: the curve of equilibria was followed for a part ({angles}), then {}", ends.join("; and "))
+    format!("not complete: the curve of equilibria was followed for a part\n({angles}),\nthen {}", ends.join("; and "))
 }
 
 fn over_summary(arm: &Arm, varied: &Varied, searches: &[(f64, Result<Equilibria, String>)]) -> String {

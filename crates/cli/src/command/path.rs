@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{Arm, Branch, Event, Path, PathEnd, PathOptions, PathPoint, Stability};
+use hydrostat::{Arm, Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint, Stability};
 use hydrostat_figures::{Abscissa, Quantity, path_figure, path_shapes_figure};
 use hydrostat_files::{PathDocument, Varied, end_message, number, path_csv};
 
@@ -63,7 +63,23 @@ fn follow(arm: &Arm, args: &PathArgs) -> anyhow::Result<Path> {
         progress.say(|| format!("{count} points, {} = {}", varied.parameter, varied.with_unit(point.value)));
         true
     });
-    Ok(path?)
+    path.map_err(|error| match error {
+        PathError::Start { value, source, .. } => {
+            let start = format!("{} = {}", varied.parameter, varied.with_unit(value));
+            let message = format!("no equilibrium at the start of the path, {start}: {source}");
+            anyhow::Error::new(source).context(message)
+        }
+        PathError::Value { value, ref source, .. } => {
+            let message = format!("--vary {} = {}: {source}", varied.parameter, varied.with_unit(value));
+            anyhow::Error::new(error).context(message)
+        }
+        PathError::Option { option, value, expected } => {
+            let name = if option == "longest" { "max-step" } else { option };
+            let message = format!("--{name}: expected a number {expected}, found {value}");
+            anyhow::Error::new(error).context(message)
+        }
+        PathError::Support => error.into(),
+    })
 }
 
 /// The axis of what varies.
