@@ -155,8 +155,11 @@ pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str
         .branches
         .iter()
         .map(|branch| {
-            let looks: Vec<Option<Look>> = branch.points.iter().map(look).collect();
-            pieces(&looks, &smooth(&axes.all(&branch.points.iter().map(at).collect::<Vec<_>>())))
+            // A branch switched to begins at the bifurcation, which is a point of another.
+            let left = |p: &&&PathPoint| branch.switched_at == Some(p.value);
+            let points: Vec<&PathPoint> = events.iter().find(left).copied().into_iter().chain(&branch.points).collect();
+            let looks: Vec<Option<Look>> = points.iter().map(|p| look(p)).collect();
+            pieces(&looks, &smooth(&axes.all(&points.iter().map(|p| at(p)).collect::<Vec<_>>())))
         })
         .collect();
     let mut occupied = Occupied::new(axes.frame.grown(-3.0));

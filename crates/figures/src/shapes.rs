@@ -15,8 +15,11 @@ use crate::tip_labels::{TipLabel, label_at_tips};
 
 const TITLE_SIZE: f64 = 10.0;
 const MAX_HEIGHT: f64 = 400.0;
-/// Shapes on the branch that a path starts on, and on each that it switches to.
-const ALONG: [usize; 2] = [9, 3];
+/// Shapes along the branch that a path starts on, along each of a few that it switches to, and of each of many.
+const ALONG: [usize; 3] = [9, 4, 1];
+const FEW: usize = 3;
+/// Tips that are no further apart, over L, and no more than that (rad) turned against each other are one on the page.
+const ALIKE: [f64; 2] = [0.02, 0.05];
 
 /// One shape among several.
 struct Member<'a> {
@@ -41,7 +44,16 @@ struct Member<'a> {
 pub fn path_shapes_figure(path: &Path, over: &Abscissa, title: &str) -> Scene {
     let mut picked: Vec<&PathPoint> = Vec::new();
     for (branch, all) in path.branches.iter().enumerate() {
-        picked.extend(evenly(&all.points, path.range, ALONG[branch.min(1)]));
+        let count = match (branch, path.branches.len()) {
+            (0, _) => ALONG[0],
+            (_, ..=FEW) => ALONG[1],
+            _ => ALONG[2],
+        };
+        for point in evenly(&all.points, path.range, count) {
+            if !picked.iter().any(|earlier| alike(earlier, point)) {
+                picked.push(point);
+            }
+        }
     }
     let count = picked.len();
     let members: Vec<Member<'_>> = picked
@@ -88,7 +100,15 @@ pub fn equilibria_figure(all: &Equilibria, title: &str) -> Scene {
     draw(&format!("{title}: all equilibria"), title, &members, Look::Unknown.words(), None)
 }
 
-/// About `count` points at even distances, the first and the last, and all events.
+/// Whether two shapes could not be told apart.
+fn alike(a: &PathPoint, b: &PathPoint) -> bool {
+    let [p, q] = [a, b].map(|point| point.configuration.tip());
+    let apart = (q.x - p.x).hypot(q.y - p.y) / a.configuration.arm.length;
+    let same = Look::of(a.stability) == Look::of(b.stability);
+    same && apart < ALIKE[0] && (q.theta - p.theta).abs() < ALIKE[1]
+}
+
+/// About `count` points at even distances, the first and the last, and all events; of one, the last.
 fn evenly(points: &[PathPoint], range: [f64; 2], count: usize) -> Vec<&PathPoint> {
     let mut along = vec![0.0];
     for pair in points.windows(2) {
@@ -102,6 +122,9 @@ fn evenly(points: &[PathPoint], range: [f64; 2], count: usize) -> Vec<&PathPoint
     let gap = whole / (count.max(2) - 1) as f64;
     let events: Vec<f64> = points.iter().zip(&along).filter(|(p, _)| p.event.is_some()).map(|(_, at)| *at).collect();
     let mut wanted: Vec<usize> = (0..points.len()).filter(|k| points[*k].event.is_some()).collect();
+    if count == 1 {
+        return points.last().into_iter().collect();
+    }
     for k in 0..count {
         let place = gap * k as f64;
         let nearest = (0..points.len()).min_by(|a, b| (along[*a] - place).abs().total_cmp(&(along[*b] - place).abs()));
