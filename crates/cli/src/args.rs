@@ -94,10 +94,11 @@ pub(crate) struct SolveArgs {
     pub(crate) plot: Option<PathBuf>,
 }
 
-/// An arm and what is to be different from its file.
+// An arm and what is to be different from its file. As a doc comment this would replace the help of each command.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct ArmArgs {
     /// An arm file, or the name of a shipped arm (see `hydrostat arms`)
+    #[arg(value_name = "ARM")]
     pub(crate) file: String,
     /// Tensions of all cables, in their order, N; as in 20,0
     #[arg(long, value_name = "T,T,...", value_delimiter = ',', allow_hyphen_values = true)]

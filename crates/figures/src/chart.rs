@@ -126,8 +126,7 @@ const END: Mark = Mark::Cross(INK);
 pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str) -> Scene {
     let at = |p: &PathPoint| [over.per_si * p.value, quantity.of(&p.configuration)];
     let all: Vec<[f64; 2]> = path.branches.iter().flat_map(|b| b.points.iter().map(at)).collect();
-    let events: Vec<&PathPoint> =
-        path.branches.iter().flat_map(|b| &b.points).filter(|p| p.event.is_some()).collect();
+    let events: Vec<&PathPoint> = path.branches.iter().flat_map(|b| &b.points).filter(|p| p.event.is_some()).collect();
     let stopped: Vec<&PathPoint> = path
         .branches
         .iter()
@@ -147,7 +146,7 @@ pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str
         }
     }
     if !stopped.is_empty() {
-        legend.add(Sample::Mark(END), Label::plain("no equilibrium beyond"));
+        legend.add(Sample::Mark(END), Label::plain("no equilibrium found beyond"));
     }
 
     let (mut scene, axes) = page(title, &legend, &all, over, quantity);

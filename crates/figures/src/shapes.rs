@@ -91,10 +91,10 @@ pub fn equilibria_figure(all: &Equilibria, title: &str) -> Scene {
         .iter()
         .enumerate()
         .map(|(index, one)| Member {
-                configuration: &one.configuration,
-                look: Look::of(one.stability),
-                color: series(index + 1),
-                label: Label::plain((index + 1).to_string()),
+            configuration: &one.configuration,
+            look: Look::of(one.stability),
+            color: series(index + 1),
+            label: Label::plain((index + 1).to_string()),
         })
         .collect();
     draw(&format!("{title}: all equilibria"), title, &members, Look::Unknown.words(), None)

@@ -114,12 +114,15 @@ fn parameter(key: &str) -> Result<Parameter, VariedError> {
     })
 }
 
+/// Without the last digits, which rounding has left of what was meant: 90.00000000000001 is 90.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.14e}").parse().unwrap_or(value)
+}
+
 impl Varied {
     /// A value (SI) as a number of the unit shown.
     pub fn shown(&self, value: f64) -> f64 {
-        // Rounding must not show what is 90 deg as 90.00000000000001.
-        let shown = value * self.per_si;
-        format!("{shown:.14e}").parse().unwrap_or(shown)
+        rounded(value * self.per_si)
     }
 
     /// A value (SI) with the unit shown, to five digits.
@@ -138,7 +141,7 @@ impl Varied {
         let [from, to] = self.range;
         let last = count.saturating_sub(1).max(1);
         let share = |k: usize| k as f64 / last as f64;
-        (0..count).map(|k| if k == last { to } else { from + share(k) * (to - from) }).collect()
+        (0..count).map(|k| if k == last { to } else { rounded(from + share(k) * (to - from)) }).collect()
     }
 
     /// The quantity with its SI unit, as the head of a column: `flow.speed_m_per_s`.
@@ -175,7 +178,10 @@ mod tests {
             ("material.poisson=0.3:0.5", [0.3, 0.5], ""),
         ] {
             let varied = read(text);
-            assert!(varied.range.iter().zip(range).all(|(a, b)| (a - b).abs() <= 1e-14 * b.abs()), "{text}: {varied:?}");
+            assert!(
+                varied.range.iter().zip(range).all(|(a, b)| (a - b).abs() <= 1e-14 * b.abs()),
+                "{text}: {varied:?}"
+            );
             assert_eq!(varied.unit, unit, "{text}");
         }
         assert_eq!(read("flow.direction=0:90").with_unit(half), "90 deg");

@@ -153,7 +153,8 @@ fn extent(all: &Equilibria) -> String {
 
 fn over_summary(arm: &Arm, varied: &Varied, searches: &[(f64, Result<Equilibria, String>)]) -> String {
     let [from, to] = varied.range.map(|value| varied.with_unit(value));
-    let mut out = format!("{}: equilibria at {} values of {}, {from} to {to}\n\n", arm.name, searches.len(), varied.parameter);
+    let mut out =
+        format!("{}: equilibria at {} values of {}, {from} to {to}\n\n", arm.name, searches.len(), varied.parameter);
     let unit = if varied.unit.is_empty() { "value" } else { varied.unit };
     let mut rows = vec![[unit, "equilibria", "stable", "search"].map(str::to_owned).to_vec()];
     for (value, found) in searches {

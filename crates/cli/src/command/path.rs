@@ -53,8 +53,7 @@ pub(super) fn check_quantity(arm: &Arm, quantity: Quantity) -> Result<(), WrongR
 }
 
 fn follow(arm: &Arm, args: &PathArgs) -> anyhow::Result<Path> {
-    let options =
-        PathOptions { tol: args.tol, longest: args.max_step, most: args.max_points, branches: args.branches };
+    let options = PathOptions { tol: args.tol, longest: args.max_step, most: args.max_points, branches: args.branches };
     let mut progress = Progress::new();
     let mut count = 0;
     let varied = &args.vary;
