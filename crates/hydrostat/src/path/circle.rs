@@ -67,12 +67,13 @@ impl Arm {
     /// use hydrostat::Arm;
     ///
     /// // A soft arm that the stream meets from the tip.
-    /// let mut arm = Arm::cone(0.2, 0.008, 0.003, 60e3, 0.5);
-    /// arm.flow.speed = 0.3;
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.flow.speed = 0.2;
     /// arm.flow.direction = std::f64::consts::PI;
     /// let all = arm.equilibria(1e-8).unwrap();
     /// assert!(all.complete);
-    /// assert_eq!(all.found.len(), 3); // straight, which is unstable, and bent to either side
+    /// // Straight, bent down the stream to either side, and an unstable one between each of these.
+    /// assert_eq!(all.found.len(), 5);
     /// ```
     ///
     /// # Errors

@@ -171,13 +171,13 @@ impl Arm {
     /// ```
     /// use hydrostat::{Arm, Event, Parameter, PathOptions};
     ///
-    /// // An arm that is held against the stream at 150 deg and turned past it.
-    /// let mut arm = Arm::cone(0.2, 0.008, 0.003, 60e3, 0.5);
-    /// arm.flow.speed = 0.3;
+    /// // An arm that lies down the stream, is turned to face it and past it, and then snaps.
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.flow.speed = 0.2;
     /// arm.flow.direction = std::f64::consts::PI;
-    /// let path = arm.path(Parameter::BaseAngle, [0.5, -0.5], &PathOptions::default()).unwrap();
+    /// let path = arm.path(Parameter::BaseAngle, [1.5, -1.5], &PathOptions::default()).unwrap();
     /// let limits = path.branches[0].points.iter().filter(|p| p.event == Some(Event::LimitPoint));
-    /// assert_eq!(limits.count(), 2);
+    /// assert_eq!(limits.count(), 4); // into straight and out of it, on both sides
     /// ```
     ///
     /// # Errors
