@@ -1,5 +1,7 @@
 //! Tables for people.
 
+use std::fmt::Write as _;
+
 use hydrostat::{Configuration, Stability};
 
 /// Rows of cells in columns as wide as they need to be, numbers to the right and `words` last columns to the left.
@@ -13,7 +15,7 @@ pub(super) fn table(rows: &[Vec<String>], words: usize) -> String {
         for (c, cell) in row.iter().enumerate() {
             let width = widths[c];
             line.push_str(if c == 0 { "" } else { "  " });
-            line.push_str(&if c + words < columns { format!("{cell:>width$}") } else { format!("{cell:<width$}") });
+            let _ = if c + words < columns { write!(line, "{cell:>width$}") } else { write!(line, "{cell:<width$}") };
         }
         out.push_str(line.trim_end());
         out.push('\n');
