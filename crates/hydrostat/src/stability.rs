@@ -10,7 +10,7 @@
 //! ```
 //!
 //! in lengths of L and forces of C3 A0/L^2 at the base, where K is the net linearised force and couple
-//! per length and C the compliance of [`crate::compliance`]: base clamped, loads at the tip and along the
+//! per length and C the compliance of `compliance`: base clamped, loads at the tip and along the
 //! arm following as they do. A motion in proportion to exp(lambda t) has -C lambda u = u, so that each
 //! eigenvalue mu of C is a rate lambda = -1/mu. Each rate with a positive real part is a direction in
 //! which the arm leaves the equilibrium. Rates are given over the slowest decay of the same arm unloaded, which
