@@ -50,7 +50,7 @@ pub(crate) struct EquilibriaArgs {
     /// Draw a quantity of all equilibria over that parameter; FILE ends in .svg or .png
     #[arg(long, value_name = "FILE", value_parser = picture, requires = "over")]
     pub(crate) plot_over: Option<PathBuf>,
-    /// What --plot-over shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, stroke[0]
+    /// What --plot-over shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, `stroke[0]`
     #[arg(long, value_name = "NAME", default_value = "tip.y")]
     pub(crate) quantity: Quantity,
 }

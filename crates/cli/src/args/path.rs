@@ -62,7 +62,7 @@ pub(crate) struct PathArgs {
     /// Draw shapes along the path to scale; FILE ends in .svg or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot_shapes: Option<PathBuf>,
-    /// What --plot shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, stroke[0]
+    /// What --plot shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, `stroke[0]`
     #[arg(long, value_name = "NAME", default_value = "tip.y")]
     pub(crate) quantity: Quantity,
 }
