@@ -1,8 +1,14 @@
 //! Arguments, and the help that teaches them.
 
+mod equilibria;
+mod path;
+
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+
+pub(crate) use equilibria::{EquilibriaArgs, Over};
+pub(crate) use path::PathArgs;
 
 const EXIT: &str = "\
 Exit status:
@@ -11,6 +17,11 @@ Exit status:
   3  the arm has no such equilibrium, or it was not found; standard error says why
   1  anything else";
 
+/// What `stable` means wherever it is said.
+const STABLE: &str = "\
+Stable means: against static divergence, with motions that water resists and inertia does not bear
+on (docs/model.md, section 7). Flutter, which takes inertia, is beyond statics and is not seen.";
+
 const EXAMPLES: &str = "\
 Examples:
   hydrostat                                             remake the source's figure in ./figures
@@ -18,6 +29,9 @@ Examples:
   hydrostat solve silicone --tension 0.5,0 --flow-speed 0.2
   hydrostat arms silicone > my.toml                     start an arm file of your own
   hydrostat check my.toml                               see what it means
+  hydrostat path silicone --vary cable[0].tension=0:1   follow the shapes as a tension rises
+  hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
+                                                        all shapes under the same loads
   hydrostat solve my.toml --format csv --stations 101 -o my.csv";
 
 /// The static shape of a soft arm under water: driven by cables, keeping its volume, in a stream.
@@ -35,6 +49,10 @@ pub(crate) struct Args {
 pub(crate) enum Command {
     /// Solve an arm: shape, forces, cable strokes
     Solve(SolveArgs),
+    /// Follow the equilibria over a range of one parameter, through limit points and bifurcations
+    Path(PathArgs),
+    /// Find all equilibria under the same loads, with their stability
+    Equilibria(EquilibriaArgs),
     /// Remake the source's Fig. 1a, 1b and 1c as SVG, PNG and CSV
     Figures(FiguresArgs),
     /// List the arms that ship with the program, or print one as TOML
@@ -57,17 +75,8 @@ Examples:
 
 {EXIT}"))]
 pub(crate) struct SolveArgs {
-    /// An arm file, or the name of a shipped arm (see `hydrostat arms`)
-    pub(crate) arm: String,
-    /// Tensions of all cables, in their order, N; as in 20,0
-    #[arg(long, value_name = "T,T,...", value_delimiter = ',', allow_hyphen_values = true)]
-    pub(crate) tension: Option<Vec<String>>,
-    /// Speed of the stream, m/s
-    #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
-    pub(crate) flow_speed: Option<String>,
-    /// Override a value of the arm file: a dotted path and its value, as in `cable[0].tension="20 N"`
-    #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
-    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) arm: ArmArgs,
     /// Error of the tip position over the length that is asked for, from 1e-12 to 1e-2
     #[arg(long, value_name = "TOL", default_value = "1e-8", allow_hyphen_values = true)]
     pub(crate) tol: f64,
@@ -83,6 +92,23 @@ pub(crate) struct SolveArgs {
     /// Draw the arm to scale; FILE ends in .svg or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot: Option<PathBuf>,
+}
+
+// An arm and what is to be different from its file. As a doc comment this would replace the help of each command.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct ArmArgs {
+    /// An arm file, or the name of a shipped arm (see `hydrostat arms`)
+    #[arg(value_name = "ARM")]
+    pub(crate) file: String,
+    /// Tensions of all cables, in their order, N; as in 20,0
+    #[arg(long, value_name = "T,T,...", value_delimiter = ',', allow_hyphen_values = true)]
+    pub(crate) tension: Option<Vec<String>>,
+    /// Speed of the stream, m/s
+    #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
+    pub(crate) flow_speed: Option<String>,
+    /// Override a value of the arm file: a dotted path and its value, as in `cable[0].tension="20 N"`
+    #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
+    pub(crate) set: Vec<String>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]

@@ -3,10 +3,11 @@
 use std::io;
 use std::process::ExitCode;
 
-use hydrostat::SolveError;
+use hydrostat::{PathError, SolveError};
 use hydrostat_figures::source::StudyError;
 use hydrostat_files::{FileError, WriteError};
 
+use crate::command::NoAnswer;
 use crate::request::WrongRequest;
 
 /// Arguments, arm file or output path are wrong.
@@ -49,6 +50,15 @@ fn code(error: &anyhow::Error) -> u8 {
                 SolveError::Arm(_) | SolveError::Option { .. } => WRONG_REQUEST,
                 SolveError::NoEquilibrium(_) => NO_EQUILIBRIUM,
             };
+        }
+        if cause.is::<NoAnswer>() {
+            return NO_EQUILIBRIUM;
+        }
+        if let Some(
+            PathError::Value { .. } | PathError::Option { .. } | PathError::Support | PathError::Stroke { .. },
+        ) = cause.downcast_ref()
+        {
+            return WRONG_REQUEST;
         }
         if cause.is::<WrongRequest>() || cause.is::<FileError>() || cause.is::<WriteError>() {
             return WRONG_REQUEST;

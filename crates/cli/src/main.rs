@@ -4,6 +4,7 @@ mod args;
 mod command;
 mod exit;
 mod output;
+mod progress;
 mod request;
 
 use std::process::ExitCode;
@@ -26,6 +27,8 @@ fn main() -> ExitCode {
     let outcome = std::panic::catch_unwind(|| match args.command {
         None => command::main_job::run(),
         Some(Command::Solve(args)) => command::solve::run(&args),
+        Some(Command::Path(args)) => command::path::run(&args),
+        Some(Command::Equilibria(args)) => command::equilibria::run(&args),
         Some(Command::Figures(args)) => command::figures::run(&args),
         Some(Command::Arms(args)) => command::arms::run(&args),
         Some(Command::Check(args)) => command::check::run(&args),

@@ -4,7 +4,10 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use hydrostat_figures::Scene;
 use hydrostat_files::{WriteError, write_whole};
+
+use crate::args::is_png;
 
 /// Writes a result to standard output or to the file asked for instead.
 pub(crate) fn put(file: Option<&Path>, text: &str) -> anyhow::Result<()> {
@@ -13,6 +16,18 @@ pub(crate) fn put(file: Option<&Path>, text: &str) -> anyhow::Result<()> {
         None => print(text)?,
     }
     Ok(())
+}
+
+/// Draws a figure into a file, whose ending says how.
+pub(crate) fn draw(figure: &Scene, path: &Path) -> anyhow::Result<()> {
+    let bytes = if is_png(path) { figure.png()? } else { figure.svg().into_bytes() };
+    Ok(write_whole(path, &bytes)?)
+}
+
+/// A text as a line of its own.
+pub(crate) fn line(mut text: String) -> String {
+    text.push('\n');
+    text
 }
 
 /// Writes to standard output.

@@ -2,8 +2,12 @@
 
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
+use hydrostat::parameter::Unfit;
 use hydrostat::{Arm, ArmError};
 use hydrostat_files::{ArmFile, shipped};
+
+use crate::args::ArmArgs;
+use crate::output;
 
 /// A request that cannot be meant.
 #[derive(Debug)]
@@ -15,7 +19,13 @@ pub(crate) enum WrongRequest {
     /// Tensions that do not fit the cables.
     Tensions(ArmError),
     /// Two outputs in one file.
-    SamePath(PathBuf),
+    SamePath([&'static str; 2], PathBuf),
+    /// A quantity that the arm at hand does not have.
+    Unfit(&'static str, Unfit),
+    /// A value, said where, that makes no arm.
+    Value(String, ArmError),
+    /// A cable whose stroke was asked for.
+    NoCable { asked: usize, cables: usize },
 }
 
 impl std::fmt::Display for WrongRequest {
@@ -36,7 +46,14 @@ impl std::fmt::Display for WrongRequest {
                 write!(f, "--set {text}: expected KEY=VALUE, such as flow.speed=0.5 or cable[0].tension=\"20 N\"")
             }
             Self::Tensions(error) => write!(f, "--tension: {error}"),
-            Self::SamePath(path) => write!(f, "-o and --plot both name {}; give them different files", path.display()),
+            Self::SamePath([a, b], path) => {
+                write!(f, "{a} and {b} both name {}; give them different files", path.display())
+            }
+            Self::Unfit(option, error) => write!(f, "{option} {error}"),
+            Self::Value(at, error) => write!(f, "{at}: {error}"),
+            Self::NoCable { asked, cables } => {
+                write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")
+            }
         }
     }
 }
@@ -64,28 +81,19 @@ pub(crate) fn arm_file(arm: &str) -> anyhow::Result<ArmFile> {
     }
 }
 
-/// What overrides an arm file, in this order.
-pub(crate) struct Overrides<'a> {
-    /// `KEY=VALUE`.
-    pub(crate) settings: &'a [String],
-    /// One a cable.
-    pub(crate) tensions: Option<&'a [String]>,
-    pub(crate) flow_speed: Option<&'a str>,
-}
-
-/// The arm that `arm` with its overrides means.
-pub(crate) fn arm(arm: &str, overrides: &Overrides<'_>) -> anyhow::Result<Arm> {
-    let mut file = arm_file(arm)?;
-    for setting in overrides.settings {
+/// The arm that is asked for: a file, then what overrides it.
+pub(crate) fn arm(args: &ArmArgs) -> anyhow::Result<Arm> {
+    let mut file = arm_file(&args.file)?;
+    for setting in &args.set {
         let Some((key, value)) = setting.split_once('=') else {
             return Err(WrongRequest::Setting(setting.clone()).into());
         };
         file.set(key.trim(), value.trim())?;
     }
-    if let Some(speed) = overrides.flow_speed {
+    if let Some(speed) = &args.flow_speed {
         file.set("flow.speed", speed)?;
     }
-    if let Some(tensions) = overrides.tensions {
+    if let Some(tensions) = &args.tension {
         let cables = cables(&file);
         if tensions.len() != cables {
             // An arm that is wrong without them is the first thing to mend.
@@ -98,6 +106,20 @@ pub(crate) fn arm(arm: &str, overrides: &Overrides<'_>) -> anyhow::Result<Arm> {
         }
     }
     Ok(file.arm()?)
+}
+
+/// Refuses outputs that could not be written, before the work: each option that names one, with its file.
+pub(crate) fn check_outputs(outputs: &[(&'static str, Option<&Path>)]) -> anyhow::Result<()> {
+    let given: Vec<(&str, &Path)> = outputs.iter().filter_map(|(option, file)| Some((*option, (*file)?))).collect();
+    for (i, (option, file)) in given.iter().enumerate() {
+        if let Some((earlier, _)) = given[..i].iter().find(|(_, other)| other == file) {
+            return Err(WrongRequest::SamePath([earlier, option], (*file).to_owned()).into());
+        }
+    }
+    for (_, file) in given {
+        output::check_writable(file)?;
+    }
+    Ok(())
 }
 
 /// How many cables the file has, even while their present tensions are refused.

@@ -4,15 +4,13 @@ use hydrostat::Configuration;
 
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, DESCENT, Label};
+use crate::legend::{LINE, Legend, MARGIN, Sample, WIDTH, clipped};
 use crate::outline::{Outline, Style};
-use crate::palette::{BODY, Color, GREY, INK, WATER, series};
+use crate::palette::{BODY, Color, GREY, INK, series};
 use crate::placement::Occupied;
 use crate::scene::{Anchor, Point, Scene, Stroke};
 
-const WIDTH: f64 = 450.0;
-const MARGIN: f64 = 10.0;
 const TITLE_SIZE: f64 = 10.0;
-const LINE: f64 = 14.0;
 const SECTIONS: usize = 41;
 const MAX_HEIGHT: f64 = 400.0;
 /// Length of the arrows at the tip, points.
@@ -41,8 +39,8 @@ pub fn arm_figure(configuration: &Configuration, note: Option<&str>) -> Scene {
         [LEFT, top]
     });
     top += 8.0;
-    let (legend, legend_bottom) = legend(configuration, &strokes, top);
-    let frame_top = legend_bottom + 6.0;
+    let legend = legend(configuration, &strokes);
+    let frame_top = top + legend.height() + 6.0;
 
     let axes = axes_around(&outline, configuration.tip().theta, frame_top);
 
@@ -54,9 +52,7 @@ pub fn arm_figure(configuration: &Configuration, note: Option<&str>) -> Scene {
         let note = Label::plain(note);
         scene.text_in(&note, at, Anchor::Start, fitting(&note, TEXT_SIZE), series(0), false);
     }
-    for entry in &legend {
-        entry.draw(&mut scene);
-    }
+    legend.draw(&mut scene, top);
     axes.draw(&mut scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
     let style = Style {
         fill: BODY.with_opacity(0.6),
@@ -74,7 +70,7 @@ pub fn arm_figure(configuration: &Configuration, note: Option<&str>) -> Scene {
 }
 
 /// `size`, or what makes the text fit the page.
-fn fitting(label: &Label, size: f64) -> f64 {
+pub(crate) fn fitting(label: &Label, size: f64) -> f64 {
     size.min(size * (WIDTH - LEFT - MARGIN) / label.width(size).max(1.0))
 }
 
@@ -163,79 +159,15 @@ pub(crate) fn degrees(angle: f64) -> String {
     if value == "-0.00°" { "0.00°".to_owned() } else { value.replace('-', "\u{2212}") }
 }
 
-/// A sample and its meaning, above the frame where no data are.
-struct Entry {
-    at: Point,
-    sample: Sample,
-    label: Label,
-}
-
-enum Sample {
-    Line(Stroke),
-    /// A direction in the plane, rad.
-    Arrow(f64, Color),
-}
-
-const SAMPLE: f64 = 18.0;
-
-impl Entry {
-    fn draw(&self, scene: &mut Scene) {
-        let [x, y] = self.at;
-        let middle = y - 0.5 * CAP_HEIGHT * TEXT_SIZE;
-        match self.sample {
-            Sample::Line(stroke) => scene.line(&[[x, middle], [x + SAMPLE, middle]], stroke),
-            Sample::Arrow(angle, color) => {
-                let (dx, dy) = (0.36 * SAMPLE * angle.cos(), -0.36 * SAMPLE * angle.sin());
-                let centre = x + 0.5 * SAMPLE;
-                scene.arrow([centre - dx, middle - dy], [centre + dx, middle + dy], color, 1.2);
-            }
-        }
-        scene.text(&self.label, [x + SAMPLE + 4.0, y], Anchor::Start, TEXT_SIZE);
+/// What the lines and arrows mean, above the frame where no data are.
+fn legend(configuration: &Configuration, strokes: &[Stroke]) -> Legend {
+    let mut legend = Legend::default();
+    for (cable, stroke) in configuration.cables.iter().zip(strokes) {
+        let state = if cable.tension > 0.0 { format!("{} N", short(cable.tension)) } else { "slack".to_owned() };
+        legend.add(Sample::Line(*stroke), Label::plain(format!("{}: {state}", clipped(&cable.name))));
     }
-}
-
-/// A name at the length that a legend can bear.
-fn clipped(name: &str) -> String {
-    const MOST: usize = 40;
-    if name.chars().count() <= MOST {
-        return name.to_owned();
-    }
-    name.chars().take(MOST).chain(['.', '.', '.']).collect()
-}
-
-/// The entries, laid out in rows below `top`, and where the last row ends.
-fn legend(configuration: &Configuration, strokes: &[Stroke], top: f64) -> (Vec<Entry>, f64) {
-    let arm = &configuration.arm;
-    let mut entries: Vec<(Sample, Label)> = configuration
-        .cables
-        .iter()
-        .zip(strokes)
-        .map(|(cable, stroke)| {
-            let state = if cable.tension > 0.0 { format!("{} N", short(cable.tension)) } else { "slack".to_owned() };
-            (Sample::Line(*stroke), Label::plain(format!("{}: {state}", clipped(&cable.name))))
-        })
-        .collect();
-    if arm.flow.speed > 0.0 && arm.flow.density > 0.0 {
-        let label = Label::plain(format!("stream {} m/s", short(arm.flow.speed)));
-        entries.push((Sample::Arrow(arm.flow.direction, WATER), label));
-    }
-    if let Some(gravity) = &arm.gravity {
-        entries.push((Sample::Arrow(gravity.direction, GREY), Label::plain("gravity")));
-    }
-    let mut y = top + LINE - 2.0;
-    let mut x = LEFT;
-    let mut out = Vec::new();
-    for (sample, label) in entries {
-        let width = SAMPLE + 4.0 + label.width(TEXT_SIZE);
-        if x > LEFT && x + width > WIDTH - MARGIN {
-            x = LEFT;
-            y += LINE;
-        }
-        out.push(Entry { at: [x, y], sample, label });
-        x += width + 16.0;
-    }
-    let bottom = if out.is_empty() { top } else { y + 2.0 };
-    (out, bottom)
+    legend.add_surroundings(&configuration.arm, None);
+    legend
 }
 
 /// A number with at most four digits that matter.

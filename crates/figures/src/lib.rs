@@ -4,20 +4,29 @@
 //! [`svg`](Scene::svg) and [`png`](Scene::png) cannot disagree, because text becomes glyph
 //! outlines before either is made; that also needs no font on the machine that shows the figure.
 //!
-//! [`arm_figure`] draws one configuration to scale. [`source`] solves what the source's Fig. 1
+//! [`arm_figure`] draws one configuration to scale, [`path_shapes_figure`] and [`equilibria_figure`]
+//! several; [`path_figure`] and [`over_figure`] draw a [`Quantity`] over a parameter. [`source`] solves what the source's Fig. 1
 //! shows, judges what its text says about it, and draws the three parts.
 
 mod arm_figure;
 mod axes;
+mod chart;
 mod font;
+mod legend;
 mod outline;
 mod palette;
 mod placement;
 mod png;
+mod quantity;
 mod scene;
+mod shapes;
 pub mod source;
 mod svg;
+mod tip_labels;
 
 pub use arm_figure::arm_figure;
+pub use chart::{Abscissa, over_figure, path_figure};
 pub use png::PngError;
+pub use quantity::{Quantity, UnknownQuantity};
 pub use scene::Scene;
+pub use shapes::{equilibria_figure, path_shapes_figure};

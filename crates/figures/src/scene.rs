@@ -117,13 +117,12 @@ impl Scene {
 
     /// A dot of `radius` points.
     pub(crate) fn dot(&mut self, at: Point, radius: f64, fill: Color) {
-        let points: Vec<Point> = (0..24)
-            .map(|k| {
-                let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 24.0).sin_cos();
-                [at[0] + radius * cos, at[1] + radius * sin]
-            })
-            .collect();
-        self.area(&points, Some(fill), None);
+        self.area(&circle(at, radius), Some(fill), None);
+    }
+
+    /// A circle of `radius` points.
+    pub(crate) fn ring(&mut self, at: Point, radius: f64, stroke: Stroke) {
+        self.area(&circle(at, radius), None, Some(stroke));
     }
 
     /// Text whose baseline starts, is centred or ends at `at`.
@@ -150,6 +149,14 @@ impl Scene {
         });
         self.items.push(Item { path: path.collect(), fill: Some(color), stroke: None, says: Some(label.to_string()) });
     }
+}
+
+fn circle(at: Point, radius: f64) -> Vec<Point> {
+    let corner = |k: u32| {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 24.0).sin_cos();
+        [at[0] + radius * cos, at[1] + radius * sin]
+    };
+    (0..24).map(corner).collect()
 }
 
 fn path(points: &[Point]) -> Vec<Segment> {

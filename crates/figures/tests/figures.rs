@@ -1,9 +1,11 @@
 //! What the drawings hold, and that their two forms are pictures.
 
-use hydrostat::{Arm, Cable, Gravity, Material, Profile};
-use hydrostat_figures::arm_figure;
+use hydrostat::{Arm, Cable, Gravity, Material, Parameter, PathOptions, Profile};
 use hydrostat_figures::source::Finding::{Holds, InPart, Open};
 use hydrostat_figures::source::{Finding, Study, StudyError, TIP_ANGLE};
+use hydrostat_figures::{
+    Abscissa, Quantity, arm_figure, equilibria_figure, over_figure, path_figure, path_shapes_figure,
+};
 
 fn arm() -> Arm {
     let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
@@ -74,6 +76,72 @@ fn arms_of_every_kind_can_be_drawn() {
     let figure = arm_figure(&many.solve().unwrap(), None);
     assert_eq!(figure.texts().filter(|t| t.contains("long name")).count(), 12);
     figure.png().unwrap();
+}
+
+/// A soft cone that the stream meets from the tip.
+fn facing() -> Arm {
+    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    arm.flow.speed = 0.2;
+    arm.flow.direction = std::f64::consts::PI;
+    arm
+}
+
+#[test]
+fn a_path_is_drawn_with_its_events_branches_and_end() {
+    let over = Abscissa { name: "force".to_owned(), unit: "mN".to_owned(), per_si: 1e3 };
+    let arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    let options = PathOptions { branches: true, ..PathOptions::default() };
+    let path = arm.path(Parameter::TipForce(0), [0.0, -0.01], &options).unwrap();
+    for quantity in [Quantity::TipX, Quantity::TipY, Quantity::TipTheta, Quantity::TipAlpha] {
+        let figure = path_figure(&path, &over, quantity, "a column");
+        let texts: Vec<&str> = figure.texts().collect();
+        for text in ["a column", "stable", "unstable", "bifurcation", "force (mN)"] {
+            assert!(texts.contains(&text), "{text}: {texts:?}");
+        }
+        assert!(!texts.contains(&"limit point") && !figure.svg().contains("NaN"));
+        figure.png().unwrap();
+    }
+    let shapes = path_shapes_figure(&path, &over, "a column");
+    // Bent to either side at the largest force, and straight.
+    assert!(shapes.texts().filter(|text| *text == "\u{2212}10 mN").count() >= 2);
+    shapes.png().unwrap();
+}
+
+#[test]
+fn limits_are_marked_and_a_path_of_a_point_can_be_drawn() {
+    let over = Abscissa { name: "tension".to_owned(), unit: "N".to_owned(), per_si: 1.0 };
+    let mut arm = arm();
+    arm.cables[0].tension = 0.0;
+    let path = arm.path(Parameter::Tension(0), [0.0, 2.0], &PathOptions::default()).unwrap();
+    let figure = path_figure(&path, &over, Quantity::Stroke(0), "pulled");
+    assert!(
+        figure.texts().any(|t| t == "no equilibrium found beyond") && figure.texts().any(|t| t.contains("cable 0"))
+    );
+    let options = PathOptions { most: 1, ..PathOptions::default() };
+    let short = arm.path(Parameter::Tension(0), [0.0, 2.0], &options).unwrap();
+    assert_eq!(short.branches[0].points.len(), 1);
+    for figure in [path_figure(&short, &over, Quantity::TipY, ""), path_shapes_figure(&short, &over, "")] {
+        assert!(!figure.svg().contains("NaN") && !figure.svg().contains("inf"));
+        figure.png().unwrap();
+    }
+}
+
+#[test]
+fn all_equilibria_are_drawn_and_numbered() {
+    let all = facing().equilibria(1e-6).unwrap();
+    let figure = equilibria_figure(&all, "facing");
+    let texts: Vec<&str> = figure.texts().collect();
+    for text in ["facing", "1", "5", "stable", "unstable", "stream 0.2 m/s", "x (mm)"] {
+        assert!(texts.contains(&text), "{text}: {texts:?}");
+    }
+    figure.png().unwrap();
+    let over = Abscissa { name: "speed".to_owned(), unit: "m/s".to_owned(), per_si: 1.0 };
+    let none: [(f64, &hydrostat::Equilibria); 0] = [];
+    for searches in [&[(0.2, &all)][..], &[(0.1, &all), (0.2, &all)], &none] {
+        let figure = over_figure(searches, &over, Quantity::TipTheta, "facing");
+        assert!(!figure.svg().contains("NaN") && figure.texts().any(|t| t == "speed (m/s)"));
+        figure.png().unwrap();
+    }
 }
 
 #[test]

@@ -196,6 +196,21 @@ pub(crate) fn names(keys: &[Key]) -> String {
     names.join(", ")
 }
 
+/// What the number at a dotted key measures, such as `cable[0].tension` or `tip.force[1]`; `None` where there is none.
+pub(crate) fn dimension_of(key: &str) -> Option<Dimension> {
+    let (mut keys, mut found) = (FILE, None);
+    for step in key.split('.') {
+        let name = step.split('[').next()?;
+        found = None;
+        match keys.iter().find(|k| k.name == name)?.kind {
+            Table(inner) | Tables(inner) => keys = inner,
+            Quantity(dimension) | Pair(dimension) => found = Some(dimension),
+            _ => {}
+        }
+    }
+    found
+}
+
 /// Where in the format some key stands, as a dotted path, the first if there are several.
 pub(crate) fn home_of(name: &str) -> Option<String> {
     fn search(keys: &[Key], name: &str, path: &str) -> Option<String> {

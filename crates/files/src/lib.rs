@@ -5,21 +5,30 @@
 //! and [`Failure`] are the JSON documents of a solve, [`write_whole`] puts any output on disk.
 
 mod arm_file;
+mod digits;
 mod document;
+pub mod equilibria;
 mod error;
 mod format;
 mod output;
+pub mod paths;
 mod quantity;
 mod reading;
 pub mod results;
 pub mod schema;
 mod setting;
 pub mod shipped;
+mod state;
+mod varied;
 mod written;
 
 pub use arm_file::ArmFile;
+pub use digits::number;
+pub use equilibria::{EquilibriaDocument, Others, OverDocument, equilibria_csv, over_csv};
 pub use error::{FileError, Place};
 pub use output::{WriteError, write_whole};
+pub use paths::{PathDocument, end_message, path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY};
 pub use results::{Failure, Note, Solution, stations_csv};
+pub use varied::{Varied, VariedError};
 pub use written::{Inputs, arm_to_toml};

@@ -224,6 +224,45 @@ impl Dimension {
         number.in_si(scale).ok_or(QuantityError::TooLarge)
     }
 
+    /// A number with or without unit in SI (rad for angles), and the unit that it is written with.
+    ///
+    /// ```
+    /// use hydrostat_files::Dimension;
+    ///
+    /// assert_eq!(Dimension::Force.read("200 mN"), Ok((0.2, Some("mN"))));
+    /// assert_eq!(Dimension::Force.read("0.2"), Ok((0.2, None)));
+    /// assert_eq!(Dimension::Angle.read("180"), Ok((std::f64::consts::PI, None)));
+    /// ```
+    ///
+    /// # Errors
+    /// [`QuantityError`] when there is no number, or the unit measures something else.
+    pub fn read(self, text: &str) -> Result<(f64, Option<&'static str>), QuantityError> {
+        match split(text.trim()) {
+            Some((number, "")) => {
+                number.in_si(Decimal(0)).map(|value| (self.bare(value), None)).ok_or(QuantityError::TooLarge)
+            }
+            Some((_, unit)) => Ok((self.parse(text)?, self.spellings().find(|known| *known == unit))),
+            None => Err(QuantityError::NoNumber),
+        }
+    }
+
+    /// How many of `unit` an SI unit (rad for angles) is; `None` for what is no unit of this dimension.
+    ///
+    /// ```
+    /// use hydrostat_files::Dimension;
+    ///
+    /// assert_eq!(Dimension::Length.per_si("mm"), Some(1000.0));
+    /// assert_eq!(Dimension::Angle.per_si("rad"), Some(1.0));
+    /// assert_eq!(Dimension::Angle.per_si("N"), None);
+    /// ```
+    pub fn per_si(self, unit: &str) -> Option<f64> {
+        Some(match self.scale(unit)? {
+            Decimal(power) => 10.0_f64.powi(i32::try_from(-power).ok()?),
+            Ratio(times, over) => over / times,
+            Degrees => 1.0_f64.to_degrees(),
+        })
+    }
+
     fn scale(self, unit: &str) -> Option<Scale> {
         self.units().iter().find(|(names, _)| names.contains(&unit)).map(|(_, scale)| *scale)
     }

@@ -3,9 +3,10 @@
 //! Numbers are written with the fewest digits that read back as the same number. What is not
 //! finite is `null` in JSON and an empty field in CSV.
 
-use hydrostat::{Configuration, NoEquilibrium, Stability, Stations, Verdict, Warning, Wrench};
+use hydrostat::{CableState, Configuration, NoEquilibrium, Stability, Stations, Verdict, Warning, Wrench};
 use serde::Serialize;
 
+use crate::equilibria::Others;
 use crate::written::Inputs;
 
 /// The version of the JSON documents' structure.
@@ -72,11 +73,11 @@ impl From<&Warning> for Note {
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct TipOut {
-    x: f64,
-    y: f64,
-    theta: f64,
-    alpha: f64,
+pub(crate) struct TipOut {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) theta: f64,
+    pub(crate) alpha: f64,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -96,11 +97,11 @@ struct StationsOut<'a> {
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct CableOut<'a> {
+pub(crate) struct CableOut<'a> {
     name: &'a str,
-    tension: f64,
+    pub(crate) tension: f64,
     length: f64,
-    stroke: f64,
+    pub(crate) stroke: f64,
     /// Only where the stroke was commanded.
     #[serde(skip_serializing_if = "Option::is_none")]
     command: Option<CommandOut>,
@@ -138,6 +139,27 @@ struct VerdictOut {
     residual: f64,
     message: String,
     advice: String,
+    other_equilibria: Option<Others>,
+}
+
+impl TipOut {
+    pub(crate) fn new(configuration: &Configuration) -> Self {
+        let tip = configuration.tip();
+        Self { x: tip.x, y: tip.y, theta: tip.theta, alpha: tip.alpha }
+    }
+}
+
+impl<'a> CableOut<'a> {
+    pub(crate) fn all(configuration: &'a Configuration) -> Vec<Self> {
+        let out = |c: &'a CableState| Self {
+            name: &c.name,
+            tension: c.tension,
+            length: c.length,
+            stroke: c.stroke,
+            command: c.command.map(|c| CommandOut { stroke: c.stroke, length: c.length, slack: c.slack }),
+        };
+        configuration.cables.iter().map(out).collect()
+    }
 }
 
 impl From<Wrench> for WrenchOut {
@@ -156,6 +178,7 @@ impl From<&Verdict> for VerdictOut {
             residual: v.residual,
             message: v.message(),
             advice: v.advice().to_string(),
+            other_equilibria: None,
         }
     }
 }
@@ -163,18 +186,16 @@ impl From<&Verdict> for VerdictOut {
 impl<'a> Solution<'a> {
     /// Of a configuration with its `fold_margin` (the least (nu - beta R |mu|)/nu) and the notes on it.
     pub fn new(configuration: &'a Configuration, fold_margin: f64, notes: &'a [Note]) -> Self {
-        let Configuration {
-            arm, stations: s, cables, base_reaction, unmet, error_estimate, stable, statistics, ..
-        } = configuration;
+        let Configuration { arm, stations: s, base_reaction, unmet, error_estimate, stable, statistics, .. } =
+            configuration;
         let stable = configuration.stability().map_or(*stable, Stability::is_stable);
-        let tip = configuration.tip();
         Self {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             converged: true,
             stable,
             warnings: notes,
-            tip: TipOut { x: tip.x, y: tip.y, theta: tip.theta, alpha: tip.alpha },
+            tip: TipOut::new(configuration),
             stations: StationsOut {
                 s: &s.s,
                 x: &s.x,
@@ -189,16 +210,7 @@ impl<'a> Solution<'a> {
                 n_b: &s.n_b,
                 m: &s.m,
             },
-            cables: cables
-                .iter()
-                .map(|c| CableOut {
-                    name: &c.name,
-                    tension: c.tension,
-                    length: c.length,
-                    stroke: c.stroke,
-                    command: c.command.map(|c| CommandOut { stroke: c.stroke, length: c.length, slack: c.slack }),
-                })
-                .collect(),
+            cables: CableOut::all(configuration),
             base: (*base_reaction).into(),
             unmet: unmet.map(Into::into),
             error_estimate: *error_estimate,
@@ -237,6 +249,12 @@ impl<'a> Failure<'a> {
         }
     }
 
+    /// With what a search for other equilibria at the same loads found.
+    pub fn with_others(mut self, others: Option<Others>) -> Self {
+        self.verdict.other_equilibria = others;
+        self
+    }
+
     /// The document, one line.
     ///
     /// # Errors
@@ -244,6 +262,18 @@ impl<'a> Failure<'a> {
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string(self)
     }
+}
+
+/// One line of CSV.
+pub(crate) fn row(cells: &[String]) -> String {
+    let mut out = cells.join(",");
+    out.push('\n');
+    out
+}
+
+/// A number as a cell of CSV; empty if it is not finite.
+pub(crate) fn cell(value: f64) -> String {
+    if value.is_finite() { format!("{value:?}") } else { String::new() }
 }
 
 /// The stations, one row each, with names and units in the first row.
@@ -264,13 +294,9 @@ pub fn stations_csv(stations: &Stations) -> String {
     ];
     let mut out = columns.map(|(name, _)| name).join(",");
     out.push('\n');
-    for row in 0..stations.len() {
-        let cells = columns.map(|(_, values)| match values.get(row) {
-            Some(value) if value.is_finite() => format!("{value:?}"),
-            _ => String::new(),
-        });
-        out.push_str(&cells.join(","));
-        out.push('\n');
+    for index in 0..stations.len() {
+        let cells = columns.map(|(_, values)| values.get(index).copied().map_or_else(String::new, cell));
+        out.push_str(&row(&cells));
     }
     out
 }

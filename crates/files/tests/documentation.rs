@@ -3,8 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use hydrostat::VerdictKind::{CableFold, LimitPoint, LoadJump, NoSectionSolution, NotFound, SectionCrushed};
-use hydrostat::{Phase, Stations};
-use hydrostat_files::{ArmFile, Dimension, schema, stations_csv};
+use hydrostat::parameter::names;
+use hydrostat::{Arm, Cable, Event, PathEnd, PathOptions, Phase, Stations};
+use hydrostat_files::{
+    ArmFile, Dimension, EquilibriaDocument, OverDocument, PathDocument, Varied, over_csv, path_csv, schema,
+    stations_csv,
+};
 use serde_json::Value;
 
 const PAGE: &str = include_str!("../../../docs/interface.md");
@@ -114,10 +118,58 @@ fn its_units_are_those_of_the_parser() {
     }
 }
 
+fn pulled() -> (Arm, Varied) {
+    let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+    arm.cables.push(Cable::new("left", 0.001));
+    (arm, "flow.speed=0:0.01".parse().unwrap())
+}
+
+fn path_header() -> String {
+    let (arm, varied) = pulled();
+    let path = arm.path(varied.parameter, varied.range, &PathOptions::default()).unwrap();
+    path_csv(&path, &varied).lines().next().unwrap().to_owned() + "\n"
+}
+
+fn over_header() -> String {
+    over_csv(1, &pulled().1, &[])
+}
+
+/// Every key of the documents of paths and searches stands in a table.
+#[test]
+fn its_keys_are_those_of_the_documents() {
+    let (arm, varied) = pulled();
+    let path = arm.path(varied.parameter, varied.range, &PathOptions::default()).unwrap();
+    let all = arm.equilibria(1e-6).unwrap();
+    let searches = [(0.0, Ok(all.clone())), (0.01, Err("none".to_owned()))];
+    let documents = [
+        serde_json::to_value(PathDocument::new(&path, &varied).unwrap()).unwrap(),
+        serde_json::to_value(EquilibriaDocument::new(&arm, &all)).unwrap(),
+        serde_json::to_value(OverDocument::new(&arm, &varied, &searches)).unwrap(),
+    ];
+    let here = PAGE.split_once("## `--format json`").unwrap().1;
+    let mut inner = vec![&documents[0]["branches"][0], &documents[0]["branches"][0]["points"][0]];
+    inner.extend([&documents[1]["equilibria"][0]["stability"], &documents[2]["values"][0]]);
+    for document in documents.iter().chain(inner) {
+        for key in document.as_object().unwrap().keys() {
+            assert!(here.contains(&format!("`{key}`")), "{key}");
+        }
+    }
+    assert_eq!(documents[2]["values"][1], serde_json::json!({ "value": 0.01, "message": "none" }));
+}
+
 #[test]
 fn its_names_are_those_of_the_results() {
     let header = stations_csv(&Stations::default());
-    assert_eq!(blocks("csv"), [header]);
+    assert_eq!(blocks("csv"), [header, path_header(), over_header()]);
+    for name in names() {
+        assert!(PAGE.contains(&format!("`{name}`")), "{name}");
+    }
+    for event in [Event::LimitPoint, Event::Bifurcation] {
+        assert!(PAGE.contains(&format!("`\"{}\"`", event.name())), "{}", event.name());
+    }
+    for end in [PathEnd::ReachedEnd, PathEnd::ReachedStart, PathEnd::MostPoints] {
+        assert!(PAGE.contains(&format!("`{}`", end.name())), "{}", end.name());
+    }
     for kind in [CableFold, SectionCrushed, NoSectionSolution, LimitPoint, LoadJump, NotFound] {
         assert!(PAGE.contains(&format!("\n| `{}` | ", kind.name())), "{}", kind.name());
     }

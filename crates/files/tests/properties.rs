@@ -62,8 +62,15 @@ fn material(length: f64) -> impl Strategy<Value = Material> {
 }
 
 fn cable(length: f64) -> impl Strategy<Value = Cable> {
-    (any::<String>(), profile(-0.01, 0.01, length), 0.0..5.0, proptest::option::of(5.0..9.0), 0.01..=1.0)
-        .prop_map(|(name, offset, tension, max_tension, end)| Cable { name, offset, tension, max_tension, end })
+    use proptest::option::of;
+    let pull = (0.0..5.0, of(-0.01..0.01), of(1.0..1e3), of(5.0..9.0));
+    (any::<String>(), profile(-0.01, 0.01, length), pull, 0.01..=1.0).prop_map(
+        |(name, offset, (tension, stroke, stiffness, max_tension), end)| {
+            // A file has one of both.
+            let tension = if stroke.is_some() { 0.0 } else { tension };
+            Cable { name, offset, tension, stroke, stiffness, max_tension, end }
+        },
+    )
 }
 
 fn flow() -> impl Strategy<Value = Flow> {

@@ -6,7 +6,7 @@ use hydrostat::{
     Arm, Cable, CableState, Configuration, NoEquilibrium, Phase, Profile, Stations, Statistics, Verdict, VerdictKind,
     Warning, Wrench,
 };
-use hydrostat_files::{ArmFile, Failure, Note, Solution, stations_csv, write_whole};
+use hydrostat_files::{ArmFile, Failure, Note, Others, Solution, stations_csv, write_whole};
 use serde_json::{Value, json};
 
 fn configuration() -> Configuration {
@@ -144,6 +144,11 @@ fn the_document_of_a_verdict() {
     assert_eq!(got["verdict"]["advice"], verdict.advice());
     assert_eq!(got["last_good"]["fold_margin"], 0.5);
     assert_eq!(got["last_good"]["stations"]["s"][2], 0.2);
+
+    assert_eq!(got["verdict"]["other_equilibria"], Value::Null);
+    let others = Others { count: 9, stable: 2, complete: true };
+    let with = serde_json::to_value(Failure::new(&failure, 0.5, &[]).with_others(Some(others))).unwrap();
+    assert_eq!(with["verdict"]["other_equilibria"], json!({ "count": 9, "stable": 2, "complete": true }));
 
     let nothing = NoEquilibrium { verdict, last_good: None };
     assert_eq!(serde_json::to_value(Failure::new(&nothing, 0.0, &[])).unwrap()["last_good"], Value::Null);

@@ -568,7 +568,8 @@ impl Engine {
         let mut estimate = f64::INFINITY;
         let mut best: Option<(f64, State)> = None;
         // What is left of beta'', a round behind, counts at tight tolerances, down to where rounding ends it.
-        let least = if tolerance > TIGHT { 3.0 * tolerance } else { (0.1 * tolerance).max(RESTLESS.min(3.0 * tolerance)) };
+        let least =
+            if tolerance > TIGHT { 3.0 * tolerance } else { (0.1 * tolerance).max(RESTLESS.min(3.0 * tolerance)) };
         for attempt in 0..10 {
             let goal = match (attempt, warm) {
                 (0, true) if tolerance > TIGHT => tolerance,

@@ -74,8 +74,8 @@ pub enum Unfit {
     },
 }
 
-/// The names with an index written as `cable[0]`.
-fn names() -> Vec<String> {
+/// The names of all parameters, that of the cables with the index 0.
+pub fn names() -> Vec<String> {
     let mut all: Vec<String> = PLAIN.iter().map(Parameter::to_string).collect();
     all.insert(0, Parameter::Tension(0).to_string());
     all

@@ -111,18 +111,14 @@ impl Solver {
         let steps = strokes.steps;
         let settled = strokes.settle(&mut self.engine, self.options.tol);
         let travelled = Travelled { steps, ..Travelled::default() };
-        match settled.and_then(|estimate| self.read(estimate, travelled)) {
-            Ok(mut configuration) => {
-                configuration.tangential_factor = self.tangential_factor();
-                self.settled = true;
-                self.strokes = Some(strokes);
-                Ok(configuration)
-            }
-            Err(_) => {
-                let verdict = Verdict { phase: Phase::Stroke, ..self.last_verdict(Some(1.0)) };
-                Err(self.no_equilibrium(verdict))
-            }
-        }
+        let Ok(mut configuration) = settled.and_then(|estimate| self.read(estimate, travelled)) else {
+            let verdict = Verdict { phase: Phase::Stroke, ..self.last_verdict(Some(1.0)) };
+            return Err(self.no_equilibrium(verdict));
+        };
+        configuration.tangential_factor = self.tangential_factor();
+        self.settled = true;
+        self.strokes = Some(strokes);
+        Ok(configuration)
     }
 
     /// After a small change of strokes, tensions or stream.

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! in lengths of L and forces of C3 A0/L^2 at the base, where K is the net linearised force and couple
-//! per length and C the compliance of [`crate::compliance`]: base clamped, loads at the tip and along the
+//! per length and C the compliance of `compliance`: base clamped, loads at the tip and along the
 //! arm following as they do. A motion in proportion to exp(lambda t) has -C lambda u = u, so that each
 //! eigenvalue mu of C is a rate lambda = -1/mu. Each rate with a positive real part is a direction in
 //! which the arm leaves the equilibrium. Rates are given over the slowest decay of the same arm unloaded, which
@@ -102,7 +102,8 @@ impl Configuration {
     /// How fast small overdamped motions about this equilibrium grow or decay: of the velocity of the
     /// centreline over L and of the rate of turn, each against a resistance of one along the whole arm.
     ///
-    /// Computed when asked for, in one to two milliseconds. `None` with [`Support::UnstrainedBase`], whose arm is
+    /// Computed when asked for, in one to two milliseconds. `None` where a taut cable's stroke is commanded (what its
+    /// length holds back is not counted yet), with [`Support::UnstrainedBase`], whose arm is
     /// no equilibrium at the tip, and where the number of growing motions does not settle as they are resolved more finely.
     pub fn growth(&self) -> Option<Growth> {
         growth(self.dense()).map(|(growth, _)| growth)
@@ -116,7 +117,9 @@ fn growing(rates: &[[f64; 2]]) -> usize {
 
 /// The growth, and how many times it was resolved more finely.
 fn growth(dense: &Dense) -> Option<(Growth, usize)> {
-    if dense.equations.arm().readings.support == Support::UnstrainedBase {
+    let arm = dense.equations.arm();
+    let held = arm.cables.iter().any(|c| c.stroke.is_some() && c.tension > 0.0);
+    if held || arm.readings.support == Support::UnstrainedBase {
         return None;
     }
     for (level, functions) in POLYNOMIALS.into_iter().enumerate() {

@@ -127,7 +127,7 @@ impl Strokes {
                     self.taut = kept.1;
                     step = 0.4 * step.min(1.0 - share);
                     if step < SHORTEST {
-                        return Err(self.end(engine, share, &error));
+                        return Err(Self::end(engine, share, &error));
                     }
                 }
             }
@@ -320,7 +320,7 @@ impl Strokes {
         Ok(strokes_of(&equations, &system.gauss.b, &self.cables))
     }
 
-    fn end(&self, engine: &mut Engine, share: f64, trouble: &Trouble) -> Verdict {
+    fn end(engine: &mut Engine, share: f64, trouble: &Trouble) -> Verdict {
         let turned_back = matches!(trouble, Trouble::Singular);
         let residual = engine.last;
         let (kind, s) = name_limit(engine, Some(trouble), residual);

@@ -135,7 +135,9 @@ fn warm_estimates_are_as_honest_as_cold_ones() {
                             ratios.push(off / estimate);
                             slack.push(estimate / off);
                             if off > 3.0 * estimate {
-                                println!("{length} m, {pulled} N, {speed} m/s, {tol:e}, {how}: off {off:.1e}, estimate {estimate:.1e}, best {own:.1e}");
+                                println!(
+                                    "{length} m, {pulled} N, {speed} m/s, {tol:e}, {how}: off {off:.1e}, estimate {estimate:.1e}, best {own:.1e}"
+                                );
                             }
                         }
                     }
@@ -147,6 +149,8 @@ fn warm_estimates_are_as_honest_as_cold_ones() {
     slack.sort_by(f64::total_cmp);
     let (count, most) = (ratios.len(), ratios[ratios.len() - 1]);
     let (usual, middle) = (ratios[count * 95 / 100], slack[count / 2]);
-    println!("{count} solves: error over estimate below {usual:.2} in 95 %, at most {most:.2}; median estimate {middle:.2} times the error");
+    println!(
+        "{count} solves: error over estimate below {usual:.2} in 95 %, at most {most:.2}; median estimate {middle:.2} times the error"
+    );
     assert!(count > 150 && usual < 3.0 && most < 10.0 && middle < 30.0);
 }

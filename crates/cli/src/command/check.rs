@@ -3,17 +3,15 @@
 use std::fmt::Write as _;
 
 use hydrostat::{Arm, FlowLaw, Material};
-use hydrostat_files::arm_to_toml;
+use hydrostat_files::{arm_to_toml, number};
 
 use super::limits::{Limit, limits};
-use super::summary::number;
 use crate::args::CheckArgs;
 use crate::output;
-use crate::request::{self, Overrides};
+use crate::request;
 
 pub(crate) fn run(args: &CheckArgs) -> anyhow::Result<()> {
-    let none = Overrides { settings: &[], tensions: None, flow_speed: None };
-    let arm = request::arm(&args.arm, &none)?;
+    let arm = request::arm_file(&args.arm)?.arm()?;
     let mut out = String::new();
     let _ = writeln!(out, "# {}: a valid arm. In full, in SI units and degrees:\n", arm.name);
     out.push_str(&arm_to_toml(&arm));

@@ -1,49 +1,35 @@
 //! `hydrostat solve`: one arm.
 
-use std::path::Path;
-
-use hydrostat::{Configuration, NoEquilibrium, Options, SolveError, Solver, Stability, Verdict};
+use hydrostat::{Arm, Configuration, NoEquilibrium, Options, SolveError, Solver, Stability, Verdict, VerdictKind};
 use hydrostat_figures::arm_figure;
-use hydrostat_files::{Failure, Note, Solution, stations_csv, write_whole};
+use hydrostat_files::{Failure, Note, Others, Solution, stations_csv};
 
 use super::summary::summary;
-use crate::args::{Format, SolveArgs, is_png};
+use crate::args::{Format, SolveArgs};
 use crate::output;
-use crate::request::{self, Overrides, WrongRequest};
+use crate::request;
 
 pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
-    let overrides =
-        Overrides { settings: &args.set, tensions: args.tension.as_deref(), flow_speed: args.flow_speed.as_deref() };
-    let arm = request::arm(&args.arm, &overrides)?;
+    let arm = request::arm(&args.arm)?;
     let mut solver = Solver::new(&arm, Options { tol: args.tol })?;
-    check_outputs(args)?;
+    request::check_outputs(&[("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())])?;
     match solver.solve() {
         Ok(configuration) => report(args, configuration),
         Err(SolveError::NoEquilibrium(failure)) => {
-            report_failure(args, *failure.clone())?;
+            let others = others(&arm, args.tol, failure.verdict.kind);
+            report_failure(args, *failure.clone(), others)?;
+            if let Some(others) = others {
+                eprintln!("note: {}", others_message(others));
+            }
             Err(SolveError::NoEquilibrium(failure).into())
         }
         Err(error) => Err(error.into()),
     }
 }
 
-/// Refuses outputs that could not be written, before the work.
-fn check_outputs(args: &SolveArgs) -> anyhow::Result<()> {
-    let files = [args.output.as_deref(), args.plot.as_deref()];
-    if let [Some(output), Some(plot)] = files
-        && output == plot
-    {
-        return Err(WrongRequest::SamePath(output.to_owned()).into());
-    }
-    for file in files.into_iter().flatten() {
-        output::check_writable(file)?;
-    }
-    Ok(())
-}
-
 fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<()> {
     if let Some(plot) = &args.plot {
-        draw(&configuration, None, plot)?;
+        output::draw(&arm_figure(&configuration, None), plot)?;
     }
     let notes = Note::all(&configuration, args.tol);
     let margin = configuration.fold_margin();
@@ -51,7 +37,7 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
     let text = match args.format {
         Format::Text => summary(&configuration),
         Format::Csv => stations_csv(&configuration.stations),
-        Format::Json => line(Solution::new(&configuration, margin.value, &notes).to_json()?),
+        Format::Json => output::line(Solution::new(&configuration, margin.value, &notes).to_json()?),
     };
     output::put(args.output.as_deref(), &text)?;
     for note in &notes {
@@ -64,9 +50,9 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
 }
 
 /// JSON gets the verdict with the last good shape; text and CSV have nothing to say.
-fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium) -> anyhow::Result<()> {
+fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium, others: Option<Others>) -> anyhow::Result<()> {
     match (&args.plot, &failure.last_good) {
-        (Some(plot), Some(last_good)) => draw(last_good, Some(&note(&failure.verdict)), plot)?,
+        (Some(plot), Some(last_good)) => output::draw(&arm_figure(last_good, Some(&note(&failure.verdict))), plot)?,
         (Some(plot), None) => eprintln!("warning: no good shape on the way, {} is not drawn", plot.display()),
         (None, _) => {}
     }
@@ -77,10 +63,36 @@ fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium) -> anyhow::Resul
         if let Some(last_good) = &mut failure.last_good {
             resample(args, last_good);
         }
-        let text = line(Failure::new(&failure, margin, &notes).to_json()?);
+        let text = output::line(Failure::new(&failure, margin, &notes).with_others(others).to_json()?);
         output::put(args.output.as_deref(), &text)?;
     }
     Ok(())
+}
+
+/// The equilibria that the path does not lead to, where it turns back: looked for with no finer tolerance than a count needs.
+fn others(arm: &Arm, tol: f64, kind: VerdictKind) -> Option<Others> {
+    const COARSE: f64 = 1e-6;
+    if kind != VerdictKind::LimitPoint {
+        return None;
+    }
+    arm.equilibria(tol.clamp(COARSE, 1e-3)).ok().map(|all| Others::from(&all))
+}
+
+fn others_message(others: Others) -> String {
+    match (others.count, others.complete) {
+        (0, true) => "no other equilibrium exists at these loads".to_owned(),
+        (0, false) => "no other equilibrium was found at these loads, but the search was not complete".to_owned(),
+        (count, complete) => format!(
+            "{count} other equilibri{} at these loads, {} of them stable: see `hydrostat equilibria`",
+            match (count, complete) {
+                (1, true) => "um exists",
+                (1, false) => "um, at least, exists",
+                (_, true) => "a exist",
+                (_, false) => "a, at least, exist",
+            },
+            others.stable
+        ),
+    }
 }
 
 /// What the drawing of a last good shape says of it.
@@ -97,15 +109,4 @@ fn resample(args: &SolveArgs, configuration: &mut Configuration) {
     if let Some(count) = args.stations {
         configuration.stations = configuration.resampled(count);
     }
-}
-
-fn draw(configuration: &Configuration, note: Option<&str>, path: &Path) -> anyhow::Result<()> {
-    let figure = arm_figure(configuration, note);
-    let bytes = if is_png(path) { figure.png()? } else { figure.svg().into_bytes() };
-    Ok(write_whole(path, &bytes)?)
-}
-
-fn line(mut text: String) -> String {
-    text.push('\n');
-    text
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use hydrostat::{Configuration, Stability, Wrench};
+use hydrostat_files::number;
 
 /// What is known of the stability of `c`, in words.
 pub(super) fn stability(c: &Configuration) -> Option<String> {
@@ -78,19 +79,4 @@ fn signed(value: f64) -> String {
 fn degrees(angle: f64) -> String {
     let text = format!("{:.4} deg", angle.to_degrees());
     if text == "-0.0000 deg" { "0.0000 deg".to_owned() } else { text }
-}
-
-/// A number with five digits that matter.
-pub(super) fn number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{}", value + 0.0);
-    }
-    let power = value.abs().log10().floor();
-    if !(-4.0..6.0).contains(&power) {
-        return format!("{value:.4e}");
-    }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 8")]
-    let decimals = (4.0 - power).clamp(0.0, 8.0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

@@ -101,12 +101,18 @@ fn check_says_what_the_file_means_and_can_be_read_back() {
 #[test]
 fn help_teaches() {
     let help = solved(&["--help"]).out;
-    for words in ["solve", "figures", "arms", "check", "Exit status", "Examples"] {
+    for words in ["solve", "path", "equilibria", "figures", "arms", "check", "Exit status", "Examples"] {
         assert!(help.contains(words), "{words}");
     }
     let help = solved(&["solve", "--help"]).out;
     for words in ["--tension", "--flow-speed", "--set", "--tol", "--stations", "--format", "--plot", "Exit status"] {
         assert!(help.contains(words), "{words}");
+    }
+    for (command, option) in [("path", "--vary"), ("equilibria", "--over")] {
+        let help = solved(&[command, "--help"]).out;
+        for words in [option, "--quantity", "--flow-speed", "against static divergence", "Flutter", "Exit status"] {
+            assert!(help.contains(words), "{command}: {words}");
+        }
     }
     for command in ["figures", "arms", "check"] {
         solved(&[command, "--help"]);

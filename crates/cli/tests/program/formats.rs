@@ -1,20 +1,11 @@
 //! Results as text, JSON and CSV, and where they go.
 
-use serde_json::Value;
-
-use super::{directory, hydrostat_in, picture, solved};
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap()
-}
+use super::{columns, directory, hydrostat_in, json, picture, solved};
 
 /// Columns and rows of a CSV of numbers.
 fn csv(text: &str) -> (Vec<&str>, Vec<Vec<f64>>) {
-    let mut lines = text.lines();
-    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let rows: Vec<Vec<f64>> = lines.map(|l| l.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
-    assert!(rows.iter().all(|row| row.len() == names.len()));
-    (names, rows)
+    let (names, rows) = columns(text);
+    (names, rows.iter().map(|row| row.iter().map(|cell| cell.parse().unwrap()).collect()).collect())
 }
 
 #[test]

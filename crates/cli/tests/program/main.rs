@@ -1,7 +1,9 @@
 //! The program from outside: what it prints, writes and ends with.
 
 mod commands;
+mod equilibria;
 mod formats;
+mod paths;
 mod refusals;
 mod verdicts;
 
@@ -51,6 +53,19 @@ fn refused(args: &[&str]) -> String {
     assert_eq!(run.out, "", "{args:?}");
     assert!(run.err.starts_with("error: "), "{args:?}: {}", run.err);
     run.err
+}
+
+fn json(text: &str) -> serde_json::Value {
+    serde_json::from_str(text).unwrap()
+}
+
+/// Names and rows of a CSV, as text; every row has a cell a name.
+fn columns(text: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let names = lines.next().unwrap();
+    let rows: Vec<_> = lines.collect();
+    assert!(rows.iter().all(|row| row.len() == names.len()));
+    (names, rows)
 }
 
 /// The names of the files in a directory, sorted.

@@ -3,13 +3,14 @@
 use hydrostat::Configuration;
 
 use super::{SPEED, Study, speed, tension};
-use crate::arm_figure::{degrees, place_label, short};
+use crate::arm_figure::{degrees, short};
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, Label};
 use crate::outline::{Outline, Style, bounds};
 use crate::palette::{Color, GREY, INK, WATER, ordered, series};
 use crate::placement::{Occupied, Rect};
-use crate::scene::{Anchor, Point, Scene, Stroke};
+use crate::scene::{Anchor, Scene, Stroke};
+use crate::tip_labels::{TipLabel, draw_tip_labels};
 
 const WIDTH: f64 = 450.0;
 const MARGIN: f64 = 10.0;
@@ -95,44 +96,18 @@ fn arms(part: &str, heading: &Label, shapes: &[Member<'_>]) -> Scene {
         outline.draw(&mut scene, &axes, &style);
         outline.occupy(&mut page, &axes);
     }
-    let tips: Vec<Point> = outlines.iter().map(|o| axes.at(o.tip())).collect();
-    for (tip, member) in tips.iter().zip(shapes) {
-        scene.dot(*tip, 1.6, member.color);
-    }
-    if !(crowded(&tips) && label_in_column(&mut scene, &page, axes.frame, &tips, shapes)) {
-        for (tip, Member { configuration, color, label }) in tips.iter().zip(shapes) {
-            let towards = configuration.tip().theta;
-            place_label(&mut scene, &mut page, label, color.towards(INK, 0.25), *tip, towards);
-        }
-    }
+    let labels: Vec<TipLabel> = outlines
+        .iter()
+        .zip(shapes)
+        .map(|(outline, Member { configuration, color, label })| TipLabel {
+            tip: axes.at(outline.tip()),
+            towards: configuration.tip().theta,
+            color: *color,
+            label: label.clone(),
+        })
+        .collect();
+    draw_tip_labels(&mut scene, &mut page, axes.frame, &labels);
     scene
-}
-
-/// Whether labels beside the tips would be in each other's way.
-fn crowded(tips: &[Point]) -> bool {
-    tips.windows(2).any(|w| (w[0][0] - w[1][0]).hypot(w[0][1] - w[1][1]) < 2.0 * TEXT_SIZE)
-}
-
-/// Labels one below the other in the upper right corner, joined to their tips by lines that do not
-/// cross. Draws nothing and says so if that corner is not free.
-fn label_in_column(scene: &mut Scene, page: &Occupied, frame: Rect, tips: &[Point], shapes: &[Member<'_>]) -> bool {
-    const INSET: f64 = 6.0;
-    let widest = shapes.iter().map(|m| m.label.width(TEXT_SIZE)).fold(0.0, f64::max);
-    let (top, right) = (frame.top + INSET, frame.right - INSET);
-    let column = Rect { left: right - widest, top, right, bottom: top + LINE * shapes.len() as f64 };
-    if !page.is_free(&column) {
-        return false;
-    }
-    let mut order: Vec<usize> = (0..shapes.len()).collect();
-    order.sort_by(|a, b| tips[*a][1].total_cmp(&tips[*b][1]));
-    for (row, index) in order.into_iter().enumerate() {
-        let Member { color, label, .. } = &shapes[index];
-        let middle = top + LINE * (row as f64 + 0.5);
-        scene.line(&[tips[index], [column.left - 3.0, middle]], Stroke::solid(*color, 0.4));
-        let baseline = middle + 0.5 * CAP_HEIGHT * TEXT_SIZE;
-        scene.text_in(label, [column.left, baseline], Anchor::Start, TEXT_SIZE, color.towards(INK, 0.25), false);
-    }
-    true
 }
 
 const CABLE_DASH: [f64; 2] = [2.5, 1.8];

@@ -16,7 +16,6 @@ use crate::configuration::{Configuration, Statistics};
 use crate::engine::{Engine, M, Trouble};
 use crate::parameter::Parameter;
 use crate::path::{PathEnd, PathError};
-use crate::readings::Support;
 use crate::solve::{Options, Solver};
 use crate::stability::Stability;
 use crate::verdict::{SolveError, VerdictKind};
@@ -83,9 +82,7 @@ impl Arm {
         if !(1e-12..=1e-3).contains(&tol) {
             return Err(PathError::Option { option: "tol", value: tol, expected: "in [1e-12, 1e-3]" });
         }
-        if self.readings.support == Support::UnstrainedBase {
-            return Err(PathError::Support);
-        }
+        self.has_a_path()?;
         let (mut solver, turned) = start(self)?;
         let asked = Asked { arm: self.clone(), turned, tol };
         let engine = solver.engine_mut();

@@ -148,6 +148,12 @@ pub enum PathError {
     /// The reading has no family of equilibria.
     #[error("`support = \"unstrained-base\"` is an initial-value problem without limit points or several equilibria")]
     Support,
+    /// Cables whose stroke is commanded.
+    #[error("cable `{cable}` has a commanded stroke; give it the tension that `solve` finds: paths follow tensions")]
+    Stroke {
+        /// The first such cable's name.
+        cable: String,
+    },
     /// There is no equilibrium to start from.
     #[error("no equilibrium at the start of the path, {value} {unit}: {source}", unit = parameter.unit())]
     Start {
@@ -161,6 +167,17 @@ pub enum PathError {
 }
 
 impl Arm {
+    /// Whether there are paths of this arm's equilibria.
+    pub(super) fn has_a_path(&self) -> Result<(), PathError> {
+        if self.readings.support == Support::UnstrainedBase {
+            return Err(PathError::Support);
+        }
+        match self.cables.iter().find(|c| c.stroke.is_some()) {
+            Some(cable) => Err(PathError::Stroke { cable: cable.name.clone() }),
+            None => Ok(()),
+        }
+    }
+
     /// Follows the equilibria of this arm while `parameter` runs from `range[0]` towards `range[1]` (units of
     /// [`Parameter::unit`]), by pseudo-arclength continuation: through limit points, where the parameter
     /// turns back, and past bifurcations, until either end of the range is reached.
@@ -202,9 +219,7 @@ impl Arm {
         let value_error = |value, source| PathError::Value { parameter, value, source };
         let first = parameter.checked(self, range[0]).map_err(|e| value_error(range[0], e))?;
         parameter.checked(self, range[1]).map_err(|e| value_error(range[1], e))?;
-        if self.readings.support == Support::UnstrainedBase {
-            return Err(PathError::Support);
-        }
+        self.has_a_path()?;
         let start_error = |source| PathError::Start { parameter, value: range[0], source };
         let mut solver = Solver::new(&first, Options { tol: options.tol.min(1e-8) }).map_err(start_error)?;
         solver.solve().map_err(start_error)?;

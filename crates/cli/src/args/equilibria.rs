@@ -1,0 +1,79 @@
+//! Arguments of `hydrostat equilibria`.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args as ClapArgs;
+use hydrostat_figures::Quantity;
+use hydrostat_files::Varied;
+
+use super::{ArmArgs, Format, STABLE, picture};
+
+const EXIT: &str = "\
+Exit status:
+  0  at least one equilibrium was found
+  2  the request is wrong: arguments, arm file, an output path that cannot be written
+  3  none was found; standard error says why
+  1  anything else";
+
+/// Finds all equilibria under the same loads, whether the path of `solve` leads to them or not.
+///
+/// The equilibria for all angles of the base lie on one curve that closes after a full turn of the
+/// tip. The search follows it once round and says whether it came round: then there are no others.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = format!("\
+Examples:
+  hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180 --plot all.svg
+  hydrostat equilibria silicone --set flow.direction=180 --over flow.speed=0.02:0.3:29 --plot-over speeds.svg
+
+{STABLE}
+
+{EXIT}"))]
+pub(crate) struct EquilibriaArgs {
+    #[command(flatten)]
+    pub(crate) arm: ArmArgs,
+    /// Error of the tip position over the length that is asked for, from 1e-12 to 1e-3
+    #[arg(long, value_name = "TOL", default_value = "1e-8", allow_hyphen_values = true)]
+    pub(crate) tol: f64,
+    /// text: a summary; json: everything but the shapes; csv: a row an equilibrium
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub(crate) format: Format,
+    /// Write the result to FILE in place of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Draw all shapes to scale; FILE ends in .svg or .png
+    #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "over")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Search at COUNT equally spaced values of a parameter, as in `flow.speed=0:0.5:26`
+    #[arg(long, value_name = "KEY=FROM:TO:COUNT", allow_hyphen_values = true)]
+    pub(crate) over: Option<Over>,
+    /// Draw a quantity of all equilibria over that parameter; FILE ends in .svg or .png
+    #[arg(long, value_name = "FILE", value_parser = picture, requires = "over")]
+    pub(crate) plot_over: Option<PathBuf>,
+    /// What --plot-over shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, `stroke[0]`
+    #[arg(long, value_name = "NAME", default_value = "tip.y")]
+    pub(crate) quantity: Quantity,
+}
+
+/// What `--over` asks for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Over {
+    pub(crate) varied: Varied,
+    pub(crate) count: usize,
+}
+
+impl FromStr for Over {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        const MOST: usize = 10_000;
+        // A key that cannot vary and an end of the range that is no value are the first things to mend.
+        let form = || format!("{text}: expected KEY=FROM:TO:COUNT, such as flow.speed=0:0.5:26");
+        let (range, count) = text.rsplit_once(':').filter(|(range, _)| range.contains(':')).ok_or_else(form)?;
+        let varied = range.parse().map_err(|e: hydrostat_files::VariedError| e.to_string())?;
+        match count.trim().trim_matches('"').parse() {
+            Ok(count) if (2..=MOST).contains(&count) => Ok(Self { varied, count }),
+            _ => Err(format!("{text}: expected a whole number from 2 to {MOST} as COUNT, found \"{count}\"")),
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Arguments of `hydrostat path`.
+
+use std::path::PathBuf;
+
+use clap::Args as ClapArgs;
+use hydrostat_figures::Quantity;
+use hydrostat_files::Varied;
+
+use super::{ArmArgs, Format, STABLE, picture};
+
+const EXIT: &str = "\
+Exit status:
+  0  the path reached an end of the range, or has as many points as allowed
+  2  the request is wrong: arguments, arm file, an output path that cannot be written
+  3  no equilibrium at the start, or a limit of the arm inside the range ends the path (what was
+     found before it is written all the same); standard error says why and where
+  1  anything else";
+
+/// Follows the equilibria while one parameter runs over a range: round limit points, where the
+/// parameter turns back, and past bifurcations, where other branches cross.
+///
+/// The path starts at the shape that `solve` gives at the start of the range. It ends at either end
+/// of the range, at a limit of the arm, or after the most points.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = format!("\
+Examples:
+  hydrostat path paper --vary cable[0].tension=0:100 --plot path.svg --plot-shapes shapes.svg
+  hydrostat path silicone --flow-speed 0.2 --set flow.direction=180 --vary \"arm.base.angle=90 deg:-90 deg\"
+  hydrostat path silicone --vary \"cable[0].tension=0:900 mN\" --quantity stroke[0] --plot stroke.png
+  hydrostat path my.toml --vary flow.speed=0:0.5 --branches --format csv -o path.csv
+
+{STABLE}
+
+{EXIT}"))]
+pub(crate) struct PathArgs {
+    #[command(flatten)]
+    pub(crate) arm: ArmArgs,
+    /// What varies and over which range, as in `cable[0].tension=0:20` or `"flow.direction=0 deg:180 deg"`
+    #[arg(long, value_name = "KEY=FROM:TO", allow_hyphen_values = true)]
+    pub(crate) vary: Varied,
+    /// Error of the tip position over the length that is kept along the path, from 1e-7 to 1e-3
+    #[arg(long, value_name = "TOL", default_value = "1e-6", allow_hyphen_values = true)]
+    pub(crate) tol: f64,
+    /// Most points, on all branches together
+    #[arg(long, value_name = "N", default_value = "1000", value_parser = points)]
+    pub(crate) max_points: usize,
+    /// Longest step: change of the arm's angle (rad, root mean square) and of the parameter over its range, from 0.001 to 0.4
+    #[arg(long, value_name = "X", default_value = "0.2", allow_hyphen_values = true)]
+    pub(crate) max_step: f64,
+    /// Follow the branches that cross at bifurcations, too
+    #[arg(long)]
+    pub(crate) branches: bool,
+    /// text: ends and events; json: everything but the shapes; csv: a row a point
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub(crate) format: Format,
+    /// Write the result to FILE in place of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Draw a quantity over the parameter; FILE ends in .svg or .png
+    #[arg(long, value_name = "FILE", value_parser = picture)]
+    pub(crate) plot: Option<PathBuf>,
+    /// Draw shapes along the path to scale; FILE ends in .svg or .png
+    #[arg(long, value_name = "FILE", value_parser = picture)]
+    pub(crate) plot_shapes: Option<PathBuf>,
+    /// What --plot shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, `stroke[0]`
+    #[arg(long, value_name = "NAME", default_value = "tip.y")]
+    pub(crate) quantity: Quantity,
+}
+
+/// A number of points.
+fn points(text: &str) -> Result<usize, String> {
+    const MOST: usize = 100_000;
+    match text.parse() {
+        Ok(n) if (2..=MOST).contains(&n) => Ok(n),
+        _ => Err(format!("expected a whole number from 2 to {MOST}")),
+    }
+}

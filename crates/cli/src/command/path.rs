@@ -1,0 +1,185 @@
+//! `hydrostat path`: equilibria over a range of one parameter.
+
+use std::fmt::Write as _;
+
+use hydrostat::{Arm, Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint, Stability};
+use hydrostat_figures::{Abscissa, Quantity, path_figure, path_shapes_figure};
+use hydrostat_files::{PathDocument, Varied, end_message, number, path_csv};
+
+use super::NoAnswer;
+use super::table::{TIP, stability_words, table, tip_cells};
+use crate::args::{Format, PathArgs};
+use crate::output;
+use crate::progress::Progress;
+use crate::request::{self, WrongRequest};
+
+pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
+    let arm = request::arm(&args.arm)?;
+    let varied = &args.vary;
+    varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--vary", e))?;
+    check_quantity(&arm, args.quantity)?;
+    request::check_outputs(&[
+        ("-o", args.output.as_deref()),
+        ("--plot", args.plot.as_deref()),
+        ("--plot-shapes", args.plot_shapes.as_deref()),
+    ])?;
+    let path = follow(&arm, args)?;
+    let Some(document) = PathDocument::new(&path, varied) else {
+        let start = varied.with_unit(varied.range[0]);
+        return Err(NoAnswer(format!("no point of the path was established at its start, {start}")).into());
+    };
+    if let Some(file) = &args.plot {
+        output::draw(&path_figure(&path, &abscissa(varied), args.quantity, &title(&arm, varied)), file)?;
+    }
+    if let Some(file) = &args.plot_shapes {
+        output::draw(&path_shapes_figure(&path, &abscissa(varied), &title(&arm, varied)), file)?;
+    }
+    let text = match args.format {
+        Format::Text => summary(&arm, &path, varied),
+        Format::Json => output::line(document.to_json()?),
+        Format::Csv => path_csv(&path, varied),
+    };
+    output::put(args.output.as_deref(), &text)?;
+    say_ends(&path, varied)
+}
+
+/// A cable that is not there has no stroke.
+pub(super) fn check_quantity(arm: &Arm, quantity: Quantity) -> Result<(), WrongRequest> {
+    let cables = arm.cables.len();
+    match quantity {
+        Quantity::Stroke(asked) if asked >= cables => Err(WrongRequest::NoCable { asked, cables }),
+        _ => Ok(()),
+    }
+}
+
+fn follow(arm: &Arm, args: &PathArgs) -> anyhow::Result<Path> {
+    let options = PathOptions { tol: args.tol, longest: args.max_step, most: args.max_points, branches: args.branches };
+    let mut progress = Progress::new();
+    let mut count = 0;
+    let varied = &args.vary;
+    let path = arm.path_with(varied.parameter, varied.range, &options, |point| {
+        count += 1;
+        progress.say(|| format!("{count} points, {} = {}", varied.parameter, varied.with_unit(point.value)));
+        true
+    });
+    path.map_err(|error| match error {
+        PathError::Start { value, source, .. } => {
+            let start = format!("{} = {}", varied.parameter, varied.with_unit(value));
+            let message = format!("no equilibrium at the start of the path, {start}: {source}");
+            anyhow::Error::new(source).context(message)
+        }
+        PathError::Value { value, ref source, .. } => {
+            let message = format!("--vary {} = {}: {source}", varied.parameter, varied.with_unit(value));
+            anyhow::Error::new(error).context(message)
+        }
+        PathError::Option { option, value, expected } => {
+            let name = if option == "longest" { "max-step" } else { option };
+            let message = format!("--{name}: expected a number {expected}, found {value}");
+            anyhow::Error::new(error).context(message)
+        }
+        PathError::Support | PathError::Stroke { .. } => error.into(),
+    })
+}
+
+/// The axis of what varies.
+pub(super) fn abscissa(varied: &Varied) -> Abscissa {
+    Abscissa { name: varied.parameter.to_string(), unit: varied.unit.to_owned(), per_si: varied.per_si }
+}
+
+/// What a drawing shows.
+pub(super) fn title(arm: &Arm, varied: &Varied) -> String {
+    format!("{}: equilibria over {}", arm.name, varied.parameter)
+}
+
+/// Ends, events and a line on the whole.
+fn summary(arm: &Arm, path: &Path, varied: &Varied) -> String {
+    let [from, to] = varied.range.map(|value| varied.with_unit(value));
+    let mut out = format!("path   {}, {} from {from} to {to}\n", arm.name, varied.parameter);
+    for (index, branch) in path.branches.iter().enumerate() {
+        let _ = match branch.switched_at {
+            Some(value) => writeln!(out, "\nbranch {index}, from the bifurcation at {}", varied.with_unit(value)),
+            None => writeln!(out),
+        };
+        out.push_str(&events_table(branch, varied));
+        let count = |event: Event| branch.points.iter().filter(|p| p.event == Some(event)).count();
+        let _ = writeln!(
+            out,
+            "{}, {}, {}; {}; {}",
+            counted(branch.points.len(), "point", "points"),
+            counted(count(Event::LimitPoint), "limit point", "limit points"),
+            counted(count(Event::Bifurcation), "bifurcation", "bifurcations"),
+            stability_along(branch),
+            end_message(branch.end, varied, branch.points.last().map_or(f64::NAN, |p| p.value))
+        );
+    }
+    out
+}
+
+fn counted(count: usize, one: &str, many: &str) -> String {
+    match count {
+        0 => format!("no {many}"),
+        1 => format!("1 {one}"),
+        n => format!("{n} {many}"),
+    }
+}
+
+fn stability_along(branch: &Branch) -> &'static str {
+    let regular = || branch.points.iter().filter(|p| p.event.is_none());
+    if regular().all(|p| p.stability == Some(Stability::Stable)) {
+        "stable all along"
+    } else if regular().any(|p| p.stability == Some(Stability::Stable)) {
+        "stable in part"
+    } else {
+        "nowhere known to be stable"
+    }
+}
+
+/// The first point, the last one and the events between.
+fn events_table(branch: &Branch, varied: &Varied) -> String {
+    let unit = if varied.unit.is_empty() { "value".to_owned() } else { varied.unit.to_owned() };
+    let mut head = vec![unit];
+    head.extend(TIP.map(str::to_owned));
+    head.extend(["stability", "event"].map(str::to_owned));
+    let mut rows = vec![head];
+    let last = branch.points.len().saturating_sub(1);
+    for (index, point) in branch.points.iter().enumerate() {
+        let event = match point.event {
+            Some(Event::LimitPoint) => "limit point",
+            Some(Event::Bifurcation) => "bifurcation",
+            None if index == 0 => "start",
+            None if index == last => "end",
+            None => continue,
+        };
+        rows.push(row(point, varied, event));
+    }
+    table(&rows, 2)
+}
+
+fn row(point: &PathPoint, varied: &Varied, event: &str) -> Vec<String> {
+    let mut row = vec![number(varied.shown(point.value))];
+    row.extend(tip_cells(&point.configuration));
+    row.extend([stability_words(point.stability), event.to_owned()]);
+    row
+}
+
+/// Says why branches ended elsewhere than at the end of the range. A limit that ends the first one is no success.
+fn say_ends(path: &Path, varied: &Varied) -> anyhow::Result<()> {
+    for (index, branch) in path.branches.iter().enumerate() {
+        let value = branch.points.last().map_or(f64::NAN, |p| p.value);
+        let message = end_message(branch.end, varied, value);
+        let what = if index == 0 { "the path ends".to_owned() } else { format!("branch {index} ends") };
+        match branch.end {
+            PathEnd::ReachedEnd => {}
+            PathEnd::Limit { .. } if index == 0 => {}
+            PathEnd::MostPoints => eprintln!("note: {what}: {message}; --max-points allows more"),
+            PathEnd::ReachedStart | PathEnd::Limit { .. } => eprintln!("note: {what}: {message}"),
+        }
+    }
+    match path.branches.first() {
+        Some(Branch { end: end @ PathEnd::Limit { .. }, points, .. }) => {
+            let value = points.last().map_or(f64::NAN, |p| p.value);
+            Err(NoAnswer(format!("the path ends inside the range: {}", end_message(*end, varied, value))).into())
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,68 @@
+//! Tables for people.
+
+use std::fmt::Write as _;
+
+use hydrostat::{Configuration, Stability};
+
+/// Rows of cells in columns as wide as they need to be, numbers to the right and `words` last columns to the left.
+pub(super) fn table(rows: &[Vec<String>], words: usize) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |c: usize| rows.iter().filter_map(|row| row.get(c)).map(|cell| cell.chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut out = String::new();
+    for row in rows {
+        let mut line = String::new();
+        for (c, cell) in row.iter().enumerate() {
+            let width = widths[c];
+            line.push_str(if c == 0 { "" } else { "  " });
+            let _ = if c + words < columns { write!(line, "{cell:>width$}") } else { write!(line, "{cell:<width$}") };
+        }
+        out.push_str(line.trim_end());
+        out.push('\n');
+    }
+    out
+}
+
+/// The heads of [`tip_cells`].
+pub(super) const TIP: [&str; 4] = ["x (mm)", "y (mm)", "turned (deg)", "alpha (deg)"];
+
+/// Where the tip is, by how much it is turned, and alpha there.
+pub(super) fn tip_cells(c: &Configuration) -> [String; 4] {
+    let tip = c.tip();
+    let decimals = |value: f64, count: usize| {
+        let text = format!("{value:.count$}");
+        if text.trim_start_matches('-').bytes().all(|b| matches!(b, b'0' | b'.')) {
+            text.trim_start_matches('-').to_owned()
+        } else {
+            text
+        }
+    };
+    [
+        decimals(1e3 * tip.x, 3),
+        decimals(1e3 * tip.y, 3),
+        decimals(tip.theta.to_degrees(), 3),
+        decimals(tip.alpha.to_degrees(), 3),
+    ]
+}
+
+/// Stability in a word or two.
+pub(super) fn stability_words(stability: Option<Stability>) -> String {
+    match stability {
+        Some(Stability::Stable) => "stable".to_owned(),
+        Some(Stability::Unstable(count)) => format!("unstable ({count})"),
+        Some(Stability::Marginal) => "marginal".to_owned(),
+        None => "not established".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_right_and_words_left() {
+        let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
+        let text = table(&[row(["a", "long", "word"]), row(["10", "2", "w"])], 1);
+        assert_eq!(text, " a  long  word\n10     2  w\n");
+    }
+}

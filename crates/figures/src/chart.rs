@@ -1,0 +1,359 @@
+//! A quantity of many equilibria over a parameter.
+
+use hydrostat::{Equilibria, Event, Path, PathEnd, PathPoint, Stability};
+
+use crate::arm_figure::{fitting, place_label, short};
+use crate::axes::{Axes, BELOW, LEFT};
+use crate::font::{CAP_HEIGHT, Label};
+use crate::legend::{Legend, MARGIN, Mark, Sample, WIDTH};
+use crate::palette::{Color, GREY, INK, series};
+use crate::placement::{Occupied, Rect};
+use crate::quantity::Quantity;
+use crate::scene::{Anchor, Point, Scene, Stroke};
+
+const HEIGHT: f64 = 230.0;
+const TITLE_SIZE: f64 = 10.0;
+/// More labels than this would hide what they mean.
+const MOST_LABELS: usize = 12;
+
+/// The parameter that a chart runs over.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Abscissa {
+    /// For people.
+    pub name: String,
+    /// The unit in which it is shown; may be empty.
+    pub unit: String,
+    /// How many of that unit an SI unit is.
+    pub per_si: f64,
+}
+
+impl Abscissa {
+    fn title(&self) -> Label {
+        match self.unit.as_str() {
+            "" => Label::plain(&self.name),
+            "deg" => Label::plain(format!("{} (°)", self.name)),
+            unit => Label::plain(format!("{} ({unit})", self.name)),
+        }
+    }
+
+    /// A value (SI) with its unit.
+    pub(crate) fn text(&self, value: f64) -> String {
+        let shown = value * self.per_si;
+        // What is nothing over the range is rounding.
+        let number = short(if shown.abs() < 1e-9 { 0.0 } else { shown }).replace('-', "\u{2212}");
+        match self.unit.as_str() {
+            "" => number,
+            "deg" => format!("{number}°"),
+            unit => format!("{number} {unit}"),
+        }
+    }
+}
+
+/// What is known of a piece of a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Look {
+    Stable,
+    Unstable,
+    Unknown,
+}
+
+impl Look {
+    pub(crate) fn of(stability: Option<Stability>) -> Self {
+        match stability.and_then(Stability::is_stable) {
+            Some(true) => Self::Stable,
+            Some(false) => Self::Unstable,
+            None => Self::Unknown,
+        }
+    }
+
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Stable => "stable",
+            Self::Unstable => "unstable",
+            Self::Unknown => "stability not established",
+        }
+    }
+
+    fn color(self) -> Color {
+        match self {
+            Self::Stable => series(1),
+            Self::Unstable => series(0),
+            Self::Unknown => GREY,
+        }
+    }
+
+    fn stroke(self) -> Stroke {
+        match self {
+            Self::Stable => Stroke::solid(self.color(), 1.4),
+            Self::Unstable => Stroke::dashed(self.color(), 1.2, [4.0, 2.2]),
+            Self::Unknown => Stroke::dashed(self.color(), 1.2, [1.0, 1.6]),
+        }
+    }
+
+    fn mark(self) -> Mark {
+        match self {
+            Self::Stable => Mark::Filled(self.color()),
+            Self::Unstable => Mark::Hollow(self.color()),
+            Self::Unknown => Mark::Cross(self.color()),
+        }
+    }
+}
+
+const LOOKS: [Look; 3] = [Look::Stable, Look::Unstable, Look::Unknown];
+
+fn event_mark(event: Event) -> (Mark, &'static str) {
+    match event {
+        Event::LimitPoint => (Mark::Filled(INK), "limit point"),
+        Event::Bifurcation => (Mark::Diamond(INK), "bifurcation"),
+    }
+}
+
+const END: Mark = Mark::Cross(INK);
+
+/// `quantity` along a path: stable pieces solid, unstable ones dashed, limit points and bifurcations marked with the
+/// value of the parameter, a cross where a limit of the arm ends a branch.
+///
+/// ```
+/// use hydrostat::{Arm, Parameter, PathOptions};
+/// use hydrostat_figures::{Abscissa, Quantity, path_figure};
+///
+/// let arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+/// let path = arm.path(Parameter::TipForce(1), [0.0, 0.02], &PathOptions::default()).unwrap();
+/// let over = Abscissa { name: "force".to_owned(), unit: "mN".to_owned(), per_si: 1e3 };
+/// let figure = path_figure(&path, &over, Quantity::TipY, "a cone");
+/// assert!(figure.texts().any(|text| text == "force (mN)"));
+/// ```
+pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str) -> Scene {
+    let at = |p: &PathPoint| [over.per_si * p.value, quantity.of(&p.configuration)];
+    let all: Vec<[f64; 2]> = path.branches.iter().flat_map(|b| b.points.iter().map(at)).collect();
+    let events: Vec<&PathPoint> = path.branches.iter().flat_map(|b| &b.points).filter(|p| p.event.is_some()).collect();
+    let stopped: Vec<&PathPoint> = path
+        .branches
+        .iter()
+        .filter(|b| matches!(b.end, PathEnd::Limit { .. }))
+        .filter_map(|b| b.points.last())
+        .collect();
+
+    let mut legend = Legend::default();
+    let regular = || path.branches.iter().flat_map(|b| &b.points).filter_map(look);
+    for look in LOOKS.into_iter().filter(|wanted| regular().any(|look| look == *wanted)) {
+        legend.add(Sample::Line(look.stroke()), Label::plain(look.words()));
+    }
+    for event in [Event::LimitPoint, Event::Bifurcation] {
+        if events.iter().any(|p| p.event == Some(event)) {
+            let (mark, words) = event_mark(event);
+            legend.add(Sample::Mark(mark), Label::plain(words));
+        }
+    }
+    if !stopped.is_empty() {
+        legend.add(Sample::Mark(END), Label::plain("no equilibrium found beyond"));
+    }
+
+    let (mut scene, axes) = page(title, &legend, &all, over, quantity);
+    let pieces: Vec<Vec<(Look, Vec<Point>)>> = path
+        .branches
+        .iter()
+        .map(|branch| {
+            // A branch switched to begins at the bifurcation, which is a point of another.
+            let left = |p: &&&PathPoint| branch.switched_at == Some(p.value);
+            let points: Vec<&PathPoint> = events.iter().find(left).copied().into_iter().chain(&branch.points).collect();
+            let looks: Vec<Option<Look>> = points.iter().map(|p| look(p)).collect();
+            pieces(&looks, &smooth(&axes.all(&points.iter().map(|p| at(p)).collect::<Vec<_>>())))
+        })
+        .collect();
+    let mut occupied = Occupied::new(axes.frame.grown(-3.0));
+    for wanted in [Look::Unknown, Look::Unstable, Look::Stable] {
+        for (_, line) in pieces.iter().flatten().filter(|(look, _)| *look == wanted) {
+            scene.line(line, wanted.stroke());
+            occupied.add_line(line);
+        }
+    }
+    for point in &stopped {
+        END.draw(&mut scene, axes.at(at(point)));
+    }
+    let labelled = events.len() <= MOST_LABELS;
+    for point in &events {
+        if let Some(event) = point.event {
+            event_mark(event).0.draw(&mut scene, axes.at(at(point)));
+        }
+    }
+    for point in events.into_iter().chain(stopped).filter(|_| labelled) {
+        let page = axes.at(at(point));
+        place_label(&mut scene, &mut occupied, &Label::plain(over.text(point.value)), INK, page, 0.0);
+    }
+    scene
+}
+
+/// `quantity` of all equilibria at several values (SI) of a parameter: stable ones filled, unstable ones hollow.
+///
+/// ```
+/// use hydrostat::{Arm, Parameter};
+/// use hydrostat_figures::{Abscissa, Quantity, over_figure};
+///
+/// let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+/// arm.tip.force = [-0.2, 0.0];
+/// let all = arm.equilibria(1e-6).unwrap();
+/// let over = Abscissa { name: "force".to_owned(), unit: "N".to_owned(), per_si: 1.0 };
+/// let figure = over_figure(&[(-0.2, &all)], &over, Quantity::TipY, "a column");
+/// assert!(figure.texts().any(|text| text == "unstable"));
+/// ```
+pub fn over_figure(searches: &[(f64, &Equilibria)], over: &Abscissa, quantity: Quantity, title: &str) -> Scene {
+    let points: Vec<([f64; 2], Look)> = searches
+        .iter()
+        .flat_map(|(value, all)| {
+            let at = move |one: &hydrostat::Equilibrium| [over.per_si * value, quantity.of(&one.configuration)];
+            all.found.iter().map(move |one| (at(one), Look::of(one.stability)))
+        })
+        .collect();
+    let mut legend = Legend::default();
+    for look in LOOKS.into_iter().filter(|look| points.iter().any(|(_, l)| l == look)) {
+        legend.add(Sample::Mark(look.mark()), Label::plain(look.words()));
+    }
+    let mut all: Vec<[f64; 2]> = points.iter().map(|(p, _)| *p).collect();
+    // The whole range is shown, even where there are no equilibria.
+    if let (Some(first), Some(any)) = (searches.first().zip(searches.last()), all.first().copied()) {
+        all.extend([first.0.0, first.1.0].map(|value| [over.per_si * value, any[1]]));
+    }
+    let (mut scene, axes) = page(title, &legend, &all, over, quantity);
+    for (point, look) in points {
+        look.mark().draw(&mut scene, axes.at(point));
+    }
+    scene
+}
+
+/// Title, legend, and axes round all points.
+fn page(title: &str, legend: &Legend, points: &[[f64; 2]], over: &Abscissa, quantity: Quantity) -> (Scene, Axes) {
+    let baseline = MARGIN + CAP_HEIGHT * TITLE_SIZE;
+    let top = baseline + 8.0 + legend.height() + 6.0;
+    let frame = Rect { left: LEFT, top, right: WIDTH - MARGIN, bottom: top + HEIGHT };
+    let [x, y] = crate::outline::bounds(points);
+    let axes = Axes::new(frame, padded(x, 0.03), padded(y, 0.06));
+    let y_title = quantity.title();
+    let mut scene = Scene::new(WIDTH, frame.bottom + BELOW + MARGIN, format!("{title}: {y_title} over {}", over.name));
+    let label = Label::plain(title);
+    scene.text(&label, [LEFT, baseline], Anchor::Start, fitting(&label, TITLE_SIZE));
+    legend.draw(&mut scene, baseline + 8.0);
+    axes.draw(&mut scene, &over.title(), &y_title);
+    (scene, axes)
+}
+
+/// A range with some room at its ends, and never an empty one.
+fn padded([low, high]: [f64; 2], share: f64) -> [f64; 2] {
+    if !(low.is_finite() && high.is_finite()) {
+        return [0.0, 1.0];
+    }
+    let size = low.abs().max(high.abs()).max(1e-9);
+    let pad = (share * (high - low)).max(if high - low < 1e-6 * size { 0.1 * size } else { 0.0 });
+    [low - pad, high + pad]
+}
+
+/// `None` at events, where one direction is neither stable nor unstable.
+fn look(point: &PathPoint) -> Option<Look> {
+    point.event.is_none().then(|| Look::of(point.stability))
+}
+
+/// The line between points, one part for each two of them, in pieces of one look each, which share their ends. Where the
+/// look changes without an event, it does so halfway.
+fn pieces(looks: &[Option<Look>], parts: &[Vec<Point>]) -> Vec<(Look, Vec<Point>)> {
+    let mut out: Vec<(Look, Vec<Point>)> = Vec::new();
+    let mut go = |look: Look, part: &[Point]| match out.last_mut() {
+        Some((last, line)) if *last == look => line.extend(part.iter().skip(1)),
+        _ => out.push((look, part.to_vec())),
+    };
+    let mut last = None;
+    for (k, (pair, part)) in looks.windows(2).zip(parts).enumerate() {
+        let [before, after] = [pair[0], pair[1]];
+        last = before.or(last);
+        match (before, after) {
+            (Some(before), Some(after)) if before != after => {
+                let middle = part.len() / 2;
+                go(before, &part[..=middle]);
+                go(after, &part[middle..]);
+            }
+            (Some(look), _) | (None, Some(look)) => go(look, part),
+            (None, None) => {
+                let next = looks[k + 1..].iter().find_map(|look| *look);
+                go(next.or(last).unwrap_or(Look::Unknown), part);
+            }
+        }
+    }
+    out
+}
+
+/// A smooth line through `points` (centripetal Catmull and Rom), one part for each two of them.
+fn smooth(points: &[Point]) -> Vec<Vec<Point>> {
+    const STEPS: u32 = 10;
+    let last = points.len().saturating_sub(1);
+    let part = |k: usize| {
+        let (b, c) = (points[k], points[k + 1]);
+        let (a, d) = (points[k.saturating_sub(1)], points[(k + 2).min(last)]);
+        let gap = |p: Point, q: Point| (p[0] - q[0]).hypot(p[1] - q[1]).sqrt().max(1e-6);
+        let (ab, bc, cd) = (gap(a, b), gap(b, c), gap(c, d));
+        // Slopes at both ends, by a parameter that runs from 0 to 1 between them.
+        let slopes = |axis: usize| {
+            let chord = c[axis] - b[axis];
+            let leave = (b[axis] - a[axis]) / ab - (c[axis] - a[axis]) / (ab + bc) + chord / bc;
+            let reach = chord / bc - (d[axis] - b[axis]) / (bc + cd) + (d[axis] - c[axis]) / cd;
+            let [leave, reach] = [bc * leave, bc * reach];
+            // An end has no neighbour: the curve bends there as evenly as its other end lets it.
+            match (k == 0, k + 1 == last) {
+                (true, true) => [chord; 2],
+                (true, false) => [1.5 * chord - 0.5 * reach, reach],
+                (false, true) => [leave, 1.5 * chord - 0.5 * leave],
+                (false, false) => [leave, reach],
+            }
+        };
+        let slopes = [slopes(0), slopes(1)];
+        let at = |t: f64, axis: usize| {
+            let [leave, reach] = slopes[axis];
+            let (rise, fall) = (t * t * (3.0 - 2.0 * t), t * (1.0 - t));
+            b[axis] + rise * (c[axis] - b[axis]) + fall * ((1.0 - t) * leave - t * reach)
+        };
+        (0..=STEPS).map(|step| f64::from(step) / f64::from(STEPS)).map(|t| [at(t, 0), at(t, 1)]).collect()
+    };
+    (0..last).map(part).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_share_their_ends() {
+        use Look::{Stable, Unstable};
+        let at = |x: f64| [x, 0.0];
+        let places = [0.0, 1.0, 2.0, 1.5, 1.0, 1.1, 2.0];
+        let parts: Vec<Vec<Point>> = places.windows(2).map(|w| vec![at(w[0]), at(w[1])]).collect();
+        let looks = [Some(Stable), Some(Stable), None, Some(Unstable), None, None, Some(Stable)];
+        let expected = [
+            (Stable, vec![at(0.0), at(1.0), at(2.0)]),
+            (Unstable, vec![at(2.0), at(1.5), at(1.0)]),
+            (Stable, vec![at(1.0), at(1.1), at(2.0)]),
+        ];
+        assert_eq!(pieces(&looks, &parts), expected);
+        let halves = pieces(&[Some(Stable), Some(Unstable)], &[vec![at(0.0), at(0.5), at(1.0)]]);
+        assert_eq!(halves, [(Stable, vec![at(0.0), at(0.5)]), (Unstable, vec![at(0.5), at(1.0)])]);
+    }
+
+    #[test]
+    fn a_smooth_line_goes_through_its_points_and_keeps_lines_straight() {
+        let points = [[0.0, 0.0], [1.0, 2.0], [3.0, 2.5], [3.0, 2.5], [2.0, 4.0]];
+        let parts = smooth(&points);
+        let near = |p: Point, q: Point| (p[0] - q[0]).hypot(p[1] - q[1]) < 1e-9;
+        assert_eq!(parts.len(), 4);
+        for (part, ends) in parts.iter().zip(points.windows(2)) {
+            assert!(near(part[0], ends[0]) && near(part[part.len() - 1], ends[1]));
+        }
+        assert!(parts.iter().flatten().flatten().all(|x| x.is_finite()));
+        let straight = smooth(&[[0.0, 0.0], [1.0, 1.0], [5.0, 5.0], [6.0, 6.0]]);
+        assert!(straight.iter().flatten().all(|p| (p[0] - p[1]).abs() < 1e-12));
+        assert!(smooth(&[[1.0, 1.0]]).is_empty() && smooth(&[]).is_empty());
+    }
+
+    #[test]
+    fn ranges_have_room() {
+        assert_eq!(padded([0.0, 10.0], 0.1), [-1.0, 11.0]);
+        assert!(padded([5.0, 5.0], 0.1)[0] < 5.0 && padded([0.0, 0.0], 0.1)[1] > 0.0);
+        assert_eq!(padded([f64::INFINITY, f64::NEG_INFINITY], 0.1), [0.0, 1.0]);
+    }
+}

@@ -1,0 +1,87 @@
+//! What a chart can show of an equilibrium.
+
+use std::fmt;
+use std::str::FromStr;
+
+use hydrostat::Configuration;
+
+use crate::font::Label;
+
+/// One number of a configuration.
+///
+/// ```
+/// use hydrostat_figures::Quantity;
+///
+/// assert_eq!("tip.y".parse(), Ok(Quantity::TipY));
+/// assert_eq!("stroke[1]".parse(), Ok(Quantity::Stroke(1)));
+/// assert!("tip.z".parse::<Quantity>().is_err());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// x of the tip.
+    TipX,
+    /// y of the tip.
+    TipY,
+    /// The angle of the tip's section.
+    TipTheta,
+    /// alpha at the tip.
+    TipAlpha,
+    /// How far a cable is reeled in.
+    Stroke(usize),
+}
+
+/// A name that no quantity has.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("expected tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable such as stroke[0]")]
+pub struct UnknownQuantity;
+
+impl FromStr for Quantity {
+    type Err = UnknownQuantity;
+
+    fn from_str(name: &str) -> Result<Self, UnknownQuantity> {
+        let stroke = || name.strip_prefix("stroke[")?.strip_suffix(']')?.parse().ok();
+        match name {
+            "tip.x" => Ok(Self::TipX),
+            "tip.y" => Ok(Self::TipY),
+            "tip.theta" => Ok(Self::TipTheta),
+            "tip.alpha" => Ok(Self::TipAlpha),
+            _ => stroke().map(Self::Stroke).ok_or(UnknownQuantity),
+        }
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TipX => f.write_str("tip.x"),
+            Self::TipY => f.write_str("tip.y"),
+            Self::TipTheta => f.write_str("tip.theta"),
+            Self::TipAlpha => f.write_str("tip.alpha"),
+            Self::Stroke(cable) => write!(f, "stroke[{cable}]"),
+        }
+    }
+}
+
+impl Quantity {
+    /// Its value in mm or degrees.
+    pub(crate) fn of(self, c: &Configuration) -> f64 {
+        match self {
+            Self::TipX => 1e3 * c.tip().x,
+            Self::TipY => 1e3 * c.tip().y,
+            Self::TipTheta => c.tip().theta.to_degrees(),
+            Self::TipAlpha => c.tip().alpha.to_degrees(),
+            Self::Stroke(cable) => c.cables.get(cable).map_or(f64::NAN, |cable| 1e3 * cable.stroke),
+        }
+    }
+
+    /// Its name on an axis.
+    pub(crate) fn title(self) -> Label {
+        match self {
+            Self::TipX => Label::math("$x$($L$) (mm)"),
+            Self::TipY => Label::math("$y$($L$) (mm)"),
+            Self::TipTheta => Label::math("$θ$($L$) (°)"),
+            Self::TipAlpha => Label::math("$α$($L$) (°)"),
+            Self::Stroke(cable) => Label::plain(format!("stroke of cable {cable} (mm)")),
+        }
+    }
+}

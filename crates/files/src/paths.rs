@@ -1,0 +1,133 @@
+//! Paths of equilibria as JSON and CSV.
+
+use hydrostat::{Branch, Path, PathEnd, PathPoint, VerdictKind};
+use serde::Serialize;
+
+use crate::results::{SCHEMA, cell, row};
+use crate::state::State;
+use crate::varied::Varied;
+use crate::written::Inputs;
+
+/// The document of a path.
+#[derive(Debug, Clone, Serialize)]
+pub struct PathDocument<'a> {
+    schema: u32,
+    version: &'static str,
+    parameter: String,
+    unit: &'static str,
+    range: [f64; 2],
+    branches: Vec<BranchOut<'a>>,
+    inputs: Inputs,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct BranchOut<'a> {
+    switched_at: Option<f64>,
+    end: EndOut,
+    points: Vec<PointOut<'a>>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct EndOut {
+    kind: &'static str,
+    s: Option<f64>,
+    message: String,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct PointOut<'a> {
+    value: f64,
+    #[serde(flatten)]
+    state: State<'a>,
+    event: Option<&'static str>,
+}
+
+impl EndOut {
+    pub(crate) fn new(end: PathEnd, message: String) -> Self {
+        let s = match end {
+            PathEnd::Limit { s, .. } => s,
+            _ => None,
+        };
+        Self { kind: end.name(), s, message }
+    }
+}
+
+/// Why a path of `varied` ends, in a phrase, with the value (SI) at its last point.
+pub fn end_message(end: PathEnd, varied: &Varied, value: f64) -> String {
+    let at = format!("at {} = {}", varied.parameter, varied.with_unit(value));
+    match end {
+        PathEnd::ReachedEnd => format!("the end of the range was reached, {}", varied.with_unit(varied.range[1])),
+        PathEnd::ReachedStart => {
+            format!("it came back to the start of the range, {}", varied.with_unit(varied.range[0]))
+        }
+        PathEnd::MostPoints => format!("the most points allowed were reached {at}"),
+        PathEnd::Limit { kind, s } => format!("{} {at}", limit_message(kind, s)),
+    }
+}
+
+/// What no equilibrium goes past, in a phrase, and where along the arm (m).
+pub fn limit_message(kind: VerdictKind, s: Option<f64>) -> String {
+    let why = match kind {
+        VerdictKind::CableFold => "a cable folds its side of the arm shut",
+        VerdictKind::SectionCrushed => "net compression crushes the section",
+        VerdictKind::NoSectionSolution => "no section strains carry the contact force",
+        VerdictKind::LimitPoint => "the equilibrium ends in a limit point",
+        VerdictKind::LoadJump => "the load of the stream jumps against the motion",
+        VerdictKind::NotFound => "no further equilibrium was found and no physical limit established",
+    };
+    s.map_or_else(|| why.to_owned(), |s| format!("{why}, at s = {s:.4} m,"))
+}
+
+fn branch<'a>(branch: &'a Branch, varied: &Varied) -> BranchOut<'a> {
+    let last = branch.points.last().map_or(f64::NAN, |point| point.value);
+    BranchOut {
+        switched_at: branch.switched_at,
+        end: EndOut::new(branch.end, end_message(branch.end, varied, last)),
+        points: branch.points.iter().map(point).collect(),
+    }
+}
+
+fn point(point: &PathPoint) -> PointOut<'_> {
+    let state = State::new(&point.configuration, point.stability);
+    PointOut { value: point.value, state, event: point.event.map(hydrostat::Event::name) }
+}
+
+impl<'a> PathDocument<'a> {
+    /// Of a path of what varies; `inputs` are the arm's, with the value at the start of the path.
+    pub fn new(path: &'a Path, varied: &Varied) -> Option<Self> {
+        let first = path.branches.first()?.points.first()?;
+        Some(Self {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            parameter: path.parameter.to_string(),
+            unit: path.parameter.unit(),
+            range: path.range,
+            branches: path.branches.iter().map(|b| branch(b, varied)).collect(),
+            inputs: Inputs::new(&first.configuration.arm),
+        })
+    }
+
+    /// The document, one line.
+    ///
+    /// # Errors
+    /// None in practice: the document has no maps with keys that are not strings.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string(self)
+    }
+}
+
+/// The points of all branches, one row each, with names and SI units in the first row. Branches count from 0.
+pub fn path_csv(path: &Path, varied: &Varied) -> String {
+    let all = || path.branches.iter().enumerate().flat_map(|(b, branch)| branch.points.iter().map(move |p| (b, p)));
+    let cables = all().next().map_or(0, |(_, p)| p.configuration.cables.len());
+    let mut names = vec!["branch".to_owned(), varied.column()];
+    names.extend(State::columns(cables, &["event"]));
+    let mut out = row(&names);
+    for (branch, point) in all() {
+        let mut cells = vec![branch.to_string(), cell(point.value)];
+        let event = point.event.map_or("", hydrostat::Event::name);
+        cells.extend(State::new(&point.configuration, point.stability).cells(&[event]));
+        out.push_str(&row(&cells));
+    }
+    out
+}

@@ -1,0 +1,65 @@
+//! One equilibrium of several: what documents and tables say of it.
+
+use hydrostat::{Configuration, Stability};
+use serde::Serialize;
+
+use crate::results::{CableOut, TipOut, cell};
+
+/// Whether an equilibrium is stable, and in how many directions it is not.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct StabilityOut {
+    state: Option<&'static str>,
+    directions: Option<usize>,
+}
+
+impl From<Option<Stability>> for StabilityOut {
+    fn from(stability: Option<Stability>) -> Self {
+        let (state, directions) = match stability {
+            Some(Stability::Stable) => (Some("stable"), Some(0)),
+            Some(Stability::Unstable(count)) => (Some("unstable"), Some(count)),
+            Some(Stability::Marginal) => (Some("marginal"), None),
+            None => (None, None),
+        };
+        Self { state, directions }
+    }
+}
+
+/// An equilibrium without its stations.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct State<'a> {
+    tip: TipOut,
+    cables: Vec<CableOut<'a>>,
+    stability: StabilityOut,
+    error_estimate: f64,
+}
+
+impl<'a> State<'a> {
+    pub(crate) fn new(configuration: &'a Configuration, stability: Option<Stability>) -> Self {
+        Self {
+            tip: TipOut::new(configuration),
+            cables: CableOut::all(configuration),
+            stability: stability.into(),
+            error_estimate: configuration.error_estimate,
+        }
+    }
+
+    /// The heads of [`State::cells`] for an arm with so many cables; `more` come before the last one.
+    pub(crate) fn columns(cables: usize, more: &[&str]) -> Vec<String> {
+        let mut out: Vec<String> = ["tip_x_m", "tip_y_m", "tip_theta_rad", "tip_alpha_rad"].map(str::to_owned).into();
+        out.extend((0..cables).flat_map(|c| [format!("stroke[{c}]_m"), format!("tension[{c}]_N")]));
+        out.extend(["stability", "unstable_directions"].map(str::to_owned));
+        out.extend(more.iter().chain(&["error_estimate_m"]).map(|name| (*name).to_owned()));
+        out
+    }
+
+    pub(crate) fn cells(&self, more: &[&str]) -> Vec<String> {
+        let TipOut { x, y, theta, alpha } = self.tip;
+        let mut out: Vec<String> = [x, y, theta, alpha].map(cell).into();
+        out.extend(self.cables.iter().flat_map(|c| [cell(c.stroke), cell(c.tension)]));
+        out.push(self.stability.state.unwrap_or_default().to_owned());
+        out.push(self.stability.directions.map_or_else(String::new, |count| count.to_string()));
+        out.extend(more.iter().map(|text| (*text).to_owned()));
+        out.push(cell(self.error_estimate));
+        out
+    }
+}
