@@ -31,7 +31,7 @@ fn configuration() -> Configuration {
     // A solved arm, with numbers in its place that are easy to tell apart.
     let mut out = arm.solve().unwrap();
     out.stations = stations;
-    out.cables = vec![CableState { name: "left".to_owned(), tension: 0.1, length: 0.19, stroke: 0.01 }];
+    out.cables = vec![CableState { name: "left".to_owned(), tension: 0.1, length: 0.19, stroke: 0.01, command: None }];
     out.base_reaction = Wrench { force: [1.0, -2.0], moment: 3.0 };
     out.error_estimate = 1e-9;
     out.stable = None;
