@@ -242,6 +242,11 @@ fn cable(v: &Values, index: usize) -> Cable {
         tension: v.number(&key("tension")).filter(|_| !v.has_stroke(index)).unwrap_or_default(),
         stroke: v.number(&key("stroke")).filter(|_| v.has_stroke(index)),
         stiffness: v.number(&key("stiffness")),
+        friction: v.number(&key("friction")).unwrap_or_default(),
+        motion: match v.word(&key("motion")) {
+            Some("out") => Motion::Out,
+            _ => Motion::In,
+        },
         max_tension: v.number(&key("max_tension")),
         end: v.number(&key("end")).unwrap_or(1.0),
     }

@@ -265,6 +265,13 @@ fn cable(cable: &hydrostat::Cable) -> Tree {
     if let Some(stiffness) = cable.stiffness {
         keys.push(("stiffness", Tree::Number(stiffness)));
     }
+    if cable.friction > 0.0 {
+        let motion = match cable.motion {
+            hydrostat::Motion::In => "in",
+            hydrostat::Motion::Out => "out",
+        };
+        keys.extend([("friction", Tree::Number(cable.friction)), ("motion", Tree::word(motion))]);
+    }
     if let Some(max_tension) = cable.max_tension {
         keys.push(("max_tension", Tree::Number(max_tension)));
     }

@@ -64,11 +64,13 @@ fn material(length: f64) -> impl Strategy<Value = Material> {
 fn cable(length: f64) -> impl Strategy<Value = Cable> {
     use proptest::option::of;
     let pull = (0.0..5.0, of(-0.01..0.01), of(1.0..1e3), of(5.0..9.0));
-    (any::<String>(), profile(-0.01, 0.01, length), pull, 0.01..=1.0).prop_map(
-        |(name, offset, (tension, stroke, stiffness, max_tension), end)| {
+    (any::<String>(), profile(-0.01, 0.01, length), pull, (select(vec![0.0, 0.3]), any::<bool>()), 0.01..=1.0).prop_map(
+        |(name, offset, (tension, stroke, stiffness, max_tension), (friction, out), end)| {
+            let motion = if out && friction > 0.0 { Motion::Out } else { Motion::In };
             // A file has one of both.
             let tension = if stroke.is_some() { 0.0 } else { tension };
-            Cable { name, offset, tension, stroke, stiffness, max_tension, end }
+            let cable = Cable::new(name, offset).ending_at(end);
+            Cable { tension, stroke, stiffness, max_tension, ..cable.rubbing(friction, motion) }
         },
     )
 }

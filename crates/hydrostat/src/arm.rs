@@ -127,10 +127,24 @@ pub struct Cable {
     pub stroke: Option<f64>,
     /// Stiffness EA, N, of an elastic cable; `None` when it does not stretch. Matters only with a commanded stroke.
     pub stiffness: Option<f64>,
+    /// Coefficient of friction against its channel; 0 slides freely. With it, the tension given is that at the base.
+    pub friction: f64,
+    /// Which way a cable with friction slid last.
+    pub motion: Motion,
     /// The largest tension that makes sense, N, if stated.
     pub max_tension: Option<f64>,
     /// Where it is anchored, as a fraction of the length in (0, 1].
     pub end: f64,
+}
+
+/// Which way a cable slides through its channel, which decides where friction takes from its tension.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Motion {
+    /// Reeled in at the base: the tension falls towards the tip.
+    #[default]
+    In,
+    /// Paid out: it rises.
+    Out,
 }
 
 impl Cable {
@@ -142,6 +156,8 @@ impl Cable {
             tension: 0.0,
             stroke: None,
             stiffness: None,
+            friction: 0.0,
+            motion: Motion::In,
             max_tension: None,
             end: 1.0,
         }
@@ -156,6 +172,13 @@ impl Cable {
     /// This cable reeled in by `stroke` (m), at whatever tension that takes.
     pub fn reeled_in(mut self, stroke: f64) -> Self {
         self.stroke = Some(stroke);
+        self
+    }
+
+    /// This cable with a coefficient of friction against its channel, having slid in or out.
+    pub fn rubbing(mut self, friction: f64, motion: Motion) -> Self {
+        self.friction = friction;
+        self.motion = motion;
         self
     }
 
@@ -405,6 +428,11 @@ impl Arm {
         Ok(())
     }
 
+    /// Whether a cable that may be pulled rubs in its channel.
+    pub(crate) fn rubs(&self) -> bool {
+        self.cables.iter().any(|c| c.friction > 0.0)
+    }
+
     /// The free-stream velocity U, m/s.
     pub fn stream(&self) -> [f64; 2] {
         let (sin, cos) = self.flow.direction.sin_cos();
@@ -518,6 +546,11 @@ impl Arm {
                 let expected = "shorter than the arm";
                 return Err(ArmError::OutOfRange { key: key("stroke"), value: stroke, expected });
             }
+        }
+        not_negative(&key("friction"), cable.friction)?;
+        if cable.friction > 2.0 {
+            let expected = "in [0, 2]";
+            return Err(ArmError::OutOfRange { key: key("friction"), value: cable.friction, expected });
         }
         if let Some(stiffness) = cable.stiffness {
             positive(&key("stiffness"), stiffness)?;

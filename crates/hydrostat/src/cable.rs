@@ -61,6 +61,8 @@ pub(crate) struct Pull<R> {
     pub(crate) by_strain: [[R; 3]; 3],
     /// Along s at fixed strains.
     pub(crate) along_s: [R; 3],
+    /// By T: (t_c . a, t_c . b, -y beta t_c . a).
+    pub(crate) by_tension: [R; 3],
     /// By beta'': the part of `along_s` that it carries.
     pub(crate) by_curvature: [R; 3],
 }
@@ -104,5 +106,6 @@ pub(crate) fn pull<R: Real>(
     ];
     let along_s = [tension * a_s, tension * b_s, -(lever * a_s + tension * offset.slope * swelling.beta * t.a)];
     let by_curvature = each(|k| offset.y * by_strain[k][1]);
-    (Pull { load: [tension * t.a, tension * t.b, -(lever * t.a)], by_strain, along_s, by_curvature }, t)
+    let by_tension = [t.a, t.b, -(arm * t.a)];
+    (Pull { load: [tension * t.a, tension * t.b, -(lever * t.a)], by_strain, along_s, by_tension, by_curvature }, t)
 }

@@ -5,6 +5,7 @@ use hydrostat_bvp::{Collocation, Correction, Gauss, Limits, Mesh, RoundError, So
 use crate::arm::Arm;
 use crate::dispatch::{Work, dispatch, widest};
 use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
+use crate::friction::Grip;
 use crate::verdict::Phase;
 
 /// Stages of the solve, and of the check that estimates its error.
@@ -660,6 +661,20 @@ impl Engine {
         for z in &mut self.solution.nodes {
             z[0] -= angle;
         }
+    }
+
+    /// What friction leaves of the tensions from now on.
+    pub(crate) fn set_grip(&mut self, grip: Option<&Grip>) {
+        self.equations.set_grip(grip);
+        self.check_equations.set_grip(grip);
+    }
+
+    /// The section on either side of node `i`.
+    pub(crate) fn beside_node(&self, i: usize, left: bool) -> Result<AtPlace, SectionFailure> {
+        let (element, x) = if left { (i - 1, 1.0) } else { (i, 0.0) };
+        let (strain, beta) = self.equations.remembered(element, &self.system.gauss.cardinals(x));
+        let (s, z) = (self.solution.mesh.nodes()[i], self.solution.nodes[i]);
+        self.equations.at_place(&Asked { s, from_left: left, z, strain, beta })
     }
 
     pub(crate) fn reset_statistics(&mut self) {

@@ -74,6 +74,10 @@ pub(crate) struct Equilibrium {
     /// The phase whose fraction is the parameter, unless another one is varied.
     pub(crate) phase: Phase,
     varied: Option<varied::Varied>,
+    /// What friction leaves of the tensions, if there is any.
+    pub(crate) grip: Option<crate::friction::Grip>,
+    /// (nu, eta, mu)' at the stations.
+    strain_slopes: Vec<[Lanes; 3]>,
     /// A couple over s/L that takes the place of the parameter, at every station.
     imposed: Option<Vec<f64>>,
     /// How the stations stand in blocks of four.
@@ -107,6 +111,8 @@ impl Equilibrium {
             fraction: [1.0, 1.0],
             phase: Phase::Tension,
             varied: None,
+            grip: None,
+            strain_slopes: Vec::new(),
             imposed: None,
             groups: Groups { elements: 0, stages: M },
             stations: Vec::new(),
@@ -188,6 +194,21 @@ impl Equilibrium {
             tangent(offset, strain, &swelling(self.volume, strain[0]), self.beta.slope[block]).stretch,
             tangent(offset, stiffness.reference, &reference, reference_slope).stretch,
         ]
+    }
+
+    /// psi' of cable `c` in a block of stations, over L: see [`crate::friction`].
+    pub(crate) fn cable_turns(&self, c: usize, block: usize) -> Lanes {
+        let offset = &self.cables[block * self.tensions.len() + c].offset;
+        let [nu, eta, mu] = self.memory[block].strain;
+        let [nu_s, eta_s, mu_s] = self.strain_slopes[block];
+        let beta = swelling(self.volume, nu).beta;
+        let (beta_s, beta_ss) = (self.beta.slope[block], self.beta.curvature[block]);
+        let along = nu - offset.y * beta * mu;
+        let across = eta + offset.slope * beta + offset.y * beta_s;
+        let along_s = nu_s - (offset.slope * beta + offset.y * beta_s) * mu - offset.y * beta * mu_s;
+        let twice = Lanes::of(2.0) * offset.slope * beta_s;
+        let across_s = eta_s + offset.curvature * beta + twice + offset.y * beta_ss;
+        mu + (along * across_s - across * along_s) / (along * along + across * across)
     }
 
     /// Length of the path of cable `c`, now and at the reference strains, over L, with the weights of the stages.
@@ -413,6 +434,7 @@ impl Problem<N, Q> for Equilibrium {
                 if tension != 0.0 {
                     pulled[used] = self.cables[block * cable_count + c];
                     pulled[used].tension = pulled[used].tension * Lanes::of(tension);
+                    pulled[used].tension_slope = pulled[used].tension_slope * Lanes::of(tension);
                     used += 1;
                 }
             }
@@ -538,6 +560,7 @@ impl Equilibrium {
         let load = self.load(place, direction, &solved, beta_along[0]);
         let slopes = slopes(couple, direction, contact, &solved, &load);
 
+        self.strain_slopes[block] = slopes.strain_slope;
         let by_state = strain_by_state(&solved.inverse, direction, contact);
         let [nu, eta, _] = solved.strain;
         let rate = [nu * cos - eta * sin, nu * sin + eta * cos];

@@ -141,11 +141,13 @@ mod dispatch;
 mod engine;
 mod equilibrium;
 mod flow;
+mod friction;
 mod loads;
 pub mod parameter;
 pub mod path;
 pub mod profile;
 pub mod readings;
+mod rubbing;
 mod section;
 mod sincos;
 pub mod solve;
@@ -155,7 +157,7 @@ mod swelling;
 pub mod verdict;
 
 pub use arm::{
-    Arm, ArmError, Base, Cable, Cavity, DistributedLoad, Flow, FlowLaw, Gravity, Material, Reference, TipLoad,
+    Arm, ArmError, Base, Cable, Cavity, DistributedLoad, Flow, FlowLaw, Gravity, Material, Motion, Reference, TipLoad,
 };
 pub use configuration::{
     CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,

@@ -23,6 +23,8 @@ pub(crate) struct Stiffness<R> {
 pub(crate) struct CableAt<R> {
     pub(crate) offset: Offset<R>,
     pub(crate) tension: R,
+    /// T', which friction makes; zero without.
+    pub(crate) tension_slope: R,
 }
 
 impl CableAt<Lanes> {
@@ -92,7 +94,7 @@ pub(crate) fn balance<R: Real>(
         out.openness = open.min(out.openness);
         for k in 0..3 {
             out.cables[k] += pull.load[k];
-            out.along_s[k] += pull.along_s[k];
+            out.along_s[k] += pull.along_s[k] + cable.tension_slope * pull.by_tension[k];
             out.by_curvature[k] += pull.by_curvature[k];
             for c in 0..3 {
                 out.by_strain[k][c] += pull.by_strain[k][c];
@@ -141,7 +143,11 @@ mod tests {
             reference: [1.02, 0.01, 0.3],
             reference_slope: [0.05, -0.02, 0.4],
         };
-        let cable = |y, tension| CableAt { offset: Offset { y, slope: -0.05 * y, curvature: 0.3 * y }, tension };
+        let cable = |y, tension| CableAt {
+            offset: Offset { y, slope: -0.05 * y, curvature: 0.3 * y },
+            tension,
+            tension_slope: -0.3 * tension,
+        };
         (stiffness, [cable(0.08, 0.4), cable(-0.05, 0.2)])
     }
 
@@ -179,6 +185,7 @@ mod tests {
             for c in &mut ca {
                 c.offset.y += ds * c.offset.slope + 0.5 * ds * ds * c.offset.curvature;
                 c.offset.slope += ds * c.offset.curvature;
+                c.tension += ds * c.tension_slope;
             }
             // At fixed strains beta itself stays, only beta' moves: its part in y' beta is y' beta', which
             // reaches the law through nu'.

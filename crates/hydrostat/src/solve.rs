@@ -26,14 +26,14 @@ impl Default for Options {
 /// Solves one arm, again and again as its loads change.
 #[derive(Debug, Clone)]
 pub struct Solver {
-    engine: Engine,
-    options: Options,
+    pub(crate) engine: Engine,
+    pub(crate) options: Options,
     /// Whether the engine holds a configuration at whole loads.
     settled: bool,
     /// Sign of the determinant of the last configuration.
     sign: f64,
     /// Cables whose strokes are commanded, at the last configuration.
-    strokes: Option<Strokes>,
+    pub(crate) strokes: Option<Strokes>,
 }
 
 impl Solver {
@@ -54,6 +54,14 @@ impl Solver {
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
     pub fn solve(&mut self) -> Result<Configuration, SolveError> {
+        if self.engine.equations.arm().rubs() {
+            return self.solve_rubbing();
+        }
+        self.solve_smooth()
+    }
+
+    /// Without friction of the cables.
+    pub(crate) fn solve_smooth(&mut self) -> Result<Configuration, SolveError> {
         if self.engine.equations.arm().cables.iter().any(is_commanded) {
             return self.solve_strokes();
         }
@@ -187,7 +195,8 @@ impl Solver {
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
     pub fn resolve(&mut self) -> Result<Configuration, SolveError> {
-        if !self.settled {
+        // With friction, which way a cable slid is part of the answer: it is solved anew.
+        if !self.settled || self.engine.equations.arm().rubs() {
             return self.solve();
         }
         if let Some(strokes) = self.strokes.take() {
@@ -241,7 +250,7 @@ impl Solver {
 
     /// The tangential coefficient of published arms over the momentum law's. `None` where that law does
     /// not act.
-    fn tangential_factor(&self) -> Option<f64> {
+    pub(crate) fn tangential_factor(&self) -> Option<f64> {
         let arm = self.engine.equations.arm();
         let layer = arm.readings.layer_mean.factor();
         (arm.flow.law == FlowLaw::Momentum && arm.flow.speed > 0.0 && arm.flow.density > 0.0)
@@ -254,7 +263,7 @@ impl Solver {
         &mut self.engine
     }
 
-    fn last_verdict(&self, load_fraction: Option<f64>) -> Verdict {
+    pub(crate) fn last_verdict(&self, load_fraction: Option<f64>) -> Verdict {
         let jumps = self.engine.equations.arm().readings.load_can_jump();
         Verdict {
             kind: if jumps { VerdictKind::LoadJump } else { VerdictKind::NotFound },
@@ -266,7 +275,7 @@ impl Solver {
     }
 
     /// The verdict with the last good point, which the engine holds, settled and read.
-    fn no_equilibrium(&mut self, verdict: Verdict) -> SolveError {
+    pub(crate) fn no_equilibrium(&mut self, verdict: Verdict) -> SolveError {
         let kept = self.engine.state();
         // Right at a limit the tangent is singular, and a finer mesh, or a place between stations, may
         // already be past it.
@@ -290,7 +299,7 @@ impl Solver {
         SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good }))
     }
 
-    fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<Configuration, Trouble> {
+    pub(crate) fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<Configuration, Trouble> {
         let statistics = Statistics {
             elements: self.engine.solution.mesh.elements(),
             stages: M,

@@ -77,7 +77,7 @@ fn follow(arm: &Arm, args: &PathArgs) -> anyhow::Result<Path> {
             let message = format!("--{name}: expected a number {expected}, found {value}");
             anyhow::Error::new(error).context(message)
         }
-        PathError::Support | PathError::Stroke { .. } => error.into(),
+        PathError::Support | PathError::Stroke { .. } | PathError::Friction { .. } => error.into(),
     })
 }
 

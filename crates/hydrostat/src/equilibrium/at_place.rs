@@ -63,7 +63,7 @@ impl Equilibrium {
         place.body.couple *= self.fraction[0];
         let pulled = (0..self.tensions.len()).filter(|c| self.acts_at(*c, asked));
         let cables: Vec<CableAt<f64>> =
-            pulled.map(|c| CableAt { offset: self.offset(c, asked.s), tension: self.tension(c) }).collect();
+            pulled.map(|c| self.cable_at(c, asked)).collect();
         let (sin, cos) = asked.z[0].sin_cos();
         let (at, fine) = self.solve_place(&place, &cables, [cos, sin], asked.z, asked.strain, asked.beta);
         if fine {
@@ -99,10 +99,12 @@ impl Equilibrium {
         for c in 0..self.tensions.len() {
             let mut cable = blank_cable();
             for lane in 0..LANES {
+                let own = self.cable_at(c, &asked[lane]);
                 if self.acts_at(c, &asked[lane]) {
-                    cable.tension.0[lane] = self.tension(c);
+                    cable.tension.0[lane] = own.tension;
+                    cable.tension_slope.0[lane] = own.tension_slope;
                 }
-                cable.set_offset(lane, &self.offset(c, asked[lane].s));
+                cable.set_offset(lane, &own.offset);
             }
             if cable.tension != zero {
                 cables.push(cable);
@@ -111,6 +113,16 @@ impl Equilibrium {
         let (sin, cos) = sin_cos(z[0]);
         let (at, fine) = self.solve_place(&place, &cables, [cos, sin], z, strain, beta);
         fine.then_some(at)
+    }
+
+    /// Cable `c` at a place up to its end.
+    fn cable_at(&self, c: usize, asked: &Asked) -> CableAt<f64> {
+        let (tension, share) = (self.tension(c), self.pull_share(c, asked.s, asked.from_left));
+        CableAt {
+            offset: self.offset(c, asked.s),
+            tension: tension * share.value,
+            tension_slope: tension * share.slope,
+        }
     }
 
     /// Whether cable `c` pulls at a place.

@@ -10,6 +10,8 @@ use crate::section::apply3;
 pub(super) struct Slopes<R> {
     pub(super) slope: [R; N],
     pub(super) beta_slope: R,
+    /// (nu, eta, mu)'.
+    pub(super) strain_slope: [R; 3],
 }
 
 /// z' at a station, and beta' by implicit differentiation of the section law.
@@ -31,7 +33,8 @@ pub(super) fn slopes<R: Real>(
     let contact_slope = [mu * n_b - f_a, -(mu * n_a + f_b), m_slope];
     let rest = each(|k| contact_slope[k] - solved.balance.along_s[k]);
     let strain_slope = apply3(&solved.inverse, rest);
-    Slopes { slope: [mu, -f[0], -f[1], m_slope], beta_slope: solved.balance.swelling.slope * strain_slope[0] }
+    let beta_slope = solved.balance.swelling.slope * strain_slope[0];
+    Slopes { slope: [mu, -f[0], -f[1], m_slope], beta_slope, strain_slope }
 }
 
 /// d(nu, eta, mu)/dz: the law depends on z through n_f.a, n_f.b and m_f alone.

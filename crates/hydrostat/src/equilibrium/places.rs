@@ -71,7 +71,7 @@ impl Equilibrium {
         Place { s, stiffness, body }
     }
 
-    pub(super) fn offset(&self, cable: usize, s: f64) -> Offset<f64> {
+    pub(crate) fn offset(&self, cable: usize, s: f64) -> Offset<f64> {
         let l = self.units.length;
         let p = self.arm.cables[cable].offset.at(s * l, l);
         Offset { y: p.value / l, slope: p.slope, curvature: p.curvature * l }
@@ -102,6 +102,7 @@ impl Equilibrium {
         self.steps.resize(groups.count(), zero);
         self.beta.resize(blocks);
         self.switches.resize(blocks, [zero; 3]);
+        self.strain_slopes.resize(blocks, [zero; 3]);
         self.drifts.resize(blocks, [zero; N]);
         for group in 0..groups.count() {
             for lane in 0..LANES {
@@ -135,7 +136,19 @@ impl Equilibrium {
             let offset = self.offset(c, s);
             let at = &mut self.cables[block * cable_count + c];
             at.set_offset(lane, &offset);
-            at.tension.0[lane] = f64::from(u8::from(s <= self.ends[c]));
+        }
+        self.place_pull(block, lane, s);
+    }
+
+    /// Takes what is left of every tension at `s` into a lane of a block, over that at the base.
+    pub(crate) fn place_pull(&mut self, block: usize, lane: usize, s: f64) {
+        let cable_count = self.tensions.len();
+        for c in 0..cable_count {
+            let runs = f64::from(u8::from(s <= self.ends[c]));
+            let share = self.pull_share(c, s, true);
+            let at = &mut self.cables[block * cable_count + c];
+            at.tension.0[lane] = runs * share.value;
+            at.tension_slope.0[lane] = runs * share.slope;
         }
     }
 
@@ -153,7 +166,7 @@ impl Equilibrium {
 #[inline(always)]
 pub(super) fn blank_cable() -> CableAt<Lanes> {
     let zero = Lanes([0.0; LANES]);
-    CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero }
+    CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero, tension_slope: zero }
 }
 
 pub(super) fn splat(place: &Place<f64>) -> Place<Lanes> {

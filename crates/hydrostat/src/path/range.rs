@@ -154,6 +154,12 @@ pub enum PathError {
         /// The first such cable's name.
         cable: String,
     },
+    /// Cables that rub: what they carry depends on how they slid.
+    #[error("cable `{cable}` has friction, so that its tension depends on the way it came: paths are of cables without")]
+    Friction {
+        /// The first such cable's name.
+        cable: String,
+    },
     /// There is no equilibrium to start from.
     #[error("no equilibrium at the start of the path, {value} {unit}: {source}", unit = parameter.unit())]
     Start {
@@ -171,6 +177,9 @@ impl Arm {
     pub(super) fn has_a_path(&self) -> Result<(), PathError> {
         if self.readings.support == Support::UnstrainedBase {
             return Err(PathError::Support);
+        }
+        if let Some(cable) = self.cables.iter().find(|c| c.friction > 0.0) {
+            return Err(PathError::Friction { cable: cable.name.clone() });
         }
         match self.cables.iter().find(|c| c.stroke.is_some()) {
             Some(cable) => Err(PathError::Stroke { cable: cable.name.clone() }),

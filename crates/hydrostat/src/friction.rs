@@ -1,0 +1,151 @@
+//! Cables that rub in their channels: the capstan law along an arm.
+//!
+//! A cable under the tension T that bears on its channel while it slides loses the coefficient of friction times
+//! T times the angle that it turns through. With psi the angle of its tangent t_c in space,
+//!
+//! ```text
+//! T(s) = T(0) exp(-+ friction Phi(s))     Phi(s) = integral of |psi'| over [0, s], with the steps of psi
+//! psi' = mu + (tau_a tau_b' - tau_b tau_a') / |tau|^2
+//! tau_a = nu - y beta mu                  tau_b = eta + (y beta)'          (above (5) of the source)
+//! ```
+//!
+//! less towards the tip while reeling in, more while paying out. The body gets what the cable loses: the
+//! distributed force (T t_c)' in place of T t_c', acting at the cable, which integrates to the same local law
+//! (section 2 of `docs/model.md`) with the local T(s). At no friction it is the law without.
+//!
+//! The tension at a place hangs on all the turns before it, so that it is found in rounds: a shape for given turns,
+//! the turns of that shape, and so on, each round a contraction by about the friction times the turn.
+
+use hydrostat_bvp::{Gauss, LANES};
+
+use crate::arm::Motion;
+use crate::engine::{Engine, M};
+use crate::equilibrium::{AtPlace, Equilibrium, SectionFailure};
+
+/// How far each cable has turned, along an arm, with what that makes of its tension.
+#[derive(Debug, Clone)]
+pub(crate) struct Grip {
+    gauss: Gauss<M>,
+    /// The mesh of the shape that the turns are those of.
+    nodes: Vec<f64>,
+    cables: Vec<Turns>,
+}
+
+/// The turns of one cable.
+#[derive(Debug, Clone)]
+struct Turns {
+    /// What the exponent is by the turn: minus the friction while reeling in.
+    exponent: f64,
+    /// Phi at the left node of every element, its step there included.
+    before: Vec<f64>,
+    /// |psi'| at the stages of every element.
+    rate: Vec<[f64; M]>,
+}
+
+/// T(s)/T(0) at a place, and its slope.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Share {
+    pub(crate) value: f64,
+    pub(crate) slope: f64,
+}
+
+impl Share {
+    pub(crate) const WHOLE: Self = Self { value: 1.0, slope: 0.0 };
+}
+
+impl Grip {
+    /// Of the engine's solution, whose stations are up to date, with `share` of the friction.
+    pub(crate) fn of(engine: &Engine, share: f64) -> Result<Self, SectionFailure> {
+        let equations = &engine.equations;
+        let gauss = engine.system.gauss.clone();
+        let mesh = &engine.solution.mesh;
+        let arm = equations.arm();
+        let mut cables = Vec::with_capacity(arm.cables.len());
+        for (c, cable) in arm.cables.iter().enumerate() {
+            let sign = match cable.motion {
+                Motion::In => -1.0,
+                Motion::Out => 1.0,
+            };
+            let mut turns = Turns { exponent: sign * share * cable.friction, before: Vec::new(), rate: Vec::new() };
+            let mut turned = 0.0;
+            for i in 0..mesh.elements() {
+                turned += step_at(engine, c, i)?;
+                turns.before.push(turned);
+                let rate: [f64; M] = std::array::from_fn(|j| equations.cable_turn(c, i, j).abs());
+                for j in 0..M {
+                    turned += mesh.step(i) * gauss.b[j] * rate[j];
+                }
+                turns.rate.push(rate);
+            }
+            cables.push(turns);
+        }
+        Ok(Self { gauss, nodes: mesh.nodes().to_vec(), cables })
+    }
+
+    /// The share of its tension that cable `c` has left at `s` (over L).
+    pub(crate) fn share(&self, c: usize, s: f64, from_left: bool) -> Share {
+        let turns = &self.cables[c];
+        let last = self.nodes.len() - 2;
+        let right = self.nodes.partition_point(|node| *node <= s).saturating_sub(1).min(last);
+        let i = if from_left && right > 0 && self.nodes[right] == s { right - 1 } else { right };
+        let h = self.nodes[i + 1] - self.nodes[i];
+        let x = (s - self.nodes[i]) / h;
+        let (integrals, cardinals) = (self.gauss.integrals(x), self.gauss.cardinals(x));
+        let mut turned = turns.before[i];
+        let mut rate = 0.0;
+        for j in 0..M {
+            turned += h * integrals[j] * turns.rate[i][j];
+            rate += cardinals[j] * turns.rate[i][j];
+        }
+        let value = (turns.exponent * turned).exp();
+        Share { value, slope: turns.exponent * rate * value }
+    }
+}
+
+/// The step of cable `c`'s angle at the left node of element `i`, where another cable ends.
+fn step_at(engine: &Engine, c: usize, i: usize) -> Result<f64, SectionFailure> {
+    let (equations, mesh) = (&engine.equations, &engine.solution.mesh);
+    let s = mesh.nodes()[i];
+    let cables = equations.arm().cables.len();
+    if i == 0 || !(0..cables).any(|c| (equations.cable_end(c) - s).abs() < 1e-9) {
+        return Ok(0.0);
+    }
+    let [before, after] = [engine.beside_node(i, true)?, engine.beside_node(i, false)?];
+    Ok((equations.cable_angle(c, s, &after) - equations.cable_angle(c, s, &before)).abs())
+}
+
+impl Equilibrium {
+    /// psi' of cable `c` at stage `j` of element `i`, over L.
+    fn cable_turn(&self, c: usize, i: usize, j: usize) -> f64 {
+        let (block, lane) = self.groups().at(i, j);
+        self.cable_turns(c, block).0[lane]
+    }
+
+    /// Angle of cable `c` from the section normal at a place.
+    fn cable_angle(&self, c: usize, s: f64, at: &AtPlace) -> f64 {
+        let offset = self.offset(c, s);
+        let [nu, eta, mu] = at.strain;
+        let along = nu - offset.y * at.beta * mu;
+        (eta + offset.slope * at.beta + offset.y * at.beta_slope).atan2(along)
+    }
+
+    /// Takes what friction leaves of the tensions, at every station.
+    pub(crate) fn set_grip(&mut self, grip: Option<&Grip>) {
+        self.grip = grip.cloned();
+        let groups = self.groups();
+        if self.stations.is_empty() {
+            return;
+        }
+        for block in 0..groups.count() * groups.stages {
+            for lane in 0..LANES {
+                let s = self.stations[groups.station_in(block, lane)];
+                self.place_pull(block, lane, s);
+            }
+        }
+    }
+
+    /// What friction leaves of the tension of cable `c` at `s`.
+    pub(crate) fn pull_share(&self, c: usize, s: f64, from_left: bool) -> Share {
+        self.grip.as_ref().map_or(Share::WHOLE, |grip| grip.share(c, s, from_left))
+    }
+}

@@ -1,0 +1,128 @@
+//! Solves with friction of the cables: rounds of shape and turns, see [`crate::friction`].
+
+use crate::configuration::Configuration;
+use crate::engine::Trouble;
+use crate::friction::Grip;
+use crate::path::{Travelled, name_limit};
+use crate::solve::Solver;
+use crate::verdict::{Phase, SolveError, Verdict};
+
+/// Most rounds at one level of friction and load.
+const ROUNDS: usize = 60;
+/// Largest turn of the tip (rad) by which one step of friction or load may change the shape.
+const LARGEST_TURN: f64 = 0.3;
+
+impl Solver {
+    /// From the equilibrium without friction; where there is none, along the tensions with it.
+    pub(crate) fn solve_rubbing(&mut self) -> Result<Configuration, SolveError> {
+        self.engine.set_grip(None);
+        let commanded = self.engine.equations.arm().cables.iter().any(|c| c.stroke.is_some());
+        match self.solve_smooth() {
+            Ok(smooth) => self.raise_friction(smooth),
+            Err(SolveError::NoEquilibrium(no)) if no.verdict.phase == Phase::Tension && !commanded => {
+                // Friction spares the tip, which may carry more with it.
+                let kept = self.engine.state();
+                self.raise_tensions(0.9 * no.verdict.load_fraction).map_err(|verdict| match verdict {
+                    Some(verdict) => self.no_equilibrium(verdict),
+                    None => {
+                        self.engine.restore(&kept);
+                        SolveError::NoEquilibrium(no)
+                    }
+                })
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Friction from none to whole at whole loads.
+    fn raise_friction(&mut self, smooth: Configuration) -> Result<Configuration, SolveError> {
+        let (mut share, mut step) = (0.0, 1.0_f64);
+        let mut last = smooth;
+        while share < 1.0 {
+            let kept = self.engine.state();
+            let next = (share + step).min(1.0);
+            match self.rub(next) {
+                Ok(configuration) => {
+                    share = next;
+                    last = configuration;
+                }
+                Err(_) => {
+                    self.engine.restore(&kept);
+                    step *= 0.5;
+                    if step < 1e-3 {
+                        let verdict = Verdict { load_fraction: 1.0, ..self.last_verdict(None) };
+                        return Err(self.no_equilibrium(verdict));
+                    }
+                }
+            }
+        }
+        last.tangential_factor = self.tangential_factor();
+        Ok(last)
+    }
+
+    /// Tensions from the share `from`, where there is an equilibrium without friction, to whole with friction. `None`
+    /// when there is no start either.
+    fn raise_tensions(&mut self, from: f64) -> Result<Configuration, Option<Verdict>> {
+        self.engine.set_phase(Phase::Tension, from);
+        if self.engine.settle(self.options.tol, false).is_err() {
+            return Err(None);
+        }
+        let mut last = self.rub(1.0).map_err(|_| None)?;
+        let (mut share, mut step) = (from, 0.1 * from);
+        while share < 1.0 {
+            let kept = self.engine.state();
+            let next = (share + step).min(1.0);
+            self.engine.set_phase(Phase::Tension, next);
+            match self.rub(1.0) {
+                Ok(configuration) => {
+                    share = next;
+                    step *= 1.5;
+                    last = configuration;
+                }
+                Err(trouble) => {
+                    self.engine.restore(&kept);
+                    step *= 0.4;
+                    if step < 1e-6 {
+                        let residual = self.engine.last;
+                        let (kind, s) = name_limit(&mut self.engine, Some(&trouble), residual);
+                        let s = s.map(|s| s * self.engine.equations.units.length);
+                        return Err(Some(Verdict { kind, phase: Phase::Tension, load_fraction: share, s, residual }));
+                    }
+                }
+            }
+        }
+        last.tangential_factor = self.tangential_factor();
+        Ok(last)
+    }
+
+    /// Rounds of turns and shape at `share` of the friction until the tip stays.
+    fn rub(&mut self, share: f64) -> Result<Configuration, Trouble> {
+        let tol = self.options.tol;
+        let start = self.tip_angle();
+        let sign = self.engine.system.determinant().sign;
+        for _ in 0..ROUNDS {
+            self.engine.refresh().map_err(Trouble::Section)?;
+            let grip = Grip::of(&self.engine, share).map_err(Trouble::Section)?;
+            self.engine.set_grip(Some(&grip));
+            let (before, angle) = (self.engine.tip, self.tip_angle());
+            let estimate = match self.strokes.as_mut() {
+                Some(strokes) => strokes.settle(&mut self.engine, tol)?,
+                None => self.engine.settle(tol, true)?,
+            };
+            let same_branch = self.strokes.is_some() || self.engine.system.determinant().sign == sign;
+            if (self.tip_angle() - start).abs() > LARGEST_TURN || !same_branch {
+                return Err(Trouble::Stalled(self.tip_angle() - start));
+            }
+            let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
+            let turned = (self.tip_angle() - angle).abs();
+            if moved.max(0.1 * turned) <= 0.2 * tol {
+                return self.read(estimate + moved, Travelled::default());
+            }
+        }
+        Err(Trouble::Stalled(f64::INFINITY))
+    }
+
+    fn tip_angle(&self) -> f64 {
+        self.engine.solution.nodes.last().map_or(0.0, |z| z[0])
+    }
+}
