@@ -55,7 +55,11 @@ fn code(error: &anyhow::Error) -> u8 {
             return NO_EQUILIBRIUM;
         }
         if let Some(
-            PathError::Value { .. } | PathError::Option { .. } | PathError::Support | PathError::Stroke { .. } | PathError::Friction { .. },
+            PathError::Value { .. }
+            | PathError::Option { .. }
+            | PathError::Support
+            | PathError::Stroke { .. }
+            | PathError::Friction { .. },
         ) = cause.downcast_ref()
         {
             return WRONG_REQUEST;

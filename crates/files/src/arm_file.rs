@@ -6,7 +6,7 @@ use std::path::Path;
 
 use hydrostat::{
     Arm, Base, Cable, Cavity, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity, Hydrostatics,
-    LayerMean, Material, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
+    LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
 };
 
 use crate::document::{self, Field, Origin};

@@ -120,7 +120,12 @@ const CABLE: &[Key] = &[
     ),
     optional("stiffness", Quantity(D::Force), "EA of an elastic cable, with a stroke. Left out: it does not stretch."),
     default("friction", Quantity(D::Number), "0", "Coefficient of friction against its channel, at most 2."),
-    default("motion", Choice(&["in", "out"]), "\"in\"", "Which way it slid last, with friction: reeled in or paid out."),
+    default(
+        "motion",
+        Choice(&["in", "out"]),
+        "\"in\"",
+        "Which way it slid last, with friction: reeled in or paid out.",
+    ),
     optional("max_tension", Quantity(D::Force), "The largest tension that makes sense."),
     default("end", Quantity(D::Number), "1.0", "Where it is anchored, as a fraction of the length in (0, 1]."),
 ];

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use hydrostat::{
     Arm, Base, Cable, Cavity, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity, Hydrostatics,
-    LayerMean, Material, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
+    LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
 };
 use hydrostat_files::{ArmFile, Inputs, arm_to_toml, schema, shipped};
 use proptest::prelude::*;

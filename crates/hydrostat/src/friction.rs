@@ -133,12 +133,12 @@ impl Equilibrium {
     pub(crate) fn set_grip(&mut self, grip: Option<&Grip>) {
         self.grip = grip.cloned();
         let groups = self.groups();
-        if self.stations.is_empty() {
+        if self.stations().is_empty() {
             return;
         }
         for block in 0..groups.count() * groups.stages {
             for lane in 0..LANES {
-                let s = self.stations[groups.station_in(block, lane)];
+                let s = self.stations()[groups.station_in(block, lane)];
                 self.place_pull(block, lane, s);
             }
         }

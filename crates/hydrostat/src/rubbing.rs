@@ -18,7 +18,13 @@ impl Solver {
         self.engine.set_grip(None);
         let commanded = self.engine.equations.arm().cables.iter().any(|c| c.stroke.is_some());
         match self.solve_smooth() {
-            Ok(smooth) => self.raise_friction(smooth),
+            Ok(_) => match self.raise_friction() {
+                Ok(mut configuration) => {
+                    configuration.tangential_factor = self.tangential_factor();
+                    Ok(configuration)
+                }
+                Err(_) => Err(self.no_equilibrium(self.last_verdict(Some(1.0)))),
+            },
             Err(SolveError::NoEquilibrium(no)) if no.verdict.phase == Phase::Tension && !commanded => {
                 // Friction spares the tip, which may carry more with it.
                 let kept = self.engine.state();
@@ -34,30 +40,24 @@ impl Solver {
         }
     }
 
-    /// Friction from none to whole at whole loads.
-    fn raise_friction(&mut self, smooth: Configuration) -> Result<Configuration, SolveError> {
+    /// Friction from none to whole at the present loads.
+    fn raise_friction(&mut self) -> Result<Configuration, Trouble> {
         let (mut share, mut step) = (0.0, 1.0_f64);
-        let mut last = smooth;
-        while share < 1.0 {
+        loop {
             let kept = self.engine.state();
             let next = (share + step).min(1.0);
             match self.rub(next) {
-                Ok(configuration) => {
-                    share = next;
-                    last = configuration;
-                }
-                Err(_) => {
+                Ok(configuration) if next == 1.0 => return Ok(configuration),
+                Ok(_) => share = next,
+                Err(trouble) => {
                     self.engine.restore(&kept);
                     step *= 0.5;
                     if step < 1e-3 {
-                        let verdict = Verdict { load_fraction: 1.0, ..self.last_verdict(None) };
-                        return Err(self.no_equilibrium(verdict));
+                        return Err(trouble);
                     }
                 }
             }
         }
-        last.tangential_factor = self.tangential_factor();
-        Ok(last)
     }
 
     /// Tensions from the share `from`, where there is an equilibrium without friction, to whole with friction. `None`
@@ -67,7 +67,7 @@ impl Solver {
         if self.engine.settle(self.options.tol, false).is_err() {
             return Err(None);
         }
-        let mut last = self.rub(1.0).map_err(|_| None)?;
+        let mut last = self.raise_friction().map_err(|_| None)?;
         let (mut share, mut step) = (from, 0.1 * from);
         while share < 1.0 {
             let kept = self.engine.state();

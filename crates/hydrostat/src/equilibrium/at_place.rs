@@ -62,8 +62,7 @@ impl Equilibrium {
         let mut place = self.place(asked.s);
         place.body.couple *= self.fraction[0];
         let pulled = (0..self.tensions.len()).filter(|c| self.acts_at(*c, asked));
-        let cables: Vec<CableAt<f64>> =
-            pulled.map(|c| self.cable_at(c, asked)).collect();
+        let cables: Vec<CableAt<f64>> = pulled.map(|c| self.cable_at(c, asked)).collect();
         let (sin, cos) = asked.z[0].sin_cos();
         let (at, fine) = self.solve_place(&place, &cables, [cos, sin], asked.z, asked.strain, asked.beta);
         if fine {

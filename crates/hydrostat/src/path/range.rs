@@ -155,7 +155,9 @@ pub enum PathError {
         cable: String,
     },
     /// Cables that rub: what they carry depends on how they slid.
-    #[error("cable `{cable}` has friction, so that its tension depends on the way it came: paths are of cables without")]
+    #[error(
+        "cable `{cable}` has friction, so that its tension depends on the way it came: paths are of cables without"
+    )]
     Friction {
         /// The first such cable's name.
         cable: String,

@@ -1,0 +1,107 @@
+//! Cables that rub in their channels.
+
+use hydrostat::cases::inextensible_arm;
+use hydrostat::{Arm, Cable, Configuration, Motion, Options, Profile, Solver};
+
+fn solve(arm: &Arm, tol: f64) -> Configuration {
+    Solver::new(arm, Options { tol }).unwrap().solve().unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// An inextensible arm with one cable beside it bends by mu = T y/EI, and the cable turns as the arm does:
+/// theta' = k exp(-+ f theta) with k = T(0) y/EI, so that theta = +- ln(1 +- f k s)/f.
+#[test]
+fn a_bent_inextensible_arm_against_the_closed_form() {
+    let lever = 0.005;
+    for (motion, sign) in [(Motion::In, 1.0), (Motion::Out, -1.0)] {
+        for friction in [0.05, 0.2, 0.5] {
+            for curvature in [0.5_f64, 1.5] {
+                let mut arm = inextensible_arm("rubbed");
+                // EI is 1 N m2.
+                let cable = Cable::new("left", lever).pulled(curvature / lever);
+                arm.cables.push(cable.rubbing(friction, motion));
+                let turn = sign * (1.0 + sign * friction * curvature).ln() / friction;
+                let solved = solve(&arm, 1e-9);
+                let off = (solved.tip().theta - turn).abs();
+                assert!(off < 2e-8, "friction {friction}, {motion:?}, curvature {curvature}: off by {off:e} rad");
+                let half = sign * (1.0 + 0.5 * sign * friction * curvature).ln() / friction;
+                assert!((solved.at(0.5).theta - half).abs() < 2e-8);
+            }
+        }
+    }
+}
+
+fn cone() -> Arm {
+    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.4));
+    arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)).pulled(0.1));
+    arm.flow.speed = 0.2;
+    arm
+}
+
+#[test]
+fn friction_that_vanishes_leaves_the_answer_without() {
+    let free = solve(&cone(), 1e-9);
+    let mut last = f64::INFINITY;
+    for friction in [1e-3, 1e-5, 1e-7] {
+        let mut arm = cone();
+        for cable in &mut arm.cables {
+            cable.friction = friction;
+        }
+        let rubbed = solve(&arm, 1e-9);
+        let off = (rubbed.tip().x - free.tip().x).hypot(rubbed.tip().y - free.tip().y) / arm.length;
+        assert!(off < friction && off < last, "friction {friction}: {off:e}");
+        last = off;
+    }
+}
+
+/// Reeling in bends less than without friction, paying out more: a hysteresis.
+#[test]
+fn reeling_in_and_paying_out_lie_on_both_sides() {
+    let with = |motion| {
+        let mut arm = cone();
+        for cable in &mut arm.cables {
+            (cable.friction, cable.motion) = (0.1, motion);
+        }
+        solve(&arm, 1e-8).tip().theta
+    };
+    let free = solve(&cone(), 1e-8).tip().theta;
+    assert!(with(Motion::In) < free && free < with(Motion::Out));
+}
+
+/// The rounds end where shape and turns agree: the balance of the whole arm does not feel them, the tip does by less than
+/// the tolerance.
+#[test]
+fn the_tolerance_is_kept_with_friction() {
+    let mut arm = cone();
+    arm.cables[0].friction = 0.15;
+    arm.cables[0].end = 0.7;
+    let best = solve(&arm, 1e-11);
+    for tol in [1e-6, 1e-8] {
+        let solved = solve(&arm, tol);
+        let off = (solved.tip().x - best.tip().x).hypot(solved.tip().y - best.tip().y) / arm.length;
+        assert!(off <= tol, "{tol:e}: off by {off:e}");
+    }
+}
+
+#[test]
+fn friction_spares_the_tip() {
+    // 1 N folds the tip shut without friction, not with.
+    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(1.0));
+    assert!(arm.solve().is_err());
+    arm.cables[0].friction = 0.1;
+    let solved = solve(&arm, 1e-8);
+    assert_eq!(solved.cables[0].tension, 1.0);
+}
+
+#[test]
+fn a_commanded_stroke_with_friction_takes_more_tension() {
+    let mut arm = cone();
+    arm.cables[1].tension = 0.0;
+    arm.cables[0].stroke = Some(0.012);
+    let free = solve(&arm, 1e-9);
+    arm.cables[0].friction = 0.1;
+    let rubbed = solve(&arm, 1e-9);
+    assert!((rubbed.cables[0].stroke - 0.012).abs() < 1e-9);
+    assert!(rubbed.cables[0].tension > 1.05 * free.cables[0].tension);
+}
