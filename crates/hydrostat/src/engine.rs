@@ -12,6 +12,12 @@ use crate::verdict::Phase;
 pub(crate) const M: usize = 4;
 const K: usize = M + 1;
 
+/// How close (over L) nodes are kept to the kinks of the load at a tolerance: the error that a kink leaves is of second
+/// order in the distance, and the estimate does not see all of it. Closer than rounding places kinks, nodes would chase it.
+pub(crate) fn kink_resolution(tolerance: f64) -> f64 {
+    (0.02 * tolerance.sqrt()).max(5e-8)
+}
+
 /// The worst estimate (tip over L) with which a solution is still an answer.
 const WORST: f64 = 1e-5;
 
@@ -609,7 +615,7 @@ impl Engine {
     /// Newton on this mesh, with nodes moved onto the kinks of the load.
     fn converge(&mut self, goal: f64, tolerance: f64, ahead: bool) -> Result<(), Trouble> {
         self.iterate(goal, 14, ahead)?;
-        let resolution = 0.05 * tolerance.sqrt();
+        let resolution = kink_resolution(tolerance);
         for _ in 0..4 {
             let kinks = self.kinks(10.0 * resolution);
             if !self.pin(&kinks, resolution) {

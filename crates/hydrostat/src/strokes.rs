@@ -26,7 +26,7 @@
 use hydrostat_bvp::{Collocation, Correction};
 
 use crate::arm::{Arm, Cable};
-use crate::engine::{Engine, Guess, HOP, M, State, Trouble, evaluate, solve};
+use crate::engine::{Engine, Guess, HOP, M, State, Trouble, evaluate, kink_resolution, solve};
 use crate::equilibrium::{Equilibrium, N, Q};
 use crate::parameter::Parameter;
 use crate::path::{LOOSE, name_limit};
@@ -173,7 +173,7 @@ impl Strokes {
         let mut best: Option<(f64, State)> = None;
         for _ in 0..10 {
             self.balance(engine, &goal, 0.1 * tolerance)?;
-            let resolution = 0.05 * tolerance.sqrt();
+            let resolution = kink_resolution(tolerance);
             for _ in 0..4 {
                 let kinks = engine.kinks(10.0 * resolution);
                 if !engine.pin(&kinks, resolution) {
