@@ -75,6 +75,9 @@ pub(crate) struct Engine {
     pub(crate) rounds: usize,
     pub(crate) meshes: usize,
     pub(crate) last: f64,
+    /// Whether a path is followed, which has more to lose from an estimate that is off by what beta' lags behind: an arm in
+    /// line with the stream is led by angles of its size.
+    pub(crate) on_a_path: bool,
     /// What the next round would have moved the tip by (over L) at most, where Newton stopped ahead of it.
     rest: f64,
     /// Tip position over L at the last round.
@@ -201,6 +204,7 @@ impl Engine {
             meshes: 0,
             last: 0.0,
             rest: 0.0,
+            on_a_path: false,
             tip: [0.0; 2],
         }
     }
@@ -428,8 +432,10 @@ impl Engine {
             let (strain, [slope, curvature]) = own.remembered(k / K, &weights[k % K]);
             (strain, slope, curvature)
         });
-        // Once before the comparison linearises, so that beta' and beta'' are those of this state.
-        evaluate(&mut self.check, &mut self.check_equations, &finer).map_err(Trouble::Section)?;
+        // Before the comparison linearises, so that beta' and beta'' are those of this state.
+        for _ in 0..if self.on_a_path { 2 } else { 1 } {
+            evaluate(&mut self.check, &mut self.check_equations, &finer).map_err(Trouble::Section)?;
+        }
         let mut estimate = self.compare(&finer)?;
         // Where Newton stopped ahead of its last round, the comparison may miss what that would have moved.
         let unseen = 0.1 * self.rest;

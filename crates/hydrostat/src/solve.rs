@@ -71,6 +71,7 @@ impl Solver {
     /// With all tensions given.
     fn solve_tensions(&mut self) -> Result<Configuration, SolveError> {
         self.settled = false;
+        self.engine.on_a_path = false;
         self.engine.reset_statistics();
         self.engine.set_phase(Phase::Tension, 1.0);
         let direct = self.engine.start_from_cables(8).and_then(|()| self.engine.settle(self.options.tol, false));
@@ -203,6 +204,7 @@ impl Solver {
             return self.resolve_strokes(strokes);
         }
         self.settled = false;
+        self.engine.on_a_path = false;
         self.engine.reset_statistics();
         let before = self.engine.solution.nodes[self.engine.solution.mesh.elements()][0];
         let sign = self.sign;

@@ -34,13 +34,17 @@ pub(super) fn summary(c: &Configuration) -> String {
     row("tip section", &format!("alpha(L) {}", degrees(tip.alpha)));
     let widest = c.cables.iter().map(|cable| cable.name.chars().count()).max().unwrap_or(0);
     for (i, cable) in c.cables.iter().enumerate() {
-        let text = format!(
+        let mut text = format!(
             "{:widest$}  tension {} N, length {:.3} mm, reeled in by {:.3} mm",
             cable.name,
             number(cable.tension),
             1e3 * cable.length,
             1e3 * cable.stroke + 0.0
         );
+        if let Some(command) = cable.command.filter(|command| command.slack) {
+            let _ =
+                write!(text, " (slack: {:.3} mm of cable, for {:.3} mm)", 1e3 * command.length, 1e3 * command.stroke);
+        }
         row(if i == 0 { "cables" } else { "" }, &text);
     }
     row("base reaction", &wrench(&c.base_reaction));

@@ -1,5 +1,6 @@
 //! The program from outside: what it prints, writes and ends with.
 
+mod cables;
 mod commands;
 mod equilibria;
 mod formats;

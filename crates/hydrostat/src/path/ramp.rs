@@ -9,6 +9,7 @@ use crate::verdict::{Phase, Verdict, VerdictKind};
 /// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
 pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdict> {
     let mut travelled = Travelled::default();
+    engine.on_a_path = true;
     engine.set_phase(Phase::Loads, START);
     engine.start_unloaded(10);
     for phase in [Phase::Loads, Phase::Tension] {

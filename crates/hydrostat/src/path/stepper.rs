@@ -97,6 +97,7 @@ pub(super) enum Turn {
 
 impl<'e> Stepper<'e> {
     pub(super) fn new(engine: &'e mut Engine, along: Along, bounds: [f64; 2]) -> Self {
+        engine.on_a_path = true;
         Self {
             engine,
             along,

@@ -1,0 +1,54 @@
+//! Cables given by their stroke, and cables that rub.
+
+use super::{hydrostat, json, refused, solved};
+
+const LEFT: &str = "cable[0].stroke=\"12 mm\"";
+
+#[test]
+fn a_stroke_takes_the_place_of_a_tension() {
+    let run = solved(&["solve", "silicone", "--set", LEFT, "--format", "json"]);
+    let left = &json(&run.out)["cables"][0];
+    assert!((left["stroke"].as_f64().unwrap() - 0.012).abs() < 1e-8);
+    assert_eq!(left["command"]["stroke"], 0.012);
+    assert_eq!(left["command"]["slack"], false);
+    // The tension found gives the same stroke.
+    let tension = format!("{},0", left["tension"].as_f64().unwrap());
+    let again = json(&solved(&["solve", "silicone", "--tension", &tension, "--format", "json"]).out);
+    assert!((again["cables"][0]["stroke"].as_f64().unwrap() - 0.012).abs() < 1e-8);
+    assert!(again["cables"][0].get("command").is_none());
+}
+
+#[test]
+fn a_slack_cable_is_called_slack() {
+    let slack = "cable[1].stroke=\"-30 mm\"";
+    let run = solved(&["solve", "silicone", "--set", LEFT, "--set", slack]);
+    assert!(run.out.contains("slack: ") && run.out.contains("for -30.000 mm"), "{}", run.out);
+}
+
+#[test]
+fn a_tension_and_a_stroke_together_are_refused() {
+    let both = refused(&["solve", "silicone", "--set", LEFT, "--set", "cable[0].tension=0.1"]);
+    assert!(both.contains("either tension or stroke"), "{both}");
+    // A tension on the command line takes the place of the stroke.
+    solved(&["solve", "silicone", "--set", LEFT, "--tension", "0.1,0"]);
+}
+
+#[test]
+fn a_stroke_that_no_arm_takes_ends_in_a_verdict() {
+    let run = hydrostat(&["solve", "silicone", "--set", "cable[0].stroke=0.2", "--format", "json"]);
+    assert_eq!(run.code, 3);
+    let verdict = &json(&run.out)["verdict"];
+    assert_eq!((&verdict["kind"], &verdict["phase"]), (&"cable_fold".into(), &"stroke".into()));
+}
+
+#[test]
+fn friction_takes_from_the_bend() {
+    let turned = |friction: &str| {
+        let set = format!("cable[0].friction={friction}");
+        let run = solved(&["solve", "silicone", "--tension", "0.3,0", "--set", &set, "--format", "json"]);
+        json(&run.out)["tip"]["theta"].as_f64().unwrap()
+    };
+    assert!(turned("0.1") < 0.9 * turned("0"));
+    let wrong = refused(&["solve", "silicone", "--set", "cable[0].friction=-0.1"]);
+    assert!(wrong.contains("cable[0].friction"), "{wrong}");
+}
