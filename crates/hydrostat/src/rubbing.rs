@@ -28,12 +28,12 @@ impl Solver {
             Err(SolveError::NoEquilibrium(no)) if no.verdict.phase == Phase::Tension && !commanded => {
                 // Friction spares the tip, which may carry more with it.
                 let kept = self.engine.state();
-                self.raise_tensions(0.9 * no.verdict.load_fraction).map_err(|verdict| match verdict {
-                    Some(verdict) => self.no_equilibrium(verdict),
-                    None => {
-                        self.engine.restore(&kept);
-                        SolveError::NoEquilibrium(no)
+                self.raise_tensions(0.9 * no.verdict.load_fraction).map_err(|verdict| {
+                    if let Some(verdict) = verdict {
+                        return self.no_equilibrium(verdict);
                     }
+                    self.engine.restore(&kept);
+                    SolveError::NoEquilibrium(no)
                 })
             }
             Err(error) => Err(error),
