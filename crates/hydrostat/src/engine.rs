@@ -78,7 +78,7 @@ pub(crate) struct Engine {
     /// Whether a path is followed, which has more to lose from an estimate that is off by what beta' lags behind: an arm in
     /// line with the stream is led by angles of its size.
     pub(crate) on_a_path: bool,
-    /// What the next round would have moved the tip by (over L) at most, where Newton stopped ahead of it.
+    /// What the last round moved the tip by (over L), or would have where Newton stopped ahead of it.
     rest: f64,
     /// Tip position over L at the last round.
     pub(crate) tip: [f64; Q],
@@ -369,7 +369,7 @@ impl Engine {
             };
             before = size;
             self.last = size;
-            self.rest = if ahead { moved } else { 0.0 };
+            self.rest = if ahead || tolerance <= TIGHT { moved } else { 0.0 };
             let stop = round == most || (clamped && round >= 4 && size > 3.0);
             if moved <= tolerance || stop {
                 self.system.quadratures(&mut self.spans);
@@ -437,7 +437,8 @@ impl Engine {
             evaluate(&mut self.check, &mut self.check_equations, &finer).map_err(Trouble::Section)?;
         }
         let mut estimate = self.compare(&finer)?;
-        // Where Newton stopped ahead of its last round, the comparison may miss what that would have moved.
+        // Where Newton stopped ahead of its last round, or where little is asked to be left, the comparison may miss what
+        // one more would have moved.
         let unseen = 0.1 * self.rest;
         if enough.is_some_and(|enough| estimate.max(unseen) <= enough) {
             return Ok(estimate.max(unseen));

@@ -171,20 +171,17 @@ impl Strokes {
     pub(crate) fn settle(&mut self, engine: &mut Engine, tolerance: f64) -> Result<f64, Trouble> {
         let goal = self.commanded(1.0);
         let mut best: Option<(f64, State)> = None;
+        let mut rest = tolerance.max(1e-6);
         for _ in 0..10 {
-            self.balance(engine, &goal, 0.1 * tolerance)?;
-            let resolution = kink_resolution(tolerance);
-            for _ in 0..4 {
-                let kinks = engine.kinks(10.0 * resolution);
-                if !engine.pin(&kinks, resolution) {
-                    break;
-                }
-                self.balance(engine, &goal, 0.1 * tolerance)?;
-            }
-            let estimate = engine.estimate(tolerance)?;
-            if estimate <= tolerance {
+            let estimate = match self.settle_on_this_mesh(engine, &goal, rest, tolerance) {
+                Ok(estimate) => estimate,
+                Err(trouble) if best.is_none() => return Err(trouble),
+                Err(_) => break,
+            };
+            if estimate <= tolerance && rest <= 0.1 * tolerance {
                 return Ok(estimate);
             }
+            rest = (1e-4 * estimate).clamp(0.1 * tolerance, tolerance.max(1e-6));
             if best.as_ref().is_none_or(|b| estimate < b.0) {
                 best = Some((estimate, engine.state()));
             }
@@ -193,10 +190,33 @@ impl Strokes {
         match best {
             Some((estimate, state)) if estimate < 1e-5 => {
                 engine.restore(&state);
+                // The shape may be as good as it gets, the strokes can still be met.
+                if self.balance(engine, &goal, 0.1 * tolerance).is_err() {
+                    engine.restore(&state);
+                }
                 Ok(estimate)
             }
             _ => Err(Trouble::Mesh),
         }
+    }
+
+    fn settle_on_this_mesh(
+        &mut self,
+        engine: &mut Engine,
+        goal: &[f64],
+        rest: f64,
+        tolerance: f64,
+    ) -> Result<f64, Trouble> {
+        self.balance(engine, goal, rest)?;
+        let resolution = kink_resolution(tolerance);
+        for _ in 0..4 {
+            let kinks = engine.kinks(10.0 * resolution);
+            if !engine.pin(&kinks, resolution) {
+                break;
+            }
+            self.balance(engine, goal, rest)?;
+        }
+        engine.estimate(tolerance)
     }
 
     /// Newton on shape and tensions at the strokes `goal` (over L), with the taut cables chosen so that none pushes
@@ -292,7 +312,8 @@ impl Strokes {
             before = size;
             // Across a kink of the load corrections can hop between two shapes that are near enough for a path.
             let hops = round == 24 && tolerance >= 1e-6 && size.max(off) <= HOP;
-            if hops || (share == 1.0 && size.max(off) <= tolerance.max(1e-13)) {
+            let least = tolerance.max(1e-13);
+            if hops || (share == 1.0 && 0.03 * size <= least && off <= least) {
                 let slack = now.iter().zip(goal).map(|(now, goal)| now - goal).collect();
                 return Ok((sign * determinant.signum(), slack));
             }

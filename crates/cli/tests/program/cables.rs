@@ -29,8 +29,7 @@ fn a_slack_cable_is_called_slack() {
 fn a_tension_and_a_stroke_together_are_refused() {
     let both = refused(&["solve", "silicone", "--set", LEFT, "--set", "cable[0].tension=0.1"]);
     assert!(both.contains("either tension or stroke"), "{both}");
-    // A tension on the command line takes the place of the stroke.
-    solved(&["solve", "silicone", "--set", LEFT, "--tension", "0.1,0"]);
+    refused(&["solve", "silicone", "--set", LEFT, "--tension", "0.1,0"]);
 }
 
 #[test]
