@@ -147,10 +147,14 @@ pub(crate) struct CheckArgs {
 
 /// A number of stations.
 fn stations(text: &str) -> Result<usize, String> {
-    const MOST: usize = 1_000_000;
+    count(text, 1_000_000)
+}
+
+/// A whole number of at least 2.
+fn count(text: &str, most: usize) -> Result<usize, String> {
     match text.parse() {
-        Ok(n) if (2..=MOST).contains(&n) => Ok(n),
-        _ => Err(format!("expected a whole number from 2 to {MOST}")),
+        Ok(n) if (2..=most).contains(&n) => Ok(n),
+        _ => Err(format!("expected a whole number from 2 to {most}")),
     }
 }
 

@@ -433,6 +433,11 @@ impl Arm {
         self.cables.iter().any(|c| c.friction > 0.0)
     }
 
+    /// Whether a cable's tension follows from its stroke.
+    pub(crate) fn is_commanded(&self) -> bool {
+        self.cables.iter().any(|c| c.stroke.is_some())
+    }
+
     /// The free-stream velocity U, m/s.
     pub fn stream(&self) -> [f64; 2] {
         let (sin, cos) = self.flow.direction.sin_cos();

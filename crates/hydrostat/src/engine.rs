@@ -3,6 +3,7 @@
 use hydrostat_bvp::{Collocation, Correction, Gauss, Limits, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
+use crate::configuration::Statistics;
 use crate::dispatch::{Work, dispatch, widest};
 use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
 use crate::friction::Grip;
@@ -182,6 +183,27 @@ impl Engine {
         self.equations.clone_from(&state.equations);
         self.spans.clone_from(&state.spans);
         self.tip = state.tip;
+        // Friction belongs to the shape, and the check is of the same arm.
+        if self.equations.grip.is_some() || self.check_equations.grip.is_some() {
+            self.check_equations.set_grip(self.equations.grip.as_ref());
+        }
+    }
+
+    /// theta at the tip, rad.
+    pub(crate) fn tip_angle(&self) -> f64 {
+        self.solution.nodes.last().map_or(0.0, |z| z[0])
+    }
+
+    /// What the work so far took.
+    pub(crate) fn statistics(&self, load_steps: usize) -> Statistics {
+        Statistics {
+            elements: self.solution.mesh.elements(),
+            stages: M,
+            newton_rounds: self.rounds,
+            meshes: self.meshes,
+            load_steps,
+            evaluations: self.equations.evaluations,
+        }
     }
 
     pub(crate) fn new(arm: &Arm) -> Self {

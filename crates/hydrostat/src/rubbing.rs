@@ -16,7 +16,7 @@ impl Solver {
     /// From the equilibrium without friction; where there is none, along the tensions with it.
     pub(crate) fn solve_rubbing(&mut self) -> Result<Configuration, SolveError> {
         self.engine.set_grip(None);
-        let commanded = self.engine.equations.arm().cables.iter().any(|c| c.stroke.is_some());
+        let commanded = self.engine.equations.arm().is_commanded();
         match self.solve_smooth() {
             Ok(_) => match self.raise_friction() {
                 Ok(mut configuration) => {
@@ -85,7 +85,6 @@ impl Solver {
                     if step < 1e-6 {
                         let residual = self.engine.last;
                         let (kind, s) = name_limit(&mut self.engine, Some(&trouble), residual);
-                        let s = s.map(|s| s * self.engine.equations.units.length);
                         return Err(Some(Verdict { kind, phase: Phase::Tension, load_fraction: share, s, residual }));
                     }
                 }
@@ -98,31 +97,27 @@ impl Solver {
     /// Rounds of turns and shape at `share` of the friction until the tip stays.
     fn rub(&mut self, share: f64) -> Result<Configuration, Trouble> {
         let tol = self.options.tol;
-        let start = self.tip_angle();
+        let start = self.engine.tip_angle();
         let sign = self.engine.system.determinant().sign;
         for _ in 0..ROUNDS {
             self.engine.refresh().map_err(Trouble::Section)?;
             let grip = Grip::of(&self.engine, share).map_err(Trouble::Section)?;
             self.engine.set_grip(Some(&grip));
-            let (before, angle) = (self.engine.tip, self.tip_angle());
+            let (before, angle) = (self.engine.tip, self.engine.tip_angle());
             let estimate = match self.strokes.as_mut() {
                 Some(strokes) => strokes.settle(&mut self.engine, tol)?,
                 None => self.engine.settle(tol, true)?,
             };
             let same_branch = self.strokes.is_some() || self.engine.system.determinant().sign == sign;
-            if (self.tip_angle() - start).abs() > LARGEST_TURN || !same_branch {
-                return Err(Trouble::Stalled(self.tip_angle() - start));
+            if (self.engine.tip_angle() - start).abs() > LARGEST_TURN || !same_branch {
+                return Err(Trouble::Stalled(self.engine.tip_angle() - start));
             }
             let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
-            let turned = (self.tip_angle() - angle).abs();
+            let turned = (self.engine.tip_angle() - angle).abs();
             if moved.max(0.1 * turned) <= 0.2 * tol {
                 return self.read(estimate + moved, Travelled::default());
             }
         }
         Err(Trouble::Stalled(f64::INFINITY))
-    }
-
-    fn tip_angle(&self) -> f64 {
-        self.engine.solution.nodes.last().map_or(0.0, |z| z[0])
     }
 }

@@ -1,10 +1,10 @@
 //! From an arm to its configuration.
 
 use crate::arm::{Arm, FlowLaw};
-use crate::configuration::{Configuration, Statistics};
-use crate::engine::{Engine, M, Trouble};
+use crate::configuration::Configuration;
+use crate::engine::{Engine, Trouble};
 use crate::path::{LOOSE, Pace, Travelled, follow};
-use crate::strokes::{Strokes, is_commanded, started};
+use crate::strokes::{Strokes, started};
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
 
 /// The largest tangential drag coefficient that is published for such arms.
@@ -62,7 +62,7 @@ impl Solver {
 
     /// Without friction of the cables.
     pub(crate) fn solve_smooth(&mut self) -> Result<Configuration, SolveError> {
-        if self.engine.equations.arm().cables.iter().any(is_commanded) {
+        if self.engine.equations.arm().is_commanded() {
             return self.solve_strokes();
         }
         self.solve_tensions()
@@ -135,10 +135,9 @@ impl Solver {
         self.settled = false;
         self.engine.reset_statistics();
         strokes.command(self.engine.equations.arm());
-        let tip = |engine: &Engine| engine.solution.nodes.last().map_or(0.0, |z| z[0]);
-        let before = tip(&self.engine);
+        let before = self.engine.tip_angle();
         let Ok(estimate) = strokes.settle(&mut self.engine, self.options.tol) else { return self.solve() };
-        if !strokes.kept_its_branch() || (tip(&self.engine) - before).abs() > 0.2 {
+        if !strokes.kept_its_branch() || (self.engine.tip_angle() - before).abs() > 0.2 {
             return self.solve();
         }
         let Ok(configuration) = self.read(estimate, Travelled::default()) else { return self.solve() };
@@ -150,12 +149,12 @@ impl Solver {
     /// Commands the stroke (m, positive when reeled in) of cable `cable` in place of its tension.
     ///
     /// # Errors
-    /// [`SolveError::Arm`] when there is no such cable or the stroke is none.
+    /// [`SolveError::Option`] when there is no such cable, [`SolveError::Arm`] when the stroke is none.
     pub fn set_stroke(&mut self, cable: usize, stroke: f64) -> Result<(), SolveError> {
         let mut arm = self.engine.equations.arm().clone();
-        let cables = arm.cables.len();
         let Some(own) = arm.cables.get_mut(cable) else {
-            return Err(crate::ArmError::TensionCount { cables, given: cable + 1 }.into());
+            let expected = "the index of one of the arm's cables";
+            return Err(SolveError::Option { option: "cable", value: cable as f64, expected });
         };
         // A cable that had a tension before starts anew.
         self.settled &= own.stroke.is_some();
@@ -173,6 +172,8 @@ impl Solver {
         let mut arm = self.engine.equations.arm().clone();
         arm.set_tensions(tensions)?;
         arm.check()?;
+        // Strokes are not commanded any more: what was solved with them is no start.
+        self.settled &= self.strokes.take().is_none();
         self.engine.set_loads(&arm);
         Ok(())
     }
@@ -206,10 +207,10 @@ impl Solver {
         self.settled = false;
         self.engine.on_a_path = false;
         self.engine.reset_statistics();
-        let before = self.engine.solution.nodes[self.engine.solution.mesh.elements()][0];
+        let before = self.engine.tip_angle();
         let sign = self.sign;
         let Ok(estimate) = self.engine.settle(self.options.tol, true) else { return self.solve() };
-        let turned = self.engine.solution.nodes[self.engine.solution.mesh.elements()][0] - before;
+        let turned = self.engine.tip_angle() - before;
         if self.engine.system.determinant().sign != sign || turned.abs() > 0.2 {
             return self.solve();
         }
@@ -302,14 +303,7 @@ impl Solver {
     }
 
     pub(crate) fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<Configuration, Trouble> {
-        let statistics = Statistics {
-            elements: self.engine.solution.mesh.elements(),
-            stages: M,
-            newton_rounds: self.engine.rounds,
-            meshes: self.engine.meshes,
-            load_steps: travelled.steps,
-            evaluations: self.engine.equations.evaluations,
-        };
+        let statistics = self.engine.statistics(travelled.steps);
         let length = self.engine.equations.units.length;
         Configuration::read(&mut self.engine, estimate * length, statistics).map_err(Trouble::Section)
     }

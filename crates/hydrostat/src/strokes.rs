@@ -25,7 +25,7 @@
 
 use hydrostat_bvp::{Collocation, Correction};
 
-use crate::arm::{Arm, Cable};
+use crate::arm::Arm;
 use crate::engine::{Engine, Guess, HOP, M, State, Trouble, evaluate, kink_resolution, solve};
 use crate::equilibrium::{Equilibrium, N, Q};
 use crate::parameter::Parameter;
@@ -57,11 +57,6 @@ pub(crate) struct Strokes {
     last_sign: f64,
     /// Steps taken.
     pub(crate) steps: usize,
-}
-
-/// Whether a cable's tension follows from its stroke.
-pub(crate) fn is_commanded(cable: &Cable) -> bool {
-    cable.stroke.is_some()
 }
 
 /// The arm with its commanded cables slack or, to start from, pulled with a share of the tensions that their strokes take
@@ -346,7 +341,6 @@ impl Strokes {
         let residual = engine.last;
         let (kind, s) = name_limit(engine, Some(trouble), residual);
         let kind = if kind == VerdictKind::NotFound && turned_back { VerdictKind::LimitPoint } else { kind };
-        let s = s.map(|s| s * engine.equations.units.length);
         Verdict { kind, phase: Phase::Stroke, load_fraction: share, s, residual }
     }
 }

@@ -173,3 +173,17 @@ fn more_stroke_than_the_arm_can_take_ends_in_a_verdict() {
     let last = no.last_good.unwrap();
     assert!(last.cables[0].stroke > 0.01 && last.cables[0].tension > 0.5);
 }
+
+/// A solver that was given tensions after strokes held on to the commands, at a stroke of zero.
+#[test]
+fn tensions_that_replace_strokes_are_what_is_solved_for() {
+    let mut arm = silicone();
+    arm.cables[0].stroke = Some(0.010);
+    let mut solver = Solver::new(&arm, Options::default()).unwrap();
+    solver.solve().unwrap();
+    solver.set_tensions(&[0.2, 0.0]).unwrap();
+    let found = solver.resolve().unwrap();
+    assert_eq!(found.cables[0].tension, 0.2);
+    assert!(found.cables[0].command.is_none());
+    assert!(matches!(solver.set_stroke(2, 0.01), Err(SolveError::Option { option: "cable", .. })));
+}

@@ -6,7 +6,7 @@ use clap::Args as ClapArgs;
 use hydrostat_figures::Quantity;
 use hydrostat_files::Varied;
 
-use super::{ArmArgs, Format, STABLE, picture};
+use super::{ArmArgs, Format, STABLE, count, picture};
 
 const EXIT: &str = "\
 Exit status:
@@ -69,9 +69,5 @@ pub(crate) struct PathArgs {
 
 /// A number of points.
 fn points(text: &str) -> Result<usize, String> {
-    const MOST: usize = 100_000;
-    match text.parse() {
-        Ok(n) if (2..=MOST).contains(&n) => Ok(n),
-        _ => Err(format!("expected a whole number from 2 to {MOST}")),
-    }
+    count(text, 100_000)
 }

@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 use super::Pace;
 use super::stepper::{Along, Load, Point, Stepper, Turn};
 use crate::arm::Arm;
-use crate::configuration::{Configuration, Statistics};
-use crate::engine::{Engine, M, Trouble};
+use crate::configuration::Configuration;
+use crate::engine::{Engine, Trouble};
 use crate::parameter::Parameter;
 use crate::path::{PathEnd, PathError};
 use crate::solve::{Options, Solver};
@@ -121,6 +121,7 @@ struct Asked {
 
 /// A solve that succeeds, as near the base angle asked for as there is one, and how many turns away.
 fn start(arm: &Arm) -> Result<(Solver, f64), PathError> {
+    let failed = |source| PathError::Start { parameter: Parameter::BaseAngle, value: arm.base.angle, source };
     let mut first = None;
     for turned in STARTS {
         let mut held = arm.clone();
@@ -129,13 +130,11 @@ fn start(arm: &Arm) -> Result<(Solver, f64), PathError> {
         match solved {
             Ok(solver) => return Ok((solver, turned)),
             Err(error @ SolveError::NoEquilibrium(_)) => first = first.or(Some(error)),
-            Err(error) => {
-                return Err(PathError::Start { parameter: Parameter::BaseAngle, value: arm.base.angle, source: error });
-            }
+            Err(error) => return Err(failed(error)),
         }
     }
     match first {
-        Some(source) => Err(PathError::Start { parameter: Parameter::BaseAngle, value: arm.base.angle, source }),
+        Some(source) => Err(failed(source)),
         None => unreachable!("there are base angles to try"),
     }
 }
@@ -209,11 +208,7 @@ fn follow(engine: &mut Engine, asked: &Asked, side: f64, out: &mut Equilibria) -
         here = next;
         step = (step * 1.6).min(PACE.longest);
     }
-    stepper.engine.restore(&here.state);
-    let residual = stepper.engine.last;
-    let (kind, s) = stepper.name_limit(here.fraction, residual);
-    let length = stepper.engine.equations.units.length;
-    Some(PathEnd::Limit { kind, s: s.map(|s| s * length) })
+    Some(stepper.end_at(&here))
 }
 
 fn tip_angle(point: &Point) -> f64 {
@@ -284,17 +279,10 @@ fn at_whole_turns(stepper: &mut Stepper<'_>, asked: &Asked, point: &Point, turns
     let engine = &mut *stepper.engine;
     engine.restore(&point.state);
     engine.hold(&asked.arm, TAU * turns);
-    let before = engine.solution.nodes.last().map_or(0.0, |z| z[0]);
+    let before = engine.tip_angle();
     let estimate = settle(engine, asked.tol).ok()?;
-    let after = engine.solution.nodes.last().map_or(0.0, |z| z[0]);
-    let statistics = Statistics {
-        elements: engine.solution.mesh.elements(),
-        stages: M,
-        newton_rounds: engine.rounds,
-        meshes: engine.meshes,
-        load_steps: 0,
-        evaluations: engine.equations.evaluations,
-    };
+    let after = engine.tip_angle();
+    let statistics = engine.statistics(0);
     let read = Configuration::read(engine, estimate * asked.arm.length, statistics).ok();
     engine.restore(&point.state);
     let configuration = read.filter(|_| (after - before).abs() < 0.05)?;

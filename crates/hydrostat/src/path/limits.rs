@@ -1,19 +1,28 @@
 //! Which physical limit stands where a path cannot go on.
 
-use super::stepper::Stepper;
+use super::range::PathEnd;
+use super::stepper::{Point, Stepper};
 use crate::engine::{Engine, Trouble};
 use crate::readings::Volume;
 use crate::verdict::VerdictKind;
 
 impl Stepper<'_> {
-    /// Names the limit that the last good point is at, with its place over L.
+    /// Names the limit that the last good point is at, with its place, m.
     pub(super) fn name_limit(&mut self, fraction: f64, residual: f64) -> (VerdictKind, Option<f64>) {
         self.set(fraction);
         name_limit(self.engine, self.last_trouble.as_ref(), residual)
     }
+
+    /// What ends a path at the last good point.
+    pub(super) fn end_at(&mut self, here: &Point) -> PathEnd {
+        self.engine.restore(&here.state);
+        let residual = self.engine.last;
+        let (kind, s) = self.name_limit(here.fraction, residual);
+        PathEnd::Limit { kind, s }
+    }
 }
 
-/// Names the limit that the engine's solution is at, with its place over L; `trouble` is what kept it from going on.
+/// Names the limit that the engine's solution is at, with its place, m; `trouble` is what kept it from going on.
 pub(crate) fn name_limit(engine: &mut Engine, trouble: Option<&Trouble>, residual: f64) -> (VerdictKind, Option<f64>) {
     engine.last = residual;
     let near = engine.nearest_limits();
@@ -34,7 +43,7 @@ pub(crate) fn name_limit(engine: &mut Engine, trouble: Option<&Trouble>, residua
             }
         }
     }
-    if openness.0 < 0.1 {
+    let (kind, s) = if openness.0 < 0.1 {
         (VerdictKind::CableFold, Some(openness.1))
     } else if volume == Volume::None && nu.0 < 0.1 {
         (VerdictKind::SectionCrushed, Some(nu.1))
@@ -44,5 +53,6 @@ pub(crate) fn name_limit(engine: &mut Engine, trouble: Option<&Trouble>, residua
         (VerdictKind::LoadJump, engine.nearest_switch())
     } else {
         (VerdictKind::NotFound, failed.map(|f| f.s))
-    }
+    };
+    (kind, s.map(|s| s * engine.equations.units.length))
 }

@@ -124,17 +124,17 @@ impl Ramp<'_> {
         self.stepper.point(fraction)
     }
 
-    /// A verdict at `s` over L.
+    /// A verdict at `s`, m.
     fn end(&self, kind: VerdictKind, load_fraction: f64, s: Option<f64>) -> Verdict {
         let load_fraction = if load_fraction <= START { 0.0 } else { load_fraction.min(1.0) };
-        let s = s.map(|s| s * self.stepper.engine.equations.units.length);
         Verdict { kind, phase: self.phase, load_fraction, s, residual: self.stepper.engine.last }
     }
 
     fn never_started(&mut self) -> Verdict {
         self.stepper.engine.last = 0.0;
         if self.stepper.engine.equations.arm().readings.load_can_jump() {
-            self.end(VerdictKind::LoadJump, 0.0, self.stepper.engine.nearest_switch())
+            let length = self.stepper.engine.equations.units.length;
+            self.end(VerdictKind::LoadJump, 0.0, self.stepper.engine.nearest_switch().map(|s| s * length))
         } else {
             self.end(VerdictKind::NotFound, 0.0, None)
         }

@@ -3,8 +3,8 @@
 use super::Pace;
 use super::stepper::{Along, Load, Point, Stepper, Turn};
 use crate::arm::Arm;
-use crate::configuration::{Configuration, Statistics};
-use crate::engine::{Engine, M, Trouble};
+use crate::configuration::Configuration;
+use crate::engine::{Engine, Trouble};
 use crate::parameter::{Parameter, Refused};
 use crate::readings::Support;
 use crate::solve::{Options, Solver};
@@ -245,10 +245,14 @@ impl Arm {
             watch: &mut watch,
             crossings: Vec::new(),
         };
-        let mut branches = Vec::new();
-        if let Ok(start) = trace.start() {
-            branches.push(trace.from(start, None));
-        }
+        let first = if let Ok(start) = trace.start() {
+            trace.from(start, None)
+        } else {
+            // Solved, but not as finely as a path needs: no point, and a reason.
+            let end = PathEnd::Limit { kind: VerdictKind::NotFound, s: None };
+            Branch { points: Vec::new(), end, switched_at: None }
+        };
+        let mut branches = vec![first];
         if options.branches {
             for crossing in std::mem::take(&mut trace.crossings) {
                 branches.extend(trace.switched(&crossing));
@@ -376,11 +380,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             here = next;
             step = (step * 1.6).min(self.pace.longest);
         }
-        self.stepper.engine.restore(&here.state);
-        let residual = self.stepper.engine.last;
-        let (kind, s) = self.stepper.name_limit(here.fraction, residual);
-        let length = self.stepper.engine.equations.units.length;
-        PathEnd::Limit { kind, s: s.map(|s| s * length) }
+        self.stepper.end_at(&here)
     }
 
     /// Keeps a point; whether more may come.
@@ -419,17 +419,10 @@ fn change_of_count(points: &[PathPoint], next: Option<&PathPoint>) -> usize {
 }
 
 /// The configuration at a point.
-pub(super) fn read(engine: &mut Engine, point: &Point, event: Option<Event>) -> Option<PathPoint> {
+fn read(engine: &mut Engine, point: &Point, event: Option<Event>) -> Option<PathPoint> {
     engine.restore(&point.state);
     let value = engine.equations.value_at(point.fraction);
-    let statistics = Statistics {
-        elements: engine.solution.mesh.elements(),
-        stages: M,
-        newton_rounds: engine.rounds,
-        meshes: engine.meshes,
-        load_steps: 0,
-        evaluations: engine.equations.evaluations,
-    };
+    let statistics = engine.statistics(0);
     let length = engine.equations.units.length;
     let configuration = Configuration::read(engine, point.error * length, statistics).ok()?;
     let stability = match event {
