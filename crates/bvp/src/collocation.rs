@@ -44,44 +44,62 @@ impl<const N: usize, const M: usize> Solution<N, M> {
         z
     }
 
-    /// The solution carried over to another mesh by its polynomials.
-    pub fn on(&self, gauss: &Gauss<M>, mesh: Mesh) -> Self {
-        let nodes: Vec<[f64; N]> =
-            mesh.nodes().iter().map(|s| self.state_in(gauss, self.mesh.element_of(*s), *s)).collect();
-        let slopes = (0..mesh.elements())
-            .map(|i| {
-                let (s, h) = (mesh.nodes()[i], mesh.step(i));
-                let mut k = [[0.0; N]; M];
-                for j in 0..M {
-                    let at = s + h * gauss.c[j];
-                    let e = self.mesh.element_of(at);
-                    let l = gauss.cardinals((at - self.mesh.nodes()[e]) / self.mesh.step(e));
-                    for m in 0..M {
-                        for a in 0..N {
-                            k[j][a] += l[m] * self.slopes[e][m][a];
-                        }
-                    }
-                }
-                k
-            })
-            .collect();
-        Self { mesh, nodes, slopes }
-    }
-
-    /// This solution's polynomials sampled as a solution with `K` stages on the same mesh.
-    pub fn with_stages<const K: usize>(&self, from: &Gauss<M>, to: &Gauss<K>) -> Solution<N, K> {
-        let mut slopes = vec![[[0.0; N]; K]; self.slopes.len()];
-        for k in 0..K {
-            let l = from.cardinals(to.c[k]);
-            for (out, own) in slopes.iter_mut().zip(&self.slopes) {
+    /// Carries the solution over to the mesh of `out` by its polynomials; elements that both meshes have stay as they are.
+    pub fn onto(&self, gauss: &Gauss<M>, out: &mut Self) {
+        let Self { mesh, nodes, slopes } = out;
+        nodes.clear();
+        slopes.clear();
+        let mut e = 0;
+        let mut advance = |s: f64| {
+            while e + 1 < self.mesh.elements() && self.mesh.nodes()[e + 1] <= s {
+                e += 1;
+            }
+            e
+        };
+        for (i, &s) in mesh.nodes().iter().enumerate() {
+            let e = advance(s);
+            let start = self.mesh.nodes()[e];
+            nodes.push(if s == start { self.nodes[e] } else { self.state_in(gauss, e, s) });
+            if i == mesh.elements() {
+                break;
+            }
+            if s == start && mesh.nodes()[i + 1] == self.mesh.nodes()[e + 1] {
+                slopes.push(self.slopes[e]);
+                continue;
+            }
+            let h = mesh.step(i);
+            let mut k = [[0.0; N]; M];
+            for j in 0..M {
+                let at = s + h * gauss.c[j];
+                let e = advance(at);
+                let l = gauss.cardinals((at - self.mesh.nodes()[e]) / self.mesh.step(e));
                 for m in 0..M {
                     for a in 0..N {
-                        out[k][a] += l[m] * own[m][a];
+                        k[j][a] += l[m] * self.slopes[e][m][a];
                     }
                 }
             }
+            slopes.push(k);
         }
-        Solution { mesh: self.mesh.clone(), nodes: self.nodes.clone(), slopes }
+    }
+
+    /// This solution's polynomials sampled as a solution with `K` stages on the same mesh: `weights` are the cardinal
+    /// polynomials at the stages.
+    pub fn resample<const K: usize>(&self, weights: &[[f64; M]; K], out: &mut Solution<N, K>) {
+        out.mesh.clone_from(&self.mesh);
+        out.nodes.clone_from(&self.nodes);
+        out.slopes.clear();
+        out.slopes.extend(self.slopes.iter().map(|own| {
+            let mut slopes = [[0.0; N]; K];
+            for (slope, l) in slopes.iter_mut().zip(weights) {
+                for m in 0..M {
+                    for a in 0..N {
+                        slope[a] += l[m] * own[m][a];
+                    }
+                }
+            }
+            slopes
+        }));
     }
 }
 
@@ -242,8 +260,13 @@ impl<const N: usize, const M: usize, const Q: usize> Default for Collocation<N, 
 impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     /// An empty workspace.
     pub fn new() -> Self {
+        Self::with(Gauss::new())
+    }
+
+    /// An empty workspace, given the method.
+    pub fn with(gauss: Gauss<M>) -> Self {
         Self {
-            gauss: Gauss::new(),
+            gauss,
             groups: Groups { elements: 0, stages: M },
             steps: Vec::new(),
             states: Vec::new(),
@@ -306,11 +329,18 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         problem: &mut P,
         solution: &Solution<N, M>,
     ) -> Result<(), P::Failure> {
+        self.take_states(solution);
+        self.locals.resize(self.states.len(), Local::default());
+        problem.slopes::<FUSED>(self.groups, &self.states, &mut self.locals)
+    }
+
+    /// The states at the stages of `solution`, in the blocks of [`Groups`].
+    #[inline(always)]
+    pub fn take_states(&mut self, solution: &Solution<N, M>) -> &[[Lanes; N]] {
         let groups = Groups { elements: solution.mesh.elements(), stages: M };
         self.groups = groups;
         self.steps.resize(groups.count(), Lanes::of(0.0));
         self.states.resize(groups.count() * M, [Lanes::of(0.0); N]);
-        self.locals.resize(groups.count() * M, Local::default());
         for g in 0..groups.count() {
             let mut h = Lanes::of(0.0);
             let mut z = [Lanes::of(0.0); N];
@@ -334,7 +364,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             }
             self.steps[g] = h;
         }
-        problem.slopes::<FUSED>(groups, &self.states, &mut self.locals)
+        &self.states
     }
 
     /// Evaluates the problem at `solution` and factorises its linearisation. With `parameter`, also

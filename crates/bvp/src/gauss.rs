@@ -18,8 +18,19 @@ pub struct Gauss<const M: usize> {
     /// Second derivative at `c[j]` of the polynomial of degree 2M-1 that has given values and
     /// slopes at all stages: `hermite[0][j][l]` weighs values, `hermite[1][j][l]` slopes.
     pub hermite: [[[f64; M]; M]; 2],
+    /// [`Gauss::hermite_at`] both ends of an element.
+    pub ends: [Hermite<M>; 2],
     /// `legendre[n][j]`: weight of P_n in `l_j`, `(2n+1) b_j P_n(c_j)`.
     legendre: [[f64; M]; M],
+}
+
+/// Weights of the values and of the slopes at the stages of an element of length one.
+#[derive(Debug, Clone, Copy)]
+pub struct Hermite<const M: usize> {
+    /// For the first derivative: of values, of slopes.
+    pub slope: [[f64; M]; 2],
+    /// For the second derivative: of values, of slopes.
+    pub curvature: [[f64; M]; 2],
 }
 
 impl<const M: usize> Gauss<M> {
@@ -43,8 +54,9 @@ impl<const M: usize> Gauss<M> {
             c[j] = 0.5 * (1.0 + x);
             b[j] = 1.0 / ((1.0 - x * x) * slope * slope);
         }
-        let mut gauss =
-            Self { c, b, a: [[0.0; M]; M], d: [[0.0; M]; M], hermite: [[[0.0; M]; M]; 2], legendre: [[0.0; M]; M] };
+        let blank = Hermite { slope: [[0.0; M]; 2], curvature: [[0.0; M]; 2] };
+        let zero = [[0.0; M]; M];
+        let mut gauss = Self { c, b, a: zero, d: zero, hermite: [zero; 2], ends: [blank; 2], legendre: zero };
         for n in 0..M {
             for j in 0..M {
                 gauss.legendre[n][j] = (2 * n + 1) as f64 * gauss.b[j] * legendre(n, 2.0 * c[j] - 1.0).0;
@@ -55,6 +67,7 @@ impl<const M: usize> Gauss<M> {
             gauss.d[j] = gauss.slopes(c[j]);
         }
         gauss.hermite = gauss.second_derivatives();
+        gauss.ends = [0.0, 1.0].map(|x| gauss.hermite_at(x));
         gauss
     }
 
@@ -96,6 +109,26 @@ impl<const M: usize> Gauss<M> {
                     out[1][j][l] = square * distance;
                 }
             }
+        }
+        out
+    }
+
+    /// First and second derivative at `x` of the polynomial that [`Gauss::hermite`] is of.
+    pub fn hermite_at(&self, x: f64) -> Hermite<M> {
+        let values = self.cardinals(x);
+        let slopes = self.slopes(x);
+        let t = 2.0 * x - 1.0;
+        let curvatures = self.combine(&std::array::from_fn(|n| 4.0 * legendre_curvature(n, t)));
+        let mut out = Hermite { slope: [[0.0; M]; 2], curvature: [[0.0; M]; 2] };
+        for l in 0..M {
+            let (v, v1, v2) = (values[l], slopes[l], curvatures[l]);
+            let own = self.d[l][l];
+            let distance = x - self.c[l];
+            let lean = 1.0 - 2.0 * distance * own;
+            out.slope[0][l] = -2.0 * own * v * v + 2.0 * lean * v * v1;
+            out.slope[1][l] = v * v + 2.0 * distance * v * v1;
+            out.curvature[0][l] = -8.0 * own * v * v1 + 2.0 * lean * (v1 * v1 + v * v2);
+            out.curvature[1][l] = 4.0 * v * v1 + 2.0 * distance * (v1 * v1 + v * v2);
         }
         out
     }
@@ -148,6 +181,16 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
     (p1, d1)
 }
 
+/// Second derivative of the Legendre polynomial of degree `n` at `x` in [-1, 1].
+fn legendre_curvature(n: usize, x: f64) -> f64 {
+    // P_{k+1}' - P_{k-1}' = (2k + 1) P_k, differentiated once.
+    let (mut d0, mut d1) = (0.0, 0.0);
+    for k in 1..n {
+        (d0, d1) = (d1, d0 + (2 * k + 1) as f64 * legendre(k, x).1);
+    }
+    d1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,6 +209,19 @@ mod tests {
             let sum: f64 =
                 (0..4).map(|l| g.hermite[0][j][l] * g.c[l].powi(7) + g.hermite[1][j][l] * 7.0 * g.c[l].powi(6)).sum();
             assert!((sum - 42.0 * g.c[j].powi(5)).abs() < 1e-11, "{sum}");
+        }
+    }
+
+    #[test]
+    fn hermite_derivatives_between_stages_are_exact_to_degree_seven() {
+        let g = Gauss::<4>::new();
+        for x in [0.03, 0.4, 0.77, 1.0] {
+            let h = g.hermite_at(x);
+            let sum = |w: [[f64; 4]; 2]| -> f64 {
+                (0..4).map(|l| w[0][l] * g.c[l].powi(7) + w[1][l] * 7.0 * g.c[l].powi(6)).sum()
+            };
+            assert!((sum(h.slope) - 7.0 * x.powi(6)).abs() < 1e-11);
+            assert!((sum(h.curvature) - 42.0 * x.powi(5)).abs() < 1e-10, "{}", sum(h.curvature));
         }
     }
 

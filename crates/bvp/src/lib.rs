@@ -14,10 +14,10 @@
 //!   [`Solution::add`], with whatever damping the problem wants;
 //! - **a path in a parameter**: linearise with the parameter, and column 1 is the tangent;
 //!   [`Collocation::determinant`] changes sign where two solutions meet or cross;
-//! - **an error estimate**: carry the solution to one more stage ([`Solution::with_stages`]), and
+//! - **an error estimate**: carry the solution to one more stage ([`Solution::resample`]), and
 //!   one Newton round there says what the totals would move; [`Collocation::contributions`] says
 //!   by which elements;
-//! - **a better mesh**: [`Mesh::redistributed`] from those contributions, [`Solution::on`] to go
+//! - **a better mesh**: [`Mesh::redistributed`] from those contributions, [`Solution::onto`] to go
 //!   there, [`Mesh::pin`] for nodes that must lie on breaks of the data or kinks of the solution;
 //! - **values between the nodes**: [`Solution::state_in`], or [`step()`] to the order of the nodes.
 //!
@@ -93,7 +93,7 @@ pub mod problem;
 pub mod real;
 pub mod step;
 pub use collocation::{Collocation, Correction, Determinant, RoundError, Singular, Solution};
-pub use gauss::Gauss;
+pub use gauss::{Gauss, Hermite};
 pub use groups::Groups;
 pub use mesh::{Limits, Mesh};
 pub use problem::{Condition, Local, OneByOne, Plain, Problem};

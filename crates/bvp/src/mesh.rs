@@ -1,15 +1,45 @@
 //! Nodes on [0, 1] and their redistribution.
 
+use crate::real::LANES;
+
 /// Nodes of a mesh on [0, 1], increasing, first 0 and last 1. Pinned nodes (ends, breaks of the
 /// data, kinks of the solution) survive redistribution.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Mesh {
     nodes: Vec<f64>,
-    pinned: Vec<bool>,
+    pinned: Vec<Pin>,
+}
+
+/// Whether a node may be moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pin {
+    Free,
+    Pinned,
+    /// Pinned to a kink that is looked for again.
+    Loose,
+}
+
+impl Clone for Mesh {
+    fn clone(&self) -> Self {
+        Self { nodes: self.nodes.clone(), pinned: self.pinned.clone() }
+    }
+
+    /// Without allocation where there is room.
+    fn clone_from(&mut self, other: &Self) {
+        self.nodes.clone_from(&other.nodes);
+        self.pinned.clone_from(&other.pinned);
+    }
 }
 
 /// The shortest element that any operation here makes.
 const SHORTEST: f64 = 1e-7;
+
+/// Part of an element over which a free node is moved onto a kink: over half of it, so that a kink does not open a
+/// group of elements for itself where it can be helped.
+const FREE_REACH: f64 = 0.5;
+
+/// The same for a node that was on a kink before.
+const LOOSE_REACH: f64 = 0.7;
 
 /// The number of elements that `count` stands for: at least one, and no more than anyone can solve on.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to what fits")]
@@ -20,12 +50,42 @@ fn whole(count: f64) -> usize {
 impl Mesh {
     /// At least `elements` elements, uniform between the `breaks` (in (0, 1), increasing), which are pinned.
     pub fn uniform(elements: usize, breaks: &[f64]) -> Self {
-        let mut mesh = Self { nodes: vec![0.0], pinned: vec![true] };
+        let mut mesh = Self { nodes: vec![0.0], pinned: vec![Pin::Pinned] };
         let mut from = 0.0;
         for &to in breaks.iter().chain(std::iter::once(&1.0)) {
             let count = whole((to - from) * elements as f64);
             mesh.fill(from, to, count, |t| t);
             from = to;
+        }
+        mesh
+    }
+
+    /// About `elements` elements between the `breaks` (in (0, 1), increasing), which are pinned, each with the same
+    /// integral of `density`, a positive function on [0, 1]. The integral is taken on 64 equal parts.
+    pub fn graded(elements: usize, breaks: &[f64], density: impl Fn(f64) -> f64) -> Self {
+        const PARTS: usize = 64;
+        let part = |k: usize| k as f64 / PARTS as f64;
+        let mut passed = [0.0; PARTS + 1];
+        for k in 0..PARTS {
+            passed[k + 1] = passed[k] + density(0.5 * (part(k) + part(k + 1)));
+        }
+        let whole_integral = passed[PARTS];
+        let upto = |s: f64| {
+            let place = s * PARTS as f64;
+            let k = (0..PARTS).rev().find(|k| part(*k) <= s).unwrap_or(0);
+            passed[k] + (place - k as f64) * (passed[k + 1] - passed[k])
+        };
+        let place = |goal: f64| {
+            let k = passed.partition_point(|v| *v <= goal).clamp(1, PARTS) - 1;
+            (k as f64 + (goal - passed[k]) / (passed[k + 1] - passed[k])) / PARTS as f64
+        };
+        let mut mesh = Self { nodes: vec![0.0], pinned: vec![Pin::Pinned] };
+        let (mut from, mut before) = (0.0, 0.0);
+        for &to in breaks.iter().chain(std::iter::once(&1.0)) {
+            let behind = upto(to);
+            let count = whole((behind - before) / whole_integral * elements as f64 - 1e-9);
+            mesh.fill(from, to, count, |t| (place(before + t * (behind - before)) - from) / (to - from));
+            (from, before) = (to, behind);
         }
         mesh
     }
@@ -48,7 +108,7 @@ impl Mesh {
 
     /// Whether node `i` is pinned.
     pub fn is_pinned(&self, i: usize) -> bool {
-        self.pinned[i]
+        self.pinned[i] == Pin::Pinned
     }
 
     /// The element that holds `s`; at a node the one to its right.
@@ -59,15 +119,15 @@ impl Mesh {
     fn fill(&mut self, from: f64, to: f64, count: usize, place: impl Fn(f64) -> f64) {
         for k in 1..count {
             self.nodes.push(from + (to - from) * place(k as f64 / count as f64));
-            self.pinned.push(false);
+            self.pinned.push(Pin::Free);
         }
         self.nodes.push(to);
-        self.pinned.push(true);
+        self.pinned.push(Pin::Pinned);
     }
 
     /// This mesh with every element cut into `parts` equal ones.
     pub fn cut(&self, parts: usize) -> Self {
-        let mut mesh = Self { nodes: vec![0.0], pinned: vec![true] };
+        let mut mesh = Self { nodes: vec![0.0], pinned: vec![Pin::Pinned] };
         for i in 0..self.elements() {
             mesh.fill(self.nodes[i], self.nodes[i + 1], parts.max(1), |t| t);
             if let Some(last) = mesh.pinned.last_mut() {
@@ -81,35 +141,42 @@ impl Mesh {
     /// (0, 1). A node that was pinned for a kink follows it; a free node close to a new kink is
     /// moved there, otherwise one is added; nodes pinned for what is gone become free.
     pub fn pin(&mut self, fixed: &[f64], moving: &[f64]) {
-        let last = self.elements();
-        let mut old: Vec<bool> = vec![false; last + 1];
-        for i in 1..last {
+        for i in 1..self.elements() {
             let is_fixed = fixed.iter().any(|s| (s - self.nodes[i]).abs() < SHORTEST);
-            old[i] = self.pinned[i] && !is_fixed;
-            self.pinned[i] = is_fixed;
+            self.pinned[i] = match (is_fixed, self.pinned[i]) {
+                (true, _) => Pin::Pinned,
+                (false, Pin::Pinned) => Pin::Loose,
+                (false, other) => other,
+            };
         }
         for &s in moving {
             let i = self.element_of(s);
             let h = self.step(i);
             let (left, right) = (s - self.nodes[i], self.nodes[i + 1] - s);
-            if (left < SHORTEST && self.pinned[i]) || (right < SHORTEST && self.pinned[i + 1]) {
+            if (left < SHORTEST && self.is_pinned(i)) || (right < SHORTEST && self.is_pinned(i + 1)) {
                 continue;
             }
-            let left_reach = if old[i] { 0.7 } else { 0.3 };
-            let right_reach = if old[i + 1] { 0.7 } else { 0.3 };
-            let at = if left < left_reach * h && !self.pinned[i] && (left <= right || !old[i + 1]) {
+            let reach = |node: usize| match self.pinned[node] {
+                Pin::Free => FREE_REACH * h,
+                Pin::Loose => LOOSE_REACH * h,
+                Pin::Pinned => 0.0,
+            };
+            let at = if left < reach(i) && (left <= right || self.pinned[i + 1] != Pin::Loose) {
                 i
-            } else if right < right_reach * h && !self.pinned[i + 1] {
+            } else if right < reach(i + 1) {
                 i + 1
             } else {
                 self.nodes.insert(i + 1, s);
-                self.pinned.insert(i + 1, true);
-                old.insert(i + 1, false);
+                self.pinned.insert(i + 1, Pin::Pinned);
                 continue;
             };
             self.nodes[at] = s;
-            self.pinned[at] = true;
-            old[at] = false;
+            self.pinned[at] = Pin::Pinned;
+        }
+        for pin in &mut self.pinned {
+            if *pin == Pin::Loose {
+                *pin = Pin::Free;
+            }
         }
     }
 
@@ -150,15 +217,18 @@ impl Mesh {
         for i in 0..n {
             density[i] = (density[i] * per_length).min(1.0 / shortest[i]);
         }
-        let mut mesh = Self { nodes: vec![0.0], pinned: vec![true] };
+        let mut stretches: Vec<Stretch> = Vec::new();
         let mut start = 0;
-        while start < n {
-            let mut end = start + 1;
-            while !self.pinned[end] {
-                end += 1;
+        for end in 1..=n {
+            if self.is_pinned(end) {
+                let share = (start..end).map(|i| density[i] * self.step(i)).sum();
+                stretches.push(Stretch { start, end, share, count: 1 });
+                start = end;
             }
-            let share: f64 = (start..end).map(|i| density[i] * self.step(i)).sum();
-            let count = whole(share - 0.02);
+        }
+        allot(&mut stretches, limits.most);
+        let mut mesh = Self { nodes: vec![0.0], pinned: vec![Pin::Pinned] };
+        for Stretch { start, end, share, count } in stretches {
             let mut i = start;
             let mut passed = 0.0;
             for k in 1..count {
@@ -168,13 +238,50 @@ impl Mesh {
                     i += 1;
                 }
                 mesh.nodes.push(self.nodes[i] + (goal - passed) / density[i]);
-                mesh.pinned.push(false);
+                mesh.pinned.push(Pin::Free);
             }
             mesh.nodes.push(self.nodes[end]);
-            mesh.pinned.push(true);
-            start = end;
+            mesh.pinned.push(Pin::Pinned);
         }
         mesh
+    }
+}
+
+/// Elements between two pinned nodes, and how many new ones they ask for and get.
+struct Stretch {
+    start: usize,
+    end: usize,
+    share: f64,
+    count: usize,
+}
+
+/// The largest share of an element that is as good as one: with orders of 8 or more it costs a factor below 3.
+const CROWDED: f64 = 1.12;
+
+/// Gives every stretch its number of elements, and all of them together a multiple of [`LANES`], because an element
+/// more costs nothing until its group is full.
+fn allot(stretches: &mut [Stretch], most: usize) {
+    let asked: f64 = stretches.iter().map(|s| s.share.max(1.0)).sum();
+    let mut left = whole(asked / CROWDED).next_multiple_of(LANES).saturating_sub(stretches.len());
+    let mut total = stretches.len();
+    loop {
+        let Some(fullest) = stretches.iter_mut().max_by(|a, b| a.crowding().total_cmp(&b.crowding())) else { return };
+        if left == 0 {
+            if fullest.crowding() <= CROWDED || total >= most {
+                return;
+            }
+            left = LANES;
+        }
+        fullest.count += 1;
+        total += 1;
+        left -= 1;
+    }
+}
+
+impl Stretch {
+    /// Share an element.
+    fn crowding(&self) -> f64 {
+        self.share / self.count as f64
     }
 }
 

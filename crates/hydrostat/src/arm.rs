@@ -428,6 +428,20 @@ impl Arm {
         Ok(())
     }
 
+    /// What [`Arm::set_tensions`] and [`Arm::check`] would say to these tensions, without a word where they are fine.
+    pub(crate) fn check_tensions(&self, tensions: &[f64]) -> Result<(), ArmError> {
+        if tensions.len() != self.cables.len() {
+            return Err(ArmError::TensionCount { cables: self.cables.len(), given: tensions.len() });
+        }
+        for (i, (cable, &tension)) in self.cables.iter().zip(tensions).enumerate() {
+            let fine = tension >= 0.0 && tension.is_finite() && cable.max_tension.is_none_or(|most| tension <= most);
+            if !fine {
+                self.check_cable(i, &Cable { tension, stroke: None, ..cable.clone() }, self.length)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Whether a cable that may be pulled rubs in its channel.
     pub(crate) fn rubs(&self) -> bool {
         self.cables.iter().any(|c| c.friction > 0.0)
@@ -579,7 +593,7 @@ impl Arm {
         Ok(())
     }
 
-    fn check_flow(&self) -> Result<(), ArmError> {
+    pub(crate) fn check_flow(&self) -> Result<(), ArmError> {
         not_negative("flow.speed", self.flow.speed)?;
         finite("flow.direction", self.flow.direction)?;
         not_negative("flow.density", self.flow.density)?;

@@ -20,6 +20,9 @@ use crate::equilibrium::{N, Q};
 /// No method here has more stages.
 const MOST_STAGES: usize = 5;
 
+/// `reach` over the step, times how the sharpest formula for beta'' amplifies, up to which that formula serves.
+const SHARP: f64 = 0.3;
+
 /// Numbers by two stages.
 type Weights = [[f64; MOST_STAGES]; MOST_STAGES];
 
@@ -52,6 +55,31 @@ impl Differentiation {
             by_slope: weights(&gauss.hermite[1]),
             plain: weights(&gauss.d),
         }
+    }
+}
+
+impl Differentiation {
+    /// Largest `reach` over the step, `inverse` being one over that, times the gain.
+    #[inline(always)]
+    fn sharpness<const M: usize>(&self, reach: &[Lanes; M], inverse: Lanes) -> Lanes {
+        let mut largest = ZERO;
+        for reach in reach {
+            largest = largest.max(reach.abs());
+        }
+        largest * inverse * Lanes::of(self.hermite_gain)
+    }
+
+    /// The second derivative of what has these values and slopes at the stages.
+    #[inline(always)]
+    fn second_derivative<const M: usize>(&self, value: &[Lanes; M], slope: &[Lanes; M], inverse: Lanes) -> [Lanes; M] {
+        let over_step: [Lanes; M] = each_stage(|l| value[l] * inverse);
+        each_stage(|j| {
+            let mut sum = ZERO;
+            for l in 0..M {
+                sum += Lanes::of(self.by_value[j][l]) * over_step[l] + Lanes::of(self.by_slope[j][l]) * slope[l];
+            }
+            sum * inverse
+        })
     }
 }
 
@@ -171,6 +199,8 @@ pub(crate) struct BetaAlong {
     by_state: Vec<[Lanes; N]>,
     /// Leave beta'' out: for first guesses on meshes that may be too coarse to differentiate on.
     pub(crate) blunt: bool,
+    /// Whether nothing was evaluated at these stations yet: beta'' is what was given.
+    fresh: bool,
 }
 
 impl BetaAlong {
@@ -186,6 +216,7 @@ impl BetaAlong {
             coupling: Vec::new(),
             by_state: Vec::new(),
             blunt: false,
+            fresh: true,
         }
     }
 
@@ -200,12 +231,49 @@ impl BetaAlong {
         self.coupling.resize(blocks, blank);
         self.by_state.clear();
         self.by_state.resize(blocks, [ZERO; N]);
+        self.fresh = true;
     }
 
     /// First guesses in a lane of a block.
     pub(crate) fn start(&mut self, block: usize, lane: usize, slope: f64, curvature: f64) {
         self.slope[block].0[lane] = slope;
         self.curvature[block].0[lane] = curvature;
+    }
+
+    /// Whether an element, `inverse` one over its length, is too short to differentiate sharply on.
+    #[inline(always)]
+    pub(crate) fn is_short(&self, group: usize, lane: usize, inverse: f64) -> bool {
+        let reach = &self.reach[group * self.stages..(group + 1) * self.stages];
+        let largest = reach.iter().fold(0.0_f64, |most, reach| most.max(reach.0[lane].abs()));
+        largest * inverse * self.weights.hermite_gain >= SHARP
+    }
+
+    /// beta'' from beta and beta' as they have been moved to another state, where they were those of a state before and
+    /// elements are long enough.
+    #[inline(always)]
+    pub(crate) fn follow_curvature(&mut self, steps: &[Lanes]) {
+        if self.fresh {
+            return;
+        }
+        if self.stages == 4 { self.follow_curvature_on::<4>(steps) } else { self.follow_curvature_on::<5>(steps) }
+    }
+
+    #[inline(always)]
+    fn follow_curvature_on<const M: usize>(&mut self, steps: &[Lanes]) {
+        let groups = steps
+            .iter()
+            .zip(self.value.as_chunks::<M>().0)
+            .zip(self.slope.as_chunks::<M>().0)
+            .zip(self.reach.as_chunks::<M>().0)
+            .zip(self.curvature.as_chunks_mut::<M>().0);
+        for ((((step, value), slope), reach), curvature) in groups {
+            let inverse = ONE / *step;
+            let sharp = self.weights.sharpness(reach, inverse);
+            let followed = self.weights.second_derivative(value, slope, inverse);
+            for j in 0..M {
+                curvature[j] = sharp.if_less(Lanes::of(SHARP), followed[j], curvature[j]);
+            }
+        }
     }
 
     /// beta' in `block` after its states have moved.
@@ -227,6 +295,7 @@ impl BetaAlong {
         out: &mut [Local<N, Q, Lanes>],
         drifts: &mut [[Lanes; N]],
     ) {
+        self.fresh = self.blunt;
         // Loops of a length that the compiler knows are several times faster.
         if self.stages == 4 {
             self.close_on::<FUSED, 4>(steps, out, drifts);
@@ -362,28 +431,16 @@ impl<const M: usize> Group<'_, M> {
         curvature: &mut [Lanes; M],
     ) {
         let given = (*slope, *curvature);
-        let mut largest = ZERO;
-        for reach in self.reach {
-            largest = largest.max(reach.abs());
-        }
-        let largest = largest * self.inverse;
-        let sharp = largest * Lanes::of(weights.hermite_gain);
-        let bound = Lanes::of(0.3);
+        let sharp = weights.sharpness(self.reach, self.inverse);
+        let bound = Lanes::of(SHARP);
         for j in 0..M {
             let share = ONE - own_part[j];
-            let share = bound.if_less(share, share, ONE);
+            let share = Lanes::of(0.3).if_less(share, share, ONE);
             slope[j] += (self.closed[j] - slope[j]) / share;
         }
-        let over_step: [Lanes; M] = each_stage(|l| self.value[l] * self.inverse);
-        for j in 0..M {
-            let mut sum = ZERO;
-            for l in 0..M {
-                sum += Lanes::of(weights.by_value[j][l]) * over_step[l] + Lanes::of(weights.by_slope[j][l]) * slope[l];
-            }
-            curvature[j] = sum * self.inverse;
-        }
-        if !sharp.all_below(0.3) {
-            let (short, short_curvature) = self.next_on_short(weights, largest, given);
+        *curvature = weights.second_derivative(self.value, slope, self.inverse);
+        if !sharp.all_below(SHARP) {
+            let (short, short_curvature) = self.next_on_short(weights, sharp / Lanes::of(weights.hermite_gain), given);
             for j in 0..M {
                 slope[j] = sharp.if_less(bound, slope[j], short[j]);
                 curvature[j] = sharp.if_less(bound, curvature[j], short_curvature[j]);

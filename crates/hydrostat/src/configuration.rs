@@ -270,7 +270,7 @@ impl Configuration {
         error_estimate: f64,
         statistics: Statistics,
     ) -> Result<Self, SectionFailure> {
-        engine.refresh()?;
+        engine.foresee();
         let dense = Box::new(Dense::new(engine));
         let arm = dense.equations.arm_at_fraction();
         let mesh = &dense.solution.mesh;

@@ -19,12 +19,11 @@ pub(crate) struct Dense {
 }
 
 impl Dense {
-    /// Of the engine's solution, whose stages must be up to date.
+    /// Of the engine's solution, settled.
     pub(crate) fn new(engine: &Engine) -> Self {
         let mesh = &engine.solution.mesh;
         let gauss = engine.system.gauss.clone();
-        let mut spans = Vec::with_capacity(mesh.elements());
-        engine.system.quadratures(&mut spans);
+        let spans = &engine.spans;
         let mut positions = vec![[0.0; Q]; mesh.elements() + 1];
         for i in 0..mesh.elements() {
             positions[i + 1] = positions[i];
@@ -37,7 +36,7 @@ impl Dense {
 
     /// Strains, beta' and beta'' of element `i` at `x` in [0, 1], from its stages.
     fn guess(&self, i: usize, x: f64) -> ([f64; 3], [f64; 2]) {
-        self.equations.remembered(i, &self.gauss.cardinals(x))
+        self.equations.remembered_sharply(i, &self.gauss.cardinals(x), &self.gauss.hermite_at(x))
     }
 
     fn section(&self, i: usize, s: f64, from_left: bool, z: [f64; N]) -> Result<AtPlace, SectionFailure> {
@@ -63,7 +62,8 @@ impl Dense {
             let asked: [Asked; LANES] = std::array::from_fn(|lane| {
                 let (i, end) = four[lane.min(four.len() - 1)];
                 let k = i + usize::from(end);
-                let (strain, beta) = self.equations.remembered(i, &weights[usize::from(end)]);
+                let which = usize::from(end);
+                let (strain, beta) = self.equations.remembered_sharply(i, &weights[which], &self.gauss.ends[which]);
                 Asked { s: mesh.nodes()[k], from_left: end, z: self.solution.nodes[k], strain, beta }
             });
             let found = widest(

@@ -1,6 +1,8 @@
 //! From an arm to its configuration.
 
-use hydrostat_bvp::{Collocation, Correction, Gauss, Limits, Mesh, RoundError, Solution};
+use std::sync::LazyLock;
+
+use hydrostat_bvp::{Collocation, Correction, Gauss, Hermite, LANES, Limits, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
 use crate::configuration::Statistics;
@@ -18,6 +20,15 @@ const K: usize = M + 1;
 pub(crate) fn kink_resolution(tolerance: f64) -> f64 {
     (0.02 * tolerance.sqrt()).max(5e-8)
 }
+
+/// How close (over L) nodes are kept to kinks on meshes that are refined afterwards.
+const COARSE: f64 = 1e-3;
+
+/// The error that a mesh is made for, over the tolerance: element by element it is foreseen with its sign lost.
+const TARGET: f64 = 0.3;
+
+/// What Newton is asked for on a first mesh (tip over L): what it leaves there would be taken for errors of the elements.
+const FIRST: f64 = 1e-5;
 
 /// The worst estimate (tip over L) with which a solution is still an answer.
 const WORST: f64 = 1e-5;
@@ -47,6 +58,32 @@ impl From<RoundError<SectionFailure>> for Trouble {
     }
 }
 
+/// Corrections (rad) after which kinks of the load are where they will be, but for second order.
+const SMALL: f64 = 0.1;
+
+/// Rounds of Newton after which nodes are moved onto the kinks before the next.
+const PINS: usize = 2;
+
+/// What Newton moves the tip by (over L) at the end of an approach.
+const NEAR: f64 = 0.03;
+
+/// Elements on which most arms meet a tolerance: by the order of the method, and what `paper` takes.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "tolerances are in [1e-12, 1e-2]")]
+fn fair_elements(tolerance: f64) -> usize {
+    (tolerance.powf(-1.0 / (2 * M) as f64).ceil() as usize).next_multiple_of(LANES).max(8)
+}
+
+/// What the mesh is that a solve settles from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum First {
+    /// Anything: good to make a better one from.
+    Rough,
+    /// One on which most arms meet the tolerance.
+    Fair,
+    /// One that met it nearby.
+    Warm,
+}
+
 /// Corrections (rad) that may go on hopping across a kink of the load.
 pub(crate) const HOP: f64 = 1e-4;
 
@@ -67,8 +104,15 @@ pub(crate) struct Engine {
     pub(crate) solution: Solution<N, M>,
     correction: Correction<N, M, Q>,
     check_correction: Correction<N, K, Q>,
+    /// The solution with one more stage, for the check.
+    finer: Solution<N, K>,
     stations: Vec<f64>,
     check_stations: Vec<f64>,
+    guesses: Vec<SectionGuess>,
+    /// The kinks that were found last.
+    found: Vec<f64>,
+    /// The solution before it was moved to another mesh.
+    before: Solution<N, M>,
     errors: Vec<f64>,
     /// x, y over L that each element adds, at the last round.
     pub(crate) spans: Vec<[f64; Q]>,
@@ -84,6 +128,25 @@ pub(crate) struct Engine {
     /// Tip position over L at the last round.
     pub(crate) tip: [f64; Q],
 }
+
+/// Strains, beta' and beta'' at a station to be.
+type SectionGuess = ([f64; 3], f64, f64);
+
+/// The methods of solve and check, and the weights that take the stages of one to those of the other.
+#[derive(Debug)]
+struct Methods {
+    solve: Gauss<M>,
+    check: Gauss<K>,
+    values: [[f64; M]; K],
+    sharp: [Hermite<M>; K],
+}
+
+static METHODS: LazyLock<Methods> = LazyLock::new(|| {
+    let (solve, check) = (Gauss::<M>::new(), Gauss::<K>::new());
+    let values = check.c.map(|x| solve.cardinals(x));
+    let sharp = check.c.map(|x| solve.hermite_at(x));
+    Methods { solve, check, values, sharp }
+});
 
 struct Evaluate<'a, const S: usize> {
     system: &'a mut Collocation<N, S, Q>,
@@ -207,18 +270,22 @@ impl Engine {
     }
 
     pub(crate) fn new(arm: &Arm) -> Self {
-        let (gauss, check_gauss) = (Gauss::<M>::new(), Gauss::<K>::new());
+        let methods = &*METHODS;
         let breaks: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
         Self {
-            equations: Equilibrium::new(arm, &gauss),
-            check_equations: Equilibrium::new(arm, &check_gauss),
-            system: Collocation::new(),
-            check: Collocation::new(),
+            equations: Equilibrium::new(arm, &methods.solve),
+            check_equations: Equilibrium::new(arm, &methods.check),
+            system: Collocation::with(methods.solve.clone()),
+            check: Collocation::with(methods.check.clone()),
             solution: Solution::constant(Mesh::uniform(1, &[]), [0.0; N]),
             correction: Correction::default(),
             check_correction: Correction::default(),
+            finer: Solution::constant(Mesh::uniform(1, &[]), [0.0; N]),
             stations: Vec::new(),
             check_stations: Vec::new(),
+            guesses: Vec::new(),
+            found: Vec::new(),
+            before: Solution::constant(Mesh::uniform(1, &[]), [0.0; N]),
             errors: Vec::new(),
             spans: Vec::new(),
             breaks,
@@ -234,7 +301,7 @@ impl Engine {
     /// Strains from the cables alone (no stream, weight or tip load): a start that is exact when
     /// nothing else acts.
     pub(crate) fn start_from_cables(&mut self, elements: usize) -> Result<(), Trouble> {
-        self.place_unloaded(elements);
+        self.place_unloaded(Mesh::uniform(elements, &self.breaks));
         self.equations.beta.blunt = true;
         let strains = self.strains_from_cables();
         self.equations.beta.blunt = false;
@@ -245,13 +312,12 @@ impl Engine {
 
     /// The unloaded arm: reference strains, nothing carried.
     pub(crate) fn start_unloaded(&mut self, elements: usize) {
-        self.place_unloaded(elements);
+        self.place_unloaded(Mesh::uniform(elements, &self.breaks));
         self.turn_by(|this, k| this.equations.strain(k)[2]);
     }
 
-    /// Stations on a uniform mesh, each with the reference strains, and nothing carried.
-    fn place_unloaded(&mut self, elements: usize) {
-        let mesh = Mesh::uniform(elements, &self.breaks);
+    /// Stations on a mesh, each with the reference strains, and nothing carried.
+    fn place_unloaded(&mut self, mesh: Mesh) {
         self.meshes += 1;
         self.system.stations(&mesh, &mut self.stations);
         self.equations.place_stations(&self.stations, &mesh, |_| ([0.0; 3], 0.0, 0.0));
@@ -275,11 +341,12 @@ impl Engine {
     }
 
     /// The section at an end, which is no station.
-    fn at_end(&self, tip: bool) -> Result<AtPlace, SectionFailure> {
+    pub(crate) fn at_end(&self, tip: bool) -> Result<AtPlace, SectionFailure> {
         let n = self.solution.mesh.elements();
         let (s, i, k, x) = if tip { (1.0, n - 1, n * M - 1, 1.0) } else { (0.0, 0, 0, 0.0) };
         let z = self.solution.nodes[if tip { n } else { 0 }];
-        let (strain, beta) = self.equations.remembered(i, &self.system.gauss.cardinals(x));
+        let gauss = &self.system.gauss;
+        let (strain, beta) = self.equations.remembered_sharply(i, &gauss.cardinals(x), &gauss.ends[usize::from(tip)]);
         let asked = Asked { s, from_left: tip, z, strain, beta };
         match self.equations.at_place(&asked) {
             Err(_) => self.equations.at_place(&Asked { strain: self.equations.strain(k), ..asked }),
@@ -337,18 +404,20 @@ impl Engine {
 
     /// Newton on the present mesh until the tip moves by less than `tolerance`.
     pub(crate) fn newton(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
-        self.iterate(tolerance, most, false)
+        self.iterate(tolerance, most, false, None)
     }
 
     /// Newton until the tip moves by less than `tolerance`, or, looking `ahead`, until it would move by
-    /// less in the round to come.
-    fn iterate(&mut self, tolerance: f64, most: usize, ahead: bool) -> Result<(), Trouble> {
+    /// less in the round to come. Given how close to the kinks of the load nodes have to be, they are moved there as soon
+    /// as corrections are small: a round on nodes that are off is as good as lost.
+    fn iterate(&mut self, tolerance: f64, most: usize, ahead: bool, resolution: Option<f64>) -> Result<(), Trouble> {
         let clamped = self.equations.arm().readings.support == crate::Support::Clamped;
         let most = if clamped { most } else { 60 };
         let mut applied = 0.0;
         let mut halvings = 0;
         let mut round = 0;
         let mut before = 0.0;
+        let mut pins = if resolution.is_some() { PINS } else { 0 };
         loop {
             match linearise(&mut self.system, &mut self.equations, &self.solution, false) {
                 Ok(()) => {}
@@ -402,6 +471,16 @@ impl Engine {
                 }
                 return if moved <= tolerance { Ok(()) } else { Err(Trouble::Stalled(size)) };
             }
+            if size < SMALL
+                && pins > 0
+                && let Some(resolution) = resolution
+            {
+                pins -= 1;
+                if self.pin_kinks(resolution) {
+                    // The correction belongs to the mesh before.
+                    applied = 0.0;
+                }
+            }
         }
     }
 
@@ -443,22 +522,25 @@ impl Engine {
             // The last Newton rounds on this mesh did not converge: there is nothing to compare with.
             return Err(Trouble::Mesh);
         }
-        let mut finer = self.solution.with_stages(&self.system.gauss, &self.check.gauss);
-        self.check.stations(&finer.mesh, &mut self.check_stations);
-        let weights: [[f64; M]; K] = std::array::from_fn(|k| self.system.gauss.cardinals(self.check.gauss.c[k]));
+        self.foresee();
+        let methods = &*METHODS;
+        self.solution.resample(&methods.values, &mut self.finer);
+        self.check.stations(&self.finer.mesh, &mut self.check_stations);
         let own = &self.equations;
         self.check_equations.fraction = own.fraction;
         self.check_equations.phase = own.phase;
         self.check_equations.take_arm_of(own);
-        self.check_equations.place_stations(&self.check_stations, &finer.mesh, |k| {
-            let (strain, [slope, curvature]) = own.remembered(k / K, &weights[k % K]);
+        self.check_equations.place_stations(&self.check_stations, &self.finer.mesh, |k| {
+            let j = k % K;
+            let (strain, [slope, curvature]) = own.remembered_sharply(k / K, &methods.values[j], &methods.sharp[j]);
             (strain, slope, curvature)
         });
-        // Before the comparison linearises, so that beta' and beta'' are those of this state.
-        for _ in 0..if self.on_a_path { 2 } else { 1 } {
-            evaluate(&mut self.check, &mut self.check_equations, &finer).map_err(Trouble::Section)?;
+        // So that beta' and beta'' are those of this state, where what is between counts.
+        let rehearsals = if self.on_a_path { 2 } else { usize::from(tolerance <= TIGHT) };
+        for _ in 0..rehearsals {
+            evaluate(&mut self.check, &mut self.check_equations, &self.finer).map_err(Trouble::Section)?;
         }
-        let mut estimate = self.compare(&finer)?;
+        let mut estimate = self.compare()?;
         // Where Newton stopped ahead of its last round, or where little is asked to be left, the comparison may miss what
         // one more would have moved.
         let unseen = 0.1 * self.rest;
@@ -474,17 +556,17 @@ impl Engine {
         if estimate > tolerance && contributed < tolerance {
             // Between nodes the polynomials are less accurate than at them, and one Newton round
             // from there leaves the square of that in the comparison: a second one removes it.
-            finer.add(&self.check_correction, 1.0);
-            estimate = self.compare(&finer)?;
+            self.finer.add(&self.check_correction, 1.0);
+            estimate = self.compare()?;
         }
         Ok(estimate.max(unseen))
     }
 
     /// How far a Newton round with one more stage puts the tip from where the solve has it.
-    fn compare(&mut self, finer: &Solution<N, K>) -> Result<f64, Trouble> {
-        linearise(&mut self.check, &mut self.check_equations, finer, false)?;
+    fn compare(&mut self) -> Result<f64, Trouble> {
+        linearise(&mut self.check, &mut self.check_equations, &self.finer, false)?;
         self.rounds += 1;
-        solve(&self.check, finer, 0, &mut self.check_correction);
+        solve(&self.check, &self.finer, 0, &mut self.check_correction);
         let total = self.check.totals();
         let [dx, dy] = self.check_correction.total;
         Ok((total[0] + dx - self.tip[0]).hypot(total[1] + dy - self.tip[1]))
@@ -492,33 +574,59 @@ impl Engine {
 
     /// Moves the solution to another mesh.
     pub(crate) fn move_to(&mut self, mesh: Mesh) {
+        std::mem::swap(&mut self.solution, &mut self.before);
+        self.solution.mesh = mesh;
+        self.come_from_before();
+    }
+
+    /// Carries the solution before over to the mesh of the present one.
+    fn come_from_before(&mut self) {
         self.meshes += 1;
         let gauss = &self.system.gauss;
-        let old = &self.solution;
-        self.system.stations(&mesh, &mut self.stations);
-        let count = self.stations.len();
-        let mut guesses = Vec::with_capacity(count);
+        let old = &self.before;
+        old.onto(gauss, &mut self.solution);
+        let mesh = &self.solution.mesh;
+        self.system.stations(mesh, &mut self.stations);
+        self.guesses.clear();
+        let mut e = 0;
         for s in &self.stations {
-            let e = old.mesh.element_of(*s);
+            while e + 1 < old.mesh.elements() && old.mesh.nodes()[e + 1] <= *s {
+                e += 1;
+            }
             let w = gauss.cardinals((s - old.mesh.nodes()[e]) / old.mesh.step(e));
             let (strain, [slope, curvature]) = self.equations.remembered(e, &w);
-            guesses.push((strain, slope, curvature));
+            self.guesses.push((strain, slope, curvature));
         }
-        let moved = old.on(gauss, mesh);
-        self.equations.place_stations(&self.stations, &moved.mesh, |k| guesses[k]);
-        self.solution = moved;
+        let guesses = &self.guesses;
+        self.equations.place_stations(&self.stations, mesh, |k| guesses[k]);
+    }
+
+    /// Brings what is remembered at the stations up to the solution, to first order.
+    pub(crate) fn foresee(&mut self) {
+        let (system, equations, solution) = (&mut self.system, &mut self.equations, &self.solution);
+        widest(
+            #[inline(always)]
+            || equations.foresee(system.take_states(solution)),
+        );
     }
 
     /// Places inside (0, 1) where the load of the stream has a kink: where a switch changes sign.
     /// Changes closer than `resolution`, or than interpolation in an element tells apart, count as one, or
     /// cancel: on both sides of a node on a kink the polynomials put it at slightly different places.
     pub(crate) fn kinks(&self, resolution: f64) -> Vec<f64> {
+        let mut out = Vec::new();
+        self.find_kinks(resolution, &mut out);
+        out
+    }
+
+    /// [`Engine::kinks`] into `out`.
+    fn find_kinks(&self, resolution: f64, out: &mut Vec<f64>) {
         const SAMPLES: usize = 8;
         /// The cardinal polynomials' absolute values sum up to less everywhere on an element: what is nearer to its
         /// value at a stage than one part in as many does not change sign.
         const NORM: f64 = 3.0;
+        out.clear();
         let mesh = &self.solution.mesh;
-        let mut out: Vec<f64> = Vec::new();
         let samples: [[f64; M]; SAMPLES + 1] =
             std::array::from_fn(|p| self.system.gauss.cardinals(p as f64 / SAMPLES as f64));
         for w in 0..3 {
@@ -550,7 +658,7 @@ impl Engine {
                             let v = at((mid - start) / h);
                             if v * lo.1 <= 0.0 { hi = (mid, v) } else { lo = (mid, v) }
                         }
-                        let place = 0.5 * (lo.0 + hi.0);
+                        let place = self.sharpened(0.5 * (lo.0 + hi.0), i, w);
                         if out.len() > first && place - out[out.len() - 1] < apart {
                             out.pop();
                         } else {
@@ -566,7 +674,25 @@ impl Engine {
         out.retain(|s| *s > resolution && *s < 1.0 - resolution);
         out.sort_by(f64::total_cmp);
         out.dedup_by(|b, a| *b - *a < resolution);
-        out
+    }
+
+    /// The place of a change of sign of switch `w` in element `i`, or between it and the one before, found from the element's
+    /// polynomial: where a node is near, from the switch there, because nodes are as good as the tip and the ends of
+    /// the polynomials are not. A kink that a node misses is invisible to the estimate.
+    fn sharpened(&self, place: f64, i: usize, w: usize) -> f64 {
+        const NEAR_NODE: f64 = 0.05;
+        let mesh = &self.solution.mesh;
+        let h = mesh.step(i);
+        let at_end = place - mesh.nodes()[i] > 0.5 * h;
+        let node = i + usize::from(at_end);
+        if (place - mesh.nodes()[node]).abs() > NEAR_NODE * h || node == 0 || node == mesh.elements() {
+            return place;
+        }
+        let Ok(at_node) = self.beside_node(node, at_end) else { return place };
+        let nearest = if at_end { M - 1 } else { 0 };
+        let distance = h * (self.system.gauss.c[nearest] - if at_end { 1.0 } else { 0.0 });
+        let moved = -at_node.switches[w] * distance / (self.equations.switch(i, nearest, w) - at_node.switches[w]);
+        if moved.abs() < NEAR_NODE * h { mesh.nodes()[node] + moved } else { place }
     }
 
     /// Moves nodes onto `kinks` that no pinned node is within `tolerance` of; whether any moved.
@@ -578,46 +704,78 @@ impl Engine {
             let nearest = if l < r { i } else { i + 1 };
             !(l.min(r) < tolerance && mesh.is_pinned(nearest))
         });
-        if stray {
-            let mut mesh = mesh.clone();
-            mesh.pin(&self.breaks, kinks);
-            if mesh != self.solution.mesh {
-                self.move_to(mesh);
-                return true;
-            }
+        if !stray {
+            return false;
         }
-        false
+        std::mem::swap(&mut self.solution, &mut self.before);
+        self.solution.mesh.clone_from(&self.before.mesh);
+        self.solution.mesh.pin(&self.breaks, kinks);
+        if self.solution.mesh == self.before.mesh {
+            std::mem::swap(&mut self.solution, &mut self.before);
+            return false;
+        }
+        self.come_from_before();
+        true
     }
 
     pub(crate) fn refine(&mut self, target: f64, most: usize) {
-        let limits = Limits { fewest: 4, most, growth: 6.0, cut: 8.0, least: 0.2 };
-        let shortest: Vec<f64> =
-            (0..self.solution.mesh.elements()).map(|i| self.equations.shortest_element(i)).collect();
-        let mesh = self.solution.mesh.redistributed(&self.errors, &shortest, (2 * M + 1) as f64, target, limits);
+        let mesh = self.refined(target, most);
         self.move_to(mesh);
     }
 
-    /// Refines until the estimate meets `tolerance` (tip position over L); `warm` when the mesh is
-    /// already one that met it nearby. Where that cannot be had,
+    /// A mesh on which every element would contribute the same to an error `target`.
+    fn refined(&self, target: f64, most: usize) -> Mesh {
+        let limits = Limits { fewest: 4, most, growth: 6.0, cut: 8.0, least: 0.2 };
+        let shortest: Vec<f64> =
+            (0..self.solution.mesh.elements()).map(|i| self.equations.shortest_element(i)).collect();
+        self.solution.mesh.redistributed(&self.errors, &shortest, (2 * M + 1) as f64, target, limits)
+    }
+
+    /// Newton from a rough start until corrections are small, and on to a mesh on which most arms meet `tolerance`.
+    pub(crate) fn approach(&mut self, tolerance: f64) -> Result<(), Trouble> {
+        self.iterate(NEAR, 14, false, None)?;
+        self.foresee();
+        let kinks = self.kinks(10.0 * kink_resolution(tolerance));
+        let mut mesh = self.graded(fair_elements(tolerance));
+        mesh.pin(&self.breaks, &kinks);
+        self.move_to(mesh);
+        Ok(())
+    }
+
+    /// A mesh with shorter elements where the arm is thinner, and with it the lengths on which shape and loads vary.
+    fn graded(&self, elements: usize) -> Mesh {
+        let arm = self.equations.arm();
+        Mesh::graded(elements, &self.breaks, |s| arm.radius.at(s * arm.length, arm.length).value.sqrt().recip())
+    }
+
+    /// Refines until the estimate meets `tolerance` (tip position over L). Where that cannot be had,
     /// the best there is, if it is good to [`WORST`].
-    pub(crate) fn settle(&mut self, tolerance: f64, warm: bool) -> Result<f64, Trouble> {
+    pub(crate) fn settle(&mut self, tolerance: f64, first: First) -> Result<f64, Trouble> {
         let mut estimate = f64::INFINITY;
         let mut best: Option<(f64, State)> = None;
         // What is left of beta'', a round behind, counts at tight tolerances, down to where rounding ends it.
         let least =
             if tolerance > TIGHT { 3.0 * tolerance } else { (0.1 * tolerance).max(RESTLESS.min(3.0 * tolerance)) };
         for attempt in 0..10 {
-            let goal = match (attempt, warm) {
-                (0, true) if tolerance > TIGHT => tolerance,
-                (0, true) => least,
-                (0, false) => tolerance.max(1e-3),
+            let goal = match (attempt, first) {
+                (0, First::Warm) if tolerance > TIGHT => tolerance,
+                (0, First::Warm | First::Fair) => least,
+                (0, First::Rough) => tolerance.max(FIRST),
                 _ => (1e-4 * estimate).clamp(least, tolerance.max(1e-3)),
             };
-            let fine = goal <= 3.0 * tolerance;
-            let enough = fine.then_some(tolerance);
+            let mut fine = goal <= 3.0 * tolerance;
             // The warm mesh has met the tolerance before: nothing but Newton's rest can have been added.
-            let ahead = warm && attempt == 0 && tolerance > TIGHT;
-            let outcome = self.converge(goal, tolerance, ahead).and_then(|()| self.estimate_unless(tolerance, enough));
+            let ahead = first == First::Warm && attempt == 0 && tolerance > TIGHT;
+            // A first mesh is only there to make a better one from.
+            let resolution = if fine { kink_resolution(tolerance) } else { kink_resolution(tolerance).max(COARSE) };
+            let mut converged = self.converge(goal, resolution, ahead);
+            if attempt == 0 && first == First::Fair && converged.is_err() {
+                // It may be the mesh: good enough to make a better one from.
+                fine = false;
+                converged = roughly(converged);
+            }
+            let enough = fine.then_some(tolerance);
+            let outcome = converged.and_then(|()| self.estimate_unless(tolerance, enough));
             estimate = match (outcome, &best) {
                 (Ok(estimate), _) => estimate,
                 (Err(trouble), None) => return Err(trouble),
@@ -629,7 +787,9 @@ impl Engine {
             if attempt > 0 && estimate < best.as_ref().map_or(WORST, |b| b.0) {
                 best = Some((estimate, self.state()));
             }
-            self.refine(0.2 * tolerance, 2000);
+            let mut mesh = self.refined(TARGET * tolerance, 2000);
+            mesh.pin(&self.breaks, &self.kinks(10.0 * kink_resolution(tolerance)));
+            self.move_to(mesh);
         }
         match best {
             Some((estimate, state)) => {
@@ -641,18 +801,26 @@ impl Engine {
         }
     }
 
-    /// Newton on this mesh, with nodes moved onto the kinks of the load.
-    fn converge(&mut self, goal: f64, tolerance: f64, ahead: bool) -> Result<(), Trouble> {
-        self.iterate(goal, 14, ahead)?;
-        let resolution = kink_resolution(tolerance);
+    /// Newton on this mesh, with nodes moved to within `resolution` of the kinks of the load.
+    fn converge(&mut self, goal: f64, resolution: f64, ahead: bool) -> Result<(), Trouble> {
+        self.iterate(goal, 14, ahead, Some(resolution))?;
         for _ in 0..4 {
-            let kinks = self.kinks(10.0 * resolution);
-            if !self.pin(&kinks, resolution) {
+            if !self.pin_kinks(resolution) {
                 break;
             }
-            self.iterate(goal, 14, ahead)?;
+            self.iterate(goal, 14, ahead, None)?;
         }
         Ok(())
+    }
+
+    /// Moves nodes onto the kinks at the present solution; whether any moved.
+    fn pin_kinks(&mut self, resolution: f64) -> bool {
+        self.foresee();
+        let mut kinks = std::mem::take(&mut self.found);
+        self.find_kinks(10.0 * resolution, &mut kinks);
+        let moved = self.pin(&kinks, resolution);
+        self.found = kinks;
+        moved
     }
 
     /// Whether something pushes against the arm hard enough that a direct solve may have landed on a
@@ -683,6 +851,12 @@ impl Engine {
         false
     }
 
+    /// Changes loads of the arm in place.
+    pub(crate) fn change_loads(&mut self, change: impl Fn(&mut Arm)) {
+        self.equations.change_loads(&change);
+        self.check_equations.change_loads(&change);
+    }
+
     /// Takes other tensions, stream or loads for the same arm.
     pub(crate) fn set_loads(&mut self, arm: &Arm) {
         self.equations.set_loads(arm);
@@ -707,7 +881,9 @@ impl Engine {
     /// The section on either side of node `i`.
     pub(crate) fn beside_node(&self, i: usize, left: bool) -> Result<AtPlace, SectionFailure> {
         let (element, x) = if left { (i - 1, 1.0) } else { (i, 0.0) };
-        let (strain, beta) = self.equations.remembered(element, &self.system.gauss.cardinals(x));
+        let gauss = &self.system.gauss;
+        let (strain, beta) =
+            self.equations.remembered_sharply(element, &gauss.cardinals(x), &gauss.ends[usize::from(left)]);
         let (s, z) = (self.solution.mesh.nodes()[i], self.solution.nodes[i]);
         self.equations.at_place(&Asked { s, from_left: left, z, strain, beta })
     }

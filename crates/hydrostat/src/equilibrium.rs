@@ -13,19 +13,21 @@
 //! quadrature. Lengths are in units of L, forces in a unit of [`Units`].
 
 mod at_place;
+mod few;
 mod gradients;
 mod nearness;
 mod places;
 mod strains;
 mod varied;
 
-use hydrostat_bvp::{Condition, Gauss, Groups, LANES, Lanes, Local, Problem, Real, each};
+use hydrostat_bvp::{Condition, Gauss, Groups, Hermite, LANES, Lanes, Local, Problem, Real, each};
 
 pub(crate) use self::at_place::{Asked, AtPlace};
+use self::few::Few;
 use self::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
 use self::nearness::NearnessLanes;
 pub(crate) use self::nearness::{Nearness, SectionFailure};
-use self::places::{Place, blank_cable};
+use self::places::Place;
 use self::strains::{STATION, Solved, solve_section};
 use crate::arm::{Arm, TipLoad};
 use crate::beta_along::{BetaAlong, Coupling};
@@ -57,6 +59,9 @@ struct Memory<R> {
     strain: [R; 3],
     /// d strain / d z.
     by_state: [[R; N]; 3],
+    /// beta' that the strains are of, and d strain / d beta'.
+    beta_slope: R,
+    by_beta_slope: [R; 3],
 }
 
 /// Equations of one arm at given fractions of its loads.
@@ -144,8 +149,16 @@ impl Equilibrium {
         }
     }
 
+    /// Changes tensions, or the stream's velocity.
+    pub(crate) fn change_loads(&mut self, change: impl Fn(&mut Arm)) {
+        change(&mut self.arm);
+        self.water = water(&self.arm);
+        self.set_tensions();
+    }
+
     fn set_tensions(&mut self) {
-        self.tensions = self.arm.cables.iter().map(|c| c.tension / self.units.force).collect();
+        self.tensions.clear();
+        self.tensions.extend(self.arm.cables.iter().map(|c| c.tension / self.units.force));
     }
 
     pub(crate) fn arm(&self) -> &Arm {
@@ -292,6 +305,32 @@ impl Equilibrium {
         (strain, beta)
     }
 
+    /// [`Equilibrium::remembered`] with beta' and beta'' from the polynomial through beta and beta' at the stages where
+    /// the element is long enough for it.
+    pub(crate) fn remembered_sharply<const M: usize>(
+        &self,
+        i: usize,
+        weights: &[f64; M],
+        sharp: &Hermite<M>,
+    ) -> ([f64; 3], [f64; 2]) {
+        let (mut strain, mut beta) = ([0.0; 3], [0.0; 2]);
+        let (group, own) = (i / LANES, i % LANES);
+        let inverse = 1.0 / self.steps[group].0[own];
+        if self.beta.is_short(group, own, inverse) {
+            return self.remembered(i, weights);
+        }
+        for l in 0..M {
+            let block = group * self.groups.stages + l;
+            for a in 0..3 {
+                strain[a] += weights[l] * self.memory[block].strain[a].0[own];
+            }
+            let (value, slope) = (self.beta.value[block].0[own] * inverse, self.beta.slope[block].0[own]);
+            beta[0] += sharp.slope[0][l] * value + sharp.slope[1][l] * slope;
+            beta[1] += (sharp.curvature[0][l] * value + sharp.curvature[1][l] * slope) * inverse;
+        }
+        (strain, beta)
+    }
+
     /// Strains of the unloaded arm at station `k`, mu times L.
     pub(crate) fn reference_strain(&self, k: usize) -> [f64; 3] {
         let (block, lane) = self.groups.station(k);
@@ -421,24 +460,20 @@ impl Problem<N, Q> for Equilibrium {
         self.evaluations += groups.elements * groups.stages;
         let mut near = NearnessLanes::far();
         let cable_count = self.tensions.len();
-        let mut few: [CableAt<Lanes>; MOST_IN_PLACE] = [blank_cable(); MOST_IN_PLACE];
-        let mut many: Vec<CableAt<Lanes>> = Vec::new();
-        if cable_count > MOST_IN_PLACE {
-            many.resize(cable_count, blank_cable());
-        }
-        let pulled = if cable_count > MOST_IN_PLACE { &mut many[..] } else { &mut few[..] };
+        self.follow(z);
+        let mut pulled = Few::new();
         for (block, (z, out)) in z.iter().zip(out.iter_mut()).enumerate() {
-            let mut used = 0;
+            pulled.clear();
             for c in 0..cable_count {
                 let tension = self.tensions[c] * self.fraction[1];
                 if tension != 0.0 {
-                    pulled[used] = self.cables[block * cable_count + c];
-                    pulled[used].tension = pulled[used].tension * Lanes::of(tension);
-                    pulled[used].tension_slope = pulled[used].tension_slope * Lanes::of(tension);
-                    used += 1;
+                    let mut cable = self.cables[block * cable_count + c];
+                    cable.tension = cable.tension * Lanes::of(tension);
+                    cable.tension_slope = cable.tension_slope * Lanes::of(tension);
+                    pulled.push(cable);
                 }
             }
-            let solved = self.block(block, z, &pulled[..used], &mut near, out);
+            let solved = self.block(block, z, pulled.as_slice(), &mut near, out);
             if solved.is_err() {
                 self.nearness = near.nearest();
                 return solved;
@@ -505,9 +540,6 @@ impl Problem<N, Q> for Equilibrium {
     }
 }
 
-/// Cables that fit on the stack; more are held in a vector.
-const MOST_IN_PLACE: usize = 8;
-
 impl Equilibrium {
     /// The stations of a block at the states `z`: all but what beta' adds.
     #[inline(always)]
@@ -519,7 +551,6 @@ impl Equilibrium {
         near: &mut NearnessLanes,
         out: &mut Local<N, Q, Lanes>,
     ) -> Result<(), SectionFailure> {
-        let zero = Lanes::of(0.0);
         let state = *z;
         let place = &self.places[block];
         let couple = place.body.couple * Lanes::of(self.fraction[0]);
@@ -527,31 +558,8 @@ impl Equilibrium {
         let direction = [cos, sin];
         let contact = [cos * state[1] + sin * state[2], cos * state[2] - sin * state[1], state[3]];
 
-        // Start from the last strains moved along their tangent.
-        let memory = &self.memory[block];
-        let mut moved = [zero; N];
-        for a in 0..N {
-            moved[a] = state[a] - memory.z[a];
-        }
-        let mut guess = memory.strain;
-        let mut leap = zero;
-        for a in 0..3 {
-            let mut move_by = zero;
-            for b in 0..N {
-                move_by += memory.by_state[a][b] * moved[b];
-            }
-            let size = if a == 2 { move_by.abs() / (Lanes::of(2.0) + guess[2].abs()) } else { move_by.abs() };
-            leap = leap.max(size);
-            guess[a] += move_by;
-        }
-        let near_enough = Lanes::of(0.3);
-        for a in 0..3 {
-            guess[a] = leap.if_less(near_enough, guess[a], memory.strain[a]);
-        }
-        for a in 0..N {
-            moved[a] = leap.if_less(near_enough, moved[a], zero);
-        }
-        let beta_along = [self.beta.followed(block, &moved), self.beta.curvature[block]];
+        let guess = self.memory[block].strain;
+        let beta_along = [self.beta.slope[block], self.beta.curvature[block]];
 
         let solved = solve_section(self.volume, &place.stiffness, pulled, contact, guess, beta_along, STATION);
         if !solved.fine() {
@@ -590,8 +598,64 @@ impl Equilibrium {
         self.beta.reach[block] = swelling_slope * nu_p;
         self.switches[block] = load.switches;
         near.note(self.places[block].s, [solved.balance.openness, nu, solved.regularity]);
-        self.memory[block] = Memory { z: state, strain: solved.strain, by_state };
+        let by_beta_slope = [nu_p, eta_p, mu_p];
+        self.memory[block] =
+            Memory { z: state, strain: solved.strain, by_state, beta_slope: beta_along[0], by_beta_slope };
         Ok(())
+    }
+
+    /// Moves what is remembered along its tangents to the states `z`: strains, beta and its derivatives. Left where it
+    /// was where those lead too far to mean anything.
+    #[inline(always)]
+    fn follow(&mut self, z: &[[Lanes; N]]) {
+        let zero = Lanes::of(0.0);
+        for (block, state) in z.iter().enumerate() {
+            let memory = &self.memory[block];
+            let mut moved = [zero; N];
+            for a in 0..N {
+                moved[a] = state[a] - memory.z[a];
+            }
+            let slope = self.beta.followed(block, &moved);
+            let turned = slope - memory.beta_slope;
+            let mut strain = memory.strain;
+            let mut leap = zero;
+            for a in 0..3 {
+                let mut move_by = memory.by_beta_slope[a] * turned;
+                for b in 0..N {
+                    move_by += memory.by_state[a][b] * moved[b];
+                }
+                let size = if a == 2 { move_by.abs() / (Lanes::of(2.0) + strain[2].abs()) } else { move_by.abs() };
+                leap = leap.max(size);
+                strain[a] += move_by;
+            }
+            let near_enough = Lanes::of(0.3);
+            for a in 0..3 {
+                strain[a] = leap.if_less(near_enough, strain[a], memory.strain[a]);
+            }
+            let slope = leap.if_less(near_enough, slope, self.beta.slope[block]);
+            self.beta.value[block] = swelling(self.volume, strain[0]).beta;
+            self.beta.slope[block] = slope;
+            let memory = &mut self.memory[block];
+            memory.z = *state;
+            memory.strain = strain;
+            memory.beta_slope = slope;
+        }
+        self.beta.follow_curvature(&self.steps);
+    }
+
+    /// What the next evaluation, at the states `z`, would find but for what is of second order: strains, beta and its
+    /// derivatives, the load's switches.
+    #[inline(always)]
+    pub(crate) fn foresee(&mut self, z: &[[Lanes; N]]) {
+        self.follow(z);
+        for (block, state) in z.iter().enumerate() {
+            let (sin, cos) = sin_cos(state[0]);
+            let strain = self.memory[block].strain;
+            let swelling = swelling(self.volume, strain[0]);
+            let slope = self.beta.slope[block];
+            let load = load(&self.water, &self.places[block].body, [cos, sin], strain, &swelling, slope);
+            self.switches[block] = load.switches;
+        }
     }
 
     /// The first station of a block, along the arm, that could not be solved.

@@ -1,7 +1,7 @@
 //! Solves with friction of the cables: rounds of shape and turns, see [`crate::friction`].
 
 use crate::configuration::Configuration;
-use crate::engine::Trouble;
+use crate::engine::{First, Trouble};
 use crate::friction::Grip;
 use crate::path::{Travelled, name_limit};
 use crate::solve::Solver;
@@ -64,7 +64,7 @@ impl Solver {
     /// when there is no start either.
     fn raise_tensions(&mut self, from: f64) -> Result<Configuration, Option<Verdict>> {
         self.engine.set_phase(Phase::Tension, from);
-        if self.engine.settle(self.options.tol, false).is_err() {
+        if self.engine.settle(self.options.tol, First::Rough).is_err() {
             return Err(None);
         }
         let mut last = self.raise_friction().map_err(|_| None)?;
@@ -106,7 +106,7 @@ impl Solver {
             let (before, angle) = (self.engine.tip, self.engine.tip_angle());
             let estimate = match self.strokes.as_mut() {
                 Some(strokes) => strokes.settle(&mut self.engine, tol)?,
-                None => self.engine.settle(tol, true)?,
+                None => self.engine.settle(tol, First::Warm)?,
             };
             let same_branch = self.strokes.is_some() || self.engine.system.determinant().sign == sign;
             if (self.engine.tip_angle() - start).abs() > LARGEST_TURN || !same_branch {

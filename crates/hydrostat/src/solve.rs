@@ -1,8 +1,8 @@
 //! From an arm to its configuration.
 
 use crate::arm::{Arm, FlowLaw};
-use crate::configuration::Configuration;
-use crate::engine::{Engine, Trouble};
+use crate::configuration::{Configuration, Statistics, Tip};
+use crate::engine::{Engine, First, Trouble};
 use crate::path::{LOOSE, Pace, Travelled, follow};
 use crate::strokes::{Strokes, started};
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
@@ -23,6 +23,17 @@ impl Default for Options {
     }
 }
 
+/// Where the tip is, and how well that is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// The tip.
+    pub tip: Tip,
+    /// Estimated error of its position, m.
+    pub error_estimate: f64,
+    /// What the solve took.
+    pub statistics: Statistics,
+}
+
 /// Solves one arm, again and again as its loads change.
 #[derive(Debug, Clone)]
 pub struct Solver {
@@ -32,6 +43,8 @@ pub struct Solver {
     settled: bool,
     /// Sign of the determinant of the last configuration.
     sign: f64,
+    /// Estimated error of its tip position over L; none since loads were changed.
+    estimate: Option<f64>,
     /// Cables whose strokes are commanded, at the last configuration.
     pub(crate) strokes: Option<Strokes>,
 }
@@ -46,7 +59,7 @@ impl Solver {
         if !(options.tol >= 1e-12 && options.tol <= 1e-2) {
             return Err(SolveError::Option { option: "tol", value: options.tol, expected: "in [1e-12, 1e-2]" });
         }
-        Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, strokes: None })
+        Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, estimate: None, strokes: None })
     }
 
     /// Solves from the unloaded arm.
@@ -74,7 +87,12 @@ impl Solver {
         self.engine.on_a_path = false;
         self.engine.reset_statistics();
         self.engine.set_phase(Phase::Tension, 1.0);
-        let direct = self.engine.start_from_cables(8).and_then(|()| self.engine.settle(self.options.tol, false));
+        let tol = self.options.tol;
+        let engine = &mut self.engine;
+        let direct = engine
+            .start_from_cables(8)
+            .and_then(|()| engine.approach(tol))
+            .and_then(|()| engine.settle(tol, First::Fair));
         if let Ok(estimate) = direct
             && !self.engine.may_have_left_the_branch()
             && let Ok(mut configuration) = self.read(estimate, Travelled::default())
@@ -160,6 +178,7 @@ impl Solver {
         self.settled &= own.stroke.is_some();
         own.stroke = Some(stroke);
         arm.check()?;
+        self.estimate = None;
         self.engine.set_loads(&arm);
         Ok(())
     }
@@ -169,12 +188,16 @@ impl Solver {
     /// # Errors
     /// [`SolveError::Arm`] when their number is wrong or one of them is.
     pub fn set_tensions(&mut self, tensions: &[f64]) -> Result<(), SolveError> {
-        let mut arm = self.engine.equations.arm().clone();
-        arm.set_tensions(tensions)?;
-        arm.check()?;
+        self.engine.equations.arm().check_tensions(tensions)?;
         // Strokes are not commanded any more: what was solved with them is no start.
         self.settled &= self.strokes.take().is_none();
-        self.engine.set_loads(&arm);
+        self.estimate = None;
+        self.engine.change_loads(|arm| {
+            for (cable, tension) in arm.cables.iter_mut().zip(tensions) {
+                cable.tension = *tension;
+                cable.stroke = None;
+            }
+        });
         Ok(())
     }
 
@@ -183,10 +206,13 @@ impl Solver {
     /// # Errors
     /// [`SolveError::Arm`] when it is negative or not finite.
     pub fn set_flow_speed(&mut self, speed: f64) -> Result<(), SolveError> {
-        let mut arm = self.engine.equations.arm().clone();
-        arm.flow.speed = speed;
-        arm.check()?;
-        self.engine.set_loads(&arm);
+        let before = self.engine.equations.arm().flow.speed;
+        self.estimate = None;
+        self.engine.change_loads(|arm| arm.flow.speed = speed);
+        if let Err(error) = self.engine.equations.arm().check_flow() {
+            self.engine.change_loads(|arm| arm.flow.speed = before);
+            return Err(error.into());
+        }
         Ok(())
     }
 
@@ -197,25 +223,92 @@ impl Solver {
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
     pub fn resolve(&mut self) -> Result<Configuration, SolveError> {
-        // With friction, which way a cable slid is part of the answer: it is solved anew.
-        if !self.settled || self.engine.equations.arm().rubs() {
-            return self.solve();
-        }
         if let Some(strokes) = self.strokes.take() {
             return self.resolve_strokes(strokes);
+        }
+        match self.settle_warm() {
+            Some(estimate) => self.read_warm(estimate),
+            None => self.solve(),
+        }
+    }
+
+    /// [`Solver::resolve`] for those who only want to know where the tip is, a control loop say: nothing is read out, and
+    /// nothing allocated once meshes have their size. [`Solver::configuration`] reads the rest when it is wanted.
+    ///
+    /// # Errors
+    /// [`SolveError::NoEquilibrium`].
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Cable, Options, Solver};
+    ///
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.cables.push(Cable::new("left", 0.005.into()).pulled(0.2));
+    /// let mut solver = Solver::new(&arm, Options::default())?;
+    /// let mut before = solver.update()?;
+    /// for step in 1..=10 {
+    ///     solver.set_tensions(&[0.2 + 0.002 * f64::from(step)])?;
+    ///     let answer = solver.update()?;
+    ///     assert!(answer.tip.theta > before.tip.theta && answer.error_estimate < 1e-8 * 0.245);
+    ///     before = answer;
+    /// }
+    /// # Ok::<(), hydrostat::SolveError>(())
+    /// ```
+    pub fn update(&mut self) -> Result<Answer, SolveError> {
+        if self.strokes.is_none()
+            && let Some(estimate) = self.settle_warm()
+            && let Ok(end) = self.engine.at_end(true)
+        {
+            self.settled = true;
+            self.estimate = Some(estimate);
+            let (base, length) = (self.engine.equations.arm().base, self.engine.equations.units.length);
+            let [x, y] = self.engine.tip;
+            let tip = Tip {
+                x: base.x + length * x,
+                y: base.y + length * y,
+                theta: self.engine.tip_angle(),
+                alpha: end.strain[1].atan2(end.strain[0]),
+            };
+            return Ok(Answer {
+                tip,
+                error_estimate: estimate * length,
+                statistics: self.engine.statistics(0),
+            });
+        }
+        let found = self.resolve()?;
+        Ok(Answer { tip: found.tip(), error_estimate: found.error_estimate, statistics: found.statistics })
+    }
+
+    /// Everything about the last [`Solver::update`], or, without one, of [`Solver::resolve`].
+    ///
+    /// # Errors
+    /// [`SolveError::NoEquilibrium`].
+    pub fn configuration(&mut self) -> Result<Configuration, SolveError> {
+        match self.estimate {
+            Some(estimate) if self.settled && self.strokes.is_none() => self.read_warm(estimate),
+            _ => self.resolve(),
+        }
+    }
+
+    /// A few Newton rounds on the mesh there is. `None` where that is no way to the answer: nothing was solved before, the
+    /// arm moved further than a small change moves it, or cables rub, and which way they slid is part of the answer.
+    fn settle_warm(&mut self) -> Option<f64> {
+        if !self.settled || self.engine.equations.arm().rubs() {
+            return None;
         }
         self.settled = false;
         self.engine.on_a_path = false;
         self.engine.reset_statistics();
         let before = self.engine.tip_angle();
-        let sign = self.sign;
-        let Ok(estimate) = self.engine.settle(self.options.tol, true) else { return self.solve() };
+        let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
         let turned = self.engine.tip_angle() - before;
-        if self.engine.system.determinant().sign != sign || turned.abs() > 0.2 {
-            return self.solve();
-        }
+        let same = self.engine.system.determinant().sign == self.sign && turned.abs() <= 0.2;
+        same.then_some(estimate)
+    }
+
+    /// The configuration that the engine has settled on from another.
+    fn read_warm(&mut self, estimate: f64) -> Result<Configuration, SolveError> {
         let Ok(mut configuration) = self.read(estimate, Travelled::default()) else { return self.solve() };
-        if sign < 0.0 {
+        if self.sign < 0.0 {
             configuration.stable = Some(false);
         }
         self.settled = true;
@@ -230,7 +323,7 @@ impl Solver {
         };
         let before = self.engine.tip;
         let sign = self.engine.system.determinant().sign;
-        let settled = self.engine.settle(self.options.tol, false);
+        let settled = self.engine.settle(self.options.tol, First::Rough);
         let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
         // A straight arm is as exact on a coarse mesh as on a fine one, its determinant is not.
         let same = self.engine.system.determinant().sign == sign || travelled.symmetric;
@@ -288,7 +381,7 @@ impl Solver {
             if verdict.phase != Phase::Stroke {
                 self.engine.set_phase(verdict.phase, verdict.load_fraction * (1.0 - back));
             }
-            let settled = self.engine.settle(self.options.tol.max(1e-6), true);
+            let settled = self.engine.settle(self.options.tol.max(1e-6), First::Warm);
             let moved = (self.engine.tip[0] - kept.tip[0]).hypot(self.engine.tip[1] - kept.tip[1]);
             last_good = settled.ok().filter(|_| moved < 0.05).and_then(|e| self.read(e, Travelled::default()).ok());
             if last_good.is_some() {
@@ -303,6 +396,7 @@ impl Solver {
     }
 
     pub(crate) fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<Configuration, Trouble> {
+        self.estimate = Some(estimate);
         let statistics = self.engine.statistics(travelled.steps);
         let length = self.engine.equations.units.length;
         Configuration::read(&mut self.engine, estimate * length, statistics).map_err(Trouble::Section)

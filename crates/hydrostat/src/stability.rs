@@ -222,7 +222,8 @@ impl Tangent {
         for i in 0..old.mesh.elements() {
             inner.extend((0..parts).map(|p| nodes[i] + old.mesh.step(i) * p as f64 / parts as f64));
         }
-        let cut = old.on(gauss, Mesh::uniform(1, &inner[1..]));
+        let mut cut = Solution::constant(Mesh::uniform(1, &inner[1..]), [0.0; N]);
+        old.onto(gauss, &mut cut);
         let mut stations = Vec::new();
         self.system.stations(&cut.mesh, &mut stations);
         let guesses: Vec<_> = stations

@@ -3,6 +3,7 @@
 use hydrostat_bvp::{LANES, Lanes, Local, Real, each};
 
 use super::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
+use super::few::Few;
 use super::places::{Place, blank_cable, set_lane, splat};
 use super::strains::solve_section;
 use super::{Equilibrium, N, Q, SectionFailure};
@@ -38,6 +39,8 @@ pub(crate) struct AtPlace<R = f64> {
     pub(crate) local: Local<N, Q, R>,
     /// Undeformed radius.
     pub(crate) radius: R,
+    /// Load switches.
+    pub(crate) switches: [R; 3],
 }
 
 impl AtPlace<Lanes> {
@@ -52,6 +55,7 @@ impl AtPlace<Lanes> {
             regularity: self.regularity.0[lane],
             local: self.local.lane(lane),
             radius: self.radius.0[lane],
+            switches: self.switches.map(|v| v.0[lane]),
         }
     }
 }
@@ -61,10 +65,13 @@ impl Equilibrium {
     pub(crate) fn at_place(&self, asked: &Asked) -> Result<AtPlace, SectionFailure> {
         let mut place = self.place(asked.s);
         place.body.couple *= self.fraction[0];
-        let pulled = (0..self.tensions.len()).filter(|c| self.acts_at(*c, asked));
-        let cables: Vec<CableAt<f64>> = pulled.map(|c| self.cable_at(c, asked)).collect();
+        let mut cables = Few::new();
+        for c in (0..self.tensions.len()).filter(|c| self.acts_at(*c, asked)) {
+            cables.push(self.cable_at(c, asked));
+        }
+        let cables = cables.as_slice();
         let (sin, cos) = asked.z[0].sin_cos();
-        let (at, fine) = self.solve_place(&place, &cables, [cos, sin], asked.z, asked.strain, asked.beta);
+        let (at, fine) = self.solve_place(&place, cables, [cos, sin], asked.z, asked.strain, asked.beta);
         if fine {
             Ok(at)
         } else {
@@ -77,7 +84,7 @@ impl Equilibrium {
     pub(crate) fn at_places(&self, asked: &[Asked; LANES]) -> Option<AtPlace<Lanes>> {
         let zero = Lanes::of(0.0);
         let mut place = splat(&self.place(asked[0].s));
-        let mut cables = Vec::with_capacity(self.tensions.len());
+        let mut cables = Few::new();
         let (mut z, mut strain, mut beta) = ([zero; N], [zero; 3], [zero; 2]);
         for lane in 0..LANES {
             let asked = &asked[lane];
@@ -110,7 +117,7 @@ impl Equilibrium {
             }
         }
         let (sin, cos) = sin_cos(z[0]);
-        let (at, fine) = self.solve_place(&place, &cables, [cos, sin], z, strain, beta);
+        let (at, fine) = self.solve_place(&place, cables.as_slice(), [cos, sin], z, strain, beta);
         fine.then_some(at)
     }
 
@@ -171,6 +178,7 @@ impl Equilibrium {
                         rate_gradient: rate_gradient([cos, sin], rate, &by_state),
                     },
                     radius: place.body.radius,
+                    switches: load.switches,
                 };
                 return (at, fine);
             }

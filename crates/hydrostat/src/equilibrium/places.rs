@@ -90,7 +90,13 @@ impl Equilibrium {
         let zero = Lanes::of(0.0);
         let cable_count = self.tensions.len();
         let before = std::mem::replace(&mut self.groups, groups).elements;
-        let memory = Memory { z: [zero; N], strain: [zero; 3], by_state: [[zero; N]; 3] };
+        let memory = Memory {
+            z: [zero; N],
+            strain: [zero; 3],
+            by_state: [[zero; N]; 3],
+            beta_slope: zero,
+            by_beta_slope: [zero; 3],
+        };
         self.memory.clear();
         self.memory.resize(blocks, memory);
         if self.places.len() < blocks {

@@ -13,7 +13,7 @@ use super::Pace;
 use super::stepper::{Along, Load, Point, Stepper, Turn};
 use crate::arm::Arm;
 use crate::configuration::Configuration;
-use crate::engine::{Engine, Trouble};
+use crate::engine::{Engine, First, Trouble};
 use crate::parameter::Parameter;
 use crate::path::{PathEnd, PathError};
 use crate::solve::{Options, Solver};
@@ -292,5 +292,5 @@ fn at_whole_turns(stepper: &mut Stepper<'_>, asked: &Asked, point: &Point, turns
 
 fn settle(engine: &mut Engine, tol: f64) -> Result<f64, Trouble> {
     engine.newton(1e-6, 14)?;
-    engine.settle(tol, true)
+    engine.settle(tol, First::Warm)
 }

@@ -3,7 +3,7 @@
 
 use super::stepper::{Along, Load, Point, Stepper, Turn};
 use super::{LOOSE, MEET, Pace, START, Travelled};
-use crate::engine::{Engine, Trouble, roughly};
+use crate::engine::{Engine, First, Trouble, roughly};
 use crate::verdict::{Phase, Verdict, VerdictKind};
 
 /// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
@@ -119,7 +119,7 @@ impl Ramp<'_> {
             self.stepper.or_back(|this| this.keep_accuracy(None, &mut Load::Fixed(fraction), [*accuracy, LOOSE]))
         });
         if refined {
-            self.stepper.or_back(|this| this.engine.settle(1e-8, true).map(|_| ()));
+            self.stepper.or_back(|this| this.engine.settle(1e-8, First::Warm).map(|_| ()));
         }
         self.stepper.point(fraction)
     }

@@ -1,0 +1,56 @@
+//! The cables that pull at a place.
+
+use hydrostat_bvp::Real;
+
+use crate::cable::Offset;
+use crate::section::CableAt;
+
+/// Cables that fit on the stack.
+const MOST_IN_PLACE: usize = 8;
+
+/// A list that allocates only when it is long.
+pub(super) struct Few<R> {
+    count: usize,
+    few: [CableAt<R>; MOST_IN_PLACE],
+    many: Vec<CableAt<R>>,
+}
+
+impl<R: Real> Few<R> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        let zero = R::of(0.0);
+        let blank =
+            CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero, tension_slope: zero };
+        Self { count: 0, few: [blank; MOST_IN_PLACE], many: Vec::new() }
+    }
+
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.count = 0;
+        self.many.clear();
+    }
+
+    #[inline(always)]
+    pub(super) fn push(&mut self, cable: CableAt<R>) {
+        if self.many.is_empty() && self.count < MOST_IN_PLACE {
+            self.few[self.count] = cable;
+        } else {
+            self.spill(cable);
+        }
+        self.count += 1;
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn spill(&mut self, cable: CableAt<R>) {
+        if self.many.is_empty() {
+            self.many.extend_from_slice(&self.few);
+        }
+        self.many.push(cable);
+    }
+
+    #[inline(always)]
+    pub(super) fn as_slice(&self) -> &[CableAt<R>] {
+        if self.many.is_empty() { &self.few[..self.count] } else { &self.many }
+    }
+}
