@@ -676,23 +676,31 @@ impl Engine {
         out.dedup_by(|b, a| *b - *a < resolution);
     }
 
-    /// The place of a change of sign of switch `w` in element `i`, or between it and the one before, found from the element's
-    /// polynomial: where a node is near, from the switch there, because nodes are as good as the tip and the ends of
-    /// the polynomials are not. A kink that a node misses is invisible to the estimate.
+    /// The place of a change of sign of switch `w`, given where the polynomial of element `i` has it: near a node, that
+    /// polynomial is moved to what the switch is there, because nodes are as good as the tip and the ends of
+    /// polynomials are not. A kink that a node misses is invisible to the estimate.
     fn sharpened(&self, place: f64, i: usize, w: usize) -> f64 {
-        const NEAR_NODE: f64 = 0.05;
-        let mesh = &self.solution.mesh;
-        let h = mesh.step(i);
-        let at_end = place - mesh.nodes()[i] > 0.5 * h;
-        let node = i + usize::from(at_end);
-        if (place - mesh.nodes()[node]).abs() > NEAR_NODE * h || node == 0 || node == mesh.elements() {
+        const NEAR_NODE: f64 = 0.3;
+        let (mesh, gauss) = (&self.solution.mesh, &self.system.gauss);
+        let (start, h) = (mesh.nodes()[i], mesh.step(i));
+        let at_end = place - start > 0.5 * h;
+        let (node, end) = if at_end { (i + 1, 1.0) } else { (i, 0.0) };
+        if ((place - start) / h - end).abs() > NEAR_NODE || node == 0 || node == mesh.elements() {
             return place;
         }
         let Ok(at_node) = self.beside_node(node, at_end) else { return place };
-        let nearest = if at_end { M - 1 } else { 0 };
-        let distance = h * (self.system.gauss.c[nearest] - if at_end { 1.0 } else { 0.0 });
-        let moved = -at_node.switches[w] * distance / (self.equations.switch(i, nearest, w) - at_node.switches[w]);
-        if moved.abs() < NEAR_NODE * h { mesh.nodes()[node] + moved } else { place }
+        let own: [f64; M] = std::array::from_fn(|j| self.equations.switch(i, j, w));
+        let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
+        let off = at_node.switches[w] - weigh(&gauss.cardinals(end));
+        let mut x = end;
+        for _ in 0..4 {
+            let moved = (weigh(&gauss.cardinals(x)) + off) / weigh(&gauss.slopes(x));
+            x -= moved;
+            if moved.abs() * h < 1e-10 {
+                break;
+            }
+        }
+        if (x - end).abs() < NEAR_NODE { start + h * x } else { place }
     }
 
     /// Moves nodes onto `kinks` that no pinned node is within `tolerance` of; whether any moved.
