@@ -41,7 +41,8 @@ pub struct ArmFile {
     path: String,
     text: String,
     fields: Vec<Field>,
-    settings: Vec<String>,
+    /// Option and text of each override.
+    settings: Vec<(&'static str, String)>,
 }
 
 impl ArmFile {
@@ -111,8 +112,16 @@ impl ArmFile {
     /// [`FileError`] when the format has no such key, or the arm no such cable. Whether the value
     /// fits is seen by [`ArmFile::arm`].
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), FileError> {
+        self.set_by("--set", key, value)
+    }
+
+    /// [`ArmFile::set`] by another option, which messages name.
+    ///
+    /// # Errors
+    /// [`FileError`] as there.
+    pub fn set_by(&mut self, option: &'static str, key: &str, value: &str) -> Result<(), FileError> {
         let index = self.settings.len();
-        self.settings.push(format!("{key}={value}"));
+        self.settings.push((option, format!("{key}={value}")));
         // On a copy, so that a refused override leaves nothing behind.
         let mut fields = self.fields.clone();
         match setting::apply(&mut fields, key, value, index) {
@@ -147,7 +156,10 @@ impl ArmFile {
         let Fault { origin, key, kind } = fault;
         let place = match origin {
             Origin::Text(at) => line_of(&self.path, &self.text, at),
-            Origin::Setting(i) => Place::Setting { setting: self.settings.get(i).cloned().unwrap_or_default() },
+            Origin::Setting(i) => {
+                let (option, setting) = self.settings.get(i).cloned().unwrap_or_default();
+                Place::Setting { option, setting }
+            }
         };
         match kind {
             FaultKind::Unknown { expected, suggestion } => FileError::UnknownKey { place, key, expected, suggestion },

@@ -20,6 +20,8 @@ pub enum Place {
     },
     /// In an override given beside the file.
     Setting {
+        /// The option that it was given with.
+        option: &'static str,
         /// As the user wrote it: `KEY=VALUE`.
         setting: String,
     },
@@ -29,7 +31,7 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line { path, line, .. } => write!(f, "{path}:{line}"),
-            Self::Setting { setting } => write!(f, "--set {}", shortened(setting)),
+            Self::Setting { option, setting } => write!(f, "{option} {}", shortened(setting)),
         }
     }
 }
