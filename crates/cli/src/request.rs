@@ -83,6 +83,11 @@ pub(crate) fn arm_file(arm: &str) -> anyhow::Result<ArmFile> {
 
 /// The arm that is asked for: a file, then what overrides it.
 pub(crate) fn arm(args: &ArmArgs) -> anyhow::Result<Arm> {
+    Ok(overridden(args)?.arm()?)
+}
+
+/// The file that is asked for with what overrides it.
+pub(crate) fn overridden(args: &ArmArgs) -> anyhow::Result<ArmFile> {
     let mut file = arm_file(&args.file)?;
     for setting in &args.set {
         let Some((key, value)) = setting.split_once('=') else {
@@ -105,7 +110,7 @@ pub(crate) fn arm(args: &ArmArgs) -> anyhow::Result<Arm> {
             file.set(&format!("cable[{i}].tension"), tension.trim())?;
         }
     }
-    Ok(file.arm()?)
+    Ok(file)
 }
 
 /// Refuses outputs that could not be written, before the work: each option that names one, with its file.
