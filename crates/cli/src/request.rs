@@ -24,6 +24,14 @@ pub(crate) enum WrongRequest {
     Unfit(&'static str, Unfit),
     /// A value, said where, that makes no arm.
     Value(String, ArmError),
+    /// A column that a sweep does not have, and those that it has.
+    NoColumn(String, Vec<String>),
+    /// What an option needs of a sweep and does not find.
+    NotInSweep(&'static str, &'static str),
+    /// Keys that give no map, and those of the sweep.
+    Over(Vec<String>),
+    /// A key whose values are words.
+    Words(String),
     /// A cable whose stroke was asked for.
     NoCable { asked: usize, cables: usize },
 }
@@ -51,6 +59,14 @@ impl std::fmt::Display for WrongRequest {
             }
             Self::Unfit(option, error) => write!(f, "{option} {error}"),
             Self::Value(at, error) => write!(f, "{at}: {error}"),
+            Self::NoColumn(name, columns) => {
+                write!(f, "--quantity {name}: expected one of {}", columns.join(", "))
+            }
+            Self::NotInSweep(option, needed) => write!(f, "{option}: expected {needed} in the sweep, found none"),
+            Self::Over(keys) => {
+                write!(f, "--over: expected one or two different keys of those that were varied, {}", keys.join(", "))
+            }
+            Self::Words(key) => write!(f, "--over: {key} has words for values, which a map has no axis for"),
             Self::NoCable { asked, cables } => {
                 write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")
             }

@@ -2,10 +2,12 @@
 
 use std::str::FromStr;
 
+use hydrostat::parameter::names;
+
 use crate::error::shortened;
-use crate::format::dimension_at;
+use crate::format::{dimension_at, home_of, is_key, nearest};
 use crate::quantity::{Dimension, QuantityError};
-use crate::varied::rounded;
+use crate::varied::{hint, rounded};
 
 /// The most values of one key.
 const MOST: u64 = 1_000_000_000;
@@ -77,6 +79,14 @@ pub enum AxisError {
     Form {
         /// What was given.
         text: String,
+    },
+    /// No key of the arm file.
+    #[error("{key}: expected a key of the arm file, found an unknown one{}", hint(.suggestion.as_ref()))]
+    Unknown {
+        /// What was given.
+        key: String,
+        /// The key that may have been meant.
+        suggestion: Option<String>,
     },
     /// No values.
     #[error("{key}: expected at least one value, found none")]
@@ -161,6 +171,11 @@ impl FromStr for Axis {
             return Err(AxisError::Empty { key });
         }
         let Some(dimension) = dimension_at(&key) else {
+            if !is_key(&key) {
+                let last = key.rsplit('.').next().unwrap_or(&key);
+                let slip = nearest(&key, names().iter().map(String::as_str)).map(str::to_owned);
+                return Err(AxisError::Unknown { suggestion: slip.or_else(|| home_of(last)), key });
+            }
             if given.contains(':') {
                 return Err(AxisError::Range { key, text: given.to_owned() });
             }
@@ -334,6 +349,9 @@ mod tests {
         assert!(error("flow.speed=1:1:5").contains("two different ends"));
         assert!(error("flow.speed=0:1 N:5").contains("expected a speed"));
         assert!(error("flow.speed=0:nan:5").contains("does not start with a number"));
+        assert!(error("flow.sped=0:1:5").ends_with("did you mean `flow.speed`?"));
+        assert!(error("youn=1,2").ends_with("an unknown one"));
+        assert!(error("young=1,2").ends_with("did you mean `material.young`?"));
         assert!(error("flow.law=a:b").contains("words with commas"));
     }
 }

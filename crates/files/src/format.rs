@@ -244,6 +244,20 @@ pub(crate) fn dimension_at(key: &str) -> Option<Dimension> {
     found
 }
 
+/// Whether a dotted key is one of the format, whatever its indices and what is inside profiles and pairs.
+pub(crate) fn is_key(key: &str) -> bool {
+    let mut keys = FILE;
+    for step in key.split('.') {
+        let name = step.split('[').next().unwrap_or(step);
+        match keys.iter().find(|key| key.name == name).map(|key| key.kind) {
+            Some(Table(inner) | Tables(inner)) => keys = inner,
+            Some(_) => return true,
+            None => return false,
+        }
+    }
+    true
+}
+
 /// Where in the format some key stands, as a dotted path, the first if there are several.
 pub(crate) fn home_of(name: &str) -> Option<String> {
     fn search(keys: &[Key], name: &str, path: &str) -> Option<String> {

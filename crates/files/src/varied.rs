@@ -73,7 +73,7 @@ pub enum VariedError {
     },
 }
 
-fn hint(suggestion: Option<&String>) -> String {
+pub(crate) fn hint(suggestion: Option<&String>) -> String {
     suggestion.map_or_else(String::new, |key| format!("; did you mean `{key}`?"))
 }
 
