@@ -76,12 +76,17 @@ impl Shading {
         }
     }
 
+    /// What a row without a word is.
+    fn nothing(&self) -> &'static str {
+        if self.title.to_string() == "verdict" { "equilibrium" } else { "none" }
+    }
+
     /// What is not on the bar of colours.
     pub(crate) fn legend(&self) -> Vec<(Color, String)> {
         match (&self.shades, &self.values) {
             (Shades::Words(all), _) => all
                 .iter()
-                .map(|word| (word_color(all, word), word.as_deref().unwrap_or("none").replace('_', " ")))
+                .map(|word| (word_color(all, word), word.as_deref().unwrap_or(self.nothing()).replace('_', " ")))
                 .collect(),
             (Shades::Range(_), Coloured::Numbers(values)) if values.iter().any(|v| !v.is_finite()) => {
                 vec![(NOTHING, "no equilibrium".to_owned())]

@@ -19,7 +19,7 @@ const FRAME: Stroke = Stroke::solid(INK, 0.6);
 /// More dots than this become one picture.
 const MOST_DOTS: usize = 3000;
 /// Dots of a picture a point of the page.
-const FINE: f64 = 3.0;
+const FINE: f64 = 300.0 / 72.0;
 /// Cells of a picture whose columns or rows are not evenly spaced.
 const UNEVEN: usize = 800;
 
@@ -39,6 +39,17 @@ pub struct ColouredColumn {
     pub name: String,
     /// A value a row.
     pub values: Coloured,
+}
+
+impl ColouredColumn {
+    /// The same column of some rows.
+    pub fn of(&self, rows: &[usize]) -> Self {
+        let values = match &self.values {
+            Coloured::Numbers(all) => Coloured::Numbers(rows.iter().map(|row| all[*row]).collect()),
+            Coloured::Words(all) => Coloured::Words(rows.iter().map(|row| all[*row].clone()).collect()),
+        };
+        Self { name: self.name.clone(), values }
+    }
 }
 
 /// A key that was varied, a value (SI) a row.
@@ -90,15 +101,16 @@ pub fn map_figure([x, y]: &[KeyValues; 2], column: &ColouredColumn, title: &str)
 /// use hydrostat_figures::{Coloured, ColouredColumn, workspace_figure};
 ///
 /// let tips = [[0.1, 0.0], [0.09, 0.03], [f64::NAN; 2]];
-/// let values = Coloured::Words(vec![None, None, Some("cable_fold".to_owned())]);
-/// let figure = workspace_figure(&tips, &ColouredColumn { name: "verdict".to_owned(), values }, "a sweep");
+/// let values = Coloured::Numbers(vec![0.0, 0.2, f64::NAN]);
+/// let figure = workspace_figure(&tips, &ColouredColumn { name: "tip_theta_rad".to_owned(), values }, "a sweep");
 /// assert!(figure.texts().any(|text| text == "x (mm)"));
 /// ```
 pub fn workspace_figure(tips: &[[f64; 2]], column: &ColouredColumn, title: &str) -> Scene {
-    let shading = Shading::new(column);
-    let places: Vec<[f64; 2]> = tips.iter().map(|tip| tip.map(|v| 1e3 * v)).collect();
-    let found: Vec<[f64; 2]> = places.iter().copied().filter(|p| p.iter().all(|v| v.is_finite())).collect();
-    let [x, y] = bounds(&found).map(|range| padded(range, 0.05));
+    // Without an answer there is no place.
+    let rows: Vec<usize> = (0..tips.len()).filter(|row| tips[*row].iter().all(|v| v.is_finite())).collect();
+    let shading = Shading::new(&column.of(&rows));
+    let places: Vec<[f64; 2]> = rows.iter().map(|row| tips[*row].map(|v| 1e3 * v)).collect();
+    let [x, y] = bounds(&places).map(|range| padded(range, 0.05));
     let says = format!("{title}: places of the tip, coloured by {}", shading.title());
     let (_, top) = page(title, &shading, says.clone(), HEIGHT);
     let width = frame(&shading, top, HEIGHT).width();
@@ -204,7 +216,7 @@ fn rgba(color: Color) -> [u8; 4] {
 fn dots(scene: &mut Scene, axes: &Axes, places: &[[f64; 2]], shading: &Shading) {
     let mut order: Vec<usize> = (0..places.len()).filter(|k| places[*k].iter().all(|v| v.is_finite())).collect();
     order.sort_by_key(|k| shading.is_answered(*k));
-    let radius = (60.0 / (order.len().max(1) as f64).sqrt()).clamp(0.5, 2.2);
+    let radius = (60.0 / (order.len().max(1) as f64).sqrt()).clamp(0.8, 2.2);
     if order.len() <= MOST_DOTS {
         for k in order {
             scene.dot(axes.at(places[k]), radius, shading.color(k));

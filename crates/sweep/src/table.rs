@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use hydrostat_files::Axis;
 use serde::Deserialize;
 
 use crate::column::{Column, Data, ROW};
@@ -131,5 +132,15 @@ pub fn varied_keys(path: &Path) -> Result<Vec<VariedKey>, SweepError> {
         return Ok(noted.vary.into_iter().map(key).collect());
     }
     let keys = names.into_iter().skip(1).take_while(|name| !OUTPUTS.contains(&name.as_str()));
-    Ok(keys.map(|column| VariedKey { name: column.clone(), column, unit: String::new(), per_si: 1.0 }).collect())
+    Ok(keys.map(key_of).collect())
+}
+
+/// The key whose column has this name, by the unit at its end.
+fn key_of(column: String) -> VariedKey {
+    let ends = column.match_indices('_').map(|(at, _)| at).chain([column.len()]);
+    let axes = ends.filter_map(|end| format!("{}=0", &column[..end]).parse::<Axis>().ok());
+    match axes.into_iter().find(|axis| axis.column() == column) {
+        Some(axis) => VariedKey { unit: axis.unit.to_owned(), per_si: axis.per_si(), name: axis.key, column },
+        None => VariedKey { name: column.clone(), column, unit: String::new(), per_si: 1.0 },
+    }
 }

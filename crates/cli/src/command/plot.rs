@@ -123,15 +123,9 @@ fn map(
         let values = table.numbers(&key.column).ok_or_else(|| WrongRequest::Words(key.name.clone()))?;
         Ok(KeyValues { axis: axis(key), values: rows.iter().map(|row| values[*row]).collect() })
     };
-    let chosen = match &column.values {
-        Coloured::Numbers(all) => Coloured::Numbers(rows.iter().map(|row| all[*row]).collect()),
-        Coloured::Words(all) => Coloured::Words(rows.iter().map(|row| all[*row].clone()).collect()),
-    };
-    match (over, &chosen) {
-        ([x, y], _) => {
-            let column = ColouredColumn { name: column.name.clone(), values: chosen };
-            Ok(map_figure(&[values(x)?, values(y)?], &column, &title))
-        }
+    let column = column.of(&rows);
+    match (over, &column.values) {
+        ([x, y], _) => Ok(map_figure(&[values(x)?, values(y)?], &column, &title)),
         ([key], Coloured::Numbers(numbers)) => Ok(curve_figure(&values(key)?, &column.name, numbers, &title)),
         _ => Err(WrongRequest::NotInSweep("--map", "a column of numbers, or two keys").into()),
     }
