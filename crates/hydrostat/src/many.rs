@@ -6,9 +6,10 @@
 
 use rayon::prelude::*;
 
-use crate::arm::{Arm, ArmError};
+use crate::arm::{Arm, ArmError, Flow};
 use crate::configuration::{Configuration, FoldMargin, Stations, Tip, Wrench};
-use crate::engine::Engine;
+use crate::engine::{Engine, Guess};
+use crate::equilibrium::N;
 use crate::path::Travelled;
 use crate::readings::Support;
 use crate::solve::{Options, Solver};
@@ -102,6 +103,15 @@ pub struct Tile {
     options: Options,
     wanted: Wanted,
     solver: Option<Solver>,
+    /// The row before the solver's, if that one started from it.
+    before: Option<Point>,
+}
+
+/// The solution of a row and the loads that it is at.
+#[derive(Debug, Clone)]
+struct Point {
+    solution: Guess,
+    loads: Vec<f64>,
 }
 
 impl Tile {
@@ -112,7 +122,7 @@ impl Tile {
     pub fn new(tol: f64, wanted: Wanted) -> Result<Self, SolveError> {
         let options = Options { tol };
         options.check()?;
-        Ok(Self { options, wanted, solver: None })
+        Ok(Self { options, wanted, solver: None, before: None })
     }
 
     /// The next row.
@@ -133,6 +143,7 @@ impl Tile {
     }
 
     fn cold(&mut self, arm: &Arm) -> Result<Row, NoRow> {
+        self.before = None;
         let no_row = |error| match error {
             SolveError::Arm(error) => NoRow::Arm(error),
             SolveError::NoEquilibrium(no) => NoRow::Verdict(no.verdict),
@@ -146,8 +157,13 @@ impl Tile {
     }
 
     /// From the last row: `None` unless the answer is surely that of the row's own ramp.
-    fn warm(&self, solver: &mut Solver, arm: &Arm) -> Option<Row> {
+    fn warm(&mut self, solver: &mut Solver, arm: &Arm) -> Option<Row> {
         let engine = &mut solver.engine;
+        let here = Point { solution: engine.solution.clone(), loads: loads(engine.equations.arm()) };
+        if let Some(before) = &self.before {
+            extrapolate(&mut engine.solution, before, &here, &loads(arm));
+        }
+        self.before = Some(here);
         engine.set_loads(arm);
         engine.set_phase(Phase::Tension, 1.0);
         engine.on_a_path = false;
@@ -213,6 +229,43 @@ impl Tile {
             stations: if stations < 2 { Stations::default() } else { configuration.resampled(stations) },
         }
     }
+}
+
+/// The numbers that [`differ_in_loads`] lets differ.
+fn loads(arm: &Arm) -> Vec<f64> {
+    let Flow { speed, direction, density, .. } = arm.flow;
+    let gravity = arm.gravity.map_or([0.0; 2], |gravity| [gravity.acceleration, gravity.direction]);
+    let [fx, fy] = arm.tip.force;
+    let [fa, fb] = arm.tip.follower;
+    let others = [speed, direction, density, gravity[0], gravity[1], fx, fy, fa, fb, arm.tip.moment];
+    others.into_iter().chain(arm.cables.iter().map(|cable| cable.tension)).collect()
+}
+
+/// Moves the solution `here` on along the line through it and the one `before`, where `loads` lie on that line, too, and not
+/// much further, and where both stand on one mesh.
+fn extrapolate(solution: &mut Guess, before: &Point, here: &Point, loads: &[f64]) {
+    const LONGEST: f64 = 2.0;
+    let step = |k: usize| here.loads[k] - before.loads[k];
+    let Some(steepest) = (0..loads.len()).max_by(|a, b| step(*a).abs().total_cmp(&step(*b).abs())) else { return };
+    let share = (loads[steepest] - here.loads[steepest]) / step(steepest);
+    let on_line = |k: usize| {
+        let size = here.loads[k].abs().max(loads[k].abs());
+        (here.loads[k] + share * step(k) - loads[k]).abs() <= 1e-9 * size
+    };
+    let small = share.abs() <= LONGEST;
+    if !small || !(0..loads.len()).all(on_line) || before.solution.mesh != here.solution.mesh {
+        return;
+    }
+    let all = |solution: &mut Guess, other: &Guess, factor: f64| {
+        let slopes = solution.slopes.iter_mut().flatten().zip(other.slopes.iter().flatten());
+        for (own, other) in solution.nodes.iter_mut().zip(&other.nodes).chain(slopes) {
+            for a in 0..N {
+                own[a] += factor * other[a];
+            }
+        }
+    };
+    all(solution, &here.solution, share);
+    all(solution, &before.solution, -share);
 }
 
 /// Whether an arm differs from another in what a solver takes between two solves.

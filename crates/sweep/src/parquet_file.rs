@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical, ZstdLevel};
+use parquet::basic::{Compression, ConvertedType, Encoding, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::column::writer::ColumnCloseResult;
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -13,18 +13,36 @@ use parquet::file::metadata::{KeyValue, ParquetMetaDataReader};
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
-use parquet::schema::types::{Type, TypePtr};
+use parquet::schema::types::{ColumnPath, Type, TypePtr};
 
 use crate::column::{Column, Data};
 use crate::error::{SweepError, parquet_error, read_error};
 
-fn properties(notes: &[(&str, String)]) -> Arc<WriterProperties> {
+/// Whether numbers hardly repeat, by the first ones: then their bytes, taken apart by place, compress better than a
+/// dictionary.
+fn hardly_repeat(values: &[f64]) -> bool {
+    let mut first: Vec<u64> = values.iter().take(256).map(|value| value.to_bits()).collect();
+    let count = first.len();
+    first.sort_unstable();
+    first.dedup();
+    2 * first.len() > count
+}
+
+fn properties(columns: &[Column], notes: &[(&str, String)]) -> Arc<WriterProperties> {
     let notes = notes.iter().map(|(key, value)| KeyValue::new((*key).to_owned(), value.clone())).collect();
     let level = ZstdLevel::try_new(3).unwrap_or_default();
-    let builder = WriterProperties::builder()
+    let mut builder = WriterProperties::builder()
         .set_compression(Compression::ZSTD(level))
         .set_created_by(format!("hydrostat {}", env!("CARGO_PKG_VERSION")))
         .set_key_value_metadata(Some(notes));
+    for column in columns {
+        if matches!(&column.data, Data::Number(values) if hardly_repeat(values)) {
+            let path = ColumnPath::new(vec![column.name.clone()]);
+            builder = builder
+                .set_column_dictionary_enabled(path.clone(), false)
+                .set_column_encoding(path, Encoding::BYTE_STREAM_SPLIT);
+        }
+    }
     Arc::new(builder.build())
 }
 
@@ -50,7 +68,7 @@ fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
 
 /// A file of one row group.
 pub(crate) fn part(columns: &[Column]) -> Result<Vec<u8>, ParquetError> {
-    let mut writer = SerializedFileWriter::new(Vec::new(), schema(columns)?, properties(&[]))?;
+    let mut writer = SerializedFileWriter::new(Vec::new(), schema(columns)?, properties(columns, &[]))?;
     let mut group = writer.next_row_group()?;
     for column in columns {
         match &column.data {
@@ -93,7 +111,7 @@ pub(crate) fn join(
     let failed = |error| parquet_error(path, error);
     let schema = schema(columns).map_err(failed)?;
     let mut writer =
-        SerializedFileWriter::new(BufWriter::new(out), schema.clone(), properties(notes)).map_err(failed)?;
+        SerializedFileWriter::new(BufWriter::new(out), schema.clone(), properties(&[], notes)).map_err(failed)?;
     for part in parts {
         let file = File::open(part).map_err(|error| read_error(part, error))?;
         let metadata = ParquetMetaDataReader::new().parse_and_finish(&file).map_err(|error| read_error(part, error))?;

@@ -171,3 +171,27 @@ pub(crate) fn whole(path: &Path, fill: impl FnOnce(&mut File) -> Result<(), Swee
     }
     written
 }
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use crate::column::{Column, Data};
+    use crate::{csv_file, parquet_file};
+
+    /// What a full disk answers is what the error says, through the Parquet library, too.
+    #[test]
+    fn a_full_disk_is_named() {
+        let path = Path::new("/dev/full");
+        let open = || OpenOptions::new().write(true).open(path).unwrap();
+        let columns = [Column { name: "row".to_owned(), data: Data::Whole(Vec::new()) }];
+        let errors = [
+            csv_file::join(&[], &columns, path, open()).unwrap_err(),
+            parquet_file::join(&[], &columns, &[], path, &mut open()).unwrap_err(),
+        ];
+        for error in errors {
+            let SweepError::Write(write) = &error else { panic!("{error:?}") };
+            assert_eq!(write.source.kind(), io::ErrorKind::StorageFull, "{error}");
+            assert!(error.to_string().ends_with("make room, or choose another disk"), "{error}");
+        }
+    }
+}
