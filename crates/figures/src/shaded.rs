@@ -71,7 +71,7 @@ impl Shading {
             (Coloured::Numbers(values), Shades::Range([from, to])) if values[row].is_finite() => {
                 shade((values[row] * self.per_si - from) / (to - from))
             }
-            (Coloured::Words(words), Shades::Words(all)) => word_color(all, &words[row]),
+            (Coloured::Words(words), Shades::Words(all)) => word_color(all, words[row].as_ref()),
             _ => NOTHING,
         }
     }
@@ -86,7 +86,9 @@ impl Shading {
         match (&self.shades, &self.values) {
             (Shades::Words(all), _) => all
                 .iter()
-                .map(|word| (word_color(all, word), word.as_deref().unwrap_or(self.nothing()).replace('_', " ")))
+                .map(|word| {
+                    (word_color(all, word.as_ref()), word.as_deref().unwrap_or(self.nothing()).replace('_', " "))
+                })
                 .collect(),
             (Shades::Range(_), Coloured::Numbers(values)) if values.iter().any(|v| !v.is_finite()) => {
                 vec![(NOTHING, "no equilibrium".to_owned())]
@@ -96,9 +98,9 @@ impl Shading {
     }
 }
 
-fn word_color(all: &[Option<String>], word: &Option<String>) -> Color {
-    let at = all.iter().flatten().position(|own| Some(own) == word.as_ref());
-    at.map_or(NOTHING, |index| series(index))
+fn word_color(all: &[Option<String>], word: Option<&String>) -> Color {
+    let at = all.iter().flatten().position(|own| Some(own) == word);
+    at.map_or(NOTHING, series)
 }
 
 /// A column's name for people, and how many of the unit shown an SI unit is.

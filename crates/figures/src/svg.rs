@@ -70,10 +70,10 @@ fn write_picture(out: &mut String, place: Rect, picture: &Picture) {
     // What cannot be encoded has no size, and nothing to show.
     let Ok(bytes) = picture.png() else { return };
     let [x, y, w, h] = [place.left, place.top, place.width(), place.height()].map(number);
-    let _ = write!(
+    let _ = writeln!(
         out,
         "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" \
-         style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>\n",
+         style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>",
         base64(&bytes)
     );
 }

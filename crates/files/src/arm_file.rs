@@ -42,7 +42,7 @@ pub struct ArmFile {
     text: String,
     fields: Vec<Field>,
     /// Option and text of each override.
-    settings: Vec<(&'static str, String)>,
+    settings: Vec<String>,
 }
 
 impl ArmFile {
@@ -119,9 +119,9 @@ impl ArmFile {
     ///
     /// # Errors
     /// [`FileError`] as there.
-    pub fn set_by(&mut self, option: &'static str, key: &str, value: &str) -> Result<(), FileError> {
+    pub fn set_by(&mut self, option: &str, key: &str, value: &str) -> Result<(), FileError> {
         let index = self.settings.len();
-        self.settings.push((option, format!("{key}={value}")));
+        self.settings.push(format!("{option} {key}={value}"));
         // On a copy, so that a refused override leaves nothing behind.
         let mut fields = self.fields.clone();
         match setting::apply(&mut fields, key, value, index) {
@@ -156,10 +156,7 @@ impl ArmFile {
         let Fault { origin, key, kind } = fault;
         let place = match origin {
             Origin::Text(at) => line_of(&self.path, &self.text, at),
-            Origin::Setting(i) => {
-                let (option, setting) = self.settings.get(i).cloned().unwrap_or_default();
-                Place::Setting { option, setting }
-            }
+            Origin::Setting(i) => Place::Setting { setting: self.settings.get(i).cloned().unwrap_or_default() },
         };
         match kind {
             FaultKind::Unknown { expected, suggestion } => FileError::UnknownKey { place, key, expected, suggestion },

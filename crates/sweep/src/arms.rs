@@ -31,7 +31,13 @@ pub(crate) struct Last {
 /// A value of one key that makes no arm by itself.
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
-pub struct ValueError(#[from] FileError);
+pub struct ValueError(Box<FileError>);
+
+impl From<FileError> for ValueError {
+    fn from(error: FileError) -> Self {
+        Self(Box::new(error))
+    }
+}
 
 const OPTION: &str = "--vary";
 
@@ -58,7 +64,7 @@ impl Arms {
     pub(crate) fn arm<'a>(&self, values: &[Value<'_>], last: &'a mut Last) -> Option<&'a Arm> {
         let texts: Vec<String> = self.by_way(values, Way::File).map(|(axis, value)| axis.text(value)).collect();
         if last.arm.is_none() || texts != last.texts {
-            last.arm = if texts.is_empty() { Some(self.arm.clone()) } else { self.from_file(values).ok() };
+            last.arm = if texts.is_empty() { Some(self.arm.clone()) } else { self.through_file(values).ok() };
             last.texts = texts;
         }
         let arm = last.arm.as_mut()?;
@@ -76,7 +82,7 @@ impl Arms {
         all.filter(move |((_, way), _)| **way == wanted).map(|((axis, _), value)| (axis, *value))
     }
 
-    fn from_file(&self, values: &[Value<'_>]) -> Result<Arm, FileError> {
+    fn through_file(&self, values: &[Value<'_>]) -> Result<Arm, FileError> {
         let mut file = self.file.clone();
         for (axis, value) in self.by_way(values, Way::File) {
             file.set_by(OPTION, &axis.key, &axis.text(value))?;

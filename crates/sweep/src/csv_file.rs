@@ -1,5 +1,6 @@
 //! Columns as CSV: a header and a line a row.
 
+use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -19,7 +20,10 @@ pub(crate) fn part(columns: &[Column]) -> Vec<u8> {
             match &column.data {
                 Data::Whole(values) => out.extend(values[row].map(|value| value.to_string())),
                 Data::Number(values) if values[row].is_nan() => {}
-                Data::Number(values) => out.push_str(&format!("{:?}", values[row])),
+                Data::Number(values) => {
+                    // Writing into a text does not fail.
+                    let _ = write!(out, "{:?}", values[row]);
+                }
                 Data::Text(values) => out.extend(values[row].as_deref().map(quoted)),
             }
         }

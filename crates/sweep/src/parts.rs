@@ -16,7 +16,7 @@ pub(crate) struct Parts {
     directory: PathBuf,
     ending: &'static str,
     /// Locked as long as it is open.
-    _plan: File,
+    plan: File,
 }
 
 /// A part that is there.
@@ -52,15 +52,13 @@ impl Parts {
         }
         let mut file =
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(SweepError::Locked { path: output.to_owned() }),
-            // A file system without locks: nothing can be held.
-            Err(TryLockError::Error(_)) => {}
+        // On a file system without locks nothing can be held.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(SweepError::Locked { path: output.to_owned() });
         }
         let mut found = String::new();
         file.read_to_string(&mut found).map_err(failed)?;
-        let parts = Self { directory, ending, _plan: file };
+        let parts = Self { directory, ending, plan: file };
         if found.is_empty() {
             // New, or the process that made it ended before it could say what it is of.
             parts.clear()?;
@@ -75,7 +73,7 @@ impl Parts {
 
     fn note(&self, plan: &str) -> Result<(), SweepError> {
         let failed = |error| write_error(&self.directory, error);
-        let mut file = &self._plan;
+        let mut file = &self.plan;
         file.write_all(plan.as_bytes()).and_then(|()| file.sync_all()).map_err(failed)
     }
 

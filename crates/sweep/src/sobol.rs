@@ -43,7 +43,6 @@ impl Sobol {
     /// Of at most [`DIMENSIONS`].
     pub(crate) fn new(dimensions: usize, seed: u64) -> Self {
         let directions = (0..dimensions.min(DIMENSIONS)).map(directions).collect();
-        #[expect(clippy::cast_possible_truncation, reason = "the leading half of the bits")]
         let shifts = (0..dimensions as u64).map(|d| (hash(seed, d, 0) >> 32) as u32).collect();
         Self { directions, shifts }
     }

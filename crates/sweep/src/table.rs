@@ -64,13 +64,12 @@ impl Table {
     pub fn read(path: &Path, wanted: &[&str]) -> Result<Self, SweepError> {
         let names = names(path)?;
         let present: Vec<usize> = (0..names.len()).filter(|k| wanted.contains(&names[*k].as_str())).collect();
-        let columns = match Format::of(path) {
-            Some(Format::Csv) => csv_file::columns(path, &present)?,
-            _ => {
-                let reader = Reader::open(path)?;
-                let read = |k: &usize| reader.column(&names[*k]).transpose();
-                present.iter().filter_map(read).collect::<Result<_, _>>()?
-            }
+        let columns = if Format::of(path) == Some(Format::Csv) {
+            csv_file::columns(path, &present)?
+        } else {
+            let reader = Reader::open(path)?;
+            let read = |k: &usize| reader.column(&names[*k]).transpose();
+            present.iter().filter_map(read).collect::<Result<_, _>>()?
         };
         Ok(Self { columns })
     }
@@ -108,10 +107,8 @@ impl Table {
 /// # Errors
 /// [`SweepError::Read`], also when it is none.
 pub fn names(path: &Path) -> Result<Vec<String>, SweepError> {
-    let names = match Format::of(path) {
-        Some(Format::Csv) => csv_file::names(path)?,
-        _ => Reader::open(path)?.names(),
-    };
+    let names =
+        if Format::of(path) == Some(Format::Csv) { csv_file::names(path)? } else { Reader::open(path)?.names() };
     if names.first().map(String::as_str) != Some(ROW) {
         return Err(read_error(path, "expected the output of a sweep, whose first column is `row`"));
     }
