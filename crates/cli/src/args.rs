@@ -2,6 +2,8 @@
 
 mod equilibria;
 mod path;
+mod plot;
+mod sweep;
 
 use std::path::PathBuf;
 
@@ -9,6 +11,8 @@ use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 pub(crate) use equilibria::{EquilibriaArgs, Over};
 pub(crate) use path::PathArgs;
+pub(crate) use plot::PlotArgs;
+pub(crate) use sweep::SweepArgs;
 
 const EXIT: &str = "\
 Exit status:
@@ -32,6 +36,7 @@ Examples:
   hydrostat path silicone --vary cable[0].tension=0:1   follow the shapes as a tension rises
   hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
                                                         all shapes under the same loads
+  hydrostat sweep paper --vary flow.speed=0:1:101 --vary cable[0].tension=0:80:101 -o out.parquet
   hydrostat solve my.toml --format csv --stations 101 -o my.csv";
 
 /// The static shape of a soft arm under water: driven by cables, keeping its volume, in a stream.
@@ -53,6 +58,10 @@ pub(crate) enum Command {
     Path(PathArgs),
     /// Find all equilibria under the same loads, with their stability
     Equilibria(EquilibriaArgs),
+    /// Solve an arm over grids, lists or samples of any keys of its file, into Parquet or CSV
+    Sweep(SweepArgs),
+    /// Draw a sweep: a map over two keys, and where the tip goes
+    Plot(PlotArgs),
     /// Remake the source's Fig. 1a, 1b and 1c as SVG, PNG and CSV
     Figures(FiguresArgs),
     /// List the arms that ship with the program, or print one as TOML

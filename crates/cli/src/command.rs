@@ -7,8 +7,10 @@ pub(crate) mod figures;
 mod limits;
 pub(crate) mod main_job;
 pub(crate) mod path;
+pub(crate) mod plot;
 pub(crate) mod solve;
 mod summary;
+pub(crate) mod sweep;
 mod table;
 
 /// A command that did what it could: what it found is written, and it is not all that was asked for.

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use hydrostat::{PathError, SolveError};
 use hydrostat_figures::source::StudyError;
 use hydrostat_files::{FileError, WriteError};
+use hydrostat_sweep::SweepError;
 
 use crate::command::NoAnswer;
 use crate::request::WrongRequest;
@@ -62,6 +63,10 @@ fn code(error: &anyhow::Error) -> u8 {
             | PathError::Friction { .. },
         ) = cause.downcast_ref()
         {
+            return WRONG_REQUEST;
+        }
+        // Whatever a sweep cannot do is wrong with its request: keys, values, options, files.
+        if matches!(cause.downcast_ref(), Some(error) if !matches!(error, SweepError::Threads(_))) {
             return WRONG_REQUEST;
         }
         if cause.is::<WrongRequest>() || cause.is::<FileError>() || cause.is::<WriteError>() {

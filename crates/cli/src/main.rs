@@ -29,6 +29,8 @@ fn main() -> ExitCode {
         Some(Command::Solve(args)) => command::solve::run(&args),
         Some(Command::Path(args)) => command::path::run(&args),
         Some(Command::Equilibria(args)) => command::equilibria::run(&args),
+        Some(Command::Sweep(args)) => command::sweep::run(&args),
+        Some(Command::Plot(args)) => command::plot::run(&args),
         Some(Command::Figures(args)) => command::figures::run(&args),
         Some(Command::Arms(args)) => command::arms::run(&args),
         Some(Command::Check(args)) => command::check::run(&args),

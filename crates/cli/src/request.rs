@@ -24,6 +24,14 @@ pub(crate) enum WrongRequest {
     Unfit(&'static str, Unfit),
     /// A value, said where, that makes no arm.
     Value(String, ArmError),
+    /// A column that a sweep does not have, and those that it has.
+    NoColumn(String, Vec<String>),
+    /// What an option needs of a sweep and does not find.
+    NotInSweep(&'static str, &'static str),
+    /// Keys that give no map, and those of the sweep.
+    Over(Vec<String>),
+    /// A key whose values are words.
+    Words(String),
     /// A cable whose stroke was asked for.
     NoCable { asked: usize, cables: usize },
 }
@@ -51,6 +59,14 @@ impl std::fmt::Display for WrongRequest {
             }
             Self::Unfit(option, error) => write!(f, "{option} {error}"),
             Self::Value(at, error) => write!(f, "{at}: {error}"),
+            Self::NoColumn(name, columns) => {
+                write!(f, "--quantity {name}: expected one of {}", columns.join(", "))
+            }
+            Self::NotInSweep(option, needed) => write!(f, "{option}: expected {needed} in the sweep, found none"),
+            Self::Over(keys) => {
+                write!(f, "--over: expected one or two different keys of those that were varied, {}", keys.join(", "))
+            }
+            Self::Words(key) => write!(f, "--over: {key} has words for values, which a map has no axis for"),
             Self::NoCable { asked, cables } => {
                 write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")
             }
@@ -83,6 +99,11 @@ pub(crate) fn arm_file(arm: &str) -> anyhow::Result<ArmFile> {
 
 /// The arm that is asked for: a file, then what overrides it.
 pub(crate) fn arm(args: &ArmArgs) -> anyhow::Result<Arm> {
+    Ok(overridden(args)?.arm()?)
+}
+
+/// The file that is asked for with what overrides it.
+pub(crate) fn overridden(args: &ArmArgs) -> anyhow::Result<ArmFile> {
     let mut file = arm_file(&args.file)?;
     for setting in &args.set {
         let Some((key, value)) = setting.split_once('=') else {
@@ -105,7 +126,7 @@ pub(crate) fn arm(args: &ArmArgs) -> anyhow::Result<Arm> {
             file.set(&format!("cable[{i}].tension"), tension.trim())?;
         }
     }
-    Ok(file.arm()?)
+    Ok(file)
 }
 
 /// Refuses outputs that could not be written, before the work: each option that names one, with its file.

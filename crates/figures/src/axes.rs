@@ -109,7 +109,7 @@ impl Axes {
 pub(crate) const LEFT: f64 = 44.0;
 pub(crate) const BELOW: f64 = 28.0;
 
-fn tick_label(value: f64, decimals: usize) -> Label {
+pub(crate) fn tick_label(value: f64, decimals: usize) -> Label {
     let text = format!("{:.decimals$}", if value == 0.0 { 0.0 } else { value });
     Label::plain(text.replace('-', "\u{2212}"))
 }

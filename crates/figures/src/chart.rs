@@ -28,7 +28,7 @@ pub struct Abscissa {
 }
 
 impl Abscissa {
-    fn title(&self) -> Label {
+    pub(crate) fn title(&self) -> Label {
         match self.unit.as_str() {
             "" => Label::plain(&self.name),
             "deg" => Label::plain(format!("{} (°)", self.name)),
@@ -238,7 +238,7 @@ fn page(title: &str, legend: &Legend, points: &[[f64; 2]], over: &Abscissa, quan
 }
 
 /// A range with some room at its ends, and never an empty one.
-fn padded([low, high]: [f64; 2], share: f64) -> [f64; 2] {
+pub(crate) fn padded([low, high]: [f64; 2], share: f64) -> [f64; 2] {
     if !(low.is_finite() && high.is_finite()) {
         return [0.0, 1.0];
     }

@@ -31,6 +31,7 @@ pub(crate) enum Mark {
     /// A square on its corner, hollow.
     Diamond(Color),
     Cross(Color),
+    Square(Color),
 }
 
 impl Mark {
@@ -44,6 +45,10 @@ impl Mark {
                 let a = 1.5 * SIZE;
                 let corners = [[x - a, y], [x, y - a], [x + a, y], [x, y + a]];
                 scene.area(&corners, Some(PAPER), Some(Stroke::solid(color, 0.9)));
+            }
+            Self::Square(color) => {
+                let a = 1.6 * SIZE;
+                scene.area(&[[x - a, y - a], [x + a, y - a], [x + a, y + a], [x - a, y + a]], Some(color), None);
             }
             Self::Cross(color) => {
                 let a = 1.2 * SIZE;

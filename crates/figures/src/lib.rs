@@ -5,7 +5,8 @@
 //! outlines before either is made; that also needs no font on the machine that shows the figure.
 //!
 //! [`arm_figure`] draws one configuration to scale, [`path_shapes_figure`] and [`equilibria_figure`]
-//! several; [`path_figure`] and [`over_figure`] draw a [`Quantity`] over a parameter. [`source`] solves what the source's Fig. 1
+//! several; [`path_figure`] and [`over_figure`] draw a [`Quantity`] over a parameter; [`map_figure`], [`workspace_figure`] and
+//! [`curve_figure`] draw a sweep. [`source`] solves what the source's Fig. 1
 //! shows, judges what its text says about it, and draws the three parts.
 
 mod arm_figure;
@@ -19,9 +20,11 @@ mod placement;
 mod png;
 mod quantity;
 mod scene;
+mod shaded;
 mod shapes;
 pub mod source;
 mod svg;
+mod sweep;
 mod tip_labels;
 
 pub use arm_figure::arm_figure;
@@ -30,3 +33,4 @@ pub use png::PngError;
 pub use quantity::{Quantity, UnknownQuantity};
 pub use scene::Scene;
 pub use shapes::{equilibria_figure, path_shapes_figure};
+pub use sweep::{Coloured, ColouredColumn, KeyValues, curve_figure, map_figure, value_text, workspace_figure};

@@ -58,9 +58,13 @@ pub(crate) fn series(index: usize) -> Color {
 /// The colour of step `index` of `count` ordered ones: from pale to dark, through blue and purple,
 /// falling steadily in lightness.
 pub(crate) fn ordered(index: usize, count: usize) -> Color {
+    shade(if count < 2 { 1.0 } else { index as f64 / (count - 1) as f64 })
+}
+
+/// The colour of a share from 0 to 1.
+pub(crate) fn shade(share: f64) -> Color {
     const STOPS: [Color; 5] =
         [rgb(232, 158, 60), rgb(214, 96, 77), rgb(172, 52, 104), rgb(104, 32, 112), rgb(34, 20, 74)];
-    let share = if count < 2 { 1.0 } else { index as f64 / (count - 1) as f64 };
     let place = share.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the stops")]
     let at = (place.floor() as usize).min(STOPS.len() - 2);

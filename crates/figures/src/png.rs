@@ -1,9 +1,12 @@
 //! A scene as PNG.
 
-use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, StrokeDash, Transform};
+use tiny_skia::{
+    FillRule, FilterQuality, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, StrokeDash, Transform,
+};
 
 use crate::palette::Color;
-use crate::scene::{Scene, Segment};
+use crate::placement::Rect;
+use crate::scene::{Picture, Scene, Segment};
 
 /// Resolution of the pictures, dots an inch.
 const DPI: f64 = 300.0;
@@ -39,6 +42,9 @@ impl Scene {
         #[expect(clippy::cast_possible_truncation, reason = "pictures are single precision")]
         let to_pixels = Transform::from_scale(scale as f32, scale as f32);
         for item in &self.items {
+            if let Some((place, picture)) = &item.picture {
+                draw_picture(&mut map, *place, picture, scale);
+            }
             let Some(path) = path(&item.path) else { continue };
             if let Some(color) = item.fill {
                 map.fill_path(&path, &paint(color), FillRule::Winding, to_pixels, None);
@@ -57,6 +63,46 @@ impl Scene {
         }
         encode(&map)
     }
+}
+
+impl Picture {
+    /// The cells as a PNG file, a pixel each.
+    pub(crate) fn png(&self) -> Result<Vec<u8>, png::EncodingError> {
+        let size = |cells: usize| u32::try_from(cells).unwrap_or(0);
+        let mut out = Vec::new();
+        let mut encoder = png::Encoder::new(&mut out, size(self.width), size(self.height));
+        encoder.set_color(png::ColorType::Rgba);
+        encoder.set_depth(png::BitDepth::Eight);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.rgba)?;
+        writer.finish()?;
+        Ok(out)
+    }
+}
+
+/// Cells with sharp edges, at `scale` pixels a point.
+fn draw_picture(map: &mut Pixmap, place: Rect, picture: &Picture, scale: f64) {
+    let size = |cells: usize| u32::try_from(cells).ok();
+    let cells = size(picture.width).zip(size(picture.height)).and_then(|(w, h)| Pixmap::new(w, h));
+    let Some(mut cells) = cells else { return };
+    // Cells are opaque or not there, so that nothing has to be multiplied by an opacity.
+    for (own, given) in cells.data_mut().chunks_exact_mut(4).zip(picture.rgba.chunks_exact(4)) {
+        if given[3] > 0 {
+            own.copy_from_slice(given);
+        }
+    }
+    let across = scale * place.width() / picture.width as f64;
+    let down = scale * place.height() / picture.height as f64;
+    let to_pixels = Transform::from_row(
+        single(across),
+        0.0,
+        0.0,
+        single(down),
+        single(scale * place.left),
+        single(scale * place.top),
+    );
+    let paint = PixmapPaint { quality: FilterQuality::Nearest, ..PixmapPaint::default() };
+    map.draw_pixmap(0, 0, cells.as_ref(), &paint, to_pixels, None);
 }
 
 /// The page is opaque, so three channels say everything.

@@ -2,6 +2,7 @@
 
 use crate::font::Label;
 use crate::palette::{Color, INK};
+use crate::placement::Rect;
 
 /// A place on the page: points (1/72 inch) from its left and upper edge.
 pub(crate) type Point = [f64; 2];
@@ -36,6 +37,17 @@ impl Stroke {
     }
 }
 
+/// Coloured cells, from the upper left line by line.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Picture {
+    /// Cells across.
+    pub(crate) width: usize,
+    /// Cells from top to bottom.
+    pub(crate) height: usize,
+    /// Red, green, blue and opacity (0 or 255) of each.
+    pub(crate) rgba: Vec<u8>,
+}
+
 /// One thing drawn. Later ones cover earlier ones.
 #[derive(Debug, Clone)]
 pub(crate) struct Item {
@@ -44,6 +56,8 @@ pub(crate) struct Item {
     pub(crate) stroke: Option<Stroke>,
     /// What the glyphs of this item say; `None` for everything but text.
     pub(crate) says: Option<String>,
+    /// Cells that fill a rectangle of the page.
+    pub(crate) picture: Option<(Rect, Picture)>,
 }
 
 /// Where a text's reference point lies.
@@ -83,7 +97,7 @@ impl Scene {
 
     fn push(&mut self, path: Vec<Segment>, fill: Option<Color>, stroke: Option<Stroke>) {
         if path.len() > 1 {
-            self.items.push(Item { path, fill, stroke, says: None });
+            self.items.push(Item { path, fill, stroke, says: None, picture: None });
         }
     }
 
@@ -125,6 +139,12 @@ impl Scene {
         self.area(&circle(at, radius), None, Some(stroke));
     }
 
+    /// Cells that fill `place`.
+    pub(crate) fn picture(&mut self, place: Rect, picture: Picture) {
+        let picture = Some((place, picture));
+        self.items.push(Item { path: Vec::new(), fill: None, stroke: None, says: None, picture });
+    }
+
     /// Text whose baseline starts, is centred or ends at `at`.
     pub(crate) fn text(&mut self, label: &Label, at: Point, anchor: Anchor, size: f64) {
         self.text_in(label, at, anchor, size, INK, false);
@@ -147,7 +167,8 @@ impl Scene {
             Segment::Quad(c, p) => Segment::Quad(place(c), place(p)),
             Segment::Close => Segment::Close,
         });
-        self.items.push(Item { path: path.collect(), fill: Some(color), stroke: None, says: Some(label.to_string()) });
+        let says = Some(label.to_string());
+        self.items.push(Item { path: path.collect(), fill: Some(color), stroke: None, says, picture: None });
     }
 }
 

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::palette::Color;
-use crate::scene::{Item, Scene, Segment};
+use crate::placement::Rect;
+use crate::scene::{Item, Picture, Scene, Segment};
 
 impl Scene {
     /// The figure as an SVG document. Text is drawn as outlines and named in `aria-label`, so that
@@ -24,6 +25,10 @@ impl Scene {
 }
 
 fn write_item(out: &mut String, item: &Item) {
+    if let Some((place, picture)) = &item.picture {
+        write_picture(out, *place, picture);
+        return;
+    }
     out.push_str("<path");
     if let Some(text) = &item.says {
         let _ = write!(out, " role=\"text\" aria-label=\"{}\"", escaped(text));
@@ -58,6 +63,33 @@ fn write_item(out: &mut String, item: &Item) {
         }
     }
     out.push_str("\"/>\n");
+}
+
+/// Cells as a PNG inside the document.
+fn write_picture(out: &mut String, place: Rect, picture: &Picture) {
+    // What cannot be encoded has no size, and nothing to show.
+    let Ok(bytes) = picture.png() else { return };
+    let [x, y, w, h] = [place.left, place.top, place.width(), place.height()].map(number);
+    let _ = writeln!(
+        out,
+        "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" \
+         style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>",
+        base64(&bytes)
+    );
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let byte = |k: usize| u32::from(three.get(k).copied().unwrap_or_default());
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for k in 0..4 {
+            let letter = LETTERS[(bits >> (18 - 6 * k) & 63) as usize];
+            out.push(if k <= three.len() { char::from(letter) } else { '=' });
+        }
+    }
+    out
 }
 
 fn paint(out: &mut String, what: &str, color: Color) {
@@ -103,6 +135,13 @@ mod tests {
         assert_eq!(number(0.125_4), "0.13");
         assert_eq!(number(-0.001), "0");
         assert_eq!(number(100.5), "100.5");
+    }
+
+    #[test]
+    fn bytes_become_letters() {
+        for (bytes, letters) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+            assert_eq!(base64(bytes.as_bytes()), letters);
+        }
     }
 
     #[test]

@@ -41,6 +41,7 @@ pub struct ArmFile {
     path: String,
     text: String,
     fields: Vec<Field>,
+    /// Option and text of each override.
     settings: Vec<String>,
 }
 
@@ -111,8 +112,16 @@ impl ArmFile {
     /// [`FileError`] when the format has no such key, or the arm no such cable. Whether the value
     /// fits is seen by [`ArmFile::arm`].
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), FileError> {
+        self.set_by("--set", key, value)
+    }
+
+    /// [`ArmFile::set`] by another option, which messages name.
+    ///
+    /// # Errors
+    /// [`FileError`] as there.
+    pub fn set_by(&mut self, option: &str, key: &str, value: &str) -> Result<(), FileError> {
         let index = self.settings.len();
-        self.settings.push(format!("{key}={value}"));
+        self.settings.push(format!("{option} {key}={value}"));
         // On a copy, so that a refused override leaves nothing behind.
         let mut fields = self.fields.clone();
         match setting::apply(&mut fields, key, value, index) {

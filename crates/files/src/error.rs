@@ -20,7 +20,7 @@ pub enum Place {
     },
     /// In an override given beside the file.
     Setting {
-        /// As the user wrote it: `KEY=VALUE`.
+        /// The option that it was given with, and what the user wrote: `--set KEY=VALUE`.
         setting: String,
     },
 }
@@ -29,7 +29,7 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line { path, line, .. } => write!(f, "{path}:{line}"),
-            Self::Setting { setting } => write!(f, "--set {}", shortened(setting)),
+            Self::Setting { setting } => f.write_str(&shortened(setting)),
         }
     }
 }

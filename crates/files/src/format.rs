@@ -218,6 +218,46 @@ pub(crate) fn dimension_of(key: &str) -> Option<Dimension> {
     found
 }
 
+/// What the number at a dotted key measures, as [`dimension_of`], also where the key is a profile, one of its ends or a number
+/// of its table.
+pub(crate) fn dimension_at(key: &str) -> Option<Dimension> {
+    let (whole, end) = match key.rsplit_once('.') {
+        Some((whole, end)) if ENDS.contains(&end) => (whole, true),
+        _ => (key, false),
+    };
+    let (mut keys, mut found) = (FILE, None);
+    let steps: Vec<&str> = whole.split('.').collect();
+    for (k, step) in steps.iter().enumerate() {
+        let (name, indices) = step.split_once('[').unwrap_or((step, ""));
+        let last = k + 1 == steps.len();
+        match keys.iter().find(|key| key.name == name)?.kind {
+            Table(inner) | Tables(inner) if !last => keys = inner,
+            Quantity(dimension) | Pair(dimension) if last && !end => found = Some(dimension),
+            Profile(dimension) | ProfilePair(dimension) if last => {
+                let place =
+                    matches!(keys.iter().find(|key| key.name == name)?.kind, Profile(_)) && indices.ends_with("][0]");
+                found = Some(if place { Dimension::Length } else { dimension });
+            }
+            _ => return None,
+        }
+    }
+    found
+}
+
+/// Whether a dotted key is one of the format, whatever its indices and what is inside profiles and pairs.
+pub(crate) fn is_key(key: &str) -> bool {
+    let mut keys = FILE;
+    for step in key.split('.') {
+        let name = step.split('[').next().unwrap_or(step);
+        match keys.iter().find(|key| key.name == name).map(|key| key.kind) {
+            Some(Table(inner) | Tables(inner)) => keys = inner,
+            Some(_) => return true,
+            None => return false,
+        }
+    }
+    true
+}
+
 /// Where in the format some key stands, as a dotted path, the first if there are several.
 pub(crate) fn home_of(name: &str) -> Option<String> {
     fn search(keys: &[Key], name: &str, path: &str) -> Option<String> {

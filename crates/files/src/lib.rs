@@ -5,6 +5,7 @@
 //! and [`Failure`] are the JSON documents of a solve, [`write_whole`] puts any output on disk.
 
 mod arm_file;
+mod axis;
 mod digits;
 mod document;
 pub mod equilibria;
@@ -23,6 +24,7 @@ mod varied;
 mod written;
 
 pub use arm_file::ArmFile;
+pub use axis::{Axis, AxisError, Value, Values};
 pub use digits::number;
 pub use equilibria::{EquilibriaDocument, Others, OverDocument, equilibria_csv, over_csv};
 pub use error::{FileError, Place};

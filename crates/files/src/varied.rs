@@ -73,7 +73,7 @@ pub enum VariedError {
     },
 }
 
-fn hint(suggestion: Option<&String>) -> String {
+pub(crate) fn hint(suggestion: Option<&String>) -> String {
     suggestion.map_or_else(String::new, |key| format!("; did you mean `{key}`?"))
 }
 
@@ -115,7 +115,7 @@ fn parameter(key: &str) -> Result<Parameter, VariedError> {
 }
 
 /// Without the last digits, which rounding has left of what was meant: 90.00000000000001 is 90.
-fn rounded(value: f64) -> f64 {
+pub(crate) fn rounded(value: f64) -> f64 {
     format!("{value:.14e}").parse().unwrap_or(value)
 }
 

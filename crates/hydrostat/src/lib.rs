@@ -143,6 +143,7 @@ mod equilibrium;
 mod flow;
 mod friction;
 mod loads;
+pub mod many;
 pub mod parameter;
 pub mod path;
 pub mod profile;
@@ -162,6 +163,7 @@ pub use arm::{
 pub use configuration::{
     CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,
 };
+pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
 pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub use profile::{Profile, Sample};

@@ -34,6 +34,15 @@ pub struct Answer {
     pub statistics: Statistics,
 }
 
+impl Options {
+    pub(crate) fn check(self) -> Result<(), SolveError> {
+        if !(self.tol >= 1e-12 && self.tol <= 1e-2) {
+            return Err(SolveError::Option { option: "tol", value: self.tol, expected: "in [1e-12, 1e-2]" });
+        }
+        Ok(())
+    }
+}
+
 /// Solves one arm, again and again as its loads change.
 #[derive(Debug, Clone)]
 pub struct Solver {
@@ -56,9 +65,7 @@ impl Solver {
     /// [`SolveError::Arm`], [`SolveError::Option`].
     pub fn new(arm: &Arm, options: Options) -> Result<Self, SolveError> {
         arm.check()?;
-        if !(options.tol >= 1e-12 && options.tol <= 1e-2) {
-            return Err(SolveError::Option { option: "tol", value: options.tol, expected: "in [1e-12, 1e-2]" });
-        }
+        options.check()?;
         Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, estimate: None, strokes: None })
     }
 

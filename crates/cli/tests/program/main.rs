@@ -6,6 +6,7 @@ mod equilibria;
 mod formats;
 mod paths;
 mod refusals;
+mod sweeps;
 mod verdicts;
 
 use std::path::Path;

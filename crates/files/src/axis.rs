@@ -1,0 +1,357 @@
+//! What a sweep varies: a key of the arm file with a grid, a list, or a range to draw from.
+
+use std::str::FromStr;
+
+use hydrostat::parameter::names;
+
+use crate::error::shortened;
+use crate::format::{dimension_at, home_of, is_key, nearest};
+use crate::quantity::{Dimension, QuantityError};
+use crate::varied::{hint, rounded};
+
+/// The most values of one key.
+const MOST: u64 = 1_000_000_000;
+
+/// One key and its values: `KEY=FROM:TO:COUNT`, `KEY=V1,V2,...` or, to draw from, `KEY=FROM:TO`.
+///
+/// ```
+/// use hydrostat_files::{Axis, Value, Values};
+///
+/// let axis: Axis = "cable[0].tension=0:500 mN:3".parse().unwrap();
+/// assert_eq!(axis.value(1), Some(Value::Number(0.25)));
+/// assert_eq!((axis.values.count(), axis.column().as_str()), (Some(3), "cable[0].tension_N"));
+/// let axis: Axis = "model.volume=planar,none".parse().unwrap();
+/// assert_eq!(axis.value(1), Some(Value::Word("none")));
+/// let axis: Axis = "arm.radius.tip=1 mm:2 mm".parse().unwrap();
+/// assert_eq!(axis.values, Values::Span { from: 0.001, to: 0.002 });
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// The dotted key.
+    pub key: String,
+    /// What it measures; `None` where it is text or is not a key of the arm file.
+    pub dimension: Option<Dimension>,
+    /// The unit in which it is shown; empty for a plain number and for text.
+    pub unit: &'static str,
+    /// Its values.
+    pub values: Values,
+}
+
+/// The values of a key, numbers in SI units (rad for angles).
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Equally spaced, both ends included.
+    Even {
+        /// The first.
+        from: f64,
+        /// The last.
+        to: f64,
+        /// How many, at least one.
+        count: u64,
+    },
+    /// Any number between two.
+    Span {
+        /// One end.
+        from: f64,
+        /// The other end.
+        to: f64,
+    },
+    /// These numbers.
+    List(Vec<f64>),
+    /// These words.
+    Words(Vec<String>),
+}
+
+/// One value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value<'a> {
+    /// In SI units.
+    Number(f64),
+    /// As it stands in the arm file.
+    Word(&'a str),
+}
+
+/// Why a text is not a key with its values.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum AxisError {
+    /// Not of the form `KEY=VALUES`.
+    #[error("{}: expected KEY=FROM:TO:COUNT, KEY=V1,V2,... or, to draw from, KEY=FROM:TO, such as flow.speed=0:0.5:26", shortened(.text))]
+    Form {
+        /// What was given.
+        text: String,
+    },
+    /// No key of the arm file.
+    #[error("{key}: expected a key of the arm file, found an unknown one{}", hint(.suggestion.as_ref()))]
+    Unknown {
+        /// What was given.
+        key: String,
+        /// The key that may have been meant.
+        suggestion: Option<String>,
+    },
+    /// No values.
+    #[error("{key}: expected at least one value, found none")]
+    Empty {
+        /// The key.
+        key: String,
+    },
+    /// A count that is none.
+    #[error("{key}: expected a whole number from 1 to {MOST} as COUNT, found \"{}\"", shortened(.text))]
+    Count {
+        /// The key.
+        key: String,
+        /// What was given.
+        text: String,
+    },
+    /// Two ends with one value, or one end with many.
+    #[error("{key}: expected {}, found {count} values from {from} to {to}", if *.count == 1 { "two ends that are the same with one value" } else { "two different ends" })]
+    Ends {
+        /// The key.
+        key: String,
+        /// The ends as given.
+        from: String,
+        /// The ends as given.
+        to: String,
+        /// How many values.
+        count: u64,
+    },
+    /// A range of words.
+    #[error("{key}: expected words with commas between, because it is no number, found \"{}\"", shortened(.text))]
+    Range {
+        /// The key.
+        key: String,
+        /// What was given.
+        text: String,
+    },
+    /// A value of another kind.
+    #[error("{key}: expected {}, found \"{}\": {source}", .dimension.expected(), shortened(.text))]
+    Value {
+        /// The key.
+        key: String,
+        /// What it measures.
+        dimension: Dimension,
+        /// What was given.
+        text: String,
+        /// What is wrong with it.
+        source: QuantityError,
+    },
+}
+
+/// Numbers of one dimension, and the first unit that they were written with.
+struct Reader<'a> {
+    key: &'a str,
+    dimension: Dimension,
+    unit: Option<&'static str>,
+}
+
+impl Reader<'_> {
+    fn read(&mut self, text: &str) -> Result<f64, AxisError> {
+        let plain = text.trim().trim_matches('"').trim();
+        let (value, unit) = self.dimension.read(plain).map_err(|source| AxisError::Value {
+            key: self.key.to_owned(),
+            dimension: self.dimension,
+            text: plain.to_owned(),
+            source,
+        })?;
+        self.unit = self.unit.or(unit);
+        Ok(value)
+    }
+}
+
+impl FromStr for Axis {
+    type Err = AxisError;
+
+    fn from_str(text: &str) -> Result<Self, AxisError> {
+        let (key, given) = text.split_once('=').ok_or_else(|| AxisError::Form { text: text.to_owned() })?;
+        let (key, given) = (key.trim().to_owned(), given.trim().trim_matches('"'));
+        if key.is_empty() {
+            return Err(AxisError::Form { text: text.to_owned() });
+        }
+        let parts = || given.split(',').map(|part| part.trim().trim_matches('"').trim());
+        if parts().any(str::is_empty) {
+            return Err(AxisError::Empty { key });
+        }
+        let Some(dimension) = dimension_at(&key) else {
+            if !is_key(&key) {
+                let last = key.rsplit('.').next().unwrap_or(&key);
+                let slip = nearest(&key, names().iter().map(String::as_str)).map(str::to_owned);
+                return Err(AxisError::Unknown { suggestion: slip.or_else(|| home_of(last)), key });
+            }
+            if given.contains(':') {
+                return Err(AxisError::Range { key, text: given.to_owned() });
+            }
+            let values = Values::Words(parts().map(str::to_owned).collect());
+            return Ok(Self { key, dimension: None, unit: "", values });
+        };
+        let mut reader = Reader { key: &key, dimension, unit: None };
+        let values = if given.contains(':') {
+            let pieces: Vec<&str> = given.split(':').collect();
+            match pieces[..] {
+                [from, to] => Values::Span { from: reader.read(from)?, to: reader.read(to)? },
+                [from, to, count] => even(&mut reader, from, to, count)?,
+                _ => return Err(AxisError::Form { text: text.to_owned() }),
+            }
+        } else {
+            Values::List(parts().map(|part| reader.read(part)).collect::<Result<_, _>>()?)
+        };
+        let bare = if dimension == Dimension::Angle { "deg" } else { dimension.bare_unit() };
+        let unit = reader.unit.unwrap_or(bare);
+        Ok(Self { key, dimension: Some(dimension), unit, values })
+    }
+}
+
+fn even(reader: &mut Reader<'_>, from: &str, to: &str, count: &str) -> Result<Values, AxisError> {
+    let ends = [reader.read(from)?, reader.read(to)?];
+    let key = reader.key.to_owned();
+    let Some(count) = count.trim().parse().ok().filter(|count| (1..=MOST).contains(count)) else {
+        return Err(AxisError::Count { key, text: count.trim().to_owned() });
+    };
+    if (ends[0] == ends[1]) != (count == 1) {
+        let [from, to] = [from, to].map(|end| end.trim().to_owned());
+        return Err(AxisError::Ends { key, from, to, count });
+    }
+    Ok(Values::Even { from: ends[0], to: ends[1], count })
+}
+
+impl Values {
+    /// How many there are; `None` of a range to draw from.
+    pub fn count(&self) -> Option<u64> {
+        match self {
+            Self::Even { count, .. } => Some(*count),
+            Self::Span { .. } => None,
+            Self::List(values) => Some(values.len() as u64),
+            Self::Words(words) => Some(words.len() as u64),
+        }
+    }
+}
+
+impl Axis {
+    /// Value `index`; `None` past the last one, and of a range to draw from.
+    pub fn value(&self, index: u64) -> Option<Value<'_>> {
+        let at = usize::try_from(index).ok()?;
+        match &self.values {
+            Values::Even { from, to, count } if index < *count => Some(Value::Number(match index {
+                0 => *from,
+                last if last == count - 1 => *to,
+                k => rounded(from + k as f64 / (count - 1) as f64 * (to - from)),
+            })),
+            Values::List(values) => values.get(at).copied().map(Value::Number),
+            Values::Words(words) => words.get(at).map(|word| Value::Word(word)),
+            Values::Even { .. } | Values::Span { .. } => None,
+        }
+    }
+
+    /// The value at `share` in [0, 1) of the range, or of the list.
+    pub fn drawn(&self, share: f64) -> Option<Value<'_>> {
+        match &self.values {
+            Values::Span { from, to } => Some(Value::Number(from + share * (to - from))),
+            values => {
+                let count = values.count()?;
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
+                let index = (share * count as f64) as u64;
+                self.value(index.min(count - 1))
+            }
+        }
+    }
+
+    /// A value as the arm file's text has it.
+    pub fn text(&self, value: Value<'_>) -> String {
+        match value {
+            Value::Word(word) => word.to_owned(),
+            Value::Number(number) if self.dimension == Some(Dimension::Angle) => format!("{number:?} rad"),
+            Value::Number(number) => format!("{number:?}"),
+        }
+    }
+
+    /// The key with its SI unit, as the head of a column: `flow.speed_m_per_s`.
+    pub fn column(&self) -> String {
+        let unit = match self.dimension {
+            None | Some(Dimension::Number) => return self.key.clone(),
+            Some(Dimension::Angle) => "rad",
+            Some(dimension) => dimension.bare_unit(),
+        };
+        format!("{}_{}", self.key, unit.replace(' ', "").replace("1/", "per_").replace('/', "_per_"))
+    }
+
+    /// How many of the unit shown an SI unit is.
+    pub fn per_si(&self) -> f64 {
+        self.dimension.and_then(|dimension| dimension.per_si(self.unit)).unwrap_or(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(text: &str) -> String {
+        text.parse::<Axis>().unwrap_err().to_string()
+    }
+
+    fn values(text: &str) -> Values {
+        text.parse::<Axis>().unwrap_or_else(|e| panic!("{text}: {e}")).values
+    }
+
+    #[test]
+    fn grids_lists_and_ranges_take_units() {
+        assert_eq!(values("flow.speed=0:1:11"), Values::Even { from: 0.0, to: 1.0, count: 11 });
+        assert_eq!(values("flow.speed = \"0:36 km/h:3\""), Values::Even { from: 0.0, to: 10.0, count: 3 });
+        assert_eq!(values("flow.speed=0.5:0.5:1"), Values::Even { from: 0.5, to: 0.5, count: 1 });
+        assert_eq!(values("arm.length=\"20 cm\",0.3"), Values::List(vec![0.2, 0.3]));
+        assert_eq!(values("material.poisson=0.3:0.5"), Values::Span { from: 0.3, to: 0.5 });
+        assert_eq!(values("flow.law=momentum"), Values::Words(vec!["momentum".to_owned()]));
+        let Values::List(angles) = values("flow.direction=90, 1 rad") else { panic!() };
+        assert_eq!(angles, [std::f64::consts::FRAC_PI_2, 1.0]);
+    }
+
+    #[test]
+    fn grids_reach_their_ends_and_lists_are_drawn_evenly() {
+        let axis: Axis = "flow.speed=0.1:0.7:7".parse().unwrap();
+        let all: Vec<_> = (0..8).map(|k| axis.value(k)).collect();
+        let want = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7].map(|v| Some(Value::Number(v)));
+        assert_eq!((&all[..7], all[7]), (&want[..], None));
+        let axis: Axis = "model.volume=planar,none".parse().unwrap();
+        assert_eq!(
+            [0.0, 0.49, 0.5, 0.999].map(|u| axis.drawn(u).unwrap() == Value::Word("none")),
+            [false, false, true, true]
+        );
+        let axis: Axis = "flow.speed=1:3".parse().unwrap();
+        assert_eq!((axis.drawn(0.25), axis.value(0)), (Some(Value::Number(1.5)), None));
+    }
+
+    #[test]
+    fn columns_have_the_si_unit() {
+        for (text, column, unit) in [
+            ("flow.direction=0:10 mrad:2", "flow.direction_rad", "mrad"),
+            ("material.young=1 kPa", "material.young_Pa", "kPa"),
+            ("reference.mu=1", "reference.mu_per_m", "1/m"),
+            ("tip.moment=1", "tip.moment_Nm", "N m"),
+            ("arm.density=1", "arm.density_kg_per_m3", "kg/m3"),
+            ("material.poisson=0.5", "material.poisson", ""),
+            ("arm.radius[1][0]=0.1", "arm.radius[1][0]_m", "m"),
+            ("name=a,b", "name", ""),
+        ] {
+            let axis: Axis = text.parse().unwrap();
+            assert_eq!((axis.column().as_str(), axis.unit), (column, unit), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        for text in ["", "flow.speed", "=1", "flow.speed=0:1:2:3"] {
+            assert!(error(text).contains("expected KEY=FROM:TO:COUNT"), "{text}");
+        }
+        for text in ["flow.speed=", "flow.speed=1,,2", "flow.law="] {
+            assert!(error(text).contains("at least one value"), "{text}");
+        }
+        for text in ["flow.speed=0:1:0", "flow.speed=0:1:-3", "flow.speed=0:1:x", "flow.speed=0:1:2.5"] {
+            assert!(error(text).contains("as COUNT"), "{text}");
+        }
+        assert!(error("flow.speed=0:1:1").contains("with one value"));
+        assert!(error("flow.speed=1:1:5").contains("two different ends"));
+        assert!(error("flow.speed=0:1 N:5").contains("expected a speed"));
+        assert!(error("flow.speed=0:nan:5").contains("does not start with a number"));
+        assert!(error("flow.sped=0:1:5").ends_with("did you mean `flow.speed`?"));
+        assert!(error("youn=1,2").ends_with("an unknown one"));
+        assert!(error("young=1,2").ends_with("did you mean `material.young`?"));
+        assert!(error("flow.law=a:b").contains("words with commas"));
+    }
+}

@@ -1,0 +1,136 @@
+//! The arm of a row.
+
+use hydrostat::{Arm, ArmError, Parameter};
+use hydrostat_files::{ArmFile, Axis, FileError, Value, Values};
+
+/// How a key gets its value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Way {
+    /// In the arm itself: loads, which change from row to row.
+    Load(Parameter),
+    /// Through the arm file, as any key can be set.
+    File,
+}
+
+/// Makes arms of rows.
+#[derive(Debug, Clone)]
+pub(crate) struct Arms {
+    file: ArmFile,
+    arm: Arm,
+    axes: Vec<Axis>,
+    ways: Vec<Way>,
+}
+
+/// The arm of the last row, and what the file's keys were in it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Last {
+    texts: Vec<String>,
+    arm: Option<Arm>,
+}
+
+/// A value of one key that makes no arm by itself.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+pub struct ValueError(Box<FileError>);
+
+impl From<FileError> for ValueError {
+    fn from(error: FileError) -> Self {
+        Self(Box::new(error))
+    }
+}
+
+const OPTION: &str = "--vary";
+
+impl Arms {
+    /// Of a file whose arm is `arm`, with these keys varied.
+    ///
+    /// # Errors
+    /// [`ValueError`] for a key that the file cannot have, and for a value that makes no arm whatever the other keys are.
+    pub(crate) fn new(file: &ArmFile, axes: &[Axis]) -> Result<Self, ValueError> {
+        let arm = file.arm()?;
+        for axis in axes {
+            check(file, axis, axes.len() == 1)?;
+        }
+        let ways = axes.iter().map(|axis| way(&arm, axis)).collect();
+        Ok(Self { file: file.clone(), arm, axes: axes.to_vec(), ways })
+    }
+
+    /// The arm of the file, which rows vary.
+    pub(crate) fn base(&self) -> &Arm {
+        &self.arm
+    }
+
+    /// The arm with these values, in the order of the keys; `None` where they do not go together.
+    pub(crate) fn arm<'a>(&self, values: &[Value<'_>], last: &'a mut Last) -> Option<&'a Arm> {
+        let texts: Vec<String> = self.by_way(values, Way::File).map(|(axis, value)| axis.text(value)).collect();
+        if last.arm.is_none() || texts != last.texts {
+            last.arm = if texts.is_empty() { Some(self.arm.clone()) } else { self.through_file(values).ok() };
+            last.texts = texts;
+        }
+        let arm = last.arm.as_mut()?;
+        for (way, value) in self.ways.iter().zip(values) {
+            if let (Way::Load(parameter), Value::Number(value)) = (way, value) {
+                // The parameters are those that the arm was seen to have.
+                let _ = parameter.set(arm, *value);
+            }
+        }
+        Some(arm)
+    }
+
+    fn by_way<'a>(&'a self, values: &'a [Value<'a>], wanted: Way) -> impl Iterator<Item = (&'a Axis, Value<'a>)> {
+        let all = self.axes.iter().zip(&self.ways).zip(values);
+        all.filter(move |((_, way), _)| **way == wanted).map(|((axis, _), value)| (axis, *value))
+    }
+
+    fn through_file(&self, values: &[Value<'_>]) -> Result<Arm, FileError> {
+        let mut file = self.file.clone();
+        for (axis, value) in self.by_way(values, Way::File) {
+            file.set_by(OPTION, &axis.key, &axis.text(value))?;
+        }
+        file.arm()
+    }
+}
+
+fn way(arm: &Arm, axis: &Axis) -> Way {
+    match axis.key.parse() {
+        // The tension of a cable whose stroke is commanded takes the stroke's place, which the file knows.
+        Ok(Parameter::Tension(cable)) if arm.cables.get(cable).is_none_or(|cable| cable.stroke.is_some()) => Way::File,
+        Ok(
+            parameter @ (Parameter::Tension(_)
+            | Parameter::FlowSpeed
+            | Parameter::FlowDirection
+            | Parameter::FlowDensity
+            | Parameter::TipForce(_)
+            | Parameter::TipMoment
+            | Parameter::TipFollower(_)),
+        ) => Way::Load(parameter),
+        Ok(parameter @ (Parameter::GravityAcceleration | Parameter::GravityDirection)) if arm.gravity.is_some() => {
+            Way::Load(parameter)
+        }
+        _ => Way::File,
+    }
+}
+
+/// Tries the values of a key one at a time, the ends of ranges.
+fn check(file: &ArmFile, axis: &Axis, alone: bool) -> Result<(), ValueError> {
+    let values: Vec<Value<'_>> = match &axis.values {
+        Values::Even { from, to, .. } | Values::Span { from, to } => [from, to].map(|v| Value::Number(*v)).into(),
+        Values::List(list) => list.iter().map(|v| Value::Number(*v)).collect(),
+        Values::Words(words) => words.iter().map(|word| Value::Word(word)).collect(),
+    };
+    for value in values {
+        let mut file = file.clone();
+        file.set_by(OPTION, &axis.key, &axis.text(value))?;
+        match file.arm() {
+            Ok(_) => {}
+            Err(FileError::Arm { ref source, .. }) if !alone && depends_on_others(source) => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+    Ok(())
+}
+
+/// Whether another key can mend it.
+fn depends_on_others(error: &ArmError) -> bool {
+    matches!(error, ArmError::InnerRadius { .. } | ArmError::OffsetOutside { .. } | ArmError::TableDoesNotCover { .. })
+}

@@ -1,0 +1,280 @@
+//! What is written of a row, and under which names.
+
+use std::fmt;
+use std::str::FromStr;
+
+use hydrostat::{Row, Stability, Verdict, Wanted};
+use hydrostat_files::{Axis, Value};
+
+/// Something that can be asked of every row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Output {
+    /// Place and angle of the tip.
+    Tip,
+    /// alpha at the tip.
+    Alpha,
+    /// How far each cable is reeled in.
+    Strokes,
+    /// The tension of each cable.
+    Tensions,
+    /// Base reaction.
+    Base,
+    /// How far the surface is from folding.
+    Fold,
+    /// Whether the row is stable, and in how many directions it is not.
+    Stability,
+    /// Estimated error of the tip position.
+    Error,
+    /// Why there is no answer: kind, phase, load fraction and place.
+    Verdict,
+}
+
+impl Output {
+    /// All, in the order of their columns.
+    pub const ALL: [Self; 9] = [
+        Self::Tip,
+        Self::Alpha,
+        Self::Strokes,
+        Self::Tensions,
+        Self::Base,
+        Self::Fold,
+        Self::Stability,
+        Self::Error,
+        Self::Verdict,
+    ];
+
+    /// What is written unless something else is asked for.
+    pub const DEFAULT: [Self; 6] = [Self::Tip, Self::Alpha, Self::Strokes, Self::Base, Self::Error, Self::Verdict];
+
+    /// The name that it is asked for with.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tip => "tip",
+            Self::Alpha => "alpha",
+            Self::Strokes => "strokes",
+            Self::Tensions => "tensions",
+            Self::Base => "base",
+            Self::Fold => "fold",
+            Self::Stability => "stability",
+            Self::Error => "error",
+            Self::Verdict => "verdict",
+        }
+    }
+}
+
+impl fmt::Display for Output {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Output {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        Self::ALL.into_iter().find(|output| output.name() == name.trim()).ok_or_else(|| {
+            let names: Vec<&str> = Self::ALL.iter().map(|output| output.name()).collect();
+            format!("expected some of {} with commas between, found \"{name}\"", names.join(", "))
+        })
+    }
+}
+
+/// The values of a column, in the order of the rows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Data {
+    /// Whole numbers, or nothing.
+    Whole(Vec<Option<i64>>),
+    /// Numbers; NaN is nothing.
+    Number(Vec<f64>),
+    /// Words, or nothing.
+    Text(Vec<Option<String>>),
+}
+
+impl Data {
+    /// How many values there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Whole(values) => values.len(),
+            Self::Number(values) => values.len(),
+            Self::Text(values) => values.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// A column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Its name, with the SI unit: `tip_x_m`.
+    pub name: String,
+    /// Its values.
+    pub data: Data,
+}
+
+/// What became of a row: its answer, or why there is none; nothing where its values make no arm.
+pub(crate) type Answer = Result<Row, Option<Verdict>>;
+
+/// The columns of a sweep.
+#[derive(Debug, Clone)]
+pub(crate) struct Layout {
+    outputs: Vec<Output>,
+    cables: usize,
+    stations: usize,
+}
+
+/// The first column.
+pub(crate) const ROW: &str = "row";
+
+impl Layout {
+    /// With these outputs (the verdict always is one) of arms with so many cables.
+    pub(crate) fn new(outputs: &[Output], cables: usize, stations: usize) -> Self {
+        let given = |output: &Output| *output == Output::Verdict || outputs.contains(output);
+        Self { outputs: Output::ALL.into_iter().filter(given).collect(), cables, stations }
+    }
+
+    pub(crate) fn outputs(&self) -> &[Output] {
+        &self.outputs
+    }
+
+    pub(crate) fn wanted(&self) -> Wanted {
+        let has = |output| self.outputs.contains(&output);
+        Wanted {
+            strokes: has(Output::Strokes),
+            fold_margin: has(Output::Fold),
+            stability: has(Output::Stability),
+            stations: self.stations,
+        }
+    }
+
+    /// Empty columns.
+    pub(crate) fn columns(&self, axes: &[Axis]) -> Vec<Column> {
+        let number = |name: String| Column { name, data: Data::Number(Vec::new()) };
+        let text = |name: &str| Column { name: name.to_owned(), data: Data::Text(Vec::new()) };
+        let mut out = vec![Column { name: ROW.to_owned(), data: Data::Whole(Vec::new()) }];
+        out.extend(axes.iter().map(|axis| match axis.dimension {
+            Some(_) => number(axis.column()),
+            None => text(&axis.column()),
+        }));
+        for output in &self.outputs {
+            let numbers: Vec<String> = match output {
+                Output::Tip => ["tip_x_m", "tip_y_m", "tip_theta_rad"].map(str::to_owned).into(),
+                Output::Alpha => vec!["tip_alpha_rad".to_owned()],
+                Output::Strokes => (0..self.cables).map(|c| format!("stroke[{c}]_m")).collect(),
+                Output::Tensions => (0..self.cables).map(|c| format!("tension[{c}]_N")).collect(),
+                Output::Base => ["base_force_x_N", "base_force_y_N", "base_moment_Nm"].map(str::to_owned).into(),
+                Output::Fold => ["fold_margin", "fold_s_m"].map(str::to_owned).into(),
+                Output::Error => vec!["error_estimate_m".to_owned()],
+                Output::Stability => {
+                    out.push(text("stability"));
+                    out.push(Column { name: "unstable_directions".to_owned(), data: Data::Whole(Vec::new()) });
+                    continue;
+                }
+                Output::Verdict => {
+                    out.extend([text("verdict"), text("phase")]);
+                    ["load_fraction", "verdict_s_m"].map(str::to_owned).into()
+                }
+            };
+            out.extend(numbers.into_iter().map(number));
+        }
+        for (name, unit) in SHAPE {
+            out.extend((0..self.stations).map(|k| number(format!("shape_{name}[{k}]_{unit}"))));
+        }
+        out
+    }
+
+    /// Adds a row to what [`Layout::columns`] has made; a row without a verdict has no arm.
+    pub(crate) fn add(&self, columns: &mut [Column], index: u64, values: &[Value<'_>], row: &Answer) {
+        let mut cells = Cells { columns: columns.iter_mut() };
+        cells.whole(i64::try_from(index).ok());
+        for value in values {
+            match value {
+                Value::Number(number) => cells.number(*number),
+                Value::Word(word) => cells.text(Some(word)),
+            }
+        }
+        let found = row.as_ref().ok();
+        let nothing = f64::NAN;
+        for output in &self.outputs {
+            match output {
+                Output::Tip => {
+                    let tip = found.map(|row| row.tip);
+                    cells.numbers([tip.map(|t| t.x), tip.map(|t| t.y), tip.map(|t| t.theta)]);
+                }
+                Output::Alpha => cells.number(found.map_or(nothing, |row| row.tip.alpha)),
+                Output::Strokes => cells.numbers((0..self.cables).map(|c| found?.strokes.get(c).copied())),
+                Output::Tensions => cells.numbers((0..self.cables).map(|c| found?.tensions.get(c).copied())),
+                Output::Base => {
+                    let base = found.map(|row| row.base_reaction);
+                    cells.numbers([base.map(|b| b.force[0]), base.map(|b| b.force[1]), base.map(|b| b.moment)]);
+                }
+                Output::Fold => {
+                    let fold = found.and_then(|row| row.fold_margin);
+                    cells.numbers([fold.map(|fold| fold.value), fold.map(|fold| fold.s)]);
+                }
+                Output::Error => cells.number(found.map_or(nothing, |row| row.error_estimate)),
+                Output::Stability => {
+                    let (word, directions) = match found.and_then(|row| row.stability) {
+                        Some(Stability::Stable) => (Some("stable"), Some(0)),
+                        Some(Stability::Unstable(count)) => (Some("unstable"), i64::try_from(count).ok()),
+                        Some(Stability::Marginal) => (Some("marginal"), None),
+                        None => (None, None),
+                    };
+                    cells.text(word);
+                    cells.whole(directions);
+                }
+                Output::Verdict => {
+                    let verdict = row.as_ref().err().and_then(Option::as_ref);
+                    let no_arm = row.is_err().then_some(NO_ARM);
+                    cells.text(verdict.map(|v| v.kind.name()).or(no_arm));
+                    cells.text(verdict.map(|v| v.phase.name()));
+                    cells.numbers([verdict.map(|v| v.load_fraction), verdict.and_then(|v| v.s)]);
+                }
+            }
+        }
+        let shape = found.map(|row| &row.stations);
+        for k in 0..SHAPE.len() {
+            let field = shape.map(|s| [&s.x, &s.y, &s.theta][k]);
+            cells.numbers((0..self.stations).map(|station| field?.get(station).copied()));
+        }
+    }
+}
+
+const SHAPE: [(&str, &str); 3] = [("x", "m"), ("y", "m"), ("theta", "rad")];
+
+/// The verdict of a row whose values together make no arm.
+pub const NO_ARM: &str = "no_arm";
+
+/// Columns that get a cell each, one after the other.
+struct Cells<'a> {
+    columns: std::slice::IterMut<'a, Column>,
+}
+
+impl Cells<'_> {
+    fn number(&mut self, value: f64) {
+        if let Some(Column { data: Data::Number(values), .. }) = self.columns.next() {
+            values.push(if value.is_finite() { value } else { f64::NAN });
+        }
+    }
+
+    fn numbers(&mut self, values: impl IntoIterator<Item = Option<f64>>) {
+        for value in values {
+            self.number(value.unwrap_or(f64::NAN));
+        }
+    }
+
+    fn text(&mut self, value: Option<&str>) {
+        if let Some(Column { data: Data::Text(values), .. }) = self.columns.next() {
+            values.push(value.map(str::to_owned));
+        }
+    }
+
+    fn whole(&mut self, value: Option<i64>) {
+        if let Some(Column { data: Data::Whole(values), .. }) = self.columns.next() {
+            values.push(value);
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! A sweep on its way: whole parts in a directory beside the output, and the plan that they are of.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+
+use hydrostat_files::write_whole;
+
+use crate::error::{SweepError, write_error};
+
+const PLAN: &str = "plan.json";
+
+/// The directory of the parts, held for this process alone.
+#[derive(Debug)]
+pub(crate) struct Parts {
+    directory: PathBuf,
+    ending: &'static str,
+    /// Locked as long as it is open.
+    plan: File,
+}
+
+/// A part that is there.
+#[derive(Debug, Clone)]
+pub(crate) struct Part {
+    pub(crate) path: PathBuf,
+    /// Its rows that have an answer.
+    pub(crate) answered: u64,
+}
+
+/// Where the parts of a sweep into `output` are.
+pub(crate) fn directory(output: &Path) -> PathBuf {
+    let mut name = output.file_name().unwrap_or_default().to_owned();
+    name.push(".parts");
+    output.with_file_name(name)
+}
+
+impl Parts {
+    /// Makes the directory, or with `resume` goes on with the one that is there.
+    ///
+    /// # Errors
+    /// [`SweepError`] when it is there without `resume`, is of another `plan`, is in use or cannot be written.
+    pub(crate) fn open(output: &Path, plan: &str, resume: bool, ending: &'static str) -> Result<Self, SweepError> {
+        let directory = directory(output);
+        let failed = |error| write_error(&directory, error);
+        let path = directory.join(PLAN);
+        if path.exists() {
+            if !resume {
+                return Err(SweepError::Begun { directory });
+            }
+        } else {
+            fs::create_dir_all(&directory).map_err(failed)?;
+        }
+        let mut file =
+            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
+        // On a file system without locks nothing can be held.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(SweepError::Locked { path: output.to_owned() });
+        }
+        let mut found = String::new();
+        file.read_to_string(&mut found).map_err(failed)?;
+        let parts = Self { directory, ending, plan: file };
+        if found.is_empty() {
+            // New, or the process that made it ended before it could say what it is of.
+            parts.clear()?;
+            parts.note(plan)?;
+        } else if found != plan {
+            let what = difference(&found, plan);
+            return Err(SweepError::Other { path: parts.directory, what });
+        }
+        parts.remove_temporary();
+        Ok(parts)
+    }
+
+    fn note(&self, plan: &str) -> Result<(), SweepError> {
+        let failed = |error| write_error(&self.directory, error);
+        let mut file = &self.plan;
+        file.write_all(plan.as_bytes()).and_then(|()| file.sync_all()).map_err(failed)
+    }
+
+    fn entries(&self) -> Result<Vec<(PathBuf, String)>, SweepError> {
+        let entries = fs::read_dir(&self.directory).map_err(|error| write_error(&self.directory, error))?;
+        Ok(entries.flatten().map(|entry| (entry.path(), entry.file_name().to_string_lossy().into_owned())).collect())
+    }
+
+    fn clear(&self) -> Result<(), SweepError> {
+        for (path, name) in self.entries()? {
+            if name != PLAN {
+                fs::remove_file(&path).map_err(|error| write_error(&path, error))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What a kill has left half-written.
+    fn remove_temporary(&self) {
+        for (path, _) in self.entries().unwrap_or_default().into_iter().filter(|(_, name)| name.starts_with('.')) {
+            // What cannot be removed does not count either.
+            let _ = fs::remove_file(path);
+        }
+    }
+
+    /// The parts that are there, by their number.
+    pub(crate) fn present(&self, count: usize) -> Result<Vec<Option<Part>>, SweepError> {
+        let mut out = vec![None; count];
+        for (path, name) in self.entries()? {
+            let numbers = || -> Option<(usize, u64)> {
+                let (index, answered) = name.strip_suffix(self.ending)?.strip_suffix('.')?.split_once('-')?;
+                Some((index.parse().ok()?, answered.parse().ok()?))
+            };
+            if let Some((index, answered)) = numbers()
+                && let Some(place) = out.get_mut(index)
+            {
+                *place = Some(Part { path, answered });
+            }
+        }
+        Ok(out)
+    }
+
+    /// Writes a part, whole or not at all. Its name says how many of its rows have an answer.
+    pub(crate) fn write(&self, index: usize, answered: u64, bytes: &[u8]) -> Result<Part, SweepError> {
+        let path = self.directory.join(format!("{index:06}-{answered}.{}", self.ending));
+        write_whole(&path, bytes)?;
+        Ok(Part { path, answered })
+    }
+
+    /// Removes the directory, whose parts are joined.
+    pub(crate) fn remove(self) -> Result<(), SweepError> {
+        self.clear()?;
+        let directory = self.directory.clone();
+        let plan = directory.join(PLAN);
+        drop(self);
+        let removed = fs::remove_file(plan).and_then(|()| fs::remove_dir(&directory));
+        removed.map_err(|error| write_error(&directory, error))
+    }
+}
+
+/// What two plans do not share, for a message.
+fn difference(found: &str, plan: &str) -> &'static str {
+    let [found, plan] = [found, plan].map(|text| serde_json::from_str::<serde_json::Value>(text).unwrap_or_default());
+    let differs = |key: &str| found[key] != plan[key];
+    let named = [
+        ("version", "version of the program"),
+        ("arm", "arm"),
+        ("vary", "list of keys and values"),
+        ("sample", "sample"),
+        ("seed", "seed"),
+        ("tol", "tolerance"),
+        ("columns", "list of columns"),
+        ("shapes", "number of stations"),
+        ("shard", "shard"),
+    ];
+    named.into_iter().find(|(key, _)| differs(key)).map_or("plan", |(_, words)| words)
+}
+
+/// Writes a file by `fill` beside `path` and renames it: it appears whole or not at all.
+pub(crate) fn whole(path: &Path, fill: impl FnOnce(&mut File) -> Result<(), SweepError>) -> Result<(), SweepError> {
+    let mut name = std::ffi::OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".tmp");
+    let temporary = path.with_file_name(name);
+    let written = File::create(&temporary).map_err(|error| write_error(path, error)).and_then(|mut file| {
+        fill(&mut file)?;
+        let done: io::Result<()> = file.sync_all().and_then(|()| fs::rename(&temporary, path));
+        done.map_err(|error| write_error(path, error))
+    });
+    if written.is_err() {
+        // The first error is the one to report.
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use crate::column::{Column, Data};
+    use crate::{csv_file, parquet_file};
+
+    /// What a full disk answers is what the error says, through the Parquet library, too.
+    #[test]
+    fn a_full_disk_is_named() {
+        let path = Path::new("/dev/full");
+        let open = || OpenOptions::new().write(true).open(path).unwrap();
+        let columns = [Column { name: "row".to_owned(), data: Data::Whole(Vec::new()) }];
+        let errors = [
+            csv_file::join(&[], &columns, path, open()).unwrap_err(),
+            parquet_file::join(&[], &columns, &[], path, &mut open()).unwrap_err(),
+        ];
+        for error in errors {
+            let SweepError::Write(write) = &error else { panic!("{error:?}") };
+            assert_eq!(write.source.kind(), io::ErrorKind::StorageFull, "{error}");
+            assert!(error.to_string().ends_with("make room, or choose another disk"), "{error}");
+        }
+    }
+}

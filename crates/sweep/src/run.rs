@@ -1,0 +1,375 @@
+//! A sweep from its plan to its output.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use hydrostat::{NoRow, Tile};
+use hydrostat_files::{ArmFile, arm_to_toml};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::arms::{Arms, Last};
+use crate::column::{Answer, Column, Layout, Output};
+use crate::error::{SweepError, parquet_error};
+use crate::parquet_file::Reader;
+use crate::parts::{Part, Parts, whole};
+use crate::plan::Plan;
+use crate::{csv_file, parquet_file};
+
+/// About so many parts of a sweep, within the bounds below.
+const PARTS: u64 = 64;
+/// The most rows of a part.
+const LONGEST: u64 = 16_384;
+/// The most numbers of a part, 8 bytes each.
+const LARGEST: u64 = 1 << 20;
+
+/// The key under which a Parquet file notes the sweep that it is of.
+pub const NOTE: &str = "hydrostat.sweep";
+
+/// How a file is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Parquet, compressed with zstd.
+    Parquet,
+    /// CSV with a header.
+    Csv,
+}
+
+impl Format {
+    /// By the ending of a file's name, `.parquet` or `.csv`.
+    pub fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "parquet" => Some(Self::Parquet),
+            "csv" => Some(Self::Csv),
+            _ => None,
+        }
+    }
+
+    fn ending(self) -> &'static str {
+        match self {
+            Self::Parquet => "parquet",
+            Self::Csv => "csv",
+        }
+    }
+}
+
+/// One of several equal shares of a sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// Which, from 1.
+    pub index: u64,
+    /// Of how many.
+    pub of: u64,
+}
+
+/// What is asked of a sweep beyond its plan.
+#[derive(Debug, Clone)]
+pub struct SweepOptions {
+    /// Error of the tip position over the length, in [1e-12, 1e-2].
+    pub tol: f64,
+    /// What is written of every row.
+    pub outputs: Vec<Output>,
+    /// So many equally spaced stations of every row; none below two.
+    pub stations: usize,
+    /// The share of the rows that is solved; `None` for all.
+    pub shard: Option<Shard>,
+}
+
+impl Default for SweepOptions {
+    fn default() -> Self {
+        Self { tol: 1e-6, outputs: Output::DEFAULT.to_vec(), stations: 0, shard: None }
+    }
+}
+
+/// What a sweep came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Summary {
+    /// Rows written.
+    pub rows: u64,
+    /// Rows that have an answer.
+    pub answered: u64,
+    /// Rows that an earlier run had left in whole parts.
+    pub resumed: u64,
+}
+
+/// A sweep that can be run.
+///
+/// ```
+/// use hydrostat_files::{ArmFile, shipped};
+/// use hydrostat_sweep::{Plan, Sample, Sweep, SweepOptions};
+///
+/// let directory = tempfile::tempdir().unwrap();
+/// let file = ArmFile::parse(shipped::get("silicone").unwrap(), "silicone").unwrap();
+/// let plan = Plan::new(vec!["cable[0].tension=0:1.5:7".parse().unwrap()], Sample::Grid, 0).unwrap();
+/// let sweep = Sweep::new(&file, plan, &SweepOptions::default()).unwrap();
+/// let out = directory.path().join("out.parquet");
+/// let summary = sweep.run(&out, false, 1, &|_| {}).unwrap();
+/// assert_eq!((summary.rows, summary.answered), (7, 5));
+/// let table = hydrostat_sweep::Table::read(&out, &["tip_y_m", "verdict"]).unwrap();
+/// assert_eq!(table.numbers("tip_y_m").unwrap().len(), 7);
+/// ```
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    plan: Plan,
+    arms: Arms,
+    layout: Layout,
+    start: Tile,
+    tiles: Range<u64>,
+    name: String,
+    note: String,
+}
+
+/// What is said of a sweep beside its rows.
+#[derive(Serialize)]
+struct Note<'a> {
+    version: &'static str,
+    arm: String,
+    vary: Vec<Varied<'a>>,
+    sample: String,
+    seed: u64,
+    tol: f64,
+    columns: Vec<&'static str>,
+    shapes: usize,
+    shard: Option<String>,
+    rows: Range<u64>,
+}
+
+#[derive(Serialize)]
+struct Varied<'a> {
+    key: &'a str,
+    column: String,
+    unit: &'a str,
+    per_si: f64,
+    values: String,
+}
+
+impl Sweep {
+    /// Of the arm of `file`, checked as far as it can be without solving.
+    ///
+    /// # Errors
+    /// [`SweepError`]: a key that the arm file does not have, a value that makes no arm, a tolerance or shard out of range.
+    pub fn new(file: &ArmFile, plan: Plan, options: &SweepOptions) -> Result<Self, SweepError> {
+        let arms = Arms::new(file, plan.axes())?;
+        let layout = Layout::new(&options.outputs, arms.base().cables.len(), options.stations);
+        let start = Tile::new(options.tol, layout.wanted())?;
+        let tiles = match options.shard {
+            None => 0..plan.tiles(),
+            Some(Shard { index, of }) => {
+                let tiles = plan.tiles();
+                if index == 0 || index > of || of > tiles {
+                    return Err(SweepError::Shard { index, of, tiles });
+                }
+                let at = |share: u64| u64::try_from(u128::from(tiles) * u128::from(share) / u128::from(of));
+                at(index - 1).unwrap_or(tiles)..at(index).unwrap_or(tiles)
+            }
+        };
+        let note = note(&plan, &arms, &layout, options, &tiles);
+        let name = arms.base().name.clone();
+        Ok(Self { plan, arms, layout, start, tiles, name, note })
+    }
+
+    /// The name of the arm.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its plan.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The rows of this sweep, or of this shard of it.
+    pub fn rows(&self) -> Range<u64> {
+        rows_of(&self.plan, &self.tiles)
+    }
+
+    /// The arm and all that the rows depend on, as JSON.
+    pub fn note(&self) -> &str {
+        &self.note
+    }
+
+    /// Solves all rows that are not there yet and writes `output`, whose name ends in `.csv`, or else is Parquet. With `resume`, goes
+    /// on with what an earlier run has left. `threads` of 0 are as many as the machine has. `done` hears how many
+    /// rows are solved or were found, from several threads.
+    ///
+    /// # Errors
+    /// [`SweepError`]; whole parts stay where they are, to go on from.
+    pub fn run(
+        &self,
+        output: &Path,
+        resume: bool,
+        threads: usize,
+        done: &(dyn Fn(u64) + Sync),
+    ) -> Result<Summary, SweepError> {
+        let format = Format::of(output).unwrap_or(Format::Parquet);
+        let rows = self.rows();
+        if output.exists() {
+            self.is_ended(output, resume, format)?;
+            let count = rows.end - rows.start;
+            return Ok(Summary { rows: count, answered: answered(output)?, resumed: count });
+        }
+        let parts = Parts::open(output, &self.note, resume, format.ending())?;
+        let tiles = self.parts();
+        let present = parts.present(tiles.len())?;
+        let resumed = present.iter().zip(&tiles).filter(|(part, _)| part.is_some()).map(|(_, tiles)| {
+            let rows = rows_of(&self.plan, tiles);
+            rows.end - rows.start
+        });
+        let resumed: u64 = resumed.sum();
+        let count = AtomicU64::new(resumed);
+        done(resumed);
+        let solve = |(index, (present, tiles)): (usize, (Option<Part>, &Range<u64>))| match present {
+            Some(part) => Ok(part),
+            None => {
+                self.part(index, tiles, &parts, format, &|rows| done(count.fetch_add(rows, Ordering::Relaxed) + rows))
+            }
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let written: Vec<Part> = pool.install(|| {
+            present.into_par_iter().zip(&tiles).enumerate().with_max_len(1).map(solve).collect::<Result<_, _>>()
+        })?;
+        let paths: Vec<PathBuf> = written.iter().map(|part| part.path.clone()).collect();
+        let columns = self.layout.columns(self.plan.axes());
+        whole(output, |file| match format {
+            Format::Parquet => {
+                let notes = [
+                    ("hydrostat.version", env!("CARGO_PKG_VERSION").to_owned()),
+                    ("hydrostat.arm", arm_to_toml(self.arms.base())),
+                    (NOTE, self.note.clone()),
+                ];
+                parquet_file::join(&paths, &columns, &notes, output, file)
+            }
+            Format::Csv => csv_file::join(&paths, &columns, output, file),
+        })?;
+        parts.remove()?;
+        let answered = written.iter().map(|part| part.answered).sum();
+        Ok(Summary { rows: rows.end - rows.start, answered, resumed })
+    }
+
+    /// An output that is there is the end of this sweep, or in the way.
+    fn is_ended(&self, output: &Path, resume: bool, format: Format) -> Result<(), SweepError> {
+        let exists = || SweepError::Exists { path: output.to_owned() };
+        if !resume {
+            return Err(exists());
+        }
+        // A kill between the renaming and the removal leaves both.
+        if crate::parts::directory(output).exists() {
+            return Parts::open(output, &self.note, true, format.ending())?.remove();
+        }
+        match format {
+            Format::Parquet if Reader::open(output)?.note(NOTE).as_deref() == Some(&self.note) => Ok(()),
+            Format::Parquet => Err(SweepError::Other { path: output.to_owned(), what: "plan" }),
+            // It does not say what it is of.
+            Format::Csv => Err(exists()),
+        }
+    }
+
+    /// The tiles of each part.
+    fn parts(&self) -> Vec<Range<u64>> {
+        let rows = self.rows();
+        let count = rows.end - rows.start;
+        let width = self.layout.columns(self.plan.axes()).len() as u64;
+        let size = (count / PARTS).clamp(1, LONGEST).min(LARGEST / width);
+        let mut out: Vec<Range<u64>> = Vec::new();
+        let mut start = self.tiles.start;
+        while start < self.tiles.end {
+            let mut end = start + 1;
+            let first = self.plan.tile(start).start;
+            while end < self.tiles.end && self.plan.tile(end).end - first <= size {
+                end += 1;
+            }
+            out.push(start..end);
+            start = end;
+        }
+        out
+    }
+
+    fn part(
+        &self,
+        index: usize,
+        tiles: &Range<u64>,
+        parts: &Parts,
+        format: Format,
+        done: &(dyn Fn(u64) + Sync),
+    ) -> Result<Part, SweepError> {
+        let solved: Vec<(Range<u64>, Vec<Answer>)> = tiles
+            .clone()
+            .into_par_iter()
+            .map(|tile| {
+                let (rows, answers) = self.tile(tile);
+                done(rows.end - rows.start);
+                (rows, answers)
+            })
+            .collect();
+        let mut columns: Vec<Column> = self.layout.columns(self.plan.axes());
+        let mut answered = 0;
+        for (rows, answers) in solved {
+            for (row, answer) in rows.zip(&answers) {
+                answered += u64::from(answer.is_ok());
+                self.layout.add(&mut columns, row, &self.plan.values(row), answer);
+            }
+        }
+        let bytes = match format {
+            Format::Parquet => {
+                parquet_file::part(&columns).map_err(|error| parquet_error(Path::new("a part"), error))?
+            }
+            Format::Csv => csv_file::part(&columns),
+        };
+        parts.write(index, answered, &bytes)
+    }
+
+    /// The rows of a tile with what became of each.
+    fn tile(&self, tile: u64) -> (Range<u64>, Vec<Answer>) {
+        let rows = self.plan.tile(tile);
+        let mut solver = self.start.clone();
+        let mut last = Last::default();
+        let mut solved: Vec<(u64, Answer)> = Vec::new();
+        for row in self.plan.order(tile) {
+            let arm = self.arms.arm(&self.plan.values(row), &mut last);
+            let answer = arm.ok_or(None).and_then(|arm| {
+                solver.solve(arm).map_err(|no| match no {
+                    NoRow::Verdict(verdict) => Some(verdict),
+                    NoRow::Arm(_) => None,
+                })
+            });
+            solved.push((row, answer));
+        }
+        solved.sort_unstable_by_key(|(row, _)| *row);
+        (rows, solved.into_iter().map(|(_, answer)| answer).collect())
+    }
+}
+
+fn rows_of(plan: &Plan, tiles: &Range<u64>) -> Range<u64> {
+    plan.tile(tiles.start).start..plan.tile(tiles.end.saturating_sub(1)).end
+}
+
+/// How many rows of a whole output have an answer.
+fn answered(output: &Path) -> Result<u64, SweepError> {
+    let table = crate::table::Table::read(output, &["verdict"])?;
+    Ok(table.words("verdict").map_or(0, |words| words.iter().filter(|word| word.is_none()).count() as u64))
+}
+
+fn note(plan: &Plan, arms: &Arms, layout: &Layout, options: &SweepOptions, tiles: &Range<u64>) -> String {
+    let vary = plan.axes().iter().map(|axis| Varied {
+        key: &axis.key,
+        column: axis.column(),
+        unit: axis.unit,
+        per_si: axis.per_si(),
+        values: format!("{:?}", axis.values),
+    });
+    let note = Note {
+        version: env!("CARGO_PKG_VERSION"),
+        arm: arm_to_toml(arms.base()),
+        vary: vary.collect(),
+        sample: plan.sample().to_string(),
+        seed: plan.seed(),
+        tol: options.tol,
+        columns: layout.outputs().iter().map(|output| output.name()).collect(),
+        shapes: options.stations,
+        shard: options.shard.map(|shard| format!("{}/{}", shard.index, shard.of)),
+        rows: rows_of(plan, tiles),
+    };
+    // A structure of plain fields always becomes JSON.
+    serde_json::to_string_pretty(&note).unwrap_or_default()
+}

@@ -1,0 +1,214 @@
+//! Outputs: what rows say, in Parquet and in CSV, on any number of threads, in shards and after stops.
+
+use std::path::Path;
+
+use hydrostat::{Options, Solver, Stability};
+use hydrostat_files::{ArmFile, Axis, shipped};
+use hydrostat_sweep::{Data, NO_ARM, NOTE, Output, Plan, Sample, Shard, Sweep, SweepError, SweepOptions, Table, names};
+
+fn file(name: &str) -> ArmFile {
+    ArmFile::parse(shipped::get(name).unwrap(), name).unwrap()
+}
+
+fn plan(texts: &[&str], sample: Sample) -> Plan {
+    Plan::new(texts.iter().map(|text| text.parse::<Axis>().unwrap()).collect(), sample, 1).unwrap()
+}
+
+fn sweep(name: &str, texts: &[&str], options: &SweepOptions) -> Sweep {
+    Sweep::new(&file(name), plan(texts, Sample::Grid), options).unwrap()
+}
+
+fn all(path: &Path) -> Table {
+    let names = names(path).unwrap();
+    Table::read(path, &names.iter().map(String::as_str).collect::<Vec<_>>()).unwrap()
+}
+
+const GRID: [&str; 2] = ["flow.speed=0:0.8:6", "cable[0].tension=0:60:40"];
+
+#[test]
+fn rows_are_the_arms_own_solves() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().join("out.parquet");
+    let keys =
+        ["arm.radius.tip=2 mm, 3 mm", "cable[1].stroke=-2 mm,1 mm", "flow.direction=0,30", "gravity.direction=-90,0"];
+    let options = SweepOptions { outputs: Output::ALL.to_vec(), stations: 3, ..SweepOptions::default() };
+    let sweep = sweep("silicone", &keys, &options);
+    let summary = sweep.run(&out, false, 2, &|_| {}).unwrap();
+    assert_eq!((summary.rows, summary.resumed), (16, 0));
+    let table = all(&out);
+    let column = |name: &str| table.numbers(name).unwrap_or_else(|| panic!("{name}"));
+    for row in [0_usize, 5, 10, 15] {
+        let mut file = file("silicone");
+        for (key, at) in [
+            ("arm.radius.tip", "_m"),
+            ("cable[1].stroke", "_m"),
+            ("flow.direction", "_rad"),
+            ("gravity.direction", "_rad"),
+        ] {
+            let value = column(&format!("{key}{at}"))[row];
+            let unit = if at == "_rad" { " rad" } else { "" };
+            file.set(key, &format!("{value:?}{unit}")).unwrap();
+        }
+        let own = Solver::new(&file.arm().unwrap(), Options { tol: 1e-6 }).unwrap().solve().unwrap();
+        let close = |name: &str, want: f64| {
+            let found = column(name)[row];
+            assert!((found - want).abs() <= 1e-5 * want.abs().max(0.01), "{name} of row {row}: {found} {want}");
+        };
+        close("tip_x_m", own.tip().x);
+        close("tip_theta_rad", own.tip().theta);
+        close("tip_alpha_rad", own.tip().alpha);
+        close("stroke[1]_m", own.cables[1].stroke);
+        close("tension[1]_N", own.cables[1].tension);
+        close("base_force_y_N", own.base_reaction.force[1]);
+        close("base_moment_Nm", own.base_reaction.moment);
+        close("fold_margin", own.fold_margin().value);
+        close("shape_y[2]_m", own.tip().y);
+        close("shape_theta[1]_rad", own.at(0.5 * own.arm.length).theta);
+        let stable = table.words("stability").unwrap()[row].clone();
+        assert_eq!(stable.as_deref() == Some("stable"), own.stability() == Some(Stability::Stable));
+    }
+}
+
+#[test]
+fn threads_and_shards_do_not_matter() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let sweep_of = |shard| sweep("paper", &GRID, &SweepOptions { shard, ..SweepOptions::default() });
+    let whole = sweep_of(None);
+    for (threads, name) in [(1, "one.parquet"), (2, "two.parquet"), (3, "three.parquet")] {
+        whole.run(&at(name), false, threads, &|_| {}).unwrap();
+    }
+    let bytes = |name: &str| std::fs::read(at(name)).unwrap();
+    assert!(bytes("one.parquet") == bytes("two.parquet") && bytes("one.parquet") == bytes("three.parquet"));
+
+    whole.run(&at("whole.csv"), false, 2, &|_| {}).unwrap();
+    let mut joined = String::new();
+    for index in 1..=2 {
+        let name = format!("{index}.csv");
+        sweep_of(Some(Shard { index, of: 2 })).run(&at(&name), false, 1, &|_| {}).unwrap();
+        let text = std::fs::read_to_string(at(&name)).unwrap();
+        joined.push_str(if index == 1 { &text } else { text.split_once('\n').unwrap().1 });
+    }
+    assert_eq!(joined, std::fs::read_to_string(at("whole.csv")).unwrap());
+    // Nothing is left but the outputs.
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 6);
+}
+
+#[test]
+fn parquet_and_csv_say_the_same() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let keys = ["model.volume=planar,none", "cable[0].tension=0:1.2:9"];
+    let outputs = [Output::Tip, Output::Fold, Output::Stability, Output::Strokes].to_vec();
+    let sweep = sweep("silicone", &keys, &SweepOptions { outputs, ..SweepOptions::default() });
+    for name in ["out.parquet", "out.csv"] {
+        let summary = sweep.run(&at(name), false, 2, &|_| {}).unwrap();
+        assert!(summary.answered > 9 && summary.answered < summary.rows, "{summary:?}");
+    }
+    let (parquet, csv) = (all(&at("out.parquet")), all(&at("out.csv")));
+    assert_eq!(names(&at("out.parquet")).unwrap(), names(&at("out.csv")).unwrap());
+    for column in parquet.columns() {
+        if let Data::Text(words) = &column.data {
+            assert_eq!(csv.words(&column.name).as_ref(), Some(words), "{}", column.name);
+            continue;
+        }
+        let bits =
+            |table: &Table| -> Vec<u64> { table.numbers(&column.name).unwrap().iter().map(|v| v.to_bits()).collect() };
+        assert_eq!(bits(&parquet), bits(&csv), "{}", column.name);
+    }
+    // What has no answer says why.
+    let verdicts = parquet.words("verdict").unwrap();
+    let tips = parquet.numbers("tip_x_m").unwrap();
+    assert!(verdicts.iter().zip(&tips).all(|(verdict, tip)| verdict.is_some() == tip.is_nan()));
+    assert!(verdicts.iter().any(|verdict| verdict.as_deref() == Some("cable_fold")));
+    let fractions = parquet.numbers("load_fraction").unwrap();
+    assert!(fractions.iter().zip(&tips).all(|(fraction, tip)| fraction.is_nan() != tip.is_nan()));
+}
+
+#[test]
+fn values_that_do_not_go_together_are_a_verdict() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().join("out.csv");
+    let keys = ["arm.radius.tip=1 mm,4 mm", "arm.inner_radius=0,\"3 mm\""];
+    let summary = sweep("silicone", &keys, &SweepOptions::default()).run(&out, false, 1, &|_| {}).unwrap();
+    assert_eq!((summary.rows, summary.answered), (4, 3));
+    let verdicts = all(&out).words("verdict").unwrap();
+    assert_eq!(verdicts[1].as_deref(), Some(NO_ARM));
+    let refused = |keys: &[&str]| {
+        Sweep::new(&file("silicone"), plan(keys, Sample::Grid), &SweepOptions::default()).unwrap_err().to_string()
+    };
+    assert!(
+        refused(&["arm.length=-1:1:3"]).starts_with("--vary arm.length=-1.0: arm.length: expected a value above zero")
+    );
+    assert!(refused(&["flow.law=momentum,magnus"]).contains("--vary flow.law=magnus"));
+    assert!(refused(&["cable[7].tension=0:1:3"]).contains("2 cables"));
+    assert!(refused(&["arm.inner_radius=\"20 mm\",0"]).contains("less than the radius"));
+}
+
+#[test]
+fn a_file_says_what_it_is_of() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().join("out.parquet");
+    let sweep = sweep("paper", &["flow.speed=0:50 cm/s:3"], &SweepOptions::default());
+    sweep.run(&out, false, 1, &|_| {}).unwrap();
+    let keys = hydrostat_sweep::varied_keys(&out).unwrap();
+    assert_eq!((keys[0].name.as_str(), keys[0].unit.as_str(), keys[0].per_si), ("flow.speed", "cm/s", 100.0));
+    let text = String::from_utf8_lossy(&std::fs::read(&out).unwrap()).into_owned();
+    for note in [NOTE, "hydrostat.arm", "hydrostat.version", "[[cable]]", "\"tol\""] {
+        assert!(text.contains(note), "{note}");
+    }
+    let csv = directory.path().join("out.csv");
+    sweep.run(&csv, false, 1, &|_| {}).unwrap();
+    let keys = hydrostat_sweep::varied_keys(&csv).unwrap();
+    assert_eq!((keys.len(), keys[0].name.as_str(), keys[0].unit.as_str()), (1, "flow.speed", "m/s"));
+}
+
+#[test]
+fn a_stopped_sweep_goes_on_and_no_other() {
+    let directory = tempfile::tempdir().unwrap();
+    let (out, want) = (directory.path().join("out.parquet"), directory.path().join("want.parquet"));
+    let whole = sweep("paper", &GRID, &SweepOptions::default());
+    whole.run(&want, false, 2, &|_| {}).unwrap();
+    // Stopped by a place that cannot be written once the first part is there.
+    let parts = directory.path().join("out.parquet.parts");
+    let stop = |done: u64| {
+        if done > 0 && !out.exists() {
+            std::fs::create_dir(&out).unwrap();
+        }
+    };
+    assert!(matches!(whole.run(&out, false, 1, &stop), Err(SweepError::Write(_))));
+    std::fs::remove_dir(&out).unwrap();
+    let kept = std::fs::read_dir(&parts).unwrap().count();
+    assert!(kept > 2, "{kept}");
+
+    assert!(matches!(whole.run(&out, false, 1, &|_| {}), Err(SweepError::Begun { .. })));
+    let other = sweep("paper", &GRID, &SweepOptions { tol: 1e-7, ..SweepOptions::default() });
+    let error = other.run(&out, true, 1, &|_| {}).unwrap_err();
+    assert!(matches!(error, SweepError::Other { what: "tolerance", .. }), "{error}");
+
+    // One part is lost, another was never renamed.
+    let part = std::fs::read_dir(&parts).unwrap().flatten().find(|e| e.file_name() != "plan.json").unwrap();
+    std::fs::remove_file(part.path()).unwrap();
+    std::fs::write(parts.join(".000000-1.parquet.1-0.tmp"), "half").unwrap();
+    let summary = whole.run(&out, true, 2, &|_| {}).unwrap();
+    assert!(summary.resumed > 0 && summary.resumed < 240, "{summary:?}");
+    assert!(std::fs::read(&out).unwrap() == std::fs::read(&want).unwrap());
+    assert!(!parts.exists());
+
+    let again = whole.run(&out, true, 2, &|_| {}).unwrap();
+    assert_eq!((again.rows, again.resumed, again.answered), (240, 240, summary.answered));
+    assert!(matches!(whole.run(&out, false, 2, &|_| {}), Err(SweepError::Exists { .. })));
+    assert!(matches!(other.run(&out, true, 2, &|_| {}), Err(SweepError::Other { .. })));
+}
+
+#[test]
+fn what_is_no_sweep_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    for (name, text) in [("a.csv", "s_m,x_m\n0,0\n"), ("b.parquet", "PAR1 not"), ("c.csv", ""), ("d.csv", "row,a\n1\n")]
+    {
+        let path = directory.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let error = Table::read(&path, &["a"]).unwrap_err();
+        assert!(matches!(error, SweepError::Read { .. }), "{name}: {error}");
+    }
+}
