@@ -125,6 +125,18 @@ impl Mesh {
         self.pinned.push(Pin::Pinned);
     }
 
+    /// Moves the nodes on by `share` times their way from the mesh `before` to this one; `None` where the two do not
+    /// correspond node by node, or where that would more than halve or double an element.
+    pub fn led_on(&self, before: &Self, share: f64) -> Option<Self> {
+        if self.pinned != before.pinned {
+            return None;
+        }
+        let ahead = |i: usize| self.nodes[i] + share * (self.nodes[i] - before.nodes[i]);
+        let fits = |i: usize| (0.5..=2.0).contains(&((ahead(i + 1) - ahead(i)) / self.step(i)));
+        let nodes = (0..self.nodes.len()).map(ahead).collect();
+        (0..self.elements()).all(fits).then_some(Self { nodes, pinned: self.pinned.clone() })
+    }
+
     /// This mesh with every element cut into `parts` equal ones.
     pub fn cut(&self, parts: usize) -> Self {
         let mut mesh = Self { nodes: vec![0.0], pinned: vec![Pin::Pinned] };

@@ -434,10 +434,7 @@ impl Arm {
             return Err(ArmError::TensionCount { cables: self.cables.len(), given: tensions.len() });
         }
         for (i, (cable, &tension)) in self.cables.iter().zip(tensions).enumerate() {
-            let fine = tension >= 0.0 && tension.is_finite() && cable.max_tension.is_none_or(|most| tension <= most);
-            if !fine {
-                self.check_cable(i, &Cable { tension, stroke: None, ..cable.clone() }, self.length)?;
-            }
+            self.check_tension(i, cable, tension)?;
         }
         Ok(())
     }
@@ -503,17 +500,7 @@ impl Arm {
             self.check_cable(i, cable, length)?;
         }
         self.check_flow()?;
-        if let Some(gravity) = &self.gravity {
-            not_negative("gravity.acceleration", gravity.acceleration)?;
-            finite("gravity.direction", gravity.direction)?;
-        }
-        for v in self.tip.force {
-            finite("tip.force", v)?;
-        }
-        finite("tip.moment", self.tip.moment)?;
-        for v in self.tip.follower {
-            finite("tip.follower", v)?;
-        }
+        self.check_weight_and_tip()?;
         self.distributed.force[0].check("distributed.force[0]", length)?;
         self.distributed.force[1].check("distributed.force[1]", length)?;
         self.distributed.couple.check("distributed.couple", length)
@@ -589,6 +576,36 @@ impl Arm {
             if offset.abs() > radius * (1.0 + 1e-12) {
                 return Err(ArmError::OffsetOutside { key: key("offset"), s, offset, radius });
             }
+        }
+        Ok(())
+    }
+
+    /// Tensions, stream, weight and tip loads of an arm whose other numbers were checked.
+    pub(crate) fn check_loads(&self) -> Result<(), ArmError> {
+        for (i, cable) in self.cables.iter().enumerate() {
+            self.check_tension(i, cable, cable.tension)?;
+        }
+        self.check_flow()?;
+        self.check_weight_and_tip()
+    }
+
+    /// A tension of cable `i`; keys are only written where they are needed.
+    fn check_tension(&self, i: usize, cable: &Cable, tension: f64) -> Result<(), ArmError> {
+        let fine = tension >= 0.0 && tension.is_finite() && cable.max_tension.is_none_or(|most| tension <= most);
+        if fine { Ok(()) } else { self.check_cable(i, &Cable { tension, stroke: None, ..cable.clone() }, self.length) }
+    }
+
+    fn check_weight_and_tip(&self) -> Result<(), ArmError> {
+        if let Some(gravity) = &self.gravity {
+            not_negative("gravity.acceleration", gravity.acceleration)?;
+            finite("gravity.direction", gravity.direction)?;
+        }
+        for v in self.tip.force {
+            finite("tip.force", v)?;
+        }
+        finite("tip.moment", self.tip.moment)?;
+        for v in self.tip.follower {
+            finite("tip.follower", v)?;
         }
         Ok(())
     }

@@ -130,7 +130,7 @@ pub(crate) struct Engine {
 }
 
 /// Strains, beta' and beta'' at a station to be.
-type SectionGuess = ([f64; 3], f64, f64);
+pub(crate) type SectionGuess = ([f64; 3], f64, f64);
 
 /// The methods of solve and check, and the weights that take the stages of one to those of the other.
 #[derive(Debug)]
@@ -601,6 +601,31 @@ impl Engine {
         self.equations.place_stations(&self.stations, mesh, |k| guesses[k]);
     }
 
+    /// Moves the solution on by `share` times its way from the solution `before`, nodes on kinks with it. Left as it is where the
+    /// two do not correspond node by node.
+    pub(crate) fn lead_on(&mut self, before: &Guess, share: f64) {
+        let Some(mesh) = self.solution.mesh.led_on(&before.mesh, share) else { return };
+        let lead = |own: &mut [f64; N], other: &[f64; N]| {
+            for a in 0..N {
+                own[a] += share * (own[a] - other[a]);
+            }
+        };
+        let Solution { nodes, slopes, .. } = &mut self.solution;
+        nodes.iter_mut().zip(&before.nodes).for_each(|(own, other)| lead(own, other));
+        slopes.iter_mut().flatten().zip(before.slopes.iter().flatten()).for_each(|(own, other)| lead(own, other));
+        if mesh == self.solution.mesh {
+            return;
+        }
+        self.foresee();
+        let remembered = (0..self.stations.len()).map(|k| self.equations.station_guess(k));
+        self.guesses.clear();
+        self.guesses.extend(remembered);
+        self.solution.mesh = mesh;
+        self.system.stations(&self.solution.mesh, &mut self.stations);
+        let guesses = &self.guesses;
+        self.equations.place_stations(&self.stations, &self.solution.mesh, |k| guesses[k]);
+    }
+
     /// Brings what is remembered at the stations up to the solution, to first order.
     pub(crate) fn foresee(&mut self) {
         let (system, equations, solution) = (&mut self.system, &mut self.equations, &self.solution);
@@ -863,6 +888,23 @@ impl Engine {
     pub(crate) fn change_loads(&mut self, change: impl Fn(&mut Arm)) {
         self.equations.change_loads(&change);
         self.check_equations.change_loads(&change);
+    }
+
+    /// [`Engine::set_loads`] of an arm that differs in tensions, stream, weight and tip loads only.
+    pub(crate) fn take_loads(&mut self, arm: &Arm) {
+        let own = self.equations.arm();
+        if own.gravity != arm.gravity || own.flow.density != arm.flow.density {
+            self.set_loads(arm);
+            return;
+        }
+        self.change_loads(|own| {
+            for (own, cable) in own.cables.iter_mut().zip(&arm.cables) {
+                own.tension = cable.tension;
+                own.max_tension = cable.max_tension;
+            }
+            own.flow.clone_from(&arm.flow);
+            own.tip.clone_from(&arm.tip);
+        });
     }
 
     /// Takes other tensions, stream or loads for the same arm.

@@ -284,6 +284,12 @@ impl Equilibrium {
         self.memory[block].strain.map(|v| v.0[lane])
     }
 
+    /// Strains, beta' and beta'' at station `k`.
+    pub(crate) fn station_guess(&self, k: usize) -> ([f64; 3], f64, f64) {
+        let (block, lane) = self.groups.station(k);
+        (self.strain(k), self.beta.slope[block].0[lane], self.beta.curvature[block].0[lane])
+    }
+
     /// Switch `which` of the load at stage `j` of element `i`.
     pub(crate) fn switch(&self, i: usize, j: usize, which: usize) -> f64 {
         let (block, lane) = self.groups.at(i, j);

@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use crate::arm::{Arm, ArmError, Flow};
 use crate::configuration::{Configuration, FoldMargin, Stations, Tip, Wrench};
 use crate::engine::{Engine, First, Guess};
-use crate::equilibrium::N;
 use crate::path::Travelled;
 use crate::readings::Support;
 use crate::solve::{Options, Solver};
@@ -130,14 +129,15 @@ impl Tile {
     /// # Errors
     /// [`NoRow`].
     pub fn solve(&mut self, arm: &Arm) -> Result<Row, NoRow> {
-        arm.check()?;
         // What a row leaves behind is a start for the next one only if it was solved.
         if let Some(mut solver) = self.solver.take()
             && differ_in_loads(solver.engine.equations.arm(), arm)
-            && let Some(row) = self.warm(&mut solver, arm)
         {
-            self.solver = Some(solver);
-            return Ok(row);
+            arm.check_loads()?;
+            if let Some(row) = self.warm(&mut solver, arm) {
+                self.solver = Some(solver);
+                return Ok(row);
+            }
         }
         self.cold(arm)
     }
@@ -160,11 +160,13 @@ impl Tile {
     fn warm(&mut self, solver: &mut Solver, arm: &Arm) -> Option<Row> {
         let engine = &mut solver.engine;
         let here = Point { solution: engine.solution.clone(), loads: loads(engine.equations.arm()) };
-        if let Some(before) = &self.before {
-            extrapolate(&mut engine.solution, before, &here, &loads(arm));
+        if let Some(before) = &self.before
+            && let Some(share) = further(&before.loads, &here.loads, &loads(arm))
+        {
+            engine.lead_on(&before.solution, share);
         }
         self.before = Some(here);
-        engine.set_loads(arm);
+        engine.take_loads(arm);
         engine.set_phase(Phase::Tension, 1.0);
         engine.on_a_path = false;
         engine.reset_statistics();
@@ -241,31 +243,18 @@ fn loads(arm: &Arm) -> Vec<f64> {
     others.into_iter().chain(arm.cables.iter().map(|cable| cable.tension)).collect()
 }
 
-/// Moves the solution `here` on along the line through it and the one `before`, where `loads` lie on that line, too, and not
-/// much further, and where both stand on one mesh.
-fn extrapolate(solution: &mut Guess, before: &Point, here: &Point, loads: &[f64]) {
+/// How far along the line from the loads `before` to those `here` further `loads` are, over that way; `None` where they are
+/// not on it or much further.
+fn further(before: &[f64], here: &[f64], loads: &[f64]) -> Option<f64> {
     const LONGEST: f64 = 2.0;
-    let step = |k: usize| here.loads[k] - before.loads[k];
-    let Some(steepest) = (0..loads.len()).max_by(|a, b| step(*a).abs().total_cmp(&step(*b).abs())) else { return };
-    let share = (loads[steepest] - here.loads[steepest]) / step(steepest);
+    let step = |k: usize| here[k] - before[k];
+    let steepest = (0..loads.len()).max_by(|a, b| step(*a).abs().total_cmp(&step(*b).abs()))?;
+    let share = (loads[steepest] - here[steepest]) / step(steepest);
     let on_line = |k: usize| {
-        let size = here.loads[k].abs().max(loads[k].abs());
-        (here.loads[k] + share * step(k) - loads[k]).abs() <= 1e-9 * size
+        let size = here[k].abs().max(loads[k].abs());
+        (here[k] + share * step(k) - loads[k]).abs() <= 1e-9 * size
     };
-    let small = share.abs() <= LONGEST;
-    if !small || !(0..loads.len()).all(on_line) || before.solution.mesh != here.solution.mesh {
-        return;
-    }
-    let all = |solution: &mut Guess, other: &Guess, factor: f64| {
-        let slopes = solution.slopes.iter_mut().flatten().zip(other.slopes.iter().flatten());
-        for (own, other) in solution.nodes.iter_mut().zip(&other.nodes).chain(slopes) {
-            for a in 0..N {
-                own[a] += factor * other[a];
-            }
-        }
-    };
-    all(solution, &here.solution, share);
-    all(solution, &before.solution, -share);
+    (share.abs() <= LONGEST && (0..loads.len()).all(on_line)).then_some(share)
 }
 
 /// Whether an arm differs from another in what a solver takes between two solves.

@@ -275,11 +275,7 @@ impl Solver {
                 theta: self.engine.tip_angle(),
                 alpha: end.strain[1].atan2(end.strain[0]),
             };
-            return Ok(Answer {
-                tip,
-                error_estimate: estimate * length,
-                statistics: self.engine.statistics(0),
-            });
+            return Ok(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(0) });
         }
         let found = self.resolve()?;
         Ok(Answer { tip: found.tip(), error_estimate: found.error_estimate, statistics: found.statistics })

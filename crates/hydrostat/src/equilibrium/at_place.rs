@@ -2,8 +2,8 @@
 
 use hydrostat_bvp::{LANES, Lanes, Local, Real, each};
 
-use super::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
 use super::few::Few;
+use super::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
 use super::places::{Place, blank_cable, set_lane, splat};
 use super::strains::solve_section;
 use super::{Equilibrium, N, Q, SectionFailure};
