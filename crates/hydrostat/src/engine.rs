@@ -1,6 +1,8 @@
 //! From an arm to its configuration.
 
-use hydrostat_bvp::{Collocation, Correction, Gauss, Limits, Mesh, RoundError, Solution};
+mod held;
+
+use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Limits, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
 use crate::configuration::Statistics;
@@ -8,6 +10,8 @@ use crate::dispatch::{Work, dispatch, widest};
 use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
 use crate::friction::Grip;
 use crate::verdict::Phase;
+
+pub(crate) use self::held::Round;
 
 /// Stages of the solve, and of the check that estimates its error.
 pub(crate) const M: usize = 4;
@@ -83,6 +87,8 @@ pub(crate) struct Engine {
     rest: f64,
     /// Tip position over L at the last round.
     pub(crate) tip: [f64; Q],
+    /// The part of unknown tensions in the determinant of the last round.
+    border: Determinant,
 }
 
 struct Evaluate<'a, const S: usize> {
@@ -228,6 +234,7 @@ impl Engine {
             rest: 0.0,
             on_a_path: false,
             tip: [0.0; 2],
+            border: Determinant { sign: 1.0, log: 0.0 },
         }
     }
 
@@ -343,6 +350,9 @@ impl Engine {
     /// Newton until the tip moves by less than `tolerance`, or, looking `ahead`, until it would move by
     /// less in the round to come.
     fn iterate(&mut self, tolerance: f64, most: usize, ahead: bool) -> Result<(), Trouble> {
+        if self.equations.held.is_some() {
+            return self.iterate_held(tolerance, most);
+        }
         let clamped = self.equations.arm().readings.support == crate::Support::Clamped;
         let most = if clamped { most } else { 60 };
         let mut applied = 0.0;
@@ -421,14 +431,6 @@ impl Engine {
     /// Brings stages, strains and switches up to date with the solution.
     pub(crate) fn refresh(&mut self) -> Result<(), SectionFailure> {
         evaluate(&mut self.system, &mut self.equations, &self.solution)
-    }
-
-    /// Takes tip and spans at the present solution, which Newton has converged to by other rounds than these.
-    pub(crate) fn take_stock(&mut self) -> Result<(), Trouble> {
-        self.linearise(false)?;
-        self.system.quadratures(&mut self.spans);
-        self.tip = self.system.totals();
-        Ok(())
     }
 
     /// Compares with one more stage an element: what the tip would move, over L. Fills the errors

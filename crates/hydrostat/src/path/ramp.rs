@@ -27,6 +27,18 @@ pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdi
     Ok(travelled)
 }
 
+/// Follows the strokes to those commanded, or to a verdict, from the engine's equilibrium without them.
+pub(crate) fn follow_strokes(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdict> {
+    let mut travelled = Travelled::default();
+    let phase = Phase::Stroke;
+    let stepper = Stepper::new(engine, Along::Phase(phase), [f64::NEG_INFINITY, 1.0]);
+    let outcome = Ramp { stepper, phase }.follow(pace, &mut travelled);
+    engine.equations.let_cables_switch(true);
+    outcome?;
+    engine.set_phase(phase, 1.0);
+    Ok(travelled)
+}
+
 /// One phase of the path.
 struct Ramp<'e> {
     stepper: Stepper<'e>,
@@ -65,7 +77,22 @@ impl Ramp<'_> {
             }
             match self.stepper.advance(&here, step, pace) {
                 Ok((mut next, turn)) => {
-                    if turn == Turn::Crossing {
+                    let contact = self.stepper.contact(&here, &next, step, pace);
+                    let mut corner = None;
+                    match contact {
+                        Ok(None) => {}
+                        Ok(Some(contact)) => {
+                            next = contact.at;
+                            corner = Some(contact.after);
+                        }
+                        Err(trouble) => {
+                            self.stepper.last_trouble = Some(trouble);
+                            step *= 0.4;
+                            self.stepper.engine.restore(&here.state);
+                            continue;
+                        }
+                    }
+                    if turn == Turn::Crossing && corner.is_none() {
                         // The branch goes straight on through a bifurcation.
                         self.stepper.orientation = -self.stepper.orientation;
                         next.rise = -next.rise;
@@ -76,6 +103,17 @@ impl Ramp<'_> {
                         return Err(self.end(VerdictKind::LimitPoint, limit.clamp(0.0, 1.0), None));
                     }
                     travelled.steps += 1;
+                    if let Some(after) = corner {
+                        if after.rise < 0.0 {
+                            // Where a cable goes slack or taut the path turns back in a corner.
+                            self.stepper.engine.restore(&next.state);
+                            return Err(self.end(VerdictKind::LimitPoint, next.fraction, None));
+                        }
+                        here = after;
+                        steeper = (here.fraction, here.rise);
+                        step = 0.1_f64.min(pace.longest);
+                        continue;
+                    }
                     if next.fraction == 1.0 {
                         travelled.symmetric = next.is_symmetric();
                         return Ok(());
@@ -121,6 +159,7 @@ impl Ramp<'_> {
         if refined {
             self.stepper.or_back(|this| this.engine.settle(1e-8, true).map(|_| ()));
         }
+        self.stepper.engine.equations.let_cables_switch(false);
         self.stepper.point(fraction)
     }
 
