@@ -11,7 +11,7 @@ use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Nearness, Q, SectionFai
 use crate::friction::Grip;
 use crate::verdict::Phase;
 
-pub(crate) use self::held::Round;
+pub(crate) use self::held::{Pulled, Round, at_stations, pull_taut, solved};
 
 /// Stages of the solve, and of the check that estimates its error.
 pub(crate) const M: usize = 4;

@@ -155,6 +155,15 @@ impl Parameter {
         }
     }
 
+    /// A value of it (in [`Parameter::unit`]) with its unit, angles in degrees.
+    pub(crate) fn shown(self, value: f64) -> String {
+        match self.unit() {
+            "rad" => format!("{} deg", value.to_degrees()),
+            "" => value.to_string(),
+            unit => format!("{value} {unit}"),
+        }
+    }
+
     /// Its value in `arm`.
     ///
     /// # Errors

@@ -16,6 +16,9 @@
 //! which the arm leaves the equilibrium. Rates are given over the slowest decay of the same arm unloaded, which
 //! drops the coefficients' unit.
 //!
+//! Where the strokes of cables are commanded, C is that of the arm with the lengths of the taut ones held (the last part of
+//! `compliance`): their tensions change with a motion, slack ones stay slack.
+//!
 //! The number of real positive rates is even where the determinant of the equilibrium is positive and odd where it is
 //! negative, whatever the metric; pairs of complex ones, which the metric does bear on, leave
 //! it as it is. Flutter, which takes inertia, is out of reach: Beck's column flutters where the overdamped one
@@ -25,11 +28,11 @@ use hydrostat_bvp::{Collocation, Condition, Correction, Mesh, Problem, Solution}
 use nalgebra::DMatrix;
 use nalgebra::linalg::Schur;
 
-use crate::compliance::{Compliance, FIELDS};
+use crate::compliance::{Compliance, FIELDS, project};
 use crate::configuration::Configuration;
 use crate::dense::Dense;
 use crate::dispatch::widest;
-use crate::engine::{M, linearise, solve};
+use crate::engine::{M, Pulled, at_stations, linearise, pull_taut, solve, solved};
 use crate::equilibrium::{Equilibrium, N, Q};
 use crate::readings::Support;
 use crate::verdict::Phase;
@@ -102,8 +105,9 @@ impl Configuration {
     /// How fast small overdamped motions about this equilibrium grow or decay: of the velocity of the
     /// centreline over L and of the rate of turn, each against a resistance of one along the whole arm.
     ///
-    /// Computed when asked for, in one to two milliseconds. `None` where a taut cable's stroke is commanded (what its
-    /// length holds back is not counted yet), with [`Support::UnstrainedBase`], whose arm is
+    /// Taut cables whose stroke is commanded hold their lengths, whichever way the arm moves.
+    ///
+    /// Computed when asked for, in one to two milliseconds. `None` with [`Support::UnstrainedBase`], whose arm is
     /// no equilibrium at the tip, and where the number of growing motions does not settle as they are resolved more finely.
     pub fn growth(&self) -> Option<Growth> {
         growth(self.dense()).map(|(growth, _)| growth)
@@ -118,12 +122,11 @@ fn growing(rates: &[[f64; 2]]) -> usize {
 /// The growth, and how many times it was resolved more finely.
 fn growth(dense: &Dense) -> Option<(Growth, usize)> {
     let arm = dense.equations.arm();
-    let held = arm.cables.iter().any(|c| c.stroke.is_some() && c.tension > 0.0);
-    if held || arm.readings.support == Support::UnstrainedBase {
+    if arm.readings.support == Support::UnstrainedBase {
         return None;
     }
     for (level, functions) in POLYNOMIALS.into_iter().enumerate() {
-        let tangent = Tangent::new(dense, functions)?;
+        let mut tangent = Tangent::new(dense, functions)?;
         let unit = tangent.slowest_decay(functions)?;
         let compliance = tangent.compliance(functions)?;
         let mut rates = scaled_rates(&compliance, functions, unit)?;
@@ -194,6 +197,7 @@ impl Tangent {
     /// The slowest decay of the arm on the same mesh with no load at all: reference strains, nothing carried.
     fn slowest_decay(&self, functions: usize) -> Option<f64> {
         let mut equations = self.equations.clone();
+        equations.let_go();
         equations.set_phase(Phase::Loads, 0.0);
         equations.forget_strains();
         let system = Collocation::new();
@@ -240,19 +244,58 @@ impl Tangent {
 
     fn linearise(&mut self) -> Option<()> {
         let Self { equations, system, solution, sign } = self;
-        linearise(system, equations, solution, false).ok()?;
-        *sign = system.determinant().sign;
+        let held = equations.held.clone().filter(|held| held.taut.contains(&true));
+        let mut border = 1.0;
+        match held {
+            None => linearise(system, equations, solution, false).ok()?,
+            Some(held) => {
+                let pulled = pull_taut(equations, system, solution, &held).ok()?;
+                let taut = held.tight();
+                let row = |i: &usize| (pulled.iter().map(|by| by.strokes[*i]).collect(), [0.0; 2]);
+                border = solved(taut.iter().map(row).collect())?.1.sign;
+            }
+        }
+        *sign = border * system.determinant().sign;
         Some(())
     }
 
-    fn compliance(&self, functions: usize) -> Option<Compliance> {
+    fn compliance(&mut self, functions: usize) -> Option<Compliance> {
+        let held = self.equations.held.clone().filter(|held| held.taut.contains(&true));
+        let (mut pulled, mut gradients, mut taut) = (Vec::new(), Vec::new(), Vec::new());
+        if let Some(held) = &held {
+            pulled = pull_taut(&mut self.equations, &mut self.system, &self.solution, held).ok()?;
+            taut = held.tight();
+            let weights = self.system.gauss.b;
+            gradients.extend(taut.iter().map(|i| self.equations.stroke_gradients(held.cables[*i], &weights)));
+        }
         let mesh = &self.solution.mesh;
         let mut right = [Condition::default(); N];
         self.equations.right(&self.solution.nodes[mesh.elements()], &mut right);
-        widest(
+        let mut compliance = widest(
             #[inline(always)]
-            || Compliance::new(&self.system, mesh, &right, functions),
-        )
+            || Compliance::new(&self.system, mesh, &right, functions, &gradients),
+        )?;
+        let motions: Vec<Vec<f64>> = pulled.iter().map(|pulled| self.motion(pulled, functions)).collect();
+        let strokes: Vec<Vec<f64>> =
+            pulled.iter().map(|pulled| taut.iter().map(|i| pulled.strokes[*i]).collect()).collect();
+        if !motions.is_empty() {
+            compliance.hold(&motions, &strokes)?;
+        }
+        Some(compliance)
+    }
+
+    /// Projection of what a unit of tension moves.
+    fn motion(&self, pulled: &Pulled, functions: usize) -> Vec<f64> {
+        let Self { equations, system, solution, .. } = self;
+        let moved = at_stations(equations, system, solution, &pulled.response);
+        project(&system.gauss, &solution.mesh, functions, |i, j| {
+            let (block, lane) = equations.groups().at(i, j);
+            let z = moved[block].map(|v| v.0[lane]);
+            let along = equations.rate_drift(&pulled.column, block);
+            let gradient = system.local(i, j).rate_gradient;
+            let rate = |q: usize| along[q].0[lane] + gradient[q].iter().zip(&z).map(|(g, z)| g * z).sum::<f64>();
+            [rate(0), rate(1), z[0]]
+        })
     }
 }
 
@@ -325,7 +368,7 @@ mod tests {
             unstable += usize::from(count > 0);
             pairs += usize::from(count > 0 && found.rates[0][1] != 0.0);
             let functions = 2 * POLYNOMIALS[level];
-            let tangent = Tangent::new(dense, functions).unwrap();
+            let mut tangent = Tangent::new(dense, functions).unwrap();
             let compliance = tangent.compliance(functions).unwrap();
             let finer = scaled_rates(&compliance, functions, tangent.slowest_decay(functions).unwrap()).unwrap();
             let even = count.is_multiple_of(2);

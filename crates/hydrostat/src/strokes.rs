@@ -44,7 +44,7 @@ impl Solver {
         self.engine.set_loads(&with_tensions(&arm, |_| 0.0));
         self.solve_tensions()?;
         self.forget();
-        let travelled = match self.follow_strokes_from_slack() {
+        let travelled = match self.follow_strokes_from_slack_at(Pace::BRISK) {
             Ok(travelled) => travelled,
             Err(verdict) => return Err(self.no_equilibrium(verdict)),
         };
@@ -82,7 +82,7 @@ impl Solver {
     }
 
     /// The phase of strokes, from the engine's equilibrium with the commanded cables slack.
-    fn follow_strokes_from_slack(&mut self) -> Result<Travelled, Verdict> {
+    fn follow_strokes_from_slack_at(&mut self, pace: Pace) -> Result<Travelled, Verdict> {
         let engine = &mut self.engine;
         engine.equations.hold_strokes();
         engine.set_phase(Phase::Stroke, 1.0);
@@ -97,7 +97,7 @@ impl Solver {
             }
             engine.equations.start_strokes_from(strokes);
         }
-        follow_strokes(engine, Pace::BRISK)
+        follow_strokes(engine, pace)
     }
 
     /// Tensions (N) of the cables that their commanded strokes take in a straight arm, and those given: with the strokes
@@ -134,4 +134,52 @@ fn with_tensions(arm: &Arm, tension: impl Fn(usize) -> f64) -> Arm {
         cable.tension = tension(c);
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Engine;
+    use crate::{Cable, Options, Profile};
+
+    fn arm(strokes: [f64; 2], speed: f64, direction: f64) -> Arm {
+        let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+        arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).reeled_in(strokes[0]));
+        arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)).reeled_in(strokes[1]));
+        arm.flow.speed = speed;
+        arm.flow.direction = direction;
+        arm
+    }
+
+    /// The direct solve stands only where the path, followed closely, leads to the same shape.
+    #[test]
+    fn a_direct_solve_is_where_the_path_of_strokes_leads() {
+        let (mut both, mut direct) = (0, 0);
+        for strokes in [[0.004, -0.004], [0.012, -0.002], [0.008, 0.006], [-0.003, 0.015], [0.016, -0.030]] {
+            for speed in [0.0, 0.1, 0.3] {
+                for direction in [0.0, 1.2, 2.4, 3.0] {
+                    let arm = arm(strokes, speed, direction);
+                    let mut solver = Solver::new(&arm, Options { tol: 1e-9 }).unwrap();
+                    let Ok(one) = solver.solve_strokes_directly(&arm) else { continue };
+                    direct += 1;
+                    let mut other = Solver::new(&arm, Options { tol: 1e-9 }).unwrap();
+                    other.engine = Engine::new(&with_tensions(&arm, |_| 0.0));
+                    other.solve_tensions().unwrap();
+                    let pace = Pace { longest: 0.1, straightness: 0.99, most: 2000, accuracy: 1e-6 };
+                    other.engine.equations.hold_strokes();
+                    other.follow_strokes_from_slack_at(pace).unwrap();
+                    other.engine.settle(1e-9, true).unwrap();
+                    let two = other.read(1e-9, Travelled::default()).unwrap();
+                    both += 1;
+                    let off = (one.tip().x - two.tip().x).hypot(one.tip().y - two.tip().y) / arm.length;
+                    assert!(off < 1e-7, "{strokes:?} m, {speed} m/s from {direction}: {off:e} L apart");
+                    for (a, b) in one.cables.iter().zip(&two.cables) {
+                        assert!((a.tension - b.tension).abs() < 1e-6, "{strokes:?}: {a:?} {b:?}");
+                    }
+                }
+            }
+        }
+        println!("{direct} direct, {both} compared");
+        assert!(both > 30, "{both}");
+    }
 }

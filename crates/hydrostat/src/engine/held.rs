@@ -10,10 +10,10 @@
 //! that of A times that of B = s_t - s_z A^-1 A_t, the strokes that unit tensions reel in: positive in the
 //! unloaded arm.
 
-use hydrostat_bvp::{Correction, Determinant, LANES, Lanes};
+use hydrostat_bvp::{Collocation, Correction, Determinant, LANES, Lanes};
 
-use super::{Engine, M, Trouble, solve};
-use crate::equilibrium::{N, Q, SectionFailure};
+use super::{Engine, Guess, M, Trouble, linearise, solve};
+use crate::equilibrium::{Column, Equilibrium, Held, N, Q, SectionFailure};
 
 /// What strokes may be off by (over L) before the last round, which leaves the square of that.
 const STROKES: f64 = 1e-10;
@@ -66,31 +66,19 @@ impl Engine {
             return Ok(());
         };
         let count = held.cables.len();
-        let taut: Vec<usize> = (0..count).filter(|i| held.taut[*i]).collect();
-        let mut pulled = Vec::with_capacity(taut.len());
-        let mut by_tension = Vec::with_capacity(taut.len());
-        for i in &taut {
-            self.equations.pulled = Some(held.cables[*i]);
-            let linear = self.linearise(true);
-            self.equations.pulled = None;
-            linear?;
-            let mut response = Correction::default();
-            solve(&self.system, &self.solution, 1, &mut response);
-            let mut column = self.stroke_changes(&held.cables, &response, true);
-            column[*i] += self.equations.stroke(held.cables[*i], &self.system.gauss.b)[2];
-            pulled.push(response);
-            by_tension.push(column);
-        }
+        let taut = held.tight();
+        let pulled = pull_taut(&mut self.equations, &mut self.system, &self.solution, &held)?;
+        self.rounds += pulled.len();
         let moves = parameter && !self.equations.only_commands_move();
         if moves || taut.is_empty() {
             self.linearise(moves)?;
         }
         solve(&self.system, &self.solution, 0, &mut round.rest);
-        let after_rest = self.stroke_changes(&held.cables, &round.rest, false);
+        let after_rest = self.stroke_changes(&held, &round.rest, false);
         let mut by_parameter = vec![0.0; count];
         if moves {
             solve(&self.system, &self.solution, 1, &mut round.response);
-            by_parameter = self.stroke_changes(&held.cables, &round.response, true);
+            by_parameter = self.stroke_changes(&held, &round.response, true);
         } else {
             round.response.clone_from(&round.rest);
             round.response.scale(0.0);
@@ -105,15 +93,15 @@ impl Engine {
             slack[0].push(off + after_rest[i]);
             slack[1].push(by_parameter[i] - self.equations.command_drift(&held, i));
         }
-        let row = |i: &usize| (by_tension.iter().map(|by| by[*i]).collect(), [-slack[0][*i], -slack[1][*i]]);
+        let row = |i: &usize| (pulled.iter().map(|by| by.strokes[*i]).collect(), [-slack[0][*i], -slack[1][*i]]);
         let (changes, determinant) = solved(taut.iter().map(row).collect()).ok_or(Trouble::Singular)?;
         self.border = determinant;
         for (k, whole) in [&mut round.rest, &mut round.response].into_iter().enumerate() {
             round.tension[k] = vec![0.0; count];
             for (a, i) in taut.iter().enumerate() {
-                whole.add(&pulled[a], changes[a][k]);
+                whole.add(&pulled[a].response, changes[a][k]);
                 round.tension[k][*i] = changes[a][k];
-                for (slack, by) in slack[k].iter_mut().zip(&by_tension[a]) {
+                for (slack, by) in slack[k].iter_mut().zip(&pulled[a].strokes) {
                     *slack += changes[a][k] * by;
                 }
             }
@@ -141,14 +129,8 @@ impl Engine {
         self.equations.held = Some(held);
     }
 
-    /// Changes of the strokes of `cables` with a change of the shape and, with the column, of a parameter.
-    fn stroke_changes(&self, cables: &[usize], change: &Correction<N, M, Q>, with_column: bool) -> Vec<f64> {
-        let weights = &self.system.gauss.b;
-        let moved = at_stations(self, change);
-        let one = |c: &usize| {
-            self.equations.stroke(*c, weights)[1] * self.equations.length_change(*c, weights, &moved, with_column)
-        };
-        cables.iter().map(one).collect()
+    fn stroke_changes(&self, held: &Held, change: &Correction<N, M, Q>, with_column: bool) -> Vec<f64> {
+        stroke_changes(&self.equations, &self.system, &self.solution, held, change, with_column)
     }
 
     /// Newton at held strokes until the tip moves by less than `tolerance` and the strokes are met.
@@ -248,9 +230,63 @@ impl Engine {
     }
 }
 
+/// What a unit of tension of a taut cable does at a fixed tension of all others.
+#[derive(Debug)]
+pub(crate) struct Pulled {
+    /// To the state.
+    pub(crate) response: Correction<N, M, Q>,
+    /// To the strokes of all commanded cables, over L.
+    pub(crate) strokes: Vec<f64>,
+    /// How the strains follow it at a fixed state.
+    pub(crate) column: Column,
+}
+
+/// One linearisation for every taut cable, the last of which stands in `system`.
+pub(crate) fn pull_taut(
+    equations: &mut Equilibrium,
+    system: &mut Collocation<N, M, Q>,
+    solution: &Guess,
+    held: &Held,
+) -> Result<Vec<Pulled>, Trouble> {
+    let mut out = Vec::new();
+    for i in held.tight() {
+        let c = held.cables[i];
+        equations.pulled = Some(c);
+        let linear = linearise(system, equations, solution, true);
+        equations.pulled = None;
+        linear?;
+        let mut response = Correction::default();
+        solve(system, solution, 1, &mut response);
+        let mut strokes = stroke_changes(equations, system, solution, held, &response, true);
+        strokes[i] += equations.stroke(c, &system.gauss.b)[2];
+        out.push(Pulled { response, strokes, column: equations.column.clone() });
+    }
+    Ok(out)
+}
+
+/// Changes of the strokes of the held cables with a change of the shape and, with the column, of a parameter.
+fn stroke_changes(
+    equations: &Equilibrium,
+    system: &Collocation<N, M, Q>,
+    solution: &Guess,
+    held: &Held,
+    change: &Correction<N, M, Q>,
+    with_column: bool,
+) -> Vec<f64> {
+    let weights = &system.gauss.b;
+    let moved = at_stations(equations, system, solution, change);
+    let one = |c: &usize| equations.stroke(*c, weights)[1] * equations.length_change(*c, weights, &moved, with_column);
+    held.cables.iter().map(one).collect()
+}
+
 /// A change of the shape at the stations, in their blocks; zero in lanes without an element of their own.
-fn at_stations(engine: &Engine, change: &Correction<N, M, Q>) -> Vec<[Lanes; N]> {
-    let (groups, gauss, mesh) = (engine.equations.groups(), &engine.system.gauss, &engine.solution.mesh);
+pub(crate) fn at_stations(
+    equations: &Equilibrium,
+    system: &Collocation<N, M, Q>,
+    solution: &Guess,
+    change: &Correction<N, M, Q>,
+) -> Vec<[Lanes; N]> {
+    let (groups, gauss, mesh) = (equations.groups(), &system.gauss, &solution.mesh);
     let mut out = vec![[Lanes([0.0; LANES]); N]; groups.count() * M];
     for i in 0..mesh.elements() {
         for j in 0..M {
@@ -265,10 +301,10 @@ fn at_stations(engine: &Engine, change: &Correction<N, M, Q>) -> Vec<[Lanes; N]>
 }
 
 /// A row of the small system: coefficients, and the two right sides.
-type Row = (Vec<f64>, [f64; 2]);
+pub(crate) type Row = (Vec<f64>, [f64; 2]);
 
 /// Solves for both right sides, by elimination with row pivoting; with the determinant.
-fn solved(mut rows: Vec<Row>) -> Option<(Vec<[f64; 2]>, Determinant)> {
+pub(crate) fn solved(mut rows: Vec<Row>) -> Option<(Vec<[f64; 2]>, Determinant)> {
     let n = rows.len();
     let mut determinant = Determinant { sign: 1.0, log: 0.0 };
     for k in 0..n {

@@ -5,7 +5,7 @@ use hydrostat_bvp::{Groups, Lanes, Real, each};
 
 use super::gradients::by_strain_change;
 use super::strains::{STATION, solve_section};
-use super::{Equilibrium, LANES, MOST_IN_PLACE, N, blank_cable};
+use super::{Equilibrium, LANES, MOST_IN_PLACE, N, Q, blank_cable};
 use crate::cable::{pull, tangent};
 use crate::parameter::Parameter;
 use crate::section::{CableAt, apply3};
@@ -33,6 +33,13 @@ pub(crate) struct Held {
 pub(crate) struct Column {
     pub(super) strain: Vec<[Lanes; 3]>,
     pub(super) beta_slope: Vec<Lanes>,
+}
+
+impl Held {
+    /// Which of the commanded cables are taut.
+    pub(crate) fn tight(&self) -> Vec<usize> {
+        (0..self.cables.len()).filter(|i| self.taut[*i]).collect()
+    }
 }
 
 impl Equilibrium {
@@ -185,18 +192,37 @@ impl Equilibrium {
         sum
     }
 
+    /// d stroke / d z of cable `c` at the stages of every element, times the weight of the stage.
+    pub(crate) fn stroke_gradients<const M: usize>(&self, c: usize, weights: &[f64; M]) -> Vec<[[f64; N]; M]> {
+        let (groups, by_length) = (self.groups, self.stroke(c, weights)[1]);
+        let mut out = vec![[[0.0; N]; M]; groups.elements];
+        for block in 0..groups.count() * M {
+            let (group, stage) = (block / M, block % M);
+            let (by_strain, by_beta_slope) = self.stretch_gradient(c, block);
+            let by_state = self.through_strains(block, &by_strain, by_beta_slope);
+            for lane in self.along_cable(c, block) {
+                let weight = by_length * self.steps[group].0[lane] * weights[stage];
+                out[groups.element(group, lane)][stage] = by_state.map(|v| weight * v.0[lane]);
+            }
+        }
+        out
+    }
+
+    /// How x' and y' follow a parameter at a fixed state, given how the strains do.
+    pub(crate) fn rate_drift(&self, column: &Column, block: usize) -> [Lanes; Q] {
+        let (sin, cos) = sin_cos(self.memory[block].z[0]);
+        let [nu, eta, _] = column.strain[block];
+        let [x, y] = self.beta.coupling[block].rate;
+        let beta_slope = column.beta_slope[block];
+        [nu * cos - eta * sin + x * beta_slope, nu * sin + eta * cos + y * beta_slope]
+    }
+
     /// The lanes of a block whose stations cable `c` runs along.
-    pub(crate) fn along_cable(&self, c: usize, block: usize) -> impl Iterator<Item = usize> + use<> {
+    fn along_cable(&self, c: usize, block: usize) -> impl Iterator<Item = usize> + use<> {
         let groups: Groups = self.groups;
         let inside: [bool; LANES] =
             std::array::from_fn(|lane| self.stations[groups.station_in(block, lane)] < self.ends[c]);
         (0..groups.filled(block / groups.stages)).filter(move |lane| inside[*lane])
-    }
-
-    /// d |tau| / d z of cable `c` in a block of stations, with all that follows the state.
-    pub(crate) fn length_by_state(&self, c: usize, block: usize) -> [Lanes; N] {
-        let (by_strain, by_beta_slope) = self.stretch_gradient(c, block);
-        self.through_strains(block, &by_strain, by_beta_slope)
     }
 
     fn through_strains(&self, block: usize, by_strain: &[Lanes; 3], by_beta_slope: Lanes) -> [Lanes; N] {

@@ -35,34 +35,46 @@ impl Stepper<'_> {
         (0..held.cables.len()).map(margin).collect()
     }
 
-    /// Where between two points, `step` apart, the first cable goes slack or taut, if one does.
-    pub(super) fn contact(
+    /// A step that ends where the first cable goes slack or taut, if one does on the way.
+    pub(super) fn advance_to_contact(
         &mut self,
         here: &Point,
-        next: &Point,
         step: f64,
         pace: Pace,
-    ) -> Result<Option<Contact>, Trouble> {
+    ) -> Result<(Point, Turn, Option<Contact>), Trouble> {
+        let (next, turn) = self.advance(here, step, pace)?;
         let past: Vec<usize> = (0..next.margins.len()).filter(|i| next.margins[*i] < -ZERO).collect();
         if past.is_empty() {
-            return Ok(None);
+            return Ok((next, turn, None));
         }
-        // One that has just changed and changes back: only a shorter step tells that apart from one that never did.
-        if past.iter().any(|i| here.margins[*i] < FOUND) {
+        // One that has just changed and changes back, or another branch: only a shorter step tells these apart.
+        if turn == Turn::Crossing || past.iter().any(|i| here.margins[*i] < FOUND) {
             return Err(Trouble::Stalled(step));
         }
-        let pace = Pace { straightness: -1.0, ..pace };
+        let contact = self.contact_between(here, next, &past, step, Pace { straightness: -1.0, ..pace })?;
+        Ok((contact.at.clone(), Turn::None, Some(contact)))
+    }
+
+    /// Where between two points, `step` apart, the first of the cables `past` goes slack or taut.
+    fn contact_between(
+        &mut self,
+        here: &Point,
+        next: Point,
+        past: &[usize],
+        step: f64,
+        pace: Pace,
+    ) -> Result<Contact, Trouble> {
         // The first of them, over how far each is from it at the start.
         let least = |point: &Point| {
             let share = |i: &usize| point.margins[*i] / here.margins[*i];
             past.iter().map(|i| (share(i), *i)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((1.0, 0))
         };
-        let (mut low, mut high) = ((0.0, 1.0), (step, least(next).0));
-        let mut reached = next.clone();
+        let (mut low, mut high) = ((0.0, 1.0), (step, least(&next).0));
+        let mut reached = next;
         for _ in 0..40 {
             let (value, i) = least(&reached);
             if (value * here.margins[i]).abs() < FOUND {
-                return self.change(reached, i).map(Some);
+                return self.change(reached, i);
             }
             // False position, its older end weighed down so that both ends come in.
             let share: f64 = low.1 / (low.1 - high.1);
@@ -89,14 +101,50 @@ impl Stepper<'_> {
         self.engine.restore(&at.state);
         self.set(at.fraction);
         let (cable, slack) = self.engine.equations.change_over(i);
-        let mut after = self.point(at.fraction)?;
-        let rises = if slack { self.round.slack[1][i] } else { self.round.tension[1][i] };
-        let way = if rises == 0.0 { at.rise.signum() } else { rises.signum() };
-        if after.rise * way < 0.0 {
-            self.orientation = -self.orientation;
-            after.rise = -after.rise;
-        }
-        after.margins[i] = 0.0;
+        let after = self.leave_contacts(at.fraction, |this, after| {
+            let way = this.opening(after, i);
+            if way == 0.0 { at.rise.signum() * after.rise.signum() } else { way }
+        })?;
         Ok(Contact { at, after, cable, slack })
+    }
+
+    /// The first point of a path, from which the parameter rises, with cables taut or slack as that needs.
+    pub(super) fn first_contacts(&mut self, fraction: f64) -> Result<Point, Trouble> {
+        self.engine.equations.let_cables_switch(false);
+        self.leave_contacts(fraction, |_, after| after.rise)
+    }
+
+    /// The point here with its tangent in the direction in which `way` is positive, and with those cables changed over that
+    /// are at a contact which that tangent leads past.
+    fn leave_contacts(&mut self, fraction: f64, way: impl Fn(&Self, &Point) -> f64) -> Result<Point, Trouble> {
+        let mut changes = 0;
+        loop {
+            let mut after = self.point(fraction)?;
+            if way(self, &after) < 0.0 {
+                self.orientation = -self.orientation;
+                after.rise = -after.rise;
+            }
+            let count = after.margins.len();
+            let past = (0..count).find(|i| after.margins[*i] < FOUND && self.opening(&after, *i) < -ZERO);
+            match past {
+                Some(i) if changes < 2 * count => {
+                    self.engine.equations.change_over(i);
+                    changes += 1;
+                }
+                Some(_) => return Err(Trouble::Stalled(0.0)),
+                None => {
+                    for margin in &mut after.margins {
+                        *margin = margin.max(0.0);
+                    }
+                    return Ok(after);
+                }
+            }
+        }
+    }
+
+    /// How the margin of the commanded cable `i` changes along the tangent of a point, after its linearisation.
+    fn opening(&self, point: &Point, i: usize) -> f64 {
+        let taut = self.engine.equations.held.as_ref().is_some_and(|held| held.taut[i]);
+        point.rise * if taut { self.round.tension[1][i] } else { self.round.slack[1][i] }
     }
 }

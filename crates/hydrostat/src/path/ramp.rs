@@ -1,6 +1,7 @@
 //! The path that defines the answer: from the unloaded arm, loads first, then tensions (section 7 of
 //! `docs/model.md`).
 
+use super::contact::Contact;
 use super::stepper::{Along, Load, Point, Stepper, Turn};
 use super::{LOOSE, MEET, Pace, START, Travelled};
 use crate::engine::{Engine, Trouble, roughly};
@@ -75,24 +76,9 @@ impl Ramp<'_> {
                 }
                 return Err(end);
             }
-            match self.stepper.advance(&here, step, pace) {
-                Ok((mut next, turn)) => {
-                    let contact = self.stepper.contact(&here, &next, step, pace);
-                    let mut corner = None;
-                    match contact {
-                        Ok(None) => {}
-                        Ok(Some(contact)) => {
-                            next = contact.at;
-                            corner = Some(contact.after);
-                        }
-                        Err(trouble) => {
-                            self.stepper.last_trouble = Some(trouble);
-                            step *= 0.4;
-                            self.stepper.engine.restore(&here.state);
-                            continue;
-                        }
-                    }
-                    if turn == Turn::Crossing && corner.is_none() {
+            match self.stepper.advance_to_contact(&here, step, pace) {
+                Ok((mut next, turn, contact)) => {
+                    if turn == Turn::Crossing {
                         // The branch goes straight on through a bifurcation.
                         self.stepper.orientation = -self.stepper.orientation;
                         next.rise = -next.rise;
@@ -103,7 +89,7 @@ impl Ramp<'_> {
                         return Err(self.end(VerdictKind::LimitPoint, limit.clamp(0.0, 1.0), None));
                     }
                     travelled.steps += 1;
-                    if let Some(after) = corner {
+                    if let Some(Contact { after, .. }) = contact {
                         if after.rise < 0.0 {
                             // Where a cable goes slack or taut the path turns back in a corner.
                             self.stepper.engine.restore(&next.state);
@@ -159,8 +145,7 @@ impl Ramp<'_> {
         if refined {
             self.stepper.or_back(|this| this.engine.settle(1e-8, true).map(|_| ()));
         }
-        self.stepper.engine.equations.let_cables_switch(false);
-        self.stepper.point(fraction)
+        self.stepper.first_contacts(fraction)
     }
 
     /// A verdict at `s`, m.

@@ -350,6 +350,17 @@ impl<'e> Stepper<'e> {
         }
     }
 
+    /// The length of the step between two points in the metric of the path; the engine is left at the second.
+    pub(super) fn distance(&mut self, a: &Point, b: &Point) -> f64 {
+        self.engine.restore(&b.state);
+        let mut square = (b.fraction - a.fraction).powi(2);
+        for ((s, z), w) in b.mesh().nodes().iter().zip(&b.state.solution.nodes).zip(self.weights()) {
+            let before = a.state.solution.state_in(&self.engine.system.gauss, a.mesh().element_of(*s), *s);
+            square += w * (z[0] - before[0]).powi(2);
+        }
+        square.sqrt()
+    }
+
     fn cosine(&self, a: &Point, b: &Point) -> f64 {
         // Both on the mesh of `b`, lengths included: a coarse mesh measures them coarsely.
         let (mut both, mut first, mut second) = (a.rise * b.rise, a.rise * a.rise, b.rise * b.rise);
