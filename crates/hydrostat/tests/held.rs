@@ -10,7 +10,7 @@ use hydrostat::{
 /// EA of columns and cables that hardly give way; EI and L are one.
 const RIGID: f64 = 1e6;
 /// Offset of the cables of a column.
-const OFFSET: f64 = 0.1;
+const OFFSET: f64 = 0.04;
 
 /// A column under a thrust, with a cable on either side reeled in by `stroke`.
 fn held_column(thrust: f64, stroke: f64, stiffness: Option<f64>) -> Arm {
@@ -61,7 +61,7 @@ fn bifurcations(points: &[PathPoint]) -> Vec<f64> {
 /// Elastic cables are a spring k = 2 y^2 EA/L against the tip's turning: P L^2/EI = w^2 with w cot(w) = -k L/EI.
 #[test]
 fn elastic_cables_hold_a_column_as_the_spring_that_they_are() {
-    for stiffness in [10.0, 100.0, 1000.0] {
+    for stiffness in [50.0, 500.0, 5000.0] {
         let stroke = 16.0 / RIGID + 1e-4;
         let spring = 2.0 * OFFSET * OFFSET * stiffness;
         let (mut low, mut high) = (0.5 * PI + 1e-9, PI - 1e-9);
@@ -124,7 +124,8 @@ fn a_path_over_a_stroke_meets_every_stroke_and_ends_where_a_solve_does() {
         assert_eq!(point.stability, Some(Stability::Stable));
     }
     let tensions: Vec<f64> = branch.points.iter().map(|p| p.configuration.cables[0].tension).collect();
-    assert!(tensions[0] == 0.0 && tensions.is_sorted(), "{tensions:?}");
+    // At a stroke of zero it holds the arm against the stream that draws it out.
+    assert!(tensions[0] > 0.0 && tensions.is_sorted(), "{tensions:?}");
     let mut there = arm.clone();
     there.cables[0].stroke = Some(0.012);
     let (solved, last) = (solve(&there), &branch.points.last().unwrap().configuration);
@@ -136,11 +137,11 @@ fn a_path_over_a_stroke_meets_every_stroke_and_ends_where_a_solve_does() {
     assert!((end.cables[0].stroke - 0.012).abs() < 1e-6 * arm.length, "{}", end.cables[0].stroke);
 }
 
-/// The left cable is reeled in and bends the arm until the right one, paid out by 4 mm, is taken up; and back.
+/// The left cable is reeled in and bends the arm until the right one, paid out by 1 mm, is taken up; and back.
 #[test]
 fn a_cable_that_is_taken_up_or_let_go_on_the_way_is_an_event() {
     let mut arm = silicone();
-    arm.cables[1].stroke = Some(-0.004);
+    arm.cables[1].stroke = Some(-0.001);
     let follow = |range| arm.path(Parameter::Stroke(0), range, &PathOptions::default()).unwrap();
     let there = follow([0.0, 0.012]);
     let back = follow([0.012, 0.0]);
@@ -152,16 +153,16 @@ fn a_cable_that_is_taken_up_or_let_go_on_the_way_is_an_event() {
     let (taut, slack) =
         (event(&there.branches[0].points, Event::Taut(1)), event(&back.branches[0].points, Event::Slack(1)));
     assert!((taut - slack).abs() < 1e-6 * arm.length, "{taut} and {slack}");
-    // Where the right cable's stroke is -4 mm although it hangs free.
+    // Where the right cable's stroke is -1 mm although it hangs free.
     let mut free = silicone();
     free.cables[0].stroke = Some(taut);
     let stroke = solve(&free).cables[1].stroke;
-    assert!((stroke + 0.004).abs() < 1e-6 * arm.length, "{stroke}");
+    assert!((stroke + 0.001).abs() < 1e-6 * arm.length, "{stroke}");
     for point in there.branches[0].points.iter().chain(&back.branches[0].points) {
         let right = &point.configuration.cables[1];
         let slack = right.command.unwrap().slack;
         assert_eq!(slack, right.tension == 0.0 && point.event.is_none() || point.event == Some(Event::Slack(1)));
-        assert!(right.stroke > -0.004 - 1e-9 * arm.length && right.tension >= 0.0);
+        assert!(right.stroke > -0.001 - 1e-9 * arm.length && right.tension >= 0.0);
         assert_eq!(point.stability, Some(Stability::Stable));
     }
     let last = |points: &[PathPoint]| points.last().unwrap().configuration.cables[1].tension;

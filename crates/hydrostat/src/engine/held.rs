@@ -24,7 +24,9 @@ const SLACK: f64 = 1e-12;
 /// Corrections (rad) above which the tensions do not yet say which cables are taut.
 const SETTLED: f64 = 0.3;
 
-/// Changes of the shape (rad) and of strokes (over L) that may be all that rounds still do.
+/// Changes of the shape (rad) and of strokes (over L) that may be all that many rounds still do, and those that may be at the
+/// last one.
+const NEARLY: f64 = 1e-9;
 const ROUNDING: f64 = 3e-6;
 
 /// Rounds added to those of given tensions: the set of taut cables may change.
@@ -173,14 +175,15 @@ impl Engine {
             }
             let met = round.off <= strokes;
             // Strong cables on a thin tip have strokes that rounding, and what beta' lags, do not let settle any further.
-            let restless = count >= MORE && size <= ROUNDING && round.off <= ROUNDING;
-            let done =
-                applied == 1.0 && moved <= tolerance.max(if restless { ROUNDING } else { 0.0 }) && (met || restless);
+            let last = count >= most + MORE;
+            let bound = if last { ROUNDING } else { NEARLY };
+            let restless = count >= MORE && size <= bound && round.off <= bound && (last || moved <= tolerance);
+            let done = applied == 1.0 && (met && moved <= tolerance || restless && moved <= tolerance.max(bound));
             if !met {
                 // The estimate is to say so.
                 self.rest = self.rest.max(10.0 * round.off);
             }
-            if done || count >= most + MORE || (count >= MORE && size > 3.0) {
+            if done || last || (count >= MORE && size > 3.0) {
                 self.system.quadratures(&mut self.spans);
                 for (span, change) in self.spans.iter_mut().zip(&round.rest.by_element) {
                     for q in 0..Q {
