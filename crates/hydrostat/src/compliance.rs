@@ -43,6 +43,8 @@ const GIVEN: usize = N + FIELDS * M;
 pub(crate) struct Compliance {
     /// Polynomials a field.
     pub(crate) functions: usize,
+    /// Whether lengths of cables are held.
+    pub(crate) held: bool,
     entries: Vec<f64>,
     /// Strokes of the cables asked for under the same loads, one row a cable.
     strokes: Vec<f64>,
@@ -162,13 +164,14 @@ impl Compliance {
             rows[i + 1].impose(&loads[(i + 1) * RIGHT * columns..][..RIGHT * columns], columns, &mut next);
             std::mem::swap(&mut state, &mut next);
         }
-        Some(Self { functions, entries, strokes })
+        Some(Self { functions, held: false, entries, strokes })
     }
 
     /// Holds the lengths of the cables asked for: `motions` are the projections of what unit tensions move, `strokes` what
     /// they reel in of all of them. `None` where the cables have no tensions for their lengths.
     pub(crate) fn hold(&mut self, motions: &[Vec<f64>], strokes: &[Vec<f64>]) -> Option<()> {
         let (count, columns) = (motions.len(), FIELDS * self.functions);
+        self.held = true;
         for column in 0..columns {
             let row = |i: usize| {
                 let under_load = self.strokes[i * columns + column];

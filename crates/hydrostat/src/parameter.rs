@@ -128,11 +128,11 @@ impl FromStr for Parameter {
     type Err = UnknownParameter;
 
     fn from_str(name: &str) -> Result<Self, UnknownParameter> {
-        let of_cable: [(&str, fn(usize) -> Self); 2] = [("].tension", Self::Tension), ("].stroke", Self::Stroke)];
-        for (end, parameter) in of_cable {
-            let cable = name.strip_prefix("cable[").and_then(|rest| rest.strip_suffix(end));
-            if let Some(index) = cable.and_then(|index| index.parse().ok()) {
-                return Ok(parameter(index));
+        if let Some((index, of)) = name.strip_prefix("cable[").and_then(|rest| rest.split_once("].")) {
+            match (index.parse(), of) {
+                (Ok(index), "tension") => return Ok(Self::Tension(index)),
+                (Ok(index), "stroke") => return Ok(Self::Stroke(index)),
+                _ => {}
             }
         }
         PLAIN.into_iter().find(|p| p.to_string() == name).ok_or_else(|| UnknownParameter { name: name.to_owned() })

@@ -47,6 +47,10 @@ const MARGIN: f64 = 1e-6;
 /// Rates this many times the smallest one are rounding: an eigenvalue of the compliance has no digit left there.
 const ROUNDING: f64 = 1e12;
 
+/// The same where lengths are held: what loads a cable alone could make moves nothing, which polynomials meet no better than
+/// that, with eigenvalues of either sign.
+const BLURRED: f64 = 1e6;
+
 /// Most rates that are kept when fewer grow.
 const KEPT: usize = 6;
 
@@ -143,6 +147,7 @@ fn growth(dense: &Dense) -> Option<(Growth, usize)> {
 
 /// The rates -1/mu of the first `functions` polynomials over `unit`, largest real part first.
 fn scaled_rates(compliance: &Compliance, functions: usize, unit: f64) -> Option<Vec<[f64; 2]>> {
+    let least = if compliance.held { BLURRED } else { ROUNDING };
     let size = FIELDS * functions;
     let matrix = DMatrix::from_fn(size, size, |i, j| compliance.entry(i, j));
     if !matrix.iter().all(|v| v.is_finite()) {
@@ -152,7 +157,7 @@ fn scaled_rates(compliance: &Compliance, functions: usize, unit: f64) -> Option<
     let largest = eigenvalues.iter().map(|mu| mu.norm()).fold(0.0, f64::max);
     let mut rates: Vec<[f64; 2]> = eigenvalues
         .iter()
-        .filter(|mu| mu.norm() * ROUNDING > largest)
+        .filter(|mu| mu.norm() * least > largest)
         .map(|mu| {
             let factor = 1.0 / (unit * mu.norm_sqr());
             [-mu.re * factor, mu.im * factor]

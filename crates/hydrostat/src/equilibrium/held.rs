@@ -102,11 +102,9 @@ impl Equilibrium {
     pub(crate) fn command_drift(&self, held: &Held, i: usize) -> f64 {
         let c = held.cables[i];
         match self.varied_over() {
-            _ if self.imposed.is_some() => 0.0,
-            Some((Parameter::Stroke(own), change)) if own == c => change / self.units.length,
-            Some(_) => 0.0,
-            None if self.phase == Phase::Stroke => self.whole_command(c) - held.from[i],
-            None => 0.0,
+            Some((Parameter::Stroke(own), change)) if own == c && self.imposed.is_none() => change / self.units.length,
+            None if self.phase == Phase::Stroke && self.imposed.is_none() => self.whole_command(c) - held.from[i],
+            _ => 0.0,
         }
     }
 

@@ -125,20 +125,23 @@ impl Stepper<'_> {
                 after.rise = -after.rise;
             }
             let count = after.margins.len();
-            let past = (0..count).find(|i| after.margins[*i] < FOUND && self.opening(&after, *i) < -ZERO);
-            match past {
-                Some(i) if changes < 2 * count => {
-                    self.engine.equations.change_over(i);
-                    changes += 1;
+            let past: Vec<usize> =
+                (0..count).filter(|i| after.margins[*i] < FOUND && self.opening(&after, *i) < -ZERO).collect();
+            if past.is_empty() {
+                for margin in &mut after.margins {
+                    *margin = margin.max(0.0);
                 }
-                Some(_) => return Err(Trouble::Stalled(0.0)),
-                None => {
-                    for margin in &mut after.margins {
-                        *margin = margin.max(0.0);
-                    }
-                    return Ok(after);
-                }
+                return Ok(after);
             }
+            if changes > 2 * count {
+                return Err(Trouble::Stalled(0.0));
+            }
+            // All at first, because cables may hold together what none of them holds alone; then one by one.
+            let together = if changes == 0 { past.len() } else { 1 };
+            for i in past.into_iter().take(together) {
+                self.engine.equations.change_over(i);
+            }
+            changes += 1;
         }
     }
 

@@ -213,7 +213,9 @@ impl Stepper<'_> {
         let square: f64 = mode.nodes.iter().zip(&weights).map(|(z, w)| z[0] * z[0] * w).sum();
         let scale = 1.0 / (MODE * square.sqrt());
         mode.scale(scale);
-        tensions.iter_mut().for_each(|tension| *tension *= scale);
+        for tension in &mut tensions {
+            *tension *= scale;
+        }
         (square > 0.0 && square.is_finite()).then_some((mode, tensions))
     }
 }
