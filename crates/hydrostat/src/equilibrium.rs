@@ -459,18 +459,21 @@ impl Problem<N, Q> for Equilibrium {
 
     #[inline(always)]
     fn drift(&mut self, out: &mut [[Lanes; N]]) {
-        match self.pulled {
-            Some(cable) => {
-                if !self.drift_by_tension(cable, out) {
-                    // Without strains to follow it the tension moves nothing, which no round can work with.
-                    out.fill([Lanes::of(0.0); N]);
-                }
-            }
-            None => {
-                if !self.drift_by_share(out) {
-                    out.copy_from_slice(&self.drifts);
-                }
-            }
+        let followed = match self.pulled {
+            Some(cable) => self.drift_by_tension(cable, out),
+            None => self.drift_by_share(out),
+        };
+        if followed {
+            return;
+        }
+        if self.held.is_some() {
+            self.column.clear(out.len());
+        }
+        if self.pulled.is_some() {
+            // Without strains to follow it the tension moves nothing, which no round can work with.
+            out.fill([Lanes::of(0.0); N]);
+        } else {
+            out.copy_from_slice(&self.drifts);
         }
     }
 

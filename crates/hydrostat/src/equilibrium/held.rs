@@ -35,6 +35,14 @@ pub(crate) struct Column {
     pub(super) beta_slope: Vec<Lanes>,
 }
 
+impl Column {
+    /// Nothing follows the parameter, at so many blocks of stations.
+    pub(super) fn clear(&mut self, blocks: usize) {
+        self.strain = vec![[Lanes::of(0.0); 3]; blocks];
+        self.beta_slope = vec![Lanes::of(0.0); blocks];
+    }
+}
+
 impl Held {
     /// Which of the commanded cables are taut.
     pub(crate) fn tight(&self) -> Vec<usize> {

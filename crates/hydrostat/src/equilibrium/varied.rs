@@ -110,8 +110,7 @@ impl Equilibrium {
     /// section has no strains so near.
     pub(super) fn drift_by_share(&mut self, out: &mut [[Lanes; N]]) -> bool {
         if let Some(couple) = &self.imposed {
-            self.column.strain = vec![[Lanes::of(0.0); 3]; out.len()];
-            self.column.beta_slope = vec![Lanes::of(0.0); out.len()];
+            self.column.clear(out.len());
             for (block, drift) in out.iter_mut().enumerate() {
                 *drift = [Lanes::of(0.0); N];
                 for lane in 0..LANES {
