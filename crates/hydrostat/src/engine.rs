@@ -32,6 +32,9 @@ const TIGHT: f64 = 1e-9;
 /// Corrections of the tip (over L) that Newton is not asked to get below.
 const RESTLESS: f64 = 1e-11;
 
+/// Errors of the tip (over L) that rounding makes, which no comparison shows.
+const ROUNDED: f64 = 1e-13;
+
 pub(crate) type Guess = Solution<N, M>;
 
 #[derive(Debug, Clone)]
@@ -463,7 +466,7 @@ impl Engine {
         let mut estimate = self.compare(&finer)?;
         // Where Newton stopped ahead of its last round, or where little is asked to be left, the comparison may miss what
         // one more would have moved.
-        let unseen = 0.1 * self.rest;
+        let unseen = (0.1 * self.rest).max(ROUNDED);
         if enough.is_some_and(|enough| estimate.max(unseen) <= enough) {
             return Ok(estimate.max(unseen));
         }

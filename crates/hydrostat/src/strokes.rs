@@ -28,7 +28,11 @@ use crate::configuration::Configuration;
 use crate::engine::Trouble;
 use crate::path::{Pace, Travelled, follow_strokes};
 use crate::solve::Solver;
-use crate::verdict::{Phase, SolveError, Verdict};
+use crate::verdict::{Phase, SolveError, Verdict, VerdictKind};
+
+/// Shares of the tensions of a straight arm from which the path of strokes may start: slack, unless that is in line with the
+/// stream, with kinks of the load all along it, from where the path does not get away.
+const STARTS: [f64; 4] = [0.0, 0.02, 0.2, 0.7];
 
 /// Sweeps of the tensions that commanded strokes take in a straight arm.
 const SWEEPS: usize = 60;
@@ -40,11 +44,26 @@ impl Solver {
         if let Ok(configuration) = self.solve_strokes_directly(&arm) {
             return Ok(configuration);
         }
+        let guess = self.straight_tensions(&arm);
+        let mut first = None;
+        for share in STARTS {
+            match self.solve_strokes_from(&with_tensions(&arm, |c| share * guess[c])) {
+                Err(SolveError::NoEquilibrium(no)) if is_start(&no.verdict) => {
+                    first = first.or(Some(SolveError::NoEquilibrium(no)));
+                }
+                other => return other,
+            }
+        }
+        Err(first.unwrap_or_else(|| self.no_equilibrium(self.last_verdict(Some(0.0)))))
+    }
+
+    /// Along the path from the tensions of `start`.
+    fn solve_strokes_from(&mut self, start: &Arm) -> Result<Configuration, SolveError> {
         self.engine.equations.let_go();
-        self.engine.set_loads(&with_tensions(&arm, |_| 0.0));
+        self.engine.set_loads(start);
         self.solve_tensions()?;
         self.forget();
-        let travelled = match self.follow_strokes_from_slack_at(Pace::BRISK) {
+        let travelled = match self.follow_strokes_from_here(Pace::BRISK) {
             Ok(travelled) => travelled,
             Err(verdict) => return Err(self.no_equilibrium(verdict)),
         };
@@ -81,8 +100,8 @@ impl Solver {
         Ok(configuration)
     }
 
-    /// The phase of strokes, from the engine's equilibrium with the commanded cables slack.
-    fn follow_strokes_from_slack_at(&mut self, pace: Pace) -> Result<Travelled, Verdict> {
+    /// The phase of strokes, from the engine's equilibrium, in which the commanded cables are slack or hardly pulled.
+    fn follow_strokes_from_here(&mut self, pace: Pace) -> Result<Travelled, Verdict> {
         let engine = &mut self.engine;
         engine.equations.hold_strokes();
         engine.set_phase(Phase::Stroke, 1.0);
@@ -91,7 +110,9 @@ impl Solver {
         {
             let weights = engine.system.gauss.b;
             let strokes: Vec<f64> = held.cables.iter().map(|c| engine.equations.stroke(*c, &weights)[0]).collect();
-            if strokes.iter().enumerate().all(|(i, stroke)| *stroke >= engine.equations.command(&held, i)) {
+            let all_slack = !held.taut.contains(&true);
+            if all_slack && strokes.iter().enumerate().all(|(i, stroke)| *stroke >= engine.equations.command(&held, i))
+            {
                 // All stay slack.
                 return Ok(Travelled::default());
             }
@@ -125,6 +146,11 @@ impl Solver {
         }
         tensions
     }
+}
+
+/// Whether a path of strokes did not get away from its start.
+fn is_start(verdict: &Verdict) -> bool {
+    verdict.phase == Phase::Stroke && verdict.kind == VerdictKind::NotFound && verdict.load_fraction == 0.0
 }
 
 /// The arm with other tensions (N) of its commanded cables.
@@ -167,7 +193,7 @@ mod tests {
                     other.solve_tensions().unwrap();
                     let pace = Pace { longest: 0.1, straightness: 0.99, most: 2000, accuracy: 1e-6 };
                     other.engine.equations.hold_strokes();
-                    other.follow_strokes_from_slack_at(pace).unwrap();
+                    other.follow_strokes_from_here(pace).unwrap();
                     other.engine.settle(1e-9, true).unwrap();
                     let two = other.read(1e-9, Travelled::default()).unwrap();
                     both += 1;

@@ -105,7 +105,7 @@ fn whole_grid_is_solved_or_explained() {
 /// The tensions of solved cases, and what they reel in, commanded as strokes: the same strokes come back, and where the path of
 /// the strokes leads to the same shape, the same tensions.
 fn round_trips(thin: usize) {
-    let (mut solved, mut back, mut same, mut loose, mut worst) = (0, 0, 0, 0, 0.0_f64);
+    let (mut solved, mut back, mut same, mut lost, mut worst) = (0, 0, 0, 0, 0.0_f64);
     let mut took = [0.0; 2];
     for name in shipped::names() {
         for (label, arm) in cases(&shipped_arm(name), thin) {
@@ -138,16 +138,6 @@ fn round_trips(thin: usize) {
                     let moved = (given.tip().x - found.tip().x).hypot(given.tip().y - found.tip().y);
                     if moved < 1e-4 * arm.length {
                         same += 1;
-                        // Where rounding ends what rounds can do (two strong cables on a thin tip), the estimate says so.
-                        let estimate = found.error_estimate / arm.length;
-                        if estimate > 1e-8 {
-                            loose += 1;
-                            assert!(
-                                off < 3.0 * estimate,
-                                "{label}: strokes off by {off:e} L, tip error {estimate:e} L"
-                            );
-                            continue;
-                        }
                         if off > 1e-9 {
                             println!(
                                 "{label}: strokes off by {off:e} L, tip error {:e} L",
@@ -157,20 +147,27 @@ fn round_trips(thin: usize) {
                         worst = worst.max(off);
                     }
                     for (a, b) in pairs().filter(|(a, _)| a.tension > 0.0) {
-                        let slack = b.tension == 0.0 && b.stroke >= a.stroke - 1e-9;
-                        assert!(slack || (a.stroke - b.stroke).abs() < 1e-9 * arm.length, "{label}: {a:?} {b:?}");
+                        // Another shape may have the same strokes, and cables that are slack in it more.
+                        let command = b.command.expect("a stroke that was commanded");
+                        assert!(!command.slack || b.stroke >= a.stroke - 1e-9 * arm.length, "{label}: {a:?} {b:?}");
                     }
                 }
-                Err(error) => println!("{label}: {error}"),
+                Err(error) => {
+                    // The way of the strokes may turn back, but is never lost.
+                    println!("{label}: {error}");
+                    lost += usize::from(
+                        matches!(error, SolveError::NoEquilibrium(no) if no.verdict.kind == VerdictKind::NotFound),
+                    );
+                }
             }
         }
     }
     println!("tensions took {:.2} s, strokes {:.2} s", took[0], took[1]);
     println!(
-        "{solved} solved, {back} found again by their strokes, {same} in the same shape, strokes off by {worst:e} L at most, \
-         {loose} answered above the tolerance"
+        "{solved} solved, {back} found again by their strokes, {same} in the same shape, strokes off by {worst:e} L at \
+         most, {lost} lost"
     );
-    assert!(solved > 20 && same * 100 >= solved * 85 && worst < 1e-9);
+    assert!(solved > 20 && same * 100 >= solved * 85 && worst < 1e-9 && lost * 200 <= solved.max(200));
 }
 
 #[test]
@@ -179,7 +176,7 @@ fn strokes_lead_back_to_tensions_on_a_thinned_grid() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "700 solves and back"]
 fn strokes_lead_back_to_tensions_on_the_grid() {
     round_trips(7);
 }

@@ -24,10 +24,8 @@ const SLACK: f64 = 1e-12;
 /// Corrections (rad) above which the tensions do not yet say which cables are taut.
 const SETTLED: f64 = 0.3;
 
-/// Changes of the shape (rad) and of strokes (over L) that may be all that many rounds still do, and those that may be at the
-/// last one.
-const NEARLY: f64 = 1e-9;
-const ROUNDING: f64 = 3e-6;
+/// Changes of the shape (rad) and of strokes (over L) that may be all that the last round still does.
+const ROUNDING: f64 = 1e-6;
 
 /// Rounds added to those of given tensions: the set of taut cables may change.
 const MORE: usize = 12;
@@ -174,13 +172,11 @@ impl Engine {
                 continue;
             }
             let met = round.off <= strokes;
-            // Strong cables on a thin tip have strokes that rounding, and what beta' lags, do not let settle any further.
             let last = count >= most + MORE;
-            let bound = if last { ROUNDING } else { NEARLY };
-            let restless = count >= MORE && size <= bound && round.off <= bound && (last || moved <= tolerance);
-            let done = applied == 1.0 && (met && moved <= tolerance || restless && moved <= tolerance.max(bound));
+            // Where rounding is all that rounds still move, the estimate says what it moves.
+            let restless = last && size <= ROUNDING && round.off <= ROUNDING;
+            let done = applied == 1.0 && (met && moved <= tolerance || restless && moved <= tolerance.max(ROUNDING));
             if !met {
-                // The estimate is to say so.
                 self.rest = self.rest.max(10.0 * round.off);
             }
             if done || last || (count >= MORE && size > 3.0) {

@@ -114,6 +114,23 @@ impl Stepper<'_> {
         self.leave_contacts(fraction, |_, after| after.rise)
     }
 
+    /// Whether cables that are to be reeled in from where they hang slack would have to push: more tension pays them out
+    /// there. The engine is left with them slack.
+    pub(super) fn nothing_reels_in(&mut self) -> bool {
+        let kept = self.engine.state();
+        self.set(0.0);
+        let Some(held) = self.engine.equations.held.clone() else { return false };
+        let short: Vec<usize> =
+            (0..held.cables.len()).filter(|i| self.engine.equations.command_drift(&held, *i) > 0.0).collect();
+        for i in short.iter().filter(|i| !held.taut[**i]) {
+            self.engine.equations.change_over(*i);
+        }
+        let pushes = self.linearise().is_ok() && short.iter().any(|i| self.round.tension[1][*i] < 0.0);
+        self.engine.restore(&kept);
+        self.set(0.0);
+        pushes
+    }
+
     /// The point here with its tangent in the direction in which `way` is positive, and with those cables changed over that
     /// are at a contact which that tangent leads past.
     fn leave_contacts(&mut self, fraction: f64, way: impl Fn(&Self, &Point) -> f64) -> Result<Point, Trouble> {

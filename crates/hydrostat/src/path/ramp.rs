@@ -48,7 +48,16 @@ struct Ramp<'e> {
 
 impl Ramp<'_> {
     fn follow(&mut self, pace: Pace, travelled: &mut Travelled) -> Result<(), Verdict> {
-        let Ok(mut here) = self.start() else { return Err(self.never_started()) };
+        let kept = (self.phase == Phase::Stroke).then(|| self.stepper.engine.state());
+        let Ok(mut here) = self.start() else {
+            if let Some(kept) = kept {
+                self.stepper.engine.restore(&kept);
+                if self.stepper.nothing_reels_in() {
+                    return Err(self.end(VerdictKind::LimitPoint, 0.0, None));
+                }
+            }
+            return Err(self.never_started());
+        };
         // Which side of zero the determinant is on is a matter of the branch, which way is up is not.
         if here.rise < 0.0 {
             self.stepper.orientation = -self.stepper.orientation;

@@ -132,7 +132,7 @@ impl<'e> Stepper<'e> {
         }
     }
 
-    fn linearise(&mut self) -> Result<(), Trouble> {
+    pub(super) fn linearise(&mut self) -> Result<(), Trouble> {
         self.engine.linearise_held(true, &mut self.round)
     }
 
