@@ -105,12 +105,13 @@ fn event_mark(event: Event) -> (Mark, &'static str) {
     match event {
         Event::LimitPoint => (Mark::Filled(INK), "limit point"),
         Event::Bifurcation => (Mark::Diamond(INK), "bifurcation"),
+        Event::Slack(_) | Event::Taut(_) => (Mark::Hollow(INK), "a cable goes slack or taut"),
     }
 }
 
 const END: Mark = Mark::Cross(INK);
 
-/// `quantity` along a path: stable pieces solid, unstable ones dashed, limit points and bifurcations marked with the
+/// `quantity` along a path: stable pieces solid, unstable ones dashed, limit points, bifurcations and cables that go slack or taut marked with the
 /// value of the parameter, a cross where a limit of the arm ends a branch.
 ///
 /// ```
@@ -139,9 +140,9 @@ pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str
     for look in LOOKS.into_iter().filter(|wanted| regular().any(|look| look == *wanted)) {
         legend.add(Sample::Line(look.stroke()), Label::plain(look.words()));
     }
-    for event in [Event::LimitPoint, Event::Bifurcation] {
-        if events.iter().any(|p| p.event == Some(event)) {
-            let (mark, words) = event_mark(event);
+    for event in [Event::LimitPoint, Event::Bifurcation, Event::Slack(0)] {
+        let (mark, words) = event_mark(event);
+        if events.iter().any(|p| p.event.is_some_and(|own| event_mark(own).1 == words)) {
             legend.add(Sample::Mark(mark), Label::plain(words));
         }
     }

@@ -73,6 +73,7 @@ pub fn side_message(end: PathEnd, base: f64) -> String {
     match end {
         PathEnd::Limit { kind, s } => format!("{} {at}", limit_message(kind, s)),
         PathEnd::MostPoints => format!("the curve was given up after too many points {at}"),
+        PathEnd::Stopped => format!("the search was stopped {at}"),
         PathEnd::ReachedEnd | PathEnd::ReachedStart => format!("the curve ended {at}"),
     }
 }

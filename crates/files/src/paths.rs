@@ -1,6 +1,6 @@
 //! Paths of equilibria as JSON and CSV.
 
-use hydrostat::{Branch, Path, PathEnd, PathPoint, VerdictKind};
+use hydrostat::{Branch, Event, Path, PathEnd, PathPoint, VerdictKind};
 use serde::Serialize;
 
 use crate::results::{SCHEMA, cell, row};
@@ -40,6 +40,8 @@ struct PointOut<'a> {
     #[serde(flatten)]
     state: State<'a>,
     event: Option<&'static str>,
+    /// Index of the cable that goes slack or taut.
+    cable: Option<usize>,
 }
 
 impl EndOut {
@@ -61,6 +63,7 @@ pub fn end_message(end: PathEnd, varied: &Varied, value: f64) -> String {
             format!("it came back to the start of the range, {}", varied.with_unit(varied.range[0]))
         }
         PathEnd::MostPoints => format!("the most points allowed were reached {at}"),
+        PathEnd::Stopped => format!("it was stopped {at}"),
         PathEnd::Limit { kind, s } => format!("{} {at}", limit_message(kind, s)),
     }
 }
@@ -89,7 +92,8 @@ fn branch<'a>(branch: &'a Branch, varied: &Varied) -> BranchOut<'a> {
 
 fn point(point: &PathPoint) -> PointOut<'_> {
     let state = State::new(&point.configuration, point.stability);
-    PointOut { value: point.value, state, event: point.event.map(hydrostat::Event::name) }
+    let cable = point.event.and_then(Event::cable);
+    PointOut { value: point.value, state, event: point.event.map(Event::name), cable }
 }
 
 impl<'a> PathDocument<'a> {
@@ -125,8 +129,12 @@ pub fn path_csv(path: &Path, varied: &Varied) -> String {
     let mut out = row(&names);
     for (branch, point) in all() {
         let mut cells = vec![branch.to_string(), cell(point.value)];
-        let event = point.event.map_or("", hydrostat::Event::name);
-        cells.extend(State::new(&point.configuration, point.stability).cells(&[event]));
+        let name = |event: Event| match event.cable() {
+            Some(cable) => format!("{}[{cable}]", event.name()),
+            None => event.name().to_owned(),
+        };
+        let event = point.event.map(name).unwrap_or_default();
+        cells.extend(State::new(&point.configuration, point.stability).cells(&[&event]));
         out.push_str(&row(&cells));
     }
     out

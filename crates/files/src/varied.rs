@@ -208,7 +208,7 @@ mod tests {
         }
         assert!(error("flow.sped=0:1").ends_with("did you mean `flow.speed`?"));
         assert!(error("tension=0:1").ends_with("did you mean `cable[0].tension`?"));
-        assert!(error("arm.length=0:1").contains("those are cable[0].tension, flow.speed"));
+        assert!(error("arm.length=0:1").contains("those are cable[0].tension, cable[0].stroke, flow.speed"));
         assert!(error("flow.speed=0:1 N").contains("expected a speed"));
         assert!(error("flow.speed=0:1 N").contains("`N` is the unit of a force"));
         assert!(error("flow.speed=0:").contains("does not start with a number"));

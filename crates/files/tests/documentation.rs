@@ -165,10 +165,10 @@ fn its_names_are_those_of_the_results() {
     for name in names() {
         assert!(PAGE.contains(&format!("`{name}`")), "{name}");
     }
-    for event in [Event::LimitPoint, Event::Bifurcation] {
+    for event in [Event::LimitPoint, Event::Bifurcation, Event::Slack(0), Event::Taut(0)] {
         assert!(PAGE.contains(&format!("`\"{}\"`", event.name())), "{}", event.name());
     }
-    for end in [PathEnd::ReachedEnd, PathEnd::ReachedStart, PathEnd::MostPoints] {
+    for end in [PathEnd::ReachedEnd, PathEnd::ReachedStart, PathEnd::MostPoints, PathEnd::Stopped] {
         assert!(PAGE.contains(&format!("`{}`", end.name())), "{}", end.name());
     }
     for kind in [CableFold, SectionCrushed, NoSectionSolution, LimitPoint, LoadJump, NotFound] {

@@ -286,6 +286,43 @@ impl BetaAlong {
         slope
     }
 
+    /// How beta' in `block` follows the state.
+    #[inline(always)]
+    pub(crate) fn by_state(&self, block: usize) -> &[Lanes; N] {
+        &self.by_state[block]
+    }
+
+    /// Where beta moves by `value_drift` with a parameter at fixed z and beta': what beta' does, into `slope_drift`, and what
+    /// that adds to `drifts`. For the last state that was closed.
+    pub(crate) fn follow_drift(
+        &self,
+        steps: &[Lanes],
+        value_drift: &[Lanes],
+        drifts: &mut [[Lanes; N]],
+        slope_drift: &mut Vec<Lanes>,
+    ) {
+        let stages = self.stages;
+        slope_drift.clear();
+        for (block, drifts) in drifts.iter_mut().enumerate() {
+            let (group, j) = (block / stages, block % stages);
+            let inverse = ONE / steps[group];
+            let (mut reach_slope, mut drift) = (ZERO, ZERO);
+            for l in 0..stages {
+                let d = Lanes::of(self.weights.plain[j][l]) * inverse;
+                reach_slope += d * self.reach[group * stages + l];
+                drift += d * value_drift[group * stages + l];
+            }
+            let by = &self.coupling[block];
+            let own = ONE - dot(&by.value, &by.slope) - reach_slope;
+            let share = Lanes::of(0.3).if_less(own, ONE / own, ZERO);
+            let drift = share * (drift + dot(&by.value, drifts));
+            for b in 0..N {
+                drifts[b] += by.slope[b] * drift;
+            }
+            slope_drift.push(drift);
+        }
+    }
+
     /// Closes the loop: from what the slopes were evaluated with to the next beta' and beta'', and into
     /// slopes, gradients and drifts what beta' adds to them. `steps` are element lengths, a group.
     #[inline(always)]

@@ -13,10 +13,19 @@
 //! the projections onto fewer polynomials. The condensed elements of the collocation and the sweep
 //! over the nodes that carries the right conditions are those of [`hydrostat_bvp::Collocation`], with
 //! all polynomials as columns at once.
+//!
+//! Where the lengths of taut cables are held, loads change their tensions by dt so that the strokes stay: with V the
+//! strokes that loads make at fixed tensions, U the motion that tensions make, and B the strokes that they make,
+//!
+//! ```text
+//! B dt + V load = 0        motion = C load + U dt = (C - U B^-1 V) load
+//! ```
+//!
+//! An elastic cable has the length that its own stretch takes in B, and acts as the spring that it is.
 
-use hydrostat_bvp::{Collocation, Condition, Mesh};
+use hydrostat_bvp::{Collocation, Condition, Gauss, Mesh};
 
-use crate::engine::M;
+use crate::engine::{M, solved};
 use crate::equilibrium::{N, Q};
 
 /// Fields: the motion along e1, along e2, and the turn.
@@ -34,7 +43,11 @@ const GIVEN: usize = N + FIELDS * M;
 pub(crate) struct Compliance {
     /// Polynomials a field.
     pub(crate) functions: usize,
+    /// Whether lengths of cables are held.
+    pub(crate) held: bool,
     entries: Vec<f64>,
+    /// Strokes of the cables asked for under the same loads, one row a cable.
+    strokes: Vec<f64>,
 }
 
 /// An element after its stages are eliminated.
@@ -43,6 +56,8 @@ struct Element {
     end: [[f64; GIVEN]; N],
     /// Slopes of x and y, and theta, at each stage.
     motion: [[[f64; GIVEN]; FIELDS]; M],
+    /// What it adds to the stroke of each cable asked for.
+    strokes: Vec<[f64; GIVEN]>,
 }
 
 /// The right conditions carried to a node: `rows z = load`, the identity on the columns `pivot`.
@@ -53,13 +68,15 @@ struct Rows {
 
 impl Compliance {
     /// With `functions` polynomials a field, about the state of the last evaluation of `system` on
-    /// `mesh`. `None` where the linear system is singular.
+    /// `mesh`; `cables` are the derivatives of strokes by the state at the stages of every element, times the weights of the
+    /// stages. `None` where the linear system is singular.
     #[inline(always)]
     pub(crate) fn new(
         system: &Collocation<N, M, Q>,
         mesh: &Mesh,
         right: &[Condition<N>; N],
         functions: usize,
+        cables: &[Vec<[[f64; N]; M]>],
     ) -> Option<Self> {
         let n = mesh.elements();
         let columns = FIELDS * functions;
@@ -78,7 +95,7 @@ impl Compliance {
                     functions,
                 );
             }
-            elements.push(Element::new(system, i, h)?);
+            elements.push(Element::new(system, i, h, cables)?);
         }
         let basis_of = |i: usize| &basis[i * functions..(i + 1) * functions];
 
@@ -112,6 +129,7 @@ impl Compliance {
         let mut next = vec![0.0; N * columns];
         base_state(&rows[0], &loads[..RIGHT * columns], columns, &mut state)?;
         let mut entries = vec![0.0; columns * columns];
+        let mut strokes = vec![0.0; cables.len() * columns];
         let mut moved = vec![0.0; columns];
         for i in 0..n {
             let (element, basis) = (&elements[i], basis_of(i));
@@ -133,6 +151,10 @@ impl Compliance {
                     }
                 }
             }
+            for (by, row) in element.strokes.iter().zip(strokes.chunks_exact_mut(columns)) {
+                add_states(by, &state, row);
+                add_loads(by, 1.0, basis, row);
+            }
             for a in 0..N {
                 let own = &mut next[a * columns..(a + 1) * columns];
                 own.fill(0.0);
@@ -142,13 +164,58 @@ impl Compliance {
             rows[i + 1].impose(&loads[(i + 1) * RIGHT * columns..][..RIGHT * columns], columns, &mut next);
             std::mem::swap(&mut state, &mut next);
         }
-        Some(Self { functions, entries })
+        Some(Self { functions, held: false, entries, strokes })
+    }
+
+    /// Holds the lengths of the cables asked for: `motions` are the projections of what unit tensions move, `strokes` what
+    /// they reel in of all of them. `None` where the cables have no tensions for their lengths.
+    pub(crate) fn hold(&mut self, motions: &[Vec<f64>], strokes: &[Vec<f64>]) -> Option<()> {
+        let (count, columns) = (motions.len(), FIELDS * self.functions);
+        self.held = true;
+        for column in 0..columns {
+            let row = |i: usize| {
+                let under_load = self.strokes[i * columns + column];
+                (strokes.iter().map(|by| by[i]).collect(), [-under_load, 0.0])
+            };
+            let (tensions, _) = solved((0..count).map(row).collect())?;
+            for ([tension, _], motion) in tensions.iter().zip(motions) {
+                for (k, moved) in motion.iter().enumerate() {
+                    self.entries[k * columns + column] += tension * moved;
+                }
+            }
+        }
+        Some(())
     }
 
     /// The entry of row `i` and column `j`.
     pub(crate) fn entry(&self, i: usize, j: usize) -> f64 {
         self.entries[i * FIELDS * self.functions + j]
     }
+}
+
+/// Projection of a motion (x', y' and theta at a stage of an element) onto polynomials, as the rows of a compliance are.
+pub(crate) fn project(
+    gauss: &Gauss<M>,
+    mesh: &Mesh,
+    functions: usize,
+    motion: impl Fn(usize, usize) -> [f64; FIELDS],
+) -> Vec<f64> {
+    let mut out = vec![0.0; FIELDS * functions];
+    for i in 0..mesh.elements() {
+        for j in 0..M {
+            let (weight, moved) = (mesh.step(i) * gauss.b[j], motion(i, j));
+            polynomials(
+                mesh.nodes()[i] + mesh.step(i) * gauss.c[j],
+                |k, value, rest| {
+                    for f in 0..FIELDS {
+                        out[FIELDS * k + f] += weight * moved[f] * if f < 2 { rest } else { value };
+                    }
+                },
+                functions,
+            );
+        }
+    }
+    out
 }
 
 /// `out += by[..N] state`.
@@ -195,7 +262,7 @@ fn polynomials(s: f64, mut out: impl FnMut(usize, f64, f64), count: usize) {
 impl Element {
     /// Solves k_j = J_j (z + h sum a_jl k_l) - (0, f_x, f_y, c)_j for the stage slopes k.
     #[inline(always)]
-    fn new(system: &Collocation<N, M, Q>, i: usize, h: f64) -> Option<Self> {
+    fn new(system: &Collocation<N, M, Q>, i: usize, h: f64, cables: &[Vec<[[f64; N]; M]>]) -> Option<Self> {
         let gauss = &system.gauss;
         let locals: [_; M] = std::array::from_fn(|j| system.local(i, j));
         let mut matrix = [[0.0; SLOPES]; SLOPES];
@@ -244,7 +311,20 @@ impl Element {
             }
             out
         });
-        Some(Self { end: state(&gauss.b), motion })
+        let stroke = |gradients: &Vec<[[f64; N]; M]>| {
+            let mut out = [0.0; GIVEN];
+            for (weights, gradient) in gauss.a.iter().zip(&gradients[i]) {
+                let z = state(weights);
+                for (by, z) in gradient.iter().zip(&z) {
+                    for (out, z) in out.iter_mut().zip(z) {
+                        *out += by * z;
+                    }
+                }
+            }
+            out
+        };
+        let strokes = cables.iter().map(stroke).collect();
+        Some(Self { end: state(&gauss.b), motion, strokes })
     }
 }
 

@@ -159,6 +159,15 @@ pub enum Warning {
         /// Where, m.
         s: f64,
     },
+    /// The commanded stroke of a cable takes more tension than it may have.
+    TensionAboveMax {
+        /// Its name.
+        cable: String,
+        /// Its tension, N.
+        tension: f64,
+        /// Its `max_tension`, N.
+        max: f64,
+    },
     /// A sealed cavity, whose outside pressure is left out.
     SealedCavity,
     /// The answer hangs on the tangential load of the source's momentum law.
@@ -174,6 +183,7 @@ impl Warning {
         match self {
             Self::SurfaceFold { .. } => "surface_fold",
             Self::StrainRange { .. } => "strain_range",
+            Self::TensionAboveMax { .. } => "tension_above_max",
             Self::SealedCavity => "sealed_cavity",
             Self::TangentialLoad { .. } => "tangential_load",
         }
@@ -188,6 +198,11 @@ impl Warning {
             Self::StrainRange { nu, s } => format!(
                 "the stretch nu = {nu:.3} at s = {s:.4} m is outside [0.5, 1.5], beyond what a linear law can mean"
             ),
+            Self::TensionAboveMax { cable, tension, max } => {
+                format!(
+                    "the stroke commanded of cable `{cable}` takes {tension:.4} N, more than its max_tension of {max} N"
+                )
+            }
             Self::SealedCavity => {
                 "the cavity is sealed: the pressure of the water outside, which would load the wall, is left out"
                     .to_owned()
@@ -320,11 +335,15 @@ impl Configuration {
             cable.stroke = l * (unloaded - now);
         }
 
-        for (state, cable) in cables.iter_mut().zip(&arm.cables) {
+        let taut = |c: usize| {
+            let held = dense.equations.held.as_ref();
+            held.is_some_and(|held| held.cables.iter().zip(&held.taut).any(|(own, taut)| *own == c && *taut))
+        };
+        for (c, (state, cable)) in cables.iter_mut().zip(&arm.cables).enumerate() {
             state.command = cable.stroke.map(|stroke| Command {
                 stroke,
                 length: state.length + state.stroke - stroke,
-                slack: cable.tension == 0.0,
+                slack: !taut(c),
             });
         }
 
@@ -460,6 +479,11 @@ impl Configuration {
             && !(0.5..=1.5).contains(&nu)
         {
             out.push(Warning::StrainRange { nu, s });
+        }
+        for cable in self.arm.cables.iter().filter(|cable| cable.stroke.is_some()) {
+            if let Some(max) = cable.max_tension.filter(|max| cable.tension > *max) {
+                out.push(Warning::TensionAboveMax { cable: cable.name.clone(), tension: cable.tension, max });
+            }
         }
         if self.arm.cavity == crate::Cavity::Sealed && !self.arm.inner_radius.is_zero() {
             out.push(Warning::SealedCavity);

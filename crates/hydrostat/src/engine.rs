@@ -1,8 +1,10 @@
 //! From an arm to its configuration.
 
+mod held;
+
 use std::sync::LazyLock;
 
-use hydrostat_bvp::{Collocation, Correction, Gauss, Hermite, LANES, Limits, Mesh, RoundError, Solution};
+use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Hermite, LANES, Limits, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
 use crate::configuration::Statistics;
@@ -10,6 +12,8 @@ use crate::dispatch::{Work, dispatch, widest};
 use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
 use crate::friction::Grip;
 use crate::verdict::Phase;
+
+pub(crate) use self::held::{Pulled, Round, at_stations, pull_taut, solved};
 
 /// Stages of the solve, and of the check that estimates its error.
 pub(crate) const M: usize = 4;
@@ -38,6 +42,9 @@ const TIGHT: f64 = 1e-9;
 
 /// Corrections of the tip (over L) that Newton is not asked to get below.
 const RESTLESS: f64 = 1e-11;
+
+/// Errors of the tip (over L) that rounding makes, which no comparison shows.
+const ROUNDED: f64 = 1e-13;
 
 pub(crate) type Guess = Solution<N, M>;
 
@@ -127,6 +134,8 @@ pub(crate) struct Engine {
     rest: f64,
     /// Tip position over L at the last round.
     pub(crate) tip: [f64; Q],
+    /// The part of unknown tensions in the determinant of the last round.
+    border: Determinant,
 }
 
 /// Strains, beta' and beta'' at a station to be.
@@ -295,6 +304,7 @@ impl Engine {
             rest: 0.0,
             on_a_path: false,
             tip: [0.0; 2],
+            border: Determinant { sign: 1.0, log: 0.0 },
         }
     }
 
@@ -411,6 +421,9 @@ impl Engine {
     /// less in the round to come. Given how close to the kinks of the load nodes have to be, they are moved there as soon
     /// as corrections are small: a round on nodes that are off is as good as lost.
     fn iterate(&mut self, tolerance: f64, most: usize, ahead: bool, resolution: Option<f64>) -> Result<(), Trouble> {
+        if self.equations.held.is_some() {
+            return self.iterate_held(tolerance, most);
+        }
         let clamped = self.equations.arm().readings.support == crate::Support::Clamped;
         let most = if clamped { most } else { 60 };
         let mut applied = 0.0;
@@ -502,14 +515,6 @@ impl Engine {
         evaluate(&mut self.system, &mut self.equations, &self.solution)
     }
 
-    /// Takes tip and spans at the present solution, which Newton has converged to by other rounds than these.
-    pub(crate) fn take_stock(&mut self) -> Result<(), Trouble> {
-        self.linearise(false)?;
-        self.system.quadratures(&mut self.spans);
-        self.tip = self.system.totals();
-        Ok(())
-    }
-
     /// Compares with one more stage an element: what the tip would move, over L. Fills the errors
     /// that each element contributes.
     pub(crate) fn estimate(&mut self, tolerance: f64) -> Result<f64, Trouble> {
@@ -543,7 +548,7 @@ impl Engine {
         let mut estimate = self.compare()?;
         // Where Newton stopped ahead of its last round, or where little is asked to be left, the comparison may miss what
         // one more would have moved.
-        let unseen = 0.1 * self.rest;
+        let unseen = (0.1 * self.rest).max(ROUNDED);
         if enough.is_some_and(|enough| estimate.max(unseen) <= enough) {
             return Ok(estimate.max(unseen));
         }

@@ -15,6 +15,7 @@
 mod at_place;
 mod few;
 mod gradients;
+mod held;
 mod nearness;
 mod places;
 mod strains;
@@ -24,7 +25,8 @@ use hydrostat_bvp::{Condition, Gauss, Groups, Hermite, LANES, Lanes, Local, Prob
 
 pub(crate) use self::at_place::{Asked, AtPlace};
 use self::few::Few;
-use self::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
+use self::gradients::{by_strain_change, jacobian, rate_gradient, slopes, strain_by_state};
+pub(crate) use self::held::{Column, Held};
 use self::nearness::NearnessLanes;
 pub(crate) use self::nearness::{Nearness, SectionFailure};
 use self::places::Place;
@@ -79,6 +81,12 @@ pub(crate) struct Equilibrium {
     /// The phase whose fraction is the parameter, unless another one is varied.
     pub(crate) phase: Phase,
     varied: Option<varied::Varied>,
+    /// Cables whose stroke is commanded, from where on these are.
+    pub(crate) held: Option<Held>,
+    /// The cable whose tension takes the place of the parameter.
+    pub(crate) pulled: Option<usize>,
+    /// How strains and beta' followed the parameter when [`Problem::drift`] was asked last.
+    pub(crate) column: Column,
     /// What friction leaves of the tensions, if there is any.
     pub(crate) grip: Option<crate::friction::Grip>,
     /// (nu, eta, mu)' at the stations.
@@ -116,6 +124,9 @@ impl Equilibrium {
             fraction: [1.0, 1.0],
             phase: Phase::Tension,
             varied: None,
+            held: None,
+            pulled: None,
+            column: Column::default(),
             grip: None,
             strain_slopes: Vec::new(),
             imposed: None,
@@ -173,6 +184,10 @@ impl Equilibrium {
             for cable in &mut arm.cables {
                 cable.tension *= tension;
             }
+        }
+        for (i, c) in self.held.iter().flat_map(|held| held.cables.iter().enumerate()) {
+            let stroke = self.held.as_ref().map(|held| self.command(held, i) * self.units.length);
+            arm.cables[*c].stroke = stroke.filter(|_| self.phase == Phase::Stroke).or(arm.cables[*c].stroke);
         }
         if loads != 1.0 {
             // The stream's load is its fraction: with the square of the speed, which both laws have.
@@ -242,11 +257,12 @@ impl Equilibrium {
         lengths
     }
 
-    /// Stroke (over L) a unit of tension of cable `c` in the straight arm, by compression and bending.
-    pub(crate) fn cable_compliance(&self, c: usize) -> f64 {
-        (0..64).map(|k| (f64::from(k) + 0.5) / 64.0).filter(|s| *s < self.ends[c]).fold(0.0, |sum, s| {
+    /// Stroke (over L) of cable `a` a unit of tension of cable `b` in the straight arm, by compression and bending.
+    pub(crate) fn straight_compliance(&self, a: usize, b: usize) -> f64 {
+        let end = self.ends[a].min(self.ends[b]);
+        (0..64).map(|k| (f64::from(k) + 0.5) / 64.0).filter(|s| *s < end).fold(0.0, |sum, s| {
             let [axial, _, bending] = self.place(s).stiffness.value;
-            sum + (1.0 / axial + self.offset(c, s).y.powi(2) / bending) / 64.0
+            sum + (1.0 / axial + self.offset(a, s).y * self.offset(b, s).y / bending) / 64.0
         })
     }
 
@@ -411,6 +427,7 @@ impl Equilibrium {
             Phase::Tension => [1.0, fraction],
             Phase::Stroke => [1.0, 1.0],
         };
+        self.set_stroke_share(phase, fraction);
     }
 
     /// The tension of cable `c` at the present fraction, in the unit of force.
@@ -465,20 +482,10 @@ impl Problem<N, Q> for Equilibrium {
     ) -> Result<(), SectionFailure> {
         self.evaluations += groups.elements * groups.stages;
         let mut near = NearnessLanes::far();
-        let cable_count = self.tensions.len();
         self.follow(z);
         let mut pulled = Few::new();
         for (block, (z, out)) in z.iter().zip(out.iter_mut()).enumerate() {
-            pulled.clear();
-            for c in 0..cable_count {
-                let tension = self.tensions[c] * self.fraction[1];
-                if tension != 0.0 {
-                    let mut cable = self.cables[block * cable_count + c];
-                    cable.tension = cable.tension * Lanes::of(tension);
-                    cable.tension_slope = cable.tension_slope * Lanes::of(tension);
-                    pulled.push(cable);
-                }
-            }
+            self.pulled_in(block, &mut pulled);
             let solved = self.block(block, z, pulled.as_slice(), &mut near, out);
             if solved.is_err() {
                 self.nearness = near.nearest();
@@ -492,7 +499,20 @@ impl Problem<N, Q> for Equilibrium {
 
     #[inline(always)]
     fn drift(&mut self, out: &mut [[Lanes; N]]) {
-        if !self.drift_by_share(out) {
+        let followed = match self.pulled {
+            Some(cable) => self.drift_by_tension(cable, out),
+            None => self.drift_by_share(out),
+        };
+        if followed {
+            return;
+        }
+        if self.held.is_some() {
+            self.column.clear(out.len());
+        }
+        if self.pulled.is_some() {
+            // Without strains to follow it the tension moves nothing, which no round can work with.
+            out.fill([Lanes::of(0.0); N]);
+        } else {
             out.copy_from_slice(&self.drifts);
         }
     }
@@ -525,6 +545,14 @@ impl Problem<N, Q> for Equilibrium {
                 out[k + 1].residual = z[k + 1] - at_base[k];
                 out[k + 1].gradient[k + 1] = 1.0;
             }
+            if let Some(c) = self.pulled {
+                let offset = self.offset(c, 0.0);
+                let stretch = 1.0_f64.hypot(offset.slope);
+                let (t_a, t_b) = (1.0 / stretch, offset.slope / stretch);
+                out[1].drift = -(t_a * cos - t_b * sin);
+                out[2].drift = -(t_a * sin + t_b * cos);
+                out[3].drift = offset.y * t_a;
+            }
         }
     }
 
@@ -547,6 +575,22 @@ impl Problem<N, Q> for Equilibrium {
 }
 
 impl Equilibrium {
+    /// Fills `out` with the cables that pull in a block of stations.
+    #[inline(always)]
+    fn pulled_in(&self, block: usize, out: &mut Few<Lanes>) {
+        let cable_count = self.tensions.len();
+        out.clear();
+        for c in 0..cable_count {
+            let tension = self.tensions[c] * self.fraction[1];
+            if tension != 0.0 {
+                let mut cable = self.cables[block * cable_count + c];
+                cable.tension = cable.tension * Lanes::of(tension);
+                cable.tension_slope = cable.tension_slope * Lanes::of(tension);
+                out.push(cable);
+            }
+        }
+    }
+
     /// The stations of a block at the states `z`: all but what beta' adds.
     #[inline(always)]
     fn block(
@@ -716,12 +760,7 @@ impl Equilibrium {
                 let f = self.fraction[1];
                 let per = Lanes::of(if f == 0.0 { 0.0 } else { -1.0 / f });
                 let strain = apply3(&solved.inverse, each(|k| solved.balance.cables[k] * per));
-                let by = |k: usize| {
-                    -(load.by_strain[k][0] * strain[0]
-                        + load.by_strain[k][1] * strain[1]
-                        + load.by_strain[k][2] * strain[2])
-                };
-                ([strain[2], by(0), by(1), contact[0] * strain[1] - contact[1] * strain[0]], strain[0])
+                (by_strain_change(load, contact, strain), strain[0])
             }
         }
     }

@@ -19,6 +19,8 @@ use crate::arm::{Arm, ArmError, Gravity, Material};
 pub enum Parameter {
     /// Tension of a cable, N.
     Tension(usize),
+    /// Stroke of a cable that is commanded in place of its tension, m.
+    Stroke(usize),
     /// Speed of the stream, m/s.
     FlowSpeed,
     /// Direction of the stream from e1, rad.
@@ -77,7 +79,7 @@ pub enum Unfit {
 /// The names of all parameters, that of the cables with the index 0.
 pub fn names() -> Vec<String> {
     let mut all: Vec<String> = PLAIN.iter().map(Parameter::to_string).collect();
-    all.insert(0, Parameter::Tension(0).to_string());
+    all.splice(0..0, [Parameter::Tension(0), Parameter::Stroke(0)].map(|p| p.to_string()));
     all
 }
 
@@ -104,6 +106,7 @@ impl fmt::Display for Parameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Tension(c) => write!(f, "cable[{c}].tension"),
+            Self::Stroke(c) => write!(f, "cable[{c}].stroke"),
             Self::FlowSpeed => f.write_str("flow.speed"),
             Self::FlowDirection => f.write_str("flow.direction"),
             Self::FlowDensity => f.write_str("flow.density"),
@@ -125,9 +128,12 @@ impl FromStr for Parameter {
     type Err = UnknownParameter;
 
     fn from_str(name: &str) -> Result<Self, UnknownParameter> {
-        let cable = name.strip_prefix("cable[").and_then(|rest| rest.strip_suffix("].tension"));
-        if let Some(index) = cable.and_then(|index| index.parse().ok()) {
-            return Ok(Self::Tension(index));
+        if let Some((index, of)) = name.strip_prefix("cable[").and_then(|rest| rest.split_once("].")) {
+            match (index.parse(), of) {
+                (Ok(index), "tension") => return Ok(Self::Tension(index)),
+                (Ok(index), "stroke") => return Ok(Self::Stroke(index)),
+                _ => {}
+            }
         }
         PLAIN.into_iter().find(|p| p.to_string() == name).ok_or_else(|| UnknownParameter { name: name.to_owned() })
     }
@@ -142,9 +148,19 @@ impl Parameter {
             Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => "rad",
             Self::FlowDensity | Self::Density => "kg/m3",
             Self::GravityAcceleration => "m/s2",
+            Self::Stroke(_) => "m",
             Self::TipMoment => "N m",
             Self::Young => "Pa",
             Self::Poisson | Self::ShearFactor => "",
+        }
+    }
+
+    /// A value of it (in [`Parameter::unit`]) with its unit, angles in degrees.
+    pub(crate) fn shown(self, value: f64) -> String {
+        match self.unit() {
+            "rad" => format!("{} deg", value.to_degrees()),
+            "" => value.to_string(),
+            unit => format!("{value} {unit}"),
         }
     }
 
@@ -157,7 +173,7 @@ impl Parameter {
         self.place(&mut arm).map(|value| *value)
     }
 
-    /// Sets its value in `arm`; gravity that was left out points down.
+    /// Sets its value in `arm`; gravity that was left out points down, a cable is given by its tension or by its stroke.
     ///
     /// # Errors
     /// [`Unfit`] when the arm has no such quantity.
@@ -169,10 +185,19 @@ impl Parameter {
     fn place(self, arm: &mut Arm) -> Result<&mut f64, Unfit> {
         let gravity = Gravity { acceleration: 0.0, ..Gravity::default() };
         Ok(match self {
-            Self::Tension(c) => {
+            Self::Tension(c) | Self::Stroke(c) => {
                 let cables = arm.cables.len();
                 let missing = || Unfit::Cable { key: self.to_string(), cables };
-                &mut arm.cables.get_mut(c).ok_or_else(missing)?.tension
+                let cable = arm.cables.get_mut(c).ok_or_else(missing)?;
+                if let Self::Stroke(_) = self {
+                    if cable.stroke.is_none() {
+                        cable.tension = 0.0;
+                    }
+                    cable.stroke.get_or_insert(0.0)
+                } else {
+                    cable.stroke = None;
+                    &mut cable.tension
+                }
             }
             Self::FlowSpeed => &mut arm.flow.speed,
             Self::FlowDirection => &mut arm.flow.direction,
@@ -235,7 +260,12 @@ mod tests {
 
     #[test]
     fn every_name_is_read_back() {
-        for parameter in PLAIN.into_iter().chain([Parameter::Tension(0), Parameter::Tension(13)]) {
+        for parameter in PLAIN.into_iter().chain([
+            Parameter::Tension(0),
+            Parameter::Tension(13),
+            Parameter::Stroke(0),
+            Parameter::Stroke(7),
+        ]) {
             assert_eq!(parameter.to_string().parse(), Ok(parameter));
         }
         for wrong in ["", "cable.tension", "cable[].tension", "cable[-1].tension", "tip.force", "flow.Speed"] {
@@ -247,7 +277,7 @@ mod tests {
     fn a_value_that_is_set_is_found() {
         let mut arm = Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5);
         arm.cables.push(crate::Cable::new("left", 0.001));
-        for (k, parameter) in PLAIN.into_iter().chain([Parameter::Tension(0)]).enumerate() {
+        for (k, parameter) in PLAIN.into_iter().chain([Parameter::Tension(0), Parameter::Stroke(0)]).enumerate() {
             parameter.set(&mut arm, k as f64).unwrap();
             assert_eq!(parameter.of(&arm), Ok(k as f64));
         }

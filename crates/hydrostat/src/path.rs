@@ -2,6 +2,8 @@
 //! `docs/model.md`), followed by arclength so that no fold is stepped over unseen.
 
 mod circle;
+mod contact;
+mod events;
 mod limits;
 mod ramp;
 mod range;
@@ -11,7 +13,7 @@ mod stepper;
 
 pub use circle::{Equilibria, Equilibrium};
 pub(crate) use limits::name_limit;
-pub(crate) use ramp::follow;
+pub(crate) use ramp::{follow, follow_strokes};
 pub use range::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 
 /// Fractions start here rather than at zero, where a tangent by the fraction is not defined. What an arm

@@ -98,17 +98,14 @@ impl Solver {
     fn rub(&mut self, share: f64) -> Result<Configuration, Trouble> {
         let tol = self.options.tol;
         let start = self.engine.tip_angle();
-        let sign = self.engine.system.determinant().sign;
+        let sign = self.engine.determinant().sign;
         for _ in 0..ROUNDS {
             self.engine.refresh().map_err(Trouble::Section)?;
             let grip = Grip::of(&self.engine, share).map_err(Trouble::Section)?;
             self.engine.set_grip(Some(&grip));
             let (before, angle) = (self.engine.tip, self.engine.tip_angle());
-            let estimate = match self.strokes.as_mut() {
-                Some(strokes) => strokes.settle(&mut self.engine, tol)?,
-                None => self.engine.settle(tol, First::Warm)?,
-            };
-            let same_branch = self.strokes.is_some() || self.engine.system.determinant().sign == sign;
+            let estimate = self.engine.settle(tol, First::Warm)?;
+            let same_branch = self.engine.determinant().sign == sign;
             if (self.engine.tip_angle() - start).abs() > LARGEST_TURN || !same_branch {
                 return Err(Trouble::Stalled(self.engine.tip_angle() - start));
             }

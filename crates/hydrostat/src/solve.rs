@@ -4,7 +4,6 @@ use crate::arm::{Arm, FlowLaw};
 use crate::configuration::{Configuration, Statistics, Tip};
 use crate::engine::{Engine, First, Trouble};
 use crate::path::{LOOSE, Pace, Travelled, follow};
-use crate::strokes::{Strokes, started};
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
 
 /// The largest tangential drag coefficient that is published for such arms.
@@ -54,8 +53,6 @@ pub struct Solver {
     sign: f64,
     /// Estimated error of its tip position over L; none since loads were changed.
     estimate: Option<f64>,
-    /// Cables whose strokes are commanded, at the last configuration.
-    pub(crate) strokes: Option<Strokes>,
 }
 
 impl Solver {
@@ -66,7 +63,7 @@ impl Solver {
     pub fn new(arm: &Arm, options: Options) -> Result<Self, SolveError> {
         arm.check()?;
         options.check()?;
-        Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, estimate: None, strokes: None })
+        Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, estimate: None })
     }
 
     /// Solves from the unloaded arm.
@@ -89,7 +86,7 @@ impl Solver {
     }
 
     /// With all tensions given.
-    fn solve_tensions(&mut self) -> Result<Configuration, SolveError> {
+    pub(crate) fn solve_tensions(&mut self) -> Result<Configuration, SolveError> {
         self.settled = false;
         self.engine.on_a_path = false;
         self.engine.reset_statistics();
@@ -112,63 +109,16 @@ impl Solver {
         self.solve_along_the_path(Pace::BRISK)
     }
 
-    /// With the strokes of some cables commanded: from the equilibrium with these slack, or hardly pulled where that
-    /// one gives no start.
-    fn solve_strokes(&mut self) -> Result<Configuration, SolveError> {
-        let arm = self.engine.equations.arm().clone();
-        let mut first = None;
-        for share in [0.0, 0.02, 0.2, 0.7] {
-            match self.solve_strokes_from(&arm, share) {
-                Err(SolveError::NoEquilibrium(no)) if is_start(&no.verdict) => {
-                    first = first.or(Some(SolveError::NoEquilibrium(no)));
-                }
-                other => return other,
-            }
-        }
-        Err(first.unwrap_or_else(|| self.no_equilibrium(self.last_verdict(Some(0.0)))))
-    }
-
-    fn solve_strokes_from(&mut self, arm: &Arm, share: f64) -> Result<Configuration, SolveError> {
-        self.strokes = None;
-        let start = started(arm, &self.engine.equations, share);
-        self.engine.set_loads(&start);
-        self.solve_tensions()?;
+    /// Begins anew.
+    pub(crate) fn forget(&mut self) {
         self.settled = false;
         self.engine.reset_statistics();
-        let Ok(mut strokes) = Strokes::new(&mut self.engine, arm) else {
-            let verdict = Verdict { phase: Phase::Stroke, ..self.last_verdict(Some(0.0)) };
-            return Err(self.no_equilibrium(verdict));
-        };
-        if let Err(verdict) = strokes.follow(&mut self.engine) {
-            return Err(self.no_equilibrium(verdict));
-        }
-        let steps = strokes.steps;
-        let settled = strokes.settle(&mut self.engine, self.options.tol);
-        let travelled = Travelled { steps, ..Travelled::default() };
-        let Ok(mut configuration) = settled.and_then(|estimate| self.read(estimate, travelled)) else {
-            let verdict = Verdict { phase: Phase::Stroke, ..self.last_verdict(Some(1.0)) };
-            return Err(self.no_equilibrium(verdict));
-        };
-        configuration.tangential_factor = self.tangential_factor();
-        self.settled = true;
-        self.strokes = Some(strokes);
-        Ok(configuration)
     }
 
-    /// After a small change of strokes, tensions or stream.
-    fn resolve_strokes(&mut self, mut strokes: Strokes) -> Result<Configuration, SolveError> {
-        self.settled = false;
-        self.engine.reset_statistics();
-        strokes.command(self.engine.equations.arm());
-        let before = self.engine.tip_angle();
-        let Ok(estimate) = strokes.settle(&mut self.engine, self.options.tol) else { return self.solve() };
-        if !strokes.kept_its_branch() || (self.engine.tip_angle() - before).abs() > 0.2 {
-            return self.solve();
-        }
-        let Ok(configuration) = self.read(estimate, Travelled::default()) else { return self.solve() };
+    /// Keeps the engine's configuration to start from, with the sign of its determinant.
+    pub(crate) fn keep(&mut self, sign: f64) {
         self.settled = true;
-        self.strokes = Some(strokes);
-        Ok(configuration)
+        self.sign = sign;
     }
 
     /// Commands the stroke (m, positive when reeled in) of cable `cable` in place of its tension.
@@ -197,7 +147,8 @@ impl Solver {
     pub fn set_tensions(&mut self, tensions: &[f64]) -> Result<(), SolveError> {
         self.engine.equations.arm().check_tensions(tensions)?;
         // Strokes are not commanded any more: what was solved with them is no start.
-        self.settled &= self.strokes.take().is_none();
+        self.settled &= self.engine.equations.held.is_none();
+        self.engine.equations.let_go();
         self.estimate = None;
         self.engine.change_loads(|arm| {
             for (cable, tension) in arm.cables.iter_mut().zip(tensions) {
@@ -230,9 +181,6 @@ impl Solver {
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
     pub fn resolve(&mut self) -> Result<Configuration, SolveError> {
-        if let Some(strokes) = self.strokes.take() {
-            return self.resolve_strokes(strokes);
-        }
         match self.settle_warm() {
             Some(estimate) => self.read_warm(estimate),
             None => self.solve(),
@@ -261,8 +209,7 @@ impl Solver {
     /// # Ok::<(), hydrostat::SolveError>(())
     /// ```
     pub fn update(&mut self) -> Result<Answer, SolveError> {
-        if self.strokes.is_none()
-            && let Some(estimate) = self.settle_warm()
+        if let Some(estimate) = self.settle_warm()
             && let Ok(end) = self.engine.at_end(true)
         {
             self.settled = true;
@@ -287,7 +234,7 @@ impl Solver {
     /// [`SolveError::NoEquilibrium`].
     pub fn configuration(&mut self) -> Result<Configuration, SolveError> {
         match self.estimate {
-            Some(estimate) if self.settled && self.strokes.is_none() => self.read_warm(estimate),
+            Some(estimate) if self.settled => self.read_warm(estimate),
             _ => self.resolve(),
         }
     }
@@ -304,7 +251,7 @@ impl Solver {
         let before = self.engine.tip_angle();
         let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
         let turned = self.engine.tip_angle() - before;
-        let same = self.engine.system.determinant().sign == self.sign && turned.abs() <= 0.2;
+        let same = self.engine.determinant().sign == self.sign && turned.abs() <= 0.2;
         same.then_some(estimate)
     }
 
@@ -381,9 +328,7 @@ impl Solver {
         let mut last_good = None;
         for back in [1e-9, 1e-5, 1e-4, 1e-3, 5e-3] {
             self.engine.restore(&kept);
-            if verdict.phase != Phase::Stroke {
-                self.engine.set_phase(verdict.phase, verdict.load_fraction * (1.0 - back));
-            }
+            self.engine.set_phase(verdict.phase, verdict.load_fraction * (1.0 - back));
             let settled = self.engine.settle(self.options.tol.max(1e-6), First::Warm);
             let moved = (self.engine.tip[0] - kept.tip[0]).hypot(self.engine.tip[1] - kept.tip[1]);
             last_good = settled.ok().filter(|_| moved < 0.05).and_then(|e| self.read(e, Travelled::default()).ok());
@@ -414,10 +359,4 @@ impl Arm {
     pub fn solve(&self) -> Result<Configuration, SolveError> {
         Solver::new(self, Options::default())?.solve()
     }
-}
-
-/// Whether a path of strokes did not get away from its start.
-fn is_start(verdict: &Verdict) -> bool {
-    let no_local_limit = matches!(verdict.kind, VerdictKind::NotFound | VerdictKind::LimitPoint);
-    verdict.phase == Phase::Stroke && no_local_limit && verdict.load_fraction < 0.05
 }

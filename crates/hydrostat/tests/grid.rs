@@ -105,13 +105,16 @@ fn whole_grid_is_solved_or_explained() {
 /// The tensions of solved cases, and what they reel in, commanded as strokes: the same strokes come back, and where the path of
 /// the strokes leads to the same shape, the same tensions.
 fn round_trips(thin: usize) {
-    let (mut solved, mut back, mut same, mut worst) = (0, 0, 0, 0.0_f64);
+    let (mut solved, mut back, mut same, mut lost, mut worst) = (0, 0, 0, 0, 0.0_f64);
+    let mut took = [0.0; 2];
     for name in shipped::names() {
         for (label, arm) in cases(&shipped_arm(name), thin) {
             if arm.cables.iter().all(|c| c.tension == 0.0) {
                 continue;
             }
+            let start = Instant::now();
             let Ok(given) = Solver::new(&arm, Options::default()).unwrap().solve() else { continue };
+            took[0] += start.elapsed().as_secs_f64();
             solved += 1;
             let mut commanded = arm.clone();
             for (cable, state) in commanded.cables.iter_mut().zip(&given.cables) {
@@ -122,11 +125,16 @@ fn round_trips(thin: usize) {
                     cable.max_tension = None;
                 }
             }
-            match Solver::new(&commanded, Options::default()).unwrap().solve() {
+            let start = Instant::now();
+            let outcome = Solver::new(&commanded, Options::default()).unwrap().solve();
+            took[1] += start.elapsed().as_secs_f64();
+            match outcome {
                 Ok(found) => {
                     back += 1;
                     let pairs = || given.cables.iter().zip(&found.cables);
-                    let off = pairs().fold(0.0_f64, |m, (a, b)| m.max((a.stroke - b.stroke).abs())) / arm.length;
+                    // Of the cables whose strokes were commanded: those of the others are as good as the shape.
+                    let held = pairs().filter(|(_, b)| b.command.is_some_and(|command| !command.slack));
+                    let off = held.fold(0.0_f64, |m, (a, b)| m.max((a.stroke - b.stroke).abs())) / arm.length;
                     let moved = (given.tip().x - found.tip().x).hypot(given.tip().y - found.tip().y);
                     if moved < 1e-4 * arm.length {
                         same += 1;
@@ -139,18 +147,27 @@ fn round_trips(thin: usize) {
                         worst = worst.max(off);
                     }
                     for (a, b) in pairs().filter(|(a, _)| a.tension > 0.0) {
-                        let slack = b.tension == 0.0 && b.stroke >= a.stroke - 1e-9;
-                        assert!(slack || (a.stroke - b.stroke).abs() < 1e-8 * arm.length, "{label}: {a:?} {b:?}");
+                        // Another shape may have the same strokes, and cables that are slack in it more.
+                        let command = b.command.expect("a stroke that was commanded");
+                        assert!(!command.slack || b.stroke >= a.stroke - 1e-9 * arm.length, "{label}: {a:?} {b:?}");
                     }
                 }
-                Err(error) => println!("{label}: {error}"),
+                Err(error) => {
+                    // The way of the strokes may turn back, but is never lost.
+                    println!("{label}: {error}");
+                    lost += usize::from(
+                        matches!(error, SolveError::NoEquilibrium(no) if no.verdict.kind == VerdictKind::NotFound),
+                    );
+                }
             }
         }
     }
+    println!("tensions took {:.2} s, strokes {:.2} s", took[0], took[1]);
     println!(
-        "{solved} solved, {back} found again by their strokes, {same} in the same shape, strokes off by {worst:e} L at most"
+        "{solved} solved, {back} found again by their strokes, {same} in the same shape, strokes off by {worst:e} L at \
+         most, {lost} lost"
     );
-    assert!(solved > 20 && same * 100 >= solved * 80 && worst < 1e-8);
+    assert!(solved > 20 && same * 100 >= solved * 85 && worst < 1e-9 && lost * 200 <= solved.max(200));
 }
 
 #[test]
@@ -159,7 +176,7 @@ fn strokes_lead_back_to_tensions_on_a_thinned_grid() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "700 solves and back"]
 fn strokes_lead_back_to_tensions_on_the_grid() {
     round_trips(7);
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::time::Duration;
 
 use clap::Args as ClapArgs;
 use hydrostat_figures::Quantity;
@@ -35,6 +36,9 @@ pub(crate) struct EquilibriaArgs {
     /// Error of the tip position over the length that is asked for, from 1e-12 to 1e-3
     #[arg(long, value_name = "TOL", default_value = "1e-8", allow_hyphen_values = true)]
     pub(crate) tol: f64,
+    /// Give a search up after so many seconds and say what it covered until then; with --over, at each value
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
+    pub(crate) time_limit: Option<Duration>,
     /// text: a summary; json: everything but the shapes; csv: a row an equilibrium
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) format: Format,
@@ -53,6 +57,12 @@ pub(crate) struct EquilibriaArgs {
     /// What --plot-over shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, `stroke[0]`
     #[arg(long, value_name = "NAME", default_value = "tip.y")]
     pub(crate) quantity: Quantity,
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let number = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0);
+    let limit = number.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    limit.ok_or_else(|| format!("expected a number of seconds above 0, found \"{text}\""))
 }
 
 /// What `--over` asks for.

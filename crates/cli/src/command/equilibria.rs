@@ -1,6 +1,7 @@
 //! `hydrostat equilibria`: all equilibria under the same loads.
 
 use std::fmt::Write as _;
+use std::time::Instant;
 
 use anyhow::Context as _;
 use hydrostat::{Arm, Equilibria, PathError};
@@ -34,7 +35,7 @@ pub(crate) fn run(args: &EquilibriaArgs) -> anyhow::Result<()> {
 }
 
 fn at_loads(args: &EquilibriaArgs, arm: &Arm) -> anyhow::Result<()> {
-    let all = search(arm, args.tol)?;
+    let all = search(arm, args)?;
     if let Some(file) = args.plot.as_ref().filter(|_| !all.found.is_empty()) {
         output::draw(&equilibria_figure(&all, &format!("{}: all equilibria", arm.name)), file)?;
     }
@@ -50,9 +51,15 @@ fn at_loads(args: &EquilibriaArgs, arm: &Arm) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// The equilibria of `arm` that are found within the time limit.
+fn within(arm: &Arm, args: &EquilibriaArgs) -> Result<Equilibria, PathError> {
+    let start = Instant::now();
+    arm.equilibria_while(args.tol, |_| args.time_limit.is_none_or(|limit| start.elapsed() < limit))
+}
+
 /// The equilibria of `arm`; an error says what a solve at its own base angle says.
-fn search(arm: &Arm, tol: f64) -> anyhow::Result<Equilibria> {
-    arm.equilibria(tol).map_err(|error| match error {
+fn search(arm: &Arm, args: &EquilibriaArgs) -> anyhow::Result<Equilibria> {
+    within(arm, args).map_err(|error| match error {
         PathError::Start { source, .. } => {
             let message = format!("no equilibrium was found at any angle of the base; as it is held, {source}");
             anyhow::Error::new(source).context(message)
@@ -66,7 +73,7 @@ fn search(arm: &Arm, tol: f64) -> anyhow::Result<Equilibria> {
 }
 
 fn over_range(args: &EquilibriaArgs, arm: &Arm, Over { varied, count }: Over) -> anyhow::Result<()> {
-    let searches = searches(arm, args.tol, &varied, count)?;
+    let searches = searches(arm, args, &varied, count)?;
     if let Some(file) = &args.plot_over {
         let found: Vec<(f64, &Equilibria)> =
             searches.iter().filter_map(|(value, all)| Some((*value, all.as_ref().ok()?))).collect();
@@ -92,7 +99,7 @@ fn over_range(args: &EquilibriaArgs, arm: &Arm, Over { varied, count }: Over) ->
 /// A search at each value; what the arm cannot be is an error, what has no equilibrium a result.
 fn searches(
     arm: &Arm,
-    tol: f64,
+    args: &EquilibriaArgs,
     varied: &Varied,
     count: usize,
 ) -> anyhow::Result<Vec<(f64, Result<Equilibria, String>)>> {
@@ -104,7 +111,7 @@ fn searches(
         let mut there = arm.clone();
         varied.parameter.set(&mut there, value).map_err(|e| WrongRequest::Unfit("--over", e))?;
         there.check().map_err(|e| WrongRequest::Value(at(), e))?;
-        let found = match there.equilibria(tol) {
+        let found = match within(&there, args) {
             Ok(all) => Ok(all),
             Err(PathError::Start { source, .. }) => Err(source.to_string()),
             Err(other) => return Err(other).with_context(at),

@@ -104,15 +104,25 @@ fn summary(arm: &Arm, path: &Path, varied: &Varied) -> String {
         let count = |event: Event| branch.points.iter().filter(|p| p.event == Some(event)).count();
         let _ = writeln!(
             out,
-            "{}, {}, {}; {}; {}",
+            "{}, {}, {}{}; {}; {}",
             counted(branch.points.len(), "point", "points"),
             counted(count(Event::LimitPoint), "limit point", "limit points"),
             counted(count(Event::Bifurcation), "bifurcation", "bifurcations"),
+            contacts(branch),
             stability_along(branch),
             end_message(branch.end, varied, branch.points.last().map_or(f64::NAN, |p| p.value))
         );
     }
     out
+}
+
+/// How often cables go slack or taut, where any does.
+fn contacts(branch: &Branch) -> String {
+    match branch.points.iter().filter(|p| p.event.is_some_and(|event| event.cable().is_some())).count() {
+        0 => String::new(),
+        1 => ", a cable goes slack or taut once".to_owned(),
+        count => format!(", cables go slack or taut {count} times"),
+    }
 }
 
 fn counted(count: usize, one: &str, many: &str) -> String {
@@ -144,13 +154,15 @@ fn events_table(branch: &Branch, varied: &Varied) -> String {
     let last = branch.points.len().saturating_sub(1);
     for (index, point) in branch.points.iter().enumerate() {
         let event = match point.event {
-            Some(Event::LimitPoint) => "limit point",
-            Some(Event::Bifurcation) => "bifurcation",
-            None if index == 0 => "start",
-            None if index == last => "end",
+            Some(Event::LimitPoint) => "limit point".to_owned(),
+            Some(Event::Bifurcation) => "bifurcation".to_owned(),
+            Some(Event::Slack(cable)) => format!("{} goes slack", point.configuration.cables[cable].name),
+            Some(Event::Taut(cable)) => format!("{} is taken up", point.configuration.cables[cable].name),
+            None if index == 0 => "start".to_owned(),
+            None if index == last => "end".to_owned(),
             None => continue,
         };
-        rows.push(row(point, varied, event));
+        rows.push(row(point, varied, &event));
     }
     table(&rows, 2)
 }
@@ -172,7 +184,7 @@ fn say_ends(path: &Path, varied: &Varied) -> anyhow::Result<()> {
             PathEnd::ReachedEnd => {}
             PathEnd::Limit { .. } if index == 0 => {}
             PathEnd::MostPoints => eprintln!("note: {what}: {message}; --max-points allows more"),
-            PathEnd::ReachedStart | PathEnd::Limit { .. } => eprintln!("note: {what}: {message}"),
+            PathEnd::ReachedStart | PathEnd::Stopped | PathEnd::Limit { .. } => eprintln!("note: {what}: {message}"),
         }
     }
     match path.branches.first() {

@@ -41,6 +41,34 @@ fn a_stroke_that_no_arm_takes_ends_in_a_verdict() {
 }
 
 #[test]
+fn a_path_over_a_stroke_says_where_a_cable_goes_taut() {
+    let held = "cable[1].stroke=\"-0.22 mm\"";
+    let path = |format: &str| {
+        let vary = "cable[0].stroke=0:6 mm";
+        let args = ["path", "silicone", "--set", held, "--set", "flow.speed=0.1", "--vary", vary, "--format", format];
+        solved(&args).out
+    };
+    let found = json(&path("json"));
+    let points = found["branches"][0]["points"].as_array().unwrap();
+    let event = points.iter().find(|p| p["event"] == "taut").expect("the right cable is taken up");
+    assert_eq!(event["cable"], 1);
+    assert!(points.iter().all(|p| p["stability"]["state"] == "stable"));
+    assert!(path("csv").contains(",taut[1],"));
+    let text = path("text");
+    assert!(text.contains("right is taken up") && text.contains("cables go slack or taut 2 times"), "{text}");
+}
+
+#[test]
+fn a_stroke_is_answered_with_its_stability_and_what_it_takes_of_the_cable() {
+    let max = "cable[0].max_tension=0.05";
+    let run = solved(&["solve", "silicone", "--set", LEFT, "--set", max, "--format", "json"]);
+    let found = json(&run.out);
+    assert_eq!(found["stable"], true);
+    let kinds: Vec<&str> = found["warnings"].as_array().unwrap().iter().map(|w| w["kind"].as_str().unwrap()).collect();
+    assert!(kinds.contains(&"tension_above_max"), "{kinds:?}");
+}
+
+#[test]
 fn friction_takes_from_the_bend() {
     let turned = |friction: &str| {
         let set = format!("cable[0].friction={friction}");

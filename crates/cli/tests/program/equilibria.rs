@@ -50,6 +50,20 @@ fn csv_and_json_are_sorted_by_the_angle_of_the_tip() {
 }
 
 #[test]
+fn a_search_that_is_given_up_says_what_it_covered() {
+    let run = solved(&five(&["--time-limit", "1e-6", "--format", "json"]));
+    let part = json(&run.out);
+    assert_eq!((&part["complete"], &part["ends"][1]["kind"]), (&Value::from(false), &Value::from("stopped")));
+    let covered = part["tip_angles"].as_array().unwrap();
+    assert!(covered[1].as_f64().unwrap() > covered[0].as_f64().unwrap());
+    assert!(!part["equilibria"].as_array().unwrap().is_empty());
+    let text = solved(&five(&["--time-limit", "1e-6"])).out;
+    assert!(text.contains("not complete") && text.contains("the search was stopped"), "{text}");
+    let refused = refused(&five(&["--time-limit", "0"]));
+    assert!(refused.contains("--time-limit") && refused.contains("seconds above 0"), "{refused}");
+}
+
+#[test]
 fn shapes_are_drawn_and_numbered() {
     let directory = directory();
     let here = directory.path();

@@ -50,6 +50,15 @@ pub(super) fn strain_by_state<R: Real>(
     })
 }
 
+/// Change of z' with the strains, at fixed z and beta'.
+#[inline(always)]
+pub(super) fn by_strain_change<R: Real>(load: &Load<R>, contact: [R; 3], strain: [R; 3]) -> [R; N] {
+    let by = |k: usize| {
+        -(load.by_strain[k][0] * strain[0] + load.by_strain[k][1] * strain[1] + load.by_strain[k][2] * strain[2])
+    };
+    [strain[2], by(0), by(1), contact[0] * strain[1] - contact[1] * strain[0]]
+}
+
 #[inline(always)]
 pub(super) fn jacobian<R: Real>(
     [cos, sin]: [R; 2],

@@ -33,8 +33,10 @@ impl Solved<Lanes> {
     }
 }
 
-/// The last Newton step of the section law that stations are content with.
-pub(super) const STATION: f64 = 1e-6;
+/// The last Newton step of the section law that stations are content with. What it leaves is its square times what may be 1e6
+/// where a cable nearly folds its side shut, and must not change from round to round: with 1e-6 the length of such an arm
+/// did, by 1e-6 of it.
+pub(super) const STATION: f64 = 1e-9;
 
 /// Newton on the section law from a guess, every lane to `tolerance` or to its own limit.
 #[inline(always)]

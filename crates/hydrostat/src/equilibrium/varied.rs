@@ -1,8 +1,8 @@
 //! The equations of an arm whose loads, support or material follow one parameter over a range.
 
-use hydrostat_bvp::{Local, Problem, Real};
+use hydrostat_bvp::{Local, Problem, Real, each};
 
-use super::{Equilibrium, LANES, Lanes, N};
+use super::{Column, Equilibrium, LANES, Lanes, N};
 use crate::arm::{Arm, TipLoad};
 use crate::parameter::Parameter;
 
@@ -77,9 +77,9 @@ impl Equilibrium {
         }
     }
 
-    /// Ends what [`Equilibrium::vary`] began, where the arm is.
-    pub(crate) fn vary_nothing(&mut self) {
-        self.varied = None;
+    /// What is varied, and by how much over its range.
+    pub(super) fn varied_over(&self) -> Option<(Parameter, f64)> {
+        self.varied.as_ref().map(|v| (v.parameter, v.to - v.from))
     }
 
     /// Sets the tension of one cable, N.
@@ -110,6 +110,7 @@ impl Equilibrium {
     /// section has no strains so near.
     pub(super) fn drift_by_share(&mut self, out: &mut [[Lanes; N]]) -> bool {
         if let Some(couple) = &self.imposed {
+            self.column.clear(out.len());
             for (block, drift) in out.iter_mut().enumerate() {
                 *drift = [Lanes::of(0.0); N];
                 for lane in 0..LANES {
@@ -120,16 +121,27 @@ impl Equilibrium {
         }
         let state: Vec<[Lanes; N]> = self.memory.iter().map(|memory| memory.z).collect();
         let mut sides = [vec![Local::default(); out.len()], vec![Local::default(); out.len()]];
-        for (side, locals) in [-DIFFERENCE, DIFFERENCE].into_iter().zip(&mut sides) {
+        let mut ends = [Column::default(), Column::default()];
+        for ((side, locals), end) in [-DIFFERENCE, DIFFERENCE].into_iter().zip(&mut sides).zip(&mut ends) {
             let Some(mut moved) = self.moved_on(side) else { return false };
             if moved.slopes::<false>(self.groups, &state, locals).is_err() {
                 return false;
             }
+            if self.held.is_some() {
+                end.strain = moved.memory.iter().map(|memory| memory.strain).collect();
+                end.beta_slope = moved.beta.slope;
+            }
         }
+        let over = |after: Lanes, before: Lanes| (after - before) / Lanes::of(2.0 * DIFFERENCE);
+        let [before, after] = &ends;
+        let strains = after.strain.iter().zip(&before.strain);
+        self.column.strain = strains.map(|(after, before)| each(|k| over(after[k], before[k]))).collect();
+        let slopes = after.beta_slope.iter().zip(&before.beta_slope);
+        self.column.beta_slope = slopes.map(|(after, before)| over(*after, *before)).collect();
         let [before, after] = &sides;
         for (k, drift) in out.iter_mut().enumerate() {
             for a in 0..N {
-                drift[a] = (after[k].slope[a] - before[k].slope[a]) / Lanes::of(2.0 * DIFFERENCE);
+                drift[a] = over(after[k].slope[a], before[k].slope[a]);
             }
         }
         true
@@ -138,14 +150,20 @@ impl Equilibrium {
     /// d (base angle) / d share.
     pub(super) fn base_turn(&self) -> f64 {
         match &self.varied {
-            Some(Varied { parameter: Parameter::BaseAngle, from, to, .. }) if self.imposed.is_none() => to - from,
+            Some(Varied { parameter: Parameter::BaseAngle, from, to, .. })
+                if self.imposed.is_none() && self.pulled.is_none() =>
+            {
+                to - from
+            }
             _ => 0.0,
         }
     }
 
     /// d (tip load) / d share at the angle `theta` of the tip.
     pub(super) fn tip_drift(&self, theta: f64) -> [f64; 3] {
-        let Some(varied) = self.varied.as_ref().filter(|_| self.imposed.is_none()) else { return [0.0; 3] };
+        let Some(varied) = self.varied.as_ref().filter(|_| self.imposed.is_none() && self.pulled.is_none()) else {
+            return [0.0; 3];
+        };
         let change = varied.to - varied.from;
         let mut tip = TipLoad::default();
         match varied.parameter {

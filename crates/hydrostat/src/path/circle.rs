@@ -77,12 +77,37 @@ impl Arm {
     ///
     /// # Errors
     /// [`PathError::Start`] when no equilibrium was found at any base angle, [`PathError::Support`],
-    /// [`PathError::Option`].
+    /// [`PathError::Friction`], [`PathError::Option`], and [`PathError::Stroke`]: at commanded strokes an angle of the tip
+    /// leaves the tensions open, so that the equilibria for all base angles need not be one curve.
     pub fn equilibria(&self, tol: f64) -> Result<Equilibria, PathError> {
+        self.equilibria_while(tol, |_| true)
+    }
+
+    /// [`Arm::equilibria`] that asks `go_on` after every point of the curve, with how many there are, and ends the search
+    /// where that is false: with what was found so far, [`PathEnd::Stopped`] as its end, and the angles that it covered.
+    ///
+    /// ```
+    /// use hydrostat::{Arm, PathEnd};
+    ///
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.flow.speed = 0.2;
+    /// arm.flow.direction = std::f64::consts::PI;
+    /// let part = arm.equilibria_while(1e-8, |points| points < 20).unwrap();
+    /// assert!(!part.complete && part.steps == 20);
+    /// assert_eq!(part.ends[1], Some(PathEnd::Stopped));
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`Arm::equilibria`].
+    pub fn equilibria_while(&self, tol: f64, mut go_on: impl FnMut(usize) -> bool) -> Result<Equilibria, PathError> {
         if !(1e-12..=1e-3).contains(&tol) {
             return Err(PathError::Option { option: "tol", value: tol, expected: "in [1e-12, 1e-3]" });
         }
         self.has_a_path()?;
+        // With unknown tensions, theta(L) does not settle the arm: what follows is not one curve.
+        if let Some(cable) = self.cables.iter().find(|c| c.stroke.is_some()) {
+            return Err(PathError::Stroke { cable: cable.name.clone() });
+        }
         let (mut solver, turned) = start(self)?;
         let asked = Asked { arm: self.clone(), turned, tol };
         let engine = solver.engine_mut();
@@ -97,12 +122,12 @@ impl Arm {
             ends: [None; 2],
             steps: 0,
         };
-        let forwards = follow(engine, &asked, 1.0, &mut out);
+        let forwards = follow(engine, &asked, 1.0, &mut out, &mut go_on);
         out.complete = forwards.is_none();
         out.ends[1] = forwards;
-        if !out.complete {
+        if !out.complete && forwards != Some(PathEnd::Stopped) {
             engine.restore(&whole);
-            let backwards = follow(engine, &asked, -1.0, &mut out);
+            let backwards = follow(engine, &asked, -1.0, &mut out, &mut go_on);
             out.ends[0] = backwards;
         }
         out.found.sort_by(|a, b| a.configuration.tip().theta.total_cmp(&b.configuration.tip().theta));
@@ -141,7 +166,13 @@ fn start(arm: &Arm) -> Result<(Solver, f64), PathError> {
 
 /// Follows the curve from the engine's configuration, towards larger (1) or smaller (-1) angles of the tip, for a full
 /// turn. What stopped it before that.
-fn follow(engine: &mut Engine, asked: &Asked, side: f64, out: &mut Equilibria) -> Option<PathEnd> {
+fn follow(
+    engine: &mut Engine,
+    asked: &Asked,
+    side: f64,
+    out: &mut Equilibria,
+    go_on: &mut impl FnMut(usize) -> bool,
+) -> Option<PathEnd> {
     let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
     let mut stepper = Stepper::new(engine, Along::Range, unbounded);
     let begun =
@@ -205,6 +236,9 @@ fn follow(engine: &mut Engine, asked: &Asked, side: f64, out: &mut Equilibria) -
         if out.steps >= MOST {
             return Some(PathEnd::MostPoints);
         }
+        if !go_on(out.steps) {
+            return Some(PathEnd::Stopped);
+        }
         here = next;
         step = (step * 1.6).min(PACE.longest);
     }
@@ -249,7 +283,7 @@ fn between(stepper: &mut Stepper<'_>, a: &Point, b: &Point, fraction: f64) -> Op
             }
         }
         // Near an extreme a tangent does not lead there: halve the way, by the angle of the tip.
-        let step = 0.5 * distance(stepper, &low, &high);
+        let step = 0.5 * stepper.distance(&low, &high);
         let (middle, _) = stepper.advance(&low, step, Pace { straightness: -1.0, ..PACE }).ok()?;
         if (middle.fraction - fraction) * (low.fraction - fraction) > 0.0 {
             low = middle;
@@ -258,18 +292,6 @@ fn between(stepper: &mut Stepper<'_>, a: &Point, b: &Point, fraction: f64) -> Op
         }
     }
     None
-}
-
-/// The length of the step between two points in the metric of the path.
-fn distance(stepper: &mut Stepper<'_>, a: &Point, b: &Point) -> f64 {
-    stepper.engine.restore(&b.state);
-    let weights = stepper.weights();
-    let mut square = (b.fraction - a.fraction).powi(2);
-    for ((s, z), w) in b.mesh().nodes().iter().zip(&b.state.solution.nodes).zip(weights) {
-        let before = a.state.solution.state_in(&stepper.engine.system.gauss, a.mesh().element_of(*s), *s);
-        square += w * (z[0] - before[0]).powi(2);
-    }
-    square.sqrt()
 }
 
 /// The configuration at a point where the base is whole turns from the angle asked for, at that angle itself. With no

@@ -1,6 +1,7 @@
 //! The path that defines the answer: from the unloaded arm, loads first, then tensions (section 7 of
 //! `docs/model.md`).
 
+use super::contact::Contact;
 use super::stepper::{Along, Load, Point, Stepper, Turn};
 use super::{LOOSE, MEET, Pace, START, Travelled};
 use crate::engine::{Engine, First, Trouble, roughly};
@@ -27,6 +28,18 @@ pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdi
     Ok(travelled)
 }
 
+/// Follows the strokes to those commanded, or to a verdict, from the engine's equilibrium without them.
+pub(crate) fn follow_strokes(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdict> {
+    let mut travelled = Travelled::default();
+    let phase = Phase::Stroke;
+    let stepper = Stepper::new(engine, Along::Phase(phase), [f64::NEG_INFINITY, 1.0]);
+    let outcome = Ramp { stepper, phase }.follow(pace, &mut travelled);
+    engine.equations.let_cables_switch(true);
+    outcome?;
+    engine.set_phase(phase, 1.0);
+    Ok(travelled)
+}
+
 /// One phase of the path.
 struct Ramp<'e> {
     stepper: Stepper<'e>,
@@ -35,7 +48,16 @@ struct Ramp<'e> {
 
 impl Ramp<'_> {
     fn follow(&mut self, pace: Pace, travelled: &mut Travelled) -> Result<(), Verdict> {
-        let Ok(mut here) = self.start() else { return Err(self.never_started()) };
+        let kept = (self.phase == Phase::Stroke).then(|| self.stepper.engine.state());
+        let Ok(mut here) = self.start() else {
+            if let Some(kept) = kept {
+                self.stepper.engine.restore(&kept);
+                if self.stepper.nothing_reels_in() {
+                    return Err(self.end(VerdictKind::LimitPoint, 0.0, None));
+                }
+            }
+            return Err(self.never_started());
+        };
         // Which side of zero the determinant is on is a matter of the branch, which way is up is not.
         if here.rise < 0.0 {
             self.stepper.orientation = -self.stepper.orientation;
@@ -63,8 +85,8 @@ impl Ramp<'_> {
                 }
                 return Err(end);
             }
-            match self.stepper.advance(&here, step, pace) {
-                Ok((mut next, turn)) => {
+            match self.stepper.advance_to_contact(&here, step, pace) {
+                Ok((mut next, turn, contact)) => {
                     if turn == Turn::Crossing {
                         // The branch goes straight on through a bifurcation.
                         self.stepper.orientation = -self.stepper.orientation;
@@ -76,6 +98,17 @@ impl Ramp<'_> {
                         return Err(self.end(VerdictKind::LimitPoint, limit.clamp(0.0, 1.0), None));
                     }
                     travelled.steps += 1;
+                    if let Some(Contact { after, .. }) = contact {
+                        if after.rise < 0.0 {
+                            // Where a cable goes slack or taut the path turns back in a corner.
+                            self.stepper.engine.restore(&next.state);
+                            return Err(self.end(VerdictKind::LimitPoint, next.fraction, None));
+                        }
+                        here = after;
+                        steeper = (here.fraction, here.rise);
+                        step = 0.1_f64.min(pace.longest);
+                        continue;
+                    }
                     if next.fraction == 1.0 {
                         travelled.symmetric = next.is_symmetric();
                         return Ok(());
@@ -121,7 +154,7 @@ impl Ramp<'_> {
         if refined {
             self.stepper.or_back(|this| this.engine.settle(1e-8, First::Warm).map(|_| ()));
         }
-        self.stepper.point(fraction)
+        self.stepper.first_contacts(fraction)
     }
 
     /// A verdict at `s`, m.

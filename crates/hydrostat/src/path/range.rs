@@ -45,14 +45,28 @@ pub enum Event {
     LimitPoint,
     /// Another branch crosses.
     Bifurcation,
+    /// The cable of this index, whose stroke is commanded, goes slack.
+    Slack(usize),
+    /// The cable of this index, whose stroke is commanded, is taken up.
+    Taut(usize),
 }
 
 impl Event {
-    /// The name in results: `limit_point` or `bifurcation`.
+    /// The name in results: `limit_point`, `bifurcation`, `slack` or `taut`.
     pub fn name(self) -> &'static str {
         match self {
             Self::LimitPoint => "limit_point",
             Self::Bifurcation => "bifurcation",
+            Self::Slack(_) => "slack",
+            Self::Taut(_) => "taut",
+        }
+    }
+
+    /// The index of the cable that goes slack or taut.
+    pub fn cable(self) -> Option<usize> {
+        match self {
+            Self::Slack(cable) | Self::Taut(cable) => Some(cable),
+            Self::LimitPoint | Self::Bifurcation => None,
         }
     }
 }
@@ -79,6 +93,8 @@ pub enum PathEnd {
     ReachedStart,
     /// After the most points allowed.
     MostPoints,
+    /// Where whoever watched it said so.
+    Stopped,
     /// At what no equilibrium goes past: the kind, with the place along the arm (m) if the limit is local.
     Limit {
         /// Which limit.
@@ -95,6 +111,7 @@ impl PathEnd {
             Self::ReachedEnd => "reached_end",
             Self::ReachedStart => "reached_start",
             Self::MostPoints => "most_points",
+            Self::Stopped => "stopped",
             Self::Limit { kind, .. } => kind.name(),
         }
     }
@@ -126,7 +143,7 @@ pub struct Path {
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum PathError {
     /// The arm cannot have the value at one end of the range.
-    #[error("at {value} {unit}: {source}", unit = parameter.unit())]
+    #[error("at {}: {source}", parameter.shown(*value))]
     Value {
         /// What was to vary.
         parameter: Parameter,
@@ -148,8 +165,11 @@ pub enum PathError {
     /// The reading has no family of equilibria.
     #[error("`support = \"unstrained-base\"` is an initial-value problem without limit points or several equilibria")]
     Support,
-    /// Cables whose stroke is commanded.
-    #[error("cable `{cable}` has a commanded stroke; give it the tension that `solve` finds: paths follow tensions")]
+    /// Cables whose stroke is commanded, where all equilibria are asked for.
+    #[error(
+        "cable `{cable}` has a commanded stroke: the equilibria for all angles of the base are one curve at given tensions \
+         only; give it the tension that `solve` finds"
+    )]
     Stroke {
         /// The first such cable's name.
         cable: String,
@@ -163,7 +183,7 @@ pub enum PathError {
         cable: String,
     },
     /// There is no equilibrium to start from.
-    #[error("no equilibrium at the start of the path, {value} {unit}: {source}", unit = parameter.unit())]
+    #[error("no equilibrium at the start of the path, {}: {source}", parameter.shown(*value))]
     Start {
         /// What was to vary.
         parameter: Parameter,
@@ -180,11 +200,8 @@ impl Arm {
         if self.readings.support == Support::UnstrainedBase {
             return Err(PathError::Support);
         }
-        if let Some(cable) = self.cables.iter().find(|c| c.friction > 0.0) {
-            return Err(PathError::Friction { cable: cable.name.clone() });
-        }
-        match self.cables.iter().find(|c| c.stroke.is_some()) {
-            Some(cable) => Err(PathError::Stroke { cable: cable.name.clone() }),
+        match self.cables.iter().find(|c| c.friction > 0.0) {
+            Some(cable) => Err(PathError::Friction { cable: cable.name.clone() }),
             None => Ok(()),
         }
     }
@@ -194,7 +211,8 @@ impl Arm {
     /// turns back, and past bifurcations, until either end of the range is reached.
     ///
     /// The path starts at the configuration that [`Arm::solve`] gives at `range[0]`. The values of limit points and
-    /// bifurcations are good to 1e-6 of the range.
+    /// bifurcations are good to 1e-6 of the range. Cables whose stroke is commanded keep it, or follow it where it is what
+    /// varies; where one goes slack or taut the path has a corner, which is an event, and at which the parameter may turn back.
     ///
     /// ```
     /// use hydrostat::{Arm, Event, Parameter, PathOptions};
@@ -303,7 +321,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
         }
         let tol = self.pace.accuracy;
         self.stepper.keep_accuracy(None, &mut Load::Fixed(0.0), [tol, tol])?;
-        self.stepper.point(0.0)
+        self.stepper.first_contacts(0.0)
     }
 
     /// The branch from a point into the range.
@@ -326,7 +344,8 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
         }
         let mut step = 0.05_f64.min(self.pace.longest);
         while step >= 1e-8 {
-            let (mut next, turn) = match self.stepper.advance(&here, step, self.pace) {
+            let advanced = self.stepper.advance_to_contact(&here, step, self.pace);
+            let (mut next, turn, contact) = match advanced {
                 Ok(found) => found,
                 Err(trouble) => {
                     self.stepper.last_trouble = Some(trouble);
@@ -335,6 +354,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
                     continue;
                 }
             };
+            let step_taken = if contact.is_some() { self.stepper.distance(&here, &next) } else { step };
             let event = if turn == Turn::Crossing {
                 Some(Event::Bifurcation)
             } else if next.rise * here.rise < 0.0 {
@@ -349,9 +369,10 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
                 continue;
             }
             if let Some(event) = event {
-                let at = match event {
-                    Event::Bifurcation => self.stepper.bifurcation(&here, &next, step, self.pace),
-                    Event::LimitPoint => self.stepper.limit_point(&here, &next, step, self.pace).0,
+                let at = if event == Event::Bifurcation {
+                    self.stepper.bifurcation(&here, &next, step_taken, self.pace)
+                } else {
+                    self.stepper.limit_point(&here, &next, step_taken, self.pace).0
                 };
                 if let Some(read) = read(self.stepper.engine, &at, Some(event))
                     && !self.put(read, points)
@@ -364,6 +385,21 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
                     self.stepper.orientation = -self.stepper.orientation;
                     next.rise = -next.rise;
                 }
+            }
+            if let Some(contact) = contact {
+                let event = if contact.slack { Event::Slack(contact.cable) } else { Event::Taut(contact.cable) };
+                let turns_back = (contact.after.rise * next.rise < 0.0).then_some(Event::LimitPoint);
+                for event in turns_back.into_iter().chain([event]) {
+                    if let Some(read) = read(self.stepper.engine, &contact.after, Some(event))
+                        && !self.put(read, points)
+                    {
+                        return PathEnd::MostPoints;
+                    }
+                }
+                here = contact.after;
+                self.stepper.engine.restore(&here.state);
+                step = step.min(0.05);
+                continue;
             }
             // Corrections may have left the range: then the next step lands on its end.
             let inside = (0.0..=1.0).contains(&next.fraction);
@@ -411,7 +447,7 @@ fn change_of_count(points: &[PathPoint], next: Option<&PathPoint>) -> usize {
         Some(Stability::Unstable(count)) => Some(count),
         _ => None,
     };
-    let last = points.iter().rev().find(|p| p.event.is_none());
+    let last = points.iter().rev().find(|p| p.event.is_none_or(|event| event.cable().is_some()));
     match (last.and_then(count), next.and_then(count)) {
         (Some(last), Some(next)) => last.abs_diff(next),
         _ => 0,
@@ -427,8 +463,9 @@ fn read(engine: &mut Engine, point: &Point, event: Option<Event>) -> Option<Path
     let configuration = Configuration::read(engine, point.error * length, statistics).ok()?;
     let stability = match event {
         // There one direction is neither stable nor unstable, by its definition.
-        Some(_) => Some(Stability::Marginal),
-        None => configuration.stability(),
+        Some(Event::LimitPoint | Event::Bifurcation) => Some(Stability::Marginal),
+        // With the cables taut that are so from there on.
+        Some(Event::Slack(_) | Event::Taut(_)) | None => configuration.stability(),
     };
     Some(PathPoint { value, configuration, stability, event })
 }

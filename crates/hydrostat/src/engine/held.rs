@@ -1,0 +1,432 @@
+//! Rounds in which the lengths of taut cables are held: shape and tensions in one bordered system.
+//!
+//! With A the linearised equations, t the tensions of the taut cables, and s their strokes,
+//!
+//! ```text
+//! A dz + A_t dt = -residual            s_z dz + s_t dt = command - s
+//! ```
+//!
+//! is solved by blocks: a response of the shape for every taut cable, then a small system for the tensions. Its determinant is
+//! that of A times that of B = s_t - s_z A^-1 A_t, the strokes that unit tensions reel in: positive in the
+//! unloaded arm.
+
+use hydrostat_bvp::{Collocation, Correction, Determinant, LANES, Lanes};
+
+use super::{Engine, Guess, M, Trouble, linearise, solve};
+use crate::equilibrium::{Column, Equilibrium, Held, N, Q, SectionFailure};
+
+/// What strokes may be off by (over L) before the last round, which leaves the square of that.
+const STROKES: f64 = 1e-10;
+
+/// Slacks (over L) below which a cable is too short to hang slack.
+const SLACK: f64 = 1e-12;
+
+/// Corrections (rad) above which the tensions do not yet say which cables are taut.
+const SETTLED: f64 = 0.3;
+
+/// Changes of the shape (rad) and of strokes (over L) that may be all that the last round still does.
+const ROUNDING: f64 = 1e-6;
+
+/// Rounds added to those of given tensions: the set of taut cables may change.
+const MORE: usize = 12;
+
+/// One linearisation.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Round {
+    /// What is left to correct at the commanded strokes.
+    pub(crate) rest: Correction<N, M, Q>,
+    /// Change a unit of the parameter.
+    pub(crate) response: Correction<N, M, Q>,
+    /// Of the tensions (in the unit of force), one a commanded cable: by the rest, and by the parameter.
+    pub(crate) tension: [Vec<f64>; 2],
+    /// Strokes less commands: those after the rest, and by the parameter.
+    pub(crate) slack: [Vec<f64>; 2],
+    /// By how much the strokes of taut cables are off.
+    off: f64,
+}
+
+impl Engine {
+    /// Sign and size of the determinant of shape and unknown tensions together, at the last linearisation.
+    pub(crate) fn determinant(&self) -> Determinant {
+        let shape = self.system.determinant();
+        if self.equations.held.is_none() {
+            return shape;
+        }
+        Determinant { sign: shape.sign * self.border.sign, log: shape.log + self.border.log }
+    }
+
+    /// [`Engine::linearise`] with the corrections, at held strokes where there are any.
+    pub(crate) fn linearise_held(&mut self, parameter: bool, round: &mut Round) -> Result<(), Trouble> {
+        let Some(held) = self.equations.held.clone() else {
+            self.linearise(parameter)?;
+            solve(&self.system, &self.solution, 0, &mut round.rest);
+            if parameter {
+                solve(&self.system, &self.solution, 1, &mut round.response);
+            }
+            return Ok(());
+        };
+        let count = held.cables.len();
+        let taut = held.tight();
+        let pulled = pull_taut(&mut self.equations, &mut self.system, &self.solution, &held)?;
+        self.rounds += pulled.len();
+        let moves = parameter && !self.equations.only_commands_move();
+        if moves || taut.is_empty() {
+            self.linearise(moves)?;
+        }
+        solve(&self.system, &self.solution, 0, &mut round.rest);
+        let after_rest = self.stroke_changes(&held, &round.rest, false);
+        let mut by_parameter = vec![0.0; count];
+        if moves {
+            solve(&self.system, &self.solution, 1, &mut round.response);
+            by_parameter = self.stroke_changes(&held, &round.response, true);
+        } else {
+            round.response.clone_from(&round.rest);
+            round.response.scale(0.0);
+        }
+        let mut slack: [Vec<f64>; 2] = std::array::from_fn(|_| Vec::with_capacity(count));
+        round.off = 0.0;
+        for (i, c) in held.cables.iter().enumerate() {
+            let off = self.equations.stroke(*c, &self.system.gauss.b)[0] - self.equations.command(&held, i);
+            if held.taut[i] {
+                round.off = round.off.max(off.abs());
+            }
+            slack[0].push(off + after_rest[i]);
+            slack[1].push(by_parameter[i] - self.equations.command_drift(&held, i));
+        }
+        let row = |i: &usize| (pulled.iter().map(|by| by.strokes[*i]).collect(), [-slack[0][*i], -slack[1][*i]]);
+        let (changes, determinant) = solved(taut.iter().map(row).collect()).ok_or(Trouble::Singular)?;
+        self.border = determinant;
+        for (k, whole) in [&mut round.rest, &mut round.response].into_iter().enumerate() {
+            round.tension[k] = vec![0.0; count];
+            for (a, i) in taut.iter().enumerate() {
+                whole.add(&pulled[a].response, changes[a][k]);
+                round.tension[k][*i] = changes[a][k];
+                for (slack, by) in slack[k].iter_mut().zip(&pulled[a].strokes) {
+                    *slack += changes[a][k] * by;
+                }
+            }
+        }
+        round.slack = slack;
+        Ok(())
+    }
+
+    /// Adds `factor` times the rest (0) or the response (1) of a round to shape and tensions.
+    pub(crate) fn add_round(&mut self, round: &Round, which: usize, factor: f64) {
+        self.solution.add(if which == 0 { &round.rest } else { &round.response }, factor);
+        self.add_tensions(&round.tension[which], factor);
+    }
+
+    /// Adds `factor` times `changes` (in the unit of force), one a commanded cable, to the tensions.
+    pub(crate) fn add_tensions(&mut self, changes: &[f64], factor: f64) {
+        let Some(held) = self.equations.held.take() else { return };
+        let unit = self.equations.units.force;
+        for ((c, taut), change) in held.cables.iter().zip(&held.taut).zip(changes) {
+            if *taut {
+                let tension = self.equations.arm().cables[*c].tension + factor * change * unit;
+                self.equations.set_tension(*c, tension);
+            }
+        }
+        self.equations.held = Some(held);
+    }
+
+    fn stroke_changes(&self, held: &Held, change: &Correction<N, M, Q>, with_column: bool) -> Vec<f64> {
+        stroke_changes(&self.equations, &self.system, &self.solution, held, change, with_column)
+    }
+
+    /// Newton at held strokes until the tip moves by less than `tolerance` and the strokes are met.
+    pub(super) fn iterate_held(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
+        let strokes = STROKES.max(0.01 * tolerance);
+        let mut round = Round::default();
+        let (mut applied, mut halvings, mut switches) = (0.0, 0, 0);
+        let mut count = 0;
+        loop {
+            let mut next = Round::default();
+            match self.linearise_held(false, &mut next) {
+                Ok(()) => round = next,
+                Err(Trouble::Section(failure)) => {
+                    self.halve(&round, &mut applied, &mut halvings, failure)?;
+                    continue;
+                }
+                Err(trouble) => return Err(trouble),
+            }
+            count += 1;
+            let size = round.rest.largest(0);
+            if !size.is_finite() {
+                return Err(Trouble::Singular);
+            }
+            applied = if size > 1.0 { 1.0 / size } else { 1.0 };
+            halvings = 0;
+            self.add_round(&round, 0, applied);
+            let ([x, y], [dx, dy]) = (self.system.totals(), round.rest.total);
+            let tip = [x + dx, y + dy];
+            let drifted = if count > 1 { (tip[0] - self.tip[0]).hypot(tip[1] - self.tip[1]) } else { 0.0 };
+            self.tip = tip;
+            let moved = dx.hypot(dy).max(0.1 * size).max(0.1 * drifted);
+            self.last = size;
+            self.rest = if tolerance <= super::TIGHT { moved } else { 0.0 };
+            if size < SETTLED && self.switch_taut(&round.slack[0]) {
+                switches += 1;
+                if switches > MORE {
+                    return Err(Trouble::Stalled(size));
+                }
+                continue;
+            }
+            let met = round.off <= strokes;
+            let last = count >= most + MORE;
+            // Where rounding is all that rounds still move, the estimate says what it moves.
+            let restless = last && size <= ROUNDING && round.off <= ROUNDING;
+            let done = applied == 1.0 && (met && moved <= tolerance || restless && moved <= tolerance.max(ROUNDING));
+            if !met {
+                self.rest = self.rest.max(10.0 * round.off);
+            }
+            if done || last || (count >= MORE && size > 3.0) {
+                self.system.quadratures(&mut self.spans);
+                for (span, change) in self.spans.iter_mut().zip(&round.rest.by_element) {
+                    for q in 0..Q {
+                        span[q] += change[q];
+                    }
+                }
+                return if done { Ok(()) } else { Err(Trouble::Stalled(size.max(round.off))) };
+            }
+        }
+    }
+
+    /// Takes half of what is left of the last round back, where its end has no strains.
+    fn halve(
+        &mut self,
+        round: &Round,
+        applied: &mut f64,
+        halvings: &mut usize,
+        failure: SectionFailure,
+    ) -> Result<(), Trouble> {
+        if *applied == 0.0 || *halvings == 8 || round.rest.nodes.is_empty() {
+            return Err(Trouble::Section(failure));
+        }
+        *applied *= 0.5;
+        *halvings += 1;
+        self.add_round(round, 0, -*applied);
+        Ok(())
+    }
+
+    /// Lets cables go slack that push, and takes slack ones up that are too short; whether any changed.
+    fn switch_taut(&mut self, slack: &[f64]) -> bool {
+        let Some(mut held) = self.equations.held.take() else { return false };
+        let mut changed = false;
+        if held.switching {
+            for (i, c) in held.cables.iter().enumerate() {
+                if held.taut[i] && self.equations.arm().cables[*c].tension < 0.0 {
+                    held.taut[i] = false;
+                    self.equations.set_tension(*c, 0.0);
+                    changed = true;
+                } else if !held.taut[i] && slack[i] < -SLACK {
+                    held.taut[i] = true;
+                    changed = true;
+                }
+            }
+        }
+        self.equations.held = Some(held);
+        changed
+    }
+}
+
+/// What a unit of tension of a taut cable does at a fixed tension of all others.
+#[derive(Debug)]
+pub(crate) struct Pulled {
+    /// To the state.
+    pub(crate) response: Correction<N, M, Q>,
+    /// To the strokes of all commanded cables, over L.
+    pub(crate) strokes: Vec<f64>,
+    /// How the strains follow it at a fixed state.
+    pub(crate) column: Column,
+}
+
+/// One linearisation for every taut cable, the last of which stands in `system`.
+pub(crate) fn pull_taut(
+    equations: &mut Equilibrium,
+    system: &mut Collocation<N, M, Q>,
+    solution: &Guess,
+    held: &Held,
+) -> Result<Vec<Pulled>, Trouble> {
+    let mut out = Vec::new();
+    for i in held.tight() {
+        let c = held.cables[i];
+        equations.pulled = Some(c);
+        let linear = linearise(system, equations, solution, true);
+        equations.pulled = None;
+        linear?;
+        let mut response = Correction::default();
+        solve(system, solution, 1, &mut response);
+        let mut strokes = stroke_changes(equations, system, solution, held, &response, true);
+        strokes[i] += equations.stroke(c, &system.gauss.b)[2];
+        out.push(Pulled { response, strokes, column: equations.column.clone() });
+    }
+    Ok(out)
+}
+
+/// Changes of the strokes of the held cables with a change of the shape and, with the column, of a parameter.
+fn stroke_changes(
+    equations: &Equilibrium,
+    system: &Collocation<N, M, Q>,
+    solution: &Guess,
+    held: &Held,
+    change: &Correction<N, M, Q>,
+    with_column: bool,
+) -> Vec<f64> {
+    let weights = &system.gauss.b;
+    let moved = at_stations(equations, system, solution, change);
+    let one = |c: &usize| equations.stroke(*c, weights)[1] * equations.length_change(*c, weights, &moved, with_column);
+    held.cables.iter().map(one).collect()
+}
+
+/// A change of the shape at the stations, in their blocks; zero in lanes without an element of their own.
+pub(crate) fn at_stations(
+    equations: &Equilibrium,
+    system: &Collocation<N, M, Q>,
+    solution: &Guess,
+    change: &Correction<N, M, Q>,
+) -> Vec<[Lanes; N]> {
+    let (groups, gauss, mesh) = (equations.groups(), &system.gauss, &solution.mesh);
+    let mut out = vec![[Lanes([0.0; LANES]); N]; groups.count() * M];
+    for i in 0..mesh.elements() {
+        for j in 0..M {
+            let (block, lane) = groups.at(i, j);
+            for a in 0..N {
+                let inside: f64 = (0..M).map(|l| gauss.a[j][l] * change.slopes[i][l][a]).sum();
+                out[block][a].0[lane] = change.nodes[i][a] + mesh.step(i) * inside;
+            }
+        }
+    }
+    out
+}
+
+/// A row of the small system: coefficients, and the two right sides.
+pub(crate) type Row = (Vec<f64>, [f64; 2]);
+
+/// Solves for both right sides, by elimination with row pivoting; with the determinant.
+pub(crate) fn solved(mut rows: Vec<Row>) -> Option<(Vec<[f64; 2]>, Determinant)> {
+    let n = rows.len();
+    let mut determinant = Determinant { sign: 1.0, log: 0.0 };
+    for k in 0..n {
+        let best = (k..n).max_by(|i, j| rows[*i].0[k].abs().total_cmp(&rows[*j].0[k].abs()))?;
+        if best != k {
+            rows.swap(k, best);
+            determinant.sign = -determinant.sign;
+        }
+        let pivot = rows[k].0[k];
+        if pivot == 0.0 || !pivot.is_finite() {
+            return None;
+        }
+        determinant.sign *= pivot.signum();
+        determinant.log += pivot.abs().ln();
+        let own = rows[k].clone();
+        for (i, row) in rows.iter_mut().enumerate() {
+            if i != k {
+                let factor = row.0[k] / pivot;
+                row.0.iter_mut().zip(&own.0).for_each(|(v, o)| *v -= factor * o);
+                row.1.iter_mut().zip(&own.1).for_each(|(v, o)| *v -= factor * o);
+            }
+        }
+    }
+    Some((rows.iter().enumerate().map(|(k, (row, right))| right.map(|v| v / row[k])).collect(), determinant))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameter::Parameter;
+    use crate::{Arm, Cable, Profile};
+
+    /// Three cables, one of them elastic and one short, in a stream.
+    fn arm() -> Arm {
+        let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+        arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).reeled_in(0.010));
+        arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)).reeled_in(-0.006));
+        arm.cables.push(Cable::new("short", Profile::linear(0.004, 0.002)).reeled_in(0.008));
+        arm.cables[1].stiffness = Some(10.0);
+        arm.cables[2].end = 0.12;
+        arm.flow.speed = 0.2;
+        arm.flow.direction = 1.0;
+        arm
+    }
+
+    fn settled(arm: &Arm) -> Engine {
+        let mut engine = Engine::new(arm);
+        engine.equations.hold_strokes();
+        engine.start_from_cables(8).unwrap();
+        engine.settle(1e-11, crate::engine::First::Rough).unwrap();
+        engine
+    }
+
+    fn tensions(engine: &Engine, unit: f64) -> Vec<f64> {
+        engine.equations.arm().cables.iter().map(|c| c.tension / unit).collect()
+    }
+
+    /// The response of shape, tensions and slacks to every kind of parameter, against solves on both sides.
+    #[test]
+    fn responses_at_held_strokes_match_differences_of_solves() {
+        const RANGE: f64 = 50.0;
+        for (parameter, step, taut) in [
+            (Parameter::Stroke(0), 1e-5, 2),
+            (Parameter::Stroke(1), 1e-5, 2),
+            (Parameter::FlowSpeed, 1e-3, 2),
+            (Parameter::FlowDirection, 1e-3, 2),
+            (Parameter::Young, 200.0, 2),
+            (Parameter::BaseAngle, 1e-3, 2),
+            (Parameter::TipFollower(1), 1e-4, 2),
+        ] {
+            let arm = arm();
+            let mut engine = settled(&arm);
+            assert_eq!(engine.equations.held.as_ref().unwrap().taut.iter().filter(|taut| **taut).count(), taut);
+            let value = parameter.of(&arm).unwrap();
+            // A range that differences of it are not lost in rounding.
+            engine.equations.vary(parameter, value, value + RANGE * step);
+            let mut round = Round::default();
+            for _ in 0..3 {
+                engine.linearise_held(true, &mut round).unwrap();
+            }
+            let at = |value: f64| {
+                let mut arm = arm.clone();
+                parameter.set(&mut arm, value).unwrap();
+                settled(&arm)
+            };
+            let (before, after) = (at(value - step), at(value + step));
+            let turned = 0.5 * (after.tip_angle() - before.tip_angle());
+            let found = round.response.nodes.last().unwrap()[0] / RANGE;
+            // Differences by a parameter of the sections see beta' after one round.
+            let bound = if matches!(parameter, Parameter::Stroke(_)) { 2e-4 } else { 3e-3 };
+            assert!((turned - found).abs() < bound * turned.abs().max(1e-3), "{parameter}: {found} for {turned}");
+            let unit = engine.equations.units.force;
+            for (c, (after, before)) in tensions(&after, unit).iter().zip(tensions(&before, unit)).enumerate() {
+                let (change, found) = (0.5 * (after - before), round.tension[1][c] / RANGE);
+                assert!((change - found).abs() < bound * change.abs().max(1e-3), "{parameter}: {found} for {change}");
+            }
+            let slack = |engine: &Engine| {
+                let held = engine.equations.held.clone().unwrap();
+                let weights = engine.system.gauss.b;
+                let one = |i: usize| engine.equations.stroke(i, &weights)[0] - engine.equations.command(&held, i);
+                [one(0), one(1), one(2)]
+            };
+            for ((after, before), found) in slack(&after).iter().zip(slack(&before)).zip(&round.slack[1]) {
+                let (change, found) = (0.5 * (after - before), found / RANGE);
+                assert!((change - found).abs() < bound * change.abs().max(1e-5), "{parameter}: {found} for {change}");
+            }
+        }
+    }
+
+    #[test]
+    fn rounds_at_held_strokes_converge_quadratically() {
+        let mut engine = settled(&arm());
+        let mut moved = engine.equations.arm().clone();
+        moved.cables[0].stroke = Some(0.0105);
+        engine.set_loads(&moved);
+        let mut sizes = Vec::new();
+        for _ in 0..5 {
+            let mut round = Round::default();
+            engine.linearise_held(false, &mut round).unwrap();
+            engine.add_round(&round, 0, 1.0);
+            sizes.push(round.off.max(round.rest.largest(0)));
+        }
+        assert!(sizes[2] < 5.0 * sizes[1].powi(2) && sizes[3] < 5.0 * sizes[2].powi(2), "{sizes:?}");
+        assert!(sizes[4] < 1e-11, "{sizes:?}");
+    }
+}
