@@ -96,6 +96,17 @@ fn thinned_grid_is_solved_or_explained() {
     run(37, |_| {});
 }
 
+/// Much of this arm is stretched to where its section softens.
+#[test]
+fn a_soft_arm_across_a_fast_stream_is_solved() {
+    let mut arm = shipped_arm("octopus");
+    arm.flow.speed = 1.0;
+    arm.flow.direction = 90_f64.to_radians();
+    let solved = arm.solve().unwrap();
+    assert!(solved.stations.nu.iter().any(|nu| *nu > 1.5));
+    assert!(solved.error_estimate < 1e-7 * arm.length, "{:e}", solved.error_estimate);
+}
+
 #[test]
 #[ignore = "6552 solves"]
 fn whole_grid_is_solved_or_explained() {

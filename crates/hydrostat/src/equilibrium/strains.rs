@@ -33,10 +33,13 @@ impl Solved<Lanes> {
     }
 }
 
-/// The last Newton step of the section law that stations are content with. What it leaves is its square times what may be 1e6
-/// where a cable nearly folds its side shut, and must not change from round to round: with 1e-6 the length of such an arm
+/// The last Newton step of the section law that stations can do with.
+pub(super) const STATION: f64 = 1e-6;
+
+/// Where cables pull, steps below the tolerance but above this are followed by one more. What a step leaves is its square times what may be 1e6
+/// where a cable nearly folds its side shut, and must not change from round to round: the length of such an arm
 /// did, by 1e-6 of it.
-pub(super) const STATION: f64 = 1e-9;
+const SHARP: f64 = 1e-9;
 
 /// Newton on the section law from a guess, every lane to `tolerance` or to its own limit.
 #[inline(always)]
@@ -53,8 +56,9 @@ pub(super) fn solve_section<R: Real>(
     const MOST: usize = 80;
     let mut strain = guess;
     let one = R::of(1.0);
+    let mut near = false;
     for round in 0.. {
-        if round == SWIFT {
+        if round == SWIFT && !near {
             strain = guess;
         }
         let balance = balance(volume, stiffness, cables, strain, beta_along);
@@ -72,7 +76,10 @@ pub(super) fn solve_section<R: Real>(
             strain[k] += share * step[k];
         }
         let size = size.if_less(R::of(f64::INFINITY), size, R::of(f64::INFINITY));
-        if size.all_below(tolerance) || round == MOST {
+        let content = size.all_below(tolerance);
+        let done = content && (near || cables.is_empty() || size.all_below(SHARP));
+        near = content;
+        if done || round == MOST {
             let area = balance.swelling.beta * balance.swelling.beta;
             let slack = stiffness.value[0] * stiffness.value[1] * stiffness.value[2] * area * area * area;
             return Solved { strain, balance, inverse, regularity: det / slack, step: size };
