@@ -1,10 +1,10 @@
 """The arm `paper` for SciPy's `solve_bvp`: the equations of docs/model.md, sections 2 to 7, in their default
 reading, as a vectorised right-hand side with its Jacobian.
 
-The state is (theta, n_f . e1, n_f . e2, m_f) over s in [0, 1], lengths over L and forces over C3 A0 / L^2 at the base. The
-strains at a point follow from the section law by Newton, all points at once. beta' is iterated along with them, and its own
-slope beta'' is taken from the polynomial through the beta' of the nearest nodes. x and y are integrals of what the
-collocation has evaluated anyhow, by the same Lobatto formula.
+The state is (theta, n_f . e1, n_f . e2, m_f) over s in [0, 1], lengths over L and forces over C3 A0 / L^2 at the
+base. The strains at a point follow from the section law by Newton, all points at once. beta' is iterated along with
+them, and its own slope beta'' is taken from the polynomial through the beta' of the nearest nodes. x and y are
+integrals of what the collocation has evaluated anyhow, by the same Lobatto formula.
 """
 
 import math
@@ -143,6 +143,7 @@ class Points:
         self.strain = None
         self.q = np.zeros(count)
         self.state = None
+        self.by_state = None
 
     def evaluate(self, arm, state, tolerance, q_curvature):
         """Strains and slopes at `state`; `q_curvature` gives beta'' from beta'."""
@@ -152,13 +153,15 @@ class Points:
         n_a, n_b = cos * n1 + sin * n2, cos * n2 - sin * n1
         contact = np.array((n_a, n_b, m))
         strain, q = self.strain, self.q
+        if self.by_state is not None:
+            strain = strain + np.einsum("ijm,jm->im", self.by_state, state - self.state)
         r = q_curvature(q)
         for _ in range(60):
             law = Section(places, arm.tension, strain, q, r)
             step = apply(law.inverse, contact - law.carried)
             size = max(np.abs(step[:2]).max(), (np.abs(step[2]) / (2.0 + np.abs(strain[2]))).max())
             share = self.share(law, strain, step)
-            far = share.min() < 1.0
+            far = share < 1.0
             step *= share
             strain = strain + step
             nu, eta, mu = strain
@@ -167,11 +170,9 @@ class Points:
             f_a, f_b = cos * f1 + sin * f2, cos * f2 - sin * f1
             m_slope = eta * n_a - nu * n_b
             slope = apply(law.inverse, np.array((mu * n_b - f_a, -(mu * n_a + f_b), m_slope)) - law.along_s)
-            if far:
-                continue
             moved = q
-            q = law.slope * slope[0]
-            r = q_curvature(q)
+            q = np.where(far, q, law.slope * slope[0])
+            r = np.where(far, r, q_curvature(q))
             turned = np.abs((q - moved) * places.y).max()
             if size < tolerance and turned < tolerance:
                 break
@@ -225,6 +226,7 @@ class Points:
         top = law.slope * (row[:, None] * total).sum(axis=0) + bend * w[0]
         reach = law.slope * (row * (apply(by_strain, g) + by_q_slope)).sum(axis=0) + bend * g[0]
         w -= g[:, None] * (top / (1.0 + reach))
+        self.by_state = w
         out = np.empty((4, 4, len(nu)))
         out[0] = w[2]
         for k in range(2):
@@ -255,7 +257,6 @@ class Arm:
         self.tolerance = tolerance
         self.meshes = {}
         self.points = None
-        self.calls = 0
 
     def mesh(self, nodes):
         key = nodes.tobytes()
@@ -280,7 +281,6 @@ class Arm:
         return 1 + min(range(3), key=lambda k: abs(self.at.sets[k + 1][0].s[0] - s[0]))
 
     def slopes(self, s, state):
-        self.calls += 1
         index = self.which(s)
         points, nodes = self.points[index], self.points[0]
         _, value, slope = self.at.sets[index]
@@ -307,6 +307,7 @@ class Arm:
         # The axial balance k1 (1 - nu) = T nu^2 of a cable along the arm, and the bending that goes with it.
         k1, k3, pull = places.stiffness[0], places.stiffness[2], self.tension
         nu = (np.sqrt(k1 * k1 + 4.0 * pull * k1) - k1) / (2.0 * pull)
+        nu = np.minimum(1.5 * nu, 1.0)
         self.take(nodes, np.array((nu, np.zeros_like(nu), pull * places.y * nu / k3)), np.zeros_like(nu))
         state = np.zeros((4, len(nodes)))
         speed, self.speed = self.speed, 0.0
@@ -332,13 +333,20 @@ class Arm:
             out.append(float(h @ (end[:-1] + 4.0 * middle + end[1:]) / 6.0))
         return np.array(out)
 
-    def kept(self):
-        """What a warm start goes on from."""
-        return [(points.strain, points.q) for points in self.points]
+    def pull(self, tension):
+        """Another tension, in N."""
+        self.tension = tension / FORCE
 
-    def restore(self, kept):
+    def kept(self):
+        """The mesh and its strains, for `go_back`."""
+        return self.at, [(points.strain, points.q) for points in self.points]
+
+    def go_back(self, mesh, kept):
+        """Takes up a mesh and its strains again, for a warm start."""
+        self.at = mesh
+        self.points = [Points(places) for places, _, _ in mesh.sets]
         for points, (strain, q) in zip(self.points, kept):
-            points.strain, points.q, points.state = strain, q, None
+            points.strain, points.q = strain, q
 
 
 def ends(base, tip):

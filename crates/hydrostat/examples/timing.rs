@@ -50,17 +50,18 @@ fn main() -> Result<(), Failure> {
             solver.set_tensions(&less)?;
             solver.update().map(|_| ())
         };
-        let (warm, tip) = timed(repeats, Solver::new(&arm, options)?, back, |solver| {
+        let (warm, warm_tip) = timed(repeats, Solver::new(&arm, options)?, back, |solver| {
             solver.set_tensions(&tensions)?;
             Ok(solver.resolve()?.tip())
         })?;
-        let (update, _) = timed(repeats, Solver::new(&arm, options)?, back, |solver| {
+        let (update, update_tip) = timed(repeats, Solver::new(&arm, options)?, back, |solver| {
             solver.set_tensions(&tensions)?;
             Ok(solver.update()?.tip)
         })?;
         report["warm"] = warm;
         report["update"] = update;
-        report["warm_tip"] = position(&tip);
+        report["warm_tip"] = position(&warm_tip);
+        report["update_tip"] = position(&update_tip);
     }
     println!("{report}");
     Ok(())
