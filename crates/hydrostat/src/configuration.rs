@@ -285,7 +285,12 @@ impl Configuration {
         error_estimate: f64,
         statistics: Statistics,
     ) -> Result<Self, SectionFailure> {
-        engine.foresee();
+        if engine.equations.held.is_some() {
+            // Strains follow unknown tensions, too, and lengths are what was asked for.
+            engine.refresh()?;
+        } else {
+            engine.foresee();
+        }
         let dense = Box::new(Dense::new(engine));
         let arm = dense.equations.arm_at_fraction();
         let mesh = &dense.solution.mesh;
