@@ -11,7 +11,7 @@ const MOST_IN_PLACE: usize = 8;
 /// A list that allocates only when it is long.
 pub(super) struct Few<R> {
     count: usize,
-    few: [CableAt<R>; MOST_IN_PLACE],
+    in_place: [CableAt<R>; MOST_IN_PLACE],
     many: Vec<CableAt<R>>,
 }
 
@@ -21,7 +21,7 @@ impl<R: Real> Few<R> {
         let zero = R::of(0.0);
         let blank =
             CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero, tension_slope: zero };
-        Self { count: 0, few: [blank; MOST_IN_PLACE], many: Vec::new() }
+        Self { count: 0, in_place: [blank; MOST_IN_PLACE], many: Vec::new() }
     }
 
     #[inline(always)]
@@ -33,7 +33,7 @@ impl<R: Real> Few<R> {
     #[inline(always)]
     pub(super) fn push(&mut self, cable: CableAt<R>) {
         if self.many.is_empty() && self.count < MOST_IN_PLACE {
-            self.few[self.count] = cable;
+            self.in_place[self.count] = cable;
         } else {
             self.spill(cable);
         }
@@ -44,13 +44,13 @@ impl<R: Real> Few<R> {
     #[inline(never)]
     fn spill(&mut self, cable: CableAt<R>) {
         if self.many.is_empty() {
-            self.many.extend_from_slice(&self.few);
+            self.many.extend_from_slice(&self.in_place);
         }
         self.many.push(cable);
     }
 
     #[inline(always)]
     pub(super) fn as_slice(&self) -> &[CableAt<R>] {
-        if self.many.is_empty() { &self.few[..self.count] } else { &self.many }
+        if self.many.is_empty() { &self.in_place[..self.count] } else { &self.many }
     }
 }
