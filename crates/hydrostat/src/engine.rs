@@ -1,10 +1,13 @@
 //! From an arm to its configuration.
 
 mod held;
+mod kinks;
+mod settle;
+mod start;
 
 use std::sync::LazyLock;
 
-use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Hermite, LANES, Limits, Mesh, RoundError, Solution};
+use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Hermite, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
 use crate::configuration::Statistics;
@@ -14,37 +17,14 @@ use crate::friction::Grip;
 use crate::verdict::Phase;
 
 pub(crate) use self::held::{Pulled, Round, at_stations, pull_taut, solved};
+pub(crate) use self::settle::First;
 
 /// Stages of the solve, and of the check that estimates its error.
 pub(crate) const M: usize = 4;
 const K: usize = M + 1;
 
-/// How close (over L) nodes are kept to the kinks of the load at a tolerance: the error that a kink leaves is of second
-/// order in the distance, and the estimate does not see all of it. Closer than rounding places kinks, nodes would chase it.
-pub(crate) fn kink_resolution(tolerance: f64) -> f64 {
-    (0.02 * tolerance.sqrt()).max(5e-8)
-}
-
-/// How close (over L) nodes are kept to kinks on meshes that are refined afterwards.
-const COARSE: f64 = 1e-3;
-
-/// The error that a mesh is made for, over the tolerance: element by element it is foreseen with its sign lost.
-const TARGET: f64 = 0.3;
-
-/// What Newton is asked for on a first mesh (tip over L): what it leaves there would be taken for errors of the elements.
-const FIRST: f64 = 1e-5;
-
-/// The worst estimate (tip over L) with which a solution is still an answer.
-const WORST: f64 = 1e-5;
-
 /// A tolerance down to which what Newton leaves is foreseen well enough not to wait for it.
 const TIGHT: f64 = 1e-9;
-
-/// Corrections of the tip (over L) that Newton is not asked to get below.
-const RESTLESS: f64 = 1e-11;
-
-/// Errors of the tip (over L) that rounding makes, which no comparison shows.
-const ROUNDED: f64 = 1e-13;
 
 pub(crate) type Guess = Solution<N, M>;
 
@@ -70,26 +50,6 @@ const SMALL: f64 = 0.1;
 
 /// Rounds of Newton after which nodes are moved onto the kinks before the next.
 const PINS: usize = 2;
-
-/// What Newton moves the tip by (over L) at the end of an approach.
-const NEAR: f64 = 0.03;
-
-/// Elements on which most arms meet a tolerance: by the order of the method, and what `paper` takes.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "tolerances are in [1e-12, 1e-2]")]
-fn fair_elements(tolerance: f64) -> usize {
-    (tolerance.powf(-1.0 / (2 * M) as f64).ceil() as usize).next_multiple_of(LANES).max(8)
-}
-
-/// What the mesh is that a solve settles from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum First {
-    /// Anything: good to make a better one from.
-    Rough,
-    /// One on which most arms meet the tolerance.
-    Fair,
-    /// One that met it nearby.
-    Warm,
-}
 
 /// Corrections (rad) that may go on hopping across a kink of the load.
 pub(crate) const HOP: f64 = 1e-4;
@@ -308,48 +268,6 @@ impl Engine {
         }
     }
 
-    /// Strains from the cables alone (no stream, weight or tip load): a start that is exact when
-    /// nothing else acts.
-    pub(crate) fn start_from_cables(&mut self, elements: usize) -> Result<(), Trouble> {
-        self.place_unloaded(Mesh::uniform(elements, &self.breaks));
-        self.equations.beta.blunt = true;
-        let strains = self.strains_from_cables();
-        self.equations.beta.blunt = false;
-        strains?;
-        self.turn_by(|this, k| this.system.local(k / M, k % M).slope[0]);
-        Ok(())
-    }
-
-    /// The unloaded arm: reference strains, nothing carried.
-    pub(crate) fn start_unloaded(&mut self, elements: usize) {
-        self.place_unloaded(Mesh::uniform(elements, &self.breaks));
-        self.turn_by(|this, k| this.equations.strain(k)[2]);
-    }
-
-    /// Stations on a mesh, each with the reference strains, and nothing carried.
-    fn place_unloaded(&mut self, mesh: Mesh) {
-        self.meshes += 1;
-        self.system.stations(&mesh, &mut self.stations);
-        self.equations.place_stations(&self.stations, &mesh, |_| ([0.0; 3], 0.0, 0.0));
-        self.equations.forget_strains();
-        let angle = self.equations.arm().base.angle;
-        self.solution = Solution::constant(mesh, [angle, 0.0, 0.0, 0.0]);
-    }
-
-    /// Turns the sections by the bending strain `mu` of each station, from the base.
-    fn turn_by(&mut self, mu: impl Fn(&Self, usize) -> f64) {
-        for i in 0..self.solution.mesh.elements() {
-            let h = self.solution.mesh.step(i);
-            let mut next = self.solution.nodes[i];
-            for j in 0..M {
-                let mu = mu(self, i * M + j);
-                self.solution.slopes[i][j] = [mu, 0.0, 0.0, 0.0];
-                next[0] += h * self.system.gauss.b[j] * mu;
-            }
-            self.solution.nodes[i + 1] = next;
-        }
-    }
-
     /// The section at an end, which is no station.
     pub(crate) fn at_end(&self, tip: bool) -> Result<AtPlace, SectionFailure> {
         let n = self.solution.mesh.elements();
@@ -390,26 +308,6 @@ impl Engine {
                 v(*a).total_cmp(&v(*b))
             })
             .map(|k| self.equations.stations()[k])
-    }
-
-    fn strains_from_cables(&mut self) -> Result<(), Trouble> {
-        let whole = self.equations.fraction;
-        let mut fine = self.refresh().is_ok();
-        if !fine {
-            // Raise the tensions in steps, each from the strains of the last.
-            for k in 1..=16 {
-                self.equations.fraction[1] = whole[1] * f64::from(k) / 16.0;
-                fine = self.refresh().is_ok();
-                if !fine {
-                    break;
-                }
-            }
-            self.equations.fraction = whole;
-        }
-        for _ in 0..2 {
-            self.refresh().map_err(Trouble::Section)?;
-        }
-        Ok(())
     }
 
     /// Newton on the present mesh until the tip moves by less than `tolerance`.
@@ -515,68 +413,6 @@ impl Engine {
         evaluate(&mut self.system, &mut self.equations, &self.solution)
     }
 
-    /// Compares with one more stage an element: what the tip would move, over L. Fills the errors
-    /// that each element contributes.
-    pub(crate) fn estimate(&mut self, tolerance: f64) -> Result<f64, Trouble> {
-        self.estimate_unless(tolerance, None)
-    }
-
-    /// [`Engine::estimate`], without the errors of the elements when it is at most `enough`.
-    fn estimate_unless(&mut self, tolerance: f64, enough: Option<f64>) -> Result<f64, Trouble> {
-        if self.spans.len() != self.solution.mesh.elements() {
-            // The last Newton rounds on this mesh did not converge: there is nothing to compare with.
-            return Err(Trouble::Mesh);
-        }
-        self.foresee();
-        let methods = &*METHODS;
-        self.solution.resample(&methods.values, &mut self.finer);
-        self.check.stations(&self.finer.mesh, &mut self.check_stations);
-        let own = &self.equations;
-        self.check_equations.fraction = own.fraction;
-        self.check_equations.phase = own.phase;
-        self.check_equations.take_arm_of(own);
-        self.check_equations.place_stations(&self.check_stations, &self.finer.mesh, |k| {
-            let j = k % K;
-            let (strain, [slope, curvature]) = own.remembered_sharply(k / K, &methods.values[j], &methods.sharp[j]);
-            (strain, slope, curvature)
-        });
-        // So that beta' and beta'' are those of this state, where what is between counts.
-        let rehearsals = if self.on_a_path { 2 } else { usize::from(tolerance <= TIGHT) };
-        for _ in 0..rehearsals {
-            evaluate(&mut self.check, &mut self.check_equations, &self.finer).map_err(Trouble::Section)?;
-        }
-        let mut estimate = self.compare()?;
-        // Where Newton stopped ahead of its last round, or where little is asked to be left, the comparison may miss what
-        // one more would have moved.
-        let unseen = (0.1 * self.rest).max(ROUNDED);
-        if enough.is_some_and(|enough| estimate.max(unseen) <= enough) {
-            return Ok(estimate.max(unseen));
-        }
-        let (check, spans, errors) = (&mut self.check, &self.spans, &mut self.errors);
-        widest(
-            #[inline(always)]
-            || check.contributions(spans, errors),
-        );
-        let contributed: f64 = self.errors.iter().sum();
-        if estimate > tolerance && contributed < tolerance {
-            // Between nodes the polynomials are less accurate than at them, and one Newton round
-            // from there leaves the square of that in the comparison: a second one removes it.
-            self.finer.add(&self.check_correction, 1.0);
-            estimate = self.compare()?;
-        }
-        Ok(estimate.max(unseen))
-    }
-
-    /// How far a Newton round with one more stage puts the tip from where the solve has it.
-    fn compare(&mut self) -> Result<f64, Trouble> {
-        linearise(&mut self.check, &mut self.check_equations, &self.finer, false)?;
-        self.rounds += 1;
-        solve(&self.check, &self.finer, 0, &mut self.check_correction);
-        let total = self.check.totals();
-        let [dx, dy] = self.check_correction.total;
-        Ok((total[0] + dx - self.tip[0]).hypot(total[1] + dy - self.tip[1]))
-    }
-
     /// Moves the solution to another mesh.
     pub(crate) fn move_to(&mut self, mesh: Mesh) {
         std::mem::swap(&mut self.solution, &mut self.before);
@@ -638,227 +474,6 @@ impl Engine {
             #[inline(always)]
             || equations.foresee(system.take_states(solution)),
         );
-    }
-
-    /// Places inside (0, 1) where the load of the stream has a kink: where a switch changes sign.
-    /// Changes closer than `resolution`, or than interpolation in an element tells apart, count as one, or
-    /// cancel: on both sides of a node on a kink the polynomials put it at slightly different places.
-    pub(crate) fn kinks(&self, resolution: f64) -> Vec<f64> {
-        let mut out = Vec::new();
-        self.find_kinks(resolution, &mut out);
-        out
-    }
-
-    /// [`Engine::kinks`] into `out`.
-    fn find_kinks(&self, resolution: f64, out: &mut Vec<f64>) {
-        const SAMPLES: usize = 8;
-        /// The cardinal polynomials' absolute values sum up to less everywhere on an element: what is nearer to its
-        /// value at a stage than one part in as many does not change sign.
-        const NORM: f64 = 3.0;
-        out.clear();
-        let mesh = &self.solution.mesh;
-        let samples: [[f64; M]; SAMPLES + 1] =
-            std::array::from_fn(|p| self.system.gauss.cardinals(p as f64 / SAMPLES as f64));
-        for w in 0..3 {
-            let first = out.len();
-            let mut before = (0.0, 0.0);
-            for i in 0..mesh.elements() {
-                let (start, h) = (mesh.nodes()[i], mesh.step(i));
-                let apart = resolution.max(1e-3 * h);
-                let own: [f64; M] = std::array::from_fn(|j| self.equations.switch(i, j, w));
-                let largest = own.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-                if largest < 1e-6 {
-                    before.1 = 0.0;
-                    continue;
-                }
-                let spread = own.iter().fold(0.0_f64, |m, v| m.max((v - own[0]).abs()));
-                if own[0].abs() > NORM * spread && before.1 * own[0] >= 0.0 {
-                    before = (start + h, own[0]);
-                    continue;
-                }
-                let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
-                let at = |x: f64| weigh(&self.system.gauss.cardinals(x));
-                for p in 0..=SAMPLES {
-                    let x = p as f64 / SAMPLES as f64;
-                    let now = (start + h * x, weigh(&samples[p]));
-                    if before.1 * now.1 < 0.0 {
-                        let (mut lo, mut hi) = (before, now);
-                        while p > 0 && hi.0 - lo.0 > 0.01 * resolution {
-                            let mid = 0.5 * (lo.0 + hi.0);
-                            let v = at((mid - start) / h);
-                            if v * lo.1 <= 0.0 { hi = (mid, v) } else { lo = (mid, v) }
-                        }
-                        let place = self.sharpened(0.5 * (lo.0 + hi.0), i, w);
-                        if out.len() > first && place - out[out.len() - 1] < apart {
-                            out.pop();
-                        } else {
-                            out.push(place);
-                        }
-                    }
-                    if now.1 != 0.0 {
-                        before = now;
-                    }
-                }
-            }
-        }
-        out.retain(|s| *s > resolution && *s < 1.0 - resolution);
-        out.sort_by(f64::total_cmp);
-        out.dedup_by(|b, a| *b - *a < resolution);
-    }
-
-    /// The place of a change of sign of switch `w`, given where the polynomial of element `i` has it: near a node, that
-    /// polynomial is moved to what the switch is there, because nodes are as good as the tip and the ends of
-    /// polynomials are not. A kink that a node misses is invisible to the estimate.
-    fn sharpened(&self, place: f64, i: usize, w: usize) -> f64 {
-        const NEAR_NODE: f64 = 0.3;
-        let (mesh, gauss) = (&self.solution.mesh, &self.system.gauss);
-        let (start, h) = (mesh.nodes()[i], mesh.step(i));
-        let at_end = place - start > 0.5 * h;
-        let (node, end) = if at_end { (i + 1, 1.0) } else { (i, 0.0) };
-        if ((place - start) / h - end).abs() > NEAR_NODE || node == 0 || node == mesh.elements() {
-            return place;
-        }
-        let Ok(at_node) = self.beside_node(node, at_end) else { return place };
-        let own: [f64; M] = std::array::from_fn(|j| self.equations.switch(i, j, w));
-        let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
-        let off = at_node.switches[w] - weigh(&gauss.cardinals(end));
-        let mut x = end;
-        for _ in 0..4 {
-            let moved = (weigh(&gauss.cardinals(x)) + off) / weigh(&gauss.slopes(x));
-            x -= moved;
-            if moved.abs() * h < 1e-10 {
-                break;
-            }
-        }
-        if (x - end).abs() < NEAR_NODE { start + h * x } else { place }
-    }
-
-    /// Moves nodes onto `kinks` that no pinned node is within `tolerance` of; whether any moved.
-    pub(crate) fn pin(&mut self, kinks: &[f64], tolerance: f64) -> bool {
-        let mesh = &self.solution.mesh;
-        let stray = kinks.iter().any(|s| {
-            let i = mesh.element_of(*s);
-            let (l, r) = (s - mesh.nodes()[i], mesh.nodes()[i + 1] - s);
-            let nearest = if l < r { i } else { i + 1 };
-            !(l.min(r) < tolerance && mesh.is_pinned(nearest))
-        });
-        if !stray {
-            return false;
-        }
-        std::mem::swap(&mut self.solution, &mut self.before);
-        self.solution.mesh.clone_from(&self.before.mesh);
-        self.solution.mesh.pin(&self.breaks, kinks);
-        if self.solution.mesh == self.before.mesh {
-            std::mem::swap(&mut self.solution, &mut self.before);
-            return false;
-        }
-        self.come_from_before();
-        true
-    }
-
-    pub(crate) fn refine(&mut self, target: f64, most: usize) {
-        let mesh = self.refined(target, most);
-        self.move_to(mesh);
-    }
-
-    /// A mesh on which every element would contribute the same to an error `target`.
-    fn refined(&self, target: f64, most: usize) -> Mesh {
-        let limits = Limits { fewest: 4, most, growth: 6.0, cut: 8.0, least: 0.2 };
-        let shortest: Vec<f64> =
-            (0..self.solution.mesh.elements()).map(|i| self.equations.shortest_element(i)).collect();
-        self.solution.mesh.redistributed(&self.errors, &shortest, (2 * M + 1) as f64, target, limits)
-    }
-
-    /// Newton from a rough start until corrections are small, and on to a mesh on which most arms meet `tolerance`.
-    pub(crate) fn approach(&mut self, tolerance: f64) -> Result<(), Trouble> {
-        self.iterate(NEAR, 14, false, None)?;
-        self.foresee();
-        let kinks = self.kinks(10.0 * kink_resolution(tolerance));
-        let mut mesh = self.graded(fair_elements(tolerance));
-        mesh.pin(&self.breaks, &kinks);
-        self.move_to(mesh);
-        Ok(())
-    }
-
-    /// A mesh with shorter elements where the arm is thinner, and with it the lengths on which shape and loads vary.
-    fn graded(&self, elements: usize) -> Mesh {
-        let arm = self.equations.arm();
-        Mesh::graded(elements, &self.breaks, |s| arm.radius.at(s * arm.length, arm.length).value.sqrt().recip())
-    }
-
-    /// Refines until the estimate meets `tolerance` (tip position over L). Where that cannot be had,
-    /// the best there is, if it is good to [`WORST`].
-    pub(crate) fn settle(&mut self, tolerance: f64, first: First) -> Result<f64, Trouble> {
-        let mut estimate = f64::INFINITY;
-        let mut best: Option<(f64, State)> = None;
-        // What is left of beta'', a round behind, counts at tight tolerances, down to where rounding ends it.
-        let least =
-            if tolerance > TIGHT { 3.0 * tolerance } else { (0.1 * tolerance).max(RESTLESS.min(3.0 * tolerance)) };
-        for attempt in 0..10 {
-            let goal = match (attempt, first) {
-                (0, First::Warm) if tolerance > TIGHT => tolerance,
-                (0, First::Warm | First::Fair) => least,
-                (0, First::Rough) => tolerance.max(FIRST),
-                _ => (1e-4 * estimate).clamp(least, tolerance.max(1e-3)),
-            };
-            let mut fine = goal <= 3.0 * tolerance;
-            // The warm mesh has met the tolerance before: nothing but Newton's rest can have been added.
-            let ahead = first == First::Warm && attempt == 0 && tolerance > TIGHT;
-            // A first mesh is only there to make a better one from.
-            let resolution = if fine { kink_resolution(tolerance) } else { kink_resolution(tolerance).max(COARSE) };
-            let mut converged = self.converge(goal, resolution, ahead);
-            if attempt == 0 && first == First::Fair && converged.is_err() {
-                // It may be the mesh: good enough to make a better one from.
-                fine = false;
-                converged = roughly(converged);
-            }
-            let enough = fine.then_some(tolerance);
-            let outcome = converged.and_then(|()| self.estimate_unless(tolerance, enough));
-            estimate = match (outcome, &best) {
-                (Ok(estimate), _) => estimate,
-                (Err(trouble), None) => return Err(trouble),
-                (Err(_), Some(_)) => break,
-            };
-            if estimate <= tolerance && fine {
-                return Ok(estimate);
-            }
-            if attempt > 0 && estimate < best.as_ref().map_or(WORST, |b| b.0) {
-                best = Some((estimate, self.state()));
-            }
-            let mut mesh = self.refined(TARGET * tolerance, 2000);
-            mesh.pin(&self.breaks, &self.kinks(10.0 * kink_resolution(tolerance)));
-            self.move_to(mesh);
-        }
-        match best {
-            Some((estimate, state)) => {
-                self.restore(&state);
-                self.linearise(false)?;
-                Ok(estimate)
-            }
-            None => Err(Trouble::Mesh),
-        }
-    }
-
-    /// Newton on this mesh, with nodes moved to within `resolution` of the kinks of the load.
-    fn converge(&mut self, goal: f64, resolution: f64, ahead: bool) -> Result<(), Trouble> {
-        self.iterate(goal, 14, ahead, Some(resolution))?;
-        for _ in 0..4 {
-            if !self.pin_kinks(resolution) {
-                break;
-            }
-            self.iterate(goal, 14, ahead, None)?;
-        }
-        Ok(())
-    }
-
-    /// Moves nodes onto the kinks at the present solution; whether any moved.
-    fn pin_kinks(&mut self, resolution: f64) -> bool {
-        self.foresee();
-        let mut kinks = std::mem::take(&mut self.found);
-        self.find_kinks(10.0 * resolution, &mut kinks);
-        let moved = self.pin(&kinks, resolution);
-        self.found = kinks;
-        moved
     }
 
     /// Whether something pushes against the arm hard enough that a direct solve may have landed on a

@@ -1,0 +1,204 @@
+//! Meshes, their errors, and the way to a tolerance.
+
+use hydrostat_bvp::{LANES, Limits, Mesh};
+
+use super::kinks::kink_resolution;
+use super::{Engine, K, M, METHODS, State, TIGHT, Trouble, evaluate, linearise, roughly, solve};
+use crate::dispatch::widest;
+
+/// How close (over L) nodes are kept to kinks on meshes that are refined afterwards.
+const COARSE: f64 = 1e-3;
+
+/// The error that a mesh is made for, over the tolerance: element by element it is foreseen with its sign lost.
+const TARGET: f64 = 0.3;
+
+/// What Newton is asked for on a first mesh (tip over L): what it leaves there would be taken for errors of the elements.
+const FIRST: f64 = 1e-5;
+
+/// The worst estimate (tip over L) with which a solution is still an answer.
+const WORST: f64 = 1e-5;
+
+/// Corrections of the tip (over L) that Newton is not asked to get below.
+const RESTLESS: f64 = 1e-11;
+
+/// Errors of the tip (over L) that rounding makes, which no comparison shows.
+const ROUNDED: f64 = 1e-13;
+
+/// What Newton moves the tip by (over L) at the end of an approach.
+const NEAR: f64 = 0.03;
+
+/// Elements on which most arms meet a tolerance: by the order of the method, and what `paper` takes.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "tolerances are in [1e-12, 1e-2]")]
+fn fair_elements(tolerance: f64) -> usize {
+    (tolerance.powf(-1.0 / (2 * M) as f64).ceil() as usize).next_multiple_of(LANES).max(8)
+}
+
+/// What the mesh is that a solve settles from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum First {
+    /// Anything: good to make a better one from.
+    Rough,
+    /// One on which most arms meet the tolerance.
+    Fair,
+    /// One that met it nearby.
+    Warm,
+}
+
+impl Engine {
+    /// Compares with one more stage an element: what the tip would move, over L. Fills the errors
+    /// that each element contributes.
+    pub(crate) fn estimate(&mut self, tolerance: f64) -> Result<f64, Trouble> {
+        self.estimate_unless(tolerance, None)
+    }
+
+    /// [`Engine::estimate`], without the errors of the elements when it is at most `enough`.
+    fn estimate_unless(&mut self, tolerance: f64, enough: Option<f64>) -> Result<f64, Trouble> {
+        if self.spans.len() != self.solution.mesh.elements() {
+            // The last Newton rounds on this mesh did not converge: there is nothing to compare with.
+            return Err(Trouble::Mesh);
+        }
+        self.foresee();
+        let methods = &*METHODS;
+        self.solution.resample(&methods.values, &mut self.finer);
+        self.check.stations(&self.finer.mesh, &mut self.check_stations);
+        let own = &self.equations;
+        self.check_equations.fraction = own.fraction;
+        self.check_equations.phase = own.phase;
+        self.check_equations.take_arm_of(own);
+        self.check_equations.place_stations(&self.check_stations, &self.finer.mesh, |k| {
+            let j = k % K;
+            let (strain, [slope, curvature]) = own.remembered_sharply(k / K, &methods.values[j], &methods.sharp[j]);
+            (strain, slope, curvature)
+        });
+        // So that beta' and beta'' are those of this state, where what is between counts.
+        let rehearsals = if self.on_a_path { 2 } else { usize::from(tolerance <= TIGHT) };
+        for _ in 0..rehearsals {
+            evaluate(&mut self.check, &mut self.check_equations, &self.finer).map_err(Trouble::Section)?;
+        }
+        let mut estimate = self.compare()?;
+        // Where Newton stopped ahead of its last round, or where little is asked to be left, the comparison may miss what
+        // one more would have moved.
+        let unseen = (0.1 * self.rest).max(ROUNDED);
+        if enough.is_some_and(|enough| estimate.max(unseen) <= enough) {
+            return Ok(estimate.max(unseen));
+        }
+        let (check, spans, errors) = (&mut self.check, &self.spans, &mut self.errors);
+        widest(
+            #[inline(always)]
+            || check.contributions(spans, errors),
+        );
+        let contributed: f64 = self.errors.iter().sum();
+        if estimate > tolerance && contributed < tolerance {
+            // Between nodes the polynomials are less accurate than at them, and one Newton round
+            // from there leaves the square of that in the comparison: a second one removes it.
+            self.finer.add(&self.check_correction, 1.0);
+            estimate = self.compare()?;
+        }
+        Ok(estimate.max(unseen))
+    }
+
+    /// How far a Newton round with one more stage puts the tip from where the solve has it.
+    fn compare(&mut self) -> Result<f64, Trouble> {
+        linearise(&mut self.check, &mut self.check_equations, &self.finer, false)?;
+        self.rounds += 1;
+        solve(&self.check, &self.finer, 0, &mut self.check_correction);
+        let total = self.check.totals();
+        let [dx, dy] = self.check_correction.total;
+        Ok((total[0] + dx - self.tip[0]).hypot(total[1] + dy - self.tip[1]))
+    }
+
+    pub(crate) fn refine(&mut self, target: f64, most: usize) {
+        let mesh = self.refined(target, most);
+        self.move_to(mesh);
+    }
+
+    /// A mesh on which every element would contribute the same to an error `target`.
+    fn refined(&self, target: f64, most: usize) -> Mesh {
+        let limits = Limits { fewest: 4, most, growth: 6.0, cut: 8.0, least: 0.2 };
+        let shortest: Vec<f64> =
+            (0..self.solution.mesh.elements()).map(|i| self.equations.shortest_element(i)).collect();
+        self.solution.mesh.redistributed(&self.errors, &shortest, (2 * M + 1) as f64, target, limits)
+    }
+
+    /// Newton from a rough start until corrections are small, and on to a mesh on which most arms meet `tolerance`.
+    pub(crate) fn approach(&mut self, tolerance: f64) -> Result<(), Trouble> {
+        self.iterate(NEAR, 14, false, None)?;
+        self.foresee();
+        let kinks = self.kinks(10.0 * kink_resolution(tolerance));
+        let mut mesh = self.graded(fair_elements(tolerance));
+        mesh.pin(&self.breaks, &kinks);
+        self.move_to(mesh);
+        Ok(())
+    }
+
+    /// A mesh with shorter elements where the arm is thinner, and with it the lengths on which shape and loads vary.
+    fn graded(&self, elements: usize) -> Mesh {
+        let arm = self.equations.arm();
+        Mesh::graded(elements, &self.breaks, |s| arm.radius.at(s * arm.length, arm.length).value.sqrt().recip())
+    }
+
+    /// Refines until the estimate meets `tolerance` (tip position over L). Where that cannot be had,
+    /// the best there is, if it is good to [`WORST`].
+    pub(crate) fn settle(&mut self, tolerance: f64, first: First) -> Result<f64, Trouble> {
+        let mut estimate = f64::INFINITY;
+        let mut best: Option<(f64, State)> = None;
+        // What is left of beta'', a round behind, counts at tight tolerances, down to where rounding ends it.
+        let least =
+            if tolerance > TIGHT { 3.0 * tolerance } else { (0.1 * tolerance).max(RESTLESS.min(3.0 * tolerance)) };
+        for attempt in 0..10 {
+            let goal = match (attempt, first) {
+                (0, First::Warm) if tolerance > TIGHT => tolerance,
+                (0, First::Warm | First::Fair) => least,
+                (0, First::Rough) => tolerance.max(FIRST),
+                _ => (1e-4 * estimate).clamp(least, tolerance.max(1e-3)),
+            };
+            let mut fine = goal <= 3.0 * tolerance;
+            // The warm mesh has met the tolerance before: nothing but Newton's rest can have been added.
+            let ahead = first == First::Warm && attempt == 0 && tolerance > TIGHT;
+            // A first mesh is only there to make a better one from.
+            let resolution = if fine { kink_resolution(tolerance) } else { kink_resolution(tolerance).max(COARSE) };
+            let mut converged = self.converge(goal, resolution, ahead);
+            if attempt == 0 && first == First::Fair && converged.is_err() {
+                // It may be the mesh: good enough to make a better one from.
+                fine = false;
+                converged = roughly(converged);
+            }
+            let enough = fine.then_some(tolerance);
+            let outcome = converged.and_then(|()| self.estimate_unless(tolerance, enough));
+            estimate = match (outcome, &best) {
+                (Ok(estimate), _) => estimate,
+                (Err(trouble), None) => return Err(trouble),
+                (Err(_), Some(_)) => break,
+            };
+            if estimate <= tolerance && fine {
+                return Ok(estimate);
+            }
+            if attempt > 0 && estimate < best.as_ref().map_or(WORST, |b| b.0) {
+                best = Some((estimate, self.state()));
+            }
+            let mut mesh = self.refined(TARGET * tolerance, 2000);
+            mesh.pin(&self.breaks, &self.kinks(10.0 * kink_resolution(tolerance)));
+            self.move_to(mesh);
+        }
+        match best {
+            Some((estimate, state)) => {
+                self.restore(&state);
+                self.linearise(false)?;
+                Ok(estimate)
+            }
+            None => Err(Trouble::Mesh),
+        }
+    }
+
+    /// Newton on this mesh, with nodes moved to within `resolution` of the kinks of the load.
+    fn converge(&mut self, goal: f64, resolution: f64, ahead: bool) -> Result<(), Trouble> {
+        self.iterate(goal, 14, ahead, Some(resolution))?;
+        for _ in 0..4 {
+            if !self.pin_kinks(resolution) {
+                break;
+            }
+            self.iterate(goal, 14, ahead, None)?;
+        }
+        Ok(())
+    }
+}
