@@ -194,10 +194,10 @@ impl Solver {
     /// [`SolveError::NoEquilibrium`].
     ///
     /// ```
-    /// use hydrostat::{Arm, Cable, Options, Solver};
+    /// use hydrostat::{Arm, Cable, Options, Profile, Solver};
     ///
     /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
-    /// arm.cables.push(Cable::new("left", 0.005.into()).pulled(0.2));
+    /// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.2));
     /// let mut solver = Solver::new(&arm, Options::default())?;
     /// let mut before = solver.update()?;
     /// for step in 1..=10 {
