@@ -188,7 +188,7 @@ pub(crate) struct BetaAlong {
     pub(crate) value: Vec<Lanes>,
     /// beta'.
     pub(crate) slope: Vec<Lanes>,
-    /// beta'', one Newton round behind.
+    /// beta'', following the state between rounds where elements are long enough, else one Newton round behind.
     pub(crate) curvature: Vec<Lanes>,
     /// beta' by the closed form.
     pub(crate) closed: Vec<Lanes>,

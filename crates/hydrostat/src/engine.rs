@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Hermite, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
-use crate::configuration::Statistics;
+use crate::configuration::{Statistics, Tip};
 use crate::dispatch::{Work, dispatch, widest};
 use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
 use crate::friction::Grip;
@@ -269,17 +269,21 @@ impl Engine {
     }
 
     /// The section at an end, which is no station.
-    pub(crate) fn at_end(&self, tip: bool) -> Result<AtPlace, SectionFailure> {
+    fn at_end(&self, tip: bool) -> Result<AtPlace, SectionFailure> {
         let n = self.solution.mesh.elements();
-        let (s, i, k, x) = if tip { (1.0, n - 1, n * M - 1, 1.0) } else { (0.0, 0, 0, 0.0) };
-        let z = self.solution.nodes[if tip { n } else { 0 }];
-        let gauss = &self.system.gauss;
-        let (strain, beta) = self.equations.remembered_sharply(i, &gauss.cardinals(x), &gauss.ends[usize::from(tip)]);
-        let asked = Asked { s, from_left: tip, z, strain, beta };
-        match self.equations.at_place(&asked) {
-            Err(_) => self.equations.at_place(&Asked { strain: self.equations.strain(k), ..asked }),
-            found => found,
-        }
+        let (node, nearest) = if tip { (n, n * M - 1) } else { (0, 0) };
+        self.beside_node(node, tip).or_else(|_| {
+            let asked = self.asked_beside(node, tip);
+            self.equations.at_place(&Asked { strain: self.equations.strain(nearest), ..asked })
+        })
+    }
+
+    /// Where the tip is, after Newton has converged.
+    pub(crate) fn read_tip(&self) -> Result<Tip, SectionFailure> {
+        let [nu, eta, _] = self.at_end(true)?.strain;
+        let (base, length) = (self.equations.arm().base, self.equations.units.length);
+        let [x, y] = self.tip;
+        Ok(Tip { x: base.x + length * x, y: base.y + length * y, theta: self.tip_angle(), alpha: eta.atan2(nu) })
     }
 
     /// Whether the section law has strains at both ends.
@@ -550,12 +554,15 @@ impl Engine {
 
     /// The section on either side of node `i`.
     pub(crate) fn beside_node(&self, i: usize, left: bool) -> Result<AtPlace, SectionFailure> {
+        self.equations.at_place(&self.asked_beside(i, left))
+    }
+
+    fn asked_beside(&self, i: usize, left: bool) -> Asked {
         let (element, x) = if left { (i - 1, 1.0) } else { (i, 0.0) };
         let gauss = &self.system.gauss;
         let (strain, beta) =
             self.equations.remembered_sharply(element, &gauss.cardinals(x), &gauss.ends[usize::from(left)]);
-        let (s, z) = (self.solution.mesh.nodes()[i], self.solution.nodes[i]);
-        self.equations.at_place(&Asked { s, from_left: left, z, strain, beta })
+        Asked { s: self.solution.mesh.nodes()[i], from_left: left, z: self.solution.nodes[i], strain, beta }
     }
 
     pub(crate) fn reset_statistics(&mut self) {

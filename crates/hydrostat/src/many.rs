@@ -21,7 +21,7 @@ const FARTHEST: f64 = 0.5;
 /// What is asked of every row beyond tip, base reaction and error estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Wanted {
-    /// How far each cable is reeled in: one more evaluation.
+    /// How far each cable is reeled in.
     pub strokes: bool,
     /// How far the surface is from folding: reads the whole configuration.
     pub fold_margin: bool,
@@ -194,18 +194,12 @@ impl Tile {
             };
             strokes = (0..equations.arm().cables.len()).map(stroke).collect();
         }
-        let last = engine.solution.mesh.elements();
-        let [nu, eta, _] = engine.beside_node(last, true).ok()?.strain;
+        let tip = engine.read_tip().ok()?;
         let (arm, units) = (engine.equations.arm(), engine.equations.units);
         let [_, n1, n2, m] = engine.solution.nodes[0];
         let (l, f) = (units.length, units.force);
         Some(Row {
-            tip: Tip {
-                x: arm.base.x + l * engine.tip[0],
-                y: arm.base.y + l * engine.tip[1],
-                theta: engine.tip_angle(),
-                alpha: eta.atan2(nu),
-            },
+            tip,
             base_reaction: Wrench { force: [-n1 * f, -n2 * f], moment: -m * f * l },
             error_estimate: estimate * l,
             tensions: arm.cables.iter().map(|cable| cable.tension).collect(),

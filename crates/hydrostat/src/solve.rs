@@ -210,18 +210,11 @@ impl Solver {
     /// ```
     pub fn update(&mut self) -> Result<Answer, SolveError> {
         if let Some(estimate) = self.settle_warm()
-            && let Ok(end) = self.engine.at_end(true)
+            && let Ok(tip) = self.engine.read_tip()
         {
             self.settled = true;
             self.estimate = Some(estimate);
-            let (base, length) = (self.engine.equations.arm().base, self.engine.equations.units.length);
-            let [x, y] = self.engine.tip;
-            let tip = Tip {
-                x: base.x + length * x,
-                y: base.y + length * y,
-                theta: self.engine.tip_angle(),
-                alpha: end.strain[1].atan2(end.strain[0]),
-            };
+            let length = self.engine.equations.units.length;
             return Ok(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(0) });
         }
         let found = self.resolve()?;
