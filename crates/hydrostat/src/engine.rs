@@ -417,6 +417,14 @@ impl Engine {
         evaluate(&mut self.system, &mut self.equations, &self.solution)
     }
 
+    /// What each element adds to the tip's position, of a solution that Newton left on another mesh.
+    pub(crate) fn measure(&mut self) -> Result<(), SectionFailure> {
+        self.refresh()?;
+        self.system.quadratures(&mut self.spans);
+        self.tip = self.system.totals();
+        Ok(())
+    }
+
     /// Moves the solution to another mesh.
     pub(crate) fn move_to(&mut self, mesh: Mesh) {
         std::mem::swap(&mut self.solution, &mut self.before);

@@ -9,6 +9,9 @@ use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
 /// The largest tangential drag coefficient that is published for such arms.
 const PUBLISHED_CT: f64 = 0.03;
 
+/// Tips (over L) that are this near belong to the same shape on two meshes.
+const SAME: f64 = 1e-6;
+
 /// How a solve is done.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
@@ -268,8 +271,8 @@ impl Solver {
         let sign = self.engine.system.determinant().sign;
         let settled = self.engine.settle(self.options.tol, First::Rough);
         let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
-        // A straight arm is as exact on a coarse mesh as on a fine one, its determinant is not.
-        let same = self.engine.system.determinant().sign == sign || travelled.symmetric;
+        // A coarse mesh can be exact for the shape, of a straight arm above all, and not for the determinant.
+        let same = self.engine.system.determinant().sign == sign || travelled.symmetric || moved < SAME;
         let sign = self.engine.system.determinant().sign;
         match settled {
             Ok(estimate) if moved < 0.05 && same => {
@@ -331,7 +334,7 @@ impl Solver {
         }
         if last_good.is_none() {
             self.engine.restore(&kept);
-            last_good = self.read(LOOSE, Travelled::default()).ok();
+            last_good = self.engine.measure().ok().and_then(|()| self.read(LOOSE, Travelled::default()).ok());
         }
         SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good }))
     }

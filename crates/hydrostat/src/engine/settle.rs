@@ -16,7 +16,10 @@ const TARGET: f64 = 0.3;
 const FIRST: f64 = 1e-5;
 
 /// The worst estimate (tip over L) with which a solution is still an answer.
-const WORST: f64 = 1e-5;
+const WORST: f64 = 1e-4;
+
+/// Meshes on which Newton may go on hopping across a kink of the load.
+const HOPS: usize = 2;
 
 /// Corrections of the tip (over L) that Newton is not asked to get below.
 const RESTLESS: f64 = 1e-11;
@@ -142,6 +145,7 @@ impl Engine {
     pub(crate) fn settle(&mut self, tolerance: f64, first: First) -> Result<f64, Trouble> {
         let mut estimate = f64::INFINITY;
         let mut best: Option<(f64, State)> = None;
+        let mut hops = 0;
         // What is left of beta'', a round behind, counts at tight tolerances, down to where rounding ends it.
         let least =
             if tolerance > TIGHT { 3.0 * tolerance } else { (0.1 * tolerance).max(RESTLESS.min(3.0 * tolerance)) };
@@ -158,15 +162,18 @@ impl Engine {
             // A first mesh is only there to make a better one from.
             let resolution = if fine { kink_resolution(tolerance) } else { kink_resolution(tolerance).max(COARSE) };
             let mut converged = self.converge(goal, resolution, ahead);
-            if attempt == 0 && first == First::Fair && converged.is_err() {
+            let mut hop = 0.0;
+            if converged.is_err() && hops < HOPS && (attempt > 0 || first == First::Fair) {
+                hops += 1;
                 // It may be the mesh: good enough to make a better one from.
                 fine = false;
                 converged = roughly(converged);
+                hop = self.last;
             }
             let enough = fine.then_some(tolerance);
             let outcome = converged.and_then(|()| self.estimate_unless(tolerance, enough));
             estimate = match (outcome, &best) {
-                (Ok(estimate), _) => estimate,
+                (Ok(estimate), _) => estimate.max(hop),
                 (Err(trouble), None) => return Err(trouble),
                 (Err(_), Some(_)) => break,
             };
