@@ -5,7 +5,7 @@ use hydrostat_bvp::{LANES, Lanes, Local, Real, each};
 use super::few::Few;
 use super::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
 use super::places::{Place, blank_cable, set_lane, splat};
-use super::strains::solve_section;
+use super::strains::{CLOSED, solve_section};
 use super::{Equilibrium, N, Q, SectionFailure};
 use crate::section::CableAt;
 use crate::sincos::sin_cos;
@@ -154,7 +154,7 @@ impl Equilibrium {
             let solved = solve_section(self.volume, &place.stiffness, cables, contact, strain, beta, 1e-13);
             let fine = solved.step.all_below(1e-9)
                 && (-solved.regularity).all_below(0.0)
-                && (-solved.balance.openness).all_below(0.0);
+                && (-solved.balance.openness).all_below(-CLOSED);
             strain = solved.strain;
             let load = self.load(place, [cos, sin], &solved, beta_slope);
             let slopes = slopes(place.body.couple, [cos, sin], contact, &solved, &load);

@@ -7,6 +7,12 @@ use super::{LOOSE, MEET, Pace, START, Travelled};
 use crate::engine::{Engine, First, Trouble, roughly};
 use crate::verdict::{Phase, Verdict, VerdictKind};
 
+/// The tolerance (tip position over L) of the mesh on which a path ends.
+const SHARP_TOLERANCE: f64 = 1e-8;
+
+/// The first step on that mesh.
+const SHARP_STEP: f64 = 1e-3;
+
 /// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
 pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdict> {
     let mut travelled = Travelled::default();
@@ -66,8 +72,16 @@ impl Ramp<'_> {
         let mut step = 0.1_f64.min(pace.longest);
         // A point before this one whose tangent climbed clearly more.
         let mut steeper = (here.fraction, here.rise);
+        let mut sharpened = false;
         for attempt in 0.. {
             if attempt >= pace.most || step < 1e-8 {
+                if !sharpened && let Some(point) = self.sharpen(&here) {
+                    sharpened = true;
+                    here = point;
+                    steeper = (here.fraction, here.rise);
+                    step = SHARP_STEP;
+                    continue;
+                }
                 let residual = self.stepper.engine.last;
                 self.stepper.engine.restore(&here.state);
                 // Two branches of opposite orientation end where they meet: the path turns back in a corner
@@ -155,6 +169,31 @@ impl Ramp<'_> {
             self.stepper.or_back(|this| this.engine.settle(1e-8, First::Warm).map(|_| ()));
         }
         self.stepper.first_contacts(fraction)
+    }
+
+    /// The last good point, or one just before it, on a mesh that is as accurate as an answer. Where the section law ends the
+    /// path it may be for what a coarse mesh makes of the ends of the arm. `None` where something else does.
+    fn sharpen(&mut self, here: &Point) -> Option<Point> {
+        if !matches!(self.stepper.last_trouble, Some(Trouble::Section(_))) {
+            return None;
+        }
+        for back in [0.0, 1e-4, 1e-3, 1e-2] {
+            self.stepper.engine.restore(&here.state);
+            let fraction = here.fraction * (1.0 - back);
+            self.stepper.set(fraction);
+            let before = self.stepper.engine.tip;
+            let settled = self.stepper.engine.settle(SHARP_TOLERANCE, First::Warm);
+            let [x, y] = self.stepper.engine.tip;
+            if settled.is_ok()
+                && (x - before[0]).hypot(y - before[1]) < 10.0 * (LOOSE + back)
+                && self.stepper.engine.ends_fine().is_ok()
+                && let Ok(point) = self.stepper.point(fraction)
+                && point.rise * here.rise > 0.0
+            {
+                return Some(point);
+            }
+        }
+        None
     }
 
     /// A verdict at `s`, m.
