@@ -42,7 +42,7 @@ fn main() -> Result<(), Failure> {
         Measure { title: "tolerance (error of the tip over the length)".to_owned(), scale: Scale::Logarithmic };
     write(directory, "tolerance", "a solve, in 0.5 m/s", &across, &solves.names, &solves.panels())?;
 
-    let speeds: Vec<f64> = (0..=20).map(|k| 0.05 * f64::from(k)).collect();
+    let speeds: Vec<f64> = (0..=20).map(|k| f64::from(k) / 20.0).collect();
     let solves = over(&speeds, &both, |make, speed| Ok((make(speed)?, TOL)))?;
     let across = Measure { title: "speed of the stream (m/s)".to_owned(), scale: Scale::Even };
     write(directory, "speed", "a solve, to 1e-8 of the length", &across, &solves.names, &solves.panels())?;
@@ -221,16 +221,16 @@ fn write(
 ) -> Result<(), Failure> {
     let known: Vec<&str> = names.iter().map(String::as_str).collect();
     let figure = lines_figure(title, across, &known, panels);
-    write_whole(&directory.join(format!("{file}.png")), &figure.png()?)?;
-    let mut text = format!("{},what,quantity,value\n", file);
+    write_whole(directory.join(format!("{file}.png")), &figure.png()?)?;
+    let mut text = format!("{file},what,quantity,value\n");
     for panel in panels {
         for (name, line) in names.iter().zip(&panel.lines) {
             for [x, y] in line {
-                writeln!(text, "{x},\"{name}\",{},{y:.4}", panel.up.title)?;
+                writeln!(text, "{x:?},\"{name}\",{},{y:.1}", panel.up.title)?;
             }
         }
     }
-    write_whole(&directory.join(format!("{file}.csv")), text.as_bytes())?;
+    write_whole(directory.join(format!("{file}.csv")), text.as_bytes())?;
     println!("{}", directory.join(format!("{file}.png")).display());
     Ok(())
 }

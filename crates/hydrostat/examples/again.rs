@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let paper = pulled("paper", &[40.0, 0.0], 0.5)?;
     let cold = |arm: &Arm| Solver::new(arm, Options::default())?.solve();
     let mut solver = Solver::new(&paper, Options::default())?;
-    let tensions = |round: usize| [if round % 2 == 0 { 40.4 } else { 40.0 }, 0.0];
+    let tensions = |round: usize| [if round.is_multiple_of(2) { 40.4 } else { 40.0 }, 0.0];
     match kind.as_str() {
         "cold" => (0..repeats).try_for_each(|_| cold(&paper).map(|found| drop(black_box(found))))?,
         "flag" => {

@@ -236,7 +236,7 @@ impl Sweep {
         let paths: Vec<PathBuf> = written.iter().map(|part| part.path.clone()).collect();
         let columns = self.layout.columns(self.plan.axes());
         if format == Format::Csv {
-            write_whole(&csv_file::beside(output), self.note.as_bytes())?;
+            write_whole(csv_file::beside(output), self.note.as_bytes())?;
         }
         whole(output, |file| match format {
             Format::Parquet => {
