@@ -1,5 +1,6 @@
 //! Axes: from data to the page, with ticks and titles.
 
+use crate::arm_figure::short;
 use crate::font::{CAP_HEIGHT, Label};
 use crate::palette::INK;
 use crate::placement::Rect;
@@ -11,18 +12,56 @@ pub(crate) const TEXT_SIZE: f64 = 8.5;
 const TICK: f64 = 3.0;
 const FRAME: Stroke = Stroke::solid(INK, 0.6);
 
+/// How the values of an axis are spaced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// Equal differences are equal lengths.
+    #[default]
+    Even,
+    /// Equal ratios are equal lengths; values have to be above zero.
+    Logarithmic,
+}
+
+impl Scale {
+    /// A value as a length.
+    pub(crate) fn of(self, value: f64) -> f64 {
+        match self {
+            Self::Even => value,
+            Self::Logarithmic => value.log10(),
+        }
+    }
+
+    /// Places of ticks in `range` (lengths), about `count`, and their labels.
+    fn ticks(self, range: [f64; 2], count: f64) -> Vec<(f64, Label)> {
+        match self {
+            Self::Even => {
+                let (places, decimals) = ticks(range, count);
+                places.into_iter().map(|place| (place, tick_label(place, decimals))).collect()
+            }
+            Self::Logarithmic => decades(range, count),
+        }
+    }
+}
+
 /// A rectangle of the page that shows an interval of x and one of y.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Axes {
     pub(crate) frame: Rect,
+    /// As lengths of their scales.
     x: [f64; 2],
     y: [f64; 2],
+    scales: [Scale; 2],
 }
 
 impl Axes {
     /// Axes that fill `frame`.
     pub(crate) fn new(frame: Rect, x: [f64; 2], y: [f64; 2]) -> Self {
-        Self { frame, x, y }
+        Self { frame, x, y, scales: [Scale::Even; 2] }
+    }
+
+    /// Axes that fill `frame` with ranges that are lengths of their scales.
+    pub(crate) fn scaled(frame: Rect, [x, y]: [[f64; 2]; 2], scales: [Scale; 2]) -> Self {
+        Self { frame, x, y, scales }
     }
 
     /// Axes of equal scale at `left`, `top` with the given width. What they show is at least `x`
@@ -36,11 +75,16 @@ impl Axes {
             [range[0] - more, range[1] + more]
         };
         let frame = Rect { left, top, right: left + width, bottom: top + height };
-        Self { frame, x: grow(x, width), y: grow(y, height) }
+        Self::new(frame, grow(x, width), grow(y, height))
     }
 
     /// Where a data point is on the page.
     pub(crate) fn at(&self, [x, y]: [f64; 2]) -> Point {
+        self.place([self.scales[0].of(x), self.scales[1].of(y)])
+    }
+
+    /// Where lengths of the scales are on the page.
+    fn place(&self, [x, y]: [f64; 2]) -> Point {
         let f = &self.frame;
         [
             f.left + f.width() * (x - self.x[0]) / (self.x[1] - self.x[0]),
@@ -76,14 +120,12 @@ impl Axes {
 
     /// Frame, ticks, tick labels and titles.
     pub(crate) fn draw(&self, scene: &mut Scene, x_title: &Label, y_title: &Label) {
+        self.draw_above_another(scene, y_title);
         let f = self.frame;
-        scene.area(&[[f.left, f.top], [f.right, f.top], [f.right, f.bottom], [f.left, f.bottom]], None, Some(FRAME));
-        let (x_ticks, decimals) = ticks(self.x, f.width() / 55.0);
         let below = f.bottom + TICK + 2.0 + CAP_HEIGHT * TICK_SIZE;
-        for tick in x_ticks {
-            let [x, _] = self.at([tick, 0.0]);
-            scene.line(&[[x, f.bottom], [x, f.bottom + TICK]], FRAME);
-            scene.text(&tick_label(tick, decimals), [x, below], Anchor::Middle, TICK_SIZE);
+        for (tick, label) in self.x_ticks() {
+            let [x, _] = self.place([tick, 0.0]);
+            scene.text(&label, [x, below], Anchor::Middle, TICK_SIZE);
         }
         scene.text(
             x_title,
@@ -91,17 +133,29 @@ impl Axes {
             Anchor::Middle,
             TEXT_SIZE,
         );
-        let (y_ticks, decimals) = ticks(self.y, f.height() / 38.0);
+    }
+
+    /// The same without what is said of x: that stands below another frame further down.
+    pub(crate) fn draw_above_another(&self, scene: &mut Scene, y_title: &Label) {
+        let f = self.frame;
+        scene.area(&[[f.left, f.top], [f.right, f.top], [f.right, f.bottom], [f.left, f.bottom]], None, Some(FRAME));
+        for (tick, _) in self.x_ticks() {
+            let [x, _] = self.place([tick, 0.0]);
+            scene.line(&[[x, f.bottom], [x, f.bottom + TICK]], FRAME);
+        }
         let mut widest = 0.0_f64;
-        for tick in y_ticks {
-            let [_, y] = self.at([0.0, tick]);
+        for (tick, label) in self.scales[1].ticks(self.y, f.height() / 38.0) {
+            let [_, y] = self.place([0.0, tick]);
             scene.line(&[[f.left, y], [f.left - TICK, y]], FRAME);
-            let label = tick_label(tick, decimals);
             widest = widest.max(label.width(TICK_SIZE));
             scene.text(&label, [f.left - TICK - 2.5, y + 0.5 * CAP_HEIGHT * TICK_SIZE], Anchor::End, TICK_SIZE);
         }
         let beside = [f.left - TICK - 2.5 - widest - 6.0, 0.5 * (f.top + f.bottom)];
         scene.text_in(y_title, beside, Anchor::Middle, TEXT_SIZE, INK, true);
+    }
+
+    fn x_ticks(&self) -> Vec<(f64, Label)> {
+        self.scales[0].ticks(self.x, self.frame.width() / 55.0)
     }
 }
 
@@ -133,6 +187,30 @@ pub(crate) fn ticks(range: [f64; 2], count: f64) -> (Vec<f64>, usize) {
     (out, decimals)
 }
 
+/// Round values in a range of logarithms, at their logarithms: powers of ten, as many as have room; where they are few, twice and
+/// five times them; where these are few, values at equal distances.
+fn decades([low, high]: [f64; 2], count: f64) -> Vec<(f64, Label)> {
+    if high - low < 0.9 {
+        let (values, decimals) = ticks([low, high].map(|power| 10.0_f64.powf(power)), count);
+        return values.into_iter().map(|value| (value.log10(), tick_label(value, decimals))).collect();
+    }
+    let step = ((high - low) / (1.6 * count.max(3.0))).ceil().max(1.0);
+    let factors: &[f64] = if high - low > 2.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let mut values: Vec<f64> = Vec::new();
+    let mut power = (low / step).floor() * step;
+    while power <= high && values.len() < 100 {
+        values.extend(factors.iter().map(|factor| factor * 10.0_f64.powf(power)));
+        power += step;
+    }
+    values.retain(|value| (low - 1e-9..=high + 1e-9).contains(&value.log10()));
+    let plain = values.iter().all(|value| (0.999e-2..1.001e7).contains(value));
+    let label = |value: &f64| {
+        let text = if plain { short(*value) } else { format!("{value:.0e}") };
+        (value.log10(), Label::plain(text.replace('-', "\u{2212}")))
+    };
+    values.iter().map(label).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -142,6 +220,20 @@ mod tests {
         assert_eq!(ticks([0.0, 200.0], 5.0), (vec![0.0, 50.0, 100.0, 150.0, 200.0], 0));
         assert_eq!(ticks([-0.12, 0.31], 4.0).1, 1);
         assert_eq!(ticks([0.0, 1.0], 5.0).0.len(), 6);
+    }
+
+    #[test]
+    fn ticks_of_logarithms_are_powers_of_ten_or_simple_shares() {
+        let texts = |range, count| -> Vec<String> {
+            Scale::Logarithmic.ticks(range, count).into_iter().map(|(_, label)| label.to_string()).collect()
+        };
+        assert_eq!(texts([1.0, 2.0], 3.0), ["10", "20", "50", "100"]);
+        assert_eq!(texts([0.9, 4.1], 3.0), ["10", "100", "1000", "10000"]);
+        assert_eq!(texts([-11.2, -2.8], 7.0)[0], "1e\u{2212}11");
+        assert_eq!(texts([-12.0, 12.0], 3.0).len(), 5);
+        let places: Vec<f64> = Scale::Logarithmic.ticks([0.0, 1.0], 3.0).into_iter().map(|(place, _)| place).collect();
+        assert!((places[1] - 2.0_f64.log10()).abs() < 1e-12);
+        assert_eq!(texts([150_f64.log10(), 430_f64.log10()], 3.0), ["200", "300", "400"]);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use hydrostat::parameter::names;
 
 use crate::error::shortened;
 use crate::format::{dimension_at, home_of, is_key, nearest};
-use crate::quantity::{Dimension, QuantityError};
+use crate::quantity::{Dimension, WrongValue};
 use crate::varied::{hint, rounded};
 
 /// The most values of one key.
@@ -123,17 +123,8 @@ pub enum AxisError {
         text: String,
     },
     /// A value of another kind.
-    #[error("{key}: expected {}, found \"{}\": {source}", .dimension.expected(), shortened(.text))]
-    Value {
-        /// The key.
-        key: String,
-        /// What it measures.
-        dimension: Dimension,
-        /// What was given.
-        text: String,
-        /// What is wrong with it.
-        source: QuantityError,
-    },
+    #[error(transparent)]
+    Value(#[from] WrongValue),
 }
 
 /// Numbers of one dimension, and the first unit that they were written with.
@@ -145,13 +136,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn read(&mut self, text: &str) -> Result<f64, AxisError> {
-        let plain = text.trim().trim_matches('"').trim();
-        let (value, unit) = self.dimension.read(plain).map_err(|source| AxisError::Value {
-            key: self.key.to_owned(),
-            dimension: self.dimension,
-            text: plain.to_owned(),
-            source,
-        })?;
+        let (value, unit) = self.dimension.value_of(self.key, text)?;
         self.unit = self.unit.or(unit);
         Ok(value)
     }

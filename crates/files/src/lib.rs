@@ -30,7 +30,7 @@ pub use equilibria::{EquilibriaDocument, Others, OverDocument, equilibria_csv, o
 pub use error::{FileError, Place};
 pub use output::{WriteError, write_whole};
 pub use paths::{PathDocument, end_message, path_csv};
-pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY};
+pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
 pub use results::{Failure, Note, Solution, stations_csv};
 pub use varied::{Varied, VariedError};
 pub use written::{Inputs, arm_to_toml};

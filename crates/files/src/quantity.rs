@@ -6,6 +6,8 @@
 
 use std::fmt;
 
+use crate::error::shortened;
+
 /// What a number measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Dimension {
@@ -266,6 +268,29 @@ impl Dimension {
     fn scale(self, unit: &str) -> Option<Scale> {
         self.units().iter().find(|(names, _)| names.contains(&unit)).map(|(_, scale)| *scale)
     }
+}
+
+impl Dimension {
+    /// [`Dimension::read`] for the value of a key, which may stand in quotes.
+    pub(crate) fn value_of(self, key: &str, text: &str) -> Result<(f64, Option<&'static str>), WrongValue> {
+        let text = text.trim().trim_matches('"').trim();
+        let wrong = |source| WrongValue { key: key.to_owned(), dimension: self, text: text.to_owned(), source };
+        self.read(text).map_err(wrong)
+    }
+}
+
+/// A text that is no value of a key.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{key}: expected {}, found \"{}\": {source}", .dimension.expected(), shortened(.text))]
+pub struct WrongValue {
+    /// The key.
+    pub key: String,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// What was given.
+    pub text: String,
+    /// What is wrong with it.
+    pub source: QuantityError,
 }
 
 impl fmt::Display for Dimension {

@@ -8,7 +8,7 @@ use hydrostat::parameter::{UnknownParameter, names};
 use crate::digits::number;
 use crate::error::shortened;
 use crate::format::{dimension_of, home_of, nearest};
-use crate::quantity::{Dimension, QuantityError};
+use crate::quantity::{Dimension, WrongValue};
 
 /// One quantity of an arm and the range over which it is to vary.
 ///
@@ -52,17 +52,8 @@ pub enum VariedError {
         suggestion: Option<String>,
     },
     /// An end of the range that is no value of this quantity.
-    #[error("{key}: expected {}, found \"{}\": {source}", .dimension.expected(), shortened(.text))]
-    Value {
-        /// The quantity.
-        key: String,
-        /// What it measures.
-        dimension: Dimension,
-        /// What was given.
-        text: String,
-        /// What is wrong with it.
-        source: QuantityError,
-    },
+    #[error(transparent)]
+    Value(#[from] WrongValue),
     /// A range without length.
     #[error("{key}: expected a range with two different ends, found \"{}\" twice", shortened(.text))]
     Empty {
@@ -87,14 +78,7 @@ impl FromStr for Varied {
         let (from, to) = range.split_once(':').ok_or_else(form)?;
         let key = parameter.to_string();
         let dimension = dimension_of(&key).unwrap_or(Dimension::Number);
-        let read = |text: &str| {
-            let plain = text.trim().trim_matches('"');
-            dimension.read(plain).map_err(|source| {
-                let (key, text) = (key.clone(), plain.to_owned());
-                VariedError::Value { key, dimension, text, source }
-            })
-        };
-        let ends = [read(from)?, read(to)?];
+        let ends = [dimension.value_of(&key, from)?, dimension.value_of(&key, to)?];
         let range = ends.map(|(value, _)| value);
         if range[0] == range[1] {
             return Err(VariedError::Empty { key, text: to.trim().to_owned() });

@@ -8,17 +8,19 @@
 //! - `warm`: `set_tensions` and `resolve`, from the answer at 1 % less tension.
 //! - `update`: `set_tensions` and `update` from there: the tip alone.
 
-use std::error::Error;
-use std::time::Instant;
+#[path = "common/arms.rs"]
+mod arms;
+#[path = "common/clock.rs"]
+mod clock;
 
-use hydrostat::{Arm, Options, SolveError, Solver, Tip};
-use hydrostat_files::{ArmFile, shipped};
+use std::error::Error;
+
+use arms::pulled;
+use clock::{Times, timed};
+use hydrostat::{Options, Solver, Tip};
 use serde_json::{Value, json};
 
 type Failure = Box<dyn Error>;
-
-/// Solves before the first that is timed, which fill caches and let the clock rise.
-const WARM_UP: usize = 5;
 
 fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -26,9 +28,7 @@ fn main() -> Result<(), Failure> {
         return Err("usage: timing ARM TENSIONS SPEED TOL REPEATS".into());
     };
     let tensions = numbers(tensions)?;
-    let mut arm = loaded(name)?;
-    arm.set_tensions(&tensions)?;
-    arm.flow.speed = speed.parse()?;
+    let arm = pulled(name, &tensions, speed.parse()?)?;
     let options = Options { tol: tol.parse()? };
     let repeats: usize = repeats.parse()?;
     if repeats == 0 {
@@ -41,7 +41,7 @@ fn main() -> Result<(), Failure> {
         "length": arm.length,
         "tol": options.tol,
         "repeats": repeats,
-        "cold": cold,
+        "cold": times(&cold),
         "tip": position(&tip),
     });
     if tensions.iter().any(|t| *t > 0.0) {
@@ -58,8 +58,8 @@ fn main() -> Result<(), Failure> {
             solver.set_tensions(&tensions)?;
             Ok(solver.update()?.tip)
         })?;
-        report["warm"] = warm;
-        report["update"] = update;
+        report["warm"] = times(&warm);
+        report["update"] = times(&update);
         report["warm_tip"] = position(&warm_tip);
         report["update_tip"] = position(&update_tip);
     }
@@ -74,35 +74,9 @@ fn numbers(list: &str) -> Result<Vec<f64>, Failure> {
     list.split(',').map(|word| word.parse().map_err(|e| format!("TENSIONS: {word}: {e}").into())).collect()
 }
 
-/// The shipped arm of that name, else the one in that file.
-fn loaded(name: &str) -> Result<Arm, Failure> {
-    let file = match shipped::get(name) {
-        Some(text) => ArmFile::parse(text, name)?,
-        None => ArmFile::read(name)?,
-    };
-    Ok(file.arm()?)
-}
-
-/// Quartiles of the times of `solve`, before each of which `back` brings `state` to its start untimed, and the last tip.
-fn timed<S>(
-    repeats: usize,
-    mut state: S,
-    back: impl Fn(&mut S) -> Result<(), SolveError>,
-    solve: impl Fn(&mut S) -> Result<Tip, SolveError>,
-) -> Result<(Value, Tip), SolveError> {
-    let mut samples = Vec::with_capacity(repeats);
-    let mut tip = Tip::default();
-    for k in 0..WARM_UP + repeats {
-        back(&mut state)?;
-        let clock = Instant::now();
-        tip = solve(&mut state)?;
-        if k >= WARM_UP {
-            samples.push(clock.elapsed().as_secs_f64() * 1e6);
-        }
-    }
-    samples.sort_by(f64::total_cmp);
-    let at = |quarter: usize| samples[(samples.len() - 1) * quarter / 4];
-    Ok((json!({ "lower_quartile": at(1), "median": at(2), "upper_quartile": at(3) }), tip))
+fn times(times: &Times) -> Value {
+    let [lower, median, upper] = [1, 2, 3].map(|number| times.quartile(number));
+    json!({ "lower_quartile": lower, "median": median, "upper_quartile": upper })
 }
 
 fn position(tip: &Tip) -> Value {

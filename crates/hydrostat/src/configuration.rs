@@ -3,7 +3,7 @@
 use crate::arm::Arm;
 use crate::dense::Dense;
 use crate::engine::{Engine, M, shift_by_tangential_load};
-use crate::equilibrium::SectionFailure;
+use crate::equilibrium::{SectionFailure, Units};
 use crate::flow::layer_profile;
 use crate::readings::Support;
 
@@ -51,6 +51,16 @@ pub struct Wrench {
     pub force: [f64; 2],
     /// Moment, N m, counterclockwise.
     pub moment: f64,
+}
+
+impl Wrench {
+    /// What holds the base against the unknowns of its node.
+    pub(crate) fn of_base([_, n1, n2, m]: [f64; 4], units: &Units) -> Self {
+        // Taken from zero, what is nothing is 0 and not -0.
+        let against = |value: f64| 0.0 - value;
+        let force = units.force;
+        Self { force: [against(n1 * force), against(n2 * force)], moment: against(m * force * units.length) }
+    }
 }
 
 /// State at one place of the arm.
@@ -352,8 +362,7 @@ impl Configuration {
             });
         }
 
-        let [_, n1, n2, m] = dense.solution.nodes[0];
-        let base_reaction = Wrench { force: [-n1 * f, -n2 * f], moment: -m * f * l };
+        let base_reaction = Wrench::of_base(dense.solution.nodes[0], &dense.equations.units);
         let unmet = (arm.readings.support == Support::UnstrainedBase).then(|| {
             let end = dense.solution.nodes[n];
             let (load, _) = dense.equations.tip_load(end[0]);

@@ -43,3 +43,23 @@ pub(crate) fn widest<R>(work: impl FnOnce() -> R) -> R {
 pub(crate) fn dispatch<W: Work>(work: W) -> W::Output {
     Arch::new().dispatch(Dispatched(work))
 }
+
+struct Fused;
+
+impl Work for Fused {
+    type Output = bool;
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> bool {
+        FUSED
+    }
+}
+
+/// Whether solves on this processor run on what is compiled for wide vectors with fused multiply-add (on x86: AVX2), not on
+/// what is compiled for any processor. Answers agree to the tolerance, not to the last bit.
+///
+/// ```
+/// println!("wide vectors: {}", hydrostat::has_wide_vectors());
+/// ```
+pub fn has_wide_vectors() -> bool {
+    dispatch(Fused)
+}

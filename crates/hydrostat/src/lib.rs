@@ -163,6 +163,7 @@ pub use arm::{
 pub use configuration::{
     CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,
 };
+pub use dispatch::has_wide_vectors;
 pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
 pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};

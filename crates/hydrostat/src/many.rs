@@ -196,12 +196,10 @@ impl Tile {
         }
         let tip = engine.read_tip().ok()?;
         let (arm, units) = (engine.equations.arm(), engine.equations.units);
-        let [_, n1, n2, m] = engine.solution.nodes[0];
-        let (l, f) = (units.length, units.force);
         Some(Row {
             tip,
-            base_reaction: Wrench { force: [-n1 * f, -n2 * f], moment: -m * f * l },
-            error_estimate: estimate * l,
+            base_reaction: Wrench::of_base(engine.solution.nodes[0], &units),
+            error_estimate: estimate * units.length,
             tensions: arm.cables.iter().map(|cable| cable.tension).collect(),
             strokes,
             fold_margin: None,

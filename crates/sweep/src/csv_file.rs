@@ -1,7 +1,7 @@
 //! Columns as CSV: a header and a line a row.
 
 use std::fmt::Write as _;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -53,6 +53,23 @@ pub(crate) fn join(parts: &[PathBuf], columns: &[Column], path: &Path, out: impl
         io::copy(&mut file, &mut out).map_err(failed)?;
     }
     out.flush().map_err(failed)
+}
+
+/// Where stands what `path` is of: readers of CSV know no other place for it.
+pub(crate) fn beside(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".json");
+    path.with_file_name(name)
+}
+
+/// What is noted about the file; `None` where nothing is.
+pub(crate) fn note(path: &Path) -> Result<Option<String>, SweepError> {
+    let beside = beside(path);
+    match fs::read_to_string(&beside) {
+        Ok(note) => Ok(Some(note)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(read_error(&beside, error)),
+    }
 }
 
 /// The names of the columns of a file.

@@ -135,7 +135,7 @@ impl Parts {
 }
 
 /// What two plans do not share, for a message.
-fn difference(found: &str, plan: &str) -> &'static str {
+pub(crate) fn difference(found: &str, plan: &str) -> &'static str {
     let [found, plan] = [found, plan].map(|text| serde_json::from_str::<serde_json::Value>(text).unwrap_or_default());
     let differs = |key: &str| found[key] != plan[key];
     let named = [

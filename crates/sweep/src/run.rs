@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use hydrostat::{NoRow, Tile};
-use hydrostat_files::{ArmFile, arm_to_toml};
+use hydrostat_files::{ArmFile, arm_to_toml, write_whole};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -13,7 +13,7 @@ use crate::arms::{Arms, Last};
 use crate::column::{Answer, Column, Layout, Output};
 use crate::error::{SweepError, parquet_error};
 use crate::parquet_file::Reader;
-use crate::parts::{Part, Parts, whole};
+use crate::parts::{Part, Parts, difference, whole};
 use crate::plan::Plan;
 use crate::{csv_file, parquet_file};
 
@@ -24,7 +24,7 @@ const LONGEST: u64 = 16_384;
 /// The most numbers of a part, 8 bytes each.
 const LARGEST: u64 = 1 << 20;
 
-/// The key under which a Parquet file notes the sweep that it is of.
+/// The key under which a Parquet file notes the sweep that it is of. Of `out.csv` the same stands in `out.csv.json`.
 pub const NOTE: &str = "hydrostat.sweep";
 
 /// How a file is written.
@@ -210,6 +210,9 @@ impl Sweep {
             let count = rows.end - rows.start;
             return Ok(Summary { rows: count, answered: answered(output)?, resumed: count });
         }
+        if format == Format::Csv && csv_file::note(output)?.is_some_and(|note| note != self.note) {
+            return Err(SweepError::Exists { path: csv_file::beside(output) });
+        }
         let parts = Parts::open(output, &self.note, resume, format.ending())?;
         let tiles = self.parts();
         let present = parts.present(tiles.len())?;
@@ -232,6 +235,9 @@ impl Sweep {
         })?;
         let paths: Vec<PathBuf> = written.iter().map(|part| part.path.clone()).collect();
         let columns = self.layout.columns(self.plan.axes());
+        if format == Format::Csv {
+            write_whole(csv_file::beside(output), self.note.as_bytes())?;
+        }
         whole(output, |file| match format {
             Format::Parquet => {
                 let notes = [
@@ -258,11 +264,11 @@ impl Sweep {
         if crate::parts::directory(output).exists() {
             return Parts::open(output, &self.note, true, format.ending())?.remove();
         }
-        match format {
-            Format::Parquet if Reader::open(output)?.note(NOTE).as_deref() == Some(&self.note) => Ok(()),
-            Format::Parquet => Err(SweepError::Other { path: output.to_owned(), what: "plan" }),
+        match noted(output, format)? {
+            Some(note) if note == self.note => Ok(()),
+            Some(note) => Err(SweepError::Other { path: output.to_owned(), what: difference(&note, &self.note) }),
             // It does not say what it is of.
-            Format::Csv => Err(exists()),
+            None => Err(exists()),
         }
     }
 
@@ -338,6 +344,14 @@ impl Sweep {
         }
         solved.sort_unstable_by_key(|(row, _)| *row);
         (rows, solved.into_iter().map(|(_, answer)| answer).collect())
+    }
+}
+
+/// What a whole output says that it is of.
+pub(crate) fn noted(output: &Path, format: Format) -> Result<Option<String>, SweepError> {
+    match format {
+        Format::Parquet => Ok(Reader::open(output)?.note(NOTE)),
+        Format::Csv => csv_file::note(output),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::column::{Column, Data, ROW};
 use crate::csv_file;
 use crate::error::{SweepError, read_error};
 use crate::parquet_file::Reader;
-use crate::run::{Format, NOTE};
+use crate::run::{Format, noted};
 
 /// A key that a sweep varied.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,9 +121,7 @@ pub fn names(path: &Path) -> Result<Vec<String>, SweepError> {
 /// [`SweepError::Read`].
 pub fn varied_keys(path: &Path) -> Result<Vec<VariedKey>, SweepError> {
     let names = names(path)?;
-    if Format::of(path) != Some(Format::Csv)
-        && let Some(note) = Reader::open(path)?.note(NOTE)
-    {
+    if let Some(note) = noted(path, Format::of(path).unwrap_or(Format::Parquet))? {
         let noted: Noted = serde_json::from_str(&note).map_err(|error| read_error(path, error))?;
         let key = |NotedKey { key, column, unit, per_si }| VariedKey { column, name: key, unit, per_si };
         return Ok(noted.vary.into_iter().map(key).collect());

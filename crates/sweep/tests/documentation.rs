@@ -13,6 +13,10 @@ fn it_has_every_column() {
     let plan = Plan::new(vec!["flow.speed=0,0.1".parse::<Axis>().unwrap()], Sample::Grid, 0).unwrap();
     let options = SweepOptions { outputs: Output::ALL.to_vec(), stations: 2, ..SweepOptions::default() };
     Sweep::new(&file, plan, &options).unwrap().run(&out, false, 1, &|_| {}).unwrap();
+    let beside = std::fs::read_dir(directory.path()).unwrap().flatten().map(|entry| entry.file_name());
+    for file in beside {
+        assert!(PAGE.contains(&format!("`{}`", file.to_str().unwrap())), "{file:?}");
+    }
     let columns = names(&out).unwrap();
     assert_eq!(columns.len(), 28);
     for column in columns.iter().filter(|column| !column.contains("[1]")) {

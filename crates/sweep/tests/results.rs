@@ -91,7 +91,12 @@ fn threads_and_shards_do_not_matter() {
     }
     assert_eq!(joined, std::fs::read_to_string(at("whole.csv")).unwrap());
     // Nothing is left but the outputs.
-    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 6);
+    let mut left: Vec<_> =
+        std::fs::read_dir(directory.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    left.sort();
+    let parquet = ["one.parquet", "three.parquet", "two.parquet"];
+    let csv = ["1.csv", "1.csv.json", "2.csv", "2.csv.json"];
+    assert_eq!(left, [&csv[..], &parquet, &["whole.csv", "whole.csv.json"]].concat());
 }
 
 #[test]
@@ -157,10 +162,51 @@ fn a_file_says_what_it_is_of() {
     for note in [NOTE, "hydrostat.arm", "hydrostat.version", "[[cable]]", "\"tol\""] {
         assert!(text.contains(note), "{note}");
     }
-    let csv = directory.path().join("out.csv");
-    sweep.run(&csv, false, 1, &|_| {}).unwrap();
-    let keys = hydrostat_sweep::varied_keys(&csv).unwrap();
-    assert_eq!((keys.len(), keys[0].name.as_str(), keys[0].unit.as_str()), (1, "flow.speed", "m/s"));
+}
+
+#[test]
+fn what_a_csv_is_of_stands_beside_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let of = |tol| sweep("paper", &["flow.speed=0:50 cm/s:3"], &SweepOptions { tol, ..SweepOptions::default() });
+    let sweep = of(1e-6);
+    sweep.run(&at("out.csv"), false, 1, &|_| {}).unwrap();
+    let note = std::fs::read_to_string(at("out.csv.json")).unwrap();
+    assert_eq!(note, sweep.note());
+    let note: serde_json::Value = serde_json::from_str(&note).unwrap();
+    assert_eq!((&note["version"], &note["tol"]), (&env!("CARGO_PKG_VERSION").into(), &1e-6.into()));
+    assert!(note["arm"].as_str().unwrap().contains("[[cable]]"), "{note}");
+    let unit = || hydrostat_sweep::varied_keys(&at("out.csv")).unwrap()[0].unit.clone();
+    assert_eq!(unit(), "cm/s");
+    // What is whole is left as it is, and only to the sweep that it is of.
+    assert_eq!(sweep.run(&at("out.csv"), true, 1, &|_| {}).unwrap().resumed, 3);
+    let other = of(1e-7).run(&at("out.csv"), true, 1, &|_| {}).unwrap_err();
+    assert!(matches!(other, SweepError::Other { what: "tolerance", .. }), "{other}");
+    // Alone, a CSV has its columns to go by, and nobody goes on with it.
+    std::fs::remove_file(at("out.csv.json")).unwrap();
+    assert_eq!(unit(), "m/s");
+    assert!(matches!(sweep.run(&at("out.csv"), true, 1, &|_| {}), Err(SweepError::Exists { .. })));
+    // A file of that name that says something else is not overwritten.
+    std::fs::write(at("new.csv.json"), "{}").unwrap();
+    let taken = sweep.run(&at("new.csv"), false, 1, &|_| {}).unwrap_err();
+    assert!(matches!(&taken, SweepError::Exists { path } if *path == at("new.csv.json")), "{taken}");
+    assert_eq!(std::fs::read_to_string(at("new.csv.json")).unwrap(), "{}");
+    assert!(!at("new.csv").exists() && !at("new.csv.parts").exists());
+}
+
+/// Nothing that acts leaves nothing at the base, and that is written `0.0`.
+#[test]
+fn still_rows_have_no_negative_zeros() {
+    let directory = tempfile::tempdir().unwrap();
+    for (name, columns) in [("warm.csv", Output::DEFAULT.to_vec()), ("read.csv", Output::ALL.to_vec())] {
+        let options = SweepOptions { outputs: columns, ..SweepOptions::default() };
+        let out = directory.path().join(name);
+        sweep("paper", &["flow.speed=0,0", "cable[0].tension=0,0.1,40"], &options)
+            .run(&out, false, 1, &|_| {})
+            .unwrap();
+        let text = std::fs::read_to_string(&out).unwrap();
+        assert!(text.contains(",0.0,") && !text.contains("-0.0,"), "{text}");
+    }
 }
 
 #[test]

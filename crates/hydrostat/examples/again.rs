@@ -1,0 +1,47 @@
+//! The same solve so many times, for `.ci/instructions` to count what one takes: `again KIND REPEATS` with a kind of `cold`,
+//! `warm`, `update` and `flag`. Without arguments it says which path the solves run on, `wide-vectors` or `any-processor`.
+
+#[path = "common/arms.rs"]
+mod arms;
+
+use std::error::Error;
+use std::hint::black_box;
+
+use arms::pulled;
+use hydrostat::{Arm, Options, Solver};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [kind, repeats] = arguments.as_slice() else {
+        println!("{}", if hydrostat::has_wide_vectors() { "wide-vectors" } else { "any-processor" });
+        return Ok(());
+    };
+    let repeats: usize = repeats.parse()?;
+    let paper = pulled("paper", &[40.0, 0.0], 0.5)?;
+    let cold = |arm: &Arm| Solver::new(arm, Options::default())?.solve();
+    let mut solver = Solver::new(&paper, Options::default())?;
+    let tensions = |round: usize| [if round.is_multiple_of(2) { 40.4 } else { 40.0 }, 0.0];
+    match kind.as_str() {
+        "cold" => (0..repeats).try_for_each(|_| cold(&paper).map(|found| drop(black_box(found))))?,
+        "flag" => {
+            let silicone = pulled("silicone", &[0.3, 0.0], 0.5)?;
+            (0..repeats).try_for_each(|_| cold(&silicone).map(|found| drop(black_box(found))))?;
+        }
+        "warm" => {
+            solver.solve()?;
+            for round in 0..repeats {
+                solver.set_tensions(&tensions(round))?;
+                black_box(solver.resolve()?);
+            }
+        }
+        "update" => {
+            solver.solve()?;
+            for round in 0..repeats {
+                solver.set_tensions(&tensions(round))?;
+                black_box(solver.update()?);
+            }
+        }
+        other => return Err(format!("{other}: expected cold, warm, update or flag").into()),
+    }
+    Ok(())
+}
