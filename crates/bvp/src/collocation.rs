@@ -319,7 +319,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         self.evaluate_with::<P, false>(problem, solution)
     }
 
-    /// [`Collocation::evaluate`]; for `FUSED` see [`Collocation::linearise_with`].
+    /// [`Collocation::evaluate`]; for `FUSED` see [`Collocation::factorise_with`].
     ///
     /// # Errors
     /// Those of [`Problem::slopes`].
@@ -379,30 +379,31 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         solution: &Solution<N, M>,
         parameter: bool,
     ) -> Result<(), RoundError<P::Failure>> {
-        self.linearise_with::<P, false>(problem, solution, parameter)
+        self.evaluate(problem, solution).map_err(RoundError::Slopes)?;
+        self.factorise_with::<P, false>(problem, solution, parameter).map_err(RoundError::Singular)
     }
 
-    /// [`Collocation::linearise`]; with `FUSED` in fused multiply-adds, which only pays where the caller is
-    /// compiled for a processor that has them.
+    /// The rest of [`Collocation::linearise`] once the problem was evaluated at `solution`; with `FUSED` in fused
+    /// multiply-adds, which only pays where the caller is compiled for a processor that has them. On its own so that
+    /// callers who compile for several processors do so once for what is evaluated.
     ///
     /// # Errors
-    /// [`RoundError`].
+    /// [`Singular`].
     #[inline(always)]
-    pub fn linearise_with<P: Problem<N, Q>, const FUSED: bool>(
+    pub fn factorise_with<P: Problem<N, Q>, const FUSED: bool>(
         &mut self,
         problem: &mut P,
         solution: &Solution<N, M>,
         parameter: bool,
-    ) -> Result<(), RoundError<P::Failure>> {
-        self.evaluate_with::<P, FUSED>(problem, solution).map_err(RoundError::Slopes)?;
+    ) -> Result<(), Singular> {
         if parameter {
             self.drifts.resize(self.locals.len(), [Lanes::of(0.0); N]);
             problem.drift(&mut self.drifts);
+            self.condense::<FUSED, 2>(solution)?;
+        } else {
+            self.condense::<FUSED, 1>(solution)?;
         }
-        let condensed =
-            if parameter { self.condense::<FUSED, 2>(solution) } else { self.condense::<FUSED, 1>(solution) };
-        condensed.map_err(RoundError::Singular)?;
-        self.carry_rows::<P, FUSED>(problem, solution).map_err(RoundError::Singular)
+        self.carry_rows::<P, FUSED>(problem, solution)
     }
 
     /// Eliminates the stages of every element, with the first `C` columns of the loads.

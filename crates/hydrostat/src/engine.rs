@@ -7,7 +7,7 @@ mod start;
 
 use std::sync::LazyLock;
 
-use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Hermite, Mesh, RoundError, Solution};
+use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Hermite, Mesh, RoundError, Singular, Solution};
 
 use crate::arm::Arm;
 use crate::configuration::{Statistics, Tip};
@@ -141,20 +141,20 @@ pub(crate) fn evaluate<const S: usize>(
     dispatch(Evaluate { system, equations, solution })
 }
 
-struct Linearise<'a, const S: usize> {
+struct Factorise<'a, const S: usize> {
     system: &'a mut Collocation<N, S, Q>,
     equations: &'a mut Equilibrium,
     solution: &'a Solution<N, S>,
     parameter: bool,
 }
 
-impl<const S: usize> Work for Linearise<'_, S> {
-    type Output = Result<(), RoundError<SectionFailure>>;
+impl<const S: usize> Work for Factorise<'_, S> {
+    type Output = Result<(), Singular>;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Self::Output {
         let Self { system, equations, solution, parameter } = self;
-        system.linearise_with::<_, FUSED>(equations, solution, parameter)
+        system.factorise_with::<_, FUSED>(equations, solution, parameter)
     }
 }
 
@@ -165,7 +165,8 @@ pub(crate) fn linearise<const S: usize>(
     solution: &Solution<N, S>,
     parameter: bool,
 ) -> Result<(), RoundError<SectionFailure>> {
-    dispatch(Linearise { system, equations, solution, parameter })
+    evaluate(system, equations, solution).map_err(RoundError::Slopes)?;
+    dispatch(Factorise { system, equations, solution, parameter }).map_err(RoundError::Singular)
 }
 
 /// [`Collocation::solve`] in the processor's widest vectors.
