@@ -88,9 +88,8 @@ class Run:
         if self._plan.sample is not None:
             own = [Variable(column, (column,), "", None, isinstance(self._probe[column], tuple)) for _, column, *_ in axes]
             keys = {variable.name: rows_of(variable).compute(scheduler=self._client) for variable in own}
-        lazy = dataset(self._plan, vary, values, keys)
-        kept: xr.Dataset = self._client.persist(lazy, retries=self._retries)
-        return kept
+        # Its graph holds the futures, and these the rows: variables are only cut out of them when they are asked for.
+        return dataset(self._plan, vary, values, keys)
 
     def parquet(self, directory: FilePath) -> FilePath:
         """All rows as a directory of Parquet files, one a chunk, whose names are their first rows."""

@@ -15,7 +15,7 @@ type Setting = (String, String, String);
 #[pyclass(frozen, module = "hydrostat._native")]
 pub(crate) struct Arm {
     pub(crate) file: ArmFile,
-    pub(crate) arm: hydrostat::Arm,
+    pub(crate) given: hydrostat::Arm,
     text: String,
     settings: Vec<Setting>,
 }
@@ -26,15 +26,20 @@ impl Arm {
     #[new]
     #[pyo3(signature = (text, path, settings = Vec::new()))]
     fn new(py: Python<'_>, text: String, path: &str, settings: Vec<Setting>) -> PyResult<Self> {
-        let file = ArmFile::parse(&text, path).map_err(|error| file_error(py, error))?;
-        Self::with(py, file, text, settings, 0)
+        let mut file = ArmFile::parse(&text, path).map_err(|error| file_error(py, error))?;
+        for (option, key, value) in &settings {
+            file.set_by(option, key, value).map_err(|error| file_error(py, error))?;
+        }
+        let given = file.arm().map_err(|error| file_error(py, error))?;
+        Ok(Self { file, given, text, settings })
     }
 
-    /// The arm with further overrides.
+    /// The arm with further overrides, which take the place of earlier ones.
     fn replaced(&self, py: Python<'_>, settings: Vec<Setting>) -> PyResult<Self> {
-        let mut all = self.settings.clone();
+        let replaced = |old: &Setting| settings.iter().any(|new| new.1 == old.1 || is_other_pull(&new.1, &old.1));
+        let mut all: Vec<Setting> = self.settings.iter().filter(|old| !replaced(old)).cloned().collect();
         all.extend(settings);
-        Self::with(py, self.file.clone(), self.text.clone(), all, self.settings.len())
+        Self::new(py, self.text.clone(), self.file.path(), all)
     }
 
     /// What a pickle takes: text, path and overrides.
@@ -44,28 +49,28 @@ impl Arm {
 
     /// The whole arm as TOML, defaults filled in.
     fn to_toml(&self) -> String {
-        arm_to_toml(&self.arm)
+        arm_to_toml(&self.given)
     }
 
     #[getter]
     fn name(&self) -> &str {
-        &self.arm.name
+        &self.given.name
     }
 
     #[getter]
     fn length(&self) -> f64 {
-        self.arm.length
+        self.given.length
     }
 
     /// The cables' names.
     #[getter]
     fn cables(&self) -> Vec<&str> {
-        self.arm.cables.iter().map(|cable| cable.name.as_str()).collect()
+        self.given.cables.iter().map(|cable| cable.name.as_str()).collect()
     }
 
     /// The arm and this one are the same.
     fn same(&self, other: &Self) -> bool {
-        self.arm == other.arm
+        self.given == other.given
     }
 
     /// Solves under these loads; NaN among the strokes leaves a cable its tension.
@@ -78,7 +83,7 @@ impl Arm {
         flow_speed: Option<f64>,
         tol: f64,
     ) -> PyResult<Solution> {
-        let mut arm = self.arm.clone();
+        let mut arm = self.given.clone();
         if let Some(tensions) = tensions {
             let tensions = finite("tensions", &tensions, false)?;
             arm.set_tensions(&tensions).map_err(|error| wrong(format!("tensions: {error}")))?;
@@ -102,21 +107,19 @@ impl Arm {
 }
 
 impl Arm {
-    /// With the settings from `first` on applied.
-    fn with(py: Python<'_>, mut file: ArmFile, text: String, settings: Vec<Setting>, first: usize) -> PyResult<Self> {
-        for (option, key, value) in &settings[first..] {
-            file.set_by(option, key, value).map_err(|error| file_error(py, error))?;
-        }
-        let arm = file.arm().map_err(|error| file_error(py, error))?;
-        Ok(Self { file, arm, text, settings })
-    }
-
     /// Of an arm of the library, whose text is what it would be written as.
     pub(crate) fn of(py: Python<'_>, arm: &hydrostat::Arm) -> PyResult<Self> {
         let text = arm_to_toml(arm);
         let file = ArmFile::parse(&text, &arm.name).map_err(|error| file_error(py, error))?;
-        Ok(Self { file, arm: arm.clone(), text, settings: Vec::new() })
+        Ok(Self { file, given: arm.clone(), text, settings: Vec::new() })
     }
+}
+
+/// Whether one key is a cable's stroke and the other its tension: a cable is given by either.
+fn is_other_pull(new: &str, old: &str) -> bool {
+    let of = |key: &'_ str, name: &str| key.strip_suffix(name).map(str::to_owned);
+    let pairs = [(".tension", ".stroke"), (".stroke", ".tension")];
+    pairs.iter().any(|(one, other)| of(new, one).is_some_and(|cable| of(old, other) == Some(cable)))
 }
 
 /// The text of an arm that ships with the program.

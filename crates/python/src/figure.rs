@@ -128,7 +128,7 @@ type Parts = (Vec<(&'static str, Figure, String)>, Vec<(&'static str, &'static s
 /// The source's figure, and what its text says about it.
 #[pyfunction]
 pub(crate) fn source_figures(py: Python<'_>, arm: &Arm) -> PyResult<Parts> {
-    let study = interruptible(py, |_| Ok(()), |_| Study::of(&arm.arm))?.map_err(wrong)?;
+    let study = interruptible(py, |_| Ok(()), |_| Study::of(&arm.given))?.map_err(wrong)?;
     let figures = study.figures().map(|figure| (figure.name, Figure::new(figure.scene), figure.csv));
     let claims = study.claims.iter().map(|claim| (claim.statement, claim.finding.words(), claim.evidence.clone()));
     Ok((figures.into(), claims.collect()))

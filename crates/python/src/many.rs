@@ -46,14 +46,14 @@ pub(crate) fn solve_many<'py>(
     let mut varied: Vec<(Parameter, Vec<f64>)> = Vec::new();
     for (key, column) in keys.iter().zip(&columns) {
         let parameter: Parameter = key.parse().map_err(wrong)?;
-        parameter.of(&arm.arm).map_err(wrong)?;
+        parameter.of(&arm.given).map_err(wrong)?;
         let si = |value: &f64| if parameter.unit() == "rad" { Dimension::Angle.bare(*value) } else { *value };
         varied.push((parameter, column.as_array().iter().map(si).collect()));
     }
     let wanted = Wanted { strokes, fold_margin, stability, stations };
     let options = ManyOptions { tol, tile, wanted };
     let chunk = tile.max(1) * TILES * rayon::current_num_threads();
-    let base = &arm.arm;
+    let base = &arm.given;
     let answers = interruptible(
         py,
         |_| Ok(()),

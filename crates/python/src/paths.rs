@@ -19,7 +19,7 @@ use crate::solution::{Solution, words};
 /// A path and what it varies, in the unit that was asked for.
 #[pyclass(frozen, module = "hydrostat._native")]
 pub(crate) struct Path {
-    path: hydrostat::Path,
+    found: hydrostat::Path,
     varied: Varied,
     tol: f64,
 }
@@ -34,6 +34,9 @@ pub(crate) struct Equilibria {
 
 /// A column of numbers.
 type Numbers<'py> = Bound<'py, PyArray1<f64>>;
+
+/// The name of an event, and its cable.
+type Named = (&'static str, Option<usize>);
 
 /// x, y, theta and alpha of the tip, state and count of unstable directions, a value each.
 type States<'py> = ([Numbers<'py>; 4], Vec<Option<&'static str>>, Vec<Option<usize>>);
@@ -59,13 +62,13 @@ pub(crate) fn path(
     branches: bool,
 ) -> PyResult<Path> {
     let varied: Varied = vary.parse().map_err(wrong)?;
-    varied.parameter.of(&arm.arm).map_err(wrong)?;
+    varied.parameter.of(&arm.given).map_err(wrong)?;
     let options = PathOptions { tol, longest, most, branches };
     let follow = |stop: &std::sync::atomic::AtomicBool| {
-        arm.arm.path_with(varied.parameter, varied.range, &options, |_| !stop.load(Ordering::Relaxed))
+        arm.given.path_with(varied.parameter, varied.range, &options, |_| !stop.load(Ordering::Relaxed))
     };
-    let path = interruptible(py, |_| Ok(()), follow)?.map_err(|error| path_error(py, error, tol))?;
-    Ok(Path { path, varied, tol })
+    let found = interruptible(py, |_| Ok(()), follow)?.map_err(|error| path_error(py, error, tol))?;
+    Ok(Path { found, varied, tol })
 }
 
 #[pymethods]
@@ -79,7 +82,7 @@ impl Path {
     /// The ends of the range in the unit shown.
     #[getter]
     fn range(&self) -> [f64; 2] {
-        self.path.range.map(|value| self.varied.shown(value))
+        self.found.range.map(|value| self.varied.shown(value))
     }
 
     /// For each branch: how many points, the name and the words of its end, the value at which it was switched to.
@@ -91,7 +94,7 @@ impl Path {
             let switched_at = branch.switched_at.map(|value| self.varied.shown(value));
             (branch.points.len(), branch.end.name(), end, switched_at)
         };
-        self.path.branches.iter().map(branch).collect()
+        self.found.branches.iter().map(branch).collect()
     }
 
     /// Values of the parameter on a branch, in the unit shown.
@@ -107,7 +110,7 @@ impl Path {
     }
 
     /// The name of each point's event, and its cable.
-    fn events(&self, branch: usize) -> PyResult<Vec<Option<(&'static str, Option<usize>)>>> {
+    fn events(&self, branch: usize) -> PyResult<Vec<Option<Named>>> {
         let event = |event: Event| (event.name(), event.cable());
         Ok(self.branch(branch)?.points.iter().map(|point| point.event.map(event)).collect())
     }
@@ -120,26 +123,26 @@ impl Path {
     }
 
     fn figure(&self, asked: &str, title: &str) -> PyResult<Figure> {
-        let scene = hydrostat_figures::path_figure(&self.path, &abscissa(self.axis()), quantity(asked)?, title);
+        let scene = hydrostat_figures::path_figure(&self.found, &abscissa(self.axis()), quantity(asked)?, title);
         Ok(Figure::new(scene))
     }
 
     fn shapes_figure(&self, title: &str) -> Figure {
-        Figure::new(hydrostat_figures::path_shapes_figure(&self.path, &abscissa(self.axis()), title))
+        Figure::new(hydrostat_figures::path_shapes_figure(&self.found, &abscissa(self.axis()), title))
     }
 
     fn to_json(&self) -> PyResult<Option<String>> {
-        PathDocument::new(&self.path, &self.varied).map(|document| document.to_json()).transpose().map_err(wrong)
+        PathDocument::new(&self.found, &self.varied).map(|document| document.to_json()).transpose().map_err(wrong)
     }
 
     fn to_csv(&self) -> String {
-        path_csv(&self.path, &self.varied)
+        path_csv(&self.found, &self.varied)
     }
 }
 
 impl Path {
     fn branch(&self, index: usize) -> PyResult<&hydrostat::Branch> {
-        self.path.branches.get(index).ok_or_else(|| PyIndexError::new_err("branch: the path has no such branch"))
+        self.found.branches.get(index).ok_or_else(|| PyIndexError::new_err("branch: the path has no such branch"))
     }
 }
 
@@ -154,11 +157,11 @@ pub(crate) fn equilibria(py: Python<'_>, arm: &Arm, tol: f64, time_limit: Option
         |_| Ok(()),
         |stop| {
             let in_time = || limit.is_none_or(|limit| start.elapsed() < limit);
-            arm.arm.equilibria_while(tol, |_| in_time() && !stop.load(Ordering::Relaxed))
+            arm.given.equilibria_while(tol, |_| in_time() && !stop.load(Ordering::Relaxed))
         },
     )?;
     let all = all.map_err(|error| path_error(py, error, tol))?;
-    Ok(Equilibria { all, arm: arm.arm.clone(), tol })
+    Ok(Equilibria { all, arm: arm.given.clone(), tol })
 }
 
 #[pymethods]

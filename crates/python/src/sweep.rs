@@ -113,8 +113,7 @@ impl Sweep {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         self.check(tiles)?;
-        let columns =
-            self.while_asked(py, threads, progress, |go_on| Ok(self.sweep.columns(&(tiles.0..tiles.1), go_on)))?;
+        let columns = while_asked(py, threads, progress, |go_on| Ok(self.sweep.columns(&(tiles.0..tiles.1), go_on)))?;
         let out = PyDict::new(py);
         for column in columns {
             put(&out, column)?;
@@ -132,7 +131,7 @@ impl Sweep {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(u64, u64)> {
         self.check(tiles)?;
-        self.while_asked(py, threads, progress, |go_on| self.sweep.write_tiles(&(tiles.0..tiles.1), &output, go_on))
+        while_asked(py, threads, progress, |go_on| self.sweep.write_tiles(&(tiles.0..tiles.1), &output, go_on))
     }
 
     /// The program's own sweep into a Parquet or CSV file: rows, those with an answer, those that were there before.
@@ -169,32 +168,31 @@ impl Sweep {
         }
         Err(wrong(format!("tiles: expected two increasing numbers up to {tiles}, found {from} and {to}")))
     }
+}
 
-    /// Work on tiles in a pool of its own, which hears Ctrl-C.
-    fn while_asked<T: Send>(
-        &self,
-        py: Python<'_>,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
-        work: impl FnOnce(&(dyn Fn(u64) -> bool + Sync)) -> Result<T, SweepError> + Send,
-    ) -> PyResult<T> {
-        let done = AtomicU64::new(0);
-        let worked = interruptible(
-            py,
-            |py| say(py, progress.as_ref(), done.load(Ordering::Relaxed)),
-            |stop| {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-                pool.install(|| {
-                    work(&|rows| {
-                        done.fetch_add(rows, Ordering::Relaxed);
-                        !stop.load(Ordering::Relaxed)
-                    })
+/// Work on tiles in a pool of its own, which hears Ctrl-C.
+fn while_asked<T: Send>(
+    py: Python<'_>,
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&(dyn Fn(u64) -> bool + Sync)) -> Result<T, SweepError> + Send,
+) -> PyResult<T> {
+    let done = AtomicU64::new(0);
+    let worked = interruptible(
+        py,
+        |py| say(py, progress.as_ref(), done.load(Ordering::Relaxed)),
+        |stop| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+            pool.install(|| {
+                work(&|rows| {
+                    done.fetch_add(rows, Ordering::Relaxed);
+                    !stop.load(Ordering::Relaxed)
                 })
-            },
-        )?;
-        say(py, progress.as_ref(), done.load(Ordering::Relaxed))?;
-        worked.map_err(sweep_error)
-    }
+            })
+        },
+    )?;
+    say(py, progress.as_ref(), done.load(Ordering::Relaxed))?;
+    worked.map_err(sweep_error)
 }
 
 /// Tells `progress` how many rows are done.
