@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: Numbers of a chunk at most, 8 bytes each.
 _LARGEST = 1 << 22
 #: Chunks a thread at least, so that none waits long for the last one.
-_EACH = 16
+_EACH = 8
 #: Tiles whose cost is measured, a thread.
 _PROBES = 2
 

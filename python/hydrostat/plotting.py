@@ -9,6 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.typing import ColorType
 
     from hydrostat.paths import Equilibria, Path
     from hydrostat.solution import Solution
@@ -30,7 +31,7 @@ def _new_axes(ax: Axes | None) -> Axes:
 
 
 def plot_shape(
-    solution: Solution, ax: Axes | None, *, color: str, sections: int, cables: bool, flow: bool, label: str | None
+    solution: Solution, ax: Axes | None, *, color: ColorType, sections: int, cables: bool, flow: bool, label: str | None
 ) -> Axes:
     """See `Solution.plot`."""
     ax = _new_axes(ax)
@@ -53,7 +54,9 @@ def plot_shape(
             ax.plot(points[:, 0], points[:, 1], zorder=4, **style)  # type: ignore[arg-type]
     base = _MM * np.stack([left[0], right[0]]) / _MM
     ax.plot(base[:, 0], base[:, 1], color=_INK, linewidth=3.0, solid_capstyle="butt", zorder=5)
-    ax.set_aspect("equal", adjustable="datalim")
+    # Axes that share their limits can only change their boxes.
+    shared = any(len(group.get_siblings(ax)) > 1 for group in (ax.get_shared_x_axes(), ax.get_shared_y_axes()))
+    ax.set_aspect("equal", adjustable="box" if shared else "datalim")
     ax.set_xlabel("x (mm)")
     ax.set_ylabel("y (mm)")
     if flow:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as MatplotlibFigure
+    from matplotlib.typing import ColorType
     from numpy.typing import ArrayLike, NDArray
 
     from hydrostat.arm import Arm
@@ -360,7 +361,7 @@ class Solution(Stations):
         self,
         ax: Axes | None = None,
         *,
-        color: str = "#d9734e",
+        color: ColorType = "#d9734e",
         sections: int = 25,
         cables: bool = True,
         flow: bool = True,
@@ -372,7 +373,7 @@ class Solution(Stations):
         ----------
         ax : matplotlib.axes.Axes, optional
             Where; a new figure's without it.
-        color : str
+        color : color
             Of the body.
         sections : int
             How many sections are drawn; 0 for none.

@@ -19,7 +19,7 @@ from distributed import Client, LocalCluster
 
 import hydrostat as hs
 
-VARY = {"flow.speed": "0:1:90", "cable[0].tension": "0:80:100"}
+VARY = {"flow.speed": "0:1:60", "cable[0].tension": "0:80:100"}
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +60,7 @@ def written(directory: Path) -> Any:
 def test_same_rows_as_here(client: Client, paper: hs.Arm, here: xr.Dataset, tmp_path: Path) -> None:
     there = hs.sweep(paper, VARY, client=client)
     assert all(dask.is_dask_collection(there[name]) for name in there.data_vars)
-    assert there.tip_x.data.npartitions > 4
+    assert there.tip_x.data.npartitions >= 16
     same(there.compute(), here)
     # Dask's own work on it goes on on the cluster.
     assert float(there.tip_y.max().compute()) == float(here.tip_y.max())
@@ -88,8 +88,7 @@ def finished(client: Client) -> int:
 
 
 # With no failure allowed the scheduler gives up what the dead worker had, and the sweep asks again.
-@pytest.mark.parametrize("client", [3, 0], indirect=True)
-@pytest.mark.parametrize("kind", ["dataset", "parquet"])
+@pytest.mark.parametrize(("client", "kind"), [(0, "dataset"), (3, "parquet")], indirect=["client"])
 def test_a_worker_killed_in_mid_sweep(
     client: Client, paper: hs.Arm, here: xr.Dataset, tmp_path: Path, kind: str
 ) -> None:
@@ -97,7 +96,7 @@ def test_a_worker_killed_in_mid_sweep(
     outcome: list[Any] = []
 
     def run() -> None:
-        outcome.append(hs.sweep(paper, VARY, client=client, output=output, chunk_seconds=0.05))
+        outcome.append(hs.sweep(paper, VARY, client=client, output=output, chunk_seconds=0.1))
 
     before = client.run(os.getpid)
     thread = threading.Thread(target=run)
@@ -117,7 +116,7 @@ def test_a_worker_killed_in_mid_sweep(
         return
     rows = written(output)
     # Nothing lost, nothing doubled, nothing half-written beside.
-    assert rows["row"].tolist() == list(range(9000))
+    assert rows["row"].tolist() == list(range(6000))
     assert np.array_equal(rows["tip_x_m"], here.tip_x.values.ravel(), equal_nan=True)
     assert not list(output.glob(".*"))
 

@@ -40,7 +40,7 @@ def test_tensions(silicone: hs.Arm, tensions: Any, words: str) -> None:
 def test_numbers_of_any_kind_and_layout(silicone: hs.Arm, kind: type) -> None:
     paper = hs.Arm.load("paper")
     want = paper.solve(tensions=[20.0, 4.0]).tip
-    spread = np.zeros((2, 5), dtype=kind)
+    spread: np.ndarray[tuple[int, ...], np.dtype[Any]] = np.zeros((2, 5), dtype=kind)
     spread[:, 3] = [20, 4]
     assert paper.solve(tensions=spread[:, 3]).tip == want
     assert paper.solve(tensions=(20, 4)).tip == want
@@ -90,7 +90,7 @@ CALLS: list[tuple[Callable[[hs.Arm], object], str]] = [
     (lambda arm: hs.sweep(arm, {}), "^vary: .*at least one key"),
     (lambda arm: hs.sweep(arm, {"flow.sped": [1.0]}), "did you mean `flow.speed`"),
     (lambda arm: hs.sweep(arm, {"flow.speed": [0.1, np.nan]}), r"^vary\['flow.speed'\]"),
-    (lambda arm: hs.sweep(arm, {"flow.speed": [[0.1]]}), r"^vary\['flow.speed'\].*shape \(1, 1\)"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": np.array([[0.1]])}), r"^vary\['flow.speed'\].*shape \(1, 1\)"),
     (lambda arm: hs.sweep(arm, {"flow.speed": [-0.1]}), "flow.speed"),
     (lambda arm: hs.sweep(arm, {"flow.speed": "0:1"}), "^vary: .*FROM:TO:COUNT"),
     (lambda arm: hs.sweep(arm, {"flow.speed": "0:1"}, sample="lhs"), "^sample"),
