@@ -44,7 +44,7 @@ from hydrostat.figures import (
 )
 from hydrostat.many import Many, solve_many
 from hydrostat.paths import Branch, Equilibria, Event, Path
-from hydrostat.solution import CableState, Command, FoldMargin, Solution, Stations, Tip, Warning, Wrench
+from hydrostat.solution import CableState, Command, FoldMargin, Note, Solution, Stations, Tip, Wrench
 from hydrostat.solver import Answer, Solver
 from hydrostat.sweep import sweep
 
@@ -66,13 +66,13 @@ __all__ = [
     "NoEquilibrium",
     "NoSectionSolution",
     "NotFound",
+    "Note",
     "Path",
     "SectionCrushed",
     "Solution",
     "Solver",
     "Stations",
     "Tip",
-    "Warning",
     "Wrench",
     "__version__",
     "arm_figure",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -48,6 +49,17 @@ def number(name: str, value: float, *, negative: bool = True) -> float:
         raise ValueError(f"{name}: expected a finite number, found {out}")
     if out < 0.0 and not negative:
         raise ValueError(f"{name}: expected a number that is not negative, found {out}")
+    return out
+
+
+def count(name: str, value: int) -> int:
+    """A whole number that is not negative."""
+    try:
+        out = operator.index(value)
+    except TypeError as error:
+        raise ValueError(f"{name}: expected a whole number, found {value!r}") from error
+    if not 0 <= out < 1 << 63:
+        raise ValueError(f"{name}: expected a whole number that is not negative, found {out}")
     return out
 
 

@@ -310,7 +310,9 @@ class Arm:
         from hydrostat.paths import Path
 
         vary = f"{parameter}={_end('start', start)}:{_end('stop', stop)}"
-        return Path(_native.path(self._inner, vary, _inputs.number("tol", tol), _inputs.number("longest", longest), most, branches))
+        step = _inputs.number("longest", longest)
+        points = _inputs.count("most", most)
+        return Path(_native.path(self._inner, vary, _inputs.number("tol", tol), step, points, branches))
 
     def equilibria(self, *, tol: float = 1e-8, time_limit: float | None = None) -> Equilibria:
         """All equilibria under the arm's loads, each with its stability, whether `solve` leads to them or not.

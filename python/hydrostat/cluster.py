@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Iterator
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
@@ -59,12 +60,12 @@ class Run:
             raise ValueError(f"retries: expected a number that is not negative, found {retries}")
         self._client = client
         self._plan = plan
-        self._inner = plan.native()
+        self._sweep = plan.native()
         self._seconds = seconds
         self._retries = retries
         self._progress = progress
         self._token = uuid4().hex[:12]
-        self._probe = self._inner.columns((0, 1), 1, None)
+        self._probe = self._sweep.columns((0, 1), 1, None)
 
     def dataset(self, vary: dict[str, Values]) -> xr.Dataset:
         """All rows in the workers' memory, as Dask arrays."""
@@ -82,7 +83,7 @@ class Run:
             ]
             return da.concatenate(parts)
 
-        axes = self._inner.axes
+        axes = self._sweep.axes
         values = {variable: rows_of(variable) for variable in variables(self._probe)}
         keys = {}
         if self._plan.sample is not None:
@@ -97,15 +98,15 @@ class Run:
         if any(directory.iterdir()):
             raise FileExistsError(f"output: {directory} is not empty; remove it or choose another name")
         chunks = self._chunks()
-        paths = [directory.resolve() / f"rows-{self._inner.tile(tiles[0])[0]:012d}.parquet" for tiles in chunks]
+        paths = [directory.resolve() / f"rows-{self._sweep.tile(tiles[0])[0]:012d}.parquet" for tiles in chunks]
         work = list(zip(chunks, paths, strict=True))
         futures = [self._submit(_written, tiles, str(path)) for tiles, path in work]
         self._wait(futures, chunks)
         rows = sum(rows for rows, _ in self._client.gather(futures))
         present = sorted(directory.glob("rows-*.parquet"))
-        if rows != self._inner.rows or [path.name for path in present] != [path.name for path in paths]:
-            raise RuntimeError(f"output: {directory} has {len(present)} files of {rows} rows, where {self._inner.rows} were solved")
-        note = {"sweep": json.loads(self._inner.note), "rows": rows, "files": [path.name for path in present]}
+        if rows != self._sweep.rows or [path.name for path in present] != [path.name for path in paths]:
+            raise RuntimeError(f"output: {directory} has {len(present)} files of {rows} rows, where {self._sweep.rows} were solved")
+        note = {"sweep": json.loads(self._sweep.note), "rows": rows, "files": [path.name for path in present]}
         (directory / "_hydrostat.json").write_text(json.dumps(note, indent=2), encoding="utf-8")
         return directory
 
@@ -115,11 +116,11 @@ class Run:
         return self._client.submit(work, self._plan, tiles, *more, key=key, retries=self._retries)
 
     def _rows(self, tiles: Tiles) -> int:
-        return self._inner.tile(tiles[1] - 1)[1] - self._inner.tile(tiles[0])[0]
+        return self._sweep.tile(tiles[1] - 1)[1] - self._sweep.tile(tiles[0])[0]
 
     def _chunks(self) -> list[Tiles]:
         """Equal shares of the tiles, each about as long as asked for."""
-        tiles = self._inner.tiles
+        tiles = self._sweep.tiles
         threads = max(sum(self._client.nthreads().values()), 1)
         most = max(tiles // (_EACH * threads), 1)
         width = sum(len(variable.columns) for variable in variables(self._probe)) + 1
@@ -129,31 +130,35 @@ class Run:
             count = min(_PROBES * threads, tiles)
             places = [(2 * k + 1) * tiles // (2 * count) for k in range(count)]
             keys = [f"hydrostat-{self._token}-cost-{place}" for place in places]
-            costs = self._client.gather(
-                [
-                    self._client.submit(_cost, self._plan, place, key=key, retries=self._retries)
-                    for place, key in zip(places, keys, strict=True)
-                ]
-            )
-            size = min(size, max(int(self._seconds * len(costs) / max(sum(costs), 1e-9)), 1))
+            probes = [
+                self._client.submit(_cost, self._plan, place, key=key, retries=self._retries)
+                for place, key in zip(places, keys, strict=True)
+            ]
+            cost = sum(future.result() for future in self._each(probes)) / count
+            size = min(size, max(int(self._seconds / max(cost, 1e-9)), 1))
         return [(start, min(start + size, tiles)) for start in range(0, tiles, size)]
 
     def _wait(self, futures: list[Future], chunks: list[Tiles]) -> None:
-        """Until all chunks are there; a chunk whose workers died too often for the scheduler is tried again."""
+        """Until all chunks are there."""
         rows = {future.key: self._rows(tiles) for future, tiles in zip(futures, chunks, strict=True)}
-        left = dict.fromkeys(rows, self._retries)
+        with Progress(self._sweep.rows, self._progress) as bar:
+            for future in self._each(futures):
+                bar(bar.done + rows[future.key])
+
+    def _each(self, futures: list[Future]) -> Iterator[Future]:
+        """The futures as they end; one whose workers died too often for the scheduler is asked for again."""
+        left = {future.key: self._retries for future in futures}
         try:
-            with Progress(self._inner.rows, self._progress) as bar:
-                completed = as_completed(futures)
-                for future in completed:
-                    if future.status == "error" and isinstance(future.exception(), KilledWorker) and left[future.key]:
-                        left[future.key] -= 1
-                        future.retry()
-                        completed.add(future)
-                        continue
-                    if future.status != "finished":
-                        future.result()
-                    bar(bar.done + rows[future.key])
+            completed = as_completed(futures)
+            for future in completed:
+                if future.status == "error" and isinstance(future.exception(), KilledWorker) and left[future.key]:
+                    left[future.key] -= 1
+                    future.retry()
+                    completed.add(future)
+                    continue
+                if future.status != "finished":
+                    future.result()
+                yield future
         except BaseException:
             self._client.cancel(futures)
             raise

@@ -202,11 +202,11 @@ def solve_many(
         columns,
         rows,
         _inputs.number("tol", tol),
-        tile,
+        _inputs.count("tile", tile),
         True,
         fold_margin,
         stability,
-        stations,
+        _inputs.count("stations", stations),
     )
     out: dict[str, NDArray[np.generic]] = {}
     for name, column in found.items():

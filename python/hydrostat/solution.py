@@ -78,8 +78,8 @@ class FoldMargin(NamedTuple):
     s: float
 
 
-class Warning(NamedTuple):
-    """Something that should be known about an answer."""
+class Note(NamedTuple):
+    """Something that should be known about an answer: its `kind`, such as ``"surface_fold"``, and the `message`."""
 
     kind: str
     message: str
@@ -256,9 +256,9 @@ class Solution(Stations):
         return self._inner.strain_energy
 
     @cached_property
-    def warnings(self) -> tuple[Warning, ...]:
+    def warnings(self) -> tuple[Note, ...]:
         """What should be known about this answer; empty when all is well."""
-        return tuple(Warning(kind, message) for kind, message in self._inner.warnings())
+        return tuple(Note(kind, message) for kind, message in self._inner.warnings())
 
     @cached_property
     def _stability(self) -> tuple[str | None, int | None, bool | None]:
@@ -305,7 +305,7 @@ class Solution(Stations):
 
     def resampled(self, count: int) -> Stations:
         """`count` (at least two) equally spaced stations from base to tip."""
-        return Stations(self._inner.resampled(count))
+        return Stations(self._inner.resampled(_inputs.count("count", count)))
 
     def surfaces(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The deformed surface on the left and on the right, m, each of shape (n, 2), at lengths `s` (m) of shape (n,)."""

@@ -52,7 +52,7 @@ class Solver:
 
     def set_stroke(self, cable: int, stroke: float) -> None:
         """Command the stroke of a cable, m, positive when reeled in, in place of its tension."""
-        self._inner.set_stroke(cable, _inputs.number("stroke", stroke))
+        self._inner.set_stroke(_inputs.count("cable", cable), _inputs.number("stroke", stroke))
 
     def set_flow_speed(self, flow_speed: float) -> None:
         """Set the speed of the stream, m/s."""

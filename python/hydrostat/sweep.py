@@ -41,12 +41,14 @@ class Plan(NamedTuple):
 
     def native(self) -> _native.Sweep:
         """The sweep, made once a process."""
-        return _made(self)
+        text, path, settings = self.arm._inner.parts()
+        # Arms that are the same can differ in their texts, and so in what becomes of a key.
+        return _made(text, path, tuple(settings), self[1:])
 
 
 @lru_cache(maxsize=8)
-def _made(plan: Plan) -> _native.Sweep:
-    return _native.Sweep(plan.arm._inner, *plan[1:])
+def _made(text: str, path: str, settings: tuple[tuple[str, str, str], ...], asked: tuple[Any, ...]) -> _native.Sweep:
+    return _native.Sweep(_native.Arm(text, path, settings), *asked)
 
 
 class Variable(NamedTuple):
@@ -170,7 +172,15 @@ def sweep(
     """
     texts = tuple(f"{key}={_values(key, values)}" for key, values in vary.items())
     names = None if columns is None else tuple(columns)
-    plan = Plan(arm, texts, sample, seed, _inputs.number("tol", tol), names, shapes)
+    plan = Plan(
+        arm,
+        texts,
+        sample,
+        _inputs.count("seed", seed),
+        _inputs.number("tol", tol),
+        names,
+        _inputs.count("shapes", shapes),
+    )
     native = plan.native()
     if client is not None:
         from hydrostat import cluster
@@ -179,6 +189,7 @@ def sweep(
             raise ValueError(f"{'resume' if resume else 'threads'}: is of sweeps without a client")
         run = cluster.Run(client, plan, chunk_seconds, retries, progress)
         return run.dataset(dict(vary)) if output is None else run.parquet(FilePath(output))
+    threads = _inputs.count("threads", threads)
     with Progress(native.rows, progress) as bar:
         if output is not None:
             native.run(output, resume, threads, bar)

@@ -38,7 +38,7 @@ def client(request: pytest.FixtureRequest) -> Iterator[Client]:
     failures = getattr(request, "param", 3)
     with (
         dask.config.set({"distributed.scheduler.allowed-failures": failures}),
-        LocalCluster(n_workers=2, threads_per_worker=1, protocol="tcp://", dashboard_address=None) as cluster,
+        LocalCluster(n_workers=2, threads_per_worker=1, protocol="tcp://", dashboard_address=":0") as cluster,
         Client(cluster) as client,
     ):
         assert client.scheduler.address.startswith("tcp://127.0.0.1")

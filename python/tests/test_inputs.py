@@ -69,6 +69,10 @@ CALLS: list[tuple[Callable[[hs.Arm], object], str]] = [
     (lambda arm: arm.solve().at([0.3]), "^s: expected places"),
     (lambda arm: arm.solve().at(np.nan), "^s: expected places"),
     (lambda arm: arm.solve().resampled(1), "^count"),
+    (lambda arm: arm.solve().resampled(-1), "^count"),
+    (lambda arm: arm.solve().resampled(2.5), "^count"),  # type: ignore[arg-type]
+    (lambda arm: hs.Solver(arm).set_stroke(-1, 0.01), "^cable"),
+    (lambda arm: hs.Solver(arm).set_stroke(2, 0.01), "`cable`"),
     (lambda arm: hs.solve_many(arm, tensions=[0.1, 0.2, 0.3]), r"^tensions: expected the shape \(..., 2\)"),
     (lambda arm: hs.solve_many(arm, tensions=[[0.1, -0.2]]), r"^tensions: .*\(0, 1\)"),
     (lambda arm: hs.solve_many(arm, vary={"tip.moment": [np.nan]}), r"^vary\['tip.moment'\]"),

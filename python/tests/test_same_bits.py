@@ -97,3 +97,14 @@ def test_many_rows_are_single_solves_to_their_tolerance(silicone: hs.Arm) -> Non
             tip = silicone.solve(tensions=[pull, 0.0], flow_speed=speed, tol=1e-9).tip
             distance = np.hypot(many.tip_x[row, k] - tip.x, many.tip_y[row, k] - tip.y)
             assert distance < 1e-8 * silicone.length
+
+
+def test_arms_alike_with_other_texts_are_swept_by_their_own() -> None:
+    """The written arm has every reading by itself, above which a closure says nothing any more."""
+    arm = hs.Arm.load("paper").replace(tensions=[20, 0])
+    written = hs.Arm.from_toml(arm.to_toml())
+    assert written == arm
+    vary = {"model.closure": ["default", "literal"]}
+    default, literal = hs.sweep(arm, vary).tip_x.values
+    assert default != literal
+    assert hs.sweep(written, vary).tip_x.values.tolist() == [default, default]
