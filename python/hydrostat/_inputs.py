@@ -25,6 +25,9 @@ def numbers(name: str, value: ArrayLike, dimensions: int | None = None) -> NDArr
         raise ValueError(f"{name}: expected real numbers, found an array of dtype {array.dtype}")
     if dimensions is not None and array.ndim != dimensions:
         raise ValueError(f"{name}: expected an array of {dimensions} dimension(s), found shape {array.shape}")
+    if array.dtype == np.float64 and array.flags.c_contiguous:
+        return array
+    # What is made contiguous gets a dimension if it had none.
     return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
 
 

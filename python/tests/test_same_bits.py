@@ -106,5 +106,6 @@ def test_arms_alike_with_other_texts_are_swept_by_their_own() -> None:
     assert written == arm
     vary = {"model.closure": ["default", "literal"]}
     default, literal = hs.sweep(arm, vary).tip_x.values
-    assert default != literal
-    assert hs.sweep(written, vary).tip_x.values.tolist() == [default, default]
+    assert abs(default - literal) > 1e-4 * arm.length
+    # The second row starts from the first one's shape, and differs by rounding and tolerance.
+    assert np.allclose(hs.sweep(written, vary).tip_x.values, default, rtol=0.0, atol=1e-7 * arm.length)

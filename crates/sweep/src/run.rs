@@ -242,9 +242,16 @@ impl Sweep {
         });
         let resumed: u64 = resumed.sum();
         let count = AtomicU64::new(resumed);
+        let stopped = AtomicBool::new(false);
+        let go_on = |rows| {
+            let on = go_on(rows);
+            stopped.fetch_or(!on, Ordering::Relaxed);
+            on
+        };
         go_on(resumed);
         let solve = |(index, (present, tiles)): (usize, (Option<Part>, &Range<u64>))| match present {
             Some(part) => Ok(part),
+            None if stopped.load(Ordering::Relaxed) => Err(SweepError::Stopped),
             None => {
                 self.part(index, tiles, &parts, format, &|rows| go_on(count.fetch_add(rows, Ordering::Relaxed) + rows))
             }
