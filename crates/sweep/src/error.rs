@@ -69,6 +69,9 @@ pub enum SweepError {
         /// What is wrong with it.
         message: String,
     },
+    /// Whoever watched it ended it. Whole parts stay where they are, to go on from.
+    #[error("the sweep was stopped before its end")]
+    Stopped,
     /// Threads that could not be started.
     #[error("{0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),

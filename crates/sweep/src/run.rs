@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hydrostat::{NoRow, Tile};
 use hydrostat_files::{ArmFile, arm_to_toml, write_whole};
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::arms::{Arms, Last};
-use crate::column::{Answer, Column, Layout, Output};
+use crate::column::{Answer, Column, Data, Layout, Output};
 use crate::error::{SweepError, parquet_error};
 use crate::parquet_file::Reader;
 use crate::parts::{Part, Parts, difference, whole};
@@ -185,6 +185,11 @@ impl Sweep {
         rows_of(&self.plan, &self.tiles)
     }
 
+    /// The tiles of this sweep, or of this shard of it. Rows of different tiles do not depend on each other.
+    pub fn tiles(&self) -> Range<u64> {
+        self.tiles.clone()
+    }
+
     /// The arm and all that the rows depend on, as JSON.
     pub fn note(&self) -> &str {
         &self.note
@@ -202,6 +207,24 @@ impl Sweep {
         resume: bool,
         threads: usize,
         done: &(dyn Fn(u64) + Sync),
+    ) -> Result<Summary, SweepError> {
+        let go_on = |rows| {
+            done(rows);
+            true
+        };
+        self.run_while(output, resume, threads, &go_on)
+    }
+
+    /// [`Sweep::run`] that ends soon after `go_on`, which hears what `done` does there, is false.
+    ///
+    /// # Errors
+    /// [`SweepError`], that of an end on request being [`SweepError::Stopped`].
+    pub fn run_while(
+        &self,
+        output: &Path,
+        resume: bool,
+        threads: usize,
+        go_on: &(dyn Fn(u64) -> bool + Sync),
     ) -> Result<Summary, SweepError> {
         let format = Format::of(output).unwrap_or(Format::Parquet);
         let rows = self.rows();
@@ -222,11 +245,18 @@ impl Sweep {
         });
         let resumed: u64 = resumed.sum();
         let count = AtomicU64::new(resumed);
-        done(resumed);
+        let stopped = AtomicBool::new(false);
+        let go_on = |rows| {
+            let on = go_on(rows);
+            stopped.fetch_or(!on, Ordering::Relaxed);
+            on
+        };
+        go_on(resumed);
         let solve = |(index, (present, tiles)): (usize, (Option<Part>, &Range<u64>))| match present {
             Some(part) => Ok(part),
+            None if stopped.load(Ordering::Relaxed) => Err(SweepError::Stopped),
             None => {
-                self.part(index, tiles, &parts, format, &|rows| done(count.fetch_add(rows, Ordering::Relaxed) + rows))
+                self.part(index, tiles, &parts, format, &|rows| go_on(count.fetch_add(rows, Ordering::Relaxed) + rows))
             }
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
@@ -298,32 +328,70 @@ impl Sweep {
         tiles: &Range<u64>,
         parts: &Parts,
         format: Format,
-        done: &(dyn Fn(u64) + Sync),
+        go_on: &(dyn Fn(u64) -> bool + Sync),
     ) -> Result<Part, SweepError> {
-        let solved: Vec<(Range<u64>, Vec<Answer>)> = tiles
-            .clone()
-            .into_par_iter()
-            .map(|tile| {
-                let (rows, answers) = self.tile(tile);
-                done(rows.end - rows.start);
-                (rows, answers)
-            })
-            .collect();
-        let mut columns: Vec<Column> = self.layout.columns(self.plan.axes());
-        let mut answered = 0;
-        for (rows, answers) in solved {
-            for (row, answer) in rows.zip(&answers) {
-                answered += u64::from(answer.is_ok());
-                self.layout.add(&mut columns, row, &self.plan.values(row), answer);
-            }
-        }
+        let columns = self.whole_columns(tiles, go_on)?;
         let bytes = match format {
             Format::Parquet => {
                 parquet_file::part(&columns).map_err(|error| parquet_error(Path::new("a part"), error))?
             }
             Format::Csv => csv_file::part(&columns),
         };
-        parts.write(index, answered, &bytes)
+        parts.write(index, without_verdict(&columns), &bytes)
+    }
+
+    /// Solves some of the tiles on the threads of rayon's current pool: the rows as columns, for those who keep them elsewhere than in a
+    /// file of [`Sweep::run`]. `go_on` hears of every tile how many rows it had; when it is false, the tiles not yet begun
+    /// are left out.
+    pub fn columns(&self, tiles: &Range<u64>, go_on: &(dyn Fn(u64) -> bool + Sync)) -> Vec<Column> {
+        let stopped = AtomicBool::new(false);
+        let solve = |tile| {
+            if stopped.load(Ordering::Relaxed) {
+                return (0..0, Vec::new());
+            }
+            let (rows, answers) = self.tile(tile);
+            if !go_on(rows.end - rows.start) {
+                stopped.store(true, Ordering::Relaxed);
+            }
+            (rows, answers)
+        };
+        let solved: Vec<(Range<u64>, Vec<Answer>)> = tiles.clone().into_par_iter().map(solve).collect();
+        let mut columns: Vec<Column> = self.layout.columns(self.plan.axes());
+        for (rows, answers) in solved {
+            for (row, answer) in rows.zip(&answers) {
+                self.layout.add(&mut columns, row, &self.plan.values(row), answer);
+            }
+        }
+        columns
+    }
+
+    /// Solves some of the tiles as [`Sweep::columns`] does and writes them as one Parquet file, which appears whole or not at all. How
+    /// many rows it has, and how many of them have an answer.
+    ///
+    /// # Errors
+    /// [`SweepError::Write`], [`SweepError::Stopped`].
+    pub fn write_tiles(
+        &self,
+        tiles: &Range<u64>,
+        output: &Path,
+        go_on: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Result<(u64, u64), SweepError> {
+        let columns = self.whole_columns(tiles, go_on)?;
+        let bytes = parquet_file::part(&columns).map_err(|error| parquet_error(output, error))?;
+        write_whole(output, &bytes)?;
+        Ok((columns[0].data.len() as u64, without_verdict(&columns)))
+    }
+
+    /// The columns of all rows of the tiles.
+    fn whole_columns(
+        &self,
+        tiles: &Range<u64>,
+        go_on: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Result<Vec<Column>, SweepError> {
+        let columns = self.columns(tiles, go_on);
+        let rows = rows_of(&self.plan, tiles);
+        let whole = columns.iter().all(|column| column.data.len() as u64 == rows.end - rows.start);
+        if whole { Ok(columns) } else { Err(SweepError::Stopped) }
     }
 
     /// The rows of a tile with what became of each.
@@ -357,6 +425,15 @@ pub(crate) fn noted(output: &Path, format: Format) -> Result<Option<String>, Swe
 
 fn rows_of(plan: &Plan, tiles: &Range<u64>) -> Range<u64> {
     plan.tile(tiles.start).start..plan.tile(tiles.end.saturating_sub(1)).end
+}
+
+/// How many rows have an answer.
+fn without_verdict(columns: &[Column]) -> u64 {
+    let verdicts = columns.iter().find(|column| column.name == "verdict").map(|column| &column.data);
+    match verdicts {
+        Some(Data::Text(words)) => words.iter().filter(|word| word.is_none()).count() as u64,
+        _ => 0,
+    }
 }
 
 /// How many rows of a whole output have an answer.

@@ -258,3 +258,38 @@ fn what_is_no_sweep_is_refused() {
         assert!(matches!(error, SweepError::Read { .. }), "{name}: {error}");
     }
 }
+
+#[test]
+fn tiles_by_themselves_are_those_of_the_output() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let sweep = sweep("paper", &GRID, &SweepOptions::default());
+    sweep.run(&at("whole.parquet"), false, 2, &|_| {}).unwrap();
+    let whole = all(&at("whole.parquet"));
+    assert_eq!(sweep.tiles(), 0..2);
+    let mut joined: Vec<f64> = Vec::new();
+    for tile in sweep.tiles() {
+        let part = at(&format!("{tile}.parquet"));
+        let (rows, answered) = sweep.write_tiles(&(tile..tile + 1), &part, &|_| true).unwrap();
+        let columns = sweep.columns(&(tile..tile + 1), &|_| true);
+        let tip = columns.iter().find(|column| column.name == "tip_x_m").unwrap();
+        let Data::Number(numbers) = &tip.data else { panic!("{tip:?}") };
+        assert_eq!(all(&part).numbers("tip_x_m").unwrap(), *numbers);
+        assert_eq!((rows, answered), (numbers.len() as u64, rows));
+        joined.extend(numbers);
+    }
+    assert_eq!(whole.numbers("tip_x_m").unwrap(), joined);
+}
+
+#[test]
+fn a_sweep_that_is_ended_goes_on() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().join("out.parquet");
+    let sweep = sweep("paper", &GRID, &SweepOptions::default());
+    let ended = sweep.run_while(&out, false, 1, &|rows| rows == 0);
+    assert!(matches!(ended, Err(SweepError::Stopped)), "{ended:?}");
+    assert!(!out.exists());
+    // The tile that was being solved when it ended is whole.
+    let summary = sweep.run_while(&out, true, 1, &|_| true).unwrap();
+    assert_eq!((summary.rows, summary.resumed), (240, 120));
+}

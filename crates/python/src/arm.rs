@@ -1,0 +1,135 @@
+//! Arms: a file's text with what overrides it, and the arm that it means.
+
+use hydrostat_files::{ArmFile, arm_to_toml, shipped as files};
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+
+use crate::arrays::finite;
+use crate::errors::{file_error, solve_error, wrong};
+use crate::solution::Solution;
+
+/// An override: the name that messages have for where it comes from, the key, the value.
+type Setting = (String, String, String);
+
+/// An arm with the text that it was read from.
+#[pyclass(frozen, module = "hydrostat._native")]
+pub(crate) struct Arm {
+    pub(crate) file: ArmFile,
+    pub(crate) given: hydrostat::Arm,
+    text: String,
+    settings: Vec<Setting>,
+}
+
+#[pymethods]
+impl Arm {
+    /// The arm that TOML text means, with overrides. `path` is for messages and the default of the name.
+    #[new]
+    #[pyo3(signature = (text, path, settings = Vec::new()))]
+    fn new(py: Python<'_>, text: String, path: &str, settings: Vec<Setting>) -> PyResult<Self> {
+        let mut file = ArmFile::parse(&text, path).map_err(|error| file_error(py, error))?;
+        for (option, key, value) in &settings {
+            file.set_by(option, key, value).map_err(|error| file_error(py, error))?;
+        }
+        let given = file.arm().map_err(|error| file_error(py, error))?;
+        Ok(Self { file, given, text, settings })
+    }
+
+    /// The arm with further overrides, which take the place of earlier ones.
+    fn replaced(&self, py: Python<'_>, settings: Vec<Setting>) -> PyResult<Self> {
+        let replaced = |old: &Setting| settings.iter().any(|new| new.1 == old.1 || is_other_pull(&new.1, &old.1));
+        let mut all: Vec<Setting> = self.settings.iter().filter(|old| !replaced(old)).cloned().collect();
+        all.extend(settings);
+        Self::new(py, self.text.clone(), self.file.path(), all)
+    }
+
+    /// What a pickle takes: text, path and overrides.
+    fn parts(&self) -> (&str, &str, Vec<Setting>) {
+        (&self.text, self.file.path(), self.settings.clone())
+    }
+
+    /// The whole arm as TOML, defaults filled in.
+    fn to_toml(&self) -> String {
+        arm_to_toml(&self.given)
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.given.name
+    }
+
+    #[getter]
+    fn length(&self) -> f64 {
+        self.given.length
+    }
+
+    /// The cables' names.
+    #[getter]
+    fn cables(&self) -> Vec<&str> {
+        self.given.cables.iter().map(|cable| cable.name.as_str()).collect()
+    }
+
+    /// The arm and this one are the same.
+    fn same(&self, other: &Self) -> bool {
+        self.given == other.given
+    }
+
+    /// Solves under these loads; NaN among the strokes leaves a cable its tension.
+    #[pyo3(signature = (tensions, strokes, flow_speed, tol))]
+    fn solve(
+        &self,
+        py: Python<'_>,
+        tensions: Option<PyReadonlyArray1<'_, f64>>,
+        strokes: Option<Vec<Option<f64>>>,
+        flow_speed: Option<f64>,
+        tol: f64,
+    ) -> PyResult<Solution> {
+        let mut arm = self.given.clone();
+        if let Some(tensions) = tensions {
+            let tensions = finite("tensions", &tensions, false)?;
+            arm.set_tensions(&tensions).map_err(|error| wrong(format!("tensions: {error}")))?;
+        }
+        if let Some(strokes) = strokes {
+            if strokes.len() != arm.cables.len() {
+                let (cables, given) = (arm.cables.len(), strokes.len());
+                return Err(wrong(format!("strokes: the arm has {cables} cables, {given} strokes were given")));
+            }
+            for (cable, stroke) in arm.cables.iter_mut().zip(strokes) {
+                cable.stroke = stroke.or(cable.stroke);
+            }
+        }
+        if let Some(speed) = flow_speed {
+            arm.flow.speed = speed;
+        }
+        py.detach(|| hydrostat::Solver::new(&arm, hydrostat::Options { tol })?.solve())
+            .map(|configuration| Solution::new(configuration, tol))
+            .map_err(|error| solve_error(py, error, tol))
+    }
+}
+
+impl Arm {
+    /// Of an arm of the library, whose text is what it would be written as.
+    pub(crate) fn of(py: Python<'_>, arm: &hydrostat::Arm) -> PyResult<Self> {
+        let text = arm_to_toml(arm);
+        let file = ArmFile::parse(&text, &arm.name).map_err(|error| file_error(py, error))?;
+        Ok(Self { file, given: arm.clone(), text, settings: Vec::new() })
+    }
+}
+
+/// Whether one key is a cable's stroke and the other its tension: a cable is given by either.
+fn is_other_pull(new: &str, old: &str) -> bool {
+    let of = |key: &'_ str, name: &str| key.strip_suffix(name).map(str::to_owned);
+    let pairs = [(".tension", ".stroke"), (".stroke", ".tension")];
+    pairs.iter().any(|(one, other)| of(new, one).is_some_and(|cable| of(old, other) == Some(cable)))
+}
+
+/// The text of an arm that ships with the program.
+#[pyfunction]
+pub(crate) fn shipped(name: &str) -> Option<&'static str> {
+    files::get(name)
+}
+
+/// Names and descriptions of the arms that ship with the program.
+#[pyfunction]
+pub(crate) fn shipped_names() -> Vec<(&'static str, &'static str)> {
+    files::names().map(|name| (name, files::description(name).unwrap_or_default())).collect()
+}

@@ -1,0 +1,91 @@
+//! Errors of the library as Python's exceptions: a wrong request is a `ValueError`, no equilibrium is `hydrostat.NoEquilibrium` with
+//! the verdict's fields.
+
+use hydrostat::{NoEquilibrium, PathError, SolveError};
+use hydrostat_files::FileError;
+use hydrostat_sweep::SweepError;
+use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyAny;
+
+use crate::solution::Solution;
+
+/// A request that cannot be meant, in words.
+pub(crate) fn wrong(error: impl std::fmt::Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// An arm file that is none; a `ValueError` that knows its key, or an `OSError`.
+pub(crate) fn file_error(py: Python<'_>, error: FileError) -> PyErr {
+    static ARM_ERROR: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    if let FileError::Read { source, .. } = &error {
+        let text = error.to_string();
+        return match source.kind() {
+            std::io::ErrorKind::NotFound => PyFileNotFoundError::new_err(text),
+            _ => PyOSError::new_err(text),
+        };
+    }
+    made(py, &ARM_ERROR, "ArmError", (error.to_string(), error.key()))
+}
+
+/// What a solve ends with.
+pub(crate) fn solve_error(py: Python<'_>, error: SolveError, tol: f64) -> PyErr {
+    match error {
+        SolveError::NoEquilibrium(no) => no_equilibrium(py, *no, tol),
+        other => wrong(other),
+    }
+}
+
+/// What a path or a search for equilibria ends with.
+pub(crate) fn path_error(py: Python<'_>, error: PathError, tol: f64) -> PyErr {
+    match error {
+        PathError::Start { source: SolveError::NoEquilibrium(no), .. } => no_equilibrium(py, *no, tol),
+        other => wrong(other),
+    }
+}
+
+/// What a sweep ends with.
+pub(crate) fn sweep_error(error: SweepError) -> PyErr {
+    match error {
+        SweepError::Exists { .. } | SweepError::Begun { .. } => PyFileExistsError::new_err(error.to_string()),
+        SweepError::Locked { .. } | SweepError::Write(_) | SweepError::Read { .. } => {
+            PyOSError::new_err(error.to_string())
+        }
+        SweepError::Threads(_) => PyRuntimeError::new_err(error.to_string()),
+        // The option's name is that of the argument.
+        other => wrong(other.to_string().trim_start_matches("--")),
+    }
+}
+
+fn no_equilibrium(py: Python<'_>, no: NoEquilibrium, tol: f64) -> PyErr {
+    static NO_EQUILIBRIUM: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let verdict = no.verdict;
+    let last_good = match no.last_good.map(|configuration| Py::new(py, Solution::new(configuration, tol))).transpose() {
+        Ok(last_good) => last_good,
+        Err(error) => return error,
+    };
+    let fields = (
+        verdict.kind.name(),
+        verdict.phase.name(),
+        verdict.load_fraction,
+        verdict.s,
+        verdict.residual,
+        verdict.message(),
+        verdict.advice(),
+        last_good,
+    );
+    made(py, &NO_EQUILIBRIUM, "no_equilibrium", fields)
+}
+
+/// The exception that a function or class of `hydrostat._errors` makes of these fields.
+fn made<'py, A>(py: Python<'py>, kept: &PyOnceLock<Py<PyAny>>, name: &str, fields: A) -> PyErr
+where
+    A: pyo3::call::PyCallArgs<'py>,
+{
+    let make = kept.get_or_try_init(py, || Ok(py.import("hydrostat._errors")?.getattr(name)?.unbind()));
+    match make.and_then(|make: &Py<PyAny>| make.bind(py).call1(fields)) {
+        Ok(exception) => PyErr::from_value(exception),
+        Err(error) => error,
+    }
+}

@@ -1,0 +1,135 @@
+//! Drawings of `hydrostat-figures`.
+
+use hydrostat_figures::source::Study;
+use hydrostat_figures::{Abscissa, Coloured, ColouredColumn, KeyValues, Quantity, Scene};
+use numpy::PyReadonlyArray1;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::arm::Arm;
+use crate::errors::wrong;
+use crate::interrupt::interruptible;
+use crate::paths::Equilibria;
+
+/// A drawing, as SVG and as PNG.
+#[pyclass(frozen, module = "hydrostat._native")]
+pub(crate) struct Figure {
+    scene: Scene,
+}
+
+impl Figure {
+    pub(crate) fn new(scene: Scene) -> Self {
+        Self { scene }
+    }
+}
+
+#[pymethods]
+impl Figure {
+    fn svg(&self) -> String {
+        self.scene.svg()
+    }
+
+    fn png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| self.scene.png()).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    fn texts(&self) -> Vec<&str> {
+        self.scene.texts().collect()
+    }
+}
+
+/// Name, unit and how many of that unit an SI unit is.
+pub(crate) type Axis = (String, String, f64);
+
+pub(crate) fn abscissa((name, unit, per_si): Axis) -> Abscissa {
+    Abscissa { name, unit, per_si }
+}
+
+pub(crate) fn quantity(name: &str) -> PyResult<Quantity> {
+    name.parse().map_err(|error| wrong(format!("quantity: {error}, found {name:?}")))
+}
+
+/// Values a row, as colours.
+#[derive(FromPyObject)]
+pub(crate) enum Colours<'py> {
+    Numbers(PyReadonlyArray1<'py, f64>),
+    Words(Vec<Option<String>>),
+}
+
+fn column(name: String, values: Colours<'_>) -> ColouredColumn {
+    let values = match values {
+        Colours::Numbers(numbers) => Coloured::Numbers(numbers.as_array().to_vec()),
+        Colours::Words(words) => Coloured::Words(words),
+    };
+    ColouredColumn { name, values }
+}
+
+/// A column over two keys.
+#[pyfunction]
+pub(crate) fn map_figure(
+    axes: (Axis, Axis),
+    keys: (PyReadonlyArray1<'_, f64>, PyReadonlyArray1<'_, f64>),
+    name: String,
+    values: Colours<'_>,
+    title: &str,
+) -> Figure {
+    let key = |axis: Axis, values: &PyReadonlyArray1<'_, f64>| KeyValues {
+        axis: abscissa(axis),
+        values: values.as_array().to_vec(),
+    };
+    let keys = [key(axes.0, &keys.0), key(axes.1, &keys.1)];
+    Figure::new(hydrostat_figures::map_figure(&keys, &column(name, values), title))
+}
+
+/// Places of the tip.
+#[pyfunction]
+pub(crate) fn workspace_figure(
+    x: PyReadonlyArray1<'_, f64>,
+    y: PyReadonlyArray1<'_, f64>,
+    name: String,
+    values: Colours<'_>,
+    title: &str,
+) -> Figure {
+    let tips: Vec<[f64; 2]> = x.as_array().iter().zip(y.as_array()).map(|(x, y)| [*x, *y]).collect();
+    Figure::new(hydrostat_figures::workspace_figure(&tips, &column(name, values), title))
+}
+
+/// A column over one key.
+#[pyfunction]
+pub(crate) fn curve_figure(
+    axis: Axis,
+    key: PyReadonlyArray1<'_, f64>,
+    name: &str,
+    values: PyReadonlyArray1<'_, f64>,
+    title: &str,
+) -> Figure {
+    let key = KeyValues { axis: abscissa(axis), values: key.as_array().to_vec() };
+    Figure::new(hydrostat_figures::curve_figure(&key, name, &values.as_array().to_vec(), title))
+}
+
+/// All equilibria at each of several values (SI).
+#[pyfunction]
+pub(crate) fn over_figure(
+    searches: Vec<(f64, Py<Equilibria>)>,
+    axis: Axis,
+    asked: &str,
+    title: &str,
+) -> PyResult<Figure> {
+    let searches: Vec<(f64, &hydrostat::Equilibria)> =
+        searches.iter().map(|(value, all)| (*value, &all.get().all)).collect();
+    Ok(Figure::new(hydrostat_figures::over_figure(&searches, &abscissa(axis), quantity(asked)?, title)))
+}
+
+/// Name, drawing and CSV of each part of the source's figure; statement, finding and evidence of each claim.
+type Parts = (Vec<(&'static str, Figure, String)>, Vec<(&'static str, &'static str, String)>);
+
+/// The source's figure, and what its text says about it.
+#[pyfunction]
+pub(crate) fn source_figures(py: Python<'_>, arm: &Arm) -> PyResult<Parts> {
+    let study = interruptible(py, |_| Ok(()), |_| Study::of(&arm.given))?.map_err(wrong)?;
+    let figures = study.figures().map(|figure| (figure.name, Figure::new(figure.scene), figure.csv));
+    let claims = study.claims.iter().map(|claim| (claim.statement, claim.finding.words(), claim.evidence.clone()));
+    Ok((figures.into(), claims.collect()))
+}

@@ -1,0 +1,43 @@
+//! The extension module `hydrostat._native` of the Python package: thin classes over the library, which `python/hydrostat` dresses.
+//!
+//! Numbers cross as NumPy arrays, without copies where they are a solution's; errors become Python's exceptions in `errors`; the
+//! interpreter is let go of while anything is solved, and long calls look for Ctrl-C (`interrupt`).
+
+mod arm;
+mod arrays;
+mod errors;
+mod figure;
+mod interrupt;
+mod many;
+mod paths;
+mod solution;
+mod solver;
+mod sweep;
+
+use pyo3::prelude::*;
+
+/// The module.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::arm::{Arm, shipped, shipped_names};
+    #[pymodule_export]
+    use super::figure::{Figure, curve_figure, map_figure, over_figure, source_figures, workspace_figure};
+    #[pymodule_export]
+    use super::many::{parameter_names, solve_many};
+    #[pymodule_export]
+    use super::paths::{Equilibria, Path, equilibria, path};
+    #[pymodule_export]
+    use super::solution::{Solution, Stations};
+    #[pymodule_export]
+    use super::solver::Solver;
+    #[pymodule_export]
+    use super::sweep::Sweep;
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

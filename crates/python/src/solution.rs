@@ -1,0 +1,249 @@
+//! Configurations and their stations.
+
+use hydrostat::{Configuration, Stability, Wrench};
+use hydrostat_files::{Note, stations_csv};
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+
+use crate::arm::Arm;
+use crate::arrays::{field, given, shared};
+use crate::errors::wrong;
+use crate::figure::Figure;
+
+/// A point, or NaN where there is none.
+type Point = [f64; 2];
+
+/// A configuration and the tolerance that it was asked for with.
+#[pyclass(frozen, module = "hydrostat._native")]
+pub(crate) struct Solution {
+    pub(crate) configuration: Configuration,
+    tol: f64,
+}
+
+/// Stations along an arm.
+#[pyclass(frozen, module = "hydrostat._native")]
+pub(crate) struct Stations {
+    stations: hydrostat::Stations,
+}
+
+#[pymethods]
+impl Stations {
+    /// One of the twelve fields, on the memory of this object.
+    fn field<'py>(slf: Bound<'py, Self>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let stations = &slf.get().stations;
+        Ok(shared(slf.clone().into_any(), field(stations, name)?))
+    }
+}
+
+/// The state and the count of unstable directions of a stability.
+pub(crate) fn words(stability: Option<Stability>) -> (Option<&'static str>, Option<usize>) {
+    match stability {
+        Some(Stability::Stable) => (Some("stable"), Some(0)),
+        Some(Stability::Unstable(count)) => (Some("unstable"), Some(count)),
+        Some(Stability::Marginal) => (Some("marginal"), None),
+        None => (None, None),
+    }
+}
+
+fn wrench(wrench: Wrench) -> (Point, f64) {
+    (wrench.force, wrench.moment)
+}
+
+/// Name, tension, length, stroke, and where it was commanded that stroke, the length it leaves and whether the cable is slack.
+type CableFields<'a> = (&'a str, f64, f64, f64, Option<(f64, f64, bool)>);
+
+impl Solution {
+    pub(crate) fn new(configuration: Configuration, tol: f64) -> Self {
+        Self { configuration, tol }
+    }
+}
+
+#[pymethods]
+impl Solution {
+    /// One of the twelve fields of the stations, on the memory of this object.
+    fn field<'py>(slf: Bound<'py, Self>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let stations = &slf.get().configuration.stations;
+        Ok(shared(slf.clone().into_any(), field(stations, name)?))
+    }
+
+    /// The arm with the loads that are balanced.
+    #[getter]
+    fn arm(&self, py: Python<'_>) -> PyResult<Arm> {
+        Arm::of(py, &self.configuration.arm)
+    }
+
+    /// x, y, theta and alpha at the tip.
+    #[getter]
+    fn tip(&self) -> (f64, f64, f64, f64) {
+        let tip = self.configuration.tip();
+        (tip.x, tip.y, tip.theta, tip.alpha)
+    }
+
+    #[getter]
+    fn cables(&self) -> Vec<CableFields<'_>> {
+        let fields = |c: &'_ hydrostat::CableState| (c.tension, c.length, c.stroke, c.command);
+        let all = self.configuration.cables.iter().map(|c| {
+            let (tension, length, stroke, command) = fields(c);
+            (c.name.as_str(), tension, length, stroke, command.map(|c| (c.stroke, c.length, c.slack)))
+        });
+        all.collect()
+    }
+
+    #[getter]
+    fn base_reaction(&self) -> (Point, f64) {
+        wrench(self.configuration.base_reaction)
+    }
+
+    #[getter]
+    fn unmet(&self) -> Option<(Point, f64)> {
+        self.configuration.unmet.map(wrench)
+    }
+
+    #[getter]
+    fn error_estimate(&self) -> f64 {
+        self.configuration.error_estimate
+    }
+
+    #[getter]
+    fn strain_energy(&self) -> f64 {
+        self.configuration.strain_energy()
+    }
+
+    /// The fold margin and where it is.
+    #[getter]
+    fn fold_margin(&self) -> (f64, f64) {
+        let fold = self.configuration.fold_margin();
+        (fold.value, fold.s)
+    }
+
+    /// Kind and message of each note on the answer.
+    fn warnings(&self) -> Vec<(&'static str, String)> {
+        Note::all(&self.configuration, self.tol).into_iter().map(|note| (note.kind, note.message)).collect()
+    }
+
+    /// State, count of unstable directions, and what the solve knows without looking further.
+    fn stability(&self, py: Python<'_>) -> (Option<&'static str>, Option<usize>, Option<bool>) {
+        let (state, directions) = words(py.detach(|| self.configuration.stability()));
+        (state, directions, self.configuration.stable)
+    }
+
+    /// Real and imaginary parts of the rates.
+    fn growth(&self, py: Python<'_>) -> Option<Vec<[f64; 2]>> {
+        py.detach(|| self.configuration.growth()).map(|growth| growth.rates)
+    }
+
+    #[getter]
+    fn statistics(&self) -> [(&'static str, usize); 6] {
+        let s = self.configuration.statistics;
+        [
+            ("elements", s.elements),
+            ("stages", s.stages),
+            ("newton_rounds", s.newton_rounds),
+            ("meshes", s.meshes),
+            ("load_steps", s.load_steps),
+            ("evaluations", s.evaluations),
+        ]
+    }
+
+    /// Stations at these places.
+    fn at(&self, py: Python<'_>, s: PyReadonlyArray1<'_, f64>) -> PyResult<Stations> {
+        let places = self.places(&s)?;
+        let configuration = &self.configuration;
+        let stations = py.detach(|| {
+            let mut out = hydrostat::Stations::default();
+            for place in places {
+                let at = configuration.at(place);
+                let fields = [
+                    (&mut out.s, at.s),
+                    (&mut out.x, at.x),
+                    (&mut out.y, at.y),
+                    (&mut out.theta, at.theta),
+                    (&mut out.nu, at.nu),
+                    (&mut out.eta, at.eta),
+                    (&mut out.mu, at.mu),
+                    (&mut out.beta, at.beta),
+                    (&mut out.alpha, at.alpha),
+                    (&mut out.n_a, at.n_a),
+                    (&mut out.n_b, at.n_b),
+                    (&mut out.m, at.m),
+                ];
+                for (field, value) in fields {
+                    field.push(value);
+                }
+            }
+            out
+        });
+        Ok(Stations { stations })
+    }
+
+    /// So many equally spaced stations.
+    fn resampled(&self, count: usize) -> PyResult<Stations> {
+        if count < 2 {
+            return Err(wrong(format!("count: expected at least 2, found {count}")));
+        }
+        Ok(Stations { stations: self.configuration.resampled(count) })
+    }
+
+    /// The surface on the left and on the right: x and y of both, one after the other.
+    fn surfaces<'py>(
+        &self,
+        py: Python<'py>,
+        s: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<[Bound<'py, PyArray1<f64>>; 4]> {
+        let places = self.places(&s)?;
+        let points: Vec<[Point; 2]> = places.into_iter().map(|s| self.configuration.surfaces(s)).collect();
+        let column = |side: usize, k: usize| given(py, points.iter().map(|p| p[side][k]).collect());
+        Ok([column(0, 0), column(0, 1), column(1, 0), column(1, 1)])
+    }
+
+    /// The path of a cable, NaN past its anchor.
+    fn cable_path<'py>(
+        &self,
+        py: Python<'py>,
+        cable: usize,
+        s: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<[Bound<'py, PyArray1<f64>>; 2]> {
+        let cables = self.configuration.arm.cables.len();
+        if cable >= cables {
+            return Err(PyIndexError::new_err(format!("cable: the arm has {cables} cables, counted from 0")));
+        }
+        let point = |s: f64| self.configuration.cable_point(cable, s).unwrap_or([f64::NAN; 2]);
+        let points: Vec<Point> = self.places(&s)?.into_iter().map(point).collect();
+        Ok([0, 1].map(|k| given(py, points.iter().map(|p| p[k]).collect())))
+    }
+
+    /// Speed of the water along the arm at a place and a distance from its windward surface, (7).
+    fn layer_speed(&self, s: f64, y: f64) -> f64 {
+        self.configuration.layer_speed(s, y)
+    }
+
+    /// The document of `hydrostat solve --format json`.
+    fn to_json(&self) -> PyResult<String> {
+        let notes = Note::all(&self.configuration, self.tol);
+        let margin = self.configuration.fold_margin().value;
+        hydrostat_files::Solution::new(&self.configuration, margin, &notes).to_json().map_err(wrong)
+    }
+
+    /// The stations as CSV.
+    fn to_csv(&self) -> String {
+        stations_csv(&self.configuration.stations)
+    }
+
+    /// The arm to scale.
+    fn figure(&self, note: Option<&str>) -> Figure {
+        Figure::new(hydrostat_figures::arm_figure(&self.configuration, note))
+    }
+}
+
+impl Solution {
+    /// Places along the arm.
+    fn places(&self, s: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
+        let places: Vec<f64> = s.as_array().iter().copied().collect();
+        let length = self.configuration.arm.length;
+        match places.iter().find(|s| !(**s >= 0.0 && **s <= length)) {
+            None => Ok(places),
+            Some(outside) => Err(wrong(format!("s: expected places in [0, {length}] m, found {outside}"))),
+        }
+    }
+}

@@ -1,0 +1,90 @@
+"""The static shape of soft arms under water.
+
+An arm is a planar Cosserat rod: it bends, shears and stretches, its section widens where it is compressed so that its volume is
+kept, cables inside it pull, and a stream, weight and buoyancy act on it.
+
+SI units throughout, results in radians; numbers that stand at a key of the arm file (`Arm`, `Arm.replace`, `Arm.path`, `sweep`) are read
+as the file reads them: bare angles in degrees, strings with units.
+
+>>> import hydrostat as hs
+>>> arm = hs.Arm.load("silicone")
+>>> sol = arm.solve(tensions=[0.2, 0], flow_speed=0.1)
+>>> round(sol.tip.x, 3), round(sol.tip.y, 3)
+(0.181, 0.075)
+>>> try:
+...     arm.solve(tensions=[1.5, 0])
+... except hs.NoEquilibrium as no:
+...     print(no.kind, round(no.load_fraction, 4), no.where)
+cable_fold 0.6288 0.245
+"""
+
+from hydrostat._errors import (
+    ArmError,
+    CableFold,
+    LimitPoint,
+    LoadJump,
+    NoEquilibrium,
+    NoSectionSolution,
+    NotFound,
+    SectionCrushed,
+)
+from hydrostat._native import __version__
+from hydrostat.arm import Arm, arms
+from hydrostat.figures import (
+    Figure,
+    arm_figure,
+    curve_figure,
+    equilibria_figure,
+    map_figure,
+    over_figure,
+    path_figure,
+    path_shapes_figure,
+    source_figures,
+    workspace_figure,
+)
+from hydrostat.many import Many, solve_many
+from hydrostat.paths import Branch, Equilibria, Event, Path
+from hydrostat.solution import CableState, Command, FoldMargin, Note, Solution, Stations, Tip, Wrench
+from hydrostat.solver import Answer, Solver
+from hydrostat.sweep import sweep
+
+__all__ = [
+    "Answer",
+    "Arm",
+    "ArmError",
+    "Branch",
+    "CableFold",
+    "CableState",
+    "Command",
+    "Equilibria",
+    "Event",
+    "Figure",
+    "FoldMargin",
+    "LimitPoint",
+    "LoadJump",
+    "Many",
+    "NoEquilibrium",
+    "NoSectionSolution",
+    "NotFound",
+    "Note",
+    "Path",
+    "SectionCrushed",
+    "Solution",
+    "Solver",
+    "Stations",
+    "Tip",
+    "Wrench",
+    "__version__",
+    "arm_figure",
+    "arms",
+    "curve_figure",
+    "equilibria_figure",
+    "map_figure",
+    "over_figure",
+    "path_figure",
+    "path_shapes_figure",
+    "solve_many",
+    "source_figures",
+    "sweep",
+    "workspace_figure",
+]

@@ -1,0 +1,138 @@
+"""Exceptions: a wrong request is a `ValueError`, no equilibrium is a `NoEquilibrium` with the verdict's fields."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hydrostat import _native
+    from hydrostat.solution import Solution
+
+
+class ArmError(ValueError):
+    """What is given makes no arm.
+
+    Attributes
+    ----------
+    key : str or None
+        The dotted key of the arm file that is wrong, such as ``"arm.length"``.
+    """
+
+    key: str | None
+
+    def __init__(self, message: str, key: str | None = None) -> None:
+        super().__init__(message)
+        self.key = key
+
+    def __reduce__(self) -> tuple[type[ArmError], tuple[str, str | None]]:
+        return type(self), (str(self), self.key)
+
+
+class NoEquilibrium(RuntimeError):
+    """The arm has no such equilibrium, or none was found.
+
+    The subclasses say which limit was met: `CableFold`, `SectionCrushed`, `NoSectionSolution`, `LimitPoint`, `LoadJump`, `NotFound`.
+
+    Attributes
+    ----------
+    kind : str
+        The limit: ``"cable_fold"``, ``"section_crushed"``, ``"no_section_solution"``, ``"limit_point"``, ``"load_jump"``
+        or ``"not_found"``.
+    phase : str
+        What was being raised: ``"loads"`` (all but the cables), ``"tension"`` or ``"stroke"``.
+    load_fraction : float
+        The share of that phase's loads at which the limit was met, 0 to 1.
+    where : float or None
+        Where along the arm, m, if the limit is local.
+    residual : float
+        What was left unbalanced when the solver stopped: its largest correction, rad.
+    message, advice : str
+        The verdict in a sentence, and what to try.
+    last_good : Solution or None
+        The last good shape on the way, with the loads that it balances. A pickle leaves it out.
+    """
+
+    kind: str
+    phase: str
+    load_fraction: float
+    where: float | None
+    residual: float
+    message: str
+    advice: str
+    last_good: Solution | None
+
+    def __init__(
+        self,
+        kind: str,
+        phase: str,
+        load_fraction: float,
+        where: float | None,
+        residual: float,
+        message: str,
+        advice: str,
+        last_good: Solution | None = None,
+    ) -> None:
+        super().__init__(f"{message}; {advice}")
+        self.kind = kind
+        self.phase = phase
+        self.load_fraction = load_fraction
+        self.where = where
+        self.residual = residual
+        self.message = message
+        self.advice = advice
+        self.last_good = last_good
+
+    def __reduce__(self) -> tuple[type[NoEquilibrium], tuple[object, ...]]:
+        fields = (self.kind, self.phase, self.load_fraction, self.where, self.residual, self.message, self.advice)
+        return type(self), fields
+
+
+class CableFold(NoEquilibrium):
+    """A cable folds its side of the arm shut."""
+
+
+class SectionCrushed(NoEquilibrium):
+    """Net compression crushes the section."""
+
+
+class NoSectionSolution(NoEquilibrium):
+    """No section strains carry the contact force."""
+
+
+class LimitPoint(NoEquilibrium):
+    """The equilibrium path turns back: past this load the arm would snap to another shape."""
+
+
+class LoadJump(NoEquilibrium):
+    """The load of the stream jumps against the motion, so that no shape balances it."""
+
+
+class NotFound(NoEquilibrium):
+    """No limit was established: the solver gave up."""
+
+
+_KINDS: dict[str, type[NoEquilibrium]] = {
+    "cable_fold": CableFold,
+    "section_crushed": SectionCrushed,
+    "no_section_solution": NoSectionSolution,
+    "limit_point": LimitPoint,
+    "load_jump": LoadJump,
+    "not_found": NotFound,
+}
+
+
+def no_equilibrium(
+    kind: str,
+    phase: str,
+    load_fraction: float,
+    where: float | None,
+    residual: float,
+    message: str,
+    advice: str,
+    last_good: _native.Solution | None,
+) -> NoEquilibrium:
+    """The exception of a verdict; called by the extension module."""
+    from hydrostat.solution import Solution
+
+    shape = None if last_good is None else Solution(last_good)
+    return _KINDS.get(kind, NoEquilibrium)(kind, phase, load_fraction, where, residual, message, advice, shape)

@@ -1,0 +1,47 @@
+"""How many rows are done, on one line of standard error."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+
+_WIDTH = 30
+_PAUSE = 0.2
+
+
+class Progress:
+    """A bar of `rows`; drawn when `shown` is true, or on a terminal when it is None."""
+
+    def __init__(self, rows: int, shown: bool | None) -> None:
+        self._rows = rows
+        self._shown = sys.stderr.isatty() if shown is None else shown
+        self._start = time.monotonic()
+        self._said = 0.0
+        self.done = 0
+
+    def __call__(self, done: int) -> None:
+        """So many rows are done."""
+        self.done = done
+        now = time.monotonic()
+        if self._shown and (now - self._said > _PAUSE or done >= self._rows):
+            self._said = now
+            self._draw(now)
+
+    def _draw(self, now: float) -> None:
+        share = min(self.done / self._rows, 1.0) if self._rows else 1.0
+        full = round(_WIDTH * share)
+        rate = self.done / max(now - self._start, 1e-9)
+        left = f"{(self._rows - self.done) / rate:.0f} s left" if rate > 0.0 else "..."
+        bar = "#" * full + "-" * (_WIDTH - full)
+        sys.stderr.write(f"\r{bar} {100 * share:3.0f}% {self.done} of {self._rows} rows, {rate:.0f}/s, {left}   ")
+        sys.stderr.flush()
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._shown:
+            sys.stderr.write("\n")

@@ -1,0 +1,348 @@
+"""Arms: what is given."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from os import PathLike, fspath
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hydrostat import _inputs, _native
+from hydrostat.solution import Solution
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from hydrostat.paths import Equilibria, Path
+
+#: A table of the arm file.
+Table = Mapping[str, Any]
+
+_TABLES = ("name", "arm", "material", "reference", "cable", "flow", "gravity", "tip", "distributed", "model")
+
+
+def arms() -> dict[str, str]:
+    """Names and descriptions of the arms that ship with the package."""
+    return dict(_native.shipped_names())
+
+
+class Arm:
+    """A soft arm and everything that acts on it; it does not change.
+
+    The keyword arguments are the tables of the arm file, with its keys. Numbers are in SI units, bare angles in degrees, and a
+    string with a unit (``"8 mm"``) stands for a number anywhere.
+
+    Parameters
+    ----------
+    arm : mapping
+        ``length``, ``radius`` (a number, ``{"base": ..., "tip": ...}`` or points ``[[s, value], ...]``), ``inner_radius``,
+        ``cavity``, ``density``, ``base``.
+    material : mapping
+        ``young``, ``poisson``, ``shear_factor``, or ``c1``, ``c2``, ``c3``.
+    cable : sequence of mapping
+        Each with ``name``, ``offset``, ``tension`` or ``stroke``, ``friction``, ``end`` and so on.
+    reference, flow, gravity, tip, distributed, model : mapping
+        Further tables; left out, their defaults.
+    name : str
+        For people.
+
+    Raises
+    ------
+    ArmError
+        A `ValueError` whose ``key`` says what is wrong.
+
+    Examples
+    --------
+    >>> import hydrostat as hs
+    >>> arm = hs.Arm(
+    ...     arm={"length": 0.245, "radius": {"base": "10 mm", "tip": "2 mm"}, "density": 1080},
+    ...     material={"young": 110e3},
+    ...     cable=[{"name": "left", "offset": {"base": 0.005, "tip": 0.001}}],
+    ... )
+    >>> arm.cables
+    ('left',)
+    >>> bool(arm.solve(tensions=[0.2]).tip.y > 0)
+    True
+    """
+
+    __slots__ = ("_inner",)
+
+    _inner: _native.Arm
+
+    def __init__(
+        self,
+        *,
+        arm: Table,
+        material: Table,
+        cable: Sequence[Table] = (),
+        reference: Table | None = None,
+        flow: Table | None = None,
+        gravity: Table | None = None,
+        tip: Table | None = None,
+        distributed: Table | None = None,
+        model: Table | None = None,
+        name: str = "arm",
+    ) -> None:
+        tables = {
+            "name": name,
+            "arm": arm,
+            "material": material,
+            "reference": reference,
+            "cable": cable or None,
+            "flow": flow,
+            "gravity": gravity,
+            "tip": tip,
+            "distributed": distributed,
+            "model": model,
+        }
+        lines = [f"{key} = {_inputs.toml(key, table)}" for key, table in tables.items() if table is not None]
+        self._inner = _native.Arm("\n".join(lines), "arguments")
+
+    @classmethod
+    def _of(cls, native: _native.Arm) -> Arm:
+        out = cls.__new__(cls)
+        out._inner = native
+        return out
+
+    @classmethod
+    def load(cls, arm: str | PathLike[str]) -> Arm:
+        """Read an arm file, or take an arm that ships with the package by its name.
+
+        Parameters
+        ----------
+        arm : str or path
+            ``"paper"``, ``"silicone"``, ``"multi-bending"``, ``"octopus"``, or a TOML file. A file of a shipped arm's name
+            wins.
+
+        Raises
+        ------
+        FileNotFoundError
+            Neither a file nor a shipped arm.
+        ArmError
+            The file is no arm; the message has its line, its key, what was expected and what was found.
+        """
+        path = FilePath(fspath(arm))
+        shipped = None if path.is_file() else _native.shipped(str(arm))
+        if shipped is not None:
+            return cls._of(_native.Arm(shipped, str(arm)))
+        if not path.exists():
+            names = ", ".join(arms())
+            raise FileNotFoundError(f"arm: {str(arm)!r} is neither a file nor an arm that ships with the package ({names})")
+        try:
+            text = path.read_text(encoding="utf-8-sig")
+        except UnicodeDecodeError as error:
+            from hydrostat._errors import ArmError
+
+            raise ArmError(f"{path}: expected UTF-8 text, found a byte that is none") from error
+        return cls._of(_native.Arm(text, str(path)))
+
+    @classmethod
+    def from_toml(cls, text: str, name: str = "arm") -> Arm:
+        """The arm that the text of an arm file means."""
+        return cls._of(_native.Arm(text, name))
+
+    @classmethod
+    def from_dict(cls, tables: Table) -> Arm:
+        """The arm that the tables of an arm file mean: what `to_dict` gives, or a file read by ``tomllib``."""
+        unknown = [key for key in tables if key not in _TABLES]
+        if unknown:
+            from hydrostat._errors import ArmError
+
+            raise ArmError(f"{unknown[0]}: expected one of {', '.join(_TABLES)}, found an unknown key", unknown[0])
+        missing = [key for key in ("arm", "material") if key not in tables]
+        if missing:
+            from hydrostat._errors import ArmError
+
+            raise ArmError(f"{missing[0]}: expected a table, found nothing", missing[0])
+        return cls(**tables)
+
+    def to_toml(self) -> str:
+        """The arm as an arm file, units resolved and defaults filled in."""
+        return self._inner.to_toml()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The tables of the arm file, units resolved and defaults filled in."""
+        return tomllib.loads(self.to_toml())
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._inner.name
+
+    @property
+    def length(self) -> float:
+        """Undeformed length, m."""
+        return self._inner.length
+
+    @property
+    def cables(self) -> tuple[str, ...]:
+        """The cables' names, in the order of tensions."""
+        return tuple(self._inner.cables)
+
+    def __repr__(self) -> str:
+        return f"<Arm {self.name!r}: {self.length:g} m, cables {list(self.cables)}>"
+
+    def __eq__(self, other: object) -> bool:
+        return self._inner.same(other._inner) if isinstance(other, Arm) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.to_toml())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _from_parts, self._inner.parts()
+
+    def replace(
+        self,
+        changes: Mapping[str, object] | None = None,
+        *,
+        tensions: Sequence[float] | None = None,
+        strokes: Sequence[float | None] | None = None,
+        flow_speed: float | str | None = None,
+        flow_direction: float | str | None = None,
+    ) -> Arm:
+        """This arm with other values.
+
+        Parameters
+        ----------
+        changes : mapping, optional
+            Values by the dotted keys of the arm file, such as ``{"cable[0].friction": 0.1, "model.volume": "none"}``.
+        tensions : sequence of float, optional
+            One a cable, N; strokes are not commanded any more.
+        strokes : sequence of float or None, optional
+            One a cable, m, in place of its tension; None leaves a cable as it is.
+        flow_speed : float or str, optional
+            m/s.
+        flow_direction : float or str, optional
+            Degrees from e1, or a string with a unit.
+
+        Raises
+        ------
+        ArmError
+            A key that the arm file does not have, or a value that makes no arm.
+        """
+        given: dict[str, object] = dict(changes or {})
+        for name, values, key in (("tensions", tensions, "tension"), ("strokes", strokes, "stroke")):
+            if values is None:
+                continue
+            if len(values) != len(self.cables):
+                raise ValueError(f"{name}: the arm has {len(self.cables)} cables, {len(values)} were given")
+            given |= {f"cable[{i}].{key}": value for i, value in enumerate(values) if value is not None}
+        if flow_speed is not None:
+            given["flow.speed"] = flow_speed
+        if flow_direction is not None:
+            given["flow.direction"] = flow_direction
+        return Arm._of(self._inner.replaced([("replace", key, _inputs.toml(key, value)) for key, value in given.items()]))
+
+    def solve(
+        self,
+        *,
+        tensions: ArrayLike | None = None,
+        strokes: Sequence[float | None] | None = None,
+        flow_speed: float | None = None,
+        tol: float = 1e-8,
+    ) -> Solution:
+        """The static shape under the arm's loads, or under these.
+
+        Among several equilibria it is the end of the path on which first all loads but the cables, then the tensions rise from
+        zero. Other threads run meanwhile.
+
+        Parameters
+        ----------
+        tensions : array_like, shape (cables,), optional
+            N, in place of the arm's own.
+        strokes : sequence of float or None, optional
+            What is reeled in of each cable, m, in place of its tension; None leaves a cable as it is.
+        flow_speed : float, optional
+            m/s, in place of the arm's own.
+        tol : float
+            Error of the tip position over the length that is asked for, in [1e-12, 1e-2].
+
+        Raises
+        ------
+        NoEquilibrium
+            With the verdict's fields.
+        ValueError
+            An argument that cannot be meant, named.
+        """
+        pulled = None if tensions is None else _inputs.numbers("tensions", tensions, 1)
+        speed = None if flow_speed is None else _inputs.number("flow_speed", flow_speed, negative=False)
+        reeled = None if strokes is None else _strokes(strokes)
+        return Solution(self._inner.solve(pulled, reeled, speed, _inputs.number("tol", tol)))
+
+    def path(
+        self,
+        parameter: str,
+        start: float | str,
+        stop: float | str,
+        *,
+        tol: float = 1e-6,
+        longest: float = 0.2,
+        most: int = 1000,
+        branches: bool = False,
+    ) -> Path:
+        """The equilibria while one number of the arm runs from `start` towards `stop`, through limit points and bifurcations.
+
+        Ctrl-C interrupts it.
+
+        Parameters
+        ----------
+        parameter : str
+            A key of the arm file, such as ``"arm.base.angle"``, ``"flow.speed"`` or ``"cable[0].tension"``.
+        start, stop : float or str
+            The range, in SI units and degrees, or strings with units.
+        tol : float
+            Error of the tip position over the length at every point, in [1e-7, 1e-3].
+        longest : float
+            Longest step, in [0.001, 0.4].
+        most : int
+            Most points.
+        branches : bool
+            Whether to follow the branches that cross at bifurcations, too.
+
+        Raises
+        ------
+        NoEquilibrium
+            There is none to start from.
+        """
+        from hydrostat.paths import Path
+
+        vary = f"{parameter}={_end('start', start)}:{_end('stop', stop)}"
+        step = _inputs.number("longest", longest)
+        points = _inputs.count("most", most)
+        return Path(_native.path(self._inner, vary, _inputs.number("tol", tol), step, points, branches))
+
+    def equilibria(self, *, tol: float = 1e-8, time_limit: float | None = None) -> Equilibria:
+        """All equilibria under the arm's loads, each with its stability, whether `solve` leads to them or not.
+
+        Ctrl-C interrupts it.
+
+        Parameters
+        ----------
+        tol : float
+            Error of the tip position over the length, in [1e-12, 1e-3].
+        time_limit : float, optional
+            Seconds after which the search is given up, with what was found so far.
+
+        Returns
+        -------
+        Equilibria
+            A sequence of solutions in the order of the tip's angle; ``complete`` says whether these are all.
+        """
+        from hydrostat.paths import Equilibria
+
+        return Equilibria(_native.equilibria(self._inner, _inputs.number("tol", tol), time_limit))
+
+
+def _from_parts(text: str, path: str, settings: list[tuple[str, str, str]]) -> Arm:
+    return Arm._of(_native.Arm(text, path, settings))
+
+
+def _strokes(strokes: Sequence[float | None]) -> list[float | None]:
+    return [None if stroke is None else _inputs.number(f"strokes[{i}]", stroke) for i, stroke in enumerate(strokes)]
+
+
+def _end(name: str, value: float | str) -> str:
+    return value if isinstance(value, str) else repr(_inputs.number(name, np.float64(value)))

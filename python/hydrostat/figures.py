@@ -1,0 +1,182 @@
+"""Figures as the library draws them: to scale, as SVG and PNG, without matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hydrostat import _native
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import NDArray
+
+    from hydrostat.arm import Arm
+    from hydrostat.paths import Equilibria, Path
+    from hydrostat.solution import Solution
+
+
+class Figure:
+    """A finished drawing; a notebook shows it."""
+
+    __slots__ = ("_inner",)
+
+    def __init__(self, native: _native.Figure) -> None:
+        self._inner = native
+
+    def svg(self) -> str:
+        """The drawing as an SVG document; text is outlines, so that no font is needed."""
+        return self._inner.svg()
+
+    def png(self) -> bytes:
+        """The drawing as a PNG file's bytes."""
+        return self._inner.png()
+
+    def texts(self) -> list[str]:
+        """All texts that the drawing shows."""
+        return self._inner.texts()
+
+    def save(self, path: str | PathLike[str]) -> FilePath:
+        """Write the drawing to `path`, whose name ends in ``.svg`` or ``.png``.
+
+        Raises
+        ------
+        ValueError
+            For another ending.
+        """
+        target = FilePath(path)
+        if target.suffix == ".svg":
+            target.write_text(self.svg(), encoding="utf-8")
+        elif target.suffix == ".png":
+            target.write_bytes(self.png())
+        else:
+            raise ValueError(f"path: expected a name that ends in .svg or .png, found {target.name!r}")
+        return target
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
+
+
+def arm_figure(solution: Solution, note: str | None = None) -> Figure:
+    """One shape to scale, with its cables, the stream and the tip; `note` stands below."""
+    return Figure(solution._inner.figure(note))
+
+
+def path_figure(path: Path, quantity: str = "tip.y", title: str | None = None) -> Figure:
+    """A quantity along a path: stable pieces solid, unstable ones dashed, events marked.
+
+    Parameters
+    ----------
+    quantity : str
+        ``"tip.x"``, ``"tip.y"``, ``"tip.theta"``, ``"tip.alpha"`` or ``"stroke[0]"`` and so on.
+    """
+    return Figure(path._inner.figure(quantity, title or f"equilibria over {path.parameter}"))
+
+
+def path_shapes_figure(path: Path, title: str | None = None) -> Figure:
+    """Shapes along a path, to scale."""
+    return Figure(path._inner.shapes_figure(title or f"equilibria over {path.parameter}"))
+
+
+def equilibria_figure(equilibria: Equilibria, title: str = "all equilibria") -> Figure:
+    """All equilibria of an arm, to scale."""
+    return Figure(equilibria._inner.figure(title))
+
+
+def over_figure(
+    searches: Mapping[float, Equilibria], name: str, unit: str = "", quantity: str = "tip.y", title: str = "all equilibria"
+) -> Figure:
+    """A quantity of all equilibria over what varies between the searches.
+
+    Parameters
+    ----------
+    searches : mapping
+        The equilibria at each value.
+    name, unit : str
+        What varies, for the axis.
+    quantity : str
+        As in `path_figure`.
+    """
+    found = [(float(value), all_of._inner) for value, all_of in searches.items()]
+    return Figure(_native.over_figure(found, (name, unit, 1.0), quantity, title))
+
+
+def map_figure(dataset: xr.Dataset, quantity: str = "tip_alpha", title: str = "a sweep") -> Figure:
+    """A quantity of a sweep as colours over the two keys that varied."""
+    keys, flat = _rows(dataset, 2)
+    axes = (_axis(dataset, keys[0]), _axis(dataset, keys[1]))
+    values = (_column(flat, keys[0]), _column(flat, keys[1]))
+    return Figure(_native.map_figure(axes, values, *_coloured(dataset, flat, quantity), title))
+
+
+def workspace_figure(dataset: xr.Dataset, quantity: str = "tip_theta", title: str = "a sweep") -> Figure:
+    """Where the tip is in the rows of a sweep, to scale, coloured by a quantity."""
+    _, flat = _rows(dataset, None)
+    x, y = _column(flat, "tip_x"), _column(flat, "tip_y")
+    return Figure(_native.workspace_figure(x, y, *_coloured(dataset, flat, quantity), title))
+
+
+def curve_figure(dataset: xr.Dataset, quantity: str = "tip_y", title: str = "a sweep") -> Figure:
+    """A quantity of a sweep over the one key that varied."""
+    keys, flat = _rows(dataset, 1)
+    name = _full_name(dataset, quantity)
+    figure = _native.curve_figure(_axis(dataset, keys[0]), _column(flat, keys[0]), name, _column(flat, quantity), title)
+    return Figure(figure)
+
+
+def source_figures(arm: Arm) -> tuple[dict[str, Figure], list[tuple[str, str, str]]]:
+    """The source's Fig. 1a, 1b and 1c for `arm`, and what its text says about them held against the numbers.
+
+    Returns
+    -------
+    figures : dict
+        ``"fig1a"`` and so on.
+    claims : list of tuple
+        Statement, finding and evidence of each.
+    """
+    figures, claims = _native.source_figures(arm._inner)
+    return {name: Figure(figure) for name, figure, _ in figures}, claims
+
+
+def _rows(dataset: xr.Dataset, count: int | None) -> tuple[list[str], xr.Dataset]:
+    """The keys that varied, and the dataset with a row each."""
+    keys = [str(key) for key in dataset.attrs.get("vary", [])]
+    if count is not None and len(keys) != count:
+        raise ValueError(f"dataset: expected a sweep over {count} key(s), found one over {keys}")
+    dims = [dim for dim in dataset.dims if dim in keys]
+    flat = dataset.stack({"__row": dims}).reset_index("__row") if dims else dataset
+    return keys, flat
+
+
+def _column(flat: xr.Dataset, name: str) -> NDArray[np.float64]:
+    if name not in flat.variables:
+        raise ValueError(f"quantity: the sweep has no {name!r}")
+    column = np.asarray(flat[name].values)
+    if column.dtype.kind not in "iuf" or column.ndim != 1:
+        raise ValueError(f"quantity: expected one number a row, which {name!r} is not")
+    return np.ascontiguousarray(column, dtype=np.float64)
+
+
+def _axis(dataset: xr.Dataset, key: str) -> tuple[str, str, float]:
+    return key, str(dataset[key].attrs.get("units", "")), 1.0
+
+
+def _full_name(dataset: xr.Dataset, quantity: str) -> str:
+    """The name of the column in a sweep's file."""
+    if quantity not in dataset.variables:
+        raise ValueError(f"quantity: the sweep has no {quantity!r}")
+    return str(dataset[quantity].attrs.get("column", quantity))
+
+
+def _coloured(
+    dataset: xr.Dataset, flat: xr.Dataset, quantity: str
+) -> tuple[str, NDArray[np.float64] | list[str | None]]:
+    name = _full_name(dataset, quantity)
+    if flat[quantity].dtype.kind == "O":
+        words: Sequence[str] = flat[quantity].values.tolist()
+        return name, [word or None for word in words]
+    return name, _column(flat, quantity)

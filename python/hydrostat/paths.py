@@ -1,0 +1,221 @@
+"""Paths over a parameter, and all equilibria under the same loads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple, overload
+
+import numpy as np
+
+from hydrostat import _native
+from hydrostat.figures import Figure, equilibria_figure, path_figure, path_shapes_figure
+from hydrostat.solution import Solution
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+
+class Event(NamedTuple):
+    """What is special about a point of a branch: its index, ``"limit_point"``, ``"bifurcation"``, ``"slack"`` or ``"taut"``, the
+    parameter there, and the cable that goes slack or taut."""
+
+    point: int
+    name: str
+    value: float
+    cable: int | None
+
+
+class Branch(Sequence[Solution]):
+    """Equilibria in the order in which a path meets them, as a sequence of solutions.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n,)
+        The parameter, in the path's unit.
+    tip_x, tip_y, tip_theta, tip_alpha : ndarray, shape (n,)
+        The tip, m and rad.
+    stability : tuple of str or None
+        Of each point.
+    unstable_directions : tuple of int or None
+        Of each point.
+    events : tuple of Event
+        Limit points and so on, in their order.
+    end : str
+        Why it ends: ``"reached_end"``, ``"reached_start"``, ``"most_points"``, or the limit that no equilibrium goes past.
+    message : str
+        The same in a sentence.
+    switched_at : float or None
+        Value at the bifurcation from which this branch starts.
+    """
+
+    values: NDArray[np.float64]
+    tip_x: NDArray[np.float64]
+    tip_y: NDArray[np.float64]
+    tip_theta: NDArray[np.float64]
+    tip_alpha: NDArray[np.float64]
+    stability: tuple[str | None, ...]
+    unstable_directions: tuple[int | None, ...]
+    events: tuple[Event, ...]
+
+    def __init__(self, path: _native.Path, index: int) -> None:
+        self._path = path
+        self._index = index
+        self._count, self.end, self.message, self.switched_at = path.branches[index]
+        self.values = path.values(index)
+        tip, state, directions = path.states(index)
+        self.tip_x, self.tip_y, self.tip_theta, self.tip_alpha = tip
+        self.stability = tuple(state)
+        self.unstable_directions = tuple(directions)
+        self.events = tuple(
+            Event(point, event[0], float(self.values[point]), event[1])
+            for point, event in enumerate(path.events(index))
+            if event is not None
+        )
+
+    def __len__(self) -> int:
+        return self._count
+
+    @overload
+    def __getitem__(self, point: int) -> Solution: ...
+    @overload
+    def __getitem__(self, point: slice) -> Sequence[Solution]: ...
+    def __getitem__(self, point: int | slice) -> Solution | Sequence[Solution]:
+        if isinstance(point, slice):
+            return [self[k] for k in range(*point.indices(self._count))]
+        at = point + self._count if point < 0 else point
+        if not 0 <= at < self._count:
+            raise IndexError(f"point {point} of a branch of {self._count}")
+        return Solution(self._path.solution(self._index, at))
+
+
+class Path:
+    """Equilibria over the range of one number of the arm; see `Arm.path`.
+
+    Attributes
+    ----------
+    parameter : str
+        What varies.
+    unit : str
+        The unit of its values.
+    range : tuple of float
+        From and to.
+    branches : tuple of Branch
+        The branch that the solve at the start is on, then those switched to.
+    """
+
+    def __init__(self, native: _native.Path) -> None:
+        self._inner = native
+        self.parameter, self.unit, _ = native.axis
+        self.range = tuple(native.range)
+        self.branches = tuple(Branch(native, index) for index in range(len(native.branches)))
+
+    def __repr__(self) -> str:
+        points = sum(len(branch) for branch in self.branches)
+        return f"<Path over {self.parameter}: {points} points on {len(self.branches)} branch(es)>"
+
+    def to_pandas(self) -> pd.DataFrame:
+        """All points, one row each: branch, parameter, tip, stability, event. Needs pandas."""
+        import pandas as pd
+
+        frames = []
+        for index, branch in enumerate(self.branches):
+            events = {event.point: event.name for event in branch.events}
+            columns = {
+                "branch": index,
+                self.parameter: branch.values,
+                "tip_x": branch.tip_x,
+                "tip_y": branch.tip_y,
+                "tip_theta": branch.tip_theta,
+                "tip_alpha": branch.tip_alpha,
+                "stability": branch.stability,
+                "event": [events.get(point) for point in range(len(branch))],
+            }
+            frames.append(pd.DataFrame(columns))
+        return pd.concat(frames, ignore_index=True)
+
+    def to_json(self) -> str | None:
+        """The document of ``hydrostat path --format json``; None of a path without points."""
+        return self._inner.to_json()
+
+    def to_csv(self) -> str:
+        """The points as ``hydrostat path --format csv`` prints them."""
+        return self._inner.to_csv()
+
+    def figure(self, quantity: str = "tip.y", title: str | None = None) -> Figure:
+        """The chart that the program draws; see `path_figure`."""
+        return path_figure(self, quantity, title)
+
+    def shapes_figure(self, title: str | None = None) -> Figure:
+        """Shapes to scale; see `path_shapes_figure`."""
+        return path_shapes_figure(self, title)
+
+    def plot(self, quantity: str = "tip_y", ax: Axes | None = None) -> Axes:
+        """Draw ``tip_x``, ``tip_y``, ``tip_theta`` or ``tip_alpha`` over the parameter: stable solid, others dashed. Needs matplotlib."""
+        from hydrostat.plotting import plot_path
+
+        return plot_path(self, quantity, ax)
+
+
+class Equilibria(Sequence[Solution]):
+    """All equilibria of an arm under its loads, in the order of the tip's angle; see `Arm.equilibria`.
+
+    Attributes
+    ----------
+    complete : bool
+        Whether these are all: the curve of equilibria was followed once round.
+    tip_angles, base_angles : tuple of float
+        Angles over which the curve was followed, rad.
+    stability : tuple of str or None
+        Of each equilibrium.
+    unstable_directions : tuple of int or None
+        Of each equilibrium.
+    """
+
+    def __init__(self, native: _native.Equilibria) -> None:
+        self._inner = native
+        self.complete = native.complete
+        tip, base = native.angles
+        self.tip_angles = (tip[0], tip[1])
+        self.base_angles = (base[0], base[1])
+        _, state, directions = native.states()
+        self.stability = tuple(state)
+        self.unstable_directions = tuple(directions)
+
+    def __len__(self) -> int:
+        return len(self._inner)
+
+    @overload
+    def __getitem__(self, index: int) -> Solution: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Solution]: ...
+    def __getitem__(self, index: int | slice) -> Solution | Sequence[Solution]:
+        if isinstance(index, slice):
+            return [self[k] for k in range(*index.indices(len(self)))]
+        at = index + len(self) if index < 0 else index
+        if not 0 <= at < len(self):
+            raise IndexError(f"equilibrium {index} of {len(self)}")
+        return Solution(self._inner.solution(at))
+
+    def __repr__(self) -> str:
+        stable = sum(state == "stable" for state in self.stability)
+        return f"<Equilibria: {len(self)}, {stable} of them stable, {'complete' if self.complete else 'not complete'}>"
+
+    def to_json(self) -> str:
+        """The document of ``hydrostat equilibria --format json``."""
+        return self._inner.to_json()
+
+    def to_csv(self) -> str:
+        """One row each, as ``hydrostat equilibria --format csv`` prints them."""
+        return self._inner.to_csv()
+
+    def figure(self, title: str = "all equilibria") -> Figure:
+        """All shapes to scale; see `equilibria_figure`."""
+        return equilibria_figure(self, title)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw all shapes on one axis, unstable ones pale. Needs matplotlib."""
+        from hydrostat.plotting import plot_equilibria
+
+        return plot_equilibria(self, ax)

@@ -1,0 +1,175 @@
+"""Drawings on matplotlib's axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.typing import ColorType
+
+    from hydrostat.paths import Equilibria, Path
+    from hydrostat.solution import Solution
+
+_MM = 1e3
+_INK = "#28323c"
+_WATER = "#4a90b8"
+_POINTS = 240
+_TAUT = "#1f3b57"
+_SLACK = "#8a97a3"
+
+
+def _new_axes(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(figsize=(6.4, 4.2), layout="constrained")[1]
+
+
+def plot_shape(
+    solution: Solution, ax: Axes | None, *, color: ColorType, sections: int, cables: bool, flow: bool, label: str | None
+) -> Axes:
+    """See `Solution.plot`."""
+    ax = _new_axes(ax)
+    arm = solution.arm
+    s = np.linspace(0.0, arm.length, _POINTS)
+    left, right = (_MM * side for side in solution.surfaces(s))
+    outline = np.concatenate([left, right[::-1]])
+    ax.fill(outline[:, 0], outline[:, 1], facecolor=color, edgecolor=_INK, linewidth=0.8, alpha=0.55, label=label, zorder=2)
+    if sections > 0:
+        at = np.linspace(0.0, arm.length, sections)
+        for one, other in zip(*solution.surfaces(at), strict=True):
+            ax.plot(*(_MM * np.stack([one, other])).T, color=_INK, linewidth=0.4, alpha=0.6, zorder=3)
+    line = solution.at(s)
+    ax.plot(_MM * line.x, _MM * line.y, color=_INK, linewidth=0.7, linestyle=(0, (6, 3)), zorder=3)
+    if cables:
+        for index, cable in enumerate(solution.cables):
+            taut = cable.tension > 0.0
+            points = _MM * solution.cable_path(index, s)
+            style = {"color": _TAUT, "linewidth": 1.8} if taut else {"color": _SLACK, "linewidth": 0.9}
+            ax.plot(points[:, 0], points[:, 1], zorder=4, **style)  # type: ignore[arg-type]
+    base = _MM * np.stack([left[0], right[0]]) / _MM
+    ax.plot(base[:, 0], base[:, 1], color=_INK, linewidth=3.0, solid_capstyle="butt", zorder=5)
+    # Axes that share their limits can only change their boxes.
+    shared = any(len(group.get_siblings(ax)) > 1 for group in (ax.get_shared_x_axes(), ax.get_shared_y_axes()))
+    ax.set_aspect("equal", adjustable="box" if shared else "datalim")
+    ax.set_xlabel("x (mm)")
+    ax.set_ylabel("y (mm)")
+    if flow:
+        _stream(solution, ax)
+    return ax
+
+
+def _stream(solution: Solution, ax: Axes) -> None:
+    """Arrows of the stream in a corner that the arm leaves free, with its speed."""
+    table = solution.arm.to_dict().get("flow", {})
+    speed = float(table.get("speed", 0.0))
+    if speed <= 0.0:
+        return
+    angle = _radians(table.get("direction", 0.0))
+    direction = np.array([np.cos(angle), np.sin(angle)])
+    across = np.array([-direction[1], direction[0]])
+    line = solution.at(np.linspace(0.0, solution.arm.length, 60))
+    middle = 0.5 * np.array([line.x.min() + line.x.max(), line.y.min() + line.y.max()])
+    corners = {(i, j): (0.13 + 0.74 * i, 0.12 + 0.76 * j) for i in (0, 1) for j in (0, 1)}
+    taken = {corner: 0 for corner in corners}
+    for x, y in zip(line.x - middle[0], line.y - middle[1], strict=True):
+        taken[int(x > 0), int(y > 0)] += 1
+    place = np.array(corners[min(taken, key=lambda corner: taken[corner])])
+    for k in (-1.0, 0.0, 1.0):
+        tail = place + 0.035 * k * across - 0.06 * direction
+        arrow = {"arrowstyle": "-|>", "color": _WATER, "linewidth": 1.3}
+        head = tail + 0.12 * direction
+        ax.annotate("", (head[0], head[1]), (tail[0], tail[1]), xycoords="axes fraction", arrowprops=arrow)
+    words = f"{speed:g} m/s"
+    ax.annotate(
+        words, (place[0], place[1] - 0.085), xycoords="axes fraction", color=_WATER, ha="center", va="center", size=9
+    )
+
+
+def _radians(angle: object) -> float:
+    """An angle of a written arm file: degrees, or a string with its unit."""
+    if isinstance(angle, str):
+        value, unit = angle.split()
+        return float(value) if unit == "rad" else float(np.radians(float(value)))
+    return float(np.radians(float(angle)))  # type: ignore[arg-type]
+
+
+#: Field, title, factor and unit of each panel of strains.
+_PANELS = (
+    ("nu", "stretch", 1.0, r"$\nu$"),
+    ("eta", "shear", 1.0, r"$\eta$"),
+    ("mu", "bending", 1.0, r"$\mu$ (1/m)"),
+    ("alpha", "angle of the section", 180.0 / np.pi, r"$\alpha$ (deg)"),
+)
+
+
+def plot_strains(solution: Solution, *, label: str | None, figure: Figure | None) -> Figure:
+    """See `Solution.plot_strains`."""
+    import matplotlib.pyplot as plt
+
+    if figure is None:
+        figure, _ = plt.subplots(2, 2, figsize=(7.2, 4.8), sharex=True, layout="constrained")
+    stations = solution.resampled(_POINTS)
+    for ax, (name, title, factor, text) in zip(figure.axes, _PANELS, strict=True):
+        values = factor * getattr(stations, name)
+        # What is constant but for rounding is drawn as a constant.
+        if np.ptp(values) < 1e-9 * max(float(np.abs(values).max()), 1.0):
+            values = np.full_like(values, values.mean())
+        ax.plot(_MM * stations.s, values, linewidth=1.6, label=label)
+        ax.set_title(title, size=10, loc="left")
+        ax.set_ylabel(text)
+        ax.grid(alpha=0.25)
+    for ax in figure.axes[2:]:
+        ax.set_xlabel("s (mm)")
+    if label is not None:
+        figure.axes[0].legend(frameon=False, fontsize=9)
+    return figure
+
+
+_QUANTITIES = {
+    "tip_x": (_MM, "x of the tip (mm)"),
+    "tip_y": (_MM, "y of the tip (mm)"),
+    "tip_theta": (180.0 / np.pi, "the tip's turn (deg)"),
+    "tip_alpha": (180.0 / np.pi, r"$\alpha$ at the tip (deg)"),
+}
+
+
+def plot_path(path: Path, quantity: str, ax: Axes | None) -> Axes:
+    """See `Path.plot`."""
+    if quantity not in _QUANTITIES:
+        raise ValueError(f"quantity: expected one of {', '.join(_QUANTITIES)}, found {quantity!r}")
+    ax = _new_axes(ax)
+    factor, words = _QUANTITIES[quantity]
+    for branch in path.branches:
+        values = factor * getattr(branch, quantity)
+        stable = np.array([state == "stable" for state in branch.stability])
+        # A piece between two points is stable where its points are; events are marginal and belong to both sides.
+        event = np.zeros(len(branch), dtype=bool)
+        event[[event.point for event in branch.events]] = True
+        good = stable | event
+        solid = np.where(good, values, np.nan)
+        ax.plot(branch.values, values, color=_SLACK, linewidth=1.2, linestyle=(0, (4, 2)))
+        ax.plot(branch.values, solid, color=_TAUT, linewidth=1.8)
+        for one in branch.events:
+            marker = {"limit_point": "o", "bifurcation": "D"}.get(one.name, "s")
+            ax.plot(one.value, values[one.point], marker, color="#c0392b", markersize=5)
+    ax.set_xlabel(f"{path.parameter} ({path.unit})" if path.unit else path.parameter)
+    ax.set_ylabel(words)
+    ax.grid(alpha=0.25)
+    return ax
+
+
+def plot_equilibria(equilibria: Equilibria, ax: Axes | None) -> Axes:
+    """See `Equilibria.plot`."""
+    ax = _new_axes(ax)
+    for index, (solution, state) in enumerate(zip(equilibria, equilibria.stability, strict=True)):
+        color = "#d9734e" if state == "stable" else "#d8d2c4"
+        name = f"{index + 1}: {state or 'not established'}"
+        plot_shape(solution, ax, color=color, sections=0, cables=False, flow=index == 0, label=name)
+    ax.legend(frameon=False, fontsize=9)
+    return ax

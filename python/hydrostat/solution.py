@@ -1,0 +1,414 @@
+"""Answers: shapes with what they carry."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from hydrostat import _inputs, _native
+from hydrostat.figures import Figure, arm_figure
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as MatplotlibFigure
+    from matplotlib.typing import ColorType
+    from numpy.typing import ArrayLike, NDArray
+
+    from hydrostat.arm import Arm
+
+#: Unit and meaning of each field of `Stations`.
+FIELDS: dict[str, tuple[str, str]] = {
+    "s": ("m", "length along the undeformed arm, from base to tip"),
+    "x": ("m", "centreline along e1"),
+    "y": ("m", "centreline along e2"),
+    "theta": ("rad", "rotation of the section"),
+    "nu": ("1", "stretch"),
+    "eta": ("1", "shear strain"),
+    "mu": ("1/m", "bending strain"),
+    "beta": ("1", "section stretch"),
+    "alpha": ("rad", "angle from the section's normal to the centreline's tangent"),
+    "n_a": ("N", "contact force along the section's normal"),
+    "n_b": ("N", "contact force in the section"),
+    "m": ("N m", "contact moment"),
+}
+
+
+class Tip(NamedTuple):
+    """The tip: `x`, `y` in m, `theta`, `alpha` in rad."""
+
+    x: float
+    y: float
+    theta: float
+    alpha: float
+
+
+class Wrench(NamedTuple):
+    """A force in space, N, and a moment, N m, counterclockwise."""
+
+    force: tuple[float, float]
+    moment: float
+
+
+class Command(NamedTuple):
+    """What was commanded of a cable: its `stroke`, m, the `length` that this leaves, m, and whether it hangs `slack`."""
+
+    stroke: float
+    length: float
+    slack: bool
+
+
+class CableState(NamedTuple):
+    """A cable in a shape: `tension` at the base in N, `length` and `stroke` (positive when reeled in) in m."""
+
+    name: str
+    tension: float
+    length: float
+    stroke: float
+    command: Command | None
+
+
+class FoldMargin(NamedTuple):
+    """The least (nu - beta R abs(mu)) / nu along the arm, and where it is, m; at or below 0 the surface folds."""
+
+    value: float
+    s: float
+
+
+class Note(NamedTuple):
+    """Something that should be known about an answer: its `kind`, such as ``"surface_fold"``, and the `message`."""
+
+    kind: str
+    message: str
+
+
+class Stations:
+    """States along an arm, base to tip: twelve read-only arrays of shape (n,), which share memory with what solved them.
+
+    They stay valid when this object is gone.
+    """
+
+    __slots__ = ("_inner",)
+
+    _inner: _native.Stations | _native.Solution
+
+    def __init__(self, native: _native.Stations) -> None:
+        self._inner = native
+
+    @property
+    def s(self) -> NDArray[np.float64]:
+        """Length along the undeformed arm, m, shape (n,)."""
+        return self._inner.field("s")
+
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """Centreline along e1, m, shape (n,)."""
+        return self._inner.field("x")
+
+    @property
+    def y(self) -> NDArray[np.float64]:
+        """Centreline along e2, m, shape (n,)."""
+        return self._inner.field("y")
+
+    @property
+    def theta(self) -> NDArray[np.float64]:
+        """Rotation of the section, rad, continuous along the arm, shape (n,)."""
+        return self._inner.field("theta")
+
+    @property
+    def nu(self) -> NDArray[np.float64]:
+        """Stretch, shape (n,)."""
+        return self._inner.field("nu")
+
+    @property
+    def eta(self) -> NDArray[np.float64]:
+        """Shear strain, shape (n,)."""
+        return self._inner.field("eta")
+
+    @property
+    def mu(self) -> NDArray[np.float64]:
+        """Bending strain, 1/m, shape (n,)."""
+        return self._inner.field("mu")
+
+    @property
+    def beta(self) -> NDArray[np.float64]:
+        """Section stretch, shape (n,)."""
+        return self._inner.field("beta")
+
+    @property
+    def alpha(self) -> NDArray[np.float64]:
+        """Angle from the section's normal to the centreline's tangent, rad, shape (n,)."""
+        return self._inner.field("alpha")
+
+    @property
+    def n_a(self) -> NDArray[np.float64]:
+        """Contact force along the section's normal, N, shape (n,)."""
+        return self._inner.field("n_a")
+
+    @property
+    def n_b(self) -> NDArray[np.float64]:
+        """Contact force in the section, N, shape (n,)."""
+        return self._inner.field("n_b")
+
+    @property
+    def m(self) -> NDArray[np.float64]:
+        """Contact moment, N m, shape (n,)."""
+        return self._inner.field("m")
+
+    def __len__(self) -> int:
+        return len(self.s)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The stations as a table with `s` (m) as its index. Needs pandas."""
+        import pandas as pd
+
+        columns = {name: self._inner.field(name) for name in FIELDS if name != "s"}
+        return pd.DataFrame(columns, index=pd.Index(self.s, name="s"))
+
+    def to_xarray(self) -> xr.Dataset:
+        """The stations along the coordinate `s`, each with ``units`` and ``long_name``. Needs xarray."""
+        import xarray as xr
+
+        fields = {name: ("s", self._inner.field(name), _attributes(name)) for name in FIELDS}
+        coordinate = fields.pop("s")
+        return xr.Dataset(fields, coords={"s": coordinate})
+
+
+def _attributes(name: str) -> dict[str, str]:
+    units, meaning = FIELDS[name]
+    return {"units": units, "long_name": meaning}
+
+
+class Solution(Stations):
+    """An arm in equilibrium: its stations are the nodes of the solver's mesh, closer where the shape changes fast.
+
+    The end of a cable appears twice, with the values on either side. `Arm.solve` makes solutions.
+
+    Examples
+    --------
+    >>> import hydrostat as hs
+    >>> sol = hs.Arm.load("silicone").solve(tensions=[0.2, 0], flow_speed=0.1)
+    >>> bool(sol.y[-1] > 0)
+    True
+    >>> sol.x.flags.writeable
+    False
+    """
+
+    __slots__ = ("__dict__",)
+
+    _inner: _native.Solution
+
+    def __init__(self, native: _native.Solution) -> None:
+        self._inner = native
+
+    def __repr__(self) -> str:
+        tip = self.tip
+        turned = np.degrees(tip.theta)
+        return f"<Solution of {self.arm.name!r}: tip at ({tip.x:.6g}, {tip.y:.6g}) m, turned by {turned:.4g} deg>"
+
+    @cached_property
+    def arm(self) -> Arm:
+        """The arm with the loads that this shape balances."""
+        from hydrostat.arm import Arm
+
+        return Arm._of(self._inner.arm)
+
+    @property
+    def tip(self) -> Tip:
+        """Place and angles of the tip, m and rad."""
+        return Tip(*self._inner.tip)
+
+    @property
+    def cables(self) -> tuple[CableState, ...]:
+        """One entry a cable, in the arm's order."""
+        return tuple(
+            CableState(name, tension, length, stroke, None if command is None else Command(*command))
+            for name, tension, length, stroke, command in self._inner.cables
+        )
+
+    @property
+    def base_reaction(self) -> Wrench:
+        """What support and cable anchors exert on the arm at the base, N and N m."""
+        return _wrench(*self._inner.base_reaction)
+
+    @property
+    def unmet(self) -> Wrench | None:
+        """With ``support = "unstrained-base"``, what the balance of the tip lacks, N and N m."""
+        unmet = self._inner.unmet
+        return None if unmet is None else _wrench(*unmet)
+
+    @property
+    def error_estimate(self) -> float:
+        """Estimated error of the tip position, m."""
+        return self._inner.error_estimate
+
+    @property
+    def fold_margin(self) -> FoldMargin:
+        """How far the surface is from folding over itself."""
+        return FoldMargin(*self._inner.fold_margin)
+
+    @property
+    def strain_energy(self) -> float:
+        """1/2 int (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A ds, J: a measure, not a potential of the law."""
+        return self._inner.strain_energy
+
+    @cached_property
+    def warnings(self) -> tuple[Note, ...]:
+        """What should be known about this answer; empty when all is well."""
+        return tuple(Note(kind, message) for kind, message in self._inner.warnings())
+
+    @cached_property
+    def _stability(self) -> tuple[str | None, int | None, bool | None]:
+        return self._inner.stability()
+
+    @property
+    def stability(self) -> str | None:
+        """``"stable"``, ``"unstable"``, ``"marginal"``, or None where it is not established.
+
+        Against static divergence, with overdamped motion. Computed when first asked for, in one to two milliseconds.
+        """
+        return self._stability[0]
+
+    @property
+    def unstable_directions(self) -> int | None:
+        """In how many directions small motions grow."""
+        return self._stability[1]
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether it is stable; None where that is not known."""
+        state, _, known = self._stability
+        return {"stable": True, "unstable": False, "marginal": None}[state] if state is not None else known
+
+    def growth(self) -> NDArray[np.complex128] | None:
+        """Rates of small overdamped motions, shape (k,), over the slowest decay of the unloaded arm, fastest growth first."""
+        rates = self._inner.growth()
+        return None if rates is None else np.array([complex(re, im) for re, im in rates])
+
+    @property
+    def statistics(self) -> dict[str, int]:
+        """What the solve took: elements, stages, Newton rounds, meshes, load steps, evaluations."""
+        return dict(self._inner.statistics)
+
+    def at(self, s: ArrayLike) -> Stations:
+        """States anywhere along the arm, to the accuracy of the nodes.
+
+        Parameters
+        ----------
+        s : array_like, shape (n,) or ()
+            Lengths along the undeformed arm, m, from 0 to the arm's length.
+        """
+        return Stations(self._inner.at(_places(s)))
+
+    def resampled(self, count: int) -> Stations:
+        """`count` (at least two) equally spaced stations from base to tip."""
+        return Stations(self._inner.resampled(_inputs.count("count", count)))
+
+    def surfaces(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The deformed surface on the left and on the right, m, each of shape (n, 2), at lengths `s` (m) of shape (n,)."""
+        left_x, left_y, right_x, right_y = self._inner.surfaces(_places(s))
+        return np.stack([left_x, left_y], axis=1), np.stack([right_x, right_y], axis=1)
+
+    def cable_path(self, cable: int, s: ArrayLike) -> NDArray[np.float64]:
+        """Points of a cable, m, shape (n, 2), at lengths `s` (m) of shape (n,); NaN past its anchor."""
+        return np.stack(self._inner.cable_path(cable, _places(s)), axis=1)
+
+    def layer_speed(self, s: float, y: float) -> float:
+        """Speed of the water along the arm, m/s, at the length `s` (m) and the distance `y` (m) from the windward surface."""
+        return self._inner.layer_speed(_inputs.number("s", s), _inputs.number("y", y))
+
+    def to_json(self) -> str:
+        """The document that ``hydrostat solve --format json`` prints, one line."""
+        return self._inner.to_json()
+
+    def to_csv(self) -> str:
+        """The stations as ``hydrostat solve --format csv`` prints them."""
+        return self._inner.to_csv()
+
+    def to_xarray(self) -> xr.Dataset:
+        """The stations along `s`, with tip, cables and base reaction. Needs xarray.
+
+        Returns
+        -------
+        xarray.Dataset
+            The fields over ``s``; ``tension``, ``cable_length`` and ``stroke`` over ``cable``; the rest as attributes.
+        """
+        out = super().to_xarray()
+        cables = self.cables
+        out = out.assign_coords(cable=("cable", [cable.name for cable in cables]))
+        out["tension"] = ("cable", np.array([c.tension for c in cables]), {"units": "N"})
+        out["cable_length"] = ("cable", np.array([c.length for c in cables]), {"units": "m"})
+        out["stroke"] = ("cable", np.array([c.stroke for c in cables]), {"units": "m", "long_name": "reeled in"})
+        base = self.base_reaction
+        out.attrs = {
+            "arm": self.arm.name,
+            "base_force": list(base.force),
+            "base_moment": base.moment,
+            "error_estimate": self.error_estimate,
+            "fold_margin": self.fold_margin.value,
+            "hydrostat": _native.__version__,
+        }
+        return out
+
+    def figure(self, note: str | None = None) -> Figure:
+        """The shape to scale, as the program draws it; see `arm_figure`."""
+        return arm_figure(self, note)
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        *,
+        color: ColorType = "#d9734e",
+        sections: int = 25,
+        cables: bool = True,
+        flow: bool = True,
+        label: str | None = None,
+    ) -> Axes:
+        """Draw the shape to scale on a matplotlib axis: outline, sections, cables and stream. Needs matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new figure's without it.
+        color : color
+            Of the body.
+        sections : int
+            How many sections are drawn; 0 for none.
+        cables, flow : bool
+            Whether cables and the stream are drawn.
+        label : str, optional
+            For the legend.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            In mm, with equal scales.
+        """
+        from hydrostat.plotting import plot_shape
+
+        return plot_shape(self, ax, color=color, sections=sections, cables=cables, flow=flow, label=label)
+
+    def plot_strains(self, *, label: str | None = None, figure: MatplotlibFigure | None = None) -> MatplotlibFigure:
+        """Stretch, shear, bending and the angle alpha along the arm, in four panels. Needs matplotlib.
+
+        Parameters
+        ----------
+        label : str, optional
+            For the legend.
+        figure : matplotlib.figure.Figure, optional
+            What an earlier call returned, to draw into.
+        """
+        from hydrostat.plotting import plot_strains
+
+        return plot_strains(self, label=label, figure=figure)
+
+
+def _wrench(force: list[float], moment: float) -> Wrench:
+    return Wrench((force[0], force[1]), moment)
+
+
+def _places(s: ArrayLike) -> NDArray[np.float64]:
+    return np.atleast_1d(_inputs.numbers("s", s)).ravel()

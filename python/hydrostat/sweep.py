@@ -1,0 +1,305 @@
+"""Sweeps over keys of the arm file, here or on a cluster."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from os import PathLike
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any, NamedTuple, Union, overload
+
+import numpy as np
+
+from hydrostat import _inputs, _native
+from hydrostat._progress import Progress
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from distributed import Client
+    from numpy.typing import NDArray
+
+    from hydrostat.arm import Arm
+
+#: Values of a key: a grid ``"0:1:26"``, a range to draw from ``"0:1"``, a list with commas, an array, or one value.
+Values = Union[str, float, Sequence[float], Sequence[str], "NDArray[np.generic]"]
+
+_COLUMN = re.compile(r"(?P<name>.+?)(\[(?P<index>\d+)\])?(_(?P<unit>m|rad|N|Nm))?$")
+_UNITS = {"Nm": "N m"}
+
+
+class Plan(NamedTuple):
+    """All that the rows of a sweep follow from, small enough to send anywhere."""
+
+    arm: Arm
+    vary: tuple[str, ...]
+    sample: str | None
+    seed: int
+    tol: float
+    columns: tuple[str, ...] | None
+    shapes: int
+
+    def native(self) -> _native.Sweep:
+        """The sweep, made once a process."""
+        text, path, settings = self.arm._inner.parts()
+        # Arms that are the same can differ in their texts, and so in what becomes of a key.
+        return _made(text, path, tuple(settings), self[1:])
+
+
+@lru_cache(maxsize=8)
+def _made(text: str, path: str, settings: tuple[tuple[str, str, str], ...], asked: tuple[Any, ...]) -> _native.Sweep:
+    return _native.Sweep(_native.Arm(text, path, settings), *asked)
+
+
+class Variable(NamedTuple):
+    """A variable of the dataset, made of one column or of several, a cable or a station each."""
+
+    name: str
+    columns: tuple[str, ...]
+    unit: str
+    dimension: str | None
+    words: bool
+
+
+@overload
+def sweep(
+    arm: Arm,
+    vary: Mapping[str, Values],
+    *,
+    sample: str | None = ...,
+    seed: int = ...,
+    tol: float = ...,
+    columns: Sequence[str] | None = ...,
+    shapes: int = ...,
+    output: None = ...,
+    resume: bool = ...,
+    threads: int = ...,
+    client: Client | None = ...,
+    chunk_seconds: float = ...,
+    retries: int = ...,
+    progress: bool | None = ...,
+) -> xr.Dataset: ...
+@overload
+def sweep(
+    arm: Arm,
+    vary: Mapping[str, Values],
+    *,
+    sample: str | None = ...,
+    seed: int = ...,
+    tol: float = ...,
+    columns: Sequence[str] | None = ...,
+    shapes: int = ...,
+    output: str | PathLike[str],
+    resume: bool = ...,
+    threads: int = ...,
+    client: Client | None = ...,
+    chunk_seconds: float = ...,
+    retries: int = ...,
+    progress: bool | None = ...,
+) -> FilePath: ...
+def sweep(
+    arm: Arm,
+    vary: Mapping[str, Values],
+    *,
+    sample: str | None = None,
+    seed: int = 0,
+    tol: float = 1e-6,
+    columns: Sequence[str] | None = None,
+    shapes: int = 0,
+    output: str | PathLike[str] | None = None,
+    resume: bool = False,
+    threads: int = 0,
+    client: Client | None = None,
+    chunk_seconds: float = 5.0,
+    retries: int = 3,
+    progress: bool | None = None,
+) -> xr.Dataset | FilePath:
+    """Solve an arm over every combination of values of some keys, or over a sample of them.
+
+    The rows are those of ``hydrostat sweep``, to the last bit, wherever they are solved. Rows without an equilibrium have NaN
+    and a verdict. Ctrl-C interrupts it.
+
+    Parameters
+    ----------
+    arm : Arm
+        The arm.
+    vary : mapping
+        Keys of the arm file with their values: an array or list of numbers (SI units, degrees) or of strings,
+        ``"from:to:count"`` for a grid with both ends, ``"from:to"`` with `sample`.
+    sample : str, optional
+        ``"lhs:N"`` or ``"sobol:N"``: N rows in place of all combinations.
+    seed : int
+        Of a sample.
+    tol : float
+        Error of the tip position over the length, in [1e-12, 1e-2].
+    columns : sequence of str, optional
+        What is answered: some of ``tip``, ``alpha``, ``strokes``, ``tensions``, ``base``, ``fold``, ``stability``, ``error``,
+        ``verdict``.
+    shapes : int
+        So many equally spaced stations of every row; none below 2.
+    output : path, optional
+        Without a client, a file ``.parquet`` or ``.csv``, written by parts, from which `resume` goes on. With a client, a new directory
+        that all workers see, which becomes a Parquet dataset.
+    resume : bool
+        Whether to go on with an output that was begun; not with a client.
+    threads : int
+        0 for as many as the machine has; not with a client, whose workers solve a chunk a thread.
+    client : distributed.Client, optional
+        Solve on its cluster. Rows of lost workers are solved again.
+    chunk_seconds : float
+        About how long a task of the cluster takes; its rows follow from what some of them are seen to cost.
+    retries : int
+        How often a chunk is tried again whose workers died.
+    progress : bool, optional
+        Whether a bar is drawn on standard error; by default on a terminal.
+
+    Returns
+    -------
+    xarray.Dataset
+        A dimension a key (``row`` with a sample), with the values as coordinates in the units that they were given in. With a
+        client its variables are Dask arrays, whose chunks are in the workers' memory. Needs xarray.
+    pathlib.Path
+        `output`, where that is given.
+
+    Examples
+    --------
+    >>> import hydrostat as hs
+    >>> ds = hs.sweep(hs.Arm.load("silicone"), {"flow.speed": [0.0, 0.1], "cable[0].tension": "0:1.5:4"})
+    >>> dict(ds.sizes)
+    {'flow.speed': 2, 'cable[0].tension': 4, 'cable': 2}
+    >>> ds.verdict.values[0].tolist()
+    ['', '', 'cable_fold', 'cable_fold']
+    """
+    texts = tuple(f"{key}={_values(key, values)}" for key, values in vary.items())
+    names = None if columns is None else tuple(columns)
+    plan = Plan(
+        arm,
+        texts,
+        sample,
+        _inputs.count("seed", seed),
+        _inputs.number("tol", tol),
+        names,
+        _inputs.count("shapes", shapes),
+    )
+    native = plan.native()
+    if client is not None:
+        from hydrostat import cluster
+
+        if resume or threads:
+            raise ValueError(f"{'resume' if resume else 'threads'}: is of sweeps without a client")
+        run = cluster.Run(client, plan, chunk_seconds, retries, progress)
+        return run.dataset(dict(vary)) if output is None else run.parquet(FilePath(output))
+    threads = _inputs.count("threads", threads)
+    with Progress(native.rows, progress) as bar:
+        if output is not None:
+            native.run(output, resume, threads, bar)
+            return FilePath(output)
+        found = native.columns((0, native.tiles), threads, bar)
+    values = {variable: assembled(found, variable) for variable in variables(found)}
+    return dataset(plan, vary, values, {axis[1]: assembled(found, _key(axis[1], found)) for axis in native.axes})
+
+
+def _values(key: str, values: Values) -> str:
+    """The values of a key as the command line takes them."""
+    if isinstance(values, str):
+        return values
+    array = np.atleast_1d(np.asarray(values))
+    if array.dtype.kind in "US" and array.ndim == 1:
+        return ",".join(str(word) for word in array)
+    flat = _inputs.finite(f"vary[{key!r}]", array)
+    if flat.ndim != 1:
+        raise ValueError(f"vary[{key!r}]: expected one dimension, found shape {flat.shape}")
+    return ",".join(repr(float(number)) for number in flat)
+
+
+Columns = Mapping[str, Any]
+
+
+def variables(found: Columns) -> list[Variable]:
+    """The variables of some columns, without the row and the keys."""
+    grouped: dict[str, list[str]] = {}
+    parsed: dict[str, re.Match[str]] = {}
+    for column in found:
+        match = _COLUMN.match(column)
+        if column == "row" or "." in column or match is None:
+            continue
+        grouped.setdefault(match["name"], []).append(column)
+        parsed[match["name"]] = match
+    out = []
+    for name, columns in grouped.items():
+        unit = parsed[name]["unit"] or ""
+        dimension = None
+        if parsed[name]["index"] is not None:
+            dimension = "station" if name.startswith("shape_") else "cable"
+        words = isinstance(found[columns[0]], tuple)
+        out.append(Variable(name, tuple(columns), _UNITS.get(unit, unit), dimension, words))
+    return out
+
+
+def _key(column: str, found: Columns) -> Variable:
+    return Variable(column, (column,), "", None, isinstance(found[column], tuple))
+
+
+def assembled(found: Columns, variable: Variable) -> NDArray[np.generic]:
+    """The values of a variable, a row each: numbers, or words with the empty one for none."""
+    if variable.words:
+        codes, words = found[variable.columns[0]]
+        # The code -1 of none is the last place.
+        known: NDArray[np.generic] = np.array([*words, ""], dtype=object)
+        named: NDArray[np.generic] = known[codes]
+        return named
+    if variable.dimension is None:
+        return np.asarray(found[variable.columns[0]])
+    stacked: NDArray[np.generic] = np.stack([found[column] for column in variable.columns], axis=1)
+    return stacked
+
+
+def dataset(
+    plan: Plan, vary: Mapping[str, Values], values: Mapping[Variable, Any], keys: Mapping[str, Any]
+) -> xr.Dataset:
+    """The dataset of variables with a row each, in NumPy's or Dask's arrays; `keys` are the rows' own values."""
+    import xarray as xr
+
+    native = plan.native()
+    axes = native.axes
+    grid = plan.sample is None
+    coordinates: dict[str, Any] = {"cable": ("cable", list(plan.arm.cables))}
+    shape: tuple[int, ...] = (native.rows,)
+    dims: tuple[str, ...] = ("row",)
+    if grid:
+        dims = tuple(key for key, *_ in axes)
+        for index, (key, _, unit, per_si) in enumerate(axes):
+            own = _shown(vary[key], native.values(index), per_si)
+            coordinates[key] = (key, own, {"units": unit})
+        shape = tuple(len(coordinates[key][1]) for key in dims)
+    else:
+        for key, column, unit, per_si in axes:
+            rows = keys[column]
+            shown = rows if rows.dtype.kind == "O" or per_si == 1.0 else rows * per_si
+            coordinates[key] = ("row", shown, {"units": unit})
+    out: dict[str, Any] = {}
+    for variable, rows in values.items():
+        last = () if variable.dimension is None else (variable.dimension,)
+        array = rows.reshape(shape + rows.shape[1:])
+        attributes = {"units": variable.unit, "column": variable.columns[0]} if not variable.words else {}
+        out[variable.name] = ((*dims, *last), array, attributes)
+    used = {dim for dims_of, *_ in out.values() for dim in dims_of}
+    kept = {name: value for name, value in coordinates.items() if name != "cable" or "cable" in used}
+    about: dict[str, Any] = {
+        "arm": plan.arm.to_toml(),
+        "vary": [key for key, *_ in axes],
+        "tol": plan.tol,
+        "hydrostat": _native.__version__,
+    }
+    return xr.Dataset(out, coords=kept, attrs=about)
+
+
+def _shown(given: Values, si: NDArray[np.float64] | list[str] | None, per_si: float) -> Any:
+    """Coordinates as they were given where these are numbers, else in the unit that they were given in."""
+    if si is None or isinstance(si, list):
+        return np.array(si, dtype=object)
+    if not isinstance(given, str):
+        array = np.atleast_1d(np.asarray(given))
+        if array.dtype.kind in "iuf":
+            return array
+    return si * per_si

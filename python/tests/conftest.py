@@ -1,0 +1,45 @@
+"""What several tests use."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import matplotlib
+import pytest
+
+import hydrostat as hs
+
+matplotlib.use("Agg")
+
+ROOT = Path(__file__).resolve().parents[2]
+
+#: Runs the program with arguments: exit status and standard output.
+Program = Callable[..., tuple[int, str]]
+
+
+@pytest.fixture(scope="session")
+def program() -> Program:
+    """The program `hydrostat` that was built beside the package; `HYDROSTAT_PROGRAM` says where it is."""
+    path = os.environ.get("HYDROSTAT_PROGRAM")
+    if not path:
+        pytest.fail("HYDROSTAT_PROGRAM: expected the path of the program `hydrostat`, found nothing; `./test` sets it")
+
+    def run(*arguments: str) -> tuple[int, str]:
+        done = subprocess.run([path, *arguments], capture_output=True, text=True, check=False, timeout=120)
+        return done.returncode, done.stdout
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def silicone() -> hs.Arm:
+    return hs.Arm.load("silicone")
+
+
+@pytest.fixture(scope="session")
+def facing(silicone: hs.Arm) -> hs.Arm:
+    """An arm that the stream meets from its tip: five equilibria."""
+    return silicone.replace(flow_speed=0.2, flow_direction=180)

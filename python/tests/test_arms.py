@@ -1,0 +1,97 @@
+"""Arms from files, dictionaries and keywords."""
+
+from __future__ import annotations
+
+import pickle
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from hypothesis import given
+from hypothesis import strategies as st
+
+import hydrostat as hs
+
+
+@pytest.mark.parametrize("name", sorted(hs.arms()))
+def test_one_arm_in_five_ways(tmp_path: Path, name: str) -> None:
+    shipped = hs.Arm.load(name)
+    file = ROOT / "arms" / f"{name}.toml"
+    tables = tomllib.loads(file.read_text(encoding="utf-8"))
+    tables.setdefault("name", name)
+    written = tmp_path / f"{name}.toml"
+    written.write_text(shipped.to_toml(), encoding="utf-8")
+    for arm in (
+        hs.Arm.load(file),
+        hs.Arm.load(str(written)),
+        hs.Arm.from_toml(file.read_text(encoding="utf-8"), name),
+        hs.Arm.from_dict(tables),
+        hs.Arm(**tables),
+        hs.Arm.from_dict(shipped.to_dict()),
+        pickle.loads(pickle.dumps(shipped)),
+    ):
+        assert arm == shipped
+        assert hash(arm) == hash(shipped)
+
+
+def test_pickles_keep_what_overrides() -> None:
+    arm = hs.Arm.load("silicone").replace({"model.closure": "literal", "cable[1].friction": 0.2}, tensions=[0.1, 0.2])
+    again = pickle.loads(pickle.dumps(arm))
+    assert again == arm
+    # Through the text that both still have: no key of the written arm stands above the closure.
+    changed = {"model.closure": "default"}
+    assert again.replace(changed) == arm.replace(changed) != arm
+
+
+def test_replacing_leaves_the_arm_alone(silicone: hs.Arm) -> None:
+    before = silicone.to_toml()
+    other = silicone.replace({"arm.radius.tip": "3 mm"}, tensions=[0.1, 0.0], flow_speed="5 cm/s", flow_direction=90)
+    assert silicone.to_toml() == before != other.to_toml()
+    tables = other.to_dict()
+    assert tables["arm"]["radius"]["tip"] == 0.003
+    assert tables["flow"]["speed"] == 0.05
+    assert other.replace(strokes=[None, -0.01]).to_dict()["cable"][1]["stroke"] == -0.01
+
+
+@given(
+    points=st.lists(st.floats(0.002, 0.02), min_size=2, max_size=8),
+    name=st.text(st.characters(exclude_categories=["Cs"]), max_size=20),
+)
+def test_numbers_and_texts_arrive_as_they_are(points: list[float], name: str) -> None:
+    table = np.stack([np.linspace(0.0, 0.2, len(points)), points], axis=1)
+    arm = hs.Arm(name=name, arm={"length": 0.2, "radius": table}, material={"young": 1e5})
+    assert arm.name == name
+    assert np.array_equal(arm.to_dict()["arm"]["radius"], table)
+
+
+@pytest.mark.parametrize(
+    ("make", "key", "words"),
+    [
+        (lambda: hs.Arm(arm={"lenght": 1}, material={"young": 1}), "arm.lenght", "did you mean `length`"),
+        (lambda: hs.Arm(arm={"length": -1, "radius": 1}, material={"young": 1}), "arm.length", "above zero"),
+        (lambda: hs.Arm(arm={"length": float("nan"), "radius": 1}, material={"young": 1}), "arm.length", "finite"),
+        (lambda: hs.Arm.from_dict({"arm": {}, "materiel": {}}), "materiel", "unknown"),
+        (lambda: hs.Arm.from_dict({"arm": {}}), "material", "found nothing"),
+        (lambda: hs.Arm.load("paper").replace({"flow.sped": 1}), "flow.sped", "did you mean `speed`"),
+        (lambda: hs.Arm.load("paper").replace(tensions=[-1, 0]), "cable[0].tension", "not negative"),
+        (lambda: hs.Arm.load("paper").replace({"cable[7].tension": 1}), "cable", "0 to 1"),
+    ],
+)
+def test_what_is_wrong_is_named(make: object, key: str, words: str) -> None:
+    assert callable(make)
+    with pytest.raises(hs.ArmError, match=".") as caught:
+        make()
+    assert isinstance(caught.value, ValueError)
+    assert caught.value.key == key
+    assert words in str(caught.value)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (str(again), again.key) == (str(caught.value), key)
+
+
+def test_no_such_file() -> None:
+    with pytest.raises(FileNotFoundError, match="silicone"):
+        hs.Arm.load("silicon")
+    with pytest.raises(ValueError, match="arm.radius: expected a number"):
+        hs.Arm(arm={"length": 1, "radius": object()}, material={})

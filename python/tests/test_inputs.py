@@ -1,0 +1,116 @@
+"""What is wrong with an argument is a ValueError that names it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import hydrostat as hs
+
+BAD_TENSIONS: list[tuple[Any, str]] = [
+    ([1.0], "1 tension was given"),
+    ([1.0, 2.0, 3.0], "3 tensions were given"),
+    ([[1.0, 2.0]], r"shape \(1, 2\)"),
+    (1.0, r"shape \(\)"),
+    ([np.nan, 0.0], r"\[0\]: expected a finite number"),
+    ([0.0, np.inf], r"\[1\]: expected a finite number"),
+    ([0.0, -0.1], r"\[1\]: expected a number that is not negative"),
+    (["1", "2"], "dtype <U1"),
+    ([1j, 0], "dtype complex128"),
+    ([True, False], "dtype bool"),
+    ([None, 0], "dtype object"),
+    ([[1.0], [1.0, 2.0]], "not regular"),
+]
+
+
+@pytest.mark.parametrize(("tensions", "words"), BAD_TENSIONS)
+def test_tensions(silicone: hs.Arm, tensions: Any, words: str) -> None:
+    with pytest.raises(ValueError, match=f"^tensions.*{words}"):
+        silicone.solve(tensions=tensions)
+    with pytest.raises(ValueError, match=f"^tensions.*{words}"):
+        hs.Solver(silicone).set_tensions(tensions)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.int8, np.uint64, np.int64])
+def test_numbers_of_any_kind_and_layout(silicone: hs.Arm, kind: type) -> None:
+    paper = hs.Arm.load("paper")
+    want = paper.solve(tensions=[20.0, 4.0]).tip
+    spread: np.ndarray[tuple[int, ...], np.dtype[Any]] = np.zeros((2, 5), dtype=kind)
+    spread[:, 3] = [20, 4]
+    assert paper.solve(tensions=spread[:, 3]).tip == want
+    assert paper.solve(tensions=(20, 4)).tip == want
+    assert paper.solve(tensions=spread[::-1, 3][::-1]).tip == want
+    assert silicone.solve(tensions=np.zeros(2, dtype=kind)).tip.y == 0.0
+
+
+@given(number=st.floats().filter(lambda x: not 0.0 <= x < np.inf))
+def test_no_speed_that_is_none(silicone: hs.Arm, number: float) -> None:
+    for call in (
+        lambda: silicone.solve(flow_speed=number),
+        lambda: hs.solve_many(silicone, flow_speed=[0.1, number]),
+    ):
+        with pytest.raises(ValueError, match="^flow_speed"):
+            call()
+
+
+CALLS: list[tuple[Callable[[hs.Arm], object], str]] = [
+    (lambda arm: arm.solve(flow_speed="fast"), "^flow_speed: expected a number"),  # type: ignore[arg-type]
+    (lambda arm: arm.solve(tol=0.1), "`tol`"),
+    (lambda arm: arm.solve(tol=float("nan")), "^tol"),
+    (lambda arm: arm.solve(strokes=[0.01]), "^strokes.*1 strokes were given"),
+    (lambda arm: arm.solve(strokes=[float("nan"), None]), r"^strokes\[0\]"),
+    (lambda arm: arm.solve(strokes=[3.0, None]), r"cable\[0\].stroke"),
+    (lambda arm: arm.replace(tensions=[1.0]), "^tensions"),
+    (lambda arm: arm.solve().at([0.3]), "^s: expected places"),
+    (lambda arm: arm.solve().at(np.nan), "^s: expected places"),
+    (lambda arm: arm.solve().resampled(1), "^count"),
+    (lambda arm: arm.solve().resampled(-1), "^count"),
+    (lambda arm: arm.solve().resampled(2.5), "^count"),  # type: ignore[arg-type]
+    (lambda arm: hs.Solver(arm).set_stroke(-1, 0.01), "^cable"),
+    (lambda arm: hs.Solver(arm).set_stroke(2, 0.01), "`cable`"),
+    (lambda arm: hs.solve_many(arm, tensions=[0.1, 0.2, 0.3]), r"^tensions: expected the shape \(..., 2\)"),
+    (lambda arm: hs.solve_many(arm, tensions=[[0.1, -0.2]]), r"^tensions: .*\(0, 1\)"),
+    (lambda arm: hs.solve_many(arm, vary={"tip.moment": [np.nan]}), r"^vary\['tip.moment'\]"),
+    (lambda arm: hs.solve_many(arm, vary={"tip.momint": [0.0]}), "tip.momint"),
+    (lambda arm: hs.solve_many(arm, vary={"cable[4].tension": [0.0]}), r"cable\[4\].tension"),
+    (lambda arm: hs.solve_many(arm, flow_speed=0.1, vary={"flow.speed": 0.2}), "second time, by flow_speed"),
+    (lambda arm: hs.solve_many(arm, flow_speed=[0.1], tol=1.0), "`tol`"),
+    (lambda arm: hs.solve_many(arm, flow_speed=[0.1], tile=0), "`tile`"),
+    (
+        lambda arm: hs.solve_many(arm, flow_speed=[0.1, 0.2], vary={"tip.moment": [0.0, 0.0, 0.0]}),
+        r"broadcast: flow_speed \(2,\), vary\['tip.moment'\] \(3,\)",
+    ),
+    (lambda arm: arm.path("flow.sped", 0, 1), "did you mean `flow.speed`"),
+    (lambda arm: arm.path("flow.speed", 0, np.nan), "^stop"),
+    (lambda arm: arm.path("flow.speed", 0, 0.1, tol=1.0), "`tol`"),
+    (lambda arm: arm.path("cable[2].tension", 0, 1), "2 cables"),
+    (lambda arm: arm.equilibria(time_limit=-1.0), "^time_limit"),
+    (lambda arm: arm.equilibria(tol=1.0), "`tol`"),
+    (lambda arm: hs.sweep(arm, {}), "^vary: .*at least one key"),
+    (lambda arm: hs.sweep(arm, {"flow.sped": [1.0]}), "did you mean `flow.speed`"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": [0.1, np.nan]}), r"^vary\['flow.speed'\]"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": np.array([[0.1]])}), r"^vary\['flow.speed'\].*shape \(1, 1\)"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": [-0.1]}), "flow.speed"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": "0:1"}), "^vary: .*FROM:TO:COUNT"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": "0:1"}, sample="lhs"), "^sample"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, columns=["tips"]), "^columns"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, tol=1.0), "tol"),
+    (lambda arm: arm.solve().figure().save("shape.pdf"), "^path: .*svg or .png"),
+]
+
+
+@pytest.mark.parametrize(("call", "words"), CALLS)
+def test_calls(silicone: hs.Arm, call: Callable[[hs.Arm], object], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        call(silicone)
+
+
+def test_nothing_to_vary_is_one_row(silicone: hs.Arm) -> None:
+    many = hs.solve_many(silicone, tensions=[0.1, 0.0])
+    assert many.shape == () and many.tip_y.shape == () and many.stroke.shape == (2,)
+    assert hs.solve_many(silicone, flow_speed=[]).tip_x.shape == (0,)

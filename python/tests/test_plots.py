@@ -1,0 +1,59 @@
+"""Drawings on matplotlib's axes show what they should."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.patches import Polygon
+
+import hydrostat as hs
+
+
+def lines(ax: Axes) -> list[np.ndarray[tuple[int, ...], np.dtype[np.float64]]]:
+    return [np.asarray(line.get_xydata(), dtype=np.float64) for line in ax.get_lines()]
+
+
+def test_shape(silicone: hs.Arm) -> None:
+    solution = silicone.solve(tensions=[0.2, 0.0], flow_speed=0.1)
+    ax = solution.plot(sections=11, label="bent")
+    (body,) = [patch for patch in ax.patches if isinstance(patch, Polygon)]
+    outline = np.asarray(body.get_xy())
+    s = np.linspace(0.0, silicone.length, 240)
+    left, right = solution.surfaces(s)
+    assert np.allclose(outline[:240], 1e3 * left) and np.allclose(outline[240:480], 1e3 * right[::-1])
+    drawn = lines(ax)
+    # Sections, the centreline, two cables, the base.
+    assert len(drawn) == 11 + 1 + 2 + 1
+    assert any(np.allclose(line, 1e3 * solution.cable_path(0, s)) for line in drawn if line.shape == (240, 2))
+    assert ax.get_aspect() == 1.0
+    assert any("0.1 m/s" in text.get_text() for text in ax.texts)
+    assert ax.get_legend_handles_labels()[1] == ["bent"]
+    bare = silicone.solve().plot(plt.subplots()[1], sections=0, cables=False)
+    assert len(lines(bare)) == 2 and not bare.texts
+    plt.close("all")
+
+
+def test_strains(silicone: hs.Arm) -> None:
+    figure = silicone.solve(tensions=[0.1, 0.0]).plot_strains(label="0.1 N")
+    solution = silicone.solve(tensions=[0.2, 0.0])
+    assert solution.plot_strains(label="0.2 N", figure=figure) is figure
+    stretch, _, _, alpha = figure.axes
+    assert np.allclose(lines(stretch)[1][:, 1], solution.resampled(240).nu)
+    assert np.allclose(lines(alpha)[1][:, 1], np.degrees(solution.resampled(240).alpha))
+    plt.close("all")
+
+
+def test_paths_and_equilibria(facing: hs.Arm) -> None:
+    path = facing.path("arm.base.angle", 90, -90)
+    ax = path.plot("tip_theta")
+    whole, solid, *events = lines(ax)
+    assert np.allclose(whole[:, 1], np.degrees(path.branches[0].tip_theta))
+    unstable = np.array([state == "unstable" for state in path.branches[0].stability])
+    assert np.isnan(solid[unstable, 1]).all() and len(events) == 4
+    with pytest.raises(ValueError, match="quantity"):
+        path.plot("tip_z")
+    ax = facing.equilibria().plot()
+    assert len(ax.patches) == 5
+    plt.close("all")
