@@ -197,10 +197,12 @@ fn strokes_lead_back_to_tensions_on_the_grid() {
     round_trips(7);
 }
 
+type Change = fn(&mut hydrostat::Readings);
+
 /// The alternatives of `docs/model.md`, section 9, each alone, and all that the source's letter asks for.
 fn other_readings(thin: usize) {
     use hydrostat::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Volume, WettedLength};
-    let set: [(&str, fn(&mut Readings)); 8] = [
+    let set: [(&str, Change); 8] = [
         ("circular", |r| r.volume = Volume::Circular),
         ("none", |r| r.volume = Volume::None),
         ("lateral", |r| r.flow_surface = FlowSurface::Lateral),
