@@ -10,7 +10,7 @@ use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
 const PUBLISHED_CT: f64 = 0.03;
 
 /// Tips (over L) that are this near belong to the same shape on two meshes.
-const SAME: f64 = 1e-6;
+pub(crate) const SAME: f64 = 1e-6;
 
 /// How a solve is done.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -21,18 +21,22 @@
 //! Several shapes can have the same strokes. The one meant is the end of this path: loads and given tensions first,
 //! the commanded cables slack (section 7 of `docs/model.md`), then all commanded strokes in proportion, from
 //! those that the slack cables have there to those asked for. It is followed by arclength (`path/ramp`, `path/contact`)
-//! unless Newton's rounds from the tensions of a straight arm lead to a shape that nothing pushes hard against.
+//! unless Newton's rounds from the tensions of a straight arm lead to a shape that nothing pushes hard against. Where that path does not
+//! get away from its start, their shape also stands if the path of its tensions leads to it.
 
 use crate::arm::Arm;
 use crate::configuration::Configuration;
 use crate::engine::{First, Trouble};
 use crate::path::{Pace, Travelled, follow_strokes};
-use crate::solve::Solver;
+use crate::solve::{SAME, Solver};
 use crate::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
 /// Shares of the tensions of a straight arm from which the path of strokes may start: slack, unless that is in line with the
 /// stream, with kinks of the load all along it, from where the path does not get away.
 const STARTS: [f64; 4] = [0.0, 0.02, 0.2, 0.7];
+
+/// The fraction that a path of strokes has to reach to have got away from its start.
+const AWAY: f64 = 1e-4;
 
 /// Sweeps of the tensions that commanded strokes take in a straight arm.
 const SWEEPS: usize = 60;
@@ -53,6 +57,9 @@ impl Solver {
                 }
                 other => return other,
             }
+        }
+        if let Some(configuration) = self.solve_strokes_by_tensions(&arm) {
+            return Ok(configuration);
         }
         Err(first.unwrap_or_else(|| self.no_equilibrium(self.last_verdict(Some(0.0)))))
     }
@@ -81,19 +88,52 @@ impl Solver {
         Ok(configuration)
     }
 
+    /// The direct solve, where the path of the tensions that it finds leads to the same shape. An arm that lies in a fast stream has
+    /// kinks all along when its cables begin to pull, and the path of the strokes may not get past them.
+    fn solve_strokes_by_tensions(&mut self, arm: &Arm) -> Option<Configuration> {
+        // Loads that stretch the arm leave cables less to reel in than a straight arm would.
+        let slack = Self::new(&without_strokes(&with_tensions(arm, |_| 0.0)), self.options).ok()?.solve().ok()?;
+        let mut left = arm.clone();
+        for (cable, state) in left.cables.iter_mut().zip(&slack.cables) {
+            cable.stroke = cable.stroke.map(|stroke| stroke - state.stroke);
+        }
+        let guess = self.straight_tensions(&left);
+        let estimate = self.settle_strokes(arm, &guess).ok()?;
+        if self.engine.determinant().sign < 0.0 {
+            return None;
+        }
+        let found = self.read_strokes(estimate).ok()?;
+        let pulled = without_strokes(&with_tensions(arm, |c| found.cables[c].tension));
+        let led = Self::new(&pulled, self.options).ok()?.solve().ok()?;
+        let off = (led.tip().x - found.tip().x).hypot(led.tip().y - found.tip().y);
+        if off > SAME * arm.length {
+            self.forget();
+            return None;
+        }
+        Some(found)
+    }
+
     /// From the tensions that the strokes take in a straight arm without other loads.
     fn solve_strokes_directly(&mut self, arm: &Arm) -> Result<Configuration, Trouble> {
+        let estimate = self.settle_strokes(arm, &self.straight_tensions(arm))?;
+        if self.engine.may_have_left_the_branch() || self.engine.determinant().sign < 0.0 {
+            return Err(Trouble::Singular);
+        }
+        self.read_strokes(estimate)
+    }
+
+    /// Newton from the tensions `guess`, N.
+    fn settle_strokes(&mut self, arm: &Arm, guess: &[f64]) -> Result<f64, Trouble> {
         self.forget();
-        let guess = self.straight_tensions(arm);
         self.engine.on_a_path = false;
         self.engine.set_phase(Phase::Tension, 1.0);
         self.engine.set_loads(&with_tensions(arm, |c| guess[c]));
         self.engine.equations.hold_strokes();
         self.engine.start_from_cables(8)?;
-        let estimate = self.engine.settle(self.options.tol, First::Rough)?;
-        if self.engine.may_have_left_the_branch() || self.engine.determinant().sign < 0.0 {
-            return Err(Trouble::Singular);
-        }
+        self.engine.settle(self.options.tol, First::Rough)
+    }
+
+    fn read_strokes(&mut self, estimate: f64) -> Result<Configuration, Trouble> {
         let mut configuration = self.read(estimate, Travelled::default())?;
         configuration.tangential_factor = self.tangential_factor();
         self.keep(1.0);
@@ -150,7 +190,7 @@ impl Solver {
 
 /// Whether a path of strokes did not get away from its start.
 fn is_start(verdict: &Verdict) -> bool {
-    verdict.phase == Phase::Stroke && verdict.kind == VerdictKind::NotFound && verdict.load_fraction == 0.0
+    verdict.phase == Phase::Stroke && verdict.kind == VerdictKind::NotFound && verdict.load_fraction < AWAY
 }
 
 /// The arm with other tensions (N) of its commanded cables.
@@ -158,6 +198,15 @@ fn with_tensions(arm: &Arm, tension: impl Fn(usize) -> f64) -> Arm {
     let mut out = arm.clone();
     for (c, cable) in out.cables.iter_mut().enumerate().filter(|(_, cable)| cable.stroke.is_some()) {
         cable.tension = tension(c);
+    }
+    out
+}
+
+/// The arm with its tensions in place of commands.
+fn without_strokes(arm: &Arm) -> Arm {
+    let mut out = arm.clone();
+    for cable in out.cables.iter_mut().filter(|cable| cable.stroke.is_some()) {
+        (cable.stroke, cable.max_tension) = (None, None);
     }
     out
 }
