@@ -28,8 +28,8 @@ fn a_sweep_is_a_table_and_its_pictures() {
     assert_eq!(run.code, 0, "{}", run.err);
     let run = hydrostat_in(directory.path(), &["plot", "out.parquet"]);
     assert_eq!((run.code, run.out.as_str(), run.err.as_str()), (0, "", ""));
-    let written = ["out.csv", "out.map.png", "out.map.svg", "out.parquet", "out.workspace.png", "out.workspace.svg"];
-    assert_eq!(files(directory.path()), written);
+    let pictures = ["out.map.png", "out.map.svg", "out.parquet", "out.workspace.png", "out.workspace.svg"];
+    assert_eq!(files(directory.path()), [&["out.csv", "out.csv.json"][..], &pictures].concat());
     let read = |name: &str| std::fs::read(directory.path().join(name)).unwrap();
     let (width, height) = picture(&read("out.map.png"));
     assert!(width == 1875 && height > 1000);
@@ -38,11 +38,11 @@ fn a_sweep_is_a_table_and_its_pictures() {
     for text in ["flow.speed (cm/s)", "cable[0].tension (N)", "α(L) (°)", "data:image/png;base64,"] {
         assert!(map.contains(text), "{text}");
     }
-    // A CSV knows its keys by their columns; a single key gives a curve.
+    // What stands beside a CSV knows the units of its keys; a single key gives a curve.
     let args = ["plot", "out.csv", "--quantity", "fold_margin", "--over", "flow.speed", "--map", "curve.svg"];
     assert_eq!(hydrostat_in(directory.path(), &args).code, 0);
     let curve = String::from_utf8(read("curve.svg")).unwrap();
-    assert!(curve.contains("flow.speed (m/s)") && curve.contains("fold margin"), "{curve}");
+    assert!(curve.contains("flow.speed (cm/s)") && curve.contains("fold margin"), "{curve}");
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn rows_without_an_equilibrium_are_rows() {
         hydrostat_in(directory.path(), &["sweep", "silicone", "--vary", "cable[0].tension=1.2,1.4", "-o", "none.csv"]);
     assert_eq!((run.code, run.out.as_str()), (3, ""));
     assert!(run.err.contains("none.csv: 2 rows of silicone, 0 with an answer"), "{}", run.err);
-    assert_eq!(files(directory.path()), ["none.csv", "out.csv"]);
+    assert_eq!(files(directory.path()), ["none.csv", "none.csv.json", "out.csv", "out.csv.json"]);
 }
 
 #[test]
@@ -131,7 +131,7 @@ fn outputs_that_are_there_and_plots_that_cannot_be() {
         refused(&[&over[..], &["--quantity", "tip_z"]].concat()).contains("expected one of row, flow.speed_m_per_s")
     );
     assert!(refused(&[&over[..], &["--map", "nowhere/a.svg"]].concat()).contains("cannot write nowhere/a.svg"));
-    assert_eq!(files(here), ["out.csv", "three.csv"]);
+    assert_eq!(files(here), ["out.csv", "three.csv", "three.csv.json"]);
 }
 
 /// A disk that takes no more: what is written stops at a limit that the shell sets.
