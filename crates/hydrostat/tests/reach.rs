@@ -55,3 +55,167 @@ fn tips_are_reached_again() {
         assert!(all >= 24 && met == all, "{met} of {all}");
     }
 }
+
+/// The nearest of a fine scan of the tensions is no nearer than what is found.
+#[test]
+fn what_is_out_of_reach_is_met_as_nearly_as_a_scan_says() {
+    const MOST: f64 = 0.4;
+    let arm = cone();
+    let scan: Vec<[f64; 2]> = (0..=20)
+        .flat_map(|a| (0..=20).map(move |b| [MOST * f64::from(a) / 20.0, MOST * f64::from(b) / 20.0]))
+        .filter_map(|tensions| target_of(&arm, &tensions).map(|tip| [tip.x, tip.y]))
+        .collect();
+    assert!(scan.len() > 400);
+    for (x, y) in [(0.30, 0.02), (0.20, 0.20), (0.10, -0.20), (0.05, 0.0), (-0.1, 0.1)] {
+        let found = arm.reach(&[Target::tip(x, y)], &options(MOST)).unwrap();
+        assert!(found.solutions.is_empty(), "({x}, {y}) m is reached");
+        let closest = found.closest.unwrap();
+        let nearest = scan.iter().map(|tip| (tip[0] - x).hypot(tip[1] - y)).fold(f64::INFINITY, f64::min);
+        let distance = closest.distance * arm.length;
+        println!("({x}, {y}): {distance} for {nearest}, {:?}", closest.bounds);
+        assert!(distance < nearest + 1e-6, "({x}, {y}): {distance} m for {nearest} m");
+        assert!(!closest.bounds.is_empty());
+    }
+    // Straight ahead, too far: nothing pulls.
+    let ahead = arm.reach(&[Target::tip(0.3, 0.0)], &options(MOST)).unwrap().closest.unwrap();
+    assert_eq!(ahead.bounds, [Bound::Slack(0), Bound::Slack(1)]);
+}
+
+/// Three cables and a place leave one freedom: least effort against a scan of one of the tensions.
+#[test]
+fn three_cables_take_the_least_effort() {
+    let mut arm = cone();
+    let mut short = Cable::new("short", Profile::linear(0.006, 0.003));
+    short.end = 0.6;
+    arm.cables.push(short);
+    let target = target_of(&arm, &[0.15, 0.1, 0.25]).unwrap();
+    let found = arm.reach(&[target], &options(1.0)).unwrap();
+    let best = &found.solutions[0];
+    println!("{:?} {}", best.tensions, best.effort);
+    let mut least = f64::INFINITY;
+    for k in 0..=120 {
+        // What is left of the effort with the short cable at a given tension.
+        let given = 0.005 * f64::from(k);
+        if let Some(effort) = effort_with_third(&arm, target, given) {
+            least = least.min(effort);
+        }
+    }
+    println!("scan {least}");
+    assert!(least.is_finite() && best.effort <= least * (1.0 + 1e-6), "{} for {least}", best.effort);
+    assert!(best.effort > 0.98 * least, "{} for {least}: the scan is too coarse", best.effort);
+}
+
+/// Newton by differences on the first two tensions.
+fn effort_with_third(arm: &Arm, target: Target, third: f64) -> Option<f64> {
+    let mut solver = Solver::new(arm, Options { tol: 1e-9 }).ok()?;
+    let mut tip = |t: [f64; 2]| {
+        solver.set_tensions(&[t[0], t[1], third]).ok()?;
+        let tip = solver.update().ok()?.tip;
+        Some([tip.x - target.x, tip.y - target.y])
+    };
+    let mut t = [0.15, 0.1];
+    for _ in 0..25 {
+        let here = tip(t)?;
+        if here[0].hypot(here[1]) < 1e-8 {
+            return Some(t[0] * t[0] + t[1] * t[1] + third * third);
+        }
+        let h = 1e-5;
+        let (a, b) = (tip([t[0] + h, t[1]])?, tip([t[0], t[1] + h])?);
+        let j = [[(a[0] - here[0]) / h, (b[0] - here[0]) / h], [(a[1] - here[1]) / h, (b[1] - here[1]) / h]];
+        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+        let step = [(j[1][1] * here[0] - j[0][1] * here[1]) / det, (j[0][0] * here[1] - j[1][0] * here[0]) / det];
+        let share = (0.05 / step[0].hypot(step[1])).min(1.0);
+        t = [t[0] - share * step[0], t[1] - share * step[1]];
+        if t.iter().any(|t| *t < 0.0) {
+            return None;
+        }
+    }
+    None
+}
+
+#[test]
+fn a_station_an_angle_and_several_markers_are_reached() {
+    let mut arm = cone();
+    arm.cables.push(Cable::new("third", Profile::linear(0.006, -0.003)));
+    arm.set_tensions(&[0.2, 0.1, 0.15]).unwrap();
+    let shape = arm.solve().unwrap();
+    let (tip, middle) = (shape.tip(), shape.at(0.15));
+    let at_middle = Target { s: Some(0.15), ..Target::tip(middle.x, middle.y) };
+    let turned = Target { angle: Some(tip.theta), ..Target::tip(tip.x, tip.y) };
+    for targets in [vec![at_middle], vec![turned], vec![at_middle, Target { weight: 2.0, ..Target::tip(tip.x, tip.y) }]]
+    {
+        let found = arm.reach(&targets, &options(0.6)).unwrap();
+        let back =
+            &found.solutions.first().unwrap_or_else(|| panic!("{targets:?}: {:?}", found.closest.map(|c| c.distance)));
+        let shape = &back.configuration;
+        for target in &targets {
+            let place = shape.at(target.s.unwrap_or(arm.length));
+            assert!((place.x - target.x).hypot(place.y - target.y) < 2e-8 * arm.length);
+            assert!(target.angle.is_none_or(|angle| (place.theta - angle).abs() < 2e-8));
+        }
+    }
+}
+
+#[test]
+fn a_path_of_targets_is_followed() {
+    let mut arm = cone();
+    arm.flow.speed = 0.1;
+    arm.flow.direction = 1.0;
+    arm.set_tensions(&[0.3, 0.1]).unwrap();
+    let tip = arm.solve().unwrap().tip();
+    let mut follower = Follower::new(&arm, &[Target::tip(tip.x, tip.y)], &options(0.6)).unwrap();
+    let mut solves = 0;
+    for k in 1..=100 {
+        let angle = f64::from(k) * std::f64::consts::TAU / 100.0;
+        // The middle of the circle lies where both cables still pull.
+        let target = Target::tip(tip.x - 0.006 * (1.0 - angle.cos()), tip.y + 0.006 * angle.sin());
+        let found = follower.follow(&[target]).unwrap();
+        solves += found.solves;
+        assert!(found.reached && !found.jumped, "{k}: {found:?}");
+        let mut there = arm.clone();
+        there.set_tensions(&found.tensions).unwrap();
+        let own = there.solve().unwrap().tip();
+        assert!((own.x - target.x).hypot(own.y - target.y) < 2e-8 * arm.length, "{k}");
+    }
+    println!("{solves} solves for 100 targets");
+    assert!(solves <= 400, "{solves}");
+}
+
+#[test]
+fn wrong_requests_are_refused() {
+    let arm = cone();
+    let target = [Target::tip(0.2, 0.05)];
+    assert!(matches!(arm.reach(&[], &options(1.0)), Err(ReachError::Target)));
+    assert!(matches!(arm.reach(&[Target::tip(f64::NAN, 0.0)], &options(1.0)), Err(ReachError::Target)));
+    assert!(matches!(arm.reach(&target, &options(-1.0)), Err(ReachError::Option { option: "max_tension", .. })));
+    let loose = ReachOptions { tol: 1.0, ..options(1.0) };
+    assert!(matches!(arm.reach(&target, &loose), Err(ReachError::Option { option: "tol", .. })));
+    let off = [Target { s: Some(0.3), ..target[0] }];
+    assert!(matches!(arm.reach(&off, &options(1.0)), Err(ReachError::Sensitivity(_))));
+    let bare = Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5);
+    assert!(matches!(bare.reach(&target, &options(1.0)), Err(ReachError::NoCables)));
+}
+
+#[test]
+fn follow_tmp() {
+    let mut arm = cone();
+    arm.flow.speed = 0.1;
+    arm.flow.direction = 1.0;
+    arm.set_tensions(&[0.3, 0.1]).unwrap();
+    let tip = arm.solve().unwrap().tip();
+    let mut follower = Follower::new(&arm, &[Target::tip(tip.x, tip.y)], &options(0.6)).unwrap();
+    let mut times: Vec<f64> = (1..=400)
+        .map(|k| {
+            let angle = f64::from(k) * std::f64::consts::TAU / 400.0;
+            let target = Target::tip(tip.x - 0.006 * (1.0 - angle.cos()), tip.y + 0.006 * angle.sin());
+            let t = std::time::Instant::now();
+            follower.follow(&[target]).unwrap();
+            t.elapsed().as_secs_f64() * 1e6
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    println!("follow: median {:.0} us, 90 % {:.0}, largest {:.0}", times[200], times[360], times[399]);
+    let t = std::time::Instant::now();
+    arm.reach(&[Target::tip(tip.x, tip.y)], &options(0.6)).unwrap();
+    println!("reach: {:.1} ms", t.elapsed().as_secs_f64() * 1e3);
+}
