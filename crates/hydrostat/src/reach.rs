@@ -29,6 +29,9 @@ const SAME: f64 = 1e-6;
 /// The longest step: how far it moves what has a target, over L, to first order.
 const LONGEST: f64 = 0.3;
 
+/// Tolerance of solves over the distance at which a target is reached.
+const SOLVED: f64 = 0.3;
+
 /// Change of the tensions, over their scale, at which least effort and least distance are found.
 const STILL: f64 = 1e-9;
 
@@ -312,8 +315,7 @@ impl Search {
         for attempt in 0.. {
             let mut arm = self.arm.clone();
             arm.set_tensions(&tensions).map_err(SolveError::from)?;
-            // A tenth of the distance that counts as none.
-            let mut solver = Solver::new(&arm, Options { tol: (0.1 * self.tol).clamp(1e-11, 1e-8) })?;
+            let mut solver = Solver::new(&arm, Options { tol: (SOLVED * self.tol).clamp(1e-11, 1e-6) })?;
             match solver.update() {
                 Ok(_) => {
                     let length = self.arm.length;
@@ -431,13 +433,19 @@ impl Search {
         let scaled: Vec<Vec<f64>> =
             jacobian.iter().zip(&self.scale).map(|(column, s)| column.iter().map(|v| v * s).collect()).collect();
         let size = scaled.iter().map(|column| dot(column, column)).fold(f64::MIN_POSITIVE, f64::max);
-        let mut fixed = vec![false; n];
+        // Only what would leave its bound downhill stays there.
+        let downhill = |c: usize| -dot(&scaled[c], &state.rest);
+        let on_bound = |c: usize| match downhill(c) {
+            slope if slope < 0.0 => state.tensions[c] <= 0.0,
+            _ => state.tensions[c] >= self.most[c],
+        };
+        let mut fixed: Vec<bool> = (0..n).map(on_bound).collect();
         let mut next = state.tensions.clone();
         for _ in 0..=n {
             let free: Vec<usize> = (0..n).filter(|c| !fixed[*c]).collect();
             let row = |a: &usize| {
                 let by = free.iter().map(|b| dot(&scaled[*a], &scaled[*b]) + if a == b { damping * size } else { 0.0 });
-                (by.collect(), [-dot(&scaled[*a], &state.rest), 0.0])
+                (by.collect(), [downhill(*a), 0.0])
             };
             let Some((step, _)) = solved(free.iter().map(row).collect()) else { return next };
             let mut longest = 0.0_f64;
@@ -450,8 +458,7 @@ impl Search {
             for (c, [d, _]) in free.iter().zip(&step) {
                 let wanted = state.tensions[*c] + share * d * self.scale[*c];
                 next[*c] = wanted.clamp(0.0, self.most[*c]);
-                let on_bound = state.tensions[*c] == next[*c];
-                if wanted != next[*c] && on_bound {
+                if wanted != next[*c] && state.tensions[*c] == next[*c] && !stopped {
                     (fixed[*c], stopped) = (true, true);
                 }
             }

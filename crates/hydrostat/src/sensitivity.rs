@@ -344,8 +344,10 @@ pub(crate) enum Quantity {
     Theta(usize),
     /// alpha (rad) at a node.
     Alpha(usize),
-    /// The stroke (m) of a cable.
+    /// The length (m) of the path of a cable less than at the reference strains.
     Stroke(usize),
+    /// What has to be reeled in (m) of a cable for that, its own stretch aside.
+    Command(usize),
 }
 
 /// Quantities of a pose.
@@ -395,7 +397,7 @@ impl Engine {
         let mut sources = parameters.to_vec();
         sources.extend(taut.iter().map(|c| Parameter::Tension(*c)));
         let mut all = quantities.to_vec();
-        all.extend(taut.iter().map(|c| Quantity::Stroke(*c)));
+        all.extend(taut.iter().map(|c| Quantity::Command(*c)));
         let mut rows = self.unheld_derivatives(&all, &sources, method)?;
 
         let count = parameters.len();
@@ -471,7 +473,8 @@ impl Engine {
             Quantity::Position(node, q) => (linear.position(node, q), length),
             Quantity::Theta(node) => (Linear::state(node, 0), 1.0),
             Quantity::Alpha(node) => (self.alpha_row(linear, node, sources, &mut direct)?, 1.0),
-            Quantity::Stroke(c) => {
+            Quantity::Stroke(c) => (linear.length(equations, c, -1.0), length),
+            Quantity::Command(c) => {
                 let [_, by_length, by_tension] = equations.stroke(c, &self.system.gauss.b);
                 for (direct, source) in direct.iter_mut().zip(sources) {
                     if *source == Parameter::Tension(c) {

@@ -136,7 +136,7 @@ fn effort_with_third(arm: &Arm, target: Target, third: f64) -> Option<f64> {
 #[test]
 fn a_station_an_angle_and_several_markers_are_reached() {
     let mut arm = cone();
-    arm.cables.push(Cable::new("third", Profile::linear(0.006, -0.003)));
+    arm.cables.push(Cable::new("third", Profile::linear(0.006, -0.001)));
     arm.set_tensions(&[0.2, 0.1, 0.15]).unwrap();
     let shape = arm.solve().unwrap();
     let (tip, middle) = (shape.tip(), shape.at(0.15));
@@ -156,29 +156,50 @@ fn a_station_an_angle_and_several_markers_are_reached() {
     }
 }
 
+/// Targets on a loop, which tensions on a circle lead to.
+fn loop_of_targets(arm: &Arm, count: u32) -> Vec<Target> {
+    (0..=count)
+        .map(|k| {
+            let angle = f64::from(k) * std::f64::consts::TAU / f64::from(count);
+            target_of(arm, &[0.25 + 0.1 * angle.cos(), 0.2 + 0.1 * angle.sin()]).unwrap()
+        })
+        .collect()
+}
+
 #[test]
 fn a_path_of_targets_is_followed() {
     let mut arm = cone();
     arm.flow.speed = 0.1;
     arm.flow.direction = 1.0;
-    arm.set_tensions(&[0.3, 0.1]).unwrap();
-    let tip = arm.solve().unwrap().tip();
-    let mut follower = Follower::new(&arm, &[Target::tip(tip.x, tip.y)], &options(0.6)).unwrap();
+    let targets = loop_of_targets(&arm, 100);
+    arm.set_tensions(&[0.35, 0.2]).unwrap();
+    let mut follower = Follower::new(&arm, &targets[..1], &options(0.6)).unwrap();
     let mut solves = 0;
-    for k in 1..=100 {
-        let angle = f64::from(k) * std::f64::consts::TAU / 100.0;
-        // The middle of the circle lies where both cables still pull.
-        let target = Target::tip(tip.x - 0.006 * (1.0 - angle.cos()), tip.y + 0.006 * angle.sin());
-        let found = follower.follow(&[target]).unwrap();
+    for (k, target) in targets.iter().enumerate() {
+        let found = follower.follow(&[*target]).unwrap();
         solves += found.solves;
         assert!(found.reached && !found.jumped, "{k}: {found:?}");
-        let mut there = arm.clone();
-        there.set_tensions(&found.tensions).unwrap();
-        let own = there.solve().unwrap().tip();
-        assert!((own.x - target.x).hypot(own.y - target.y) < 2e-8 * arm.length, "{k}");
+        let angle = k as f64 * std::f64::consts::TAU / 100.0;
+        let (left, right) = (0.25 + 0.1 * angle.cos(), 0.2 + 0.1 * angle.sin());
+        assert!((found.tensions[0] - left).hypot(found.tensions[1] - right) < 1e-5, "{k}: {found:?}");
     }
     println!("{solves} solves for 100 targets");
     assert!(solves <= 400, "{solves}");
+}
+
+/// A target that leaps to where the arm has to uncurl: whatever it ends with, it is not silent about a miss.
+#[test]
+fn a_target_that_cannot_be_followed_is_said() {
+    let mut arm = cone();
+    arm.set_tensions(&[0.3, 0.1]).unwrap();
+    let start = target_of(&arm, &[0.3, 0.1]).unwrap();
+    let mut follower = Follower::new(&arm, &[start], &options(0.5)).unwrap();
+    let found = follower.follow(&[Target::tip(0.5, 0.0)]).unwrap();
+    assert!(!found.reached && found.distance > 1.0, "{found:?}");
+    let back = follower.follow(&[start]).unwrap();
+    assert!(back.reached, "{back:?}");
+    let station = [Target { s: Some(0.1), ..start }];
+    assert!(matches!(follower.follow(&station), Err(ReachError::Target)));
 }
 
 #[test]
@@ -201,21 +222,18 @@ fn follow_tmp() {
     let mut arm = cone();
     arm.flow.speed = 0.1;
     arm.flow.direction = 1.0;
-    arm.set_tensions(&[0.3, 0.1]).unwrap();
-    let tip = arm.solve().unwrap().tip();
-    let mut follower = Follower::new(&arm, &[Target::tip(tip.x, tip.y)], &options(0.6)).unwrap();
-    let mut times: Vec<f64> = (1..=400)
-        .map(|k| {
-            let angle = f64::from(k) * std::f64::consts::TAU / 400.0;
-            let target = Target::tip(tip.x - 0.006 * (1.0 - angle.cos()), tip.y + 0.006 * angle.sin());
+    let targets = loop_of_targets(&arm, 400);
+    arm.set_tensions(&[0.35, 0.2]).unwrap();
+    let mut follower = Follower::new(&arm, &targets[..1], &options(0.6)).unwrap();
+    let mut solves = 0;
+    let mut times: Vec<f64> = targets
+        .iter()
+        .map(|target| {
             let t = std::time::Instant::now();
-            follower.follow(&[target]).unwrap();
+            solves += follower.follow(&[*target]).unwrap().solves;
             t.elapsed().as_secs_f64() * 1e6
         })
         .collect();
     times.sort_by(f64::total_cmp);
-    println!("follow: median {:.0} us, 90 % {:.0}, largest {:.0}", times[200], times[360], times[399]);
-    let t = std::time::Instant::now();
-    arm.reach(&[Target::tip(tip.x, tip.y)], &options(0.6)).unwrap();
-    println!("reach: {:.1} ms", t.elapsed().as_secs_f64() * 1e3);
+    println!("follow: median {:.0} us, 90 % {:.0}, largest {:.0}, solves {solves}", times[200], times[360], times[400]);
 }
