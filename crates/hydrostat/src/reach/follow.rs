@@ -105,11 +105,8 @@ impl Follower {
             solves += 1;
             let solver = &mut self.state.solver;
             let moved = solver.set_tensions(&next).and_then(|()| solver.update());
-            let rest = match moved {
-                Ok(_) => self.search.rest(solver),
-                Err(_) => vec![f64::INFINITY],
-            };
-            if !(dot(&rest, &rest).sqrt() < before) {
+            let rest = moved.ok().map(|_| self.search.rest(solver));
+            let Some(rest) = rest.filter(|rest| dot(rest, rest).sqrt() < before) else {
                 // No nearer: back, with the jacobian of here, and shorter steps.
                 solver.set_tensions(&kept)?;
                 solver.update()?;
@@ -117,7 +114,7 @@ impl Follower {
                 self.renew()?;
                 fresh = true;
                 continue;
-            }
+            };
             // Where the derivatives lead, and by how much they were off: Broyden's update.
             let off: Vec<f64> = (0..rest.len())
                 .map(|r| {
