@@ -41,13 +41,16 @@ fn held() -> Arm {
     arm
 }
 
-/// The source's arm, whose coefficients are given, as a homogeneous one of the same stretch and bending at the base.
-fn paper() -> Arm {
-    let mut arm = Arm::cone(0.2, 0.010, 0.0008, 500e3, 0.5);
+/// An arm whose coefficients are given, as stiff as the source's, with a thicker tip: that of the source's arm leaves solves an error of
+/// 1e-8 of the length whatever is asked for, and differences of them no digits to compare with.
+fn stiff() -> Arm {
+    let mut arm = Arm::cone(0.2, 0.010, 0.003, 500e3, 0.5);
     arm.material = Material::Coefficients { c1: 500e3.into(), c2: (500e3 / 3.0).into(), c3: 150.0.into() };
-    arm.cables.push(Cable::new("left", Profile::linear(0.008, 0.0001)).pulled(20.0));
-    arm.cables.push(Cable::new("right", Profile::linear(-0.008, -0.0001)));
+    arm.cables.push(Cable::new("left", Profile::linear(0.008, 0.002)).pulled(2.0));
+    arm.cables.push(Cable::new("right", Profile::linear(-0.008, -0.002)).pulled(0.5));
     arm.flow.speed = 0.5;
+    // Not along the base, where a kink of the load would come and go with every parameter.
+    arm.flow.direction = 0.3;
     arm
 }
 
@@ -81,7 +84,7 @@ fn scale(parameter: Parameter, value: f64) -> f64 {
         Parameter::Tension(_) => 0.05 * value.abs().max(0.1),
         Parameter::Stroke(_) => 1e-4,
         Parameter::TipForce(_) | Parameter::TipFollower(_) => 5e-4,
-        Parameter::TipMoment => 2e-5,
+        Parameter::TipMoment => 4e-6,
         Parameter::FlowDirection | Parameter::GravityDirection | Parameter::BaseAngle => 0.05,
         Parameter::FlowSpeed => 0.01,
         Parameter::Poisson => 0.08,
@@ -150,7 +153,7 @@ fn kind(k: usize, cables: usize) -> usize {
 fn sensitivities_match_extrapolated_differences_of_solves() {
     let mut worst_of_all = 0.0_f64;
     for (name, arm) in
-        [("cone", cone()), ("loaded", loaded()), ("held", held()), ("paper", paper()), ("literal", literal())]
+        [("cone", cone()), ("loaded", loaded()), ("held", held()), ("stiff", stiff()), ("literal", literal())]
     {
         let s = 0.55 * arm.length;
         let exact = sensitivities(&arm, TIGHT, s, SensitivityMethod::Best);
@@ -177,9 +180,7 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
             let worst = want.iter().zip(exact).enumerate().map(off).fold(0.0, f64::max);
             println!("{name} {parameter}: {worst:.1e} of {sizes:?}");
             worst_of_all = worst_of_all.max(worst);
-            // The thin tip of the source's arm leaves solves, and so their differences, a digit less.
-            let bound = if name == "paper" { 1e-7 } else { 1e-8 };
-            assert!(worst < bound, "{name} {parameter}: {worst:e} off");
+            assert!(worst < 1e-8, "{name} {parameter}: {worst:e} off");
         }
     }
     println!("worst {worst_of_all:e}");
@@ -187,7 +188,7 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
 
 #[test]
 fn forward_and_adjoint_agree() {
-    for arm in [loaded(), held(), paper(), literal()] {
+    for arm in [loaded(), held(), stiff(), literal()] {
         let s = 0.3 * arm.length;
         let forward = sensitivities(&arm, Options::default(), s, SensitivityMethod::Forward);
         let adjoint = sensitivities(&arm, Options::default(), s, SensitivityMethod::Adjoint);
@@ -238,7 +239,7 @@ fn what_has_no_derivative_is_refused() {
         |arm: &Arm, parameter| Solver::new(arm, Options::default()).unwrap().sensitivities(&[parameter]).err();
     assert!(matches!(refused(&held(), Parameter::Tension(0)), Some(SensitivityError::Commanded(0))));
     assert!(matches!(refused(&cone(), Parameter::Stroke(1)), Some(SensitivityError::NotCommanded(1))));
-    assert!(matches!(refused(&paper(), Parameter::Young), Some(SensitivityError::Unfit(_))));
+    assert!(matches!(refused(&stiff(), Parameter::Young), Some(SensitivityError::Unfit(_))));
     assert!(matches!(refused(&cone(), Parameter::Tension(2)), Some(SensitivityError::Unfit(_))));
     let mut rubbing = cone();
     rubbing.cables[0].friction = 0.1;
