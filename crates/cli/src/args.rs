@@ -3,6 +3,7 @@
 mod equilibria;
 mod path;
 mod plot;
+mod reach;
 mod sweep;
 
 use std::path::PathBuf;
@@ -12,6 +13,7 @@ use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 pub(crate) use equilibria::{EquilibriaArgs, Over};
 pub(crate) use path::PathArgs;
 pub(crate) use plot::PlotArgs;
+pub(crate) use reach::ReachArgs;
 pub(crate) use sweep::SweepArgs;
 
 const EXIT: &str = "\
@@ -36,6 +38,7 @@ Examples:
   hydrostat path silicone --vary cable[0].tension=0:1   follow the shapes as a tension rises
   hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
                                                         all shapes under the same loads
+  hydrostat reach silicone --target 0.15,0.12           the tensions that bring the tip there
   hydrostat sweep paper --vary flow.speed=0:1:101 --vary cable[0].tension=0:80:101 -o out.parquet
   hydrostat solve my.toml --format csv --stations 101 -o my.csv";
 
@@ -58,6 +61,8 @@ pub(crate) enum Command {
     Path(PathArgs),
     /// Find all equilibria under the same loads, with their stability
     Equilibria(EquilibriaArgs),
+    /// Find the tensions that bring the tip to a place
+    Reach(ReachArgs),
     /// Solve an arm over grids, lists or samples of any keys of its file, into Parquet or CSV
     Sweep(SweepArgs),
     /// Draw a sweep: a map over two keys, and where the tip goes

@@ -8,6 +8,7 @@ mod limits;
 pub(crate) mod main_job;
 pub(crate) mod path;
 pub(crate) mod plot;
+pub(crate) mod reach;
 pub(crate) mod solve;
 mod summary;
 pub(crate) mod sweep;

@@ -3,7 +3,7 @@
 use std::io;
 use std::process::ExitCode;
 
-use hydrostat::{PathError, SolveError};
+use hydrostat::{PathError, ReachError, SensitivityError, SolveError};
 use hydrostat_figures::source::StudyError;
 use hydrostat_files::{FileError, WriteError};
 use hydrostat_sweep::SweepError;
@@ -65,6 +65,17 @@ fn code(error: &anyhow::Error) -> u8 {
         {
             return WRONG_REQUEST;
         }
+        if let Some(
+            ReachError::NoCables
+            | ReachError::Target
+            | ReachError::Option { .. }
+            | ReachError::Sensitivity(
+                SensitivityError::Rubbing | SensitivityError::Support | SensitivityError::Station { .. },
+            ),
+        ) = cause.downcast_ref()
+        {
+            return WRONG_REQUEST;
+        }
         // Whatever a sweep cannot do is wrong with its request: keys, values, options, files.
         if matches!(cause.downcast_ref(), Some(error) if !matches!(error, SweepError::Threads(_))) {
             return WRONG_REQUEST;
@@ -86,7 +97,10 @@ fn advice(error: &anyhow::Error) -> Option<&'static str> {
 fn solve_error<'a>(cause: &'a (dyn std::error::Error + 'static)) -> Option<&'a SolveError> {
     match cause.downcast_ref::<StudyError>() {
         Some(StudyError::Solve { source, .. }) => Some(source),
-        _ => cause.downcast_ref::<SolveError>(),
+        _ => match cause.downcast_ref::<ReachError>() {
+            Some(ReachError::Solve(source)) => Some(source),
+            _ => cause.downcast_ref::<SolveError>(),
+        },
     }
 }
 

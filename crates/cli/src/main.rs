@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         Some(Command::Solve(args)) => command::solve::run(&args),
         Some(Command::Path(args)) => command::path::run(&args),
         Some(Command::Equilibria(args)) => command::equilibria::run(&args),
+        Some(Command::Reach(args)) => command::reach::run(&args),
         Some(Command::Sweep(args)) => command::sweep::run(&args),
         Some(Command::Plot(args)) => command::plot::run(&args),
         Some(Command::Figures(args)) => command::figures::run(&args),

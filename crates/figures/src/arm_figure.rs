@@ -15,6 +15,8 @@ const SECTIONS: usize = 41;
 const MAX_HEIGHT: f64 = 400.0;
 /// Length of the arrows at the tip, points.
 const ARROW: f64 = 26.0;
+/// Half the width of the cross at a target, points.
+const CROSS: f64 = 4.0;
 
 /// A configuration drawn to scale: surface, section lines, centreline, cables as wide as they are
 /// tight (slack ones thin and dashed), directors and tangent at the tip with alpha(L), the stream
@@ -28,6 +30,17 @@ const ARROW: f64 = 26.0;
 /// assert_eq!(&figure.png().unwrap()[1..4], b"PNG");
 /// ```
 pub fn arm_figure(configuration: &Configuration, note: Option<&str>) -> Scene {
+    reach_figure(configuration, &[], note)
+}
+
+/// [`arm_figure`] with a cross at every target (m).
+///
+/// ```
+/// let configuration = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
+/// let plain = hydrostat_figures::arm_figure(&configuration, None).svg();
+/// assert!(hydrostat_figures::reach_figure(&configuration, &[[0.1, 0.05]], None).svg().len() > plain.len());
+/// ```
+pub fn reach_figure(configuration: &Configuration, targets: &[[f64; 2]], note: Option<&str>) -> Scene {
     let arm = &configuration.arm;
     let outline = Outline::new(configuration, SECTIONS);
     let strokes = cable_strokes(configuration);
@@ -42,7 +55,7 @@ pub fn arm_figure(configuration: &Configuration, note: Option<&str>) -> Scene {
     let legend = legend(configuration, &strokes);
     let frame_top = top + legend.height() + 6.0;
 
-    let axes = axes_around(&outline, configuration.tip().theta, frame_top);
+    let axes = axes_around(&outline, targets, configuration.tip().theta, frame_top);
 
     let title = format!("{}: static shape", arm.name);
     let mut scene = Scene::new(WIDTH, axes.frame.bottom + BELOW + MARGIN, title);
@@ -65,6 +78,14 @@ pub fn arm_figure(configuration: &Configuration, note: Option<&str>) -> Scene {
 
     let mut page = Occupied::new(axes.frame.grown(-3.0));
     outline.occupy(&mut page, &axes);
+    for target in targets {
+        let [x, y] = axes.at(target.map(|v| 1e3 * v));
+        for [dx, dy] in [[CROSS, CROSS], [CROSS, -CROSS]] {
+            let stroke = [[x - dx, y - dy], [x + dx, y + dy]];
+            scene.line(&stroke, Stroke::solid(series(0), 1.2));
+            page.add_line(&stroke);
+        }
+    }
     draw_tip(&mut scene, configuration, axes.at(outline.tip()), &mut page);
     scene
 }
@@ -75,7 +96,7 @@ pub(crate) fn fitting(label: &Label, size: f64) -> f64 {
 }
 
 /// Axes that show the arm and the arrows at its tip.
-fn axes_around(outline: &Outline, theta: f64, top: f64) -> Axes {
+fn axes_around(outline: &Outline, targets: &[[f64; 2]], theta: f64, top: f64) -> Axes {
     let width = WIDTH - LEFT - MARGIN;
     let [x, y] = outline.bounds();
     let extent = (x[1] - x[0]).max(y[1] - y[0]);
@@ -86,8 +107,9 @@ fn axes_around(outline: &Outline, theta: f64, top: f64) -> Axes {
     let arrows = ends.map(|angle| [tip_x + arrow * angle.cos(), tip_y + arrow * angle.sin()]);
     let pad = 0.05 * extent;
     let grown = |range: [f64; 2], axis: usize| {
-        let low = arrows.iter().map(|p| p[axis]).fold(range[0] - pad, f64::min);
-        let high = arrows.iter().map(|p| p[axis]).fold(range[1] + pad, f64::max);
+        let marks = || targets.iter().map(|p| 1e3 * p[axis]);
+        let low = arrows.iter().map(|p| p[axis]).chain(marks().map(|v| v - pad)).fold(range[0] - pad, f64::min);
+        let high = arrows.iter().map(|p| p[axis]).chain(marks().map(|v| v + pad)).fold(range[1] + pad, f64::max);
         [low, high]
     };
     Axes::equal(LEFT, top, width, [110.0, MAX_HEIGHT], grown(x, 0), grown(y, 1))

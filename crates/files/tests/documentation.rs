@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hydrostat::VerdictKind::{CableFold, LimitPoint, LoadJump, NoSectionSolution, NotFound, SectionCrushed};
 use hydrostat::parameter::names;
-use hydrostat::{Arm, Cable, Event, PathEnd, PathOptions, Phase, Stations};
+use hydrostat::{Arm, Cable, Event, PathEnd, PathOptions, Phase, Reach, ReachOptions, Stations, Target};
 use hydrostat_files::{
-    ArmFile, Dimension, EquilibriaDocument, OverDocument, PathDocument, Varied, over_csv, path_csv, schema,
-    stations_csv,
+    ArmFile, Dimension, EquilibriaDocument, OverDocument, PathDocument, ReachDocument, Varied, over_csv, path_csv,
+    reach_csv, schema, stations_csv,
 };
 use serde_json::Value;
 
@@ -131,6 +131,10 @@ fn path_header() -> String {
     path_csv(&path, &varied).lines().next().unwrap().to_owned() + "\n"
 }
 
+fn reach_header() -> String {
+    reach_csv(1, &Reach { solutions: Vec::new(), closest: None })
+}
+
 fn over_header() -> String {
     over_csv(1, &pulled().1, &[])
 }
@@ -142,14 +146,18 @@ fn its_keys_are_those_of_the_documents() {
     let path = arm.path(varied.parameter, varied.range, &PathOptions::default()).unwrap();
     let all = arm.equilibria(1e-6).unwrap();
     let searches = [(0.0, Ok(all.clone())), (0.01, Err("none".to_owned()))];
+    let far = Target::tip(0.3, 0.0);
+    let found = arm.reach(&[far], &ReachOptions { max_tension: Some(0.1), ..ReachOptions::default() }).unwrap();
     let documents = [
         serde_json::to_value(PathDocument::new(&path, &varied).unwrap()).unwrap(),
         serde_json::to_value(EquilibriaDocument::new(&arm, &all)).unwrap(),
         serde_json::to_value(OverDocument::new(&arm, &varied, &searches)).unwrap(),
+        serde_json::to_value(ReachDocument::new(&arm, &found)).unwrap(),
     ];
     let here = PAGE.split_once("## `--format json`").unwrap().1;
     let mut inner = vec![&documents[0]["branches"][0], &documents[0]["branches"][0]["points"][0]];
     inner.extend([&documents[1]["equilibria"][0]["stability"], &documents[2]["values"][0]]);
+    inner.extend([&documents[3]["closest"], &documents[3]["closest"]["bounds"][0]]);
     for document in documents.iter().chain(inner) {
         for key in document.as_object().unwrap().keys() {
             assert!(here.contains(&format!("`{key}`")), "{key}");
@@ -161,7 +169,7 @@ fn its_keys_are_those_of_the_documents() {
 #[test]
 fn its_names_are_those_of_the_results() {
     let header = stations_csv(&Stations::default());
-    assert_eq!(blocks("csv"), [header, path_header(), over_header()]);
+    assert_eq!(blocks("csv"), [header, path_header(), over_header(), reach_header()]);
     for name in names() {
         assert!(PAGE.contains(&format!("`{name}`")), "{name}");
     }

@@ -20,11 +20,25 @@ use crate::equilibrium::{N, Q};
 /// No method here has more stages.
 const MOST_STAGES: usize = 5;
 
+/// `reach` over the step from which on beta' is the slope of the element's own polynomial.
+const OWN: f64 = 0.05;
+
 /// `reach` over the step, times how the sharpest formula for beta'' amplifies, up to which that formula serves.
 const SHARP: f64 = 0.3;
 
 /// Numbers by two stages.
-type Weights = [[f64; MOST_STAGES]; MOST_STAGES];
+pub(crate) type Weights = [[f64; MOST_STAGES]; MOST_STAGES];
+
+/// How beta' and beta'' of an element hang together once rounds have converged, with weights by two stages for a length of one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Rule<'a> {
+    /// beta' by the closed form, beta'' from the polynomial through beta (weights 0) and beta' (1).
+    Sharp(&'a Weights, &'a Weights),
+    /// beta' by the closed form, beta'' from the polynomial through beta'.
+    Plain(&'a Weights),
+    /// beta' from the polynomial through beta, beta'' from that through beta'.
+    Own(&'a Weights),
+}
 
 /// Weights that give beta'' at the stages of an element of length one.
 #[derive(Debug, Clone)]
@@ -243,9 +257,25 @@ impl BetaAlong {
     /// Whether an element, `inverse` one over its length, is too short to differentiate sharply on.
     #[inline(always)]
     pub(crate) fn is_short(&self, group: usize, lane: usize, inverse: f64) -> bool {
+        self.largest_reach(group, lane) * inverse * self.weights.hermite_gain >= SHARP
+    }
+
+    #[inline(always)]
+    fn largest_reach(&self, group: usize, lane: usize) -> f64 {
         let reach = &self.reach[group * self.stages..(group + 1) * self.stages];
-        let largest = reach.iter().fold(0.0_f64, |most, reach| most.max(reach.0[lane].abs()));
-        largest * inverse * self.weights.hermite_gain >= SHARP
+        reach.iter().fold(0.0_f64, |most, reach| most.max(reach.0[lane].abs()))
+    }
+
+    /// Which formulas hold on an element, `inverse` one over its length.
+    pub(crate) fn rule(&self, group: usize, lane: usize, inverse: f64) -> Rule<'_> {
+        let weights = &self.weights;
+        if !self.is_short(group, lane, inverse) {
+            Rule::Sharp(&weights.by_value, &weights.by_slope)
+        } else if self.largest_reach(group, lane) * inverse < OWN {
+            Rule::Plain(&weights.plain)
+        } else {
+            Rule::Own(&weights.plain)
+        }
     }
 
     /// beta'' from beta and beta' as they have been moved to another state, where they were those of a state before and
@@ -494,7 +524,7 @@ impl<const M: usize> Group<'_, M> {
         largest: Lanes,
         (slope, curvature): ([Lanes; M], [Lanes; M]),
     ) -> ([Lanes; M], [Lanes; M]) {
-        let bound = Lanes::of(0.05);
+        let bound = Lanes::of(OWN);
         let mut matrix = [[ZERO; M]; M];
         let mut right = [ZERO; M];
         let rest: [Lanes; M] = each_stage(|l| (self.value[l] - self.reach[l] * slope[l]) * self.inverse);

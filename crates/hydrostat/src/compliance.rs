@@ -330,7 +330,10 @@ impl Element {
 
 /// Solves `matrix x = right` into `right`, by elimination with row pivoting.
 #[inline(always)]
-fn solve_in_place<const S: usize, const C: usize>(matrix: &mut [[f64; S]; S], right: &mut [[f64; C]; S]) -> bool {
+pub(crate) fn solve_in_place<const S: usize, const C: usize>(
+    matrix: &mut [[f64; S]; S],
+    right: &mut [[f64; C]; S],
+) -> bool {
     for k in 0..S {
         let mut best = k;
         for i in k + 1..S {

@@ -4,6 +4,7 @@ mod held;
 mod kinks;
 mod settle;
 mod start;
+mod watch;
 
 use std::sync::LazyLock;
 
@@ -566,7 +567,7 @@ impl Engine {
         self.equations.at_place(&self.asked_beside(i, left))
     }
 
-    fn asked_beside(&self, i: usize, left: bool) -> Asked {
+    pub(crate) fn asked_beside(&self, i: usize, left: bool) -> Asked {
         let (element, x) = if left { (i - 1, 1.0) } else { (i, 0.0) };
         let gauss = &self.system.gauss;
         let (strain, beta) =

@@ -17,6 +17,7 @@ mod few;
 mod gradients;
 mod held;
 mod nearness;
+mod partials;
 mod places;
 mod strains;
 mod varied;
@@ -29,6 +30,7 @@ use self::gradients::{by_strain_change, jacobian, rate_gradient, slopes, strain_
 pub(crate) use self::held::{Column, Held};
 use self::nearness::NearnessLanes;
 pub(crate) use self::nearness::{Nearness, SectionFailure};
+pub(crate) use self::partials::{BY, ByState, CLOSED, OUT, RATE, Spot, VALUE};
 use self::places::Place;
 use self::strains::{STATION, Solved, solve_section};
 use crate::arm::{Arm, TipLoad};

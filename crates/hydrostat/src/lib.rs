@@ -147,9 +147,11 @@ pub mod many;
 pub mod parameter;
 pub mod path;
 pub mod profile;
+pub mod reach;
 pub mod readings;
 mod rubbing;
 mod section;
+pub mod sensitivity;
 mod sincos;
 pub mod solve;
 pub mod stability;
@@ -168,7 +170,11 @@ pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
 pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub use profile::{Profile, Sample};
+pub use reach::{Bound, Followed, Follower, Reach, ReachError, ReachOptions, Reached, Target};
 pub use readings::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength};
+pub use sensitivity::{
+    Ellipse, PoseChange, SensitiveStation, Sensitivities, SensitivityError, SensitivityMethod, SensitivityOptions,
+};
 pub use solve::{Answer, Options, Solver};
 pub use stability::{Growth, Stability};
 pub use verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};

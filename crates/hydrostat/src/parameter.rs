@@ -84,7 +84,7 @@ pub fn names() -> Vec<String> {
 }
 
 /// All but the cables'.
-const PLAIN: [Parameter; 15] = [
+pub(crate) const PLAIN: [Parameter; 15] = [
     Parameter::FlowSpeed,
     Parameter::FlowDirection,
     Parameter::FlowDensity,

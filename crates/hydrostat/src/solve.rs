@@ -235,6 +235,19 @@ impl Solver {
         }
     }
 
+    /// Solves, unless the engine holds the configuration of the present loads.
+    pub(crate) fn be_solved(&mut self) -> Result<(), SolveError> {
+        if self.settled && self.estimate.is_some() { Ok(()) } else { self.update().map(|_| ()) }
+    }
+
+    /// The tip of the configuration that the engine holds.
+    pub(crate) fn tip(&mut self) -> Result<Tip, SolveError> {
+        match self.engine.read_tip() {
+            Ok(tip) => Ok(tip),
+            Err(_) => self.configuration().map(|found| found.tip()),
+        }
+    }
+
     /// A few Newton rounds on the mesh there is. `None` where that is no way to the answer: nothing was solved before, the
     /// arm moved further than a small change moves it, or cables rub, and which way they slid is part of the answer.
     fn settle_warm(&mut self) -> Option<f64> {

@@ -5,6 +5,7 @@ mod commands;
 mod equilibria;
 mod formats;
 mod paths;
+mod reach;
 mod refusals;
 mod sweeps;
 mod verdicts;

@@ -3,7 +3,7 @@
 use hydrostat_bvp::{Groups, LANES, Lanes, Mesh, Real};
 
 use super::{Equilibrium, Memory, N};
-use crate::arm::{Cavity, Material};
+use crate::arm::{Arm, Cavity, Material};
 use crate::cable::Offset;
 use crate::loads::Body;
 use crate::section::{CableAt, Stiffness};
@@ -20,7 +20,12 @@ pub(super) struct Place<R> {
 impl Equilibrium {
     /// Data at `s` (over L).
     pub(super) fn place(&self, s: f64) -> Place<f64> {
-        let (arm, units) = (&self.arm, self.units);
+        self.place_of(&self.arm, s)
+    }
+
+    /// Data at `s` (over L) of an arm in the units of this one.
+    pub(super) fn place_of(&self, arm: &Arm, s: f64) -> Place<f64> {
+        let units = self.units;
         let l = units.length;
         let at = |p: &crate::profile::Profile| p.at(s * l, l);
         let (r, r_in) = (at(&arm.radius), at(&arm.inner_radius));

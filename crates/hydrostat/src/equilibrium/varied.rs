@@ -164,12 +164,16 @@ impl Equilibrium {
         let Some(varied) = self.varied.as_ref().filter(|_| self.imposed.is_none() && self.pulled.is_none()) else {
             return [0.0; 3];
         };
-        let change = varied.to - varied.from;
+        self.tip_load_by(varied.parameter, theta).map(|by| by * (varied.to - varied.from))
+    }
+
+    /// d (tip load) / d parameter at the angle `theta` of the tip.
+    pub(crate) fn tip_load_by(&self, parameter: Parameter, theta: f64) -> [f64; 3] {
         let mut tip = TipLoad::default();
-        match varied.parameter {
-            Parameter::TipForce(k) => tip.force[k.min(1)] = change,
-            Parameter::TipMoment => tip.moment = change,
-            Parameter::TipFollower(k) => tip.follower[k.min(1)] = change,
+        match parameter {
+            Parameter::TipForce(k) => tip.force[k.min(1)] = 1.0,
+            Parameter::TipMoment => tip.moment = 1.0,
+            Parameter::TipFollower(k) => tip.follower[k.min(1)] = 1.0,
             _ => return [0.0; 3],
         }
         self.load_of(&tip, theta).0

@@ -1,0 +1,91 @@
+//! Arguments of `hydrostat reach`.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args as ClapArgs;
+use hydrostat_files::Dimension;
+
+use super::{ArmArgs, Format, STABLE, picture};
+
+const EXIT: &str = "\
+Exit status:
+  0  reached
+  2  the request is wrong: arguments, arm file, an output path that cannot be written
+  3  not reached: the closest that was found is written
+  1  anything else";
+
+/// Finds the tensions that bring the tip, or another station, to a place.
+///
+/// Every cable is pulled, with 0 to its largest tension; tensions and strokes of the arm file do not count. Several
+/// solutions are listed by effort, the sum of the squares of the tensions. With three or more cables each is the one of least
+/// effort nearby.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = format!("\
+Examples:
+  hydrostat reach silicone --target 0.15,0.12 --max-tension \"0.6 N\"
+  hydrostat reach silicone --target \"150 mm,120 mm\" --plot reached.svg
+  hydrostat reach paper --target 0.12,0.05 --station 0.15 --flow-speed 0.2
+  hydrostat reach multi-bending --target 0.3,0.1 --angle \"30 deg\"
+
+{STABLE}
+
+{EXIT}"))]
+pub(crate) struct ReachArgs {
+    #[command(flatten)]
+    pub(crate) arm: ArmArgs,
+    /// Where the place of the arm is to be, m; as in 0.12,0.05 or "12 cm,50 mm"
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(crate) target: Point,
+    /// Angle of the section there from e1, deg, if it matters
+    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
+    pub(crate) angle: Option<f64>,
+    /// Which place, m along the arm, in place of the tip
+    #[arg(long, value_name = "S", value_parser = length, allow_hyphen_values = true)]
+    pub(crate) station: Option<f64>,
+    /// The largest tension of every cable, N; those of the arm file hold too
+    #[arg(long, value_name = "T", value_parser = force, allow_hyphen_values = true)]
+    pub(crate) max_tension: Option<f64>,
+    /// Distance over the length at which the target is reached, from 1e-10 to 1e-2
+    #[arg(long, value_name = "TOL", default_value = "1e-8", allow_hyphen_values = true)]
+    pub(crate) tol: f64,
+    /// text: a table; json: everything but the shapes; csv: a row a solution
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub(crate) format: Format,
+    /// Write the result to FILE in place of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Draw the arm at the first solution, or at the closest, with the target; FILE ends in .svg or .png
+    #[arg(long, value_name = "FILE", value_parser = picture)]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// A place in the plane, m.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Point(pub(crate) [f64; 2]);
+
+impl FromStr for Point {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (x, y) = text.split_once(',').ok_or_else(|| format!("expected X,Y, as in 0.12,0.05; found \"{text}\""))?;
+        Ok(Self([length(x)?, length(y)?]))
+    }
+}
+
+fn quantity(dimension: Dimension, text: &str) -> Result<f64, String> {
+    let found = dimension.read(text.trim().trim_matches('"'));
+    found.map(|(value, _)| value).map_err(|error| format!("expected {}: {error}", dimension.expected()))
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    quantity(Dimension::Length, text)
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    quantity(Dimension::Angle, text)
+}
+
+fn force(text: &str) -> Result<f64, String> {
+    quantity(Dimension::Force, text)
+}

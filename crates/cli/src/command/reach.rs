@@ -1,0 +1,76 @@
+//! `hydrostat reach`: the tensions that bring the arm to a place.
+
+use hydrostat::{Arm, Bound, Reach, ReachOptions, Reached, Target};
+use hydrostat_figures::reach_figure;
+use hydrostat_files::{ReachDocument, number, reach_csv};
+
+use super::NoAnswer;
+use super::table::{TIP, stability_words, table, tip_cells};
+use crate::args::{Format, ReachArgs};
+use crate::output;
+use crate::request;
+
+pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
+    let arm = request::arm(&args.arm)?;
+    request::check_outputs(&[("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())])?;
+    let [x, y] = args.target.0;
+    let target = Target { s: args.station, angle: args.angle, ..Target::tip(x, y) };
+    let options = ReachOptions { max_tension: args.max_tension, tol: args.tol, all: true };
+    let found = arm.reach(&[target], &options)?;
+    let best = found.solutions.first().or(found.closest.as_ref());
+    if let (Some(file), Some(best)) = (&args.plot, best) {
+        let note = found.closest.as_ref().map(|closest| miss(&arm, closest));
+        output::draw(&reach_figure(&best.configuration, &[[x, y]], note.as_deref()), file)?;
+    }
+    let text = match args.format {
+        Format::Text => summary(&arm, &found),
+        Format::Json => output::line(ReachDocument::new(&arm, &found).to_json()?),
+        Format::Csv => reach_csv(arm.cables.len(), &found),
+    };
+    output::put(args.output.as_deref(), &text)?;
+    match &found.closest {
+        Some(closest) => {
+            let bounds: Vec<String> = closest.bounds.iter().map(|bound| bound_words(&arm, *bound)).collect();
+            let why = if bounds.is_empty() { String::new() } else { format!("; {}", bounds.join(", ")) };
+            Err(NoAnswer(format!("the target is not reached: {}{why}", miss(&arm, closest))).into())
+        }
+        None => Ok(()),
+    }
+}
+
+/// By how much the closest misses.
+fn miss(arm: &Arm, closest: &Reached) -> String {
+    format!("the closest that was found is off by {} mm", number(1e3 * closest.distance * arm.length))
+}
+
+fn bound_words(arm: &Arm, bound: Bound) -> String {
+    match bound {
+        Bound::Slack(c) => format!("cable {} is slack and cannot push", arm.cables[c].name),
+        Bound::Most(c) => format!("cable {} has its largest tension", arm.cables[c].name),
+    }
+}
+
+fn summary(arm: &Arm, found: &Reach) -> String {
+    let mut out = match found.solutions.len() {
+        0 => format!("{}: not reached, the closest is\n\n", arm.name),
+        1 => format!("{}: 1 solution\n\n", arm.name),
+        count => format!("{}: {count} solutions, least effort first\n\n", arm.name),
+    };
+    let mut head: Vec<String> = arm.cables.iter().map(|cable| format!("{} (N)", cable.name)).collect();
+    head.push("effort (N2)".to_owned());
+    head.extend(TIP.map(str::to_owned));
+    head.push("off (mm)".to_owned());
+    head.extend(["stability", "solve leads here"].map(str::to_owned));
+    let mut rows = vec![head];
+    for one in found.solutions.iter().chain(&found.closest) {
+        let mut row: Vec<String> = one.tensions.iter().map(|t| number(*t)).collect();
+        row.push(number(one.effort));
+        row.extend(tip_cells(&one.configuration));
+        row.push(format!("{:.1e}", 1e3 * one.distance * arm.length));
+        row.push(stability_words(one.stability));
+        row.push(if one.on_the_path { "yes" } else { "no" }.to_owned());
+        rows.push(row);
+    }
+    out.push_str(&table(&rows, 2));
+    out
+}

@@ -1,0 +1,247 @@
+//! Inverse kinetics: round trips, targets out of reach, redundancy, and paths of targets.
+
+use hydrostat::{Arm, Bound, Cable, Follower, Options, Profile, ReachError, ReachOptions, Solver, Target};
+use hydrostat_files::{ArmFile, shipped};
+
+fn cone() -> Arm {
+    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
+    arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)));
+    arm
+}
+
+fn options(most: f64) -> ReachOptions {
+    ReachOptions { max_tension: Some(most), ..ReachOptions::default() }
+}
+
+fn target_of(arm: &Arm, tensions: &[f64]) -> Option<Target> {
+    let mut arm = arm.clone();
+    arm.set_tensions(tensions).unwrap();
+    // Where a solve does not meet its tolerance, tips cannot be told as closely as they are to be reached.
+    let shape = arm.solve().ok().filter(|shape| shape.error_estimate <= 1e-8 * arm.length)?;
+    Some(Target::tip(shape.tip().x, shape.tip().y))
+}
+
+/// Tensions of the first and the last cable to a tip, and from there to tensions that lead to the same tip, as a solve of its own says:
+/// how many, and how many of them are met.
+fn round_trips(arm: &Arm, most: f64, per_cable: u32) -> (usize, usize) {
+    let last = arm.cables.len() - 1;
+    let (mut all, mut met) = (0, 0);
+    let share = |k: u32| most * f64::from(k) / f64::from(per_cable - 1);
+    for (left, right) in (0..per_cable).flat_map(|a| (0..per_cable).map(move |b| (share(a), share(b)))) {
+        let mut tensions = vec![0.0; last + 1];
+        (tensions[0], tensions[last]) = (left, right);
+        let Some(target) = target_of(arm, &tensions) else { continue };
+        all += 1;
+        let found = arm.reach(&[target], &ReachOptions { all: false, ..options(most) });
+        let back = found.ok().and_then(|found| found.solutions.into_iter().next());
+        let solved = back.and_then(|back| target_of(arm, &back.tensions).map(|tip| (back.on_the_path, tip)));
+        let off = solved.map_or(f64::INFINITY, |(_, tip)| (tip.x - target.x).hypot(tip.y - target.y) / arm.length);
+        if off < 2e-8 {
+            met += 1;
+        } else {
+            println!("{}: {left} and {right} N not met: {solved:?}", arm.name);
+        }
+    }
+    (met, all)
+}
+
+fn shipped_round_trips(per_cable: u32) {
+    let mut sums = (0, 0);
+    for name in shipped::names() {
+        let mut arm = ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap();
+        let most = arm.cables[0].max_tension.unwrap();
+        for speed in [0.0, 0.1] {
+            arm.flow.speed = speed;
+            let (met, all) = round_trips(&arm, most, per_cable);
+            println!("{name} at {speed} m/s: {met} of {all}");
+            sums = (sums.0 + met, sums.1 + all);
+        }
+    }
+    println!("{} of {}", sums.0, sums.1);
+    assert!(sums.0 as f64 >= 0.97 * sums.1 as f64, "{} of {}", sums.0, sums.1);
+}
+
+#[test]
+fn tips_of_shipped_arms_are_reached_on_a_thinned_grid() {
+    shipped_round_trips(4);
+}
+
+#[test]
+#[ignore = "minutes: the whole grid, on request"]
+fn tips_of_shipped_arms_are_reached_on_the_grid() {
+    shipped_round_trips(11);
+}
+
+#[test]
+fn tips_are_reached_again() {
+    let mut flowing = cone();
+    flowing.flow.speed = 0.1;
+    flowing.flow.direction = 1.0;
+    for arm in [cone(), flowing] {
+        let (met, all) = round_trips(&arm, 0.5, 5);
+        println!("{met} of {all}");
+        assert!(all >= 24 && met == all, "{met} of {all}");
+    }
+}
+
+/// The nearest of a fine scan of the tensions is no nearer than what is found.
+#[test]
+fn what_is_out_of_reach_is_met_as_nearly_as_a_scan_says() {
+    const MOST: f64 = 0.4;
+    let arm = cone();
+    let scan: Vec<[f64; 2]> = (0..=20)
+        .flat_map(|a| (0..=20).map(move |b| [MOST * f64::from(a) / 20.0, MOST * f64::from(b) / 20.0]))
+        .filter_map(|tensions| target_of(&arm, &tensions).map(|tip| [tip.x, tip.y]))
+        .collect();
+    assert!(scan.len() > 400);
+    for (x, y) in [(0.30, 0.02), (0.20, 0.20), (0.10, -0.20), (0.05, 0.0), (-0.1, 0.1)] {
+        let found = arm.reach(&[Target::tip(x, y)], &options(MOST)).unwrap();
+        assert!(found.solutions.is_empty(), "({x}, {y}) m is reached");
+        let closest = found.closest.unwrap();
+        let nearest = scan.iter().map(|tip| (tip[0] - x).hypot(tip[1] - y)).fold(f64::INFINITY, f64::min);
+        let distance = closest.distance * arm.length;
+        println!("({x}, {y}): {distance} for {nearest}, {:?}", closest.bounds);
+        assert!(distance < nearest + 1e-6, "({x}, {y}): {distance} m for {nearest} m");
+        assert!(!closest.bounds.is_empty());
+    }
+    // Straight ahead, too far: nothing pulls.
+    let ahead = arm.reach(&[Target::tip(0.3, 0.0)], &options(MOST)).unwrap().closest.unwrap();
+    assert_eq!(ahead.bounds, [Bound::Slack(0), Bound::Slack(1)]);
+}
+
+/// Three cables and a place leave one freedom: least effort against a scan of one of the tensions.
+#[test]
+fn three_cables_take_the_least_effort() {
+    let mut arm = cone();
+    let mut short = Cable::new("short", Profile::linear(0.006, 0.003));
+    short.end = 0.6;
+    arm.cables.push(short);
+    let target = target_of(&arm, &[0.15, 0.1, 0.25]).unwrap();
+    let found = arm.reach(&[target], &options(1.0)).unwrap();
+    let best = &found.solutions[0];
+    println!("{:?} {}", best.tensions, best.effort);
+    let mut least = f64::INFINITY;
+    for k in 0..=120 {
+        // What is left of the effort with the short cable at a given tension.
+        let given = 0.005 * f64::from(k);
+        if let Some(effort) = effort_with_third(&arm, target, given) {
+            least = least.min(effort);
+        }
+    }
+    println!("scan {least}");
+    assert!(least.is_finite() && best.effort <= least * (1.0 + 1e-6), "{} for {least}", best.effort);
+    assert!(best.effort > 0.98 * least, "{} for {least}: the scan is too coarse", best.effort);
+}
+
+/// Newton by differences on the first two tensions.
+fn effort_with_third(arm: &Arm, target: Target, third: f64) -> Option<f64> {
+    let mut solver = Solver::new(arm, Options { tol: 1e-9 }).ok()?;
+    let mut tip = |t: [f64; 2]| {
+        solver.set_tensions(&[t[0], t[1], third]).ok()?;
+        let tip = solver.update().ok()?.tip;
+        Some([tip.x - target.x, tip.y - target.y])
+    };
+    let mut t = [0.15, 0.1];
+    for _ in 0..25 {
+        let here = tip(t)?;
+        if here[0].hypot(here[1]) < 1e-8 {
+            return Some(t[0] * t[0] + t[1] * t[1] + third * third);
+        }
+        let h = 1e-5;
+        let (a, b) = (tip([t[0] + h, t[1]])?, tip([t[0], t[1] + h])?);
+        let j = [[(a[0] - here[0]) / h, (b[0] - here[0]) / h], [(a[1] - here[1]) / h, (b[1] - here[1]) / h]];
+        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+        let step = [(j[1][1] * here[0] - j[0][1] * here[1]) / det, (j[0][0] * here[1] - j[1][0] * here[0]) / det];
+        let share = (0.05 / step[0].hypot(step[1])).min(1.0);
+        t = [t[0] - share * step[0], t[1] - share * step[1]];
+        if t.iter().any(|t| *t < 0.0) {
+            return None;
+        }
+    }
+    None
+}
+
+#[test]
+fn a_station_an_angle_and_several_markers_are_reached() {
+    let mut arm = cone();
+    arm.cables.push(Cable::new("third", Profile::linear(0.006, -0.001)));
+    arm.set_tensions(&[0.2, 0.1, 0.15]).unwrap();
+    let shape = arm.solve().unwrap();
+    let (tip, middle) = (shape.tip(), shape.at(0.15));
+    let at_middle = Target { s: Some(0.15), ..Target::tip(middle.x, middle.y) };
+    let turned = Target { angle: Some(tip.theta), ..Target::tip(tip.x, tip.y) };
+    for targets in [vec![at_middle], vec![turned], vec![at_middle, Target { weight: 2.0, ..Target::tip(tip.x, tip.y) }]]
+    {
+        let found = arm.reach(&targets, &options(0.6)).unwrap();
+        let back =
+            &found.solutions.first().unwrap_or_else(|| panic!("{targets:?}: {:?}", found.closest.map(|c| c.distance)));
+        let shape = &back.configuration;
+        for target in &targets {
+            let place = shape.at(target.s.unwrap_or(arm.length));
+            assert!((place.x - target.x).hypot(place.y - target.y) < 2e-8 * arm.length);
+            assert!(target.angle.is_none_or(|angle| (place.theta - angle).abs() < 2e-8));
+        }
+    }
+}
+
+/// Targets on a loop, which tensions on a circle lead to.
+fn loop_of_targets(arm: &Arm, count: u32) -> Vec<Target> {
+    (0..=count)
+        .map(|k| {
+            let angle = f64::from(k) * std::f64::consts::TAU / f64::from(count);
+            target_of(arm, &[0.25 + 0.1 * angle.cos(), 0.2 + 0.1 * angle.sin()]).unwrap()
+        })
+        .collect()
+}
+
+#[test]
+fn a_path_of_targets_is_followed() {
+    let mut arm = cone();
+    arm.flow.speed = 0.1;
+    arm.flow.direction = 1.0;
+    let targets = loop_of_targets(&arm, 100);
+    arm.set_tensions(&[0.35, 0.2]).unwrap();
+    let mut follower = Follower::new(&arm, &targets[..1], &options(0.6)).unwrap();
+    let mut solves = 0;
+    for (k, target) in targets.iter().enumerate() {
+        let found = follower.follow(&[*target]).unwrap();
+        solves += found.solves;
+        assert!(found.reached && !found.jumped, "{k}: {found:?}");
+        let angle = k as f64 * std::f64::consts::TAU / 100.0;
+        let (left, right) = (0.25 + 0.1 * angle.cos(), 0.2 + 0.1 * angle.sin());
+        assert!((found.tensions[0] - left).hypot(found.tensions[1] - right) < 1e-5, "{k}: {found:?}");
+    }
+    println!("{solves} solves for 100 targets");
+    assert!(solves <= 400, "{solves}");
+}
+
+/// A target that leaps to where the arm has to uncurl: whatever it ends with, it is not silent about a miss.
+#[test]
+fn a_target_that_cannot_be_followed_is_said() {
+    let mut arm = cone();
+    arm.set_tensions(&[0.3, 0.1]).unwrap();
+    let start = target_of(&arm, &[0.3, 0.1]).unwrap();
+    let mut follower = Follower::new(&arm, &[start], &options(0.5)).unwrap();
+    let found = follower.follow(&[Target::tip(0.5, 0.0)]).unwrap();
+    assert!(!found.reached && found.distance > 1.0, "{found:?}");
+    let back = follower.follow(&[start]).unwrap();
+    assert!(back.reached, "{back:?}");
+    let station = [Target { s: Some(0.1), ..start }];
+    assert!(matches!(follower.follow(&station), Err(ReachError::Target)));
+}
+
+#[test]
+fn wrong_requests_are_refused() {
+    let arm = cone();
+    let target = [Target::tip(0.2, 0.05)];
+    assert!(matches!(arm.reach(&[], &options(1.0)), Err(ReachError::Target)));
+    assert!(matches!(arm.reach(&[Target::tip(f64::NAN, 0.0)], &options(1.0)), Err(ReachError::Target)));
+    assert!(matches!(arm.reach(&target, &options(-1.0)), Err(ReachError::Option { option: "max_tension", .. })));
+    let loose = ReachOptions { tol: 1.0, ..options(1.0) };
+    assert!(matches!(arm.reach(&target, &loose), Err(ReachError::Option { option: "tol", .. })));
+    let off = [Target { s: Some(0.3), ..target[0] }];
+    assert!(matches!(arm.reach(&off, &options(1.0)), Err(ReachError::Sensitivity(_))));
+    let bare = Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5);
+    assert!(matches!(bare.reach(&target, &options(1.0)), Err(ReachError::NoCables)));
+}
