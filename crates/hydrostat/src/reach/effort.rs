@@ -3,7 +3,10 @@
 use crate::engine::solved;
 
 /// Rounds on the multipliers.
-const ROUNDS: usize = 60;
+const ROUNDS: usize = 200;
+
+/// The shortest share of a step: where fewer cables are free than there are conditions steps are very long.
+const SHORTEST: f64 = 1e-16;
 
 /// The t of least |t|^2 with J t = c and 0 <= t <= most, J given by its columns: t follows multipliers y as
 /// J^T y cut to the bounds, and Newton's method on J t(y) = c ends after as many rounds as bounds change. `None` where no t does.
@@ -18,8 +21,8 @@ pub(super) fn least_effort(columns: &[Vec<f64>], wanted: &[f64], most: &[f64]) -
     let scale = columns.iter().map(|column| dot(column, column)).fold(0.0, f64::max);
     let size = dot(wanted, wanted).sqrt().max(f64::MIN_POSITIVE);
     let mut y = vec![0.0; rows];
-    // A small tension of all cables: from zero no bound would ever let go.
-    let mut free: Vec<bool> = columns.iter().map(|column| dot(column, wanted) > 0.0).collect();
+    // From zero no bound would ever let go.
+    let mut free = vec![true; columns.len()];
     for _ in 0..ROUNDS {
         let t = pull(&y);
         let left = rest(&t);
@@ -45,7 +48,7 @@ pub(super) fn least_effort(columns: &[Vec<f64>], wanted: &[f64], most: &[f64]) -
         let (before, mut share) = (dual(&y), 1.0);
         let next = loop {
             let next: Vec<f64> = y.iter().zip(&step).map(|(y, [s, _])| y + share * s).collect();
-            if dual(&next) >= before + 1e-4 * share * slope || share < 1e-6 {
+            if dual(&next) >= before + 1e-4 * share * slope || share < SHORTEST {
                 break next;
             }
             share *= 0.5;
