@@ -38,7 +38,7 @@ Examples:
   hydrostat path silicone --vary cable[0].tension=0:1   follow the shapes as a tension rises
   hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
                                                         all shapes under the same loads
-  hydrostat reach silicone --target 0.15,0.12           the tensions that bring the tip there
+  hydrostat reach silicone --target 0.182,0.078         the tensions that bring the tip there
   hydrostat sweep paper --vary flow.speed=0:1:101 --vary cable[0].tension=0:80:101 -o out.parquet
   hydrostat solve my.toml --format csv --stations 101 -o my.csv";
 

@@ -23,7 +23,7 @@ Exit status:
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\
 Examples:
-  hydrostat reach silicone --target 0.15,0.12 --max-tension \"0.6 N\"
+  hydrostat reach silicone --target 0.182,0.078 --max-tension \"0.6 N\"
   hydrostat reach silicone --target \"150 mm,120 mm\" --plot reached.svg
   hydrostat reach paper --target 0.12,0.05 --station 0.15 --flow-speed 0.2
   hydrostat reach multi-bending --target 0.3,0.1 --angle \"30 deg\"
