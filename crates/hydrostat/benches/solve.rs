@@ -3,6 +3,8 @@
 
 #[path = "../examples/common/arms.rs"]
 mod arms;
+#[path = "../examples/common/rows.rs"]
+mod rows;
 #[path = "../examples/common/sets.rs"]
 mod sets;
 
@@ -61,7 +63,7 @@ fn along_the_path(c: &mut Criterion) {
 }
 
 fn batch(c: &mut Criterion) {
-    let arms = sets::grid(64).expect("a shipped arm");
+    let arms = rows::grid(64).expect("a shipped arm");
     let mut group = c.benchmark_group("batch");
     group.sample_size(10).throughput(Throughput::Elements(arms.len() as u64));
     group.bench_function("paper, 64 x 64 of tension and stream, to 1e-6", |b| {

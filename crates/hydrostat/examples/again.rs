@@ -1,8 +1,10 @@
 //! The same solve so many times, for `.ci/instructions` to count what one takes: `again KIND REPEATS` with a kind of `cold`,
-//! `warm`, `update` and `flag`. Without arguments it says which path the solves run on, `wide-vectors` or `any-processor`.
+//! `warm`, `update`, `flag`, `ramped` (eleven arms that need the path) and `limit` (three that it ends for). Without arguments it says which path the solves run on, `wide-vectors` or `any-processor`.
 
 #[path = "common/arms.rs"]
 mod arms;
+#[path = "common/sets.rs"]
+mod sets;
 
 use std::error::Error;
 use std::hint::black_box;
@@ -41,7 +43,16 @@ fn main() -> Result<(), Box<dyn Error>> {
                 black_box(solver.update()?);
             }
         }
-        other => return Err(format!("{other}: expected cold, warm, update or flag").into()),
+        "ramped" => {
+            let arms = sets::ramped()?;
+            let mut all = (0..repeats).flat_map(|_| &arms);
+            all.try_for_each(|(_, arm)| cold(arm).map(|found| drop(black_box(found))))?;
+        }
+        "limit" => {
+            let arms = sets::limit_points()?;
+            (0..repeats).flat_map(|_| &arms).for_each(|(_, arm)| drop(black_box(cold(arm))));
+        }
+        other => return Err(format!("{other}: expected cold, warm, update, flag, ramped or limit").into()),
     }
     Ok(())
 }

@@ -8,6 +8,8 @@
 mod arms;
 #[path = "common/clock.rs"]
 mod clock;
+#[path = "common/rows.rs"]
+mod rows;
 #[path = "common/sets.rs"]
 mod sets;
 
@@ -136,7 +138,7 @@ fn limit_point(name: &str, arm: &Arm) -> Result<Times, Failure> {
 
 /// Rows a second.
 fn batch() -> Result<f64, Failure> {
-    let (arms, options) = (sets::grid(300)?, ManyOptions::default());
+    let (arms, options) = (rows::grid(300)?, ManyOptions::default());
     solve_many(&arms[..1000], &options)?;
     let clock = Instant::now();
     let rows = solve_many(&arms, &options)?;

@@ -91,6 +91,8 @@ pub(crate) struct Engine {
     /// Whether a path is followed, which has more to lose from an estimate that is off by what beta' lags behind: an arm in
     /// line with the stream is led by angles of its size.
     pub(crate) on_a_path: bool,
+    /// Whether such a path only has to lead to its end.
+    pub(crate) in_a_hurry: bool,
     /// What the last round moved the tip by (over L), or would have where Newton stopped ahead of it.
     rest: f64,
     /// Tip position over L at the last round.
@@ -265,6 +267,7 @@ impl Engine {
             last: 0.0,
             rest: 0.0,
             on_a_path: false,
+            in_a_hurry: false,
             tip: [0.0; 2],
             border: Determinant { sign: 1.0, log: 0.0 },
         }
@@ -516,6 +519,11 @@ impl Engine {
             }
         }
         false
+    }
+
+    /// Whether any of the arm is nearly in line with a load.
+    pub(crate) fn is_in_line(&self) -> bool {
+        (0..self.equations.stations().len()).any(|k| self.equations.is_in_line(k, self.system.state(k / M, k % M)[0]))
     }
 
     /// Changes loads of the arm in place.

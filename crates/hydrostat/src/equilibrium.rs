@@ -404,10 +404,7 @@ impl Equilibrium {
         let stream = self.water.stream;
         let speed_square = stream[0] * stream[0] + stream[1] * stream[1];
         let drag = place.body.wetted.0[lane] * beta * speed_square * nu.hypot(eta);
-        let net = [0, 1].map(|c| {
-            place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * nu * beta * beta
-                + place.body.force[c].0[lane]
-        });
+        let net = self.net_weight(k);
         let cube = rest * rest * rest / stiffness;
         let mut worst = compression;
         let (unloaded_sin, unloaded_cos) = unloaded.sin_cos();
@@ -419,6 +416,30 @@ impl Equilibrium {
         }
         let (tip, _) = self.tip_load(unloaded);
         worst.max(-(unloaded_cos * tip[0] + unloaded_sin * tip[1]) * rest * rest / stiffness)
+    }
+
+    /// Weight less buoyancy, and forces along the arm, at station `k`, per length.
+    fn net_weight(&self, k: usize) -> [f64; 2] {
+        let (block, lane) = self.groups.station(k);
+        let (place, beta) = (&self.places[block], self.beta.value[block].0[lane]);
+        let nu = self.strain(k)[0];
+        [0, 1].map(|c| {
+            place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * nu * beta * beta
+                + place.body.force[c].0[lane]
+        })
+    }
+
+    /// Whether the arm at station `k`, turned to `theta`, is nearly in line with a load: small angles to it decide then to
+    /// which side it goes.
+    pub(crate) fn is_in_line(&self, k: usize, theta: f64) -> bool {
+        const NEARLY: f64 = 0.05;
+        let [nu, eta, _] = self.strain(k);
+        let (sin, cos) = (theta + eta.atan2(nu)).sin_cos();
+        let (tip, _) = self.tip_load(theta);
+        [self.water.stream, self.net_weight(k), [tip[0], tip[1]]].iter().any(|[x, y]| {
+            let size = x.hypot(*y);
+            size > 0.0 && (cos * y - sin * x).abs() < NEARLY * size
+        })
     }
 
     /// The other fraction is whole in the tension phase, zero in the loads phase.

@@ -1,4 +1,4 @@
-//! Named sets of arms whose solves are not direct, and the rows of a batch.
+//! Named sets of arms whose solves are not direct.
 
 use std::error::Error;
 
@@ -42,17 +42,4 @@ pub(crate) fn limit_points() -> Result<Vec<(&'static str, Arm)>, Failure> {
         ("silicone, 0.5 m/s at 170 deg", facing(170.0)?),
         ("silicone, 0.5 m/s at 172 deg", facing(172.0)?),
     ])
-}
-
-/// `paper` at so many tensions of its left cable from 0 to 80 N at each of so many speeds from 0 to 1 m/s.
-pub(crate) fn grid(count: u32) -> Result<Vec<Arm>, Failure> {
-    let paper = pulled("paper", &[0.0, 0.0], 0.0)?;
-    let share = |k: u32| f64::from(k) / f64::from(count - 1);
-    let row = |k: u32| {
-        let mut arm = paper.clone();
-        arm.flow.speed = share(k / count);
-        arm.cables[0].tension = 80.0 * share(k % count);
-        arm
-    };
-    Ok((0..count * count).map(row).collect())
 }

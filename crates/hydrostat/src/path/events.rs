@@ -10,6 +10,9 @@ use crate::equilibrium::{N, Q};
 /// The climb that stands for none in the tangent of a branch that crosses.
 const MODE: f64 = 1e-9;
 
+/// The climb that is none at a limit point: the fraction is off by its square.
+const LEVEL: f64 = 1e-5;
+
 impl Stepper<'_> {
     /// The point where the fraction is extreme between two whose tangents rise and fall, or fall and rise, and its
     /// fraction. The engine is left at it.
@@ -19,6 +22,8 @@ impl Stepper<'_> {
         let (mut low, mut low_rise) = (0.0, here.rise.abs());
         let (mut high, mut high_rise) = (step, up * next.rise);
         let mut best: Option<Point> = None;
+        // False position; an end that stays a second time has its climb halved, so that both come in.
+        let mut before = 0.0;
         for _ in 0..25 {
             let share = (low_rise / (low_rise - high_rise)).clamp(0.1, 0.9);
             let middle = low + share * (high - low);
@@ -27,13 +32,16 @@ impl Stepper<'_> {
                     let rise = up * point.rise;
                     if rise < 0.0 {
                         (high, high_rise) = (middle, rise);
+                        low_rise *= if before < 0.0 { 0.5 } else { 1.0 };
                     } else {
                         (low, low_rise) = (middle, rise);
+                        high_rise *= if before > 0.0 { 0.5 } else { 1.0 };
                     }
+                    before = rise;
                     if best.as_ref().is_none_or(|b| up * point.fraction > up * b.fraction) {
                         best = Some(point);
                     }
-                    if rise.abs() < 1e-6 {
+                    if rise.abs() < LEVEL {
                         break;
                     }
                 }

@@ -10,13 +10,34 @@ use crate::verdict::{Phase, Verdict, VerdictKind};
 /// The tolerance (tip position over L) of the mesh on which a path ends.
 const SHARP_TOLERANCE: f64 = 1e-8;
 
+/// Fractions of a phase at which a path in a hurry may have started wrongly.
+const HASTE: f64 = 1e-6;
+
 /// The first step on that mesh.
 const SHARP_STEP: f64 = 1e-3;
 
 /// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
 pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdict> {
+    let mut outcome = follow_at(engine, pace, pace.accuracy >= LOOSE);
+    if let Err(verdict) = &outcome
+        && engine.in_a_hurry
+        && (verdict.kind == VerdictKind::NotFound || verdict.load_fraction < HASTE)
+    {
+        // Nothing that has physics behind it: it may be the haste.
+        outcome = follow_at(engine, pace, false);
+    }
+    engine.in_a_hurry = false;
+    outcome
+}
+
+/// [`follow`], in a hurry or with care.
+fn follow_at(engine: &mut Engine, mut pace: Pace, hurry: bool) -> Result<Travelled, Verdict> {
+    if hurry {
+        pace.longest *= 1.5;
+    }
     let mut travelled = Travelled::default();
     engine.on_a_path = true;
+    engine.in_a_hurry = hurry;
     engine.set_phase(Phase::Loads, START);
     engine.start_unloaded(10);
     for phase in [Phase::Loads, Phase::Tension] {
@@ -69,7 +90,8 @@ impl Ramp<'_> {
             self.stepper.orientation = -self.stepper.orientation;
             here.rise = -here.rise;
         }
-        let mut step = 0.1_f64.min(pace.longest);
+        let first = if self.stepper.engine.in_a_hurry { 0.2 } else { 0.1_f64.min(pace.longest) };
+        let mut step = first;
         // A point before this one whose tangent climbed clearly more.
         let mut steeper = (here.fraction, here.rise);
         let mut sharpened = false;
@@ -120,7 +142,7 @@ impl Ramp<'_> {
                         }
                         here = after;
                         steeper = (here.fraction, here.rise);
-                        step = 0.1_f64.min(pace.longest);
+                        step = first;
                         continue;
                     }
                     if next.fraction == 1.0 {
@@ -133,11 +155,11 @@ impl Ramp<'_> {
                         steeper = (next.fraction, next.rise);
                     }
                     here = next;
-                    step = (step * 1.6).min(pace.longest);
+                    step = (step * self.stepper.pace_up(true)).min(pace.longest);
                 }
                 Err(trouble) => {
                     self.stepper.last_trouble = Some(trouble);
-                    step *= 0.4;
+                    step *= self.stepper.pace_up(false);
                     self.stepper.engine.restore(&here.state);
                 }
             }
@@ -145,8 +167,8 @@ impl Ramp<'_> {
         unreachable!("the loop returns when its attempts are used up")
     }
 
-    /// The point that a phase starts from. An arm that lies in the stream has tiny angles to it whose
-    /// signs decide where it goes, so this point is made more accurate, as far as that can be had.
+    /// The point that a phase starts from. An arm that lies in the stream, or along another load, has tiny angles to it whose
+    /// signs decide where it goes, so this point is made very accurate then, as far as that can be had.
     fn start(&mut self) -> Result<Point, Trouble> {
         let whole = self.stepper.engine.solution.clone();
         let mut fraction = START;
@@ -162,10 +184,12 @@ impl Ramp<'_> {
                 Err(trouble) => return Err(trouble),
             }
         }
-        let refined = [1e-5, 1e-6, 1e-7].iter().all(|accuracy| {
+        let careful = !self.stepper.engine.in_a_hurry || self.stepper.engine.is_in_line();
+        let accuracies: &[f64] = if careful { &[1e-5, 1e-6, 1e-7] } else { &[1e-5] };
+        let refined = accuracies.iter().all(|accuracy| {
             self.stepper.or_back(|this| this.keep_accuracy(None, &mut Load::Fixed(fraction), [*accuracy, LOOSE]))
         });
-        if refined {
+        if refined && careful {
             self.stepper.or_back(|this| this.engine.settle(1e-8, First::Warm).map(|_| ()));
         }
         self.stepper.first_contacts(fraction)

@@ -8,6 +8,12 @@ use crate::engine::{Engine, HOP, M, Round, State, Trouble, roughly};
 use crate::equilibrium::{N, Q};
 use crate::verdict::Phase;
 
+/// The largest correction (rad) of a prediction that leads to the same branch.
+const MOVED: f64 = 0.15;
+
+/// Corrections (rad) after which, but for second order, nothing is left to correct.
+const CLOSE: f64 = 3e-5;
+
 #[derive(Clone)]
 pub(super) struct Point {
     pub(super) state: State,
@@ -88,6 +94,10 @@ pub(super) struct Stepper<'e> {
     pub(super) crossings_welcome: bool,
     /// The last estimate of the tip's error over L.
     pub(super) error: f64,
+    /// How much of what a step may bend the path the last one did, over all of it: of the second order in the step.
+    stretch: f64,
+    /// Whether the last linearisation is that of the solution, but for a correction that is as good as none.
+    current: bool,
 }
 
 /// How the path goes on at the end of a step.
@@ -112,6 +122,21 @@ impl<'e> Stepper<'e> {
             opposite: None,
             crossings_welcome: false,
             error: LOOSE,
+            stretch: 0.0,
+            current: false,
+        }
+    }
+
+    /// The length of the next step over that of the last, done or refused.
+    pub(super) fn pace_up(&self, done: bool) -> f64 {
+        if !self.engine.in_a_hurry {
+            return if done { 1.6 } else { 0.4 };
+        }
+        let fit = 0.8 / self.stretch.max(1e-3).sqrt();
+        match (done, self.stretch > 1.0) {
+            (true, _) => fit.clamp(0.5, 2.5),
+            (false, true) => fit.clamp(0.2, 0.7),
+            (false, false) => 0.4,
         }
     }
 
@@ -133,6 +158,7 @@ impl<'e> Stepper<'e> {
     }
 
     pub(super) fn linearise(&mut self) -> Result<(), Trouble> {
+        self.current = false;
         self.engine.linearise_held(true, &mut self.round)
     }
 
@@ -153,6 +179,11 @@ impl<'e> Stepper<'e> {
     /// the same all along a branch, round folds and corners alike, until another branch crosses.
     pub(super) fn point(&mut self, fraction: f64) -> Result<Point, Trouble> {
         self.linearise()?;
+        self.point_of_round(fraction)
+    }
+
+    /// [`Stepper::point`] by the last linearisation.
+    fn point_of_round(&self, fraction: f64) -> Result<Point, Trouble> {
         let weights = self.weights();
         let square: f64 = weights.iter().zip(&self.round.response.nodes).map(|(w, z)| w * z[0] * z[0]).sum();
         let norm = (1.0 + square).sqrt();
@@ -168,6 +199,8 @@ impl<'e> Stepper<'e> {
 
     /// Moves the solution from `here` along its tangent.
     pub(super) fn predict(&mut self, here: &Point, step: f64) -> f64 {
+        self.current = false;
+        self.stretch = 0.0;
         self.engine.restore(&here.state);
         let climb = step * here.rise;
         self.engine.solution.add(&here.response, climb);
@@ -204,6 +237,8 @@ impl<'e> Stepper<'e> {
     pub(super) fn correct(&mut self, here: &Point, fraction: &mut f64) -> Result<(), Trouble> {
         let normal: Vec<f64> =
             here.tangent_on(&self.engine.solution.mesh).zip(self.weights()).map(|(t, w)| t * w).collect();
+        // In a hurry, when the next one would be none.
+        let close = if self.engine.in_a_hurry { CLOSE } else { 1e-6 };
         let mut before = f64::INFINITY;
         for round in 0..12 {
             self.set(*fraction);
@@ -228,10 +263,11 @@ impl<'e> Stepper<'e> {
                 return Err(Trouble::Stalled(size));
             }
             before = size;
-            if size < 1e-6 {
+            if size < close {
                 break;
             }
         }
+        self.current = self.engine.in_a_hurry && before < CLOSE;
         self.set(*fraction);
         // Across a kink corrections can hop between two points that are nearer than a path needs.
         if before > HOP { Err(Trouble::Stalled(before)) } else { Ok(()) }
@@ -248,14 +284,15 @@ impl<'e> Stepper<'e> {
         pace: Pace,
     ) -> Result<(Point, Turn), Trouble> {
         let moved = largest_turn(from, &self.engine.solution);
-        if moved > 0.15 {
+        self.stretch = moved / MOVED;
+        if moved > MOVED {
             return Err(Trouble::Stalled(moved));
         }
         // What the mesh is off by must not be mistaken for a turn of the path.
         let accuracy = (0.02 * step.abs()).max(FINEST).min(pace.accuracy);
         self.keep_accuracy(Some(here), &mut load, [accuracy, pace.accuracy])?;
         self.engine.ends_fine()?;
-        let next = self.point(load.fraction())?;
+        let next = if self.current { self.point_of_round(load.fraction())? } else { self.point(load.fraction())? };
         let cosine = self.cosine(here, &next);
         let crossing = cosine < 0.0 && -cosine >= pace.straightness;
         // Nothing turns on a symmetric branch but the load: bifurcations are passed at once, because
@@ -264,11 +301,14 @@ impl<'e> Stepper<'e> {
             return Ok((next, Turn::Crossing));
         }
         let strict = if self.changed_sides(here) > 0.05 { 0.1 } else { 1.0 };
-        let straight = 1.0 - cosine <= strict * (1.0 - pace.straightness);
+        let bend = (1.0 - cosine) / (strict * (1.0 - pace.straightness));
+        let even = if self.engine.in_a_hurry { strict.max(0.3) } else { strict };
+        let unevenness = self.unevenness(here, &next, step) / (even * EVEN);
+        self.stretch = self.stretch.max(bend).max(unevenness);
         if crossing {
             self.opposite = Some(next.fraction);
         }
-        if step.abs() > CORNER && !(straight && self.unevenness(here, &next, step) <= strict * EVEN) {
+        if step.abs() > CORNER && !(bend <= 1.0 && unevenness <= 1.0) {
             return Err(Trouble::Stalled(cosine - 2.0));
         }
         Ok((next, Turn::None))
@@ -329,7 +369,7 @@ impl<'e> Stepper<'e> {
             self.correct_again(here, load)?;
         }
         for _ in 0..4 {
-            let estimate = self.engine.estimate(accuracy)?;
+            let estimate = self.engine.estimate_unless(accuracy, Some(accuracy))?;
             self.error = estimate;
             let many = self.engine.solution.mesh.elements() > MANY;
             if estimate <= accuracy || (many && estimate <= enough) {
@@ -344,6 +384,7 @@ impl<'e> Stepper<'e> {
     /// Corrections on another mesh: near a fold there may be no solution at the load that the last mesh
     /// had one at, so the load stays free unless the path ends there.
     fn correct_again(&mut self, here: Option<&Point>, load: &mut Load) -> Result<(), Trouble> {
+        self.current = false;
         match (load, here) {
             (Load::Free(fraction), Some(here)) => self.correct(here, fraction),
             _ => roughly(self.engine.newton(1e-6, 12)),
