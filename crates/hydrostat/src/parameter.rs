@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::arm::{Arm, ArmError, Gravity, Material};
+use crate::profile::{Point, Profile};
 
 /// One number of an arm that can be varied. Its name is the dotted key of the arm file.
 ///
@@ -21,6 +22,10 @@ pub enum Parameter {
     Tension(usize),
     /// Stroke of a cable that is commanded in place of its tension, m.
     Stroke(usize),
+    /// Offset of a cable, m: one of the numbers that its profile is given by.
+    Offset(usize, Point),
+    /// Radius of the arm, m: the same.
+    Radius(Point),
     /// Speed of the stream, m/s.
     FlowSpeed,
     /// Direction of the stream from e1, rad.
@@ -68,6 +73,14 @@ pub enum Unfit {
         /// Cables of the arm.
         cables: usize,
     },
+    /// A point of a profile that is given in another way.
+    #[error("`{key}`: the arm gives this profile in another way; {expected}")]
+    Point {
+        /// The parameter.
+        key: String,
+        /// Which keys it has.
+        expected: String,
+    },
     /// A homogeneous material's property where the coefficients are given.
     #[error("`{key}`: the arm gives c1, c2 and c3 in place of a homogeneous material")]
     Coefficients {
@@ -76,14 +89,15 @@ pub enum Unfit {
     },
 }
 
-/// The names of all parameters, that of the cables with the index 0.
+/// The names of all parameters, those of the cables with the index 0, those of profiles as of linear ones.
 pub fn names() -> Vec<String> {
-    let mut all: Vec<String> = PLAIN.iter().map(Parameter::to_string).collect();
-    all.splice(0..0, [Parameter::Tension(0), Parameter::Stroke(0)].map(|p| p.to_string()));
-    all
+    let of_cables = [Parameter::Tension(0), Parameter::Stroke(0)].into_iter();
+    let ends = [Point::Base, Point::Tip];
+    let geometry = ends.map(|end| Parameter::Offset(0, end)).into_iter().chain(ends.map(Parameter::Radius));
+    of_cables.chain(PLAIN).chain(geometry).map(|parameter| parameter.to_string()).collect()
 }
 
-/// All but the cables'.
+/// All but the cables' and the geometry's.
 pub(crate) const PLAIN: [Parameter; 15] = [
     Parameter::FlowSpeed,
     Parameter::FlowDirection,
@@ -107,6 +121,8 @@ impl fmt::Display for Parameter {
         match self {
             Self::Tension(c) => write!(f, "cable[{c}].tension"),
             Self::Stroke(c) => write!(f, "cable[{c}].stroke"),
+            Self::Offset(c, point) => write!(f, "cable[{c}].offset{point}"),
+            Self::Radius(point) => write!(f, "arm.radius{point}"),
             Self::FlowSpeed => f.write_str("flow.speed"),
             Self::FlowDirection => f.write_str("flow.direction"),
             Self::FlowDensity => f.write_str("flow.density"),
@@ -132,8 +148,16 @@ impl FromStr for Parameter {
             match (index.parse(), of) {
                 (Ok(index), "tension") => return Ok(Self::Tension(index)),
                 (Ok(index), "stroke") => return Ok(Self::Stroke(index)),
+                (Ok(index), other) => {
+                    if let Some(point) = other.strip_prefix("offset").and_then(Point::read) {
+                        return Ok(Self::Offset(index, point));
+                    }
+                }
                 _ => {}
             }
+        }
+        if let Some(point) = name.strip_prefix("arm.radius").and_then(Point::read) {
+            return Ok(Self::Radius(point));
         }
         PLAIN.into_iter().find(|p| p.to_string() == name).ok_or_else(|| UnknownParameter { name: name.to_owned() })
     }
@@ -148,7 +172,7 @@ impl Parameter {
             Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => "rad",
             Self::FlowDensity | Self::Density => "kg/m3",
             Self::GravityAcceleration => "m/s2",
-            Self::Stroke(_) => "m",
+            Self::Stroke(_) | Self::Offset(..) | Self::Radius(_) => "m",
             Self::TipMoment => "N m",
             Self::Young => "Pa",
             Self::Poisson | Self::ShearFactor => "",
@@ -169,6 +193,9 @@ impl Parameter {
     /// # Errors
     /// [`Unfit`] when the arm has no such quantity.
     pub fn of(self, arm: &Arm) -> Result<f64, Unfit> {
+        if let Some((profile, point)) = self.profile(arm)? {
+            return profile.point(point).ok_or_else(|| self.no_point(profile));
+        }
         let mut arm = arm.clone();
         self.place(&mut arm).map(|value| *value)
     }
@@ -178,10 +205,45 @@ impl Parameter {
     /// # Errors
     /// [`Unfit`] when the arm has no such quantity.
     pub fn set(self, arm: &mut Arm, value: f64) -> Result<(), Unfit> {
+        if let Some((profile, point)) = self.profile(arm)? {
+            let moved = profile.with_point(point, value).ok_or_else(|| self.no_point(profile))?;
+            match self {
+                Self::Offset(c, _) => arm.cables[c].offset = moved,
+                _ => arm.radius = moved,
+            }
+            return Ok(());
+        }
         *self.place(arm)? = value;
         Ok(())
     }
 
+    /// The profile that it is a number of.
+    pub(crate) fn profile(self, arm: &Arm) -> Result<Option<(&Profile, Point)>, Unfit> {
+        match self {
+            Self::Offset(c, point) => match arm.cables.get(c) {
+                Some(cable) => Ok(Some((&cable.offset, point))),
+                None => Err(Unfit::Cable { key: self.to_string(), cables: arm.cables.len() }),
+            },
+            Self::Radius(point) => Ok(Some((&arm.radius, point))),
+            _ => Ok(None),
+        }
+    }
+
+    fn no_point(self, profile: &Profile) -> Unfit {
+        let of = |point: Point| match self {
+            Self::Offset(c, _) => Self::Offset(c, point).to_string(),
+            _ => Self::Radius(point).to_string(),
+        };
+        let names: Vec<String> = profile.points().into_iter().map(of).collect();
+        let expected = match &names[..] {
+            [one] => format!("it has `{one}`"),
+            [first, .., last] => format!("it has `{first}` to `{last}`"),
+            [] => String::new(),
+        };
+        Unfit::Point { key: self.to_string(), expected }
+    }
+
+    /// Where its number stands, of all but profiles'.
     fn place(self, arm: &mut Arm) -> Result<&mut f64, Unfit> {
         let gravity = Gravity { acceleration: 0.0, ..Gravity::default() };
         Ok(match self {
@@ -198,6 +260,10 @@ impl Parameter {
                     cable.stroke = None;
                     &mut cable.tension
                 }
+            }
+            // Not by itself: the slopes of a table go with it.
+            Self::Offset(..) | Self::Radius(_) => {
+                return Err(Unfit::Point { key: self.to_string(), expected: String::new() });
             }
             Self::FlowSpeed => &mut arm.flow.speed,
             Self::FlowDirection => &mut arm.flow.direction,
@@ -224,7 +290,9 @@ impl Parameter {
     pub(crate) fn is_of_sections(self) -> bool {
         matches!(
             self,
-            Self::FlowDensity
+            Self::Offset(..)
+                | Self::Radius(_)
+                | Self::FlowDensity
                 | Self::GravityAcceleration
                 | Self::GravityDirection
                 | Self::Density
@@ -265,10 +333,23 @@ mod tests {
             Parameter::Tension(13),
             Parameter::Stroke(0),
             Parameter::Stroke(7),
+            Parameter::Offset(3, Point::Whole),
+            Parameter::Offset(0, Point::Tip),
+            Parameter::Radius(Point::Base),
+            Parameter::Radius(Point::Knot(12)),
         ]) {
             assert_eq!(parameter.to_string().parse(), Ok(parameter));
         }
-        for wrong in ["", "cable.tension", "cable[].tension", "cable[-1].tension", "tip.force", "flow.Speed"] {
+        for wrong in [
+            "",
+            "cable.tension",
+            "cable[].tension",
+            "cable[-1].tension",
+            "tip.force",
+            "flow.Speed",
+            "cable[0].offset[1]",
+            "arm.radiusx",
+        ] {
             assert!(wrong.parse::<Parameter>().is_err(), "{wrong}");
         }
     }
@@ -277,10 +358,19 @@ mod tests {
     fn a_value_that_is_set_is_found() {
         let mut arm = Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5);
         arm.cables.push(crate::Cable::new("left", 0.001));
-        for (k, parameter) in PLAIN.into_iter().chain([Parameter::Tension(0), Parameter::Stroke(0)]).enumerate() {
+        let others = [Parameter::Tension(0), Parameter::Stroke(0), Parameter::Offset(0, Point::Whole)];
+        let radii = [Point::Base, Point::Tip].map(Parameter::Radius);
+        for (k, parameter) in PLAIN.into_iter().chain(others).chain(radii).enumerate() {
             parameter.set(&mut arm, k as f64).unwrap();
             assert_eq!(parameter.of(&arm), Ok(k as f64));
         }
-        assert!(matches!(Parameter::Tension(1).of(&arm), Err(Unfit::Cable { cables: 1, .. })));
+        for missing in [Parameter::Tension(1), Parameter::Offset(1, Point::Whole)] {
+            assert!(matches!(missing.of(&arm), Err(Unfit::Cable { cables: 1, .. })));
+        }
+        let other = Parameter::Offset(0, Point::Tip);
+        assert_eq!(other.of(&arm).err(), other.set(&mut arm.clone(), 1.0).err());
+        assert!(other.of(&arm).is_err());
+        let words = Parameter::Radius(Point::Knot(1)).of(&arm).unwrap_err().to_string();
+        assert!(words.ends_with("it has `arm.radius.base` to `arm.radius.tip`"), "{words}");
     }
 }

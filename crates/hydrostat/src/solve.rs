@@ -69,6 +69,11 @@ impl Solver {
         Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, estimate: None })
     }
 
+    /// The arm, with the loads that were set last.
+    pub fn arm(&self) -> &Arm {
+        self.engine.equations.arm()
+    }
+
     /// Solves from the unloaded arm.
     ///
     /// # Errors
