@@ -14,7 +14,7 @@
 # # Design: a shape that is asked for
 #
 # Where should a cable run, and how thick should the arm be, so that it takes a given shape while a stream pushes against it? The
-# shape follows from 12 numbers. Their gradient comes from one adjoint solve of the converged equations, and SciPy does the rest.
+# shape follows from 13 numbers. Their gradient comes from one adjoint solve of the converged equations, and SciPy does the rest.
 
 # %%
 import matplotlib.pyplot as plt
@@ -58,35 +58,30 @@ target_x, target_y = hook(places)
 # %% [markdown]
 # ## The design
 #
-# The radius at five points, the left cable's offset at six as a share of the radius there, and its tension. The right cable stays
-# slack. In between, radius and offset are the smooth tables of the arm file.
+# The left cable's tension, the radius at six points, and the cable's offset there as a share of the radius. The right cable is its mirror
+# image and hangs slack. In between, radius and offset are the smooth tables of the arm file.
 
 # %%
-radius_at = np.linspace(0.0, length, 5)
-offset_at = np.linspace(0.0, length, 6)
+points = np.linspace(0.0, length, 6)
 names = (
     ["cable[0].tension"]
-    + [f"arm.radius[{k}][1]" for k in range(5)]
+    + [f"arm.radius[{k}][1]" for k in range(6)]
     + [f"cable[0].offset[{k}][1]" for k in range(6)]
 )
-lower = np.array([0.02, *np.full(5, 0.003), *np.full(6, 0.05)])
-upper = np.array([1.50, *np.full(5, 0.012), *np.full(6, 0.80)])
-# The shipped arm, whose tables are straight lines.
-first = np.array([0.15, *np.linspace(0.010, 0.002, 5).clip(0.003), *np.full(6, 0.5)])
+lower = np.array([0.02, *np.full(6, 0.004), *np.full(6, 0.05)])
+upper = np.array([1.50, *np.full(6, 0.012), *np.full(6, 0.70)])
+# As the shipped arm, but for a tip that is not so thin.
+first = np.array([0.15, *np.linspace(0.010, 0.004, 6), *np.full(6, 0.5)])
 
 
-def table(at: Numbers, values: Numbers) -> list[list[float]]:
-    return np.stack([at, values], axis=1).tolist()  # type: ignore[no-any-return]
-
-
-def radius_where_offsets_are(design: Numbers) -> Numbers:
-    """The radius at the offsets' points, linear between its own."""
-    return np.interp(offset_at, radius_at, design[1:6])
+def table(values: Numbers) -> list[list[float]]:
+    return np.stack([points, values], axis=1).tolist()  # type: ignore[no-any-return]
 
 
 def designed(design: Numbers) -> hs.Arm:
-    offsets = design[6:] * radius_where_offsets_are(design)
-    changes = {"arm.radius": table(radius_at, design[1:6]), "cable[0].offset": table(offset_at, offsets)}
+    radius, share = design[1:7], design[7:]
+    left, right = table(share * radius), table(-share * radius)
+    changes = {"arm.radius": table(radius), "cable[0].offset": left, "cable[1].offset": right}
     return arm.replace(changes, tensions=[design[0], 0.0])
 
 
@@ -97,9 +92,8 @@ def designed(design: Numbers) -> hs.Arm:
 # the objective by x and y of the places, and gives those by all parameters.
 
 # %%
-# How the offsets' shares become offsets: the radius there follows its own points.
-spread = np.stack([np.interp(offset_at, radius_at, unit) for unit in np.eye(5)], axis=1)
 MM = 1e-3
+WINDING = 0.5
 
 
 def objective(design: Numbers) -> tuple[float, Numbers]:
@@ -107,19 +101,19 @@ def objective(design: Numbers) -> tuple[float, Numbers]:
     solver = hs.Solver(designed(design), tol=1e-9)
     found = solver.solution().at(places)
     off_x, off_y = (found.x - target_x) / MM, (found.y - target_y) / MM
+    winding = np.diff(design[7:], 2)
     count = len(places)
-    by_parameter = solver.gradient(names, places, x=2 * off_x / (count * MM), y=2 * off_y / (count * MM))
-    winding = np.diff(design[6:], 2)
     value = float((off_x @ off_x + off_y @ off_y) / count + WINDING * winding @ winding)
-    by_offset = by_parameter[6:]
-    out = np.concatenate([by_parameter[:6], by_offset * radius_where_offsets_are(design)])
-    out[1:6] += spread.T @ (by_offset * design[6:])
+
+    by = solver.gradient(names, places, x=2 * off_x / (count * MM), y=2 * off_y / (count * MM))
+    by_radius, by_offset = by[1:7], by[7:]
+    # An offset is its share of the radius.
+    radius, share = design[1:7], design[7:]
+    out = np.concatenate([by[:1], by_radius + by_offset * share, by_offset * radius])
     for k, bend in enumerate(winding):
-        out[6 + k : 9 + k] += 2 * WINDING * bend * np.array([1.0, -2.0, 1.0])
+        out[7 + k : 10 + k] += 2 * WINDING * bend * np.array([1.0, -2.0, 1.0])
     return value, out
 
-
-WINDING = 0.5
 
 # %% [markdown]
 # ## Is the gradient right?
@@ -167,7 +161,7 @@ before = np.concatenate([pulled.x, first[1:]])
 print(f"{before[0]:.4f} N: {np.sqrt(objective(before)[0]):.2f} mm off, root of the mean square")
 
 # %% [markdown]
-# ## All twelve
+# ## All thirteen
 
 # %%
 history = [objective(before)[0]]
@@ -177,17 +171,29 @@ def note(intermediate_result: OptimizeResult) -> None:
     history.append(float(intermediate_result.fun))
 
 
-# In shares of the ranges, so that the numbers are alike.
+# In twentieths of the ranges: the numbers are alike, and the first step, which is one long, is careful.
+unit = scale / 20
+
+
+def in_units(x: Numbers) -> tuple[float, Numbers]:
+    try:
+        value, by = objective(lower + x * unit)
+    except hs.NoEquilibrium:
+        # A step too far: the line search comes back.
+        return 1e6, np.zeros_like(x)
+    return value, by * unit
+
+
 result = minimize(
-    lambda share: (lambda value, by: (value, by * scale))(*objective(lower + share * scale)),
-    (before - lower) / scale,
+    in_units,
+    (before - lower) / unit,
     jac=True,
     method="L-BFGS-B",
-    bounds=[(0.0, 1.0)] * len(first),
+    bounds=[(0.0, 20.0)] * len(first),
     callback=note,
-    options={"maxiter": 150, "ftol": 1e-10, "gtol": 1e-6},
+    options={"maxiter": 200, "ftol": 1e-9, "gtol": 1e-5},
 )
-after = lower + result.x * scale
+after = lower + result.x * unit
 print(f"{len(history) - 1} iterations, {result.nfev} solves with gradients: {result.message}")
 print(f"{np.sqrt(history[0]):.2f} mm off before, {np.sqrt(history[-1]):.3f} mm after")
 assert history[-1] < 0.02 * history[0]

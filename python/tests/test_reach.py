@@ -69,20 +69,18 @@ def test_strokes_and_tensions_of_the_arm_do_not_count(silicone: hs.Arm) -> None:
 
 
 def test_a_follower_in_a_loop(silicone: hs.Arm) -> None:
-    """Round a circle of targets, and every step against a solve at its tensions."""
-    arm = silicone.replace(tensions=[0.25, 0.1])
-    tip = arm.solve().tip
-    angles = np.linspace(0.0, 2.0 * np.pi, 200)
-    radius = 0.004
-    circle = np.stack([tip.x - radius + radius * np.cos(angles), tip.y + radius * np.sin(angles)], axis=1)
-    follower = hs.Follower(arm, (tip.x, tip.y), max_tension=0.9)
-    followed = [follower.follow((x, y)) for x, y in circle]
+    """Round a loop of targets, each the tip at known tensions."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 120)
+    pulls = np.stack([0.25 + 0.03 * np.cos(angles), 0.1 + 0.03 * np.sin(angles)], axis=1)
+    tips = [silicone.solve(tensions=pull, tol=1e-10).tip for pull in pulls]
+    follower = hs.Follower(silicone.replace(tensions=pulls[0].tolist()), (tips[0].x, tips[0].y), max_tension=0.9)
+    followed = [follower.follow((tip.x, tip.y)) for tip in tips]
     assert all(step.reached and not step.jumped and step.distance <= 1e-8 for step in followed)
     assert max(step.solves for step in followed) <= 4
-    for step, (x, y) in list(zip(followed, circle, strict=True))[::20]:
-        again = arm.solve(tensions=step.tensions).tip
-        assert np.hypot(again.x - x, again.y - y) < 5e-8 * arm.length
-        assert np.allclose(step.tip, again, rtol=0, atol=1e-6)
+    for step, pull, tip in zip(followed, pulls, tips, strict=True):
+        assert np.allclose(step.tensions, pull, rtol=0, atol=2e-6)
+        assert np.hypot(step.tip.x - tip.x, step.tip.y - tip.y) <= 1.01e-8 * silicone.length
+        assert step.tip.theta == pytest.approx(tip.theta, abs=1e-4)
     # Round once: the same tensions as at the start.
     assert np.allclose(followed[-1].tensions, followed[0].tensions, rtol=0, atol=1e-5)
     far = follower.follow((0.4, 0.0))

@@ -19,7 +19,7 @@ def loaded() -> hs.Arm:
         "tip.force": [1e-4, -2e-4],
         "arm.base.angle": 10,
         "cable[0].offset": [[0, 0.005], [0.1, 0.0035], [0.245, 0.001]],
-        "cable[1].stroke": -0.01,
+        "cable[1].stroke": 0.002,
     }
     return hs.Arm.load("silicone").replace({"cable[0].tension": 0.15, "flow.speed": 0.1, **changes})
 
