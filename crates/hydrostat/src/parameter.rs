@@ -3,7 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::arm::{Arm, ArmError, Gravity, Material};
+use crate::arm::{Arm, ArmError, FlowLaw, Gravity, Material};
+use crate::profile::Profile;
 
 /// One number of an arm that can be varied. Its name is the dotted key of the arm file.
 ///
@@ -47,6 +48,12 @@ pub enum Parameter {
     Poisson,
     /// Shear correction of a homogeneous arm.
     ShearFactor,
+    /// C1 (0, Pa), C2 (1, Pa) or C3 (2, N), where the coefficients are given and this one is the same all along.
+    Coefficient(usize),
+    /// C_n of quadratic drag.
+    DragNormal,
+    /// C_t of quadratic drag.
+    DragTangential,
 }
 
 /// A name that no parameter has.
@@ -74,6 +81,24 @@ pub enum Unfit {
         /// The parameter.
         key: String,
     },
+    /// A coefficient where a homogeneous material is given.
+    #[error("`{key}`: the arm gives a homogeneous material in place of c1, c2 and c3")]
+    Homogeneous {
+        /// The parameter.
+        key: String,
+    },
+    /// A coefficient that is a profile.
+    #[error("`{key}` varies along the arm: it is no single number")]
+    Profile {
+        /// The parameter.
+        key: String,
+    },
+    /// A drag coefficient without quadratic drag.
+    #[error("`{key}` does not act: flow.law is momentum, not quadratic-drag")]
+    Momentum {
+        /// The parameter.
+        key: String,
+    },
 }
 
 /// The names of all parameters, that of the cables with the index 0.
@@ -84,7 +109,7 @@ pub fn names() -> Vec<String> {
 }
 
 /// All but the cables'.
-pub(crate) const PLAIN: [Parameter; 15] = [
+pub(crate) const PLAIN: [Parameter; 20] = [
     Parameter::FlowSpeed,
     Parameter::FlowDirection,
     Parameter::FlowDensity,
@@ -100,6 +125,11 @@ pub(crate) const PLAIN: [Parameter; 15] = [
     Parameter::Young,
     Parameter::Poisson,
     Parameter::ShearFactor,
+    Parameter::Coefficient(0),
+    Parameter::Coefficient(1),
+    Parameter::Coefficient(2),
+    Parameter::DragNormal,
+    Parameter::DragTangential,
 ];
 
 impl fmt::Display for Parameter {
@@ -120,6 +150,9 @@ impl fmt::Display for Parameter {
             Self::Young => f.write_str("material.young"),
             Self::Poisson => f.write_str("material.poisson"),
             Self::ShearFactor => f.write_str("material.shear_factor"),
+            Self::Coefficient(k) => write!(f, "material.c{}", k.min(&2) + 1),
+            Self::DragNormal => f.write_str("flow.cn"),
+            Self::DragTangential => f.write_str("flow.ct"),
         }
     }
 }
@@ -143,15 +176,15 @@ impl Parameter {
     /// The unit of its values in the library; empty for a plain number.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) => "N",
+            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) | Self::Coefficient(2..) => "N",
             Self::FlowSpeed => "m/s",
             Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => "rad",
             Self::FlowDensity | Self::Density => "kg/m3",
             Self::GravityAcceleration => "m/s2",
             Self::Stroke(_) => "m",
             Self::TipMoment => "N m",
-            Self::Young => "Pa",
-            Self::Poisson | Self::ShearFactor => "",
+            Self::Young | Self::Coefficient(_) => "Pa",
+            Self::Poisson | Self::ShearFactor | Self::DragNormal | Self::DragTangential => "",
         }
     }
 
@@ -217,6 +250,23 @@ impl Parameter {
                 },
                 Material::Coefficients { .. } => return Err(Unfit::Coefficients { key: self.to_string() }),
             },
+            Self::Coefficient(k) => match &mut arm.material {
+                Material::Homogeneous { .. } => return Err(Unfit::Homogeneous { key: self.to_string() }),
+                Material::Coefficients { c1, c2, c3 } => match [c1, c2, c3][k.min(2)] {
+                    Profile::Constant(value) => value,
+                    _ => return Err(Unfit::Profile { key: self.to_string() }),
+                },
+            },
+            Self::DragNormal | Self::DragTangential => match &mut arm.flow.law {
+                FlowLaw::Momentum => return Err(Unfit::Momentum { key: self.to_string() }),
+                FlowLaw::QuadraticDrag { cn, ct } => {
+                    if self == Self::DragNormal {
+                        cn
+                    } else {
+                        ct
+                    }
+                }
+            },
         })
     }
 
@@ -231,6 +281,7 @@ impl Parameter {
                 | Self::Young
                 | Self::Poisson
                 | Self::ShearFactor
+                | Self::Coefficient(_)
         )
     }
 
@@ -277,10 +328,21 @@ mod tests {
     fn a_value_that_is_set_is_found() {
         let mut arm = Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5);
         arm.cables.push(crate::Cable::new("left", 0.001));
+        arm.flow.law = FlowLaw::QuadraticDrag { cn: 1.0, ct: 0.02 };
+        let mut given = arm.clone();
+        given.material = Material::Coefficients { c1: 1e5.into(), c2: 3e4.into(), c3: Profile::linear(2.0, 0.1) };
         for (k, parameter) in PLAIN.into_iter().chain([Parameter::Tension(0), Parameter::Stroke(0)]).enumerate() {
-            parameter.set(&mut arm, k as f64).unwrap();
-            assert_eq!(parameter.of(&arm), Ok(k as f64));
+            let arm = if matches!(parameter, Parameter::Coefficient(_)) { &mut given } else { &mut arm };
+            if parameter == Parameter::Coefficient(2) {
+                assert!(matches!(parameter.of(arm), Err(Unfit::Profile { .. })));
+                continue;
+            }
+            parameter.set(arm, k as f64).unwrap();
+            assert_eq!(parameter.of(arm), Ok(k as f64));
         }
+        assert!(matches!(Parameter::Coefficient(0).of(&arm), Err(Unfit::Homogeneous { .. })));
+        arm.flow.law = FlowLaw::Momentum;
+        assert!(matches!(Parameter::DragNormal.of(&arm), Err(Unfit::Momentum { .. })));
         assert!(matches!(Parameter::Tension(1).of(&arm), Err(Unfit::Cable { cables: 1, .. })));
     }
 }

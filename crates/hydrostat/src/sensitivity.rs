@@ -20,6 +20,7 @@ mod linear;
 
 use self::linear::{Drift, Functional, Linear};
 use crate::arm::Arm;
+use crate::configuration::Wrench;
 use crate::engine::{Engine, M, Trouble, solved};
 use crate::equilibrium::{Asked, CLOSED, Equilibrium, N, OUT, RATE, Spot};
 use crate::parameter::{Parameter, Unfit};
@@ -91,6 +92,8 @@ pub struct Sensitivities {
     pub strokes: Vec<Vec<f64>>,
     /// Of the tension (N) of every cable: zero but where a stroke is commanded, and one by itself.
     pub tensions: Vec<Vec<f64>>,
+    /// Of what support and cable anchors exert on the arm at the base, one a parameter.
+    pub base: Vec<Wrench>,
     /// Of the places asked for, in their order.
     pub stations: Vec<SensitiveStation>,
 }
@@ -285,6 +288,7 @@ impl Solver {
             quantities.extend(engine.pose_at(*place));
         }
         quantities.extend((0..cables).map(Quantity::Stroke));
+        quantities.extend((0..3).map(Quantity::Base));
         let found = engine.derivatives(&quantities, parameters, options.method).ok_or(SensitivityError::Singular)?;
 
         let pose = |first: usize, k: usize| PoseChange {
@@ -294,12 +298,15 @@ impl Solver {
             alpha: found.rows[first + 3][k],
         };
         let poses = |first: usize| (0..parameters.len()).map(|k| pose(first, k)).collect::<Vec<_>>();
+        let (strokes, base) = found.rows[POSE * (places.len() + 1)..].split_at(cables);
+        let wrench = |k: usize| Wrench { force: [base[0][k], base[1][k]], moment: base[2][k] };
         let stations = options.stations.iter().enumerate();
         let stations = stations.map(|(i, s)| SensitiveStation { s: *s, changes: poses(POSE * (i + 1)) }).collect();
         Ok(Sensitivities {
             parameters: parameters.to_vec(),
             tip: poses(0),
-            strokes: found.rows[POSE * (places.len() + 1)..].to_vec(),
+            strokes: strokes.to_vec(),
+            base: (0..parameters.len()).map(wrench).collect(),
             tensions: found.tensions,
             stations,
         })
@@ -348,6 +355,8 @@ pub(crate) enum Quantity {
     Stroke(usize),
     /// What has to be reeled in (m) of a cable for that, its own stretch aside.
     Command(usize),
+    /// Force along e1 (0), e2 (1) (N) or moment (2) (N m) on the base.
+    Base(usize),
 }
 
 /// Quantities of a pose.
@@ -474,6 +483,10 @@ impl Engine {
             Quantity::Theta(node) => (Linear::state(node, 0), 1.0),
             Quantity::Alpha(node) => (self.alpha_row(linear, node, sources, &mut direct)?, 1.0),
             Quantity::Stroke(c) => (linear.length(equations, c, -1.0), length),
+            Quantity::Base(k) => {
+                let force = equations.units.force;
+                (Linear::state(0, k + 1), if k < 2 { -force } else { -force * length })
+            }
             Quantity::Command(c) => {
                 let [_, by_length, by_tension] = equations.stroke(c, &self.system.gauss.b);
                 for (direct, source) in direct.iter_mut().zip(sources) {
@@ -555,7 +568,14 @@ fn direct_change(equations: &Equilibrium, spot: &[Spot], source: Parameter) -> [
 
 /// Whether strains follow it at a fixed state.
 fn is_of_section_law(parameter: Parameter) -> bool {
-    matches!(parameter, Parameter::Tension(_) | Parameter::Young | Parameter::Poisson | Parameter::ShearFactor)
+    matches!(
+        parameter,
+        Parameter::Tension(_)
+            | Parameter::Young
+            | Parameter::Poisson
+            | Parameter::ShearFactor
+            | Parameter::Coefficient(_)
+    )
 }
 
 /// Whether the loads along the arm follow it.
@@ -568,5 +588,7 @@ fn is_of_loads(parameter: Parameter) -> bool {
             | Parameter::GravityAcceleration
             | Parameter::GravityDirection
             | Parameter::Density
+            | Parameter::DragNormal
+            | Parameter::DragTangential
     )
 }

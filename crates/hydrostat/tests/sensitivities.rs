@@ -1,8 +1,8 @@
 //! Sensitivities against extrapolated differences of solves, against each other, and against closed forms.
 
 use hydrostat::{
-    Arm, Cable, Configuration, Ellipse, Gravity, Material, Options, Parameter, Profile, Readings, SensitivityError,
-    SensitivityMethod, SensitivityOptions, Solver,
+    Arm, Cable, Configuration, Ellipse, FlowLaw, Gravity, Material, Options, Parameter, Profile, Readings,
+    SensitivityError, SensitivityMethod, SensitivityOptions, Solver,
 };
 
 /// Tolerance of the solves that are differenced.
@@ -68,13 +68,22 @@ fn literal() -> Arm {
     arm
 }
 
-/// Tip pose, then strokes, then tensions, then the pose at a place.
+/// Quadratic drag across the arm.
+fn dragged() -> Arm {
+    let mut arm = loaded();
+    arm.flow.law = FlowLaw::QuadraticDrag { cn: 2.5, ct: 0.02 };
+    arm
+}
+
+/// Tip pose, then strokes, then tensions, then the pose at a place, then the wrench at the base.
 fn numbers(shape: &Configuration, s: f64) -> Vec<f64> {
     let (tip, place) = (shape.tip(), shape.at(s));
     let mut out = vec![tip.x, tip.y, tip.theta, tip.alpha];
     out.extend(shape.cables.iter().map(|c| c.stroke));
     out.extend(shape.cables.iter().map(|c| c.tension));
     out.extend([place.x, place.y, place.theta, place.alpha]);
+    let base = shape.base_reaction;
+    out.extend([base.force[0], base.force[1], base.moment]);
     out
 }
 
@@ -134,16 +143,18 @@ fn sensitivities(arm: &Arm, options: Options, s: f64, method: SensitivityMethod)
             out.extend(found.strokes.iter().map(|row| row[k]));
             out.extend(found.tensions.iter().map(|row| row[k]));
             out.extend(pose(found.stations[0].changes[k]));
+            let base = found.base[k];
+            out.extend([base.force[0], base.force[1], base.moment]);
             out
         })
         .collect()
 }
 
-/// Lengths, angles and tensions among the numbers, which have a scale each.
+/// Lengths, angles, forces and moments among the numbers, which have a scale each.
 fn kind(k: usize, cables: usize) -> usize {
     let place = k.checked_sub(4 + 2 * cables).unwrap_or(k);
     match k {
-        k if k < 4 || k >= 4 + 2 * cables => usize::from(place >= 2),
+        k if k < 4 || k >= 4 + 2 * cables => [0, 0, 1, 1, 2, 2, 3][place],
         k if k < 4 + cables => 0,
         _ => 2,
     }
@@ -152,9 +163,14 @@ fn kind(k: usize, cables: usize) -> usize {
 #[test]
 fn sensitivities_match_extrapolated_differences_of_solves() {
     let mut worst_of_all = 0.0_f64;
-    for (name, arm) in
-        [("cone", cone()), ("loaded", loaded()), ("held", held()), ("stiff", stiff()), ("literal", literal())]
-    {
+    for (name, arm) in [
+        ("cone", cone()),
+        ("loaded", loaded()),
+        ("held", held()),
+        ("stiff", stiff()),
+        ("dragged", dragged()),
+        ("literal", literal()),
+    ] {
         let s = 0.55 * arm.length;
         let exact = sensitivities(&arm, TIGHT, s, SensitivityMethod::Best);
         for (parameter, exact) in Parameter::all_of(&arm).into_iter().zip(&exact) {
@@ -168,7 +184,7 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
             }
             let want = differences(&arm, parameter, s);
             let cables = arm.cables.len();
-            let mut sizes = [1e-12_f64; 3];
+            let mut sizes = [1e-12_f64; 4];
             for (k, want) in want.iter().enumerate() {
                 sizes[kind(k, cables)] = sizes[kind(k, cables)].max(want.abs());
             }
@@ -188,7 +204,7 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
 
 #[test]
 fn forward_and_adjoint_agree() {
-    for arm in [loaded(), held(), stiff(), literal()] {
+    for arm in [loaded(), held(), stiff(), dragged(), literal()] {
         let s = 0.3 * arm.length;
         let forward = sensitivities(&arm, Options::default(), s, SensitivityMethod::Forward);
         let adjoint = sensitivities(&arm, Options::default(), s, SensitivityMethod::Adjoint);
