@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::arm::{Arm, ArmError, Gravity, Material};
+use crate::arm::{Arm, ArmError, FlowLaw, Gravity, Material};
 use crate::profile::{Point, Profile};
 
 /// One number of an arm that can be varied. Its name is the dotted key of the arm file.
@@ -52,6 +52,12 @@ pub enum Parameter {
     Poisson,
     /// Shear correction of a homogeneous arm.
     ShearFactor,
+    /// C1 (0, Pa), C2 (1, Pa) or C3 (2, N), where the coefficients are given and this one is the same all along.
+    Coefficient(usize),
+    /// C_n of quadratic drag.
+    DragNormal,
+    /// C_t of quadratic drag.
+    DragTangential,
 }
 
 /// A name that no parameter has.
@@ -87,6 +93,24 @@ pub enum Unfit {
         /// The parameter.
         key: String,
     },
+    /// A coefficient where a homogeneous material is given.
+    #[error("`{key}`: the arm gives a homogeneous material in place of c1, c2 and c3")]
+    Homogeneous {
+        /// The parameter.
+        key: String,
+    },
+    /// A coefficient that is a profile.
+    #[error("`{key}` varies along the arm: it is no single number")]
+    Profile {
+        /// The parameter.
+        key: String,
+    },
+    /// A drag coefficient without quadratic drag.
+    #[error("`{key}` does not act: flow.law is momentum, not quadratic-drag")]
+    Momentum {
+        /// The parameter.
+        key: String,
+    },
 }
 
 /// The names of all parameters, those of the cables with the index 0, those of profiles as of linear ones.
@@ -98,7 +122,7 @@ pub fn names() -> Vec<String> {
 }
 
 /// All but the cables' and the geometry's.
-pub(crate) const PLAIN: [Parameter; 15] = [
+pub(crate) const PLAIN: [Parameter; 20] = [
     Parameter::FlowSpeed,
     Parameter::FlowDirection,
     Parameter::FlowDensity,
@@ -114,6 +138,11 @@ pub(crate) const PLAIN: [Parameter; 15] = [
     Parameter::Young,
     Parameter::Poisson,
     Parameter::ShearFactor,
+    Parameter::Coefficient(0),
+    Parameter::Coefficient(1),
+    Parameter::Coefficient(2),
+    Parameter::DragNormal,
+    Parameter::DragTangential,
 ];
 
 impl fmt::Display for Parameter {
@@ -136,6 +165,9 @@ impl fmt::Display for Parameter {
             Self::Young => f.write_str("material.young"),
             Self::Poisson => f.write_str("material.poisson"),
             Self::ShearFactor => f.write_str("material.shear_factor"),
+            Self::Coefficient(k) => write!(f, "material.c{}", k.min(&2) + 1),
+            Self::DragNormal => f.write_str("flow.cn"),
+            Self::DragTangential => f.write_str("flow.ct"),
         }
     }
 }
@@ -167,15 +199,15 @@ impl Parameter {
     /// The unit of its values in the library; empty for a plain number.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) => "N",
+            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) | Self::Coefficient(2..) => "N",
             Self::FlowSpeed => "m/s",
             Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => "rad",
             Self::FlowDensity | Self::Density => "kg/m3",
             Self::GravityAcceleration => "m/s2",
             Self::Stroke(_) | Self::Offset(..) | Self::Radius(_) => "m",
             Self::TipMoment => "N m",
-            Self::Young => "Pa",
-            Self::Poisson | Self::ShearFactor => "",
+            Self::Young | Self::Coefficient(_) => "Pa",
+            Self::Poisson | Self::ShearFactor | Self::DragNormal | Self::DragTangential => "",
         }
     }
 
@@ -283,6 +315,23 @@ impl Parameter {
                 },
                 Material::Coefficients { .. } => return Err(Unfit::Coefficients { key: self.to_string() }),
             },
+            Self::Coefficient(k) => match &mut arm.material {
+                Material::Homogeneous { .. } => return Err(Unfit::Homogeneous { key: self.to_string() }),
+                Material::Coefficients { c1, c2, c3 } => match [c1, c2, c3][k.min(2)] {
+                    Profile::Constant(value) => value,
+                    _ => return Err(Unfit::Profile { key: self.to_string() }),
+                },
+            },
+            Self::DragNormal | Self::DragTangential => match &mut arm.flow.law {
+                FlowLaw::Momentum => return Err(Unfit::Momentum { key: self.to_string() }),
+                FlowLaw::QuadraticDrag { cn, ct } => {
+                    if self == Self::DragNormal {
+                        cn
+                    } else {
+                        ct
+                    }
+                }
+            },
         })
     }
 
@@ -299,6 +348,7 @@ impl Parameter {
                 | Self::Young
                 | Self::Poisson
                 | Self::ShearFactor
+                | Self::Coefficient(_)
         )
     }
 
@@ -358,11 +408,19 @@ mod tests {
     fn a_value_that_is_set_is_found() {
         let mut arm = Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5);
         arm.cables.push(crate::Cable::new("left", 0.001));
+        arm.flow.law = FlowLaw::QuadraticDrag { cn: 1.0, ct: 0.02 };
+        let mut given = arm.clone();
+        given.material = Material::Coefficients { c1: 1e5.into(), c2: 3e4.into(), c3: Profile::linear(2.0, 0.1) };
         let others = [Parameter::Tension(0), Parameter::Stroke(0), Parameter::Offset(0, Point::Whole)];
         let radii = [Point::Base, Point::Tip].map(Parameter::Radius);
         for (k, parameter) in PLAIN.into_iter().chain(others).chain(radii).enumerate() {
-            parameter.set(&mut arm, k as f64).unwrap();
-            assert_eq!(parameter.of(&arm), Ok(k as f64));
+            let arm = if matches!(parameter, Parameter::Coefficient(_)) { &mut given } else { &mut arm };
+            if parameter == Parameter::Coefficient(2) {
+                assert!(matches!(parameter.of(arm), Err(Unfit::Profile { .. })));
+                continue;
+            }
+            parameter.set(arm, k as f64).unwrap();
+            assert_eq!(parameter.of(arm), Ok(k as f64));
         }
         for missing in [Parameter::Tension(1), Parameter::Offset(1, Point::Whole)] {
             assert!(matches!(missing.of(&arm), Err(Unfit::Cable { cables: 1, .. })));
@@ -372,5 +430,8 @@ mod tests {
         assert!(other.of(&arm).is_err());
         let words = Parameter::Radius(Point::Knot(1)).of(&arm).unwrap_err().to_string();
         assert!(words.ends_with("it has `arm.radius.base` to `arm.radius.tip`"), "{words}");
+        assert!(matches!(Parameter::Coefficient(0).of(&arm), Err(Unfit::Homogeneous { .. })));
+        arm.flow.law = FlowLaw::Momentum;
+        assert!(matches!(Parameter::DragNormal.of(&arm), Err(Unfit::Momentum { .. })));
     }
 }

@@ -20,6 +20,7 @@ mod linear;
 
 use self::linear::{Drift, Functional, Linear};
 use crate::arm::Arm;
+use crate::configuration::Wrench;
 use crate::engine::{Engine, M, Trouble, solved};
 use crate::equilibrium::{Asked, CLOSED, Equilibrium, N, OUT, RATE, Spot};
 use crate::parameter::{Parameter, Unfit};
@@ -91,6 +92,8 @@ pub struct Sensitivities {
     pub strokes: Vec<Vec<f64>>,
     /// Of the tension (N) of every cable: zero but where a stroke is commanded, and one by itself.
     pub tensions: Vec<Vec<f64>>,
+    /// Of what support and cable anchors exert on the arm at the base, one a parameter.
+    pub base: Vec<Wrench>,
     /// Of the places asked for, in their order.
     pub stations: Vec<SensitiveStation>,
 }
@@ -281,6 +284,7 @@ impl Solver {
             quantities.extend(engine.pose_at(*place));
         }
         quantities.extend((0..cables).map(Quantity::Stroke));
+        quantities.extend((0..3).map(Quantity::Base));
         let found = engine.derivatives(&quantities, parameters, options.method).ok_or(SensitivityError::Singular)?;
 
         let pose = |first: usize, k: usize| PoseChange {
@@ -290,12 +294,15 @@ impl Solver {
             alpha: found.rows[first + 3][k],
         };
         let poses = |first: usize| (0..parameters.len()).map(|k| pose(first, k)).collect::<Vec<_>>();
+        let (strokes, base) = found.rows[POSE * (places.len() + 1)..].split_at(cables);
+        let wrench = |k: usize| Wrench { force: [base[0][k], base[1][k]], moment: base[2][k] };
         let stations = options.stations.iter().enumerate();
         let stations = stations.map(|(i, s)| SensitiveStation { s: *s, changes: poses(POSE * (i + 1)) }).collect();
         Ok(Sensitivities {
             parameters: parameters.to_vec(),
             tip: poses(0),
-            strokes: found.rows[POSE * (places.len() + 1)..].to_vec(),
+            strokes: strokes.to_vec(),
+            base: (0..parameters.len()).map(wrench).collect(),
             tensions: found.tensions,
             stations,
         })
@@ -400,6 +407,8 @@ pub(crate) enum Quantity {
     Stroke(usize),
     /// What has to be reeled in (m) of a cable for that, its own stretch aside.
     Command(usize),
+    /// Force along e1 (0), e2 (1) (N) or moment (2) (N m) on the base.
+    Base(usize),
 }
 
 /// Quantities with weights.
@@ -561,6 +570,10 @@ impl Engine {
                 self.reference_row(spots, c, sources, &mut direct);
                 (linear.length(equations, c, -1.0), length)
             }
+            Quantity::Base(k) => {
+                let force = equations.units.force;
+                (Linear::state(0, k + 1), if k < 2 { -force } else { -force * length })
+            }
             Quantity::Command(c) => {
                 self.reference_row(spots, c, sources, &mut direct);
                 let [_, by_length, by_tension] = equations.stroke(c, &self.system.gauss.b);
@@ -660,6 +673,7 @@ fn is_of_section_law(parameter: Parameter) -> bool {
             | Parameter::ShearFactor
             | Parameter::Offset(..)
             | Parameter::Radius(_)
+            | Parameter::Coefficient(_)
     )
 }
 
@@ -673,5 +687,7 @@ fn is_of_loads(parameter: Parameter) -> bool {
             | Parameter::GravityAcceleration
             | Parameter::GravityDirection
             | Parameter::Density
+            | Parameter::DragNormal
+            | Parameter::DragTangential
     )
 }

@@ -1,7 +1,7 @@
 //! Sensitivities against extrapolated differences of solves, against each other, and against closed forms.
 
 use hydrostat::{
-    Arm, Cable, Configuration, Ellipse, Gravity, Material, Options, Parameter, PoseChange, Profile, Readings,
+    Arm, Cable, Configuration, Ellipse, FlowLaw, Gravity, Material, Options, Parameter, PoseChange, Profile, Readings,
     SensitivityError, SensitivityMethod, SensitivityOptions, Solver,
 };
 
@@ -85,13 +85,22 @@ fn routed() -> Arm {
     arm
 }
 
-/// Tip pose, then strokes, then tensions, then the pose at a place.
+/// Quadratic drag across the arm.
+fn dragged() -> Arm {
+    let mut arm = loaded();
+    arm.flow.law = FlowLaw::QuadraticDrag { cn: 2.5, ct: 0.02 };
+    arm
+}
+
+/// Tip pose, then strokes, then tensions, then the pose at a place, then the wrench at the base.
 fn numbers(shape: &Configuration, s: f64) -> Vec<f64> {
     let (tip, place) = (shape.tip(), shape.at(s));
     let mut out = vec![tip.x, tip.y, tip.theta, tip.alpha];
     out.extend(shape.cables.iter().map(|c| c.stroke));
     out.extend(shape.cables.iter().map(|c| c.tension));
     out.extend([place.x, place.y, place.theta, place.alpha]);
+    let base = shape.base_reaction;
+    out.extend([base.force[0], base.force[1], base.moment]);
     out
 }
 
@@ -151,16 +160,18 @@ fn sensitivities(arm: &Arm, options: Options, s: f64, method: SensitivityMethod)
             out.extend(found.strokes.iter().map(|row| row[k]));
             out.extend(found.tensions.iter().map(|row| row[k]));
             out.extend(pose(found.stations[0].changes[k]));
+            let base = found.base[k];
+            out.extend([base.force[0], base.force[1], base.moment]);
             out
         })
         .collect()
 }
 
-/// Lengths, angles and tensions among the numbers, which have a scale each.
+/// Lengths, angles, forces and moments among the numbers, which have a scale each.
 fn kind(k: usize, cables: usize) -> usize {
     let place = k.checked_sub(4 + 2 * cables).unwrap_or(k);
     match k {
-        k if k < 4 || k >= 4 + 2 * cables => usize::from(place >= 2),
+        k if k < 4 || k >= 4 + 2 * cables => [0, 0, 1, 1, 2, 2, 3][place],
         k if k < 4 + cables => 0,
         _ => 2,
     }
@@ -174,6 +185,7 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
         ("loaded", loaded()),
         ("held", held()),
         ("stiff", stiff()),
+        ("dragged", dragged()),
         ("literal", literal()),
         ("routed", routed()),
     ] {
@@ -190,7 +202,7 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
             }
             let want = differences(&arm, parameter, s);
             let cables = arm.cables.len();
-            let mut sizes = [1e-12_f64; 3];
+            let mut sizes = [1e-12_f64; 4];
             for (k, want) in want.iter().enumerate() {
                 sizes[kind(k, cables)] = sizes[kind(k, cables)].max(want.abs());
             }
@@ -210,7 +222,7 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
 
 #[test]
 fn forward_and_adjoint_agree() {
-    for arm in [loaded(), held(), stiff(), literal(), routed()] {
+    for arm in [loaded(), held(), stiff(), dragged(), literal(), routed()] {
         let s = 0.3 * arm.length;
         let forward = sensitivities(&arm, Options::default(), s, SensitivityMethod::Forward);
         let adjoint = sensitivities(&arm, Options::default(), s, SensitivityMethod::Adjoint);

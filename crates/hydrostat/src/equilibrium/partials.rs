@@ -16,6 +16,7 @@ use crate::arm::Material;
 use crate::beta_along::Rule;
 use crate::cable::{Offset, tangent};
 use crate::dispatch::widest;
+use crate::flow::Law;
 use crate::loads::{Body, load};
 use crate::parameter::Parameter;
 use crate::profile::Profile;
@@ -247,11 +248,14 @@ impl Equilibrium {
             tensions[c].by.0[way] = 1.0 / self.units.force;
             return;
         }
-        let Material::Homogeneous { young, poisson, shear_factor } = self.arm.material else { return };
-        let (coefficients, per) = match parameter {
-            Parameter::Young => (0..3, 1.0 / young),
-            Parameter::Poisson => (1..2, -1.0 / (1.0 + poisson)),
-            Parameter::ShearFactor => (1..2, 1.0 / shear_factor),
+        let (coefficients, per) = match (parameter, &self.arm.material) {
+            (Parameter::Young, Material::Homogeneous { young, .. }) => (0..3, 1.0 / young),
+            (Parameter::Poisson, Material::Homogeneous { poisson, .. }) => (1..2, -1.0 / (1.0 + poisson)),
+            (Parameter::ShearFactor, Material::Homogeneous { shear_factor, .. }) => (1..2, 1.0 / shear_factor),
+            (Parameter::Coefficient(k), Material::Coefficients { .. }) => {
+                let k = k.min(2);
+                (k..k + 1, 1.0 / parameter.of(&self.arm).unwrap_or(f64::INFINITY))
+            }
             _ => return,
         };
         for share in &mut shares[coefficients] {
@@ -362,6 +366,9 @@ impl Equilibrium {
         let turned = |v: [f64; 2]| [-v[1], v[0]];
         match parameter {
             Parameter::FlowSpeed | Parameter::FlowDirection => body.wetted = own.wetted,
+            // Quadratic drag is the sum of what its coefficients do.
+            Parameter::DragNormal => (body.wetted, water.law) = (own.wetted, Law::drag(1.0, 0.0)),
+            Parameter::DragTangential => (body.wetted, water.law) = (own.wetted, Law::drag(0.0, 1.0)),
             Parameter::GravityDirection => {
                 body.weight = turned(own.weight);
                 body.displaced = turned(own.displaced);
