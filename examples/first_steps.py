@@ -105,6 +105,22 @@ shapes[-1].plot(right)
 plt.show()
 
 # %% [markdown]
+# ## A place in place of tensions
+#
+# Which tensions bring the tip to a place? `reach` finds them, within bounds; and near a shape, exact derivatives say what each cable does. The
+# ellipse holds all that a change of the two tensions of the given size can do.
+
+# %%
+reached = arm.reach((0.19, 0.07), max_tension=0.6)
+print(reached[0], "stable" if reached[0].stability == "stable" else "")
+fig, (left, right) = plt.subplots(1, 2, figsize=(9.6, 3.8), layout="constrained")
+reached.plot(left)
+at = arm.replace(tensions=reached[0].tensions).sensitivities(["cable[0].tension", "cable[1].tension", "flow.speed"])
+at.plot_manipulability(right)
+plt.show()
+at.to_xarray()
+
+# %% [markdown]
 # ## Snapping
 #
 # The arm lies down a stream that comes towards its base, and the base is turned through it. At limit points the shape has no neighbour:

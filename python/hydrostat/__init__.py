@@ -23,6 +23,7 @@ from hydrostat._errors import (
     CableFold,
     LimitPoint,
     LoadJump,
+    NoDerivative,
     NoEquilibrium,
     NoSectionSolution,
     NotFound,
@@ -44,6 +45,8 @@ from hydrostat.figures import (
 )
 from hydrostat.many import Many, solve_many
 from hydrostat.paths import Branch, Equilibria, Event, Path
+from hydrostat.reach import Bound, Followed, Follower, Reach, Reached, Target
+from hydrostat.sensitivity import Ellipse, PoseChange, Sensitivities
 from hydrostat.solution import CableState, Command, FoldMargin, Note, Solution, Stations, Tip, Wrench
 from hydrostat.solver import Answer, Solver
 from hydrostat.sweep import sweep
@@ -52,26 +55,36 @@ __all__ = [
     "Answer",
     "Arm",
     "ArmError",
+    "Bound",
     "Branch",
     "CableFold",
     "CableState",
     "Command",
+    "Ellipse",
     "Equilibria",
     "Event",
     "Figure",
     "FoldMargin",
+    "Followed",
+    "Follower",
     "LimitPoint",
     "LoadJump",
     "Many",
+    "NoDerivative",
     "NoEquilibrium",
     "NoSectionSolution",
     "NotFound",
     "Note",
     "Path",
+    "PoseChange",
+    "Reach",
+    "Reached",
     "SectionCrushed",
+    "Sensitivities",
     "Solution",
     "Solver",
     "Stations",
+    "Target",
     "Tip",
     "Wrench",
     "__version__",

@@ -111,6 +111,10 @@ class NotFound(NoEquilibrium):
     """No limit was established: the solver gave up."""
 
 
+class NoDerivative(ArithmeticError):
+    """The equilibrium has no derivative: it is at a limit point or a bifurcation, or could not be settled closely enough."""
+
+
 _KINDS: dict[str, type[NoEquilibrium]] = {
     "cable_fold": CableFold,
     "section_crushed": SectionCrushed,

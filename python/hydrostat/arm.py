@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from hydrostat.paths import Equilibria, Path
+    from hydrostat.reach import Reach, Targets
+    from hydrostat.sensitivity import Sensitivities
 
 #: A table of the arm file.
 Table = Mapping[str, Any]
@@ -334,6 +336,72 @@ class Arm:
         from hydrostat.paths import Equilibria
 
         return Equilibria(_native.equilibria(self._inner, _inputs.number("tol", tol), time_limit))
+
+    def reach(
+        self, targets: Targets, *, max_tension: float | None = None, tol: float = 1e-8, all: bool = True
+    ) -> Reach:
+        """Tensions, from 0 to their largest, that bring the arm to targets; the arm's own tensions and strokes do not count.
+
+        Ctrl-C interrupts it.
+
+        Parameters
+        ----------
+        targets : Target, sequence of Target, or (x, y)
+            Where places of the arm are to be, m and rad; (x, y) is for the tip.
+        max_tension : float, optional
+            The largest tension of every cable, N, where the cable itself has none.
+        tol : float
+            Distance over the length at which a target is reached, in [1e-10, 1e-2].
+        all : bool
+            Whether to look from all starts; else the first that reaches the targets ends the search.
+
+        Returns
+        -------
+        Reach
+            A sequence of different solutions, least effort first; where nothing reaches the targets it is empty, and ``closest`` is the
+            nearest that was found, with the bounds that its tensions lie on.
+
+        Raises
+        ------
+        ValueError
+            An argument that cannot be meant, named.
+
+        Examples
+        --------
+        >>> import hydrostat as hs
+        >>> arm = hs.Arm.load("silicone")
+        >>> best = arm.reach((0.182, 0.078), max_tension=0.6)[0]
+        >>> tip = arm.solve(tensions=best.tensions).tip
+        >>> round(tip.x, 6), round(tip.y, 6)
+        (0.182, 0.078)
+        """
+        from hydrostat.reach import Reach, targets_of
+
+        goals = targets_of(targets)
+        most = None if max_tension is None else _inputs.number("max_tension", max_tension)
+        return Reach(_native.reach(self._inner, goals, most, _inputs.number("tol", tol), all), tuple(goals))
+
+    def sensitivities(
+        self,
+        parameters: Sequence[str] | None = None,
+        *,
+        stations: ArrayLike = (),
+        method: str = "best",
+        tol: float = 1e-8,
+    ) -> Sensitivities:
+        """Exact derivatives of the shape that `solve` gives; see `Solver.sensitivities`.
+
+        Examples
+        --------
+        >>> import hydrostat as hs
+        >>> arm = hs.Arm.load("silicone").replace(tensions=[0.2, 0.05], flow_speed=0.1)
+        >>> found = arm.sensitivities(["cable[0].tension", "material.young"])
+        >>> bool(found.tip.theta[0] > 0)  # pulling the left cable turns the tip to the left
+        True
+        """
+        from hydrostat.solver import Solver
+
+        return Solver(self, tol).sensitivities(parameters, stations=stations, method=method)
 
 
 def _from_parts(text: str, path: str, settings: list[tuple[str, str, str]]) -> Arm:

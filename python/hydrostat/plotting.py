@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from matplotlib.typing import ColorType
 
     from hydrostat.paths import Equilibria, Path
+    from hydrostat.reach import Reach
+    from hydrostat.sensitivity import Sensitivities
     from hydrostat.solution import Solution
 
 _MM = 1e3
@@ -20,6 +22,8 @@ _WATER = "#4a90b8"
 _POINTS = 240
 _TAUT = "#1f3b57"
 _SLACK = "#8a97a3"
+_BODY = "#d9734e"
+_MARK = "#c0392b"
 
 
 def _new_axes(ax: Axes | None) -> Axes:
@@ -157,7 +161,7 @@ def plot_path(path: Path, quantity: str, ax: Axes | None) -> Axes:
         ax.plot(branch.values, solid, color=_TAUT, linewidth=1.8)
         for one in branch.events:
             marker = {"limit_point": "o", "bifurcation": "D"}.get(one.name, "s")
-            ax.plot(one.value, values[one.point], marker, color="#c0392b", markersize=5)
+            ax.plot(one.value, values[one.point], marker, color=_MARK, markersize=5)
     ax.set_xlabel(f"{path.parameter} ({path.unit})" if path.unit else path.parameter)
     ax.set_ylabel(words)
     ax.grid(alpha=0.25)
@@ -168,8 +172,54 @@ def plot_equilibria(equilibria: Equilibria, ax: Axes | None) -> Axes:
     """See `Equilibria.plot`."""
     ax = _new_axes(ax)
     for index, (solution, state) in enumerate(zip(equilibria, equilibria.stability, strict=True)):
-        color = "#d9734e" if state == "stable" else "#d8d2c4"
+        color = _BODY if state == "stable" else "#d8d2c4"
         name = f"{index + 1}: {state or 'not established'}"
         plot_shape(solution, ax, color=color, sections=0, cables=False, flow=index == 0, label=name)
+    ax.legend(frameon=False, fontsize=9)
+    return ax
+
+
+def plot_reach(reach: Reach, ax: Axes | None) -> Axes:
+    """See `Reach.plot`."""
+    import matplotlib.pyplot as plt
+
+    ax = _new_axes(ax)
+    shown = [*reach] or [one for one in (reach.closest,) if one is not None]
+    colors = plt.colormaps["viridis"](np.linspace(0.15, 0.85, max(len(shown), 2)))
+    for index, (one, color) in enumerate(zip(shown, colors, strict=False)):
+        pulls = ", ".join(f"{tension:.3g}" for tension in one.tensions)
+        label = f"{pulls} N" if reach.closest is None else f"closest: {pulls} N"
+        plot_shape(one.solution, ax, color=color, sections=0, cables=len(shown) == 1, flow=index == 0, label=label)
+    for target in reach.targets:
+        ax.plot(_MM * target.x, _MM * target.y, "+", color=_MARK, markersize=12, markeredgewidth=1.8, zorder=6)
+        if target.angle is not None:
+            # Across the section that is asked for.
+            reached = 0.04 * _MM * (shown[0].solution.arm.length if shown else 0.0)
+            step = reached * np.array([np.cos(target.angle), np.sin(target.angle)])
+            ends = _MM * np.array([target.x, target.y]) + np.stack([0.0 * step, step])
+            ax.plot(ends[:, 0], ends[:, 1], color=_MARK, linewidth=1.8, zorder=6)
+    ax.legend(frameon=False, fontsize=9)
+    return ax
+
+
+def plot_manipulability(found: Sensitivities, ax: Axes | None, effort: float | None) -> Axes:
+    """See `Sensitivities.plot_manipulability`."""
+    ellipse = found.manipulability()
+    if ellipse is None:
+        raise ValueError("parameters: expected a cable's tension or stroke among them")
+    ax = plot_shape(
+        found.solution, _new_axes(ax), color=_BODY, sections=0, cables=True, flow=True, label=None
+    )
+    longest = ellipse.half_axes[0]
+    if effort is None:
+        # A round number near a fifth of the length.
+        effort = float(f"{0.2 * found.solution.arm.length / longest:.0e}") if longest > 0.0 else 1.0
+    tip = found.solution.tip
+    points = _MM * (np.array([tip.x, tip.y]) + effort * ellipse.points())
+    unit = "m" if any(name.endswith("stroke") for name in found.parameters) else "N"
+    label = f"the tip, to first order, by {effort:g} {unit}"
+    ax.fill(points[:, 0], points[:, 1], facecolor=_MARK, edgecolor=_MARK, alpha=0.18, zorder=1)
+    ax.plot(points[:, 0], points[:, 1], color=_MARK, linewidth=1.4, zorder=6, label=label)
+    ax.plot(_MM * tip.x, _MM * tip.y, "o", color=_MARK, markersize=4, zorder=7)
     ax.legend(frameon=False, fontsize=9)
     return ax

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 from hydrostat import _inputs, _native
 from hydrostat.solution import Solution, Tip
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from hydrostat.arm import Arm
+    from hydrostat.sensitivity import Sensitivities
 
 
 class Answer(NamedTuple):
@@ -74,3 +78,113 @@ class Solver:
     def solution(self) -> Solution:
         """Everything about the last `update`."""
         return Solution(self._inner.configuration())
+
+    def sensitivities(
+        self, parameters: Sequence[str] | None = None, *, stations: ArrayLike = (), method: str = "best"
+    ) -> Sensitivities:
+        """Exact derivatives of tip, strokes and stations about the shape under the present loads.
+
+        They are those of the converged equations; nothing is differenced. At a kink of the load that lies on a station, at a limit
+        point and where a cable just goes slack there is no derivative.
+
+        Parameters
+        ----------
+        parameters : sequence of str, optional
+            Keys of the arm file: ``"cable[0].tension"`` (``"cable[0].stroke"`` of a cable whose stroke is commanded), ``"flow.speed"``,
+            ``"tip.force[1]"``, ``"material.young"``, ``"cable[0].offset.base"``, ``"arm.radius.tip"``, the third point of a table
+            ``"cable[0].offset[2][1]"`` and so on; all that the arm has without it.
+        stations : array_like, shape (n,)
+            Further places along the arm, m, whose poses are differentiated.
+        method : str
+            ``"forward"`` solves once a parameter, ``"adjoint"`` once a quantity, ``"best"`` whichever are fewer. All give the same
+            numbers to rounding.
+
+        Returns
+        -------
+        Sensitivities
+            Arrays by quantity, a column a parameter, in SI units and radians.
+
+        Raises
+        ------
+        NoDerivative
+            At a limit point or a bifurcation.
+        NoEquilibrium
+            There is no shape.
+        ValueError
+            An argument that cannot be meant, named.
+        """
+        from hydrostat.sensitivity import Sensitivities
+
+        names = None if parameters is None else _names(parameters)
+        places = np.atleast_1d(_inputs.finite("stations", stations))
+        if places.ndim != 1:
+            raise ValueError(f"stations: expected one dimension, found shape {places.shape}")
+        native, solution = self._inner.sensitivities(names, places, method)
+        return Sensitivities(native, Solution(solution), places)
+
+    def gradient(
+        self,
+        parameters: Sequence[str],
+        stations: ArrayLike,
+        *,
+        x: ArrayLike = 0.0,
+        y: ArrayLike = 0.0,
+        theta: ArrayLike = 0.0,
+        alpha: ArrayLike = 0.0,
+    ) -> NDArray[np.float64]:
+        """The gradient of one number that follows the shape, such as an objective, by one adjoint solve.
+
+        What it costs does not grow with the number of stations, and little with that of the parameters.
+
+        Parameters
+        ----------
+        parameters : sequence of str
+            As of `sensitivities`.
+        stations : array_like, shape (n,)
+            Places along the arm, m; the tip is at its length.
+        x, y, theta, alpha : array_like, shape (n,) or ()
+            The number's own derivatives by these at the stations, a metre or a radian.
+
+        Returns
+        -------
+        ndarray, shape (p,)
+            Its derivatives, a unit of each parameter.
+
+        Raises
+        ------
+        NoDerivative
+            At a limit point or a bifurcation.
+        NoEquilibrium
+            There is no shape.
+        ValueError
+            An argument that cannot be meant, named.
+
+        Examples
+        --------
+        The square of the distance of three places from a line.
+
+        >>> import numpy as np, hydrostat as hs
+        >>> arm = hs.Arm.load("silicone").replace(tensions=[0.2, 0.0])
+        >>> solver = hs.Solver(arm)
+        >>> s = np.array([0.1, 0.2, 0.245])
+        >>> off = solver.solution().at(s).y - 0.02
+        >>> gradient = solver.gradient(["cable[0].tension", "cable[0].offset.base"], s, y=2 * off)
+        >>> gradient.shape
+        (2,)
+        """
+        places = np.atleast_1d(_inputs.finite("stations", stations))
+        if places.ndim != 1:
+            raise ValueError(f"stations: expected one dimension, found shape {places.shape}")
+        weights = []
+        for name, given in (("x", x), ("y", y), ("theta", theta), ("alpha", alpha)):
+            own = _inputs.finite(name, given)
+            if own.shape not in ((), places.shape):
+                raise ValueError(f"{name}: expected the shape {places.shape} of the stations, found {own.shape}")
+            weights.append(np.ascontiguousarray(np.broadcast_to(own, places.shape)))
+        return self._inner.gradient(_names(parameters), places, weights)
+
+
+def _names(parameters: Sequence[str]) -> list[str]:
+    if isinstance(parameters, str):
+        raise ValueError(f"parameters: expected a sequence of keys, found {parameters!r}")
+    return list(parameters)

@@ -8,7 +8,7 @@ import pytest
 from conftest import ROOT
 
 #: How many pictures each shows.
-PICTURES = {"first_steps": 8, "workspace_and_flow": 4, "readings": 6}
+PICTURES = {"design": 4, "first_steps": 9, "workspace_and_flow": 4, "readings": 6}
 
 
 def test_every_example_is_run() -> None:

@@ -53,6 +53,7 @@ LONG = {
     "solve_many": "hs.solve_many(arm, flow_speed=np.linspace(0, 0.5, 3_000_000))",
     "path": "arm.path('flow.speed', 0, 0.5, longest=0.001, tol=1e-7, most=10**9)",
     "equilibria": "[arm.replace(flow_speed=0.2, flow_direction=180).equilibria() for _ in range(10**6)]",
+    "reach": "[arm.reach((0.182, 0.07 + 1e-9 * k)) for k in range(10**6)]",
     "sweep": "hs.sweep(arm, {'flow.speed': '0:0.5:100000', 'cable[0].tension': '0:0.8:1000'})",
     "sweep into a file": "hs.sweep(arm, {'flow.speed': '0:0.5:100000', 'cable[0].tension': '0:0.8:1000'}, output='x.parquet')",
 }

@@ -45,6 +45,22 @@ def test_strains(silicone: hs.Arm) -> None:
     plt.close("all")
 
 
+def test_reach_and_manipulability(silicone: hs.Arm) -> None:
+    found = silicone.reach(hs.Target(0.182, 0.078, angle=1.0), max_tension=0.6)
+    ax = found.plot()
+    assert len(ax.patches) == max(len(found), 1)
+    marks = [line for line in ax.get_lines() if line.get_marker() == "+"]
+    assert [tuple(np.asarray(mark.get_xydata())[0]) for mark in marks] == [(182.0, 78.0)]
+    two = silicone.replace(tensions=[0.2, 0.05]).sensitivities(["cable[0].tension", "cable[1].tension"])
+    drawn = lines(two.plot_manipulability(effort=0.01))
+    ellipse = two.manipulability()
+    tip = two.solution.tip
+    assert ellipse is not None
+    want = 1e3 * (np.array([tip.x, tip.y]) + 0.01 * ellipse.points())
+    assert any(np.allclose(line, want) for line in drawn if line.shape == want.shape)
+    plt.close("all")
+
+
 def test_paths_and_equilibria(facing: hs.Arm) -> None:
     path = facing.path("arm.base.angle", 90, -90)
     ax = path.plot("tip_theta")

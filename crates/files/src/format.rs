@@ -203,23 +203,8 @@ pub(crate) fn names(keys: &[Key]) -> String {
     names.join(", ")
 }
 
-/// What the number at a dotted key measures, such as `cable[0].tension` or `tip.force[1]`; `None` where there is none.
-pub(crate) fn dimension_of(key: &str) -> Option<Dimension> {
-    let (mut keys, mut found) = (FILE, None);
-    for step in key.split('.') {
-        let name = step.split('[').next()?;
-        found = None;
-        match keys.iter().find(|k| k.name == name)?.kind {
-            Table(inner) | Tables(inner) => keys = inner,
-            Quantity(dimension) | Pair(dimension) => found = Some(dimension),
-            _ => {}
-        }
-    }
-    found
-}
-
-/// What the number at a dotted key measures, as [`dimension_of`], also where the key is a profile, one of its ends or a number
-/// of its table.
+/// What the number at a dotted key measures, such as `cable[0].tension` or `tip.force[1]`, or a profile, one of its ends or a
+/// number of its table; `None` where there is none.
 pub(crate) fn dimension_at(key: &str) -> Option<Dimension> {
     let (whole, end) = match key.rsplit_once('.') {
         Some((whole, end)) if ENDS.contains(&end) => (whole, true),

@@ -7,7 +7,7 @@ use hydrostat::parameter::{UnknownParameter, names};
 
 use crate::digits::number;
 use crate::error::shortened;
-use crate::format::{dimension_of, home_of, nearest};
+use crate::format::{dimension_at, home_of, nearest};
 use crate::quantity::{Dimension, WrongValue};
 
 /// One quantity of an arm and the range over which it is to vary.
@@ -77,7 +77,7 @@ impl FromStr for Varied {
         let parameter = parameter(key.trim())?;
         let (from, to) = range.split_once(':').ok_or_else(form)?;
         let key = parameter.to_string();
-        let dimension = dimension_of(&key).unwrap_or(Dimension::Number);
+        let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
         let ends = [dimension.value_of(&key, from)?, dimension.value_of(&key, to)?];
         let range = ends.map(|(value, _)| value);
         if range[0] == range[1] {
@@ -178,11 +178,11 @@ mod tests {
         for name in names() {
             let varied: Varied = format!("{name}=1:2").parse().unwrap();
             let unit = varied.parameter.unit();
-            assert_eq!(dimension_of(&name).unwrap().per_si(unit).unwrap_or(1.0), 1.0, "{name}");
-            assert_eq!(dimension_of(&name) == Some(Dimension::Number), unit.is_empty(), "{name}");
+            assert_eq!(dimension_at(&name).unwrap().per_si(unit).unwrap_or(1.0), 1.0, "{name}");
+            assert_eq!(dimension_at(&name) == Some(Dimension::Number), unit.is_empty(), "{name}");
         }
-        assert_eq!(dimension_of("arm.length.x"), None);
-        assert_eq!(dimension_of("flow"), None);
+        assert_eq!(dimension_at("arm.length.x"), None);
+        assert_eq!(dimension_at("flow"), None);
     }
 
     #[test]

@@ -151,13 +151,18 @@ impl Equilibrium {
         this
     }
 
-    /// Takes new tensions and stream from an arm of the same geometry and material.
+    /// Takes loads, stream and material from an arm of the same geometry.
     pub(crate) fn set_loads(&mut self, arm: &Arm) {
-        let same_water = self.arm.flow.density == arm.flow.density && self.arm.gravity == arm.gravity;
+        let own = &self.arm;
+        let same_sections = own.flow.density == arm.flow.density
+            && own.gravity == arm.gravity
+            && own.density == arm.density
+            && own.material == arm.material
+            && own.distributed == arm.distributed;
         self.arm.clone_from(arm);
         self.water = water(arm);
         self.set_tensions();
-        if !same_water {
+        if !same_sections {
             self.take_sections();
         }
     }

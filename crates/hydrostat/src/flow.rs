@@ -32,10 +32,13 @@ impl Law {
         match (law, entering_speed) {
             (FlowLaw::Momentum, EnteringSpeed::Tangential) => Self::MomentumTangential { layer },
             (FlowLaw::Momentum, EnteringSpeed::Resultant) => Self::MomentumResultant { layer },
-            (FlowLaw::QuadraticDrag { cn, ct }, _) => {
-                Self::Quadratic { normal: cn / std::f64::consts::PI, tangential: ct }
-            }
+            (FlowLaw::QuadraticDrag { cn, ct }, _) => Self::drag(cn, ct),
         }
+    }
+
+    /// Quadratic drag with C_n and C_t.
+    pub(crate) fn drag(cn: f64, ct: f64) -> Self {
+        Self::Quadratic { normal: cn / std::f64::consts::PI, tangential: ct }
     }
 }
 

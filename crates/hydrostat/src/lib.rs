@@ -169,7 +169,7 @@ pub use dispatch::has_wide_vectors;
 pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
 pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
-pub use profile::{Profile, Sample};
+pub use profile::{Point, Profile, Sample};
 pub use reach::{Bound, Followed, Follower, Reach, ReachError, ReachOptions, Reached, Target};
 pub use readings::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength};
 pub use sensitivity::{

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::arm::{Arm, ArmError, Gravity, Material};
+use crate::arm::{Arm, ArmError, FlowLaw, Gravity, Material};
+use crate::profile::{Point, Profile};
 
 /// One number of an arm that can be varied. Its name is the dotted key of the arm file.
 ///
@@ -21,6 +22,10 @@ pub enum Parameter {
     Tension(usize),
     /// Stroke of a cable that is commanded in place of its tension, m.
     Stroke(usize),
+    /// Offset of a cable, m: one of the numbers that its profile is given by.
+    Offset(usize, Point),
+    /// Radius of the arm, m: the same.
+    Radius(Point),
     /// Speed of the stream, m/s.
     FlowSpeed,
     /// Direction of the stream from e1, rad.
@@ -47,6 +52,12 @@ pub enum Parameter {
     Poisson,
     /// Shear correction of a homogeneous arm.
     ShearFactor,
+    /// C1 (0, Pa), C2 (1, Pa) or C3 (2, N), where the coefficients are given and this one is the same all along.
+    Coefficient(usize),
+    /// C_n of quadratic drag.
+    DragNormal,
+    /// C_t of quadratic drag.
+    DragTangential,
 }
 
 /// A name that no parameter has.
@@ -68,23 +79,50 @@ pub enum Unfit {
         /// Cables of the arm.
         cables: usize,
     },
+    /// A point of a profile that is given in another way.
+    #[error("`{key}`: the arm gives this profile in another way; {expected}")]
+    Point {
+        /// The parameter.
+        key: String,
+        /// Which keys it has.
+        expected: String,
+    },
     /// A homogeneous material's property where the coefficients are given.
     #[error("`{key}`: the arm gives c1, c2 and c3 in place of a homogeneous material")]
     Coefficients {
         /// The parameter.
         key: String,
     },
+    /// A coefficient where a homogeneous material is given.
+    #[error("`{key}`: the arm gives a homogeneous material in place of c1, c2 and c3")]
+    Homogeneous {
+        /// The parameter.
+        key: String,
+    },
+    /// A coefficient that is a profile.
+    #[error("`{key}` varies along the arm: it is no single number")]
+    Profile {
+        /// The parameter.
+        key: String,
+    },
+    /// A drag coefficient without quadratic drag.
+    #[error("`{key}` does not act: flow.law is momentum, not quadratic-drag")]
+    Momentum {
+        /// The parameter.
+        key: String,
+    },
 }
 
-/// The names of all parameters, that of the cables with the index 0.
+/// The names of all parameters, those of the cables with the index 0, those of profiles as of linear ones.
 pub fn names() -> Vec<String> {
-    let mut all: Vec<String> = PLAIN.iter().map(Parameter::to_string).collect();
-    all.splice(0..0, [Parameter::Tension(0), Parameter::Stroke(0)].map(|p| p.to_string()));
-    all
+    let of_cables = [Parameter::Tension(0), Parameter::Stroke(0)].into_iter();
+    let ends = [Point::Base, Point::Tip];
+    let geometry = ends.map(|end| Parameter::Offset(0, end)).into_iter().chain(ends.map(Parameter::Radius));
+    of_cables.chain(PLAIN).chain(geometry).map(|parameter| parameter.to_string()).collect()
 }
 
-/// All but the cables'.
-pub(crate) const PLAIN: [Parameter; 15] = [
+/// All but the cables' and the geometry's.
+pub(crate) const PLAIN: [Parameter; 20] = [
     Parameter::FlowSpeed,
     Parameter::FlowDirection,
     Parameter::FlowDensity,
@@ -100,6 +138,11 @@ pub(crate) const PLAIN: [Parameter; 15] = [
     Parameter::Young,
     Parameter::Poisson,
     Parameter::ShearFactor,
+    Parameter::Coefficient(0),
+    Parameter::Coefficient(1),
+    Parameter::Coefficient(2),
+    Parameter::DragNormal,
+    Parameter::DragTangential,
 ];
 
 impl fmt::Display for Parameter {
@@ -107,6 +150,8 @@ impl fmt::Display for Parameter {
         match self {
             Self::Tension(c) => write!(f, "cable[{c}].tension"),
             Self::Stroke(c) => write!(f, "cable[{c}].stroke"),
+            Self::Offset(c, point) => write!(f, "cable[{c}].offset{point}"),
+            Self::Radius(point) => write!(f, "arm.radius{point}"),
             Self::FlowSpeed => f.write_str("flow.speed"),
             Self::FlowDirection => f.write_str("flow.direction"),
             Self::FlowDensity => f.write_str("flow.density"),
@@ -120,6 +165,9 @@ impl fmt::Display for Parameter {
             Self::Young => f.write_str("material.young"),
             Self::Poisson => f.write_str("material.poisson"),
             Self::ShearFactor => f.write_str("material.shear_factor"),
+            Self::Coefficient(k) => write!(f, "material.c{}", k.min(&2) + 1),
+            Self::DragNormal => f.write_str("flow.cn"),
+            Self::DragTangential => f.write_str("flow.ct"),
         }
     }
 }
@@ -132,8 +180,16 @@ impl FromStr for Parameter {
             match (index.parse(), of) {
                 (Ok(index), "tension") => return Ok(Self::Tension(index)),
                 (Ok(index), "stroke") => return Ok(Self::Stroke(index)),
+                (Ok(index), other) => {
+                    if let Some(point) = other.strip_prefix("offset").and_then(Point::read) {
+                        return Ok(Self::Offset(index, point));
+                    }
+                }
                 _ => {}
             }
+        }
+        if let Some(point) = name.strip_prefix("arm.radius").and_then(Point::read) {
+            return Ok(Self::Radius(point));
         }
         PLAIN.into_iter().find(|p| p.to_string() == name).ok_or_else(|| UnknownParameter { name: name.to_owned() })
     }
@@ -143,15 +199,15 @@ impl Parameter {
     /// The unit of its values in the library; empty for a plain number.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) => "N",
+            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) | Self::Coefficient(2..) => "N",
             Self::FlowSpeed => "m/s",
             Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => "rad",
             Self::FlowDensity | Self::Density => "kg/m3",
             Self::GravityAcceleration => "m/s2",
-            Self::Stroke(_) => "m",
+            Self::Stroke(_) | Self::Offset(..) | Self::Radius(_) => "m",
             Self::TipMoment => "N m",
-            Self::Young => "Pa",
-            Self::Poisson | Self::ShearFactor => "",
+            Self::Young | Self::Coefficient(_) => "Pa",
+            Self::Poisson | Self::ShearFactor | Self::DragNormal | Self::DragTangential => "",
         }
     }
 
@@ -169,6 +225,9 @@ impl Parameter {
     /// # Errors
     /// [`Unfit`] when the arm has no such quantity.
     pub fn of(self, arm: &Arm) -> Result<f64, Unfit> {
+        if let Some((profile, point)) = self.profile(arm)? {
+            return profile.point(point).ok_or_else(|| self.no_point(profile));
+        }
         let mut arm = arm.clone();
         self.place(&mut arm).map(|value| *value)
     }
@@ -178,10 +237,45 @@ impl Parameter {
     /// # Errors
     /// [`Unfit`] when the arm has no such quantity.
     pub fn set(self, arm: &mut Arm, value: f64) -> Result<(), Unfit> {
+        if let Some((profile, point)) = self.profile(arm)? {
+            let moved = profile.with_point(point, value).ok_or_else(|| self.no_point(profile))?;
+            match self {
+                Self::Offset(c, _) => arm.cables[c].offset = moved,
+                _ => arm.radius = moved,
+            }
+            return Ok(());
+        }
         *self.place(arm)? = value;
         Ok(())
     }
 
+    /// The profile that it is a number of.
+    pub(crate) fn profile(self, arm: &Arm) -> Result<Option<(&Profile, Point)>, Unfit> {
+        match self {
+            Self::Offset(c, point) => match arm.cables.get(c) {
+                Some(cable) => Ok(Some((&cable.offset, point))),
+                None => Err(Unfit::Cable { key: self.to_string(), cables: arm.cables.len() }),
+            },
+            Self::Radius(point) => Ok(Some((&arm.radius, point))),
+            _ => Ok(None),
+        }
+    }
+
+    fn no_point(self, profile: &Profile) -> Unfit {
+        let of = |point: Point| match self {
+            Self::Offset(c, _) => Self::Offset(c, point).to_string(),
+            _ => Self::Radius(point).to_string(),
+        };
+        let names: Vec<String> = profile.points().into_iter().map(of).collect();
+        let expected = match &names[..] {
+            [one] => format!("it has `{one}`"),
+            [first, .., last] => format!("it has `{first}` to `{last}`"),
+            [] => String::new(),
+        };
+        Unfit::Point { key: self.to_string(), expected }
+    }
+
+    /// Where its number stands, of all but profiles'.
     fn place(self, arm: &mut Arm) -> Result<&mut f64, Unfit> {
         let gravity = Gravity { acceleration: 0.0, ..Gravity::default() };
         Ok(match self {
@@ -198,6 +292,10 @@ impl Parameter {
                     cable.stroke = None;
                     &mut cable.tension
                 }
+            }
+            // Not by itself: the slopes of a table go with it.
+            Self::Offset(..) | Self::Radius(_) => {
+                return Err(Unfit::Point { key: self.to_string(), expected: String::new() });
             }
             Self::FlowSpeed => &mut arm.flow.speed,
             Self::FlowDirection => &mut arm.flow.direction,
@@ -217,6 +315,23 @@ impl Parameter {
                 },
                 Material::Coefficients { .. } => return Err(Unfit::Coefficients { key: self.to_string() }),
             },
+            Self::Coefficient(k) => match &mut arm.material {
+                Material::Homogeneous { .. } => return Err(Unfit::Homogeneous { key: self.to_string() }),
+                Material::Coefficients { c1, c2, c3 } => match [c1, c2, c3][k.min(2)] {
+                    Profile::Constant(value) => value,
+                    _ => return Err(Unfit::Profile { key: self.to_string() }),
+                },
+            },
+            Self::DragNormal | Self::DragTangential => match &mut arm.flow.law {
+                FlowLaw::Momentum => return Err(Unfit::Momentum { key: self.to_string() }),
+                FlowLaw::QuadraticDrag { cn, ct } => {
+                    if self == Self::DragNormal {
+                        cn
+                    } else {
+                        ct
+                    }
+                }
+            },
         })
     }
 
@@ -224,13 +339,16 @@ impl Parameter {
     pub(crate) fn is_of_sections(self) -> bool {
         matches!(
             self,
-            Self::FlowDensity
+            Self::Offset(..)
+                | Self::Radius(_)
+                | Self::FlowDensity
                 | Self::GravityAcceleration
                 | Self::GravityDirection
                 | Self::Density
                 | Self::Young
                 | Self::Poisson
                 | Self::ShearFactor
+                | Self::Coefficient(_)
         )
     }
 
@@ -265,10 +383,23 @@ mod tests {
             Parameter::Tension(13),
             Parameter::Stroke(0),
             Parameter::Stroke(7),
+            Parameter::Offset(3, Point::Whole),
+            Parameter::Offset(0, Point::Tip),
+            Parameter::Radius(Point::Base),
+            Parameter::Radius(Point::Knot(12)),
         ]) {
             assert_eq!(parameter.to_string().parse(), Ok(parameter));
         }
-        for wrong in ["", "cable.tension", "cable[].tension", "cable[-1].tension", "tip.force", "flow.Speed"] {
+        for wrong in [
+            "",
+            "cable.tension",
+            "cable[].tension",
+            "cable[-1].tension",
+            "tip.force",
+            "flow.Speed",
+            "cable[0].offset[1]",
+            "arm.radiusx",
+        ] {
             assert!(wrong.parse::<Parameter>().is_err(), "{wrong}");
         }
     }
@@ -277,10 +408,30 @@ mod tests {
     fn a_value_that_is_set_is_found() {
         let mut arm = Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5);
         arm.cables.push(crate::Cable::new("left", 0.001));
-        for (k, parameter) in PLAIN.into_iter().chain([Parameter::Tension(0), Parameter::Stroke(0)]).enumerate() {
-            parameter.set(&mut arm, k as f64).unwrap();
-            assert_eq!(parameter.of(&arm), Ok(k as f64));
+        arm.flow.law = FlowLaw::QuadraticDrag { cn: 1.0, ct: 0.02 };
+        let mut given = arm.clone();
+        given.material = Material::Coefficients { c1: 1e5.into(), c2: 3e4.into(), c3: Profile::linear(2.0, 0.1) };
+        let others = [Parameter::Tension(0), Parameter::Stroke(0), Parameter::Offset(0, Point::Whole)];
+        let radii = [Point::Base, Point::Tip].map(Parameter::Radius);
+        for (k, parameter) in PLAIN.into_iter().chain(others).chain(radii).enumerate() {
+            let arm = if matches!(parameter, Parameter::Coefficient(_)) { &mut given } else { &mut arm };
+            if parameter == Parameter::Coefficient(2) {
+                assert!(matches!(parameter.of(arm), Err(Unfit::Profile { .. })));
+                continue;
+            }
+            parameter.set(arm, k as f64).unwrap();
+            assert_eq!(parameter.of(arm), Ok(k as f64));
         }
-        assert!(matches!(Parameter::Tension(1).of(&arm), Err(Unfit::Cable { cables: 1, .. })));
+        for missing in [Parameter::Tension(1), Parameter::Offset(1, Point::Whole)] {
+            assert!(matches!(missing.of(&arm), Err(Unfit::Cable { cables: 1, .. })));
+        }
+        let other = Parameter::Offset(0, Point::Tip);
+        assert_eq!(other.of(&arm).err(), other.set(&mut arm.clone(), 1.0).err());
+        assert!(other.of(&arm).is_err());
+        let words = Parameter::Radius(Point::Knot(1)).of(&arm).unwrap_err().to_string();
+        assert!(words.ends_with("it has `arm.radius.base` to `arm.radius.tip`"), "{words}");
+        assert!(matches!(Parameter::Coefficient(0).of(&arm), Err(Unfit::Homogeneous { .. })));
+        arm.flow.law = FlowLaw::Momentum;
+        assert!(matches!(Parameter::DragNormal.of(&arm), Err(Unfit::Momentum { .. })));
     }
 }

@@ -1,6 +1,10 @@
 //! A quantity given along the arm, with its slope and curvature.
 
+mod points;
+
 use crate::arm::ArmError;
+
+pub use self::points::Point;
 
 /// A quantity along the reference arc length `s` in [0, L], base to tip.
 ///

@@ -164,12 +164,28 @@ impl Arm {
     /// # Ok::<(), hydrostat::ReachError>(())
     /// ```
     pub fn reach(&self, targets: &[Target], options: &ReachOptions) -> Result<Reach, ReachError> {
+        self.reach_while(targets, options, || true)
+    }
+
+    /// [`Arm::reach`] while `go_on`, which is asked every round, says so; then with what was found until then.
+    ///
+    /// # Errors
+    /// [`ReachError`].
+    pub fn reach_while(
+        &self,
+        targets: &[Target],
+        options: &ReachOptions,
+        go_on: impl Fn() -> bool,
+    ) -> Result<Reach, ReachError> {
         let search = Search::new(self, targets, options)?;
         let mut out = Reach { solutions: Vec::new(), closest: None };
         let mut failure = None;
         let mut nearest: Option<State> = None;
         for start in search.starts() {
-            let state = match search.from(&start) {
+            if !go_on() {
+                break;
+            }
+            let state = match search.from(&start, &go_on) {
                 Ok(state) => state,
                 Err(error) => {
                     failure = Some(error);
@@ -371,11 +387,14 @@ impl Search {
     }
 
     /// From a start to the nearest that can be had, of least effort.
-    fn from(&self, start: &[f64]) -> Result<State, ReachError> {
+    fn from(&self, start: &[f64], go_on: &dyn Fn() -> bool) -> Result<State, ReachError> {
         let mut state = self.begin(start)?;
         let mut damping = 1e-3;
         let mut refined = 0;
         for _ in 0..ROUNDS {
+            if !go_on() {
+                break;
+            }
             let Some(jacobian) = self.jacobian(&state.solver) else { break };
             let reached = state.distance() <= 0.1 * self.tol;
             if let Some(next) = self.towards_least_effort(&jacobian, &state) {

@@ -20,6 +20,7 @@ mod linear;
 
 use self::linear::{Drift, Functional, Linear};
 use crate::arm::Arm;
+use crate::configuration::Wrench;
 use crate::engine::{Engine, M, Trouble, solved};
 use crate::equilibrium::{Asked, CLOSED, Equilibrium, N, OUT, RATE, Spot};
 use crate::parameter::{Parameter, Unfit};
@@ -91,6 +92,8 @@ pub struct Sensitivities {
     pub strokes: Vec<Vec<f64>>,
     /// Of the tension (N) of every cable: zero but where a stroke is commanded, and one by itself.
     pub tensions: Vec<Vec<f64>>,
+    /// Of what support and cable anchors exert on the arm at the base, one a parameter.
+    pub base: Vec<Wrench>,
     /// Of the places asked for, in their order.
     pub stations: Vec<SensitiveStation>,
 }
@@ -159,7 +162,10 @@ impl Parameter {
             None => Self::Tension(c),
         });
         let plain = crate::parameter::PLAIN.into_iter().filter(|parameter| parameter.of(arm).is_ok());
-        cables.chain(plain).collect()
+        let offsets = arm.cables.iter().enumerate();
+        let offsets = offsets.flat_map(|(c, cable)| cable.offset.points().into_iter().map(move |p| Self::Offset(c, p)));
+        let radii = arm.radius.points().into_iter().map(Self::Radius);
+        cables.chain(plain).chain(offsets).chain(radii).collect()
     }
 }
 
@@ -270,21 +276,15 @@ impl Solver {
         parameters: &[Parameter],
         options: &SensitivityOptions,
     ) -> Result<Sensitivities, SensitivityError> {
-        let arm = self.engine.equations.arm();
-        check(arm, parameters, &options.stations)?;
-        let cables = arm.cables.len();
-        let length = arm.length;
-        self.be_solved()?;
-        let places: Vec<f64> = options.stations.iter().map(|s| s / length).collect();
-        self.engine.watch(&places, self.options.tol).map_err(|trouble| unsettled(&trouble))?;
-        self.engine.converge_fully()?;
-
+        let places = self.settle_for_derivatives(parameters, &options.stations)?;
         let engine = &self.engine;
+        let cables = engine.equations.arm().cables.len();
         let mut quantities = engine.pose_at(1.0).to_vec();
         for place in &places {
             quantities.extend(engine.pose_at(*place));
         }
         quantities.extend((0..cables).map(Quantity::Stroke));
+        quantities.extend((0..3).map(Quantity::Base));
         let found = engine.derivatives(&quantities, parameters, options.method).ok_or(SensitivityError::Singular)?;
 
         let pose = |first: usize, k: usize| PoseChange {
@@ -294,15 +294,74 @@ impl Solver {
             alpha: found.rows[first + 3][k],
         };
         let poses = |first: usize| (0..parameters.len()).map(|k| pose(first, k)).collect::<Vec<_>>();
+        let (strokes, base) = found.rows[POSE * (places.len() + 1)..].split_at(cables);
+        let wrench = |k: usize| Wrench { force: [base[0][k], base[1][k]], moment: base[2][k] };
         let stations = options.stations.iter().enumerate();
         let stations = stations.map(|(i, s)| SensitiveStation { s: *s, changes: poses(POSE * (i + 1)) }).collect();
         Ok(Sensitivities {
             parameters: parameters.to_vec(),
             tip: poses(0),
-            strokes: found.rows[POSE * (places.len() + 1)..].to_vec(),
+            strokes: strokes.to_vec(),
+            base: (0..parameters.len()).map(wrench).collect(),
             tensions: found.tensions,
             stations,
         })
+    }
+
+    /// The gradient of one number that follows the shape, by `parameters`, whose unit it is a unit of: for optimisation with many
+    /// parameters. One adjoint solve, however many these and the places are.
+    ///
+    /// `weights` are the number's own derivatives by the poses of places along the arm (m; the tip is at its length), a metre or
+    /// a radian each.
+    ///
+    /// # Errors
+    /// [`SensitivityError`].
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Cable, Options, Parameter, PoseChange, Profile, Solver};
+    ///
+    /// let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+    /// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.2));
+    /// let mut solver = Solver::new(&arm, Options::default())?;
+    /// let parameters = Parameter::all_of(&arm);
+    ///
+    /// // Of the square of the tip's height.
+    /// let y = solver.update()?.tip.y;
+    /// let weights = [(0.2, PoseChange { y: 2.0 * y, ..PoseChange::default() })];
+    /// let gradient = solver.gradient(&parameters, &weights)?;
+    ///
+    /// let tip = solver.sensitivities(&parameters)?.tip;
+    /// assert!(gradient.iter().zip(&tip).all(|(g, t)| (g - 2.0 * y * t.y).abs() < 1e-10 * g.abs().max(1e-9)));
+    /// # Ok::<(), hydrostat::SensitivityError>(())
+    /// ```
+    pub fn gradient(
+        &mut self,
+        parameters: &[Parameter],
+        weights: &[(f64, PoseChange)],
+    ) -> Result<Vec<f64>, SensitivityError> {
+        let stations: Vec<f64> = weights.iter().map(|(s, _)| *s).collect();
+        let places = self.settle_for_derivatives(parameters, &stations)?;
+        let mut sum = Vec::with_capacity(POSE * places.len());
+        for (place, (_, by)) in places.iter().zip(weights) {
+            sum.extend(self.engine.pose_at(*place).into_iter().zip([by.x, by.y, by.theta, by.alpha]));
+        }
+        let found = self.engine.gradient(&sum, parameters).ok_or(SensitivityError::Singular)?;
+        Ok(found.rows.into_iter().next().unwrap_or_default())
+    }
+
+    /// Solves, with nodes at the stations (m), until rounds move nothing any more. The stations over L.
+    fn settle_for_derivatives(
+        &mut self,
+        parameters: &[Parameter],
+        stations: &[f64],
+    ) -> Result<Vec<f64>, SensitivityError> {
+        let arm = self.engine.equations.arm();
+        check(arm, parameters, stations)?;
+        let places: Vec<f64> = stations.iter().map(|s| s / arm.length).collect();
+        self.be_solved()?;
+        self.engine.watch(&places, self.options.tol).map_err(|trouble| unsettled(&trouble))?;
+        self.engine.converge_fully()?;
+        Ok(places)
     }
 }
 
@@ -348,7 +407,12 @@ pub(crate) enum Quantity {
     Stroke(usize),
     /// What has to be reeled in (m) of a cable for that, its own stretch aside.
     Command(usize),
+    /// Force along e1 (0), e2 (1) (N) or moment (2) (N m) on the base.
+    Base(usize),
 }
+
+/// Quantities with weights.
+type Sum = Vec<(Quantity, f64)>;
 
 /// Quantities of a pose.
 const POSE: usize = 4;
@@ -391,17 +455,28 @@ impl Engine {
         parameters: &[Parameter],
         method: SensitivityMethod,
     ) -> Option<Found> {
+        let rows: Vec<Sum> = quantities.iter().map(|quantity| vec![(*quantity, 1.0)]).collect();
+        self.derivatives_of(rows, parameters, method)
+    }
+
+    /// Derivatives of one weighted sum of poses.
+    fn gradient(&self, sum: &[(Quantity, f64)], parameters: &[Parameter]) -> Option<Found> {
+        self.derivatives_of(vec![sum.to_vec()], parameters, SensitivityMethod::Adjoint)
+    }
+
+    /// Derivatives of weighted sums.
+    fn derivatives_of(&self, mut sums: Vec<Sum>, parameters: &[Parameter], method: SensitivityMethod) -> Option<Found> {
         let equations = &self.equations;
         let (held, cables) = (equations.held.as_ref(), equations.arm().cables.len());
         let taut: Vec<usize> = held.map_or(Vec::new(), |held| held.tight().iter().map(|i| held.cables[*i]).collect());
         let mut sources = parameters.to_vec();
         sources.extend(taut.iter().map(|c| Parameter::Tension(*c)));
-        let mut all = quantities.to_vec();
-        all.extend(taut.iter().map(|c| Quantity::Command(*c)));
-        let mut rows = self.unheld_derivatives(&all, &sources, method)?;
+        let asked = sums.len();
+        sums.extend(taut.iter().map(|c| vec![(Quantity::Command(*c), 1.0)]));
+        let mut rows = self.unheld_derivatives(&sums, &sources, method)?;
 
         let count = parameters.len();
-        let strokes = rows.split_off(quantities.len());
+        let strokes = rows.split_off(asked);
         let mut tensions = vec![vec![0.0; count]; cables];
         for k in 0..count {
             if let Parameter::Tension(c) = parameters[k] {
@@ -431,7 +506,7 @@ impl Engine {
     /// Derivatives with all tensions given.
     fn unheld_derivatives(
         &self,
-        quantities: &[Quantity],
+        sums: &[Sum],
         sources: &[Parameter],
         method: SensitivityMethod,
     ) -> Option<Vec<Vec<f64>>> {
@@ -439,7 +514,7 @@ impl Engine {
         let spots = equations.spots();
         let linear = Linear::new(self, &spots)?;
         let drifts = self.drifts(&spots, sources);
-        let rows: Option<Vec<Row>> = quantities.iter().map(|q| self.row(&linear, *q, sources)).collect();
+        let rows: Option<Vec<Row>> = sums.iter().map(|sum| self.sum_row(&linear, &spots, sum, sources)).collect();
         let rows = rows?;
         let forward = match method {
             SensitivityMethod::Forward => true,
@@ -465,7 +540,25 @@ impl Engine {
         Some(out)
     }
 
-    fn row(&self, linear: &Linear, quantity: Quantity, sources: &[Parameter]) -> Option<Row> {
+    /// The row of a sum; of several quantities, all of them poses.
+    fn sum_row(&self, linear: &Linear, spots: &[Spot], sum: &Sum, sources: &[Parameter]) -> Option<Row> {
+        if let [(quantity, weight)] = sum[..]
+            && weight == 1.0
+        {
+            return self.row(linear, spots, quantity, sources);
+        }
+        let mut out = Row { functional: Functional::default(), unit: 1.0, direct: vec![0.0; sources.len()] };
+        for (quantity, weight) in sum.iter().filter(|(_, weight)| *weight != 0.0) {
+            let row = self.row(linear, spots, *quantity, sources)?;
+            out.functional.add(weight * row.unit, &row.functional);
+            for (out, own) in out.direct.iter_mut().zip(&row.direct) {
+                *out += weight * own;
+            }
+        }
+        Some(out)
+    }
+
+    fn row(&self, linear: &Linear, spots: &[Spot], quantity: Quantity, sources: &[Parameter]) -> Option<Row> {
         let equations = &self.equations;
         let length = equations.units.length;
         let mut direct = vec![0.0; sources.len()];
@@ -473,8 +566,16 @@ impl Engine {
             Quantity::Position(node, q) => (linear.position(node, q), length),
             Quantity::Theta(node) => (Linear::state(node, 0), 1.0),
             Quantity::Alpha(node) => (self.alpha_row(linear, node, sources, &mut direct)?, 1.0),
-            Quantity::Stroke(c) => (linear.length(equations, c, -1.0), length),
+            Quantity::Stroke(c) => {
+                self.reference_row(spots, c, sources, &mut direct);
+                (linear.length(equations, c, -1.0), length)
+            }
+            Quantity::Base(k) => {
+                let force = equations.units.force;
+                (Linear::state(0, k + 1), if k < 2 { -force } else { -force * length })
+            }
             Quantity::Command(c) => {
+                self.reference_row(spots, c, sources, &mut direct);
                 let [_, by_length, by_tension] = equations.stroke(c, &self.system.gauss.b);
                 for (direct, source) in direct.iter_mut().zip(sources) {
                     if *source == Parameter::Tension(c) {
@@ -485,6 +586,15 @@ impl Engine {
             }
         };
         Some(Row { functional, unit, direct })
+    }
+
+    /// What the length of a cable at the reference strains makes of the geometry.
+    fn reference_row(&self, spots: &[Spot], c: usize, sources: &[Parameter], direct: &mut [f64]) {
+        let equations = &self.equations;
+        for (direct, source) in direct.iter_mut().zip(sources) {
+            let by = equations.reference_length_by(spots, c, *source, &self.system.gauss.b);
+            *direct = by * equations.units.length;
+        }
     }
 
     /// alpha where a node ends an element (at the base, begins one): beta' there is by the closed form, and beta'' from the element.
@@ -555,7 +665,16 @@ fn direct_change(equations: &Equilibrium, spot: &[Spot], source: Parameter) -> [
 
 /// Whether strains follow it at a fixed state.
 fn is_of_section_law(parameter: Parameter) -> bool {
-    matches!(parameter, Parameter::Tension(_) | Parameter::Young | Parameter::Poisson | Parameter::ShearFactor)
+    matches!(
+        parameter,
+        Parameter::Tension(_)
+            | Parameter::Young
+            | Parameter::Poisson
+            | Parameter::ShearFactor
+            | Parameter::Offset(..)
+            | Parameter::Radius(_)
+            | Parameter::Coefficient(_)
+    )
 }
 
 /// Whether the loads along the arm follow it.
@@ -568,5 +687,7 @@ fn is_of_loads(parameter: Parameter) -> bool {
             | Parameter::GravityAcceleration
             | Parameter::GravityDirection
             | Parameter::Density
+            | Parameter::DragNormal
+            | Parameter::DragTangential
     )
 }

@@ -69,6 +69,11 @@ impl Solver {
         Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, estimate: None })
     }
 
+    /// The arm, with the loads that were set last.
+    pub fn arm(&self) -> &Arm {
+        self.engine.equations.arm()
+    }
+
     /// Solves from the unloaded arm.
     ///
     /// # Errors
@@ -138,6 +143,40 @@ impl Solver {
         self.settled &= own.stroke.is_some();
         own.stroke = Some(stroke);
         arm.check()?;
+        self.estimate = None;
+        self.engine.set_loads(&arm);
+        Ok(())
+    }
+
+    /// Takes another arm. One of the same geometry, with the same cables commanded by their strokes, is solved from the last
+    /// configuration by [`Solver::resolve`] and [`Solver::update`], whatever its loads and its material; any other starts anew.
+    ///
+    /// # Errors
+    /// [`SolveError::Arm`] when it is none; the arm before stays then.
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Options, Parameter, Solver};
+    ///
+    /// let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+    /// arm.tip.force = [0.0, 1e-3]; // N
+    /// let mut solver = Solver::new(&arm, Options::default())?;
+    /// let soft = solver.update()?.tip;
+    /// Parameter::Young.set(&mut arm, 120e3).expect("a cone is homogeneous");
+    /// solver.set_arm(&arm)?;
+    /// assert!(solver.update()?.tip.y < soft.y, "a stiffer arm gives way less");
+    /// # Ok::<(), hydrostat::SolveError>(())
+    /// ```
+    pub fn set_arm(&mut self, arm: &Arm) -> Result<(), SolveError> {
+        arm.check()?;
+        let own = self.engine.equations.arm();
+        if !alike(own, arm) {
+            *self = Self::new(arm, self.options)?;
+            return Ok(());
+        }
+        let mut arm = arm.clone();
+        for (new, own) in arm.cables.iter_mut().zip(&own.cables).filter(|(new, _)| new.stroke.is_some()) {
+            new.tension = own.tension;
+        }
         self.estimate = None;
         self.engine.set_loads(&arm);
         Ok(())
@@ -358,6 +397,22 @@ impl Solver {
         let length = self.engine.equations.units.length;
         Configuration::read(&mut self.engine, estimate * length, statistics).map_err(Trouble::Section)
     }
+}
+
+/// Whether a solution for one arm is a start for the other: the same geometry, equations and unknowns.
+fn alike(a: &Arm, b: &Arm) -> bool {
+    let cables = || a.cables.iter().zip(&b.cables);
+    a.length == b.length
+        && a.radius == b.radius
+        && a.inner_radius == b.inner_radius
+        && a.cavity == b.cavity
+        && a.reference == b.reference
+        && a.readings == b.readings
+        && a.cables.len() == b.cables.len()
+        && cables().all(|(a, b)| a.offset == b.offset && a.end == b.end && a.stroke.is_some() == b.stroke.is_some())
+        && !a.rubs()
+        && !b.rubs()
+        && a.breaks() == b.breaks()
 }
 
 impl Arm {

@@ -222,3 +222,27 @@ fn a_path_that_starts_where_there_is_no_equilibrium_says_so() {
     assert!(branch.points.len() > 5);
     assert!(branch.points.last().unwrap().value > 0.9);
 }
+
+#[test]
+fn a_path_over_the_geometry_is_that_of_solves() {
+    use hydrostat::{Cable, Point, Profile};
+
+    let mut arm = Arm::cone(0.245, 0.010, 0.003, 110e3, 0.5);
+    let offset = Profile::table(&[[0.0, 0.005], [0.1, 0.004], [0.245, 0.001]]).unwrap();
+    arm.cables.push(Cable::new("left", offset).pulled(0.15));
+    arm.flow.speed = 0.1;
+    arm.flow.direction = 1.0;
+    for (parameter, range) in
+        [(Parameter::Radius(Point::Tip), [0.003, 0.006]), (Parameter::Offset(0, Point::Knot(1)), [0.004, 0.0025])]
+    {
+        let path = arm.path(parameter, range, &PathOptions::default()).unwrap();
+        let branch = &path.branches[0];
+        assert_eq!(branch.end, PathEnd::ReachedEnd);
+        for point in &branch.points {
+            let mut own = arm.clone();
+            parameter.set(&mut own, point.value).unwrap();
+            let (tip, found) = (own.solve().unwrap().tip(), point.configuration.tip());
+            assert!((tip.x - found.x).hypot(tip.y - found.y) < 3e-6 * arm.length, "{parameter} at {}", point.value);
+        }
+    }
+}

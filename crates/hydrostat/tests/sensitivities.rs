@@ -1,8 +1,8 @@
 //! Sensitivities against extrapolated differences of solves, against each other, and against closed forms.
 
 use hydrostat::{
-    Arm, Cable, Configuration, Ellipse, Gravity, Material, Options, Parameter, Profile, Readings, SensitivityError,
-    SensitivityMethod, SensitivityOptions, Solver,
+    Arm, Cable, Configuration, Ellipse, FlowLaw, Gravity, Material, Options, Parameter, PoseChange, Profile, Readings,
+    SensitivityError, SensitivityMethod, SensitivityOptions, Solver,
 };
 
 /// Tolerance of the solves that are differenced.
@@ -68,13 +68,39 @@ fn literal() -> Arm {
     arm
 }
 
-/// Tip pose, then strokes, then tensions, then the pose at a place.
+/// Cables and a hollow body whose profiles are tables, one cable at a commanded stroke.
+fn routed() -> Arm {
+    let mut arm = cone();
+    let table = |points: &[[f64; 2]]| Profile::table(points).unwrap();
+    arm.radius = table(&[[0.0, 0.010], [0.08, 0.0085], [0.16, 0.006], [0.245, 0.003]]);
+    arm.inner_radius = Profile::linear(0.003, 0.001);
+    arm.cavity = hydrostat::Cavity::Sealed;
+    arm.gravity = Some(Gravity::default());
+    arm.flow.speed = 0.1;
+    arm.flow.direction = 1.1;
+    arm.cables[0].offset = table(&[[0.0, 0.006], [0.1, 0.0045], [0.2, 0.0025], [0.245, 0.0015]]);
+    arm.cables[1].offset = table(&[[0.0, -0.005], [0.12, -0.004], [0.245, -0.001]]);
+    arm.cables[1] = Cable { stroke: Some(0.004), tension: 0.0, ..arm.cables[1].clone() };
+    arm.reference.mu = 0.5.into();
+    arm
+}
+
+/// Quadratic drag across the arm.
+fn dragged() -> Arm {
+    let mut arm = loaded();
+    arm.flow.law = FlowLaw::QuadraticDrag { cn: 2.5, ct: 0.02 };
+    arm
+}
+
+/// Tip pose, then strokes, then tensions, then the pose at a place, then the wrench at the base.
 fn numbers(shape: &Configuration, s: f64) -> Vec<f64> {
     let (tip, place) = (shape.tip(), shape.at(s));
     let mut out = vec![tip.x, tip.y, tip.theta, tip.alpha];
     out.extend(shape.cables.iter().map(|c| c.stroke));
     out.extend(shape.cables.iter().map(|c| c.tension));
     out.extend([place.x, place.y, place.theta, place.alpha]);
+    let base = shape.base_reaction;
+    out.extend([base.force[0], base.force[1], base.moment]);
     out
 }
 
@@ -134,16 +160,18 @@ fn sensitivities(arm: &Arm, options: Options, s: f64, method: SensitivityMethod)
             out.extend(found.strokes.iter().map(|row| row[k]));
             out.extend(found.tensions.iter().map(|row| row[k]));
             out.extend(pose(found.stations[0].changes[k]));
+            let base = found.base[k];
+            out.extend([base.force[0], base.force[1], base.moment]);
             out
         })
         .collect()
 }
 
-/// Lengths, angles and tensions among the numbers, which have a scale each.
+/// Lengths, angles, forces and moments among the numbers, which have a scale each.
 fn kind(k: usize, cables: usize) -> usize {
     let place = k.checked_sub(4 + 2 * cables).unwrap_or(k);
     match k {
-        k if k < 4 || k >= 4 + 2 * cables => usize::from(place >= 2),
+        k if k < 4 || k >= 4 + 2 * cables => [0, 0, 1, 1, 2, 2, 3][place],
         k if k < 4 + cables => 0,
         _ => 2,
     }
@@ -152,9 +180,15 @@ fn kind(k: usize, cables: usize) -> usize {
 #[test]
 fn sensitivities_match_extrapolated_differences_of_solves() {
     let mut worst_of_all = 0.0_f64;
-    for (name, arm) in
-        [("cone", cone()), ("loaded", loaded()), ("held", held()), ("stiff", stiff()), ("literal", literal())]
-    {
+    for (name, arm) in [
+        ("cone", cone()),
+        ("loaded", loaded()),
+        ("held", held()),
+        ("stiff", stiff()),
+        ("dragged", dragged()),
+        ("literal", literal()),
+        ("routed", routed()),
+    ] {
         let s = 0.55 * arm.length;
         let exact = sensitivities(&arm, TIGHT, s, SensitivityMethod::Best);
         for (parameter, exact) in Parameter::all_of(&arm).into_iter().zip(&exact) {
@@ -168,7 +202,7 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
             }
             let want = differences(&arm, parameter, s);
             let cables = arm.cables.len();
-            let mut sizes = [1e-12_f64; 3];
+            let mut sizes = [1e-12_f64; 4];
             for (k, want) in want.iter().enumerate() {
                 sizes[kind(k, cables)] = sizes[kind(k, cables)].max(want.abs());
             }
@@ -188,7 +222,7 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
 
 #[test]
 fn forward_and_adjoint_agree() {
-    for arm in [loaded(), held(), stiff(), literal()] {
+    for arm in [loaded(), held(), stiff(), dragged(), literal(), routed()] {
         let s = 0.3 * arm.length;
         let forward = sensitivities(&arm, Options::default(), s, SensitivityMethod::Forward);
         let adjoint = sensitivities(&arm, Options::default(), s, SensitivityMethod::Adjoint);
@@ -197,6 +231,33 @@ fn forward_and_adjoint_agree() {
             for (f, a) in forward.iter().zip(adjoint) {
                 assert!((f - a).abs() < 1e-12 * size, "{f:e} {a:e}");
             }
+        }
+    }
+}
+
+/// One adjoint solve gives what all rows together do.
+#[test]
+fn a_gradient_is_the_sum_of_weighted_rows() {
+    for arm in [loaded(), held(), literal(), routed()] {
+        let parameters = Parameter::all_of(&arm);
+        let places = [0.2, 0.45, 0.8, 1.0].map(|share| share * arm.length);
+        let weights = [[1.0, -0.3, 0.2, 0.0], [0.0, 2.0, 0.0, -0.1], [-0.7, 0.4, 0.0, 0.3], [0.5, 0.0, -0.4, 0.2]];
+        let pose = |[x, y, theta, alpha]: [f64; 4]| PoseChange { x, y, theta, alpha };
+        let asked: Vec<(f64, PoseChange)> = places.into_iter().zip(weights.map(pose)).collect();
+        let mut solver = Solver::new(&arm, Options::default()).unwrap();
+        let gradient = solver.gradient(&parameters, &asked).unwrap();
+        let wanted = SensitivityOptions { stations: places.to_vec(), method: SensitivityMethod::Forward };
+        let found = solver.sensitivities_with(&parameters, &wanted).unwrap();
+        for (k, got) in gradient.iter().enumerate() {
+            let (mut want, mut size) = (0.0, 1e-12);
+            for (station, weights) in found.stations.iter().zip(&weights) {
+                let p = station.changes[k];
+                for (w, p) in weights.iter().zip([p.x, p.y, p.theta, p.alpha]) {
+                    want += w * p;
+                    size += (w * p).abs();
+                }
+            }
+            assert!((got - want).abs() < 1e-10 * size, "{}: {got:e} for {want:e}", parameters[k]);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Errors of the library as Python's exceptions: a wrong request is a `ValueError`, no equilibrium is `hydrostat.NoEquilibrium` with
 //! the verdict's fields.
 
-use hydrostat::{NoEquilibrium, PathError, SolveError};
+use hydrostat::{NoEquilibrium, PathError, ReachError, SensitivityError, SolveError};
 use hydrostat_files::FileError;
 use hydrostat_sweep::SweepError;
 use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyOSError, PyRuntimeError, PyValueError};
@@ -42,6 +42,35 @@ pub(crate) fn path_error(py: Python<'_>, error: PathError, tol: f64) -> PyErr {
     match error {
         PathError::Start { source: SolveError::NoEquilibrium(no), .. } => no_equilibrium(py, *no, tol),
         other => wrong(other),
+    }
+}
+
+/// What derivatives end with.
+pub(crate) fn sensitivity_error(py: Python<'_>, error: SensitivityError, tol: f64) -> PyErr {
+    static NO_DERIVATIVE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    match error {
+        SensitivityError::Solve(error) => solve_error(py, error, tol),
+        SensitivityError::Station { .. } => wrong(format!("stations: {error}")),
+        SensitivityError::Unfit(_) | SensitivityError::Commanded(_) | SensitivityError::NotCommanded(_) => {
+            wrong(format!("parameters: {error}"))
+        }
+        SensitivityError::Rubbing | SensitivityError::Support => wrong(format!("arm: {error}")),
+        SensitivityError::Singular | SensitivityError::Unsettled(_) => {
+            made(py, &NO_DERIVATIVE, "NoDerivative", (error.to_string(),))
+        }
+    }
+}
+
+/// What a search for tensions ends with.
+pub(crate) fn reach_error(py: Python<'_>, error: ReachError, tol: f64) -> PyErr {
+    match error {
+        ReachError::Solve(error) => solve_error(py, error, tol),
+        ReachError::Sensitivity(error @ SensitivityError::Station { .. }) => wrong(format!("targets: {error}")),
+        ReachError::Sensitivity(error) => sensitivity_error(py, error, tol),
+        ReachError::NoCables => wrong(format!("arm: {error}")),
+        ReachError::Target => wrong(format!("targets: {error}")),
+        // Its words begin with the argument.
+        ReachError::Option { .. } => wrong(error),
     }
 }
 

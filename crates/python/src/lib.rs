@@ -10,6 +10,8 @@ mod figure;
 mod interrupt;
 mod many;
 mod paths;
+mod reach;
+mod sensitivity;
 mod solution;
 mod solver;
 mod sweep;
@@ -27,6 +29,10 @@ mod _native {
     use super::many::{parameter_names, solve_many};
     #[pymodule_export]
     use super::paths::{Equilibria, Path, equilibria, path};
+    #[pymodule_export]
+    use super::reach::{Follower, Reach, reach};
+    #[pymodule_export]
+    use super::sensitivity::{Sensitivities, ellipse};
     #[pymodule_export]
     use super::solution::{Solution, Stations};
     #[pymodule_export]

@@ -1,11 +1,13 @@
 //! One arm, again and again as its loads change.
 
-use numpy::PyReadonlyArray1;
+use hydrostat::{PoseChange, SensitivityOptions};
+use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::arm::Arm;
-use crate::arrays::finite;
-use crate::errors::{solve_error, wrong};
+use crate::arrays::{finite, given};
+use crate::errors::{sensitivity_error, solve_error, wrong};
+use crate::sensitivity::{Sensitivities, method, parameters};
 use crate::solution::Solution;
 
 /// A solver that keeps its last configuration to start from.
@@ -54,6 +56,40 @@ impl Solver {
         let answer = py.detach(|| solver.update()).map_err(|error| solve_error(py, error, tol))?;
         let tip = answer.tip;
         Ok((tip.x, tip.y, tip.theta, tip.alpha, answer.error_estimate))
+    }
+
+    /// Derivatives by these parameters, or by all, and the shape that they are about.
+    fn sensitivities(
+        &mut self,
+        py: Python<'_>,
+        names: Option<Vec<String>>,
+        stations: PyReadonlyArray1<'_, f64>,
+        way: &str,
+    ) -> PyResult<(Sensitivities, Solution)> {
+        let wanted = SensitivityOptions { stations: finite("stations", &stations, true)?, method: method(way)? };
+        let parameters = parameters(names, self.solver.arm())?;
+        let (solver, tol) = (&mut self.solver, self.tol);
+        let found = py.detach(|| solver.sensitivities_with(&parameters, &wanted));
+        let found = found.map_err(|error| sensitivity_error(py, error, tol))?;
+        Ok((Sensitivities::new(found), self.configuration(py)?))
+    }
+
+    /// Derivatives of a number by these parameters, given its own by x, y, theta and alpha at places.
+    fn gradient<'py>(
+        &mut self,
+        py: Python<'py>,
+        names: Vec<String>,
+        stations: PyReadonlyArray1<'py, f64>,
+        weights: [PyReadonlyArray1<'py, f64>; 4],
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let stations = finite("stations", &stations, true)?;
+        let [x, y, theta, alpha] = &weights.each_ref().map(PyReadonlyArray1::as_array);
+        let by = |k: usize| PoseChange { x: x[k], y: y[k], theta: theta[k], alpha: alpha[k] };
+        let weights: Vec<(f64, PoseChange)> = stations.iter().enumerate().map(|(k, s)| (*s, by(k))).collect();
+        let parameters = parameters(Some(names), self.solver.arm())?;
+        let (solver, tol) = (&mut self.solver, self.tol);
+        let found = py.detach(|| solver.gradient(&parameters, &weights));
+        Ok(given(py, found.map_err(|error| sensitivity_error(py, error, tol))?))
     }
 }
 

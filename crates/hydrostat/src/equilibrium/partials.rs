@@ -16,11 +16,13 @@ use crate::arm::Material;
 use crate::beta_along::Rule;
 use crate::cable::{Offset, tangent};
 use crate::dispatch::widest;
+use crate::flow::Law;
 use crate::loads::{Body, load};
 use crate::parameter::Parameter;
+use crate::profile::Profile;
 use crate::section::{CableAt, Stiffness, apply3, balance, inverse3};
 use crate::sensitivity::dual::Dual;
-use crate::swelling::Swelling;
+use crate::swelling::{Swelling, swelling};
 
 /// What is differentiated at a station: z', (x, y)', beta, and beta' by the closed form.
 pub(crate) const OUT: usize = N + Q + 2;
@@ -52,6 +54,14 @@ pub(crate) struct ByState {
     pub(crate) rate: [f64; Q],
     /// d beta' (closed form) / d beta''.
     pub(crate) reach: f64,
+}
+
+/// How the radius, or the offset of a cable, follows one of its numbers.
+struct Geometry {
+    /// The number's place among those that are differentiated by.
+    way: usize,
+    cable: Option<usize>,
+    change: Profile,
 }
 
 /// Derivatives by what numbers were seeded with, and what it takes to complete them.
@@ -114,7 +124,7 @@ impl Equilibrium {
         raw.iter().map(Raw::complete).collect()
     }
 
-    /// Derivatives by up to four parameters of the section law: tensions and a homogeneous material's.
+    /// Derivatives by up to four parameters of the section law: tensions, a homogeneous material's and the geometry's.
     pub(crate) fn by_section(
         &self,
         spots: &[Spot],
@@ -128,8 +138,10 @@ impl Equilibrium {
     fn differentiated(&self, spots: &[Spot], parameters: &[Parameter], stretch: &mut Vec<Lanes>) -> Vec<Raw> {
         let mut tensions: Vec<Dual> = self.tensions.iter().map(|t| Dual::fixed(*t)).collect();
         let mut shares = [Lanes([0.0; LANES]); 3];
+        let mut geometry = Vec::new();
         for (way, parameter) in parameters.iter().enumerate() {
             self.seed(*parameter, way, &mut tensions, &mut shares);
+            geometry.extend(self.geometry(*parameter, way));
         }
         let unit = f64::from(u8::from(parameters.is_empty()));
         widest(
@@ -138,7 +150,7 @@ impl Equilibrium {
                 let mut out = Vec::with_capacity(spots.len());
                 stretch.reserve(spots.len() * tensions.len());
                 for spot in spots {
-                    out.push(self.differentiated_at(spot, &tensions, &shares, unit, stretch));
+                    out.push(self.differentiated_at(spot, &tensions, &shares, &geometry, unit, stretch));
                 }
                 out
             },
@@ -151,22 +163,23 @@ impl Equilibrium {
         spot: &Spot,
         tensions: &[Dual],
         shares: &[Lanes; 3],
+        geometry: &[Geometry],
         unit: f64,
         stretch: &mut Vec<Lanes>,
     ) -> Raw {
         let [slope, curvature] = spot.beta;
         let along = [Dual::seeded(slope, 3, unit), Dual::fixed(curvature)];
-        let mut place = fixed(&spot.place);
+        let mut place = self.place_along(spot, geometry);
         for k in 0..3 {
             for of in [&mut place.stiffness.value[k], &mut place.stiffness.slope[k]] {
-                of.by = shares[k] * Lanes::of(of.value);
+                of.by += shares[k] * Lanes::of(of.value);
             }
         }
         let mut pulled = Few::new();
-        for (cable, tension) in spot.cables.iter().zip(tensions) {
+        for (c, (cable, tension)) in spot.cables.iter().zip(tensions).enumerate() {
             if tension.value != 0.0 || tension.by != Lanes([0.0; LANES]) {
                 pulled.push(CableAt {
-                    offset: fixed_offset(&cable.offset),
+                    offset: self.offset_along(spot, c, geometry),
                     tension: *tension * Dual::fixed(cable.tension),
                     tension_slope: *tension * Dual::fixed(cable.tension_slope),
                 });
@@ -209,8 +222,9 @@ impl Equilibrium {
         }
         by[VALUE] = swelling.beta.by;
         by[CLOSED] = slopes.beta_slope.by;
-        for cable in &spot.cables {
-            stretch.push(tangent(&fixed_offset(&cable.offset), strain, &swelling, along[0]).stretch.by);
+        for c in 0..spot.cables.len() {
+            let offset = self.offset_along(spot, c, geometry);
+            stretch.push(tangent(&offset, strain, &swelling, along[0]).stretch.by);
         }
         let mut less = 0.0;
         for c in 0..3 {
@@ -234,16 +248,78 @@ impl Equilibrium {
             tensions[c].by.0[way] = 1.0 / self.units.force;
             return;
         }
-        let Material::Homogeneous { young, poisson, shear_factor } = self.arm.material else { return };
-        let (coefficients, per) = match parameter {
-            Parameter::Young => (0..3, 1.0 / young),
-            Parameter::Poisson => (1..2, -1.0 / (1.0 + poisson)),
-            Parameter::ShearFactor => (1..2, 1.0 / shear_factor),
+        let (coefficients, per) = match (parameter, &self.arm.material) {
+            (Parameter::Young, Material::Homogeneous { young, .. }) => (0..3, 1.0 / young),
+            (Parameter::Poisson, Material::Homogeneous { poisson, .. }) => (1..2, -1.0 / (1.0 + poisson)),
+            (Parameter::ShearFactor, Material::Homogeneous { shear_factor, .. }) => (1..2, 1.0 / shear_factor),
+            (Parameter::Coefficient(k), Material::Coefficients { .. }) => {
+                let k = k.min(2);
+                (k..k + 1, 1.0 / parameter.of(&self.arm).unwrap_or(f64::INFINITY))
+            }
             _ => return,
         };
         for share in &mut shares[coefficients] {
             share.0[way] = per;
         }
+    }
+
+    fn geometry(&self, parameter: Parameter, way: usize) -> Option<Geometry> {
+        // That the arm has the parameter was checked.
+        let (profile, point) = parameter.profile(&self.arm).ok()??;
+        let cable = if let Parameter::Offset(c, _) = parameter { Some(c) } else { None };
+        Some(Geometry { way, cable, change: profile.by_point(point)? })
+    }
+
+    /// The data at a spot, whose radius follows the geometry.
+    #[inline(always)]
+    fn place_along(&self, spot: &Spot, geometry: &[Geometry]) -> Place<Dual> {
+        let place = fixed(&spot.place);
+        if geometry.iter().all(|change| change.cable.is_some()) {
+            return place;
+        }
+        let l = self.units.length;
+        let s = place.s.value;
+        let own = self.arm.radius.at(s * l, l);
+        let mut radius = [Dual::fixed(own.value), Dual::fixed(own.slope)];
+        for Geometry { way, change, .. } in geometry.iter().filter(|change| change.cable.is_none()) {
+            let change = change.at(s * l, l);
+            radius[0].by.0[*way] = change.value;
+            radius[1].by.0[*way] = change.slope;
+        }
+        self.place_with(&self.arm, s, radius)
+    }
+
+    /// The offset of cable `c` at a spot, which follows the geometry.
+    #[inline(always)]
+    fn offset_along(&self, spot: &Spot, c: usize, geometry: &[Geometry]) -> Offset<Dual> {
+        let own = &spot.cables[c].offset;
+        let [y, slope, curvature] = [own.y, own.slope, own.curvature].map(Dual::fixed);
+        let mut offset = Offset { y, slope, curvature };
+        let l = self.units.length;
+        for Geometry { way, change, .. } in geometry.iter().filter(|change| change.cable == Some(c)) {
+            let change = change.at(spot.place.s * l, l);
+            offset.y.by.0[*way] = change.value / l;
+            offset.slope.by.0[*way] = change.slope;
+            offset.curvature.by.0[*way] = change.curvature * l;
+        }
+        offset
+    }
+
+    /// d (length of cable `c` at the reference strains, over L) / d parameter, with the weights of the stages.
+    pub(crate) fn reference_length_by(&self, spots: &[Spot], c: usize, parameter: Parameter, weights: &[f64]) -> f64 {
+        let Some(geometry) = self.geometry(parameter, 0).filter(|change| change.cable == Some(c)) else { return 0.0 };
+        let stages = self.groups.stages;
+        let mut sum = 0.0;
+        for (k, spot) in spots.iter().enumerate().filter(|(_, spot)| spot.place.s < self.ends[c]) {
+            let (group, lane) = (k / stages / LANES, k / stages % LANES);
+            let stiffness = fixed(&spot.place).stiffness;
+            let swelling = swelling(self.volume, stiffness.reference[0]);
+            let slope = swelling.slope * stiffness.reference_slope[0];
+            let offset = self.offset_along(spot, c, std::slice::from_ref(&geometry));
+            let stretch = tangent(&offset, stiffness.reference, &swelling, slope).stretch;
+            sum += self.steps[group].0[lane] * weights[k % stages] * stretch.by.0[0];
+        }
+        sum
     }
 
     /// Derivative of the closed-form quantities by a parameter of the loads along the arm: those of stream, gravity and the
@@ -290,6 +366,9 @@ impl Equilibrium {
         let turned = |v: [f64; 2]| [-v[1], v[0]];
         match parameter {
             Parameter::FlowSpeed | Parameter::FlowDirection => body.wetted = own.wetted,
+            // Quadratic drag is the sum of what its coefficients do.
+            Parameter::DragNormal => (body.wetted, water.law) = (own.wetted, Law::drag(1.0, 0.0)),
+            Parameter::DragTangential => (body.wetted, water.law) = (own.wetted, Law::drag(0.0, 1.0)),
             Parameter::GravityDirection => {
                 body.weight = turned(own.weight);
                 body.displaced = turned(own.displaced);
@@ -368,11 +447,6 @@ impl Raw {
         let by = each(|k| self.by_state(&self.by[k], turn[k]));
         ByState { by, rate: self.rate, reach: self.reach }
     }
-}
-
-#[inline(always)]
-fn fixed_offset(offset: &Offset<f64>) -> Offset<Dual> {
-    Offset { y: Dual::fixed(offset.y), slope: Dual::fixed(offset.slope), curvature: Dual::fixed(offset.curvature) }
 }
 
 #[inline(always)]

@@ -1,6 +1,6 @@
 //! The data of an arm at the stations: sections and cables.
 
-use hydrostat_bvp::{Groups, LANES, Lanes, Mesh, Real};
+use hydrostat_bvp::{Groups, LANES, Lanes, Mesh, Real, each};
 
 use super::{Equilibrium, Memory, N};
 use crate::arm::{Arm, Cavity, Material};
@@ -25,24 +25,35 @@ impl Equilibrium {
 
     /// Data at `s` (over L) of an arm in the units of this one.
     pub(super) fn place_of(&self, arm: &Arm, s: f64) -> Place<f64> {
+        let l = self.units.length;
+        let radius = arm.radius.at(s * l, l);
+        self.place_with(arm, s, [radius.value, radius.slope])
+    }
+
+    /// The same with a radius (m) and its slope that may carry derivatives.
+    #[inline(always)]
+    pub(super) fn place_with<R: Real>(&self, arm: &Arm, s: f64, [r, r_slope]: [R; 2]) -> Place<R> {
         let units = self.units;
         let l = units.length;
         let at = |p: &crate::profile::Profile| p.at(s * l, l);
-        let (r, r_in) = (at(&arm.radius), at(&arm.inner_radius));
+        let inner = at(&arm.inner_radius);
+        let (r_in, r_in_slope) = (R::of(inner.value), R::of(inner.slope));
+        let (zero, two, four) = (R::of(0.0), R::of(2.0), R::of(4.0));
         let pi = std::f64::consts::PI;
-        let area = pi * (r.value * r.value - r_in.value * r_in.value);
-        let area_slope = 2.0 * pi * (r.value * r.slope - r_in.value * r_in.slope);
+        let area = R::of(pi) * (r * r - r_in * r_in);
+        let area_slope = R::of(2.0 * pi) * (r * r_slope - r_in * r_in_slope);
         let (c, c_slope) = match &arm.material {
             Material::Homogeneous { young, poisson, shear_factor } => {
                 // C1 = E, C2 = k G, C3 = E I/A of a ring.
-                let square = r.value * r.value + r_in.value * r_in.value;
-                let square_slope = 2.0 * (r.value * r.slope + r_in.value * r_in.slope);
+                let square = r * r + r_in * r_in;
+                let square_slope = two * (r * r_slope + r_in * r_in_slope);
                 let shear = shear_factor * young / (2.0 * (1.0 + poisson));
-                ([*young, shear, young * square / 4.0], [0.0, 0.0, young * square_slope / 4.0])
+                let young = R::of(*young);
+                ([young, R::of(shear), young * square / four], [zero, zero, young * square_slope / four])
             }
             Material::Coefficients { c1, c2, c3 } => {
                 let c = [at(c1), at(c2), at(c3)];
-                (c.map(|c| c.value), c.map(|c| c.slope))
+                (c.map(|c| R::of(c.value)), c.map(|c| R::of(c.slope)))
             }
         };
         // Stiffness in the units: C1 A0 / F, C2 A0 / F, C3 A0 / (F L^2).
@@ -50,10 +61,10 @@ impl Equilibrium {
         let reference = [at(&arm.reference.nu), at(&arm.reference.eta), at(&arm.reference.mu)];
         let per_length = [1.0, 1.0, l];
         let stiffness = Stiffness {
-            value: [0, 1, 2].map(|k| c[k] * area * unit[k]),
-            slope: [0, 1, 2].map(|k| (c_slope[k] * area + c[k] * area_slope) * unit[k] * l),
-            reference: [0, 1, 2].map(|k| reference[k].value * per_length[k]),
-            reference_slope: [0, 1, 2].map(|k| reference[k].slope * per_length[k] * l),
+            value: each(|k| c[k] * area * R::of(unit[k])),
+            slope: each(|k| (c_slope[k] * area + c[k] * area_slope) * R::of(unit[k]) * R::of(l)),
+            reference: each(|k| R::of(reference[k].value * per_length[k])),
+            reference_slope: each(|k| R::of(reference[k].slope * per_length[k] * l)),
         };
         let load_unit = l / units.force;
         let gravity = arm.gravity.map_or([0.0; 2], |g| {
@@ -62,18 +73,18 @@ impl Equilibrium {
         });
         let outline = match arm.cavity {
             Cavity::Flooded => area,
-            Cavity::Sealed => pi * r.value * r.value,
+            Cavity::Sealed => R::of(pi) * r * r,
         };
         let body = Body {
-            radius: r.value / l,
-            radius_slope: r.slope,
-            wetted: pi * arm.flow.density * r.value * load_unit,
-            weight: gravity.map(|g| arm.density * area * g),
-            displaced: gravity.map(|g| arm.flow.density * outline * g),
-            force: [0, 1].map(|k| at(&arm.distributed.force[k]).value * load_unit),
-            couple: at(&arm.distributed.couple).value / units.force,
+            radius: r / R::of(l),
+            radius_slope: r_slope,
+            wetted: R::of(pi * arm.flow.density) * r * R::of(load_unit),
+            weight: gravity.map(|g| R::of(arm.density) * area * R::of(g)),
+            displaced: gravity.map(|g| R::of(arm.flow.density) * outline * R::of(g)),
+            force: each(|k| R::of(at(&arm.distributed.force[k]).value * load_unit)),
+            couple: R::of(at(&arm.distributed.couple).value / units.force),
         };
-        Place { s, stiffness, body }
+        Place { s: R::of(s), stiffness, body }
     }
 
     pub(crate) fn offset(&self, cable: usize, s: f64) -> Offset<f64> {
@@ -140,6 +151,12 @@ impl Equilibrium {
 
     /// Takes the data at `s` into a lane of a block.
     fn place_station(&mut self, block: usize, lane: usize, s: f64) {
+        self.place_section(block, lane, s);
+        self.place_pull(block, lane, s);
+    }
+
+    /// All but what is left of the tensions.
+    fn place_section(&mut self, block: usize, lane: usize, s: f64) {
         let place = self.place(s);
         set_lane(&mut self.places[block], lane, &place);
         let cable_count = self.tensions.len();
@@ -148,7 +165,6 @@ impl Equilibrium {
             let at = &mut self.cables[block * cable_count + c];
             at.set_offset(lane, &offset);
         }
-        self.place_pull(block, lane, s);
     }
 
     /// Takes what is left of every tension at `s` into a lane of a block, over that at the base.
@@ -163,12 +179,11 @@ impl Equilibrium {
         }
     }
 
-    /// Takes the arm's sections at all stations.
+    /// Takes the arm's sections, and its cables' offsets, at all stations.
     pub(super) fn take_sections(&mut self) {
         for block in 0..self.places.len() {
             for lane in 0..LANES {
-                let place = self.place(self.stations[self.groups.station_in(block, lane)]);
-                set_lane(&mut self.places[block], lane, &place);
+                self.place_section(block, lane, self.stations[self.groups.station_in(block, lane)]);
             }
         }
     }

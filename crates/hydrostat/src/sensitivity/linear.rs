@@ -285,6 +285,28 @@ impl Linear {
     }
 }
 
+impl Functional {
+    /// Adds `factor` times another one in which no cable counts.
+    pub(super) fn add(&mut self, factor: f64, other: &Self) {
+        self.nodes.extend(other.nodes.iter().map(|(i, weights)| (*i, weights.map(|w| factor * w))));
+        let past = other.first + other.stages.len();
+        if self.stages.len() < past {
+            self.stages.resize(past, [StageWeights::default(); M]);
+        }
+        for (own, other) in self.stages[other.first..].iter_mut().zip(&other.stages) {
+            for (own, other) in own.iter_mut().zip(other) {
+                for a in 0..N {
+                    own.z[a] += factor * other.z[a];
+                }
+                own.beta_slope += factor * other.beta_slope;
+                for (own, other) in own.direct.iter_mut().zip(&other.direct) {
+                    *own += factor * other;
+                }
+            }
+        }
+    }
+}
+
 impl StageWeights {
     /// Adds `weight` times a quantity that these are the derivatives of.
     fn add(&mut self, weight: f64, by: &[f64; BY]) {

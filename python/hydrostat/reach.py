@@ -1,0 +1,255 @@
+"""Inverse kinetics: the tensions that bring an arm to a place, and along a path of places."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple, Union, overload
+
+from hydrostat import _inputs, _native
+from hydrostat.figures import Figure
+from hydrostat.solution import Solution, Tip
+
+if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from hydrostat.arm import Arm
+
+
+class Target(NamedTuple):
+    """Where a place of the arm is to be.
+
+    Attributes
+    ----------
+    x, y : float
+        The place, m.
+    s : float or None
+        Which place of the arm, m along it; None for the tip.
+    angle : float or None
+        Angle of the section from e1, rad, if it matters: in a distance, a radian counts as one arm's length.
+    weight : float
+        Of its distance among those of several targets.
+    """
+
+    x: float
+    y: float
+    s: float | None = None
+    angle: float | None = None
+    weight: float = 1.0
+
+
+#: One target, several, or the tip's ``(x, y)``, m.
+Targets = Union[Target, tuple[float, float], Sequence[Target]]
+
+
+class Bound(NamedTuple):
+    """A bound that tensions lie on: of the `cable` (its index) that is ``"slack"`` and would have to push, or has the ``"most"``."""
+
+    kind: str
+    cable: int
+
+
+class Reached:
+    """Tensions, and the shape that they lead to.
+
+    Attributes
+    ----------
+    tensions : ndarray, shape (cables,)
+        N.
+    effort : float
+        Sum of their squares, N^2.
+    distance : float
+        Root of the weighted sum of squared distances to the targets, over the length.
+    bounds : tuple of Bound
+        The bounds that its tensions lie on.
+    on_the_path : bool
+        Whether `Arm.solve` at these tensions leads to this shape.
+    stability : str or None
+        ``"stable"``, ``"unstable"``, ``"marginal"``, or None where it is not established.
+    unstable_directions : int or None
+        In how many directions small motions grow.
+    """
+
+    tensions: NDArray[np.float64]
+
+    def __init__(self, native: _native.Reach, index: int) -> None:
+        self._native = native
+        self._index = index
+        self.tensions, self.effort, self.distance, bounds, self.on_the_path, state = native.fields(index)
+        self.bounds = tuple(Bound(*bound) for bound in bounds)
+        self.stability, self.unstable_directions = state
+
+    @cached_property
+    def solution(self) -> Solution:
+        """The shape."""
+        return Solution(self._native.solution(self._index))
+
+    def figure(self, note: str | None = None) -> Figure:
+        """The shape to scale with the targets, as ``hydrostat reach --plot`` draws it; `note` stands below."""
+        return Figure(self._native.figure(self._index, note))
+
+    def __repr__(self) -> str:
+        pulls = ", ".join(f"{tension:.6g}" for tension in self.tensions)
+        return f"<Reached with ({pulls}) N, off by {self.distance:.2g} of the length>"
+
+
+class Reach(Sequence[Reached]):
+    """Different tensions that reach the targets, least effort first, as a sequence; see `Arm.reach`.
+
+    Attributes
+    ----------
+    targets : tuple of Target
+        What was asked for.
+    closest : Reached or None
+        Where nothing reaches them, the nearest that was found.
+    """
+
+    def __init__(self, native: _native.Reach, targets: tuple[Target, ...]) -> None:
+        self._inner = native
+        count, closest = native.counts
+        self._all = tuple(Reached(native, index) for index in range(count))
+        self.targets = targets
+        self.closest = Reached(native, count) if closest else None
+
+    @property
+    def solutions(self) -> tuple[Reached, ...]:
+        """The same as a tuple."""
+        return self._all
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    @overload
+    def __getitem__(self, index: int) -> Reached: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Reached]: ...
+    def __getitem__(self, index: int | slice) -> Reached | Sequence[Reached]:
+        return self._all[index]
+
+    def __repr__(self) -> str:
+        if self.closest is not None:
+            return f"<Reach: not reached, the closest is off by {self.closest.distance:.2g} of the length>"
+        return f"<Reach: {len(self)} solution(s)>"
+
+    def to_json(self) -> str:
+        """The document of ``hydrostat reach --format json``."""
+        return self._inner.to_json()
+
+    def to_csv(self) -> str:
+        """One row a solution, as ``hydrostat reach --format csv`` prints them."""
+        return self._inner.to_csv()
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw all solutions, or the closest, with the targets on one axis. Needs matplotlib."""
+        from hydrostat.plotting import plot_reach
+
+        return plot_reach(self, ax)
+
+
+class Followed(NamedTuple):
+    """Where a follower got to.
+
+    Attributes
+    ----------
+    tensions : ndarray, shape (cables,)
+        N.
+    tip : Tip
+        m and rad.
+    distance : float
+        Root of the weighted sum of squared distances to the targets, over the length.
+    reached : bool
+        Whether that is within the tolerance.
+    jumped : bool
+        Whether the arm went to another branch of its equilibria on the way.
+    solves : int
+        Solves that it took.
+    """
+
+    tensions: NDArray[np.float64]
+    tip: Tip
+    distance: float
+    reached: bool
+    jumped: bool
+    solves: int
+
+
+class Follower:
+    """Follows a path of targets, each from the tensions of the last, for control loops.
+
+    It starts from the tensions of the arm, or, where they do not reach the first targets, from the least effort that does.
+
+    Parameters
+    ----------
+    arm : Arm
+        The arm.
+    targets : Target, sequence of Target, or (x, y)
+        The first targets, m and rad.
+    max_tension : float, optional
+        The largest tension of every cable, N, where the cable itself has none.
+    tol : float
+        Distance over the length at which a target is reached, in [1e-10, 1e-2].
+
+    Raises
+    ------
+    NoEquilibrium
+        The arm has no equilibrium to start from.
+    ValueError
+        An argument that cannot be meant, named.
+
+    Examples
+    --------
+    >>> import hydrostat as hs
+    >>> arm = hs.Arm.load("silicone").replace(tensions=[0.3, 0.1])
+    >>> tip = arm.solve().tip
+    >>> follower = hs.Follower(arm, (tip.x, tip.y))
+    >>> steps = [follower.follow((tip.x, tip.y - 2e-4 * k)) for k in range(1, 11)]
+    >>> all(step.reached and not step.jumped for step in steps)
+    True
+    """
+
+    __slots__ = ("_inner",)
+
+    def __init__(self, arm: Arm, targets: Targets, *, max_tension: float | None = None, tol: float = 1e-8) -> None:
+        most = None if max_tension is None else _inputs.number("max_tension", max_tension)
+        self._inner = _native.Follower(arm._inner, targets_of(targets), most, _inputs.number("tol", tol), True)
+
+    def follow(self, targets: Targets) -> Followed:
+        """Go to the next targets, which have to be for the same places as the first.
+
+        Where they cannot be reached the arm stays as near as it came, and ``reached`` is false.
+
+        Parameters
+        ----------
+        targets : Target, sequence of Target, or (x, y)
+            m and rad.
+        """
+        tensions, tip, *rest = self._inner.follow(targets_of(targets))
+        return Followed(tensions, Tip(*tip), *rest)
+
+
+def targets_of(targets: Targets) -> list[Target]:
+    """Targets as a list; what is wrong is a `ValueError`."""
+    if isinstance(targets, Target):
+        return [_checked("targets", targets)]
+    try:
+        given = list(targets)
+    except TypeError as error:
+        raise ValueError(f"targets: expected targets or (x, y), found {targets!r}") from error
+    if given and all(isinstance(target, Target) for target in given):
+        return [_checked(f"targets[{k}]", target) for k, target in enumerate(given)]
+    if len(given) != 2:
+        raise ValueError(f"targets: expected targets or (x, y), found {targets!r}")
+    return [Target(_inputs.number("targets[0]", given[0]), _inputs.number("targets[1]", given[1]))]
+
+
+def _checked(name: str, target: Target) -> Target:
+    x, y, s, angle, weight = target
+    return Target(
+        _inputs.number(f"{name}.x", x),
+        _inputs.number(f"{name}.y", y),
+        None if s is None else _inputs.number(f"{name}.s", s),
+        None if angle is None else _inputs.number(f"{name}.angle", angle),
+        _inputs.number(f"{name}.weight", weight),
+    )
