@@ -205,14 +205,14 @@ end_x, end_y = hook(np.linspace(0.0, length, 400))
 # The pipe that the hook goes round: the centre of its last bend.
 heading = np.arctan2(end_y[-1] - end_y[-2], end_x[-1] - end_x[-2])
 centre = np.array([end_x[-1], end_y[-1]]) + bend * np.array([-np.sin(heading), np.cos(heading)])
-for design, color, label in ((before, "#c9d3da", "before"), (after, "#d9734e", "after")):
+for design, shade, label in ((before, "#c9d3da", "before"), (after, "#d9734e", "after")):
     shape = designed(design).solve()
-    shape.plot(ax, color=color, sections=0, flow=label == "after", label=f"{label}: {design[0]:.3g} N")
+    shape.plot(ax, color=shade, sections=0, flow=label == "after", label=f"{label}: {design[0]:.3g} N")
 ax.plot(1e3 * end_x, 1e3 * end_y, color="#1b7f5c", linewidth=1.4, linestyle=(0, (5, 2)), zorder=7, label="asked for")
 ax.plot(1e3 * target_x, 1e3 * target_y, "o", color="#1b7f5c", markersize=3.5, zorder=8)
 inside = bend - 0.0055
 ax.fill(*(1e3 * (centre[:, None] + inside * np.stack([np.cos(turn), np.sin(turn)]))), color="0.9", zorder=0)
-ax.text(*(1e3 * centre), "pipe", ha="center", va="center", color="0.5")
+ax.text(1e3 * centre[0], 1e3 * centre[1], "pipe", ha="center", va="center", color="0.5")
 ax.legend(frameon=False, fontsize=9, loc="lower right")
 plt.show()
 
@@ -226,11 +226,11 @@ left.set_xlabel("iteration")
 left.set_ylabel("root of the objective (mm)")
 left.grid(alpha=0.25)
 s = np.linspace(0.0, length, 300)
-for design, color, label in ((before, "0.6", "before"), (after, "#d9734e", "after")):
+for design, shade, label in ((before, "0.6", "before"), (after, "#d9734e", "after")):
     straight = designed(design).replace(tensions=[0.0, 0.0], flow_speed=0.0).solve()
     top, bottom = straight.surfaces(s)
-    right.fill_between(1e3 * s, 1e3 * bottom[:, 1], 1e3 * top[:, 1], color=color, alpha=0.25, linewidth=0)
-    right.plot(1e3 * s, 1e3 * straight.cable_path(0, s)[:, 1], color=color, linewidth=1.8, label=f"cable {label}")
+    right.fill_between(1e3 * s, 1e3 * bottom[:, 1], 1e3 * top[:, 1], color=shade, alpha=0.25, linewidth=0)
+    right.plot(1e3 * s, 1e3 * straight.cable_path(0, s)[:, 1], color=shade, linewidth=1.8, label=f"cable {label}")
 right.set_xlabel("s (mm)")
 right.set_ylabel("across the straight arm (mm)")
 right.legend(frameon=False, fontsize=9, loc="upper right")
