@@ -34,18 +34,18 @@ length = arm.length
 # %% [markdown]
 # ## The shape
 #
-# A hook: straight out of the base, then round a pipe of 40 mm radius. The arm is to lie on it at 24 places.
+# A hook: straight out of the base, then a bend of 40 mm radius round a pipe. The centreline is to lie on it at 24 places.
 
 # %%
-pipe = 0.040
+bend = 0.040
 places = np.linspace(length / 24, length, 24)
 
 
 def hook(s: Numbers) -> tuple[Numbers, Numbers]:
-    """x and y (m) of the hook after the length s (m): straight to 0.4, then a bend that grows to that of the pipe at 0.6."""
+    """x and y (m) of the hook after the length s (m): straight to 0.4, then a bend that grows to 40 mm radius at 0.6."""
     fine = np.linspace(0.0, length, 4001)
     share = np.clip((fine / length - 0.4) / 0.2, 0.0, 1.0)
-    turn = np.concatenate([[0.0], np.cumsum(0.5 * (share[1:] + share[:-1]) / pipe * np.diff(fine))])
+    turn = np.concatenate([[0.0], np.cumsum(0.5 * (share[1:] + share[:-1]) / bend * np.diff(fine))])
     step = np.diff(fine)
     middle = 0.5 * (turn[1:] + turn[:-1])
     x = np.concatenate([[0.0], np.cumsum(step * np.cos(middle))])
@@ -110,8 +110,8 @@ def objective(design: Numbers) -> tuple[float, Numbers]:
     # An offset is its share of the radius.
     radius, share = design[1:7], design[7:]
     out = np.concatenate([by[:1], by_radius + by_offset * share, by_offset * radius])
-    for k, bend in enumerate(winding):
-        out[7 + k : 10 + k] += 2 * WINDING * bend * np.array([1.0, -2.0, 1.0])
+    for k, turned in enumerate(winding):
+        out[7 + k : 10 + k] += 2 * WINDING * turned * np.array([1.0, -2.0, 1.0])
     return value, out
 
 
@@ -204,19 +204,20 @@ turn = np.linspace(0.0, 2 * np.pi, 200)
 end_x, end_y = hook(np.linspace(0.0, length, 400))
 # The pipe that the hook goes round: the centre of its last bend.
 heading = np.arctan2(end_y[-1] - end_y[-2], end_x[-1] - end_x[-2])
-centre = np.array([end_x[-1], end_y[-1]]) + pipe * np.array([-np.sin(heading), np.cos(heading)])
-for design, color, label in ((before, "#c9d3da", "before"), (after, "#d9734e", "after")):
+centre = np.array([end_x[-1], end_y[-1]]) + bend * np.array([-np.sin(heading), np.cos(heading)])
+for design, shade, label in ((before, "#c9d3da", "before"), (after, "#d9734e", "after")):
     shape = designed(design).solve()
-    shape.plot(ax, color=color, sections=0, flow=label == "after", label=f"{label}: {design[0]:.3g} N")
+    shape.plot(ax, color=shade, sections=0, flow=label == "after", label=f"{label}: {design[0]:.3g} N")
 ax.plot(1e3 * end_x, 1e3 * end_y, color="#1b7f5c", linewidth=1.4, linestyle=(0, (5, 2)), zorder=7, label="asked for")
 ax.plot(1e3 * target_x, 1e3 * target_y, "o", color="#1b7f5c", markersize=3.5, zorder=8)
-inside = pipe - 0.011
-ax.fill(*(1e3 * (centre[:, None] + inside * np.stack([np.cos(turn), np.sin(turn)]))), color="0.88", zorder=0)
-ax.legend(frameon=False, fontsize=9, loc="upper left")
+inside = bend - 0.0055
+ax.fill(*(1e3 * (centre[:, None] + inside * np.stack([np.cos(turn), np.sin(turn)]))), color="0.9", zorder=0)
+ax.text(1e3 * centre[0], 1e3 * centre[1], "pipe", ha="center", va="center", color="0.5")
+ax.legend(frameon=False, fontsize=9, loc="lower right")
 plt.show()
 
 # %% [markdown]
-# How it got there, and what it became: the cable comes out of the centreline where the bend begins, and the body is thin there.
+# How it got there, and what it became: thick where the hook is straight, thin where it bends, with a cable that comes in towards the centreline.
 
 # %%
 fig, (left, right) = plt.subplots(1, 2, figsize=(9.6, 3.6), layout="constrained")
@@ -225,11 +226,11 @@ left.set_xlabel("iteration")
 left.set_ylabel("root of the objective (mm)")
 left.grid(alpha=0.25)
 s = np.linspace(0.0, length, 300)
-for design, color, label in ((before, "0.6", "before"), (after, "#d9734e", "after")):
+for design, shade, label in ((before, "0.6", "before"), (after, "#d9734e", "after")):
     straight = designed(design).replace(tensions=[0.0, 0.0], flow_speed=0.0).solve()
     top, bottom = straight.surfaces(s)
-    right.fill_between(1e3 * s, 1e3 * bottom[:, 1], 1e3 * top[:, 1], color=color, alpha=0.25, linewidth=0)
-    right.plot(1e3 * s, 1e3 * straight.cable_path(0, s)[:, 1], color=color, linewidth=1.8, label=f"cable {label}")
+    right.fill_between(1e3 * s, 1e3 * bottom[:, 1], 1e3 * top[:, 1], color=shade, alpha=0.25, linewidth=0)
+    right.plot(1e3 * s, 1e3 * straight.cable_path(0, s)[:, 1], color=shade, linewidth=1.8, label=f"cable {label}")
 right.set_xlabel("s (mm)")
 right.set_ylabel("across the straight arm (mm)")
 right.legend(frameon=False, fontsize=9, loc="upper right")
@@ -237,7 +238,7 @@ right.grid(alpha=0.25)
 plt.show()
 
 # %% [markdown]
-# The design is for one stream. How does it hold in others?
+# The design is for one stream. How does it hold in others? Slower ones are forgiven; from 0.15 m/s on the stream bends the arm the other way.
 
 # %%
 fig, ax = plt.subplots(figsize=(7.6, 4.6), layout="constrained")
@@ -249,5 +250,5 @@ for speed in (0.0, 0.05, 0.1, 0.15, 0.2):
     color = plt.colormaps["viridis"](speed / 0.22)
     shape.plot(ax, color=color, sections=0, cables=False, flow=speed == 0.1, label=f"{speed:g} m/s: {off:.1f} mm off")
 ax.plot(1e3 * end_x, 1e3 * end_y, color="#1b7f5c", linewidth=1.4, linestyle=(0, (5, 2)), zorder=7)
-ax.legend(frameon=False, fontsize=9, loc="upper left")
+ax.legend(frameon=False, fontsize=9, loc="lower left")
 plt.show()

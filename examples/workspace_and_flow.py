@@ -57,7 +57,7 @@ plt.show()
 
 # %%
 ds = hs.sweep(arm, {"flow.speed": "0:0.5:21", "cable[0].tension": "0:1:26"})
-fig, (map_ax, curves) = plt.subplots(1, 2, figsize=(10.0, 4.2), layout="constrained")
+fig, (map_ax, curves) = plt.subplots(1, 2, figsize=(11.4, 4.0), width_ratios=(1.0, 1.5), layout="constrained")
 turned = np.degrees(ds.tip_theta)
 filled = map_ax.contourf(
     ds["cable[0].tension"], ds["flow.speed"], np.ma.masked_invalid(turned.values), levels=20, cmap="cividis"

@@ -175,6 +175,11 @@ def plot_equilibria(equilibria: Equilibria, ax: Axes | None) -> Axes:
         color = _BODY if state == "stable" else "#d8d2c4"
         name = f"{index + 1}: {state or 'not established'}"
         plot_shape(solution, ax, color=color, sections=0, cables=False, flow=index == 0, label=name)
+        tip = solution.tip
+        away = (9.0 * np.cos(tip.theta), 9.0 * np.sin(tip.theta))
+        ax.annotate(
+            str(index + 1), (_MM * tip.x, _MM * tip.y), away, textcoords="offset points", ha="center", va="center", size=9
+        )
     ax.legend(frameon=False, fontsize=9)
     return ax
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Union, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, Union, overload
 
 from hydrostat import _inputs, _native
 from hydrostat.figures import Figure
@@ -225,8 +225,8 @@ class Follower:
         targets : Target, sequence of Target, or (x, y)
             m and rad.
         """
-        tensions, tip, *rest = self._inner.follow(targets_of(targets))
-        return Followed(tensions, Tip(*tip), *rest)
+        tensions, tip, distance, reached, jumped, solves = self._inner.follow(targets_of(targets))
+        return Followed(tensions, Tip(*tip), distance, reached, jumped, solves)
 
 
 def targets_of(targets: Targets) -> list[Target]:
@@ -234,7 +234,7 @@ def targets_of(targets: Targets) -> list[Target]:
     if isinstance(targets, Target):
         return [_checked("targets", targets)]
     try:
-        given = list(targets)
+        given: list[Any] = list(targets)
     except TypeError as error:
         raise ValueError(f"targets: expected targets or (x, y), found {targets!r}") from error
     if given and all(isinstance(target, Target) for target in given):

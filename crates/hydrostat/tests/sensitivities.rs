@@ -77,9 +77,9 @@ fn routed() -> Arm {
     arm.cavity = hydrostat::Cavity::Sealed;
     arm.gravity = Some(Gravity::default());
     arm.flow.speed = 0.1;
-    arm.flow.direction = 1.1;
+    arm.flow.direction = -1.1;
     arm.cables[0].offset = table(&[[0.0, 0.006], [0.1, 0.0045], [0.2, 0.0025], [0.245, 0.0015]]);
-    arm.cables[1].offset = table(&[[0.0, -0.005], [0.12, -0.004], [0.245, -0.001]]);
+    arm.cables[1].offset = table(&[[0.0, -0.005], [0.12, -0.0032], [0.245, -0.001]]);
     arm.cables[1] = Cable { stroke: Some(0.004), tension: 0.0, ..arm.cables[1].clone() };
     arm.reference.mu = 0.5.into();
     arm
