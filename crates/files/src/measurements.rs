@@ -112,12 +112,13 @@ pub fn parse_measurements(
         length: arm_of(file).map_err(|why| fault(0, why))?.length,
         cases: Vec::new(),
     };
+    let mut lines = Lines { text, at: 0, line: 1 };
     for record in reader.records() {
         let record = record.map_err(|error| {
-            let row = error.position().map_or(0, |position| usize::try_from(position.line()).unwrap_or(0));
+            let row = error.position().map_or(0, |position| lines.of(position.byte()));
             fault(row, error.to_string())
         })?;
-        let row = record.position().map_or(0, |position| usize::try_from(position.line()).unwrap_or(0));
+        let row = record.position().map_or(0, |position| lines.of(position.byte()));
         if table.heads.is_empty() {
             table.read_heads(row, &record, fitted)?;
         } else if record.iter().any(|cell| !cell.is_empty()) {
@@ -128,6 +129,36 @@ pub fn parse_measurements(
         return Err(fault(0, "is empty: expected a row of column heads, as `--template` writes it".to_owned()));
     }
     table.cases()
+}
+
+/// The lines of rows, asked for from the first to the last. A row's position is where the one before ends: ends of lines, empty lines and
+/// comments can stand between that and the row itself.
+struct Lines<'a> {
+    text: &'a str,
+    at: usize,
+    line: usize,
+}
+
+impl Lines<'_> {
+    fn of(&mut self, position: u64) -> usize {
+        let bytes = self.text.as_bytes();
+        let position = usize::try_from(position).unwrap_or(usize::MAX);
+        while self.at < bytes.len() {
+            let begins = self.at == 0 || matches!(bytes[self.at - 1], b'\n' | b'\r');
+            let between = matches!(bytes[self.at], b'\n' | b'\r') || (begins && bytes[self.at] == b'#');
+            if self.at >= position && !between {
+                break;
+            }
+            if self.at >= position && bytes[self.at] == b'#' {
+                let rest = &bytes[self.at..];
+                self.at += rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
+                continue;
+            }
+            self.line += usize::from(bytes[self.at] == b'\n');
+            self.at += 1;
+        }
+        self.line
+    }
 }
 
 /// What parts the cells of the first row that is no comment: a comma, a semicolon or a tab.

@@ -138,3 +138,24 @@ fn where_there_is_no_model_steps_are_shorter() {
     assert!(found.refused.iter().all(|refused| refused.why == refused.at[0] && refused.why > 2.0));
     assert_eq!(minimise(&mut model, &[3.0], &[FREE], &Settings::default(), |_, _| ()).unwrap_err(), 3.0);
 }
+
+/// A valley along x y = 1 that falls for ever, with 1/x^2.
+struct Valley;
+
+impl Model for Valley {
+    type Refusal = ();
+
+    fn evaluate(&mut self, x: &[f64]) -> Result<Rows, ()> {
+        let residuals = DVector::from_vec(vec![100.0 * (x[0] * x[1] - 1.0), 0.1 / x[0]]);
+        let jacobian = DMatrix::from_row_slice(2, 2, &[100.0 * x[1], 100.0 * x[0], -0.1 / (x[0] * x[0]), 0.0]);
+        Ok(Rows { residuals, jacobian, measured: 2 })
+    }
+}
+
+#[test]
+fn what_falls_for_ever_is_left_where_nothing_can_be_seen_any_more() {
+    let settings = Settings { rounds: 1000, ..Settings::default() };
+    let found = minimise(&mut Valley, &[1.0, 1.0], &[FREE; 2], &settings, |_, _| ()).unwrap();
+    assert!(found.converged && found.rounds < 200, "{} rounds", found.rounds);
+    assert!((found.x[0] * found.x[1] - 1.0).abs() < 1e-3 && found.cost < 0.004, "{:?} {}", found.x, found.cost);
+}
