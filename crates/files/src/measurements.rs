@@ -61,7 +61,8 @@ pub fn read_measurements(
         return Err(fault(format!("is larger than {} MB", MOST_BYTES >> 20)));
     }
     let text = String::from_utf8(bytes).map_err(|error| {
-        let line = error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count() + 1;
+        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = valid.split(|byte| *byte == b'\n').count();
         MeasurementsError { row: line, ..fault("is not UTF-8; save the table as \"CSV UTF-8\"".to_owned()) }
     })?;
     parse_measurements(&text, &name, file, deviations, fitted)
@@ -307,13 +308,7 @@ impl Table<'_> {
             };
             found.push((Measurement { quantity: measured.at(s), value, sd, row }, head.text.clone()));
         }
-        let index = match self.cases.iter().position(|own| own.name == case) {
-            Some(index) => index,
-            None => {
-                self.cases.push(Building { name: case, settings: Vec::new(), measurements: Vec::new(), row });
-                self.cases.len() - 1
-            }
-        };
+        let index = self.case_of(case, row);
         for (measurement, column) in found {
             if let Some(other) =
                 self.cases[index].measurements.iter().find(|own| same(own.quantity, measurement.quantity, slack))
@@ -326,6 +321,21 @@ impl Table<'_> {
             }
             self.cases[index].measurements.push(measurement);
         }
+        self.take_settings(row, record, index)
+    }
+
+    /// The index of a case, which begins in this row if there is none of that name.
+    fn case_of(&mut self, name: String, row: usize) -> usize {
+        if let Some(index) = self.cases.iter().position(|own| own.name == name) {
+            return index;
+        }
+        self.cases.push(Building { name, settings: Vec::new(), measurements: Vec::new(), row });
+        self.cases.len() - 1
+    }
+
+    /// What a row gives of a case's loads.
+    fn take_settings(&mut self, row: usize, record: &StringRecord, index: usize) -> Result<(), MeasurementsError> {
+        let heads = self.heads.clone();
         for (at, (head, cell)) in heads.iter().zip(record).enumerate() {
             let Column::Setting(_, dimension) = &head.column else { continue };
             if cell.is_empty() {

@@ -36,8 +36,7 @@ pub fn measurements_template(arm: &Arm) -> String {
     out.push('\n');
     for case in ["a", "b"] {
         for quarter in 1..=4 {
-            let loads =
-                |cable: &hydrostat::Cable| cable.stroke.map_or(cable.tension, |stroke| rounded_mm(stroke)).to_string();
+            let loads = |cable: &hydrostat::Cable| cable.stroke.map_or(cable.tension, rounded_mm).to_string();
             let mut cells = vec![case.to_owned()];
             let first = quarter == 1;
             cells.extend(arm.cables.iter().map(|cable| if first { loads(cable) } else { String::new() }));

@@ -285,7 +285,7 @@ fn checked(fitted: &[Fitted]) -> Result<Vec<Fitted>, IdentifyError> {
         let [least, most] = natural_bounds(parameter);
         let bounds = [one.bounds[0].max(least), one.bounds[1].min(most)];
         let range = |expected, found| Err(IdentifyError::Range { parameter, expected, found });
-        if !(bounds[0] < bounds[1]) {
+        if bounds[0] >= bounds[1] || bounds.iter().any(|bound| bound.is_nan()) {
             return range("a lower bound below the upper one, both possible for an arm", one.bounds[0]);
         }
         if !one.start.is_finite() {

@@ -214,7 +214,7 @@ pub fn minimise<M: Model>(
             }
             lambda *= growth;
             growth *= 2.0;
-            if !(lambda <= MOST_LAMBDA) {
+            if lambda > MOST_LAMBDA {
                 // However short, no step makes it less: rounding has what is left, or the model ends here.
                 converged = step.most() <= ROUNDING * small;
                 return Ok(Minimum { x, cost: local.cost, rows, held, rounds, evaluations, converged, refused });

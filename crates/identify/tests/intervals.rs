@@ -121,8 +121,7 @@ fn spoilt(clean: &[Case], random: &mut Random) -> Vec<Case> {
     let mut all: Vec<_> = out.iter_mut().flat_map(|case| &mut case.measurements).collect();
     let mut left = all.len() / 20;
     while left > 0 {
-        let at = (random.uniform() * all.len() as f64) as usize;
-        let one = all.swap_remove(at);
+        let one = all.swap_remove(random.below(all.len()));
         one.value += (0.02 + 0.04 * random.uniform()) * if random.uniform() < 0.5 { -1.0 } else { 1.0 };
         left -= 1;
     }

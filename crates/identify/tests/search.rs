@@ -18,7 +18,7 @@ struct Linear {
 impl Linear {
     fn random(rows: usize, columns: usize, seed: u64) -> Self {
         let mut random = Random::new(seed);
-        let matrix = DMatrix::from_fn(rows, columns, |_, j| 10.0_f64.powi(3 * j as i32 - 3) * random.normal());
+        let matrix = DMatrix::from_fn(rows, columns, |_, j| [1e-3, 1.0, 1e3][j] * random.normal());
         Self { matrix, right: DVector::from_fn(rows, |_, _| random.normal()) }
     }
 

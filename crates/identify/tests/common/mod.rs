@@ -13,14 +13,22 @@ impl Random {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def0)
     }
 
-    /// In [0, 1).
-    pub(crate) fn uniform(&mut self) -> f64 {
+    fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        (z >> 11) as f64 / (1_u64 << 53) as f64
+        z ^ (z >> 31)
+    }
+
+    /// In [0, 1).
+    pub(crate) fn uniform(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A whole number below `count`.
+    pub(crate) fn below(&mut self, count: usize) -> usize {
+        usize::try_from(self.next() % count as u64).unwrap()
     }
 
     /// With mean 0 and standard deviation 1 (Box and Muller 1958).
@@ -33,7 +41,6 @@ impl Random {
 /// The silicone arm of `docs/model.md`, section 10, with its authors' drag.
 pub(crate) fn silicone() -> Arm {
     let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
-    arm.name = "silicone".to_owned();
     arm.density = 1080.0;
     arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
     arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)));
