@@ -1,6 +1,7 @@
 //! Arguments, and the help that teaches them.
 
 mod equilibria;
+mod identify;
 mod path;
 mod plot;
 mod reach;
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 pub(crate) use equilibria::{EquilibriaArgs, Over};
+pub(crate) use identify::IdentifyArgs;
 pub(crate) use path::PathArgs;
 pub(crate) use plot::PlotArgs;
 pub(crate) use reach::ReachArgs;
@@ -39,6 +41,7 @@ Examples:
   hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
                                                         all shapes under the same loads
   hydrostat reach silicone --target 0.182,0.078         the tensions that bring the tip there
+  hydrostat identify silicone data.csv --fit young  parameters from measured shapes
   hydrostat sweep paper --vary flow.speed=0:1:101 --vary cable[0].tension=0:80:101 -o out.parquet
   hydrostat solve my.toml --format csv --stations 101 -o my.csv";
 
@@ -63,6 +66,8 @@ pub(crate) enum Command {
     Equilibria(EquilibriaArgs),
     /// Find the tensions that bring the tip to a place
     Reach(ReachArgs),
+    /// Find parameters of an arm from measured shapes, with intervals and what the data cannot tell
+    Identify(Box<IdentifyArgs>),
     /// Solve an arm over grids, lists or samples of any keys of its file, into Parquet or CSV
     Sweep(SweepArgs),
     /// Draw a sweep: a map over two keys, and where the tip goes

@@ -4,6 +4,7 @@ pub(crate) mod arms;
 pub(crate) mod check;
 pub(crate) mod equilibria;
 pub(crate) mod figures;
+pub(crate) mod identify;
 mod limits;
 pub(crate) mod main_job;
 pub(crate) mod path;

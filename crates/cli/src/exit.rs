@@ -5,7 +5,8 @@ use std::process::ExitCode;
 
 use hydrostat::{PathError, ReachError, SensitivityError, SolveError};
 use hydrostat_figures::source::StudyError;
-use hydrostat_files::{FileError, WriteError};
+use hydrostat_files::{FileError, FitKeyError, MeasurementsError, WriteError};
+use hydrostat_identify::{IdentifyError, Trial};
 use hydrostat_sweep::SweepError;
 
 use crate::command::NoAnswer;
@@ -80,11 +81,30 @@ fn code(error: &anyhow::Error) -> u8 {
         if matches!(cause.downcast_ref(), Some(error) if !matches!(error, SweepError::Threads(_))) {
             return WRONG_REQUEST;
         }
+        if let Some(error) = cause.downcast_ref::<IdentifyError>() {
+            return code_of_fit(error);
+        }
+        if cause.is::<MeasurementsError>() || cause.is::<FitKeyError>() {
+            return WRONG_REQUEST;
+        }
         if cause.is::<WrongRequest>() || cause.is::<FileError>() || cause.is::<WriteError>() {
             return WRONG_REQUEST;
         }
     }
     OTHER
+}
+
+/// Where a search cannot start for want of an equilibrium there is none; all else is wrong with the request.
+fn code_of_fit(error: &IdentifyError) -> u8 {
+    let IdentifyError::Start { source, .. } = error else { return WRONG_REQUEST };
+    match source.as_ref() {
+        Trial::Sensitivity(
+            SensitivityError::Solve(SolveError::NoEquilibrium(_))
+            | SensitivityError::Singular
+            | SensitivityError::Unsettled(_),
+        ) => NO_EQUILIBRIUM,
+        _ => WRONG_REQUEST,
+    }
 }
 
 fn advice(error: &anyhow::Error) -> Option<&'static str> {

@@ -30,6 +30,7 @@ fn main() -> ExitCode {
         Some(Command::Path(args)) => command::path::run(&args),
         Some(Command::Equilibria(args)) => command::equilibria::run(&args),
         Some(Command::Reach(args)) => command::reach::run(&args),
+        Some(Command::Identify(args)) => command::identify::run(&args),
         Some(Command::Sweep(args)) => command::sweep::run(&args),
         Some(Command::Plot(args)) => command::plot::run(&args),
         Some(Command::Figures(args)) => command::figures::run(&args),

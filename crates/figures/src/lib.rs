@@ -6,12 +6,13 @@
 //!
 //! [`arm_figure`] draws one configuration to scale, [`path_shapes_figure`] and [`equilibria_figure`]
 //! several; [`path_figure`] and [`over_figure`] draw a [`Quantity`] over a parameter; [`map_figure`], [`workspace_figure`] and
-//! [`curve_figure`] draw a sweep, and [`lines_figure`] whatever numbers are compared. [`source`] solves what the source's Fig. 1
+//! [`curve_figure`] draw a sweep, [`fit_figure`] a fit beside its data, and [`lines_figure`] whatever numbers are compared. [`source`] solves what the source's Fig. 1
 //! shows, judges what its text says about it, and draws the three parts.
 
 mod arm_figure;
 mod axes;
 mod chart;
+mod fit;
 mod font;
 mod legend;
 mod lines;
@@ -31,6 +32,7 @@ mod tip_labels;
 pub use arm_figure::{arm_figure, reach_figure};
 pub use axes::Scale;
 pub use chart::{Abscissa, over_figure, path_figure};
+pub use fit::{FittedCase, fit_figure};
 pub use lines::{Measure, Panel, lines_figure};
 pub use png::PngError;
 pub use quantity::{Quantity, UnknownQuantity};

@@ -6,11 +6,17 @@
 
 mod arm_file;
 mod axis;
+mod deviations;
 mod digits;
 mod document;
 pub mod equilibria;
 mod error;
+mod fitted;
 mod format;
+pub mod identification;
+mod measured_columns;
+mod measurements;
+mod measurements_template;
 mod output;
 pub mod paths;
 mod quantity;
@@ -26,9 +32,14 @@ mod written;
 
 pub use arm_file::ArmFile;
 pub use axis::{Axis, AxisError, Value, Values};
+pub use deviations::Deviations;
 pub use digits::number;
 pub use equilibria::{EquilibriaDocument, Others, OverDocument, equilibria_csv, over_csv};
 pub use error::{FileError, Place};
+pub use fitted::{FitKey, FitKeyError, PriorKey, fitted};
+pub use identification::{IdentificationDocument, residuals_csv};
+pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
+pub use measurements_template::measurements_template;
 pub use output::{WriteError, write_whole};
 pub use paths::{PathDocument, end_message, path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};

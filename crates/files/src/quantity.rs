@@ -184,12 +184,17 @@ impl Dimension {
         self.units().iter().flat_map(|(names, _)| names.iter().copied())
     }
 
+    /// One spelling of each of its units.
+    pub(crate) fn units_shown(self) -> Vec<&'static str> {
+        self.units().iter().map(|(names, _)| names[0]).collect()
+    }
+
     /// What a value of this dimension may be, in words: the dimension and the accepted units.
     pub fn expected(self) -> String {
         if self == Self::Number {
             return self.name().to_owned();
         }
-        let units: Vec<&str> = self.units().iter().map(|(names, _)| names[0]).collect();
+        let units = self.units_shown();
         format!("{} (a number in {}, or a string with one of {})", self.name(), self.bare_unit(), units.join(", "))
     }
 

@@ -85,9 +85,13 @@ fn routed() -> Arm {
     arm
 }
 
-/// Quadratic drag across the arm.
+/// Quadratic drag, with the stream on one side all along.
 fn dragged() -> Arm {
-    let mut arm = loaded();
+    let mut arm = cone();
+    arm.set_tensions(&[0.05, 0.02]).unwrap();
+    arm.gravity = Some(Gravity::default());
+    arm.flow.speed = 0.1;
+    arm.flow.direction = -1.3;
     arm.flow.law = FlowLaw::QuadraticDrag { cn: 2.5, ct: 0.02 };
     arm
 }

@@ -4,6 +4,7 @@ mod cables;
 mod commands;
 mod equilibria;
 mod formats;
+mod identify;
 mod paths;
 mod reach;
 mod refusals;

@@ -1,0 +1,267 @@
+//! `hydrostat identify`: parameters from measured shapes.
+
+use std::fmt::Write as _;
+
+use hydrostat::{Arm, Parameter};
+use hydrostat_figures::{FittedCase, fit_figure};
+use hydrostat_files::{
+    Deviations, IdentificationDocument, arm_to_toml, fitted, measurements_template, number, read_measurements,
+    residuals_csv,
+};
+use hydrostat_identify::{Case, Fit, FitOptions, Progress as Step, Quantity, fit};
+
+use super::NoAnswer;
+use super::table::table;
+use crate::args::{Format, IdentifyArgs};
+use crate::output;
+use crate::progress::Progress;
+use crate::request;
+
+/// Residuals from which a number is named, in standard deviations.
+const FAR: f64 = 4.0;
+/// So many are named.
+const MOST_NAMED: usize = 10;
+
+pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
+    let file = request::overridden(&args.arm)?;
+    let arm = file.arm()?;
+    let outputs = [("-o", args.output.as_deref()), ("--out", args.out.as_deref()), ("--plot", args.plot.as_deref())];
+    request::check_outputs(&outputs)?;
+    let Some(data) = args.data.as_ref().filter(|_| !args.template) else {
+        return output::put(args.output.as_deref(), &measurements_template(&arm));
+    };
+    let mut deviations = Deviations::default();
+    for text in &args.sd {
+        deviations.add(text).map_err(anyhow::Error::msg)?;
+    }
+    let wanted = fitted(&arm, &args.fit, &args.prior)?;
+    let parameters: Vec<Parameter> = wanted.iter().map(|one| one.parameter).collect();
+    let cases = read_measurements(data, &file, &deviations, &parameters)?;
+    let options = FitOptions {
+        loss: args.loss.into(),
+        rescale: args.rescale,
+        cross_validate: !args.no_cross_validation,
+        tol: args.tol,
+        ..FitOptions::default()
+    };
+    let mut progress = Progress::new();
+    let found = fit(&cases, &wanted, &options, |step| {
+        progress.say(|| match step {
+            Step::Round(round, cost) => format!("step {round}: half the sum of squares {}", number(cost)),
+            Step::LeftOut(done, all) => format!("load case {done} of {all} left out"),
+        });
+    })?;
+    drop(progress);
+
+    let mut best = arm.clone();
+    for one in &found.estimates {
+        one.fitted.parameter.set(&mut best, one.value)?;
+    }
+    if let Some(path) = &args.out {
+        output::put(Some(path), &arm_to_toml(&best))?;
+    }
+    if let Some(path) = &args.plot {
+        output::draw(&figure(&arm, &cases, &found), path)?;
+    }
+    let format = if args.json { Format::Json } else { args.format };
+    let text = match format {
+        Format::Text => report(&arm, &cases, &found),
+        Format::Json => output::line(IdentificationDocument::new(&best, &cases, &found, options.loss).to_json()?),
+        Format::Csv => residuals_csv(&cases, &found),
+    };
+    output::put(args.output.as_deref(), &text)?;
+    if found.converged {
+        return Ok(());
+    }
+    let mut words = format!("the search did not come to its end in {} steps", found.rounds);
+    if let Some(one) = found.no_answer.first() {
+        let _ = write!(
+            words,
+            "; load case {} had no answer at {} trial values: {}",
+            cases[one.case].name, one.trials, one.why
+        );
+    }
+    Err(NoAnswer(words).into())
+}
+
+fn figure(arm: &Arm, cases: &[Case], found: &Fit) -> hydrostat_figures::Scene {
+    let shown: Vec<FittedCase<'_>> = found
+        .shapes
+        .iter()
+        .map(|(case, shape)| {
+            let own = || found.residuals.iter().filter(|one| one.case == *case);
+            let at = |s: f64, y: bool| {
+                own().find_map(|one| match one.measurement.quantity {
+                    Quantity::X(place) if !y && place == s => Some(one.measurement.value),
+                    Quantity::Y(place) if y && place == s => Some(one.measurement.value),
+                    _ => None,
+                })
+            };
+            // A marker with one coordinate only has no place on the page.
+            let markers = own().filter_map(|one| match one.measurement.quantity {
+                Quantity::X(s) => Some([at(s, false)?, at(s, true)?]),
+                _ => None,
+            });
+            FittedCase {
+                name: cases[*case].name.clone(),
+                shape,
+                markers: markers.collect(),
+                residuals: own().map(|one| one.standardised).collect(),
+            }
+        })
+        .collect();
+    let names: Vec<String> = found.estimates.iter().map(|one| one.fitted.parameter.to_string()).collect();
+    fit_figure(&format!("{}: fitted to {} load cases", arm.name, shown.len()), &shown, &names, &found.correlation)
+}
+
+/// A parameter's value as a user reads it: angles in degrees.
+fn shown(parameter: Parameter, value: f64) -> String {
+    number(if parameter.unit() == "rad" { value.to_degrees() } else { value })
+}
+
+fn named(parameter: Parameter) -> String {
+    match parameter.unit() {
+        "" => parameter.to_string(),
+        "rad" => format!("{parameter} (deg)"),
+        unit => format!("{parameter} ({unit})"),
+    }
+}
+
+fn report(arm: &Arm, cases: &[Case], found: &Fit) -> String {
+    let count = found.residuals.len();
+    let mut out = format!(
+        "{}: {} load cases, {count} measured numbers, {} steps\n\n",
+        arm.name,
+        found.shapes.len(),
+        found.rounds
+    );
+    out.push_str(&estimates(found));
+    out.push('\n');
+    for sentence in found.verdict() {
+        let _ = writeln!(out, "verdict: {sentence}");
+    }
+    if let Some(misfit) = found.misfit() {
+        let _ = writeln!(
+            out,
+            "misfit: {misfit} (chi-square {} for {} degrees of freedom)",
+            number(found.chi_square),
+            found.freedom
+        );
+    }
+    if found.spread != 1.0 {
+        let _ = writeln!(out, "intervals: with standard deviations {} times those given", number(found.spread));
+    }
+    out.push_str(&together(found));
+    out.push_str(&predictions(cases, found));
+    out.push_str(&far_out(cases, found));
+    for one in &found.no_answer {
+        let at: Vec<String> = found
+            .estimates
+            .iter()
+            .zip(&one.at)
+            .map(|(own, value)| format!("{} {}", named(own.fitted.parameter), shown(own.fitted.parameter, *value)))
+            .collect();
+        let _ = writeln!(
+            out,
+            "\nload case {} had no answer at {} of {} trials, the last at {}: {}",
+            cases[one.case].name,
+            one.trials,
+            found.evaluations,
+            at.join(", "),
+            one.why
+        );
+    }
+    out
+}
+
+fn estimates(found: &Fit) -> String {
+    let head = ["key", "start", "estimate", "sd", "95 % from", "to", ""].map(str::to_owned).to_vec();
+    let mut rows = vec![head];
+    for one in &found.estimates {
+        let parameter = one.fitted.parameter;
+        let shown = |value: f64| if value.is_finite() { shown(parameter, value) } else { "unknown".to_owned() };
+        let side = |side: usize| if side == 0 { "lower" } else { "upper" };
+        let note = match (one.held, one.fitted.prior) {
+            (Some(held), _) => format!("held by its {} bound", side(held)),
+            (None, Some(prior)) => format!("prior {} ± {}", shown(prior.mean), shown(prior.sd)),
+            (None, None) => String::new(),
+        };
+        let [from, to] = match one.interval {
+            Some(ends) => ends.map(shown),
+            None => [String::from("-"), String::from("-")],
+        };
+        let sd = one.sd.map_or_else(|| "-".to_owned(), shown);
+        rows.push(vec![named(parameter), shown(one.fitted.start), shown(one.value), sd, from, to, note]);
+    }
+    table(&rows, 1)
+}
+
+/// Correlations and singular values.
+fn together(found: &Fit) -> String {
+    if found.estimates.len() < 2 {
+        return String::new();
+    }
+    let names: Vec<String> = found.estimates.iter().map(|one| one.fitted.parameter.to_string()).collect();
+    let mut out = "\ncorrelation\n".to_owned();
+    let mut rows = Vec::new();
+    for (i, name) in names.iter().enumerate() {
+        let row = found.correlation[i].iter().take(i + 1);
+        let mut cells = vec![name.clone()];
+        cells.extend(row.map(|value| if value.is_finite() { format!("{value:.3}") } else { "?".to_owned() }));
+        rows.push(cells);
+    }
+    out.push_str(&table(&rows, 0));
+    out.push_str("\nsingular value: standard deviations that all numbers move by a unit of the combination below (parameters over their scales)\n");
+    let mut head = vec!["value".to_owned()];
+    head.extend(names);
+    let mut rows = vec![head];
+    for direction in found.directions.iter().rev() {
+        let mut cells = vec![number(direction.singular_value)];
+        cells.extend(direction.weights.iter().map(|w| format!("{w:.3}")));
+        rows.push(cells);
+    }
+    out.push_str(&table(&rows, 0));
+    out
+}
+
+fn predictions(cases: &[Case], found: &Fit) -> String {
+    if found.left_out.is_empty() {
+        return String::new();
+    }
+    let mut out =
+        "\nresiduals of each load case, root mean square in sd: in the fit, and as the other cases predict it\n"
+            .to_owned();
+    let mut head = ["case", "fit", "predicted"].map(str::to_owned).to_vec();
+    head.extend(found.estimates.iter().map(|one| format!("{} moves (sd)", one.fitted.parameter)));
+    let mut rows = vec![head];
+    for one in &found.left_out {
+        let mut row = vec![cases[one.case].name.clone(), format!("{:.2}", one.within)];
+        match &one.predicted {
+            Ok(predicted) => row.push(format!("{predicted:.2}")),
+            Err(why) => row.push(format!("none: {why}")),
+        }
+        row.extend(one.shifts.iter().map(|shift| format!("{shift:.2}")));
+        rows.push(row);
+    }
+    out.push_str(&table(&rows, 0));
+    out
+}
+
+/// Numbers that fit badly, with their rows.
+fn far_out(cases: &[Case], found: &Fit) -> String {
+    let mut far: Vec<_> = found.residuals.iter().filter(|one| one.standardised.abs() > FAR).collect();
+    far.sort_by(|a, b| b.standardised.abs().total_cmp(&a.standardised.abs()));
+    let mut out = String::new();
+    if !far.is_empty() {
+        let _ = writeln!(out, "\n{} numbers are more than {FAR} sd off", far.len());
+    }
+    for one in far.iter().take(MOST_NAMED) {
+        let measurement = one.measurement;
+        let _ = writeln!(
+            out,
+            "  row {}, load case {}, {}: {:.1} sd",
+            measurement.row, cases[one.case].name, measurement.quantity, one.standardised
+        );
+    }
+    out
+}

@@ -1,0 +1,180 @@
+//! A fit beside what was measured: shapes with markers, residuals, and how estimates hang together.
+
+use hydrostat::Configuration;
+
+use crate::arm_figure::fitting;
+use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE, TICK_SIZE};
+use crate::chart::padded;
+use crate::font::{CAP_HEIGHT, Label};
+use crate::legend::{Legend, MARGIN, Mark, Sample, WIDTH, clipped};
+use crate::outline::{Outline, Style, bounds};
+use crate::palette::{Color, GREY, INK, series};
+use crate::placement::Rect;
+use crate::scene::{Anchor, Scene, Stroke};
+
+const TITLE_SIZE: f64 = 10.0;
+const MAX_HEIGHT: f64 = 320.0;
+const RESIDUALS: f64 = 110.0;
+const GAP: f64 = 16.0;
+/// The side of a correlation's square, at most.
+const CELL: f64 = 34.0;
+/// Names in the legend; more would hide the data.
+const MOST_NAMES: usize = 12;
+
+/// One load case of a fit.
+#[derive(Debug, Clone)]
+pub struct FittedCase<'a> {
+    /// For people.
+    pub name: String,
+    /// The fitted arm under the loads of the case.
+    pub shape: &'a Configuration,
+    /// Measured places, m.
+    pub markers: Vec<[f64; 2]>,
+    /// Residuals in standard deviations, in the order of the data.
+    pub residuals: Vec<f64>,
+}
+
+/// Fitted shapes to scale with the measured places, every residual in standard deviations, and, of two parameters or more, the correlations
+/// of the estimates. `names` are the parameters, `correlation` has a row for each.
+///
+/// ```
+/// use hydrostat_figures::{FittedCase, fit_figure};
+///
+/// let shape = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
+/// let case = FittedCase { name: "a".to_owned(), shape: &shape, markers: vec![[0.1, 0.001]], residuals: vec![0.2, -1.1] };
+/// let names = ["young", "density"].map(str::to_owned);
+/// let figure = fit_figure("a cone", &[case], &names, &[vec![1.0, -0.5], vec![-0.5, 1.0]]);
+/// assert!(figure.texts().any(|text| text == "\u{2212}0.50"));
+/// ```
+pub fn fit_figure(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &[Vec<f64>]) -> Scene {
+    let outlines: Vec<Outline> = cases.iter().map(|case| Outline::new(case.shape, 0)).collect();
+    let markers = || cases.iter().flat_map(|case| &case.markers).map(|[x, y]| [1e3 * x, 1e3 * y]);
+    let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).chain(markers()).collect();
+    let mut legend = Legend::default();
+    for (index, case) in cases.iter().enumerate().take(MOST_NAMES) {
+        legend.add(Sample::Mark(Mark::Filled(series(index))), Label::plain(clipped(&case.name)));
+    }
+    legend.add(Sample::Mark(Mark::Cross(INK)), Label::plain("measured"));
+    let below = MARGIN + CAP_HEIGHT * TITLE_SIZE + 8.0;
+    let [x, y] = bounds(&all);
+    let pad = 0.05 * (x[1] - x[0]).max(y[1] - y[0]);
+    let grown = |range: [f64; 2]| [range[0] - pad, range[1] + pad];
+    let top = below + legend.height() + 6.0;
+    let shapes = Axes::equal(LEFT, top, WIDTH - LEFT - MARGIN, [120.0, MAX_HEIGHT], grown(x), grown(y));
+    let second = shapes.frame.bottom + BELOW + GAP;
+    let third = second + RESIDUALS + BELOW + GAP;
+    let cell = correlation_cell(names.len());
+    let height = if names.len() < 2 { third - GAP } else { third + cell * names.len() as f64 + TEXT_SIZE + 8.0 };
+
+    let mut scene = Scene::new(WIDTH, height + MARGIN, format!("{title}: fitted shapes, residuals and correlations"));
+    let label = Label::plain(title);
+    scene.text(&label, [LEFT, MARGIN + CAP_HEIGHT * TITLE_SIZE], Anchor::Start, fitting(&label, TITLE_SIZE));
+    legend.draw(&mut scene, below);
+    draw_shapes(&mut scene, &shapes, cases, &outlines);
+    draw_residuals(&mut scene, second, cases);
+    if names.len() > 1 {
+        draw_correlation(&mut scene, third, cell, names, correlation);
+    }
+    scene
+}
+
+fn draw_shapes(scene: &mut Scene, axes: &Axes, cases: &[FittedCase<'_>], outlines: &[Outline]) {
+    axes.draw(scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
+    for (index, outline) in outlines.iter().enumerate() {
+        let color = series(index);
+        let style = Style {
+            fill: color.with_opacity(0.12),
+            surface: Stroke::solid(color.with_opacity(0.5), 0.6),
+            sections: Stroke::solid(color.with_opacity(0.0), 0.1),
+            centreline: Stroke::solid(color, 1.0),
+            cables: Vec::new(),
+        };
+        outline.draw(scene, axes, &style);
+    }
+    for (index, case) in cases.iter().enumerate() {
+        for [x, y] in &case.markers {
+            Mark::Cross(series(index).towards(INK, 0.4)).draw(scene, axes.at([1e3 * x, 1e3 * y]));
+        }
+    }
+}
+
+/// Every residual in a row, case by case, with lines at two standard deviations.
+fn draw_residuals(scene: &mut Scene, top: f64, cases: &[FittedCase<'_>]) {
+    const TWO: f64 = 2.0;
+    let frame = Rect { left: LEFT, top, right: WIDTH - MARGIN, bottom: top + RESIDUALS };
+    let count: usize = cases.iter().map(|case| case.residuals.len()).sum();
+    let most = cases.iter().flat_map(|case| &case.residuals).fold(TWO, |m, r| m.max(r.abs()));
+    let across = [0.0, count as f64 + 1.0];
+    let axes = Axes::new(frame, across, padded([-most, most], 0.08));
+    for level in [-TWO, 0.0, TWO] {
+        let stroke = if level == 0.0 { Stroke::solid(GREY, 0.5) } else { Stroke::dashed(GREY, 0.5, [3.0, 2.0]) };
+        scene.line(&axes.all(&[[across[0], level], [across[1], level]]), stroke);
+    }
+    let mut number = 0.0;
+    for (index, case) in cases.iter().enumerate() {
+        for residual in &case.residuals {
+            number += 1.0;
+            Mark::Filled(series(index)).draw(scene, axes.at([number, *residual]));
+        }
+    }
+    axes.draw(scene, &Label::plain("measured number"), &Label::plain("fitted less measured (sd)"));
+}
+
+/// What room there is for each square beside the names.
+fn correlation_cell(count: usize) -> f64 {
+    (0.5 * (WIDTH - LEFT - MARGIN) / count.max(1) as f64).min(CELL)
+}
+
+fn draw_correlation(scene: &mut Scene, top: f64, cell: f64, names: &[String], correlation: &[Vec<f64>]) {
+    const POSITIVE: Color = series_of(0);
+    const NEGATIVE: Color = series_of(1);
+    const PAPER: Color = Color { rgb: [255, 255, 255], opacity: 1.0 };
+    scene.text(&Label::plain("correlation of the estimates"), [LEFT, top], Anchor::Start, TEXT_SIZE);
+    let top = top + 6.0;
+    for (i, (name, row)) in names.iter().zip(correlation).enumerate() {
+        let y = top + cell * i as f64;
+        let middle = y + 0.5 * cell + 0.5 * CAP_HEIGHT * TICK_SIZE;
+        for (j, value) in row.iter().enumerate().take(names.len()) {
+            let x = LEFT + cell * j as f64;
+            let corners = [[x, y], [x + cell, y], [x + cell, y + cell], [x, y + cell]];
+            let full = if *value < 0.0 { NEGATIVE } else { POSITIVE };
+            let shade = if value.is_finite() { PAPER.towards(full, value.abs()) } else { GREY };
+            scene.area(&corners, Some(shade), Some(Stroke::solid(PAPER, 0.8)));
+            let text = if value.is_finite() { format!("{value:.2}").replace('-', "\u{2212}") } else { "?".to_owned() };
+            if cell >= 20.0 {
+                scene.text(&Label::plain(text), [x + 0.5 * cell, middle], Anchor::Middle, TICK_SIZE);
+            }
+        }
+        let label = Label::plain(clipped(name));
+        scene.text(&label, [LEFT + cell * names.len() as f64 + 6.0, middle], Anchor::Start, TICK_SIZE);
+    }
+}
+
+const fn series_of(index: usize) -> Color {
+    crate::palette::SERIES[index]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_correlations_and_many_cases_can_be_drawn() {
+        let shape = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
+        let case = |k: usize| FittedCase {
+            name: format!("case {k}"),
+            shape: &shape,
+            markers: Vec::new(),
+            residuals: vec![9.0],
+        };
+        let cases: Vec<_> = (0..30).map(case).collect();
+        let names = ["a", "b"].map(str::to_owned);
+        let figure = fit_figure("t", &cases, &names, &[vec![1.0, f64::NAN], vec![f64::NAN, 1.0]]);
+        assert!(figure.texts().any(|text| text == "?"));
+        assert!(!figure.texts().any(|text| text == "case 20"));
+        let svg = figure.svg();
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        let one = fit_figure("t", &cases[..1], &names[..1], &[vec![1.0]]);
+        assert!(one.size()[1] < figure.size()[1]);
+    }
+}

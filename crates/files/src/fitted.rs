@@ -1,0 +1,220 @@
+//! What is to be fitted: `KEY`, `KEY=START`, `KEY=START:LOWER:UPPER`, and what was known of it, `KEY=MEAN±SD`.
+
+use std::str::FromStr;
+
+use hydrostat::parameter::{Unfit, names};
+use hydrostat::{Arm, Parameter};
+use hydrostat_identify::{Fitted, Prior};
+
+use crate::error::shortened;
+use crate::format::{dimension_at, is_key, nearest};
+use crate::quantity::{Dimension, WrongValue};
+use crate::varied::hint;
+
+/// A parameter to be fitted, as a user gives it: values in SI units (rad for angles).
+///
+/// ```
+/// use hydrostat::Parameter;
+/// use hydrostat_files::FitKey;
+///
+/// let key: FitKey = "young=100 kPa:50 kPa:200 kPa".parse().unwrap();
+/// assert_eq!((key.parameter, key.start), (Parameter::Young, Some(100e3)));
+/// assert_eq!(key.bounds, [Some(50e3), Some(200e3)]);
+/// assert!("arm.length".parse::<FitKey>().unwrap_err().to_string().contains("no derivative"));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FitKey {
+    /// Which.
+    pub parameter: Parameter,
+    /// Where to start, in place of the arm's value.
+    pub start: Option<f64>,
+    /// The bounds that are given.
+    pub bounds: [Option<f64>; 2],
+}
+
+/// What was known of a parameter, as a user gives it.
+///
+/// ```
+/// let key: hydrostat_files::PriorKey = "flow.cn=2.5±0.5".parse().unwrap();
+/// assert_eq!((key.prior.mean, key.prior.sd), (2.5, 0.5));
+/// let key: hydrostat_files::PriorKey = "material.young=110 +- 5 kPa".parse().unwrap();
+/// assert_eq!((key.prior.mean, key.prior.sd), (110e3, 5e3));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PriorKey {
+    /// Of which.
+    pub parameter: Parameter,
+    /// Its distribution.
+    pub prior: Prior,
+}
+
+/// Why a text names nothing that can be fitted.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FitKeyError {
+    /// Not of the form.
+    #[error("{}: expected {expected}", shortened(.text))]
+    Form {
+        /// What was given.
+        text: String,
+        /// The form.
+        expected: &'static str,
+    },
+    /// A key of the arm file without a derivative.
+    #[error("{key} cannot be fitted: shapes have no derivative by it here; those that can are {}", names().join(", "))]
+    NoDerivative {
+        /// The key.
+        key: String,
+    },
+    /// No key at all.
+    #[error("{} is no key of the arm file{}; those that can be fitted are {}", shortened(.key), hint(.suggestion.as_ref()), names().join(", "))]
+    Unknown {
+        /// What was given.
+        key: String,
+        /// The key that may have been meant.
+        suggestion: Option<String>,
+    },
+    /// A value that is none of this quantity.
+    #[error(transparent)]
+    Value(#[from] WrongValue),
+    /// The arm does not have it.
+    #[error(transparent)]
+    Unfit(#[from] Unfit),
+    /// A prior of something that is not fitted.
+    #[error("{0} has a prior and is not fitted; add it to --fit")]
+    NotFitted(Parameter),
+}
+
+/// The parameter of a key, or of its last part where that says enough: `c1` for `material.c1`.
+fn parameter(key: &str) -> Result<Parameter, FitKeyError> {
+    if let Ok(parameter) = key.parse() {
+        return Ok(parameter);
+    }
+    let known = names();
+    let ending = format!(".{key}");
+    let mut ends = known.iter().filter(|name| name.ends_with(&ending) && !name.contains('['));
+    if let (Some(one), None) = (ends.next(), ends.next())
+        && let Ok(parameter) = one.parse()
+    {
+        return Ok(parameter);
+    }
+    if is_key(key) && key.contains('.') {
+        return Err(FitKeyError::NoDerivative { key: key.to_owned() });
+    }
+    let suggestion = nearest(key, known.iter().map(String::as_str)).map(str::to_owned);
+    Err(FitKeyError::Unknown { key: key.to_owned(), suggestion })
+}
+
+fn value(parameter: Parameter, text: &str) -> Result<f64, WrongValue> {
+    let key = parameter.to_string();
+    let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
+    dimension.value_of(&key, text).map(|(value, _)| value)
+}
+
+impl FromStr for FitKey {
+    type Err = FitKeyError;
+
+    fn from_str(text: &str) -> Result<Self, FitKeyError> {
+        let expected =
+            "KEY, KEY=START, KEY=START:LOWER:UPPER or KEY:LOWER:UPPER, such as young=\"100 kPa:50 kPa:200 kPa\"";
+        let form = || FitKeyError::Form { text: text.to_owned(), expected };
+        let mut parts = text.split(':');
+        let head = parts.next().unwrap_or_default();
+        let (key, start) = match head.split_once('=') {
+            Some((key, start)) => (key, Some(start)),
+            None => (head, None),
+        };
+        let parameter = parameter(key.trim())?;
+        let start = start.map(|start| value(parameter, start)).transpose()?;
+        let bounds: Vec<&str> = parts.collect();
+        let bound = |text: &str| {
+            let given = !text.trim().is_empty();
+            given.then(|| value(parameter, text)).transpose()
+        };
+        let bounds = match bounds.as_slice() {
+            [] => [None, None],
+            [lower, upper] => [bound(lower)?, bound(upper)?],
+            _ => return Err(form()),
+        };
+        Ok(Self { parameter, start, bounds })
+    }
+}
+
+impl FromStr for PriorKey {
+    type Err = FitKeyError;
+
+    fn from_str(text: &str) -> Result<Self, FitKeyError> {
+        let expected = "KEY=MEAN±SD, such as young=\"110±5 kPa\"; +- may stand for ±";
+        let form = || FitKeyError::Form { text: text.to_owned(), expected };
+        let (key, rest) = text.split_once('=').ok_or_else(form)?;
+        let parameter = parameter(key.trim())?;
+        let ends = ["±", "+/-", "+-"].iter().find_map(|sign| rest.split_once(sign));
+        let (mean, sd) = ends.ok_or_else(form)?;
+        // "110±5 kPa": the unit is that of both.
+        let (mean, sd) = (mean.trim().trim_matches('"'), sd.trim().trim_matches('"'));
+        let unit = sd.trim_start_matches(|c: char| c.is_ascii_digit() || ".eE+-".contains(c)).trim();
+        let with_unit = if mean.parse::<f64>().is_ok() { format!("{mean} {unit}") } else { mean.to_owned() };
+        Ok(Self { parameter, prior: Prior { mean: value(parameter, with_unit.trim())?, sd: value(parameter, sd)? } })
+    }
+}
+
+/// What is to be fitted of `arm`.
+///
+/// # Errors
+/// [`FitKeyError::Unfit`] for what the arm does not have, [`FitKeyError::NotFitted`] for a prior too many.
+pub fn fitted(arm: &Arm, keys: &[FitKey], priors: &[PriorKey]) -> Result<Vec<Fitted>, FitKeyError> {
+    let mut out = Vec::new();
+    for key in keys {
+        let mut one = Fitted::new(key.parameter, arm)?;
+        one.start = key.start.unwrap_or(one.start);
+        for (own, given) in one.bounds.iter_mut().zip(key.bounds) {
+            *own = given.unwrap_or(*own);
+        }
+        one.prior = priors.iter().find(|prior| prior.parameter == key.parameter).map(|prior| prior.prior);
+        out.push(one);
+    }
+    match priors.iter().find(|prior| !keys.iter().any(|key| key.parameter == prior.parameter)) {
+        Some(prior) => Err(FitKeyError::NotFitted(prior.parameter)),
+        None => Ok(out),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(text: &str) -> String {
+        text.parse::<FitKey>().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn keys_take_starts_and_bounds() {
+        let read = |text: &str| text.parse::<FitKey>().unwrap();
+        let key = |parameter, start, bounds| FitKey { parameter, start, bounds };
+        for (text, want) in [
+            ("flow.cn", key(Parameter::DragNormal, None, [None, None])),
+            ("cn=2", key(Parameter::DragNormal, Some(2.0), [None, None])),
+            ("c3=150:100:200 N", key(Parameter::Coefficient(2), Some(150.0), [Some(100.0), Some(200.0)])),
+            ("c1 = 1 MPa : : 2 MPa", key(Parameter::Coefficient(0), Some(1e6), [None, Some(2e6)])),
+            ("arm.density:900:1200", key(Parameter::Density, None, [Some(900.0), Some(1200.0)])),
+            ("cable[1].tension=20 mN", key(Parameter::Tension(1), Some(0.02), [None, None])),
+            ("flow.direction=180", key(Parameter::FlowDirection, Some(std::f64::consts::PI), [None, None])),
+        ] {
+            assert_eq!(read(text), want, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_fitted_is_said_with_what_can() {
+        for key in ["arm.length", "arm.radius.base", "model.volume", "cable[0].offset"] {
+            let message = error(key);
+            assert!(message.starts_with(&format!("{key} cannot be fitted")), "{message}");
+            assert!(message.contains("cable[0].tension") && message.contains("flow.ct"), "{message}");
+        }
+        assert!(error("materiel.young").contains("did you mean `material.young`?"));
+        // Of arm and of water.
+        assert!(error("density").contains("is no key"));
+        assert!(error("young=3 N").contains("a pressure"));
+        assert!(error("young=1:2").contains("expected KEY"));
+        assert!("cn=2".parse::<PriorKey>().is_err());
+    }
+}

@@ -1,0 +1,198 @@
+//! What an identification found, as JSON and CSV.
+
+use hydrostat::Arm;
+use hydrostat_identify::{Case, Fit, Loss};
+use serde::Serialize;
+
+use crate::results::{SCHEMA, cell, row};
+use crate::written::Inputs;
+
+#[derive(Debug, Clone, Serialize)]
+struct EstimateOut {
+    key: String,
+    unit: &'static str,
+    start: f64,
+    estimate: f64,
+    sd: Option<f64>,
+    interval: Option<[Option<f64>; 2]>,
+    bounds: [Option<f64>; 2],
+    held_by: Option<&'static str>,
+    prior: Option<PriorOut>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct PriorOut {
+    mean: f64,
+    sd: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct DirectionOut {
+    singular_value: f64,
+    weights: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct ResidualOut {
+    case: String,
+    quantity: String,
+    s: Option<f64>,
+    unit: &'static str,
+    measured: f64,
+    sd: f64,
+    fitted: f64,
+    residual: f64,
+    weight: f64,
+    row: Option<usize>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct LeftOutOut {
+    case: String,
+    within: f64,
+    predicted: Option<f64>,
+    message: Option<String>,
+    shifts: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct NoAnswerOut {
+    case: String,
+    trials: usize,
+    at: Vec<f64>,
+    message: String,
+}
+
+/// The document of a fit. Lengths in m, angles in rad; what is not known is null.
+#[derive(Debug, Clone, Serialize)]
+pub struct IdentificationDocument {
+    schema: u32,
+    version: &'static str,
+    converged: bool,
+    loss: &'static str,
+    parameters: Vec<EstimateOut>,
+    covariance: Vec<Vec<f64>>,
+    correlation: Vec<Vec<f64>>,
+    scales: Vec<f64>,
+    directions: Vec<DirectionOut>,
+    verdict: Vec<String>,
+    chi_square: f64,
+    freedom: i64,
+    spread: f64,
+    misfit: Option<String>,
+    residuals: Vec<ResidualOut>,
+    cross_validation: Vec<LeftOutOut>,
+    no_answer: Vec<NoAnswerOut>,
+    rounds: usize,
+    evaluations: usize,
+    inputs: Inputs,
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+impl IdentificationDocument {
+    /// Of a fit to `cases`; `arm` is the fitted one, with the loads of its file.
+    pub fn new(arm: &Arm, cases: &[Case], fit: &Fit, loss: Loss) -> Self {
+        let name = |case: usize| cases.get(case).map(|case| case.name.clone()).unwrap_or_default();
+        let parameters = fit.estimates.iter().map(|one| EstimateOut {
+            key: one.fitted.parameter.to_string(),
+            unit: one.fitted.parameter.unit(),
+            start: one.fitted.start,
+            estimate: one.value,
+            sd: one.sd.and_then(finite),
+            interval: one.interval.map(|ends| ends.map(finite)),
+            bounds: one.fitted.bounds.map(finite),
+            held_by: one.held.map(|side| if side == 0 { "lower" } else { "upper" }),
+            prior: one.fitted.prior.map(|prior| PriorOut { mean: prior.mean, sd: prior.sd }),
+        });
+        let directions = fit.directions.iter().map(|direction| DirectionOut {
+            singular_value: direction.singular_value,
+            weights: direction.weights.clone(),
+        });
+        let residuals = fit.residuals.iter().map(|one| ResidualOut {
+            case: name(one.case),
+            quantity: one.measurement.quantity.name(),
+            s: one.measurement.quantity.place(),
+            unit: one.measurement.quantity.unit(),
+            measured: one.measurement.value,
+            sd: one.measurement.sd,
+            fitted: one.fitted,
+            residual: one.standardised,
+            weight: one.weight,
+            row: (one.measurement.row > 0).then_some(one.measurement.row),
+        });
+        let left_out = fit.left_out.iter().map(|one| LeftOutOut {
+            case: name(one.case),
+            within: one.within,
+            predicted: one.predicted.as_ref().ok().copied(),
+            message: one.predicted.as_ref().err().map(ToString::to_string),
+            shifts: one.shifts.clone(),
+        });
+        let no_answer = fit.no_answer.iter().map(|one| NoAnswerOut {
+            case: name(one.case),
+            trials: one.trials,
+            at: one.at.clone(),
+            message: one.why.to_string(),
+        });
+        Self {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            converged: fit.converged,
+            loss: loss.name(),
+            parameters: parameters.collect(),
+            covariance: fit.covariance.clone(),
+            correlation: fit.correlation.clone(),
+            scales: fit.estimates.iter().map(|one| one.scale.size).collect(),
+            directions: directions.collect(),
+            verdict: fit.verdict(),
+            chi_square: fit.chi_square,
+            freedom: fit.freedom,
+            spread: fit.spread,
+            misfit: fit.misfit(),
+            residuals: residuals.collect(),
+            cross_validation: left_out.collect(),
+            no_answer: no_answer.collect(),
+            rounds: fit.rounds,
+            evaluations: fit.evaluations,
+            inputs: Inputs::new(arm),
+        }
+    }
+
+    /// The document, one line.
+    ///
+    /// # Errors
+    /// None in practice: the document has no maps with keys that are not strings.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string(self)
+    }
+}
+
+/// Every measured number beside the fit, one row each.
+pub fn residuals_csv(cases: &[Case], fit: &Fit) -> String {
+    let names = ["case", "quantity", "s_m", "unit", "measured", "sd", "fitted", "residual_sd", "weight", "row"];
+    let mut out = row(&names.map(str::to_owned));
+    for one in &fit.residuals {
+        let quantity = one.measurement.quantity;
+        let case = cases.get(one.case).map(|case| case.name.as_str()).unwrap_or_default();
+        out.push_str(&row(&[
+            quoted(case),
+            quantity.name(),
+            quantity.place().map_or_else(String::new, cell),
+            quantity.unit().to_owned(),
+            cell(one.measurement.value),
+            cell(one.measurement.sd),
+            cell(one.fitted),
+            cell(one.standardised),
+            cell(one.weight),
+            if one.measurement.row == 0 { String::new() } else { one.measurement.row.to_string() },
+        ]));
+    }
+    out
+}
+
+/// A name as a cell.
+fn quoted(name: &str) -> String {
+    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+}

@@ -1,0 +1,398 @@
+//! Measured shapes as CSV: a row for each place of each load case. `docs/identification.md` has the format.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+use hydrostat::{Arm, Parameter};
+use hydrostat_identify::{Case, Measurement, Quantity};
+
+use crate::arm_file::ArmFile;
+use crate::deviations::Deviations;
+use crate::error::shortened;
+use crate::measured_columns::{Column, Head, Measured, head};
+use crate::quantity::Dimension;
+
+/// The largest file that is read.
+const MOST_BYTES: u64 = 64 << 20;
+/// Places (over L) that are this near are the same.
+const SAME: f64 = 1e-9;
+
+/// What is wrong with a file of measurements.
+#[derive(Debug, thiserror::Error)]
+#[error("{path}{}{}: {why}", row_words(*.row), column_words(.column.as_ref()))]
+pub struct MeasurementsError {
+    /// The file.
+    pub path: String,
+    /// The line, from 1 as a spreadsheet counts; 0 where it is none.
+    pub row: usize,
+    /// The head of the column.
+    pub column: Option<String>,
+    /// What was expected and found.
+    pub why: String,
+}
+
+fn row_words(row: usize) -> String {
+    if row == 0 { String::new() } else { format!(", row {row}") }
+}
+
+fn column_words(column: Option<&String>) -> String {
+    column.map_or_else(String::new, |column| format!(", column \"{}\"", shortened(column)))
+}
+
+/// Load cases of the arm in `file`, from a CSV file at `path`; `fitted` are the parameters that no case may give.
+///
+/// # Errors
+/// [`MeasurementsError`] with row, column and reason.
+pub fn read_measurements(
+    path: &Path,
+    file: &ArmFile,
+    deviations: &Deviations,
+    fitted: &[Parameter],
+) -> Result<Vec<Case>, MeasurementsError> {
+    let name = path.display().to_string();
+    let fault = |why: String| MeasurementsError { path: name.clone(), row: 0, column: None, why };
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes))
+        .map_err(|error| fault(format!("cannot be read: {error}")))?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(fault(format!("is larger than {} MB", MOST_BYTES >> 20)));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = valid.split(|byte| *byte == b'\n').count();
+        MeasurementsError { row: line, ..fault("is not UTF-8; save the table as \"CSV UTF-8\"".to_owned()) }
+    })?;
+    parse_measurements(&text, &name, file, deviations, fitted)
+}
+
+/// [`read_measurements`] of a text that came from `path`, which messages name.
+///
+/// ```
+/// use hydrostat_files::{ArmFile, Deviations, parse_measurements, shipped};
+///
+/// let file = ArmFile::parse(shipped::get("silicone").unwrap(), "silicone").unwrap();
+/// let text = "case,cable[0].tension [N],s [mm],x [mm],y [mm],sd position [mm]\n\
+///             a,0.1,245,230.1,62.3,1\n\
+///             a,,120,118.2,,1\n";
+/// let cases = parse_measurements(text, "data.csv", &file, &Deviations::default(), &[]).unwrap();
+/// assert_eq!((cases.len(), cases[0].measurements.len(), cases[0].arm.cables[0].tension), (1, 3, 0.1));
+///
+/// let wrong = "case,x [N]\na,1\n";
+/// let error = parse_measurements(wrong, "data.csv", &file, &Deviations::default(), &[]).unwrap_err();
+/// assert_eq!(error.to_string(), "data.csv, row 1, column \"x [N]\": expected a length in m, cm, mm, um, in, ft; `N` is the unit of a force");
+/// ```
+///
+/// # Errors
+/// As there.
+pub fn parse_measurements(
+    text: &str,
+    path: &str,
+    file: &ArmFile,
+    deviations: &Deviations,
+    fitted: &[Parameter],
+) -> Result<Vec<Case>, MeasurementsError> {
+    let text = text.trim_start_matches('\u{feff}');
+    let delimiter = delimiter(text);
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .delimiter(delimiter)
+        .trim(Trim::All)
+        .from_reader(text.as_bytes());
+    let fault = |row: usize, why: String| MeasurementsError { path: path.to_owned(), row, column: None, why };
+    let mut table = Table {
+        path,
+        file,
+        deviations,
+        heads: Vec::new(),
+        decimal_comma: delimiter == b';',
+        length: arm_of(file).map_err(|why| fault(0, why))?.length,
+        cases: Vec::new(),
+    };
+    let mut lines = Lines { text, at: 0, line: 1 };
+    for record in reader.records() {
+        let record = record.map_err(|error| {
+            let row = error.position().map_or(0, |position| lines.of(position.byte()));
+            fault(row, error.to_string())
+        })?;
+        let row = record.position().map_or(0, |position| lines.of(position.byte()));
+        if table.heads.is_empty() {
+            table.read_heads(row, &record, fitted)?;
+        } else if record.iter().any(|cell| !cell.is_empty()) {
+            table.read_row(row, &record)?;
+        }
+    }
+    if table.heads.is_empty() {
+        return Err(fault(0, "is empty: expected a row of column heads, as `--template` writes it".to_owned()));
+    }
+    table.cases()
+}
+
+/// The lines of rows, asked for from the first to the last. A row's position is where the one before ends: ends of lines, empty lines and
+/// comments can stand between that and the row itself.
+struct Lines<'a> {
+    text: &'a str,
+    at: usize,
+    line: usize,
+}
+
+impl Lines<'_> {
+    fn of(&mut self, position: u64) -> usize {
+        let bytes = self.text.as_bytes();
+        let position = usize::try_from(position).unwrap_or(usize::MAX);
+        while self.at < bytes.len() {
+            let begins = self.at == 0 || matches!(bytes[self.at - 1], b'\n' | b'\r');
+            let between = matches!(bytes[self.at], b'\n' | b'\r') || (begins && bytes[self.at] == b'#');
+            if self.at >= position && !between {
+                break;
+            }
+            if self.at >= position && bytes[self.at] == b'#' {
+                let rest = &bytes[self.at..];
+                self.at += rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
+                continue;
+            }
+            self.line += usize::from(bytes[self.at] == b'\n');
+            self.at += 1;
+        }
+        self.line
+    }
+}
+
+/// What parts the cells of the first row that is no comment: a comma, a semicolon or a tab.
+fn delimiter(text: &str) -> u8 {
+    let first = text.lines().find(|line| !line.starts_with('#') && !line.trim().is_empty()).unwrap_or_default();
+    let count = |sign: u8| first.bytes().filter(|b| *b == sign).count();
+    if count(b';') > count(b',') {
+        b';'
+    } else if count(b'\t') > count(b',') {
+        b'\t'
+    } else {
+        b','
+    }
+}
+
+fn arm_of(file: &ArmFile) -> Result<Arm, String> {
+    file.arm().map_err(|error| error.to_string())
+}
+
+/// A case while it is read: the settings that it was given, and in which rows.
+struct Building {
+    name: String,
+    /// A head and what a row had there.
+    settings: Vec<(usize, String, usize)>,
+    measurements: Vec<Measurement>,
+    row: usize,
+}
+
+struct Table<'a> {
+    path: &'a str,
+    file: &'a ArmFile,
+    deviations: &'a Deviations,
+    heads: Vec<Head>,
+    decimal_comma: bool,
+    length: f64,
+    cases: Vec<Building>,
+}
+
+impl Table<'_> {
+    fn fault(&self, row: usize, column: Option<&str>, why: impl Into<String>) -> MeasurementsError {
+        MeasurementsError { path: self.path.to_owned(), row, column: column.map(str::to_owned), why: why.into() }
+    }
+
+    fn read_heads(&mut self, row: usize, record: &StringRecord, fitted: &[Parameter]) -> Result<(), MeasurementsError> {
+        for text in record {
+            let head = head(text).map_err(|why| self.fault(row, Some(text), why))?;
+            if let Some(other) = self.heads.iter().find(|other| other.column == head.column) {
+                return Err(self.fault(row, Some(text), format!("the column \"{}\" has the same", other.text)));
+            }
+            if let Column::Setting(key, _) = &head.column
+                && fitted.iter().any(|parameter| parameter.to_string() == *key)
+            {
+                return Err(self.fault(row, Some(text), "is fitted, so that no load case can give it"));
+            }
+            self.heads.push(head);
+        }
+        Ok(())
+    }
+
+    /// A number in SI; `None` in an empty cell.
+    fn number(
+        &self,
+        row: usize,
+        head: &Head,
+        cell: &str,
+        dimension: Dimension,
+    ) -> Result<Option<f64>, MeasurementsError> {
+        if cell.is_empty() {
+            return Ok(None);
+        }
+        let plain = if self.decimal_comma { cell.replace(',', ".") } else { cell.to_owned() };
+        let found = plain.parse::<f64>().ok().filter(|value| value.is_finite()).and_then(|value| match dimension {
+            Dimension::Number => Some(value),
+            // From the decimal text, so that 0.1 mm is 1e-4 to the last bit.
+            _ => dimension.parse(&format!("{plain} {}", head.unit)).ok(),
+        });
+        found.map(Some).ok_or_else(|| {
+            let unit = if head.unit.is_empty() { String::new() } else { format!(" ({}, as the head says)", head.unit) };
+            self.fault(row, Some(&head.text), format!("expected a number{unit}, found \"{}\"", shortened(cell)))
+        })
+    }
+
+    fn read_row(&mut self, row: usize, record: &StringRecord) -> Result<(), MeasurementsError> {
+        if record.len() != self.heads.len() {
+            let why = format!(
+                "expected {} cells, as many as there are column heads, found {}",
+                self.heads.len(),
+                record.len()
+            );
+            return Err(self.fault(row, None, why));
+        }
+        let heads = self.heads.clone();
+        let cell_of = |wanted: &Column| {
+            let at = heads.iter().position(|head| head.column == *wanted)?;
+            Some((&heads[at], record.get(at).unwrap_or_default()))
+        };
+        let case = match cell_of(&Column::Case) {
+            Some((head, "")) => {
+                return Err(self.fault(row, Some(&head.text), "expected the name of a load case, found nothing"));
+            }
+            Some((_, name)) => name.to_owned(),
+            None => "1".to_owned(),
+        };
+        let place = match cell_of(&Column::Place) {
+            Some((head, cell)) => self.number(row, head, cell, Dimension::Length)?.map(|s| (s, head.text.clone())),
+            None => None,
+        };
+        let slack = SAME * self.length;
+        if let Some((s, column)) = &place
+            && !(-slack..=self.length + slack).contains(s)
+        {
+            let why =
+                format!("{} mm is beyond the arm, which goes from 0 to {} mm", rounded_mm(*s), rounded_mm(self.length));
+            return Err(self.fault(row, Some(column), why));
+        }
+        let s = place.map_or(self.length, |(s, _)| s);
+        let mut found = Vec::new();
+        for (head, cell) in heads.iter().zip(record) {
+            let Column::Value(measured) = head.column else { continue };
+            let Some(value) = self.number(row, head, cell, measured.dimension())? else { continue };
+            let own = cell_of(&Column::Deviation(Some(measured)));
+            let both =
+                || matches!(measured, Measured::X | Measured::Y).then(|| cell_of(&Column::Deviation(None))).flatten();
+            let sd = match own.or_else(both) {
+                Some((head, cell)) => {
+                    let sd = self.number(row, head, cell, measured.dimension())?;
+                    if sd.is_some_and(|sd| sd <= 0.0) {
+                        return Err(self.fault(
+                            row,
+                            Some(&head.text),
+                            format!("expected a standard deviation above zero, found {cell}"),
+                        ));
+                    }
+                    sd
+                }
+                None => None,
+            };
+            let Some(sd) = sd.or(self.deviations.of(measured.dimension())) else {
+                let name = measured.at(s).name();
+                let why = format!(
+                    "has no standard deviation: add a column \"sd {name} [{}]\", or --sd with {}",
+                    head.unit,
+                    measured.dimension()
+                );
+                return Err(self.fault(row, Some(&head.text), why));
+            };
+            found.push((Measurement { quantity: measured.at(s), value, sd, row }, head.text.clone()));
+        }
+        let index = self.case_of(case, row);
+        for (measurement, column) in found {
+            if let Some(other) =
+                self.cases[index].measurements.iter().find(|own| same(own.quantity, measurement.quantity, slack))
+            {
+                let why = format!(
+                    "{} of load case {} is in row {} already",
+                    measurement.quantity, self.cases[index].name, other.row
+                );
+                return Err(self.fault(row, Some(&column), why));
+            }
+            self.cases[index].measurements.push(measurement);
+        }
+        self.take_settings(row, record, index)
+    }
+
+    /// The index of a case, which begins in this row if there is none of that name.
+    fn case_of(&mut self, name: String, row: usize) -> usize {
+        if let Some(index) = self.cases.iter().position(|own| own.name == name) {
+            return index;
+        }
+        self.cases.push(Building { name, settings: Vec::new(), measurements: Vec::new(), row });
+        self.cases.len() - 1
+    }
+
+    /// What a row gives of a case's loads.
+    fn take_settings(&mut self, row: usize, record: &StringRecord, index: usize) -> Result<(), MeasurementsError> {
+        let heads = self.heads.clone();
+        for (at, (head, cell)) in heads.iter().zip(record).enumerate() {
+            let Column::Setting(_, dimension) = &head.column else { continue };
+            if cell.is_empty() {
+                continue;
+            }
+            let text = match dimension {
+                Some(dimension) => {
+                    self.number(row, head, cell, *dimension)?;
+                    let plain = if self.decimal_comma { cell.replace(',', ".") } else { cell.to_owned() };
+                    format!("{plain} {}", head.unit).trim_end().to_owned()
+                }
+                None => cell.to_owned(),
+            };
+            let case = &mut self.cases[index];
+            match case.settings.iter().find(|(own, ..)| *own == at) {
+                Some((_, before, first)) if *before != text => {
+                    let why = format!("load case {} has \"{before}\" in row {first}, found \"{text}\"", case.name);
+                    return Err(self.fault(row, Some(&head.text), why));
+                }
+                Some(_) => {}
+                None => case.settings.push((at, text, row)),
+            }
+        }
+        Ok(())
+    }
+
+    fn cases(self) -> Result<Vec<Case>, MeasurementsError> {
+        let mut out = Vec::with_capacity(self.cases.len());
+        for case in &self.cases {
+            let mut file = self.file.clone();
+            for (at, text, row) in &case.settings {
+                let head = &self.heads[*at];
+                if let Column::Setting(key, _) = &head.column {
+                    file.set_by("", key, text)
+                        .map_err(|error| self.fault(*row, Some(&head.text), reason(&error.to_string())))?;
+                }
+            }
+            let arm = arm_of(&file)
+                .map_err(|why| self.fault(case.row, None, format!("load case {}: {}", case.name, reason(&why))))?;
+            out.push(Case { name: case.name.clone(), arm, measurements: case.measurements.clone() });
+        }
+        Ok(out)
+    }
+}
+
+/// What a message of the arm file says after the setting that it is about.
+fn reason(message: &str) -> String {
+    message.trim_start().to_owned()
+}
+
+pub(crate) fn rounded_mm(s: f64) -> f64 {
+    (1e9 * s).round() / 1e6
+}
+
+fn same(a: Quantity, b: Quantity, slack: f64) -> bool {
+    match (a.place(), b.place()) {
+        (Some(s), Some(t)) => a.name() == b.name() && (s - t).abs() <= slack,
+        _ => a == b,
+    }
+}

@@ -1,0 +1,51 @@
+//! A table of measured shapes to fill in.
+
+use hydrostat::Arm;
+
+use crate::measurements::rounded_mm;
+
+/// A table to fill in: two load cases of `arm` with four places each.
+///
+/// ```
+/// use hydrostat_files::{ArmFile, Deviations, measurements_template, parse_measurements, shipped};
+///
+/// let file = ArmFile::parse(shipped::get("silicone").unwrap(), "silicone").unwrap();
+/// let template = measurements_template(&file.arm().unwrap());
+/// let cases = parse_measurements(&template, "template", &file, &Deviations::default(), &[]).unwrap();
+/// assert_eq!((cases.len(), cases[0].measurements.len()), (2, 0), "nothing is measured yet");
+/// ```
+pub fn measurements_template(arm: &Arm) -> String {
+    let mut out = format!(
+        "# Measured shapes of {}, for `hydrostat identify`. Lines that begin with # do not count.\n\
+         # A row is a place of the arm in a load case. s is along the arm before anything acts, from its base; empty is the tip.\n\
+         # x and y are of the centreline, from the base of the arm file; angle is that of the section, from e1. Empty cells were not measured.\n\
+         # The loads of a case stand in its first row: any key of the arm file with its unit. sd is a standard deviation.\n\
+         # More can be measured: tangent [deg], stroke[0] [mm], tension[0] [N], base force x [N], base force y [N], base moment [N mm].\n",
+        arm.name.escape_debug()
+    );
+    let mut heads = vec!["case".to_owned()];
+    heads.extend((0..arm.cables.len()).map(|c| {
+        let commanded = arm.cables[c].stroke.is_some();
+        if commanded { format!("cable[{c}].stroke [mm]") } else { format!("cable[{c}].tension [N]") }
+    }));
+    heads.extend(
+        ["flow.speed [m/s]", "s [mm]", "x [mm]", "y [mm]", "angle [deg]", "sd position [mm]", "sd angle [deg]"]
+            .map(str::to_owned),
+    );
+    out.push_str(&heads.join(","));
+    out.push('\n');
+    for case in ["a", "b"] {
+        for quarter in 1..=4 {
+            let loads = |cable: &hydrostat::Cable| cable.stroke.map_or(cable.tension, rounded_mm).to_string();
+            let mut cells = vec![case.to_owned()];
+            let first = quarter == 1;
+            cells.extend(arm.cables.iter().map(|cable| if first { loads(cable) } else { String::new() }));
+            cells.push(if first { arm.flow.speed.to_string() } else { String::new() });
+            cells.push(rounded_mm(0.25 * f64::from(quarter) * arm.length).to_string());
+            cells.extend(["", "", "", "1", "1"].map(str::to_owned));
+            out.push_str(&cells.join(","));
+            out.push('\n');
+        }
+    }
+    out
+}

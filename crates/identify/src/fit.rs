@@ -1,0 +1,333 @@
+//! From load cases to estimates and what they are worth.
+
+use hydrostat::{Configuration, Parameter};
+
+use crate::certainty::{Direction, correlation, covariance, directions};
+use crate::cross_validation::{LeftOut, leave_out};
+use crate::data::{Case, Fitted, Measurement, natural_bounds};
+use crate::error::{IdentifyError, Trial};
+use crate::least_squares::{Minimum, Settings, minimise};
+use crate::loss::Loss;
+use crate::model::{Cases, Observed, Refusal, residuals};
+use crate::student::{NORMAL_95, student_95};
+use crate::verdict::{Finding, Scale, findings, verdict};
+
+/// How parameters are fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FitOptions {
+    /// How far-out residuals count.
+    pub loss: Loss,
+    /// Whether standard deviations are known up to a common factor only, which the residuals then give.
+    pub rescale: bool,
+    /// Whether to fit again without each load case and predict it.
+    pub cross_validate: bool,
+    /// Error of the tip position over L that every solve is asked for, in [1e-12, 1e-2].
+    pub tol: f64,
+    /// The most steps of the search.
+    pub rounds: usize,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self { loss: Loss::None, rescale: false, cross_validate: true, tol: 1e-8, rounds: 100 }
+    }
+}
+
+/// How far the work is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Progress {
+    /// Steps of the search, and half the sum of squares (or of what the loss makes of them) there.
+    Round(usize, f64),
+    /// Load cases that were left out once, of how many.
+    LeftOut(usize, usize),
+}
+
+/// A parameter that was fitted, in its unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// What was asked for.
+    pub fitted: Fitted,
+    /// The value found.
+    pub value: f64,
+    /// Standard deviation; infinite where the data know nothing of it, none where a bound holds it.
+    pub sd: Option<f64>,
+    /// 95 %, cut off at the bounds; infinite or none as `sd`.
+    pub interval: Option<[f64; 2]>,
+    /// The bound that holds it: 0 the lower, 1 the upper.
+    pub held: Option<usize>,
+    /// What it is compared by in verdicts.
+    pub scale: Scale,
+}
+
+/// A measured number beside the fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Residual {
+    /// Index of the load case.
+    pub case: usize,
+    /// What was measured.
+    pub measurement: Measurement,
+    /// What the fitted arm has.
+    pub fitted: f64,
+    /// Fitted less measured, in standard deviations.
+    pub standardised: f64,
+    /// The share of its pull that the loss leaves it, in (0, 1].
+    pub weight: f64,
+}
+
+/// Trials at which a load case had no answer.
+#[derive(Debug, Clone)]
+pub struct NoAnswer {
+    /// Index of the load case.
+    pub case: usize,
+    /// How many trials.
+    pub trials: usize,
+    /// The last of them, in the order of the parameters.
+    pub at: Vec<f64>,
+    /// Why.
+    pub why: Trial,
+}
+
+/// What the data say.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// The parameters, in the order asked for.
+    pub estimates: Vec<Estimate>,
+    /// Their covariances; infinite and NaN where the data know nothing.
+    pub covariance: Vec<Vec<f64>>,
+    /// Covariances over standard deviations.
+    pub correlation: Vec<Vec<f64>>,
+    /// Combinations of the parameters in their scales, the one that the data know least first. Priors are left aside.
+    pub directions: Vec<Direction>,
+    /// What the data cannot tell.
+    pub findings: Vec<Finding>,
+    /// Every measured number, case by case.
+    pub residuals: Vec<Residual>,
+    /// Sum of the squares of all residuals, those from priors too.
+    pub chi_square: f64,
+    /// Numbers that were measured or known before less parameters that no bound holds.
+    pub freedom: i64,
+    /// The factor on standard deviations, one unless these are rescaled.
+    pub spread: f64,
+    /// The fitted arm in every load case with measured numbers: the index of the case, and the shape.
+    pub shapes: Vec<(usize, Configuration)>,
+    /// What each load case is predicted to be by the others; empty if not asked for and for one load case.
+    pub left_out: Vec<LeftOut>,
+    /// Load cases without an answer on the way.
+    pub no_answer: Vec<NoAnswer>,
+    /// Steps taken.
+    pub rounds: usize,
+    /// How often all load cases were solved.
+    pub evaluations: usize,
+    /// Whether the search came to its end.
+    pub converged: bool,
+}
+
+impl Fit {
+    /// How a parameter is compared with others.
+    fn scale(&self, parameter: Parameter) -> Scale {
+        let own = self.estimates.iter().find(|one| one.fitted.parameter == parameter);
+        own.map_or(Scale { size: 1.0, own: false }, |one| one.scale)
+    }
+
+    /// Which parameters the data cannot tell apart, in sentences.
+    pub fn verdict(&self) -> Vec<String> {
+        verdict(&self.findings, |parameter| self.scale(parameter))
+    }
+
+    /// Whether residuals are as large as standard deviations say, in a sentence; `None` where there are too few numbers to tell.
+    pub fn misfit(&self) -> Option<String> {
+        let freedom = self.freedom as f64;
+        if freedom < 1.0 {
+            return None;
+        }
+        let (ratio, sure) = ((self.chi_square / freedom).sqrt(), 3.0 * (2.0 / freedom).sqrt());
+        let square = self.chi_square / freedom;
+        Some(if square > 1.0 + sure {
+            format!(
+                "residuals are {ratio:.2} times as large as their standard deviations say: these are too small, or the model misses something"
+            )
+        } else if square < 1.0 - sure {
+            format!("residuals are {ratio:.2} times as large as their standard deviations say: these are too large")
+        } else {
+            "residuals are as large as their standard deviations say".to_owned()
+        })
+    }
+}
+
+/// Fits parameters to load cases.
+///
+/// ```
+/// use hydrostat::{Arm, Cable, Parameter, Profile};
+/// use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, Quantity, fit};
+///
+/// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+/// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
+/// let mut cases = Vec::new();
+/// for tension in [0.1, 0.2, 0.3] {
+///     arm.cables[0].tension = tension; // N
+///     let tip = arm.solve()?.tip();
+///     let measurements = vec![Measurement::new(Quantity::X(0.245), tip.x, 1e-3), Measurement::new(Quantity::Y(0.245), tip.y, 1e-3)];
+///     cases.push(Case { name: format!("{tension} N"), arm: arm.clone(), measurements });
+/// }
+///
+/// let young = Fitted { start: 80e3, ..Fitted::new(Parameter::Young, &arm).expect("a cone is homogeneous") };
+/// let found = fit(&cases, &[young], &FitOptions::default(), |_| ()).expect("these can be solved");
+/// assert!((found.estimates[0].value / 110e3 - 1.0).abs() < 1e-6);
+/// assert_eq!(found.verdict(), ["the data tell all parameters apart"]);
+/// # Ok::<(), hydrostat::SolveError>(())
+/// ```
+///
+/// # Errors
+/// [`IdentifyError`]. A load case that has no answer at trial values is none: it is named in [`Fit::no_answer`].
+pub fn fit(
+    cases: &[Case],
+    fitted: &[Fitted],
+    options: &FitOptions,
+    mut say: impl FnMut(Progress),
+) -> Result<Fit, IdentifyError> {
+    let fitted = checked(fitted)?;
+    let measured: usize = cases.iter().map(|case| case.measurements.len()).sum();
+    if measured == 0 {
+        return Err(IdentifyError::NoData);
+    }
+    if options.rescale && measured <= fitted.len() {
+        return Err(IdentifyError::Freedom { measured, parameters: fitted.len() });
+    }
+    // A case without numbers would be solved for nothing.
+    let with_numbers = || cases.iter().enumerate().filter(|(_, case)| !case.measurements.is_empty());
+    let observed: Result<_, _> = with_numbers().map(|(_, case)| Observed::new(case, &fitted, options.tol)).collect();
+    let index: Vec<usize> = with_numbers().map(|(i, _)| i).collect();
+    let mut model = Cases { observed: observed?, fitted, answers: Vec::new() };
+    let settings = Settings { loss: options.loss, rounds: options.rounds, ..Settings::default() };
+    let found = search(&mut model, &settings, |rounds, cost| say(Progress::Round(rounds, cost)));
+    let found = found.map_err(|refusal| start(cases, &index, refusal))?;
+    // The answers at hand may be those of a trial.
+    let at_end = crate::least_squares::Model::evaluate(&mut model, &found.x);
+    let rows = at_end.map_err(|refusal| start(cases, &index, refusal))?;
+
+    let count = model.fitted.len();
+    let free: Vec<usize> = (0..count).filter(|k| found.held[*k].is_none()).collect();
+    let chi_square = rows.residuals.norm_squared();
+    let freedom = signed(rows.residuals.len()) - signed(free.len());
+    let spread = if options.rescale { (chi_square / (freedom.max(1)) as f64).sqrt() } else { 1.0 };
+    let quantile = if options.rescale { student_95(usize::try_from(freedom).unwrap_or(1)) } else { NORMAL_95 };
+    let covariance = covariance(&rows, options.loss, &free, spread);
+    let scales: Vec<Scale> = (0..count).map(|k| Scale::of(found.x[k], model.fitted[k].prior.map(|p| p.sd))).collect();
+    let sizes: Vec<f64> = scales.iter().map(|scale| scale.size).collect();
+    let estimates: Vec<Estimate> = (0..count)
+        .map(|k| {
+            let (one, value) = (model.fitted[k], found.x[k]);
+            let sd = found.held[k].is_none().then(|| covariance[(k, k)].sqrt());
+            let cut = |x: f64| x.max(one.bounds[0]).min(one.bounds[1]);
+            let interval = sd.map(|sd| [cut(value - quantile * sd), cut(value + quantile * sd)]);
+            Estimate { fitted: one, value, sd, interval, held: found.held[k], scale: scales[k] }
+        })
+        .collect();
+    let parameters = model.parameters();
+    let directions = directions(&rows, &sizes);
+    let correlation = correlation(&covariance);
+    let findings = findings(&parameters, &directions, &correlation);
+    let left_out = if options.cross_validate && model.observed.len() > 1 {
+        let sds: Vec<f64> = estimates.iter().map(|one| one.sd.unwrap_or(f64::INFINITY)).collect();
+        leave_out(&model, &index, (&found.x, &sds), &settings, |done, all| say(Progress::LeftOut(done, all)))
+    } else {
+        Vec::new()
+    };
+    Ok(Fit {
+        estimates,
+        correlation,
+        covariance: (0..count).map(|i| covariance.row(i).iter().copied().collect()).collect(),
+        directions,
+        findings,
+        residuals: all_residuals(&model, &index, options.loss),
+        chi_square,
+        freedom,
+        spread,
+        shapes: index.iter().copied().zip(model.answers.iter().map(|answer| answer.shape.clone())).collect(),
+        left_out,
+        no_answer: no_answer(&found, &index),
+        rounds: found.rounds,
+        evaluations: found.evaluations,
+        converged: found.converged,
+    })
+}
+
+pub(crate) fn search(
+    model: &mut Cases,
+    settings: &Settings,
+    say: impl FnMut(usize, f64),
+) -> Result<Minimum<Refusal>, Refusal> {
+    let start: Vec<f64> = model.fitted.iter().map(|one| one.start).collect();
+    let bounds: Vec<[f64; 2]> = model.fitted.iter().map(|one| one.bounds).collect();
+    minimise(model, &start, &bounds, settings, say)
+}
+
+/// Counts as numbers with a sign.
+fn signed(count: usize) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX)
+}
+
+fn start(cases: &[Case], index: &[usize], refusal: Refusal) -> IdentifyError {
+    IdentifyError::Start { case: cases[index[refusal.case]].name.clone(), source: Box::new(refusal.why) }
+}
+
+/// Parameters within what makes an arm.
+fn checked(fitted: &[Fitted]) -> Result<Vec<Fitted>, IdentifyError> {
+    if fitted.is_empty() {
+        return Err(IdentifyError::NoParameter);
+    }
+    let mut out: Vec<Fitted> = Vec::new();
+    for one in fitted {
+        let parameter = one.parameter;
+        if out.iter().any(|other| other.parameter == parameter) {
+            return Err(IdentifyError::Twice(parameter));
+        }
+        let [least, most] = natural_bounds(parameter);
+        let bounds = [one.bounds[0].max(least), one.bounds[1].min(most)];
+        let range = |expected, found| Err(IdentifyError::Range { parameter, expected, found });
+        if bounds[0] >= bounds[1] || bounds.iter().any(|bound| bound.is_nan()) {
+            return range("a lower bound below the upper one, both possible for an arm", one.bounds[0]);
+        }
+        if !one.start.is_finite() {
+            return range("a finite start", one.start);
+        }
+        if !(bounds[0]..=bounds[1]).contains(&one.start) {
+            return range("a start within the bounds", one.start);
+        }
+        if let Some(prior) = one.prior
+            && !(prior.sd > 0.0 && prior.sd.is_finite() && prior.mean.is_finite())
+        {
+            return range("a prior with a standard deviation above zero", prior.sd);
+        }
+        out.push(Fitted { bounds, ..*one });
+    }
+    Ok(out)
+}
+
+fn all_residuals(model: &Cases, index: &[usize], loss: Loss) -> Vec<Residual> {
+    let mut out = Vec::new();
+    for ((one, answer), case) in model.observed.iter().zip(&model.answers).zip(index) {
+        let standardised = residuals(&one.case, &answer.values);
+        for ((measurement, fitted), standardised) in one.case.measurements.iter().zip(&answer.values).zip(standardised)
+        {
+            let weight = loss.weight(standardised);
+            out.push(Residual { case: *case, measurement: *measurement, fitted: *fitted, standardised, weight });
+        }
+    }
+    out
+}
+
+fn no_answer(found: &Minimum<Refusal>, index: &[usize]) -> Vec<NoAnswer> {
+    let mut out: Vec<NoAnswer> = Vec::new();
+    for refused in &found.refused {
+        let case = index[refused.why.case];
+        match out.iter_mut().find(|one| one.case == case) {
+            Some(one) => {
+                one.trials += 1;
+                (one.at, one.why) = (refused.at.clone(), refused.why.why.clone());
+            }
+            None => out.push(NoAnswer { case, trials: 1, at: refused.at.clone(), why: refused.why.why.clone() }),
+        }
+    }
+    out
+}
