@@ -13,7 +13,7 @@ use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 pub(crate) use equilibria::{EquilibriaArgs, Over};
 pub(crate) use path::PathArgs;
 pub(crate) use plot::PlotArgs;
-pub(crate) use reach::ReachArgs;
+pub(crate) use reach::{By, Point, ReachArgs};
 pub(crate) use sweep::SweepArgs;
 
 const EXIT: &str = "\
@@ -61,7 +61,7 @@ pub(crate) enum Command {
     Path(PathArgs),
     /// Find all equilibria under the same loads, with their stability
     Equilibria(EquilibriaArgs),
-    /// Find the tensions that bring the tip to a place
+    /// Find the tensions that bring the tip to a place or along a path, or what bounds the places it reaches
     Reach(ReachArgs),
     /// Solve an arm over grids, lists or samples of any keys of its file, into Parquet or CSV
     Sweep(SweepArgs),

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use hydrostat::{PathError, ReachError, SensitivityError, SolveError};
 use hydrostat_figures::source::StudyError;
-use hydrostat_files::{FileError, WriteError};
+use hydrostat_files::{FileError, TargetsError, WriteError};
 use hydrostat_sweep::SweepError;
 
 use crate::command::NoAnswer;
@@ -80,7 +80,11 @@ fn code(error: &anyhow::Error) -> u8 {
         if matches!(cause.downcast_ref(), Some(error) if !matches!(error, SweepError::Threads(_))) {
             return WRONG_REQUEST;
         }
-        if cause.is::<WrongRequest>() || cause.is::<FileError>() || cause.is::<WriteError>() {
+        if cause.is::<WrongRequest>()
+            || cause.is::<FileError>()
+            || cause.is::<TargetsError>()
+            || cause.is::<WriteError>()
+        {
             return WRONG_REQUEST;
         }
     }

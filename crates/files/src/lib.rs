@@ -6,10 +6,12 @@
 
 mod arm_file;
 mod axis;
+pub mod boundary;
 mod digits;
 mod document;
 pub mod equilibria;
 mod error;
+pub mod followed;
 mod format;
 mod output;
 pub mod paths;
@@ -21,18 +23,22 @@ pub mod schema;
 mod setting;
 pub mod shipped;
 mod state;
+mod targets;
 mod varied;
 mod written;
 
 pub use arm_file::ArmFile;
 pub use axis::{Axis, AxisError, Value, Values};
+pub use boundary::{BoundaryDocument, boundary_csv};
 pub use digits::number;
 pub use equilibria::{EquilibriaDocument, Others, OverDocument, equilibria_csv, over_csv};
 pub use error::{FileError, Place};
+pub use followed::{FollowedDocument, followed_csv};
 pub use output::{WriteError, write_whole};
 pub use paths::{PathDocument, end_message, path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
 pub use reach::{ReachDocument, reach_csv};
 pub use results::{Failure, Note, Solution, stations_csv};
+pub use targets::{TargetsError, parse_targets, read_targets};
 pub use varied::{Varied, VariedError};
 pub use written::{Inputs, arm_to_toml};

@@ -231,6 +231,91 @@ fn a_target_that_cannot_be_followed_is_said() {
     assert!(matches!(follower.follow(&station), Err(ReachError::Target)));
 }
 
+/// An arm that a stream from ahead keeps curled, until it lets go: the tips of the same slow pull before and after that are further
+/// apart than any small change leads, and where the follower gets to the later one it says that it jumped.
+#[test]
+fn a_jump_to_another_branch_is_named() {
+    let mut arm = cone();
+    arm.flow.speed = 0.2;
+    arm.flow.direction = std::f64::consts::PI;
+    arm.flow.density = 1022.0;
+    // The snap of a slow pull, from solves that know nothing of targets.
+    let mut solver = Solver::new(&arm, Options { tol: 1e-9 }).unwrap();
+    let mut before: Option<([f64; 2], Target)> = None;
+    let mut leap = None;
+    for k in 0..=300 {
+        let tensions = [0.002 * f64::from(k), 0.0];
+        solver.set_tensions(&tensions).unwrap();
+        let Ok(answer) = solver.update() else {
+            before = None;
+            continue;
+        };
+        let target = Target::tip(answer.tip.x, answer.tip.y);
+        if let Some((from, last)) = before
+            && (target.x - last.x).hypot(target.y - last.y) > 0.2 * arm.length
+        {
+            leap = Some((from, last, target));
+            break;
+        }
+        before = Some((tensions, target));
+    }
+    let (from, last, beyond) = leap.expect("the arm snaps on the way to 0.6 N");
+    println!("from {from:?} N, ({}, {}) to ({}, {}) m", last.x, last.y, beyond.x, beyond.y);
+    arm.set_tensions(&from).unwrap();
+    let mut follower = Follower::new(&arm, &[last], &options(0.8)).unwrap();
+    let here = follower.follow(&[last]).unwrap();
+    assert!(here.reached && !here.jumped, "{here:?}");
+    let mut jumped = false;
+    for share in [0.25, 0.5, 0.75, 1.0] {
+        let [x, y] = [last.x + share * (beyond.x - last.x), last.y + share * (beyond.y - last.y)];
+        let found = follower.follow(&[Target::tip(x, y)]).unwrap();
+        println!("{share}: {found:?}");
+        jumped |= found.jumped;
+        if found.reached && share == 1.0 {
+            assert!(jumped, "it got across the snap without saying so: {found:?}");
+        }
+    }
+    assert!(jumped, "the arm leapt and the follower never said so");
+}
+
+#[test]
+fn strokes_that_are_found_lead_to_the_target() {
+    let mut arm = cone();
+    let mut short = Cable::new("short", Profile::linear(0.006, 0.003));
+    (short.end, short.stiffness) = (0.6, Some(20.0));
+    arm.cables.push(short);
+    arm.flow.speed = 0.05;
+    for tensions in [[0.2, 0.1, 0.1], [0.0, 0.3, 0.0], [0.3, 0.0, 0.2]] {
+        let target = target_of(&arm, &tensions).unwrap();
+        let found = arm.reach_by_strokes(&[target], &options(0.6)).unwrap();
+        let best = found.solutions.iter().find(|one| one.on_the_path).unwrap();
+        assert!(best.configuration.arm.cables.iter().all(|cable| cable.stroke.is_some()));
+        // By strokes alone: the tensions that it comes with do not count.
+        let mut commanded = best.configuration.arm.clone();
+        commanded.cables.iter_mut().for_each(|cable| cable.tension = 0.0);
+        let shape = commanded.solve().unwrap();
+        let off = (shape.tip().x - target.x).hypot(shape.tip().y - target.y) / arm.length;
+        assert!(off < 3e-8, "{tensions:?}: {off:e} L");
+        for (state, tension) in shape.cables.iter().zip(&best.tensions) {
+            assert!((state.tension - tension).abs() < 1e-5, "{tensions:?}: {state:?} for {tension} N");
+        }
+    }
+}
+
+#[test]
+fn the_tip_section_is_turned_by_one_cable() {
+    let arm = cone();
+    let mut pulled = arm.clone();
+    pulled.cables[1].tension = 0.4;
+    let alpha = pulled.solve().unwrap().tip().alpha;
+    let found = arm.reach_tip_angle(1, alpha, &options(0.8)).unwrap();
+    assert_eq!(found.solutions[0].tensions[0], 0.0);
+    assert!((found.solutions[0].tensions[1] - 0.4).abs() < 1e-6, "{:?}", found.solutions[0].tensions);
+    let missed = arm.reach_tip_angle(0, alpha, &options(0.4)).unwrap();
+    assert!(missed.solutions.is_empty(), "the other cable turns it the other way");
+    assert!(matches!(arm.reach_tip_angle(2, alpha, &options(0.4)), Err(ReachError::Sensitivity(_))));
+}
+
 #[test]
 fn wrong_requests_are_refused() {
     let arm = cone();

@@ -1,0 +1,46 @@
+//! The study on few sets: its answers are those of its parts.
+
+use hydrostat_study::{Set, Statement, judge, refine, report, sample};
+
+/// The shipped arm `paper` as a set: what is known of it is found again.
+#[test]
+fn the_shipped_arm_is_judged_as_its_claims_are() {
+    let mut paper = Set::at([0.0; 13]);
+    (paper.slenderness, paper.taper) = (0.05, 0.08);
+    (paper.base_offset, paper.tip_offset) = (0.8, 0.125);
+    (paper.c1, paper.shear, paper.bending, paper.bending_taper) = (500e3, 1.0 / 3.0, 12.0, 0.0);
+    let judged = judge(&paper, 1e-9).unwrap();
+    println!("{judged:?}");
+    assert!((judged.tension - 86.24).abs() < 0.01, "{}", judged.tension);
+    let failing = judged.failing(true);
+    assert!(failing.contains(&Statement::LocallySmaller), "{failing:?}");
+    for held in [Statement::StraightTip, Statement::TipAngle, Statement::TipRises, Statement::DeformsLess] {
+        assert!(!failing.contains(&held), "{held:?}");
+    }
+    // Word by word, the base bends nothing without a stream: the angle is not reached, or more stream deforms more.
+    let literal = judge(&paper.with_unstrained_base(), 1e-8);
+    println!("{literal:?}");
+    assert!(literal.is_err() || !literal.unwrap().failing(true).is_empty());
+}
+
+#[test]
+fn a_sample_is_drawn_judged_and_written() {
+    let drawn = sample(96, 1, || ());
+    assert_eq!(drawn, sample(96, 1, || ()), "the same seed draws and judges the same");
+    let judged: Vec<_> = drawn.iter().filter_map(|one| one.outcome.ok()).collect();
+    assert!(judged.len() > 10 && judged.len() < 96, "{}", judged.len());
+    for one in &judged {
+        // What holds at every tension holds at the highest.
+        for (highest, every) in one.margins(false).iter().zip(one.margins(true)) {
+            assert!(every <= highest, "{one:?}");
+        }
+        assert!(one.failing(false).len() <= one.failing(true).len());
+    }
+    let before = drawn.iter().map(|one| one.shortfall(false)).fold(f64::INFINITY, f64::min);
+    let best = refine(&drawn, 2, 3, false, 2);
+    assert!(best[0].shortfall(false) <= before, "{} {before}", best[0].shortfall(false));
+    let csv = report::best_csv(&best, &[]);
+    let columns: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
+    assert_eq!(columns, [columns[0]; 3]);
+    assert!(report::summary(&drawn, &[best, Vec::new()]).contains("96 sets drawn"));
+}
