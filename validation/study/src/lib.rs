@@ -9,6 +9,6 @@ pub mod search;
 pub mod set;
 pub mod statements;
 
-pub use search::{Found, refine, sample};
+pub use search::{Drawn, Found, refine, sample};
 pub use set::{COORDINATES, Set};
 pub use statements::{Judged, Miss, Statement, judge};

@@ -35,12 +35,28 @@ impl Found {
     }
 }
 
+/// Which readings are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drawn {
+    /// Those under which the load of the stream cannot jump: `centreline` and `tangential`, all else free.
+    Smooth,
+    /// All.
+    All,
+}
+
 /// `count` sets of Sobol's sequence, judged in parallel; `done` is told of each.
-pub fn sample(count: u64, seed: u64, done: impl Fn() + Sync) -> Vec<Found> {
+pub fn sample(count: u64, seed: u64, readings: Drawn, done: impl Fn() + Sync) -> Vec<Found> {
     let sobol = Sobol::new(COORDINATES, seed);
     let one = |number: u64| {
         let mut place = [0.5; COORDINATES];
-        place.iter_mut().zip(sobol.point(number)).for_each(|(own, drawn)| *own = drawn);
+        for (own, drawn) in place.iter_mut().zip(sobol.point(number)) {
+            *own = drawn;
+        }
+        if readings == Drawn::Smooth {
+            for own in &mut place[READINGS + 1..READINGS + 3] {
+                *own *= 0.5;
+            }
+        }
         let found = Found::of(number, Set::at(place));
         done();
         found

@@ -19,11 +19,9 @@ pub(super) fn configuration(arm: &Arm) -> Result<Configuration, StudyError> {
             ReachError::Solve(source) => StudyError::Solve { tension: 0.0, speed: SPEED, source: Box::new(source) },
             other => StudyError::Reach(Box::new(other)),
         })?;
-    match solutions.into_iter().find(|one| one.on_the_path) {
-        Some(found) => Ok(found.configuration),
-        None => {
-            let angle = closest.map_or(f64::NAN, |closest| closest.configuration.tip().alpha.to_degrees());
-            Err(StudyError::NoTension { largest, angle })
-        }
-    }
+    let Some(found) = solutions.into_iter().find(|one| one.on_the_path) else {
+        let angle = closest.map_or(f64::NAN, |closest| closest.configuration.tip().alpha.to_degrees());
+        return Err(StudyError::NoTension { largest, angle });
+    };
+    Ok(found.configuration)
 }
