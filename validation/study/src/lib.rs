@@ -8,6 +8,7 @@ pub mod report;
 pub mod search;
 pub mod set;
 pub mod statements;
+pub mod verification;
 
 pub use search::{Drawn, Found, refine, sample};
 pub use set::{COORDINATES, Set};

@@ -14,6 +14,7 @@ use hydrostat_files::{arm_to_toml, number, write_whole};
 use crate::search::Found;
 use crate::set::{LENGTH, Set};
 use crate::statements::{Judged, SPEEDS, Statement, alphas};
+use crate::verification::verification;
 
 /// Sets of each kind in the table of the best.
 const BEST: usize = 20;
@@ -42,6 +43,8 @@ pub fn write(folder: &Path, drawn: &[Found], scopes: &[Vec<Found>; 2]) -> anyhow
             let shape = Solver::new(&arm, Options { tol: TOL })?.solve()?;
             write_whole(folder.join(format!("shape-{name}.svg")), arm_figure(&shape, None).svg().as_bytes())?;
             write_whole(folder.join(format!("best-{name}.toml")), arm_to_toml(&arm).as_bytes())?;
+            let table = verification(&best.set, tension)?;
+            write_whole(folder.join(format!("streams-{name}.csv")), table.as_bytes())?;
         }
     }
     Ok(text)

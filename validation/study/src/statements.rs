@@ -116,14 +116,17 @@ impl Judged {
         Statement::ALL.into_iter().zip(margins).filter(|(_, margin)| **margin <= 0.0).map(|(s, _)| s).collect()
     }
 
-    /// How far it is from satisfying all statements: none at 0, less where it does with room.
+    /// How far it is from satisfying all statements with a surface that does not fold: 0 or less where it does, by the least margin.
     pub fn shortfall(&self, everywhere: bool) -> f64 {
         let bounded = |margin: &f64| margin.clamp(-10.0, 10.0);
-        let missing: f64 = self.margins(everywhere).iter().map(bounded).filter(|m| *m <= 0.0).map(|m| 1e-3 - m).sum();
+        let all = self.margins(everywhere).iter().chain(std::iter::once(&self.fold_margin));
+        let missing: f64 = all.map(bounded).filter(|m| *m <= 0.0).map(|m| 1e-3 - m).sum();
         if missing > 0.0 {
             return missing;
         }
-        -self.margins(everywhere).iter().map(bounded).fold(f64::INFINITY, f64::min)
+        // What is met or not met has no room.
+        let with_room = &self.margins(everywhere)[Statement::TipRises as usize..];
+        -with_room.iter().map(bounded).fold(self.fold_margin, f64::min)
     }
 }
 
