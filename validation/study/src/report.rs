@@ -115,8 +115,8 @@ const OPTIONS: [Choice; 10] = [
     ("deformed", |r| r.wetted_length == WettedLength::Deformed),
 ];
 
-fn readings_words(readings: &Readings) -> Vec<&'static str> {
-    OPTIONS.iter().filter(|(_, has)| has(readings)).map(|(name, _)| *name).collect()
+fn readings_words(readings: Readings) -> Vec<&'static str> {
+    OPTIONS.iter().filter(|(_, has)| has(&readings)).map(|(name, _)| *name).collect()
 }
 
 /// One row a set, those of the highest tension first.
@@ -138,7 +138,7 @@ pub fn best_csv(highest: &[Found], every: &[Found]) -> String {
                 .chain([set.c1, set.shear * set.c1])
                 .chain(set.bending_stiffness());
             cells.extend(numbers.map(|v| format!("{v:?}")));
-            cells.extend(readings_words(&set.readings).into_iter().map(str::to_owned));
+            cells.extend(readings_words(set.readings).into_iter().map(str::to_owned));
             let results = [
                 judged.tension,
                 judged.turned,

@@ -237,18 +237,18 @@ struct Bench<'a> {
 
 impl Bench<'_> {
     fn solved(&self, tension: f64, speed: f64) -> Result<Configuration, Miss> {
-        self.tried(tension, speed).map_err(|(miss, _)| miss)
+        self.tried(tension, speed).map_err(|failed| failed.0)
     }
 
     /// The shape, or why there is none and the last one before that.
-    fn tried(&self, tension: f64, speed: f64) -> Result<Configuration, (Miss, Option<Configuration>)> {
+    fn tried(&self, tension: f64, speed: f64) -> Result<Configuration, Box<(Miss, Option<Configuration>)>> {
         let found = Solver::new(&self.set.arm(tension, speed), Options { tol: self.tol }).and_then(|mut s| s.solve());
         found.map_err(|error| match error {
             SolveError::NoEquilibrium(no) => {
                 let angle = no.last_good.as_ref().map_or(0.0, tip_angle);
-                (Miss { angle, why: no.verdict.kind.name() }, no.last_good)
+                Box::new((Miss { angle, why: no.verdict.kind.name() }, no.last_good))
             }
-            SolveError::Arm(_) | SolveError::Option { .. } => (Miss { angle: 0.0, why: "no_arm" }, None),
+            SolveError::Arm(_) | SolveError::Option { .. } => Box::new((Miss { angle: 0.0, why: "no_arm" }, None)),
         })
     }
 
@@ -260,7 +260,10 @@ impl Bench<'_> {
         for _ in 0..DOUBLINGS {
             let (shape, miss) = match self.tried(tension, SPEEDS[0]) {
                 Ok(shape) => (Some(shape), None),
-                Err((miss, last)) => (last, Some(miss)),
+                Err(failed) => {
+                    let (miss, last) = *failed;
+                    (last, Some(miss))
+                }
             };
             // Where the tension has no shape, the one just below its limit may be turned far enough.
             if let Some(shape) = shape {
