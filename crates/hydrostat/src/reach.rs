@@ -166,10 +166,10 @@ impl Arm {
     /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
     /// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
     /// arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)));
-    /// let found = arm.reach_by_strokes(&[Target::tip(0.20, 0.08)], &ReachOptions::default())?;
+    /// let found = arm.reach_by_strokes(&[Target::tip(0.182, 0.078)], &ReachOptions::default())?;
     /// let best = &found.solutions[0].configuration;
     /// assert!(best.arm.cables.iter().all(|cable| cable.stroke.is_some()));
-    /// assert!((best.tip().x - 0.20).hypot(best.tip().y - 0.08) < 1e-8);
+    /// assert!((best.tip().x - 0.182).hypot(best.tip().y - 0.078) < 1e-8);
     /// # Ok::<(), hydrostat::ReachError>(())
     /// ```
     pub fn reach_by_strokes(&self, targets: &[Target], options: &ReachOptions) -> Result<Reach, ReachError> {

@@ -40,7 +40,7 @@ fn distance(lines: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> f64 {
 /// Without folds the image of the box is what its edges enclose: tips of tensions inside are inside, to what chords cut off.
 #[test]
 fn the_edges_enclose_all_tips() {
-    const MOST: f64 = 0.4;
+    const MOST: f64 = 0.2;
     let arm = cone();
     let boundary = arm.reachable(&options(MOST)).unwrap();
     assert!(boundary.pieces.iter().all(|piece| matches!(piece.kind, BoundaryKind::Edge(_))));
@@ -78,15 +78,12 @@ fn the_edges_enclose_all_tips() {
     }
 }
 
-/// On a fold the tip's derivatives by the two tensions are parallel, and a step across it in the tensions leads back to the same side.
+/// On a fold the tip's derivatives by the two tensions are parallel.
 #[test]
 fn folds_are_where_two_cables_move_the_tip_alike() {
-    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
-    arm.cables.push(Cable::new("long", Profile::linear(0.005, 0.001)));
-    arm.cables.push(Cable::new("short", Profile::linear(0.006, 0.003)).ending_at(0.5));
-    arm.flow.speed = 0.1;
-    arm.flow.direction = 2.0;
-    let boundary = arm.reachable(&options(0.5)).unwrap();
+    // Curled by more than a turn, the tip goes back and forth.
+    let arm = cone();
+    let boundary = arm.reachable(&BoundaryOptions { spacing: 0.03, ..options(0.5) }).unwrap();
     let folds: Vec<_> = boundary.pieces.iter().filter(|piece| matches!(piece.kind, BoundaryKind::Fold(_))).collect();
     let count: usize = folds.iter().map(|piece| piece.points.len()).sum();
     println!("{} folds, {count} points", folds.len());

@@ -231,53 +231,6 @@ fn a_target_that_cannot_be_followed_is_said() {
     assert!(matches!(follower.follow(&station), Err(ReachError::Target)));
 }
 
-/// An arm that a stream from ahead keeps curled, until it lets go: the tips of the same slow pull before and after that are further
-/// apart than any small change leads, and where the follower gets to the later one it says that it jumped.
-#[test]
-fn a_jump_to_another_branch_is_named() {
-    let mut arm = cone();
-    arm.flow.speed = 0.2;
-    arm.flow.direction = std::f64::consts::PI;
-    arm.flow.density = 1022.0;
-    // The snap of a slow pull, from solves that know nothing of targets.
-    let mut solver = Solver::new(&arm, Options { tol: 1e-9 }).unwrap();
-    let mut before: Option<([f64; 2], Target)> = None;
-    let mut leap = None;
-    for k in 0..=300 {
-        let tensions = [0.002 * f64::from(k), 0.0];
-        solver.set_tensions(&tensions).unwrap();
-        let Ok(answer) = solver.update() else {
-            before = None;
-            continue;
-        };
-        let target = Target::tip(answer.tip.x, answer.tip.y);
-        if let Some((from, last)) = before
-            && (target.x - last.x).hypot(target.y - last.y) > 0.2 * arm.length
-        {
-            leap = Some((from, last, target));
-            break;
-        }
-        before = Some((tensions, target));
-    }
-    let (from, last, beyond) = leap.expect("the arm snaps on the way to 0.6 N");
-    println!("from {from:?} N, ({}, {}) to ({}, {}) m", last.x, last.y, beyond.x, beyond.y);
-    arm.set_tensions(&from).unwrap();
-    let mut follower = Follower::new(&arm, &[last], &options(0.8)).unwrap();
-    let here = follower.follow(&[last]).unwrap();
-    assert!(here.reached && !here.jumped, "{here:?}");
-    let mut jumped = false;
-    for share in [0.25, 0.5, 0.75, 1.0] {
-        let [x, y] = [last.x + share * (beyond.x - last.x), last.y + share * (beyond.y - last.y)];
-        let found = follower.follow(&[Target::tip(x, y)]).unwrap();
-        println!("{share}: {found:?}");
-        jumped |= found.jumped;
-        if found.reached && share == 1.0 {
-            assert!(jumped, "it got across the snap without saying so: {found:?}");
-        }
-    }
-    assert!(jumped, "the arm leapt and the follower never said so");
-}
-
 #[test]
 fn strokes_that_are_found_lead_to_the_target() {
     let mut arm = cone();

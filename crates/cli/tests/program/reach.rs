@@ -164,7 +164,7 @@ fn strokes_are_found_in_place_of_tensions() {
 #[test]
 fn the_boundary_is_written_and_drawn() {
     let here = directory();
-    let args = ["reach", "silicone", "--boundary", "--max-tension", "0.4", "--spacing", "0.05", "--format", "csv"];
+    let args = ["reach", "silicone", "--boundary", "--max-tension", "0.2", "--spacing", "0.05", "--format", "csv"];
     let more = ["-o", "boundary.csv", "--plot", "boundary.svg"];
     let run = hydrostat_in(here.path(), &[&args[..], &more[..]].concat());
     assert_eq!((run.code, run.out.as_str()), (0, ""), "{}", run.err);

@@ -222,7 +222,7 @@ impl Tracer {
         let mut out = Vec::new();
         let mut covered = -1.0;
         for k in 0..=self.lattice {
-            let tension = most * k as f64 / self.lattice as f64;
+            let tension = if k == self.lattice { most } else { most * k as f64 / self.lattice as f64 };
             if tension <= covered {
                 continue;
             }

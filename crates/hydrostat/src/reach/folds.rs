@@ -41,8 +41,9 @@ impl Tracer {
     /// Tensions at shares of the largest in a face.
     pub(super) fn in_face(&self, [f, g]: [usize; 2], corner: &[f64], share: [f64; 2]) -> Vec<f64> {
         let mut tensions = corner.to_vec();
-        tensions[f] = share[0] * self.search.most[f];
-        tensions[g] = share[1] * self.search.most[g];
+        for (c, share) in [f, g].into_iter().zip(share) {
+            tensions[c] = (share * self.search.most[c]).min(self.search.most[c]);
+        }
         tensions
     }
 
