@@ -29,6 +29,7 @@ const TOL: f64 = 1e-9;
 /// # Errors
 /// What cannot be written.
 pub fn write(folder: &Path, drawn: &[Found], scopes: &[Vec<Found>; 2]) -> anyhow::Result<String> {
+    std::fs::create_dir_all(folder)?;
     let [highest, every] = scopes;
     let text = summary(drawn, scopes);
     write_whole(folder.join("summary.txt"), text.as_bytes())?;
@@ -43,7 +44,7 @@ pub fn write(folder: &Path, drawn: &[Found], scopes: &[Vec<Found>; 2]) -> anyhow
             let shape = Solver::new(&arm, Options { tol: TOL })?.solve()?;
             write_whole(folder.join(format!("shape-{name}.svg")), arm_figure(&shape, None).svg().as_bytes())?;
             write_whole(folder.join(format!("best-{name}.toml")), arm_to_toml(&arm).as_bytes())?;
-            let table = verification(&best.set, tension)?;
+            let table = verification(&best.set, tension);
             write_whole(folder.join(format!("streams-{name}.csv")), table.as_bytes())?;
         }
     }

@@ -44,3 +44,30 @@ fn a_sample_is_drawn_judged_and_written() {
     assert_eq!(columns, [columns[0]; 3]);
     assert!(report::summary(&drawn, &[best, Vec::new()]).contains("48 sets drawn"));
 }
+
+/// What `README.md` says of the best set that was found.
+#[test]
+fn the_best_set_satisfies_all_statements_at_the_highest_tension() {
+    let best = Set::at([
+        0.8366335437822292,
+        0.5828139659889706,
+        0.8839424016398517,
+        0.3342560816012373,
+        0.2822988894703691,
+        0.3447374530703535,
+        0.868248457627083,
+        0.2000758311570571,
+        0.015290994779206812,
+        0.12810880882898346,
+        0.3007860942161642,
+        0.17672896676231176,
+        0.7003339064540341,
+    ]);
+    let judged = judge(&best, 1e-9).unwrap();
+    println!("{judged:?}");
+    assert!(judged.failing(false).is_empty(), "{:?}", judged.failing(false));
+    assert!((judged.tension - 53.246).abs() < 0.01 && judged.fold_margin > 0.45);
+    assert_eq!((judged.growing, judged.smaller), (1.0, 1.0));
+    // Pulled less, its base is sheared by the stream as that of other arms.
+    assert!(judged.failing(true).contains(&Statement::LocallySmaller));
+}
