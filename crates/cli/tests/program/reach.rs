@@ -79,13 +79,12 @@ fn wrong_requests_say_what_is_wrong() {
 
 /// A loop of tips that tensions on a circle lead to, as CSV in mm.
 fn path_of_targets(count: u32) -> String {
-    let mut out = "# tips in mm\nx_mm,y_mm\n".to_owned();
-    for k in 0..count {
+    let row = |k: u32| {
         let angle = f64::from(k) * std::f64::consts::TAU / f64::from(count);
         let [x, y] = tip(&format!("{},{}", 0.2 + 0.05 * angle.cos(), 0.15 + 0.05 * angle.sin()));
-        out.push_str(&format!("{:?},{:?}\n", 1e3 * x, 1e3 * y));
-    }
-    out
+        format!("{:?},{:?}\n", 1e3 * x, 1e3 * y)
+    };
+    "# tips in mm\nx_mm,y_mm\n".to_owned() + &(0..count).map(row).collect::<String>()
 }
 
 fn along<'a>(file: &'a str, more: &[&'a str]) -> Vec<&'a str> {
