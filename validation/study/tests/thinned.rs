@@ -47,6 +47,7 @@ fn a_sample_is_drawn_judged_and_written() {
 
 /// What `README.md` says of the best set that was found.
 #[test]
+#[expect(clippy::unreadable_literal, reason = "coordinates as the search found them")]
 fn the_best_set_satisfies_all_statements_at_the_highest_tension() {
     let best = Set::at([
         0.8366335437822292,
