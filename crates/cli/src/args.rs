@@ -15,7 +15,7 @@ pub(crate) use equilibria::{EquilibriaArgs, Over};
 pub(crate) use identify::IdentifyArgs;
 pub(crate) use path::PathArgs;
 pub(crate) use plot::PlotArgs;
-pub(crate) use reach::ReachArgs;
+pub(crate) use reach::{By, Point, ReachArgs};
 pub(crate) use sweep::SweepArgs;
 
 const EXIT: &str = "\
@@ -64,7 +64,7 @@ pub(crate) enum Command {
     Path(PathArgs),
     /// Find all equilibria under the same loads, with their stability
     Equilibria(EquilibriaArgs),
-    /// Find the tensions that bring the tip to a place
+    /// Find the tensions that bring the tip to a place or along a path, or what bounds the places it reaches
     Reach(ReachArgs),
     /// Find parameters of an arm from measured shapes, with intervals and what the data cannot tell
     Identify(Box<IdentifyArgs>),

@@ -1,9 +1,11 @@
 //! One file a command.
 
 pub(crate) mod arms;
+mod boundary;
 pub(crate) mod check;
 pub(crate) mod equilibria;
 pub(crate) mod figures;
+mod follow;
 pub(crate) mod identify;
 mod limits;
 pub(crate) mod main_job;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use hydrostat::{PathError, ReachError, SensitivityError, SolveError};
 use hydrostat_figures::source::StudyError;
-use hydrostat_files::{FileError, FitKeyError, MeasurementsError, WriteError};
+use hydrostat_files::{FileError, FitKeyError, MeasurementsError, TargetsError, WriteError};
 use hydrostat_identify::{IdentifyError, Trial};
 use hydrostat_sweep::SweepError;
 
@@ -84,7 +84,7 @@ fn code(error: &anyhow::Error) -> u8 {
         if let Some(error) = cause.downcast_ref::<IdentifyError>() {
             return code_of_fit(error);
         }
-        if cause.is::<MeasurementsError>() || cause.is::<FitKeyError>() {
+        if cause.is::<MeasurementsError>() || cause.is::<FitKeyError>() || cause.is::<TargetsError>() {
             return WRONG_REQUEST;
         }
         if cause.is::<WrongRequest>() || cause.is::<FileError>() || cause.is::<WriteError>() {

@@ -5,12 +5,13 @@
 //! outlines before either is made; that also needs no font on the machine that shows the figure.
 //!
 //! [`arm_figure`] draws one configuration to scale, [`path_shapes_figure`] and [`equilibria_figure`]
-//! several; [`path_figure`] and [`over_figure`] draw a [`Quantity`] over a parameter; [`map_figure`], [`workspace_figure`] and
+//! several, [`boundary_figure`] what bounds the places of a tip; [`path_figure`] and [`over_figure`] draw a [`Quantity`] over a parameter; [`map_figure`], [`workspace_figure`] and
 //! [`curve_figure`] draw a sweep, [`fit_figure`] a fit beside its data, and [`lines_figure`] whatever numbers are compared. [`source`] solves what the source's Fig. 1
 //! shows, judges what its text says about it, and draws the three parts.
 
 mod arm_figure;
 mod axes;
+mod boundary;
 mod chart;
 mod fit;
 mod font;
@@ -31,6 +32,7 @@ mod tip_labels;
 
 pub use arm_figure::{arm_figure, reach_figure};
 pub use axes::Scale;
+pub use boundary::boundary_figure;
 pub use chart::{Abscissa, over_figure, path_figure};
 pub use fit::{FittedCase, fit_figure};
 pub use lines::{Measure, Panel, lines_figure};

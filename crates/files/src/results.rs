@@ -3,7 +3,7 @@
 //! Numbers are written with the fewest digits that read back as the same number. What is not
 //! finite is `null` in JSON and an empty field in CSV.
 
-use hydrostat::{CableState, Configuration, NoEquilibrium, Stability, Stations, Verdict, Warning, Wrench};
+use hydrostat::{CableState, Configuration, NoEquilibrium, Stability, Stations, Tip, Verdict, Warning, Wrench};
 use serde::Serialize;
 
 use crate::equilibria::Others;
@@ -144,8 +144,13 @@ struct VerdictOut {
 
 impl TipOut {
     pub(crate) fn new(configuration: &Configuration) -> Self {
-        let tip = configuration.tip();
-        Self { x: tip.x, y: tip.y, theta: tip.theta, alpha: tip.alpha }
+        configuration.tip().into()
+    }
+}
+
+impl From<Tip> for TipOut {
+    fn from(Tip { x, y, theta, alpha }: Tip) -> Self {
+        Self { x, y, theta, alpha }
     }
 }
 

@@ -4,10 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hydrostat::VerdictKind::{CableFold, LimitPoint, LoadJump, NoSectionSolution, NotFound, SectionCrushed};
 use hydrostat::parameter::names;
-use hydrostat::{Arm, Cable, Event, PathEnd, PathOptions, Phase, Reach, ReachOptions, Stations, Target};
+use hydrostat::{
+    Arm, Boundary, BoundaryOptions, Cable, Event, Follower, PathEnd, PathOptions, Phase, Reach, ReachOptions, Stations,
+    Target,
+};
 use hydrostat_files::{
-    ArmFile, Dimension, EquilibriaDocument, OverDocument, PathDocument, ReachDocument, Varied, over_csv, path_csv,
-    reach_csv, schema, stations_csv,
+    ArmFile, BoundaryDocument, Dimension, EquilibriaDocument, FollowedDocument, OverDocument, PathDocument,
+    ReachDocument, Varied, boundary_csv, followed_csv, over_csv, path_csv, reach_csv, schema, stations_csv,
 };
 use serde_json::Value;
 
@@ -148,16 +151,24 @@ fn its_keys_are_those_of_the_documents() {
     let searches = [(0.0, Ok(all.clone())), (0.01, Err("none".to_owned()))];
     let far = Target::tip(0.3, 0.0);
     let found = arm.reach(&[far], &ReachOptions { max_tension: Some(0.1), ..ReachOptions::default() }).unwrap();
+    let mut follower = Follower::new(&arm, &[far], &ReachOptions::default()).unwrap();
+    let rows = [(far, follower.follow(&[far]).unwrap())];
+    let options = BoundaryOptions { max_tension: Some(0.1), spacing: 0.1, ..BoundaryOptions::default() };
+    let boundary = arm.reachable(&options).unwrap();
     let documents = [
         serde_json::to_value(PathDocument::new(&path, &varied).unwrap()).unwrap(),
         serde_json::to_value(EquilibriaDocument::new(&arm, &all)).unwrap(),
         serde_json::to_value(OverDocument::new(&arm, &varied, &searches)).unwrap(),
         serde_json::to_value(ReachDocument::new(&arm, &found)).unwrap(),
+        serde_json::to_value(FollowedDocument::new(&arm, &rows)).unwrap(),
+        serde_json::to_value(BoundaryDocument::new(&arm, &boundary)).unwrap(),
     ];
     let here = PAGE.split_once("## `--format json`").unwrap().1;
     let mut inner = vec![&documents[0]["branches"][0], &documents[0]["branches"][0]["points"][0]];
     inner.extend([&documents[1]["equilibria"][0]["stability"], &documents[2]["values"][0]]);
     inner.extend([&documents[3]["closest"], &documents[3]["closest"]["bounds"][0]]);
+    inner.extend([&documents[4]["points"][0], &documents[4]["points"][0]["target"]]);
+    inner.extend([&documents[5]["pieces"][0], &documents[5]["pieces"][0]["points"][0]]);
     for document in documents.iter().chain(inner) {
         for key in document.as_object().unwrap().keys() {
             assert!(here.contains(&format!("`{key}`")), "{key}");
@@ -169,7 +180,9 @@ fn its_keys_are_those_of_the_documents() {
 #[test]
 fn its_names_are_those_of_the_results() {
     let header = stations_csv(&Stations::default());
-    assert_eq!(blocks("csv"), [header, path_header(), over_header(), reach_header()]);
+    let reached = [reach_header(), followed_csv(1, &[]), boundary_csv(1, &Boundary { pieces: Vec::new() })];
+    assert_eq!(blocks("csv")[..3], [header, path_header(), over_header()]);
+    assert_eq!(blocks("csv")[3..], reached);
     for name in names() {
         assert!(PAGE.contains(&format!("`{name}`")), "{name}");
     }

@@ -170,7 +170,10 @@ pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
 pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub use profile::{Point, Profile, Sample};
-pub use reach::{Bound, Followed, Follower, Reach, ReachError, ReachOptions, Reached, Target};
+pub use reach::{
+    Bound, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, Followed, Follower, Reach,
+    ReachError, ReachOptions, Reached, Target,
+};
 pub use readings::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength};
 pub use sensitivity::{
     Ellipse, PoseChange, SensitiveStation, Sensitivities, SensitivityError, SensitivityMethod, SensitivityOptions,

@@ -232,6 +232,44 @@ fn a_target_that_cannot_be_followed_is_said() {
 }
 
 #[test]
+fn strokes_that_are_found_lead_to_the_target() {
+    let mut arm = cone();
+    let mut short = Cable::new("short", Profile::linear(0.006, 0.003));
+    (short.end, short.stiffness) = (0.6, Some(20.0));
+    arm.cables.push(short);
+    arm.flow.speed = 0.05;
+    for tensions in [[0.2, 0.1, 0.1], [0.0, 0.3, 0.0], [0.3, 0.0, 0.2]] {
+        let target = target_of(&arm, &tensions).unwrap();
+        let found = arm.reach_by_strokes(&[target], &options(0.6)).unwrap();
+        let best = found.solutions.iter().find(|one| one.on_the_path).unwrap();
+        assert!(best.configuration.arm.cables.iter().all(|cable| cable.stroke.is_some()));
+        // By strokes alone: the tensions that it comes with do not count.
+        let mut commanded = best.configuration.arm.clone();
+        commanded.cables.iter_mut().for_each(|cable| cable.tension = 0.0);
+        let shape = commanded.solve().unwrap();
+        let off = (shape.tip().x - target.x).hypot(shape.tip().y - target.y) / arm.length;
+        assert!(off < 3e-8, "{tensions:?}: {off:e} L");
+        for (state, tension) in shape.cables.iter().zip(&best.tensions) {
+            assert!((state.tension - tension).abs() < 1e-5, "{tensions:?}: {state:?} for {tension} N");
+        }
+    }
+}
+
+#[test]
+fn the_tip_section_is_turned_by_one_cable() {
+    let arm = cone();
+    let mut pulled = arm.clone();
+    pulled.cables[1].tension = 0.4;
+    let alpha = pulled.solve().unwrap().tip().alpha;
+    let found = arm.reach_tip_angle(1, alpha, &options(0.8)).unwrap();
+    assert_eq!(found.solutions[0].tensions[0], 0.0);
+    assert!((found.solutions[0].tensions[1] - 0.4).abs() < 1e-6, "{:?}", found.solutions[0].tensions);
+    let missed = arm.reach_tip_angle(0, alpha, &options(0.4)).unwrap();
+    assert!(missed.solutions.is_empty(), "the other cable turns it the other way");
+    assert!(matches!(arm.reach_tip_angle(2, alpha, &options(0.4)), Err(ReachError::Sensitivity(_))));
+}
+
+#[test]
 fn wrong_requests_are_refused() {
     let arm = cone();
     let target = [Target::tip(0.2, 0.05)];

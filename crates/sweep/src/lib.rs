@@ -22,4 +22,5 @@ pub use column::{Column, Data, NO_ARM, Output};
 pub use error::SweepError;
 pub use plan::{Plan, PlanError, Sample};
 pub use run::{Format, NOTE, Shard, Summary, Sweep, SweepOptions};
+pub use sobol::Sobol;
 pub use table::{Table, VariedKey, names, varied_keys};

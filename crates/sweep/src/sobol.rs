@@ -32,19 +32,35 @@ pub(crate) const DIMENSIONS: usize = 16;
 /// The most rows.
 pub(crate) const MOST: u64 = 1 << BITS;
 
-/// Direction numbers of the first dimensions.
+/// The sequence in its first dimensions.
+///
+/// ```
+/// use hydrostat_sweep::Sobol;
+///
+/// let points = Sobol::new(2, 7); // two coordinates, seed 7
+/// let left = (0..64).filter(|index| points.point(*index)[0] < 0.5).count();
+/// assert_eq!(left, 32, "half of them in each half");
+/// ```
 #[derive(Debug, Clone)]
-pub(crate) struct Sobol {
+pub struct Sobol {
     directions: Vec<[u32; BITS]>,
     shifts: Vec<u32>,
 }
 
 impl Sobol {
-    /// Of at most [`DIMENSIONS`].
-    pub(crate) fn new(dimensions: usize, seed: u64) -> Self {
+    /// Coordinates that a point can have.
+    pub const MOST_DIMENSIONS: usize = DIMENSIONS;
+
+    /// Of at most [`Sobol::MOST_DIMENSIONS`], others are left out; the digits are shifted by what `seed` draws.
+    pub fn new(dimensions: usize, seed: u64) -> Self {
         let directions = (0..dimensions.min(DIMENSIONS)).map(directions).collect();
         let shifts = (0..dimensions as u64).map(|d| (hash(seed, d, 0) >> 32) as u32).collect();
         Self { directions, shifts }
+    }
+
+    /// Point `index` (below 2^32), coordinates in (0, 1).
+    pub fn point(&self, index: u64) -> Vec<f64> {
+        (0..self.directions.len()).map(|dimension| self.at(dimension, index)).collect()
     }
 
     /// Coordinate `dimension` of point `index`, in (0, 1).

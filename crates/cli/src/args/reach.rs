@@ -3,23 +3,24 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::Args as ClapArgs;
+use clap::{Args as ClapArgs, ValueEnum};
 use hydrostat_files::Dimension;
 
 use super::{ArmArgs, Format, STABLE, picture};
 
 const EXIT: &str = "\
 Exit status:
-  0  reached
+  0  reached (with --path every target; with --boundary always)
   2  the request is wrong: arguments, arm file, an output path that cannot be written
   3  not reached: the closest that was found is written
   1  anything else";
 
-/// Finds the tensions that bring the tip, or another station, to a place.
+/// Finds the tensions that bring the tip, or another station, to a place, or along a path of places; or what bounds the
+/// places that the tip reaches.
 ///
 /// Every cable is pulled, with 0 to its largest tension; tensions and strokes of the arm file do not count. Several
 /// solutions are listed by effort, the sum of the squares of the tensions. With three or more cables each is the one of least
-/// effort nearby.
+/// effort nearby. A path is followed from target to target, from the tensions of the last.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\
 Examples:
@@ -27,6 +28,9 @@ Examples:
   hydrostat reach silicone --target \"150 mm,120 mm\" --plot reached.svg
   hydrostat reach paper --target 0.12,0.05 --station 0.15 --flow-speed 0.2
   hydrostat reach multi-bending --target 0.3,0.1 --angle \"30 deg\"
+  hydrostat reach silicone --target 0.182,0.078 --by strokes
+  hydrostat reach silicone --path targets.csv --max-tension \"0.6 N\" --format csv -o followed.csv
+  hydrostat reach silicone --boundary --max-tension \"0.6 N\" --plot boundary.svg --format csv -o boundary.csv
 
 {STABLE}
 
@@ -35,29 +39,49 @@ pub(crate) struct ReachArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
     /// Where the place of the arm is to be, m; as in 0.12,0.05 or "12 cm,50 mm"
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    pub(crate) target: Point,
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, group = "what", required_unless_present_any = ["path", "boundary"])]
+    pub(crate) target: Option<Point>,
+    /// Follow targets one after the other: a CSV file with columns x_m,y_m (or x_mm,y_mm) and, if it matters, angle_deg
+    #[arg(long, value_name = "FILE", group = "what")]
+    pub(crate) path: Option<PathBuf>,
+    /// Trace what bounds the places of the tip: tensions at their bounds, folds, and tensions without equilibrium
+    #[arg(long, group = "what")]
+    pub(crate) boundary: bool,
     /// Angle of the section there from e1, deg, if it matters
-    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true, requires = "target")]
     pub(crate) angle: Option<f64>,
     /// Which place, m along the arm, in place of the tip
-    #[arg(long, value_name = "S", value_parser = length, allow_hyphen_values = true)]
+    #[arg(long, value_name = "S", value_parser = length, allow_hyphen_values = true, conflicts_with = "boundary")]
     pub(crate) station: Option<f64>,
+    /// What holds the cables of what is found: their tensions, or the strokes that these make
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t, requires = "target")]
+    pub(crate) by: By,
     /// The largest tension of every cable, N; those of the arm file hold too
     #[arg(long, value_name = "T", value_parser = force, allow_hyphen_values = true)]
     pub(crate) max_tension: Option<f64>,
-    /// Distance over the length at which the target is reached, from 1e-10 to 1e-2
-    #[arg(long, value_name = "TOL", default_value = "1e-8", allow_hyphen_values = true)]
-    pub(crate) tol: f64,
-    /// text: a table; json: everything but the shapes; csv: a row a solution
+    /// Distance over the length at which a target is reached, from 1e-10 to 1e-2; with --boundary the error of tips, from 1e-9 to 1e-3
+    #[arg(long, value_name = "TOL", allow_hyphen_values = true)]
+    pub(crate) tol: Option<f64>,
+    /// Distance of the points of a boundary over the length, from 0.001 to 0.1
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true, requires = "boundary")]
+    pub(crate) spacing: Option<f64>,
+    /// text: a table; json: everything but the shapes; csv: a row a solution, a target or a point
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) format: Format,
     /// Write the result to FILE in place of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw the arm at the first solution, or at the closest, with the target; FILE ends in .svg or .png
-    #[arg(long, value_name = "FILE", value_parser = picture)]
+    /// Draw the arm at the first solution, or at the closest, with the target; or the boundary. FILE ends in .svg or .png
+    #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "path")]
     pub(crate) plot: Option<PathBuf>,
+}
+
+/// What holds cables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum By {
+    #[default]
+    Tensions,
+    Strokes,
 }
 
 /// A place in the plane, m.

@@ -1,29 +1,38 @@
 //! `hydrostat reach`: the tensions that bring the arm to a place.
 
-use hydrostat::{Arm, Bound, Reach, ReachOptions, Reached, Target};
+use hydrostat::{Arm, Bound, CableState, Reach, ReachOptions, Reached, Target};
 use hydrostat_figures::reach_figure;
 use hydrostat_files::{ReachDocument, number, reach_csv};
 
 use super::NoAnswer;
 use super::table::{TIP, stability_words, table, tip_cells};
-use crate::args::{Format, ReachArgs};
+use super::{boundary, follow};
+use crate::args::{By, Format, Point, ReachArgs};
 use crate::output;
 use crate::request;
 
 pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
     let arm = request::arm(&args.arm)?;
     request::check_outputs(&[("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())])?;
-    let [x, y] = args.target.0;
+    let Some(Point([x, y])) = args.target else {
+        return match &args.path {
+            Some(path) => follow::run(&arm, path, args),
+            None => boundary::run(&arm, args),
+        };
+    };
     let target = Target { s: args.station, angle: args.angle, ..Target::tip(x, y) };
-    let options = ReachOptions { max_tension: args.max_tension, tol: args.tol, all: true };
-    let found = arm.reach(&[target], &options)?;
+    let options = options(args);
+    let found = match args.by {
+        By::Tensions => arm.reach(&[target], &options)?,
+        By::Strokes => arm.reach_by_strokes(&[target], &options)?,
+    };
     let best = found.solutions.first().or(found.closest.as_ref());
     if let (Some(file), Some(best)) = (&args.plot, best) {
         let note = found.closest.as_ref().map(|closest| miss(&arm, closest));
         output::draw(&reach_figure(&best.configuration, &[[x, y]], note.as_deref()), file)?;
     }
     let text = match args.format {
-        Format::Text => summary(&arm, &found),
+        Format::Text => summary(&arm, &found, args.by),
         Format::Json => output::line(ReachDocument::new(&arm, &found).to_json()?),
         Format::Csv => reach_csv(arm.cables.len(), &found),
     };
@@ -38,9 +47,18 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
     }
 }
 
+pub(super) fn options(args: &ReachArgs) -> ReachOptions {
+    ReachOptions { max_tension: args.max_tension, tol: args.tol.unwrap_or(ReachOptions::default().tol), all: true }
+}
+
 /// By how much the closest misses.
 fn miss(arm: &Arm, closest: &Reached) -> String {
     format!("the closest that was found is off by {} mm", number(1e3 * closest.distance * arm.length))
+}
+
+/// The stroke to command, m.
+fn stroke(cable: &CableState) -> f64 {
+    cable.command.map_or(cable.stroke, |command| command.stroke)
 }
 
 fn bound_words(arm: &Arm, bound: Bound) -> String {
@@ -50,13 +68,16 @@ fn bound_words(arm: &Arm, bound: Bound) -> String {
     }
 }
 
-fn summary(arm: &Arm, found: &Reach) -> String {
+fn summary(arm: &Arm, found: &Reach, by: By) -> String {
     let mut out = match found.solutions.len() {
         0 => format!("{}: not reached, the closest is\n\n", arm.name),
         1 => format!("{}: 1 solution\n\n", arm.name),
         count => format!("{}: {count} solutions, least effort first\n\n", arm.name),
     };
     let mut head: Vec<String> = arm.cables.iter().map(|cable| format!("{} (N)", cable.name)).collect();
+    if by == By::Strokes {
+        head.extend(arm.cables.iter().map(|cable| format!("{} (mm)", cable.name)));
+    }
     head.push("effort (N2)".to_owned());
     head.extend(TIP.map(str::to_owned));
     head.push("off (mm)".to_owned());
@@ -64,6 +85,9 @@ fn summary(arm: &Arm, found: &Reach) -> String {
     let mut rows = vec![head];
     for one in found.solutions.iter().chain(&found.closest) {
         let mut row: Vec<String> = one.tensions.iter().map(|t| number(*t)).collect();
+        if by == By::Strokes {
+            row.extend(one.configuration.cables.iter().map(|cable| number(1e3 * stroke(cable))));
+        }
         row.push(number(one.effort));
         row.extend(tip_cells(&one.configuration));
         row.push(format!("{:.1e}", 1e3 * one.distance * arm.length));

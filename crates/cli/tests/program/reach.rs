@@ -76,3 +76,105 @@ fn wrong_requests_say_what_is_wrong() {
     assert!(refused(&reach("0.2,0", &["--angle", "3 mm"])).contains("3 mm"));
     assert!(refused(&["reach", "silicone"]).contains("--target"));
 }
+
+/// A loop of tips that tensions on a circle lead to, as CSV in mm.
+fn path_of_targets(count: u32) -> String {
+    let row = |k: u32| {
+        let angle = f64::from(k) * std::f64::consts::TAU / f64::from(count);
+        let [x, y] = tip(&format!("{},{}", 0.2 + 0.05 * angle.cos(), 0.15 + 0.05 * angle.sin()));
+        format!("{:?},{:?}\n", 1e3 * x, 1e3 * y)
+    };
+    "# tips in mm\nx_mm,y_mm\n".to_owned() + &(0..count).map(row).collect::<String>()
+}
+
+fn along<'a>(file: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let mut args = vec!["reach", "silicone", "--flow-speed", "0.05", "--max-tension", "0.5", "--path", file];
+    args.extend(more);
+    args
+}
+
+#[test]
+fn a_path_of_targets_is_followed() {
+    let here = directory();
+    std::fs::write(here.path().join("loop.csv"), path_of_targets(12)).unwrap();
+    let run = hydrostat_in(here.path(), &along("loop.csv", &[]));
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(run.out.starts_with("silicone: 12 of 12 targets reached, 0 jumps\n"), "{}", run.out);
+
+    let run = hydrostat_in(here.path(), &along("loop.csv", &["--format", "csv"]));
+    let (names, rows) = columns(&run.out);
+    let column = |name: &str| names.iter().position(|own| *own == name).unwrap();
+    assert_eq!(rows.len(), 12);
+    for (k, row) in rows.iter().enumerate() {
+        let angle = k as f64 * std::f64::consts::TAU / 12.0;
+        let left: f64 = row[column("tension[0]_N")].parse().unwrap();
+        assert!((left - 0.2 - 0.05 * angle.cos()).abs() < 1e-5, "{k}: {row:?}");
+        assert_eq!((row[column("reached")], row[column("jumped")]), ("true", "false"));
+    }
+
+    let document = json(&hydrostat_in(here.path(), &along("loop.csv", &["--format", "json"])).out);
+    assert_eq!((&document["reached"], &document["jumps"]), (&Value::from(true), &Value::from(0)));
+    assert_eq!(document["points"].as_array().unwrap().len(), 12);
+
+    // One that is out of reach: the others are there, and the status says so.
+    std::fs::write(here.path().join("far.csv"), path_of_targets(3) + "900,0\n").unwrap();
+    let run = hydrostat_in(here.path(), &along("far.csv", &["--format", "csv"]));
+    assert_eq!(run.code, 3, "{}", run.err);
+    assert!(run.err.contains("1 of 4 targets are not reached, the first is target 4"), "{}", run.err);
+    assert_eq!(columns(&run.out).1.len(), 4);
+}
+
+#[test]
+fn a_path_that_cannot_be_read_says_where() {
+    let here = directory();
+    for (text, words) in [
+        ("x_m,y_m\n0.2,0.05\n0.2\n", "targets.csv:3: expected 2 cells as in the header, found 1"),
+        ("x_m,y_ft\n0.2,0.05\n", "found the column \"y_ft\""),
+        ("x_m,y_m\n0.2,NaN\n", "targets.csv:2: y_m: expected a finite number, found \"NaN\""),
+    ] {
+        std::fs::write(here.path().join("targets.csv"), text).unwrap();
+        let run = hydrostat_in(here.path(), &along("targets.csv", &[]));
+        assert_eq!(run.code, 2, "{}", run.err);
+        assert!(run.err.contains(words), "{}", run.err);
+    }
+    assert!(refused(&along("nowhere.csv", &[])).contains("nowhere.csv: cannot be read"));
+    assert!(refused(&reach("0.2,0", &["--path", "targets.csv"])).contains("cannot be used with"));
+}
+
+#[test]
+fn strokes_are_found_in_place_of_tensions() {
+    let [x, y] = tip("0.3,0.1");
+    let target = format!("{x},{y}");
+    let document = json(&solved(&reach(&target, &["--by", "strokes", "--format", "json"])).out);
+    let best = &document["solutions"][0];
+    assert_eq!(best["on_the_path"], Value::from(true));
+    let strokes: Vec<String> =
+        best["cables"].as_array().unwrap().iter().map(|cable| cable["stroke"].to_string()).collect();
+    let mut args = vec!["solve".to_owned(), "silicone".to_owned(), "--format=json".to_owned()];
+    args.extend(strokes.iter().enumerate().map(|(c, stroke)| format!("--set=cable[{c}].stroke={stroke}")));
+    args.push("--flow-speed=0.05".to_owned());
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let again = json(&solved(&args).out);
+    let off = |axis: &str, value: f64| (again["tip"][axis].as_f64().unwrap() - value).abs();
+    assert!(off("x", x) < 1e-8 && off("y", y) < 1e-8, "{}", again["tip"]);
+    assert!(solved(&reach(&target, &["--by", "strokes"])).out.contains("left (mm)"));
+}
+
+#[test]
+fn the_boundary_is_written_and_drawn() {
+    let here = directory();
+    let args = ["reach", "silicone", "--boundary", "--max-tension", "0.2", "--spacing", "0.05", "--format", "csv"];
+    let more = ["-o", "boundary.csv", "--plot", "boundary.svg"];
+    let run = hydrostat_in(here.path(), &[&args[..], &more[..]].concat());
+    assert_eq!((run.code, run.out.as_str()), (0, ""), "{}", run.err);
+    let text = std::fs::read_to_string(here.path().join("boundary.csv")).unwrap();
+    let (names, rows) = columns(&text);
+    assert_eq!(&names[..5], ["piece", "kind", "cables", "tip_x_m", "tip_y_m"]);
+    assert!(rows.len() > 20 && rows.iter().all(|row| row[1] == "edge"), "{text}");
+    // Nothing pulls at the start of the first piece.
+    assert_eq!(rows[0][3..5].iter().map(|v| v.parse::<f64>().unwrap()).collect::<Vec<_>>(), [0.245, 0.0]);
+    assert!(std::fs::read_to_string(here.path().join("boundary.svg")).unwrap().starts_with("<svg"));
+    let document = json(&hydrostat_in(here.path(), &[&args[..7], &["--format", "json"]].concat()).out);
+    assert_eq!(document["pieces"].as_array().unwrap().len(), 4);
+    assert!(solved(&args[..7]).out.starts_with("silicone: the tip reaches x "));
+}

@@ -10,7 +10,7 @@ mod claims;
 mod tables;
 mod target;
 
-use hydrostat::{Arm, Configuration, Options, SolveError, Solver};
+use hydrostat::{Arm, Configuration, Options, ReachError, SolveError, Solver};
 
 use crate::scene::Scene;
 
@@ -50,6 +50,9 @@ pub enum StudyError {
         /// Why.
         source: Box<SolveError>,
     },
+    /// The tension cannot be looked for.
+    #[error(transparent)]
+    Reach(Box<ReachError>),
     /// No tension gives the published tip angle.
     #[error("no tension up to {largest} N turns the tip section by {TIP_ANGLE} deg; {angle} deg is reached")]
     NoTension {

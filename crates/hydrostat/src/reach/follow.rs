@@ -1,7 +1,8 @@
 //! Targets one after the other, each from the tensions of the last.
 
 use super::effort::dot;
-use super::{ReachError, ReachOptions, Reached, Search, State, Target};
+use super::search::{Goal, STILL, Search, State};
+use super::{ReachError, ReachOptions, Reached, Target};
 use crate::arm::Arm;
 use crate::configuration::Tip;
 use crate::sensitivity::SensitivityError;
@@ -63,7 +64,7 @@ impl Follower {
     /// # Errors
     /// [`ReachError`].
     pub fn new(arm: &Arm, targets: &[Target], options: &ReachOptions) -> Result<Self, ReachError> {
-        let search = Search::new(arm, targets, options)?;
+        let search = Search::new(arm, Goal::Places(targets.to_vec()), options)?;
         let own: Vec<f64> = arm.cables.iter().map(|cable| cable.tension).collect();
         let mut state = search.begin(&own)?;
         if state.distance() > search.tol {
@@ -84,11 +85,13 @@ impl Follower {
     /// [`ReachError::Target`] for other places, [`ReachError::Solve`] where the arm is lost.
     pub fn follow(&mut self, targets: &[Target]) -> Result<Followed, ReachError> {
         let places = |targets: &[Target]| targets.iter().map(|t| (t.s, t.angle.is_some())).collect::<Vec<_>>();
-        if places(targets) != places(&self.search.targets) || targets.iter().any(|t| !(t.x + t.y).is_finite()) {
-            return Err(ReachError::Target);
+        match &mut self.search.goal {
+            Goal::Places(own) if places(own) == places(targets) && targets.iter().all(|t| (t.x + t.y).is_finite()) => {
+                own.clear();
+                own.extend_from_slice(targets);
+            }
+            _ => return Err(ReachError::Target),
         }
-        self.search.targets.clear();
-        self.search.targets.extend_from_slice(targets);
         self.state.rest = self.search.rest(&self.state.solver);
         let sign = self.state.solver.engine.determinant().sign;
         let (mut jumped, mut solves, mut fresh) = (false, 0, false);
@@ -98,7 +101,7 @@ impl Follower {
             let to_least = self.search.towards_least_effort(&self.jacobian, &self.state);
             let next = to_least.unwrap_or_else(|| self.search.damped(&self.jacobian, &self.state, damping));
             let change: Vec<f64> = next.iter().zip(&self.state.tensions).map(|(a, b)| a - b).collect();
-            if self.search.change(&next, &self.state.tensions) < super::STILL {
+            if self.search.change(&next, &self.state.tensions) < STILL {
                 break;
             }
             let kept = self.state.tensions.clone();

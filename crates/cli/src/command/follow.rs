@@ -1,0 +1,62 @@
+//! `hydrostat reach --path`: targets one after the other.
+
+use std::path::Path;
+
+use hydrostat::{Arm, Followed, Follower, Target};
+use hydrostat_files::{FollowedDocument, followed_csv, number, read_targets};
+
+use super::NoAnswer;
+use super::reach::options;
+use super::table::table;
+use crate::args::{Format, ReachArgs};
+use crate::output;
+use crate::progress::Progress;
+
+pub(super) fn run(arm: &Arm, path: &Path, args: &ReachArgs) -> anyhow::Result<()> {
+    let targets = read_targets(path, args.station)?;
+    let mut follower = Follower::new(arm, &targets[..1], &options(args))?;
+    let mut progress = Progress::new();
+    let mut rows: Vec<(Target, Followed)> = Vec::with_capacity(targets.len());
+    for target in &targets {
+        progress.say(|| format!("target {} of {}", rows.len() + 1, targets.len()));
+        rows.push((*target, follower.follow(&[*target])?));
+    }
+    drop(progress);
+    let text = match args.format {
+        Format::Text => summary(arm, &rows),
+        Format::Json => output::line(FollowedDocument::new(arm, &rows).to_json()?),
+        Format::Csv => followed_csv(arm.cables.len(), &rows),
+    };
+    output::put(args.output.as_deref(), &text)?;
+    for (index, _) in rows.iter().enumerate().filter(|(_, (_, found))| found.jumped) {
+        eprintln!("warning: on the way to target {} the arm jumped to another branch of its equilibria", index + 1);
+    }
+    let missed: Vec<usize> = (0..rows.len()).filter(|k| !rows[*k].1.reached).collect();
+    match missed.first() {
+        Some(first) => {
+            let farthest = rows.iter().map(|(_, found)| found.distance).fold(0.0, f64::max);
+            let off = number(1e3 * farthest * arm.length);
+            let count = format!("{} of {} targets are not reached", missed.len(), rows.len());
+            Err(NoAnswer(format!("{count}, the first is target {}; the farthest is off by {off} mm", first + 1)).into())
+        }
+        None => Ok(()),
+    }
+}
+
+fn summary(arm: &Arm, rows: &[(Target, Followed)]) -> String {
+    let mut head: Vec<String> = ["target", "x (mm)", "y (mm)"].map(str::to_owned).into();
+    head.extend(arm.cables.iter().map(|cable| format!("{} (N)", cable.name)));
+    head.extend(["off (mm)", "reached", "jumped"].map(str::to_owned));
+    let yes = |flag: bool| if flag { "yes" } else { "no" }.to_owned();
+    let mut all = vec![head];
+    for (index, (target, found)) in rows.iter().enumerate() {
+        let mut row = vec![(index + 1).to_string(), number(1e3 * target.x), number(1e3 * target.y)];
+        row.extend(found.tensions.iter().map(|tension| number(*tension)));
+        row.push(format!("{:.1e}", 1e3 * found.distance * arm.length));
+        row.extend([yes(found.reached), yes(found.jumped)]);
+        all.push(row);
+    }
+    let jumps = rows.iter().filter(|(_, found)| found.jumped).count();
+    let reached = rows.iter().filter(|(_, found)| found.reached).count();
+    format!("{}: {reached} of {} targets reached, {jumps} jumps\n\n{}", arm.name, rows.len(), table(&all, 2))
+}

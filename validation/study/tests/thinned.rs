@@ -1,0 +1,74 @@
+//! The study on few sets: its answers are those of its parts.
+
+use hydrostat_study::{Drawn, Set, Statement, judge, refine, report, sample};
+
+/// The shipped arm `paper` as a set: what is known of it is found again.
+#[test]
+fn the_shipped_arm_is_judged_as_its_claims_are() {
+    let mut paper = Set::at([0.0; 13]);
+    (paper.slenderness, paper.taper) = (0.05, 0.08);
+    (paper.base_offset, paper.tip_offset) = (0.8, 0.125);
+    (paper.c1, paper.shear, paper.bending, paper.bending_taper) = (500e3, 1.0 / 3.0, 12.0, 0.0);
+    let judged = judge(&paper, 1e-9).unwrap();
+    println!("{judged:?}");
+    assert!((judged.tension - 86.24).abs() < 0.01, "{}", judged.tension);
+    let failing = judged.failing(true);
+    assert!(failing.contains(&Statement::LocallySmaller), "{failing:?}");
+    for held in [Statement::StraightTip, Statement::TipAngle, Statement::TipRises, Statement::DeformsLess] {
+        assert!(!failing.contains(&held), "{held:?}");
+    }
+    // Word by word, the base bends nothing without a stream: the angle is not reached, or more stream deforms more.
+    let literal = judge(&paper.with_unstrained_base(), 1e-8);
+    println!("{literal:?}");
+    assert!(literal.is_err() || !literal.unwrap().failing(true).is_empty());
+}
+
+#[test]
+fn a_sample_is_drawn_judged_and_written() {
+    let drawn = sample(48, 1, Drawn::Smooth, || ());
+    assert_eq!(drawn, sample(48, 1, Drawn::Smooth, || ()), "the same seed draws and judges the same");
+    let judged: Vec<_> = drawn.iter().filter_map(|one| one.outcome.ok()).collect();
+    assert!(judged.len() > 2 && judged.len() < 48, "{}", judged.len());
+    for one in &judged {
+        // What holds at every tension holds at the highest.
+        for (highest, every) in one.margins(false).iter().zip(one.margins(true)) {
+            assert!(every <= highest, "{one:?}");
+        }
+        assert!(one.failing(false).len() <= one.failing(true).len());
+    }
+    let before = drawn.iter().map(|one| one.shortfall(false)).fold(f64::INFINITY, f64::min);
+    let best = refine(&drawn, 2, 1, false, 2);
+    assert!(best[0].shortfall(false) <= before, "{} {before}", best[0].shortfall(false));
+    let csv = report::best_csv(&best, &[]);
+    let columns: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
+    assert_eq!(columns, [columns[0]; 3]);
+    assert!(report::summary(&drawn, &[best, Vec::new()]).contains("48 sets drawn"));
+}
+
+/// What `README.md` says of the best set that was found.
+#[test]
+#[expect(clippy::unreadable_literal, reason = "coordinates as the search found them")]
+fn the_best_set_satisfies_all_statements_at_the_highest_tension() {
+    let best = Set::at([
+        0.8366335437822292,
+        0.5828139659889706,
+        0.8839424016398517,
+        0.3342560816012373,
+        0.2822988894703691,
+        0.3447374530703535,
+        0.868248457627083,
+        0.2000758311570571,
+        0.015290994779206812,
+        0.12810880882898346,
+        0.3007860942161642,
+        0.17672896676231176,
+        0.7003339064540341,
+    ]);
+    let judged = judge(&best, 1e-9).unwrap();
+    println!("{judged:?}");
+    assert!(judged.failing(false).is_empty(), "{:?}", judged.failing(false));
+    assert!((judged.tension - 53.246).abs() < 0.01 && judged.fold_margin > 0.45);
+    assert_eq!((judged.growing, judged.smaller), (1.0, 1.0));
+    // Pulled less, its base is sheared by the stream as that of other arms.
+    assert!(judged.failing(true).contains(&Statement::LocallySmaller));
+}
