@@ -4,10 +4,12 @@ mod cables;
 mod commands;
 mod equilibria;
 mod formats;
+mod guide;
 mod paths;
 mod reach;
 mod refusals;
 mod sweeps;
+mod validate;
 mod verdicts;
 
 use std::path::Path;
