@@ -2,9 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use hydrostat::{
-    Arm, Configuration, EnteringSpeed, FlowSurface, Options, SolveError, Solver, Support, VerdictKind,
-};
+use hydrostat::{Arm, Configuration, EnteringSpeed, FlowSurface, Options, SolveError, Solver, Support, VerdictKind};
 use hydrostat_figures::{Measure, Panel, Scale, lines_figure};
 use hydrostat_files::ArmFile;
 use rayon::prelude::*;
@@ -135,7 +133,9 @@ pub fn ratios<'a>(compared: impl IntoIterator<Item = &'a Compared>) -> Vec<f64> 
     let mut ratios: Vec<f64> = compared
         .into_iter()
         .filter_map(|c| match c {
-            Compared::Solved { off, estimate, loose: false, unmet: false, .. } => Some(off.max(1e-11) / estimate.max(1e-11)),
+            Compared::Solved { off, estimate, loose: false, unmet: false, .. } => {
+                Some(off.max(1e-11) / estimate.max(1e-11))
+            }
             _ => None,
         })
         .collect();
@@ -169,11 +169,7 @@ fn against_references(section: &mut Section, scope: Scope, listener: &dyn Listen
         .collect();
     let origin = "validation/reference/cases.json: an independent program, Gauss collocation of order 9 to 10, to 1e-8 or better in 158 of the 163 and to \
                   8e-7 in the other five.";
-    let mut table = Table::new(
-        "Arms solved by an independent program, tol 1e-8",
-        origin,
-        &["what", "here"],
-    );
+    let mut table = Table::new("Arms solved by an independent program, tol 1e-8", origin, &["what", "here"]);
     let mut offs: Vec<f64> =
         compared.iter().filter_map(|c| if let Compared::Solved { off, .. } = c { Some(*off) } else { None }).collect();
     offs.sort_by(f64::total_cmp);
@@ -199,7 +195,9 @@ fn against_references(section: &mut Section, scope: Scope, listener: &dyn Listen
 
     let mut table = Table::new(
         "The arms that are furthest off, and all without an answer",
-        format!("{origin} An answer may be off by 3e-8 L or three estimates, along the arm by 100 times that; where the reading makes loads that jump, by 2e-4 L."),
+        format!(
+            "{origin} An answer may be off by 3e-8 L or three estimates, along the arm by 100 times that; where the reading makes loads that jump, by 2e-4 L."
+        ),
         &["arm", "tip off / L", "estimate / L", "shape off", "outcome"],
     );
     let mut order: Vec<usize> = (0..compared.len()).collect();
@@ -224,7 +222,8 @@ fn against_references(section: &mut Section, scope: Scope, listener: &dyn Listen
 
     let shares: Vec<[f64; 2]> =
         ratios.iter().enumerate().map(|(k, r)| [*r, 100.0 * (k + 1) as f64 / ratios.len() as f64]).collect();
-    let panel = Panel { up: Measure { title: "share of arms (%)".to_owned(), scale: Scale::Even }, lines: vec![shares] };
+    let panel =
+        Panel { up: Measure { title: "share of arms (%)".to_owned(), scale: Scale::Even }, lines: vec![shares] };
     let across = Measure { title: "true error / estimate".to_owned(), scale: Scale::Logarithmic };
     section.figure(
         "estimates",

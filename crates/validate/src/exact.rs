@@ -132,9 +132,12 @@ fn invariant() -> Table {
         "m^2/(2 EI) + n.a + (n.a)^2/(2 EA) + (n.b)^2/(2 GA) is the same at every s: a first integral of the equations with volume = none.",
         &["EA, GA (N)", "force (N)", "moment (N m)", "value at the tip", "largest change along 97 places"],
     );
-    for (ea, ga, force, moment) in
-        [(50.0, 20.0, [0.0, 3.0], 0.0), (50.0, 20.0, [2.0, 3.0], -2.0), (200.0, 8.0, [-1.0, 0.7], 1.0), (1e4, 1e4, [0.5, -9.0], 4.0)]
-    {
+    for (ea, ga, force, moment) in [
+        (50.0, 20.0, [0.0, 3.0], 0.0),
+        (50.0, 20.0, [2.0, 3.0], -2.0),
+        (200.0, 8.0, [-1.0, 0.7], 1.0),
+        (1e4, 1e4, [0.5, -9.0], 4.0),
+    ] {
         let mut arm = uniform_arm("invariant", ea, ga);
         arm.tip.force = force;
         arm.tip.moment = moment;
@@ -146,7 +149,9 @@ fn invariant() -> Table {
             })
         };
         let at_tip = value(1.0);
-        let off = (0..97).map(|k| (value(f64::from(k) / 97.0) - at_tip).abs()).fold(0.0, |a, b: f64| if b.is_nan() { b } else { a.max(b) });
+        let off = (0..97)
+            .map(|k| (value(f64::from(k) / 97.0) - at_tip).abs())
+            .fold(0.0, |a, b: f64| if b.is_nan() { b } else { a.max(b) });
         table.push(
             Row::new([
                 format!("{ea}, {ga}"),

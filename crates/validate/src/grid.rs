@@ -136,8 +136,12 @@ pub(crate) fn section(scope: Scope, listener: &dyn Listener) -> Section {
     cells.extend([total.to_string(), "100.00".to_owned()]);
     table.push(Row::new(cells).checked(Check::so(arms.len() == 4 && total > 0)));
     section.table(table);
-    let lost: Vec<&str> =
-        all.iter().zip(&outcomes).filter(|(_, o)| **o == Outcome::Lost).map(|((_, (label, _)), _)| label.as_str()).collect();
+    let lost: Vec<&str> = all
+        .iter()
+        .zip(&outcomes)
+        .filter(|(_, o)| **o == Outcome::Lost)
+        .map(|((_, (label, _)), _)| label.as_str())
+        .collect();
     if !lost.is_empty() {
         section.text(format!("Not found: {}.", lost.join("; ")));
     }

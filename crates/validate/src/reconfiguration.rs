@@ -82,7 +82,10 @@ pub(crate) fn section(scope: Scope) -> Section {
     let rigid = numbers.iter().map(|ca| [*ca, *ca]).collect();
     let limit = numbers.iter().filter(|ca| **ca >= 1.0).map(|ca| [*ca, settled[1] * ca.powf(2.0 / 3.0)]).collect();
     let panels = [
-        Panel { up: logarithmic("drag L²/EI"), lines: vec![solved.iter().map(|p| [p[0], p[1]]).collect(), rigid, limit] },
+        Panel {
+            up: logarithmic("drag L²/EI"),
+            lines: vec![solved.iter().map(|p| [p[0], p[1]]).collect(), rigid, limit],
+        },
         Panel { up: Measure { title: "exponent p".to_owned(), scale: Scale::Even }, lines: vec![shown] },
     ];
     section.figure(

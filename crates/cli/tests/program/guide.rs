@@ -48,7 +48,9 @@ fn played(text: &str, place: &Path) -> String {
     let mut lines = text.split_inclusive('\n');
     while let Some(line) = lines.next() {
         out.push_str(line);
-        let Some(language) = line.trim_end().strip_prefix("```").filter(|language| !language.is_empty()) else { continue };
+        let Some(language) = line.trim_end().strip_prefix("```").filter(|language| !language.is_empty()) else {
+            continue;
+        };
         let block: Vec<&str> = lines.by_ref().take_while(|line| line.trim_end() != "```").collect();
         match language {
             "console" => {

@@ -22,7 +22,9 @@ fn a_wrong_number_fails_one_check_and_the_program() {
     let page = std::fs::read_to_string(report.join("index.html")).unwrap();
     assert_eq!(page.matches(">FAILS<").count(), 1);
     assert!(page.matches(">holds<").count() > 200);
-    for words in ["Exact answers", "Orders of convergence", "Balances", "limit point", "72.25", "Gosselin", "PyElastica", "<svg"] {
+    for words in
+        ["Exact answers", "Orders of convergence", "Balances", "limit point", "72.25", "Gosselin", "PyElastica", "<svg"]
+    {
         assert!(page.contains(words), "{words}");
     }
     // Nothing is loaded from elsewhere: the one address in it is the name space of its drawings.

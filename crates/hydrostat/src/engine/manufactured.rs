@@ -15,9 +15,7 @@ use crate::arm::{Arm, Cable, Cavity, FlowLaw, Gravity, Material};
 use crate::equilibrium::{N, Units};
 use crate::loads::{Body, Water, load};
 use crate::profile::Profile;
-use crate::readings::{
-    EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
-};
+use crate::readings::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength};
 use crate::swelling::swelling;
 
 /// Taylor coefficients about a place, in s/L.
@@ -145,12 +143,7 @@ impl Manufactured {
         let reference_mu = of(&arm.reference.mu).times(l);
         let [mu_base, mu_slope, ..] = [arm.reference.mu.at(0.0, l).value * l, reference_mu.0[1]];
         // theta has the reference's curvature and a wave that begins flat.
-        let turned = Series([
-            mu_base * s + 0.5 * mu_slope * s * s,
-            mu_base + mu_slope * s,
-            0.5 * mu_slope,
-            0.0,
-        ]);
+        let turned = Series([mu_base * s + 0.5 * mu_slope * s * s, mu_base + mu_slope * s, 0.5 * mu_slope, 0.0]);
         let theta = Series::constant(arm.base.angle) + turned + still.times(0.12);
         let mu = theta.slope();
         let beta = match arm.readings.volume {
@@ -339,7 +332,10 @@ fn check(law: FlowLaw) {
             last[k] = last[k].max(finest[k]);
         }
     }
-    println!("{law:?}: {} combinations, orders from {lowest:.2?} to {highest:.2?}, on 32 elements {last:.1e?}", all.len());
+    println!(
+        "{law:?}: {} combinations, orders from {lowest:.2?} to {highest:.2?}, on 32 elements {last:.1e?}",
+        all.len()
+    );
     assert!(lowest.iter().all(|o| *o > 0.85 * (2 * M) as f64), "{lowest:?}");
     assert!(last.iter().all(|e| *e < 1e-11), "{last:?}");
 }
