@@ -219,7 +219,9 @@ pub(crate) fn section(scope: Scope, listener: &dyn Listener) -> Section {
          adaptive Gauss-Kronrod rule. The larger of whole and parts is checked.",
         &["arm and reading", "whole", "parts", "section law"],
     );
-    rows.into_iter().for_each(|row| table.push(row));
+    for row in rows {
+        table.push(row);
+    }
     let mut section = Section::new("balances", "Balances");
     section.text(
         "The support's reaction against everything that acts on the arm; what the strains of twelve sections carry against everything \
