@@ -92,6 +92,11 @@ fn labels(svg: &str) -> Vec<&str> {
     svg.split("aria-label=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect()
 }
 
+/// The lines that are the same on every processor: not what a solve took, and not its error.
+fn steady(text: &str) -> Vec<&str> {
+    text.lines().filter(|line| !line.starts_with("work ") && !line.starts_with("tip error ")).collect()
+}
+
 #[test]
 fn the_guide_shows_what_the_program_does() {
     let mut commands = 0;
@@ -100,10 +105,10 @@ fn the_guide_shows_what_the_program_does() {
         let place = directory();
         let now = played(&text, place.path());
         commands += now.matches("\n$ hydrostat").count();
-        for (said, shown) in text.lines().zip(now.lines()) {
-            assert_eq!(said, shown, "{}; {REFRESH}", chapter.display());
+        assert_eq!(steady(&text).len(), steady(&now).len(), "{}; {REFRESH}", chapter.display());
+        for (said, shown) in steady(&text).iter().zip(steady(&now)) {
+            assert_eq!(*said, shown, "{}; {REFRESH}", chapter.display());
         }
-        assert_eq!(text, now, "{}; {REFRESH}", chapter.display());
         for picture in pictures(&text) {
             let drawn = fs::read_to_string(place.path().join(picture)).unwrap_or_else(|e| panic!("{picture}: {e}"));
             let kept = fs::read_to_string(pages().join("pictures").join(picture)).unwrap();
