@@ -9,7 +9,7 @@ use hydrostat::{Arm, Cavity, Configuration, FlowLaw, Gravity, Options, Profile, 
 use rayon::prelude::*;
 
 use crate::loads::{Pair, cross, sectional, spread, stream_load, weight};
-use crate::numbers::size;
+use crate::numbers::{larger, size};
 use crate::report::{Check, Row, Section, Table};
 use crate::{Listener, Scope, readings, shipped};
 
@@ -56,11 +56,6 @@ pub fn residuals(solved: &Configuration) -> Residuals {
         out.law = larger(out.law, got.law);
     }
     out
-}
-
-/// The larger one, or what is not a number.
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b || a.is_nan() { a } else { b }
 }
 
 fn worst(values: [f64; 3]) -> f64 {
@@ -141,6 +136,10 @@ fn sizes(solved: &Configuration) -> Pair {
 /// What a balance may be off by at the tolerance 1e-8.
 const ALLOWED: f64 = 1e-6;
 
+/// The same where the reading makes loads that jump: an answer is unique only within a gap there, and at a tie of both sides the solver's load is
+/// between those of either side.
+const ALLOWED_AT_JUMPS: f64 = 2e-4;
+
 /// Arms with all kinds of loads, under every reading of the source.
 fn arms(scope: Scope) -> Vec<Arm> {
     let mut arms = Vec::new();
@@ -216,7 +215,8 @@ pub(crate) fn section(scope: Scope, listener: &dyn Listener) -> Section {
     let mut table = Table::new(
         "Residuals over the largest force and moment in play, at tol 1e-8",
         "the loads of docs/model.md, sections 2 to 7, written out a second time in crates/validate/src/loads.rs and integrated by an \
-         adaptive Gauss-Kronrod rule. The larger of whole and parts is checked.",
+         adaptive Gauss-Kronrod rule. The larger of whole and parts is checked; where a \
+         reading makes loads that jump, answers are unique only within a gap, and 2e-4 is allowed as for the references.",
         &["arm and reading", "whole", "parts", "section law"],
     );
     for row in rows {
@@ -238,8 +238,9 @@ fn row(arm: &Arm) -> Row {
             let off = residuals(&solved);
             // The section law holds to what Newton leaves there, a tenth of the balance's share.
             let checked = larger(larger(off.whole, off.parts), 10.0 * off.law);
+            let allowed = if arm.readings.load_can_jump() { ALLOWED_AT_JUMPS } else { ALLOWED };
             Row::new([arm.name.clone(), size(off.whole), size(off.parts), size(off.law)])
-                .checked(Check::within(checked, ALLOWED))
+                .checked(Check::within(checked, allowed))
         }
         Err(SolveError::NoEquilibrium(no)) => {
             let kind = no.verdict.kind;

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use serde::Deserialize;
 
 use crate::convergence::arms;
-use crate::numbers::{fixed, quantile, size};
+use crate::numbers::{fixed, larger, quantile, size};
 use crate::report::{Check, Row, Section, Table};
 use crate::{Listener, Scope};
 
@@ -125,7 +125,7 @@ fn shape_error(solved: &Configuration, stations: &ReferenceStations) -> f64 {
             let own = solved.at(*s);
             ((own.x - x).hypot(own.y - y) / solved.arm.length).max((own.theta - theta).abs())
         })
-        .fold(0.0, f64::max)
+        .fold(0.0, larger)
 }
 
 /// True errors over estimates, sorted, of those whose answer is unique; below 1e-11 both are rounding.

@@ -3,7 +3,7 @@
 use hydrostat::cases::{Case, HEAVY_COLUMN, Measure, column, column_buckling_load, heavy_column, uniform_arm};
 use hydrostat::{Arm, Configuration, Options, Solver};
 
-use crate::numbers::{fixed, size};
+use crate::numbers::{fixed, larger, size};
 use crate::report::{Check, Row, Section, Table};
 
 /// What is asked of each solve, and what the answer may add to the error of the known value, over its size.
@@ -149,9 +149,7 @@ fn invariant() -> Table {
             })
         };
         let at_tip = value(1.0);
-        let off = (0..97)
-            .map(|k| (value(f64::from(k) / 97.0) - at_tip).abs())
-            .fold(0.0, |a, b: f64| if b.is_nan() { b } else { a.max(b) });
+        let off = (0..97).map(|k| (value(f64::from(k) / 97.0) - at_tip).abs()).fold(0.0, larger);
         table.push(
             Row::new([
                 format!("{ea}, {ga}"),

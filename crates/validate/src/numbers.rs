@@ -16,6 +16,11 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
+/// The larger one, or what is not a number.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
+}
+
 /// The value below which a share of `sorted` lies; NaN where there is none.
 pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
     if sorted.is_empty() {
@@ -36,5 +41,6 @@ mod tests {
         assert_eq!((size(0.0).as_str(), size(1.25e-9).as_str()), ("0", "1.2e-9"));
         assert_eq!(quantile(&[1.0, 2.0, 3.0], 0.5), 2.0);
         assert!(quantile(&[], 0.5).is_nan());
+        assert!(larger(f64::NAN, 1.0).is_nan() && larger(1.0, f64::NAN).is_nan() && larger(1.0, 2.0) == 2.0);
     }
 }

@@ -7,7 +7,7 @@ use hydrostat::{
 use hydrostat_figures::{Measure, Panel, Scale, Scene, lines_figure};
 use rayon::prelude::*;
 
-use crate::numbers::fixed;
+use crate::numbers::{fixed, larger};
 use crate::report::{Check, Row, Section, Table};
 use crate::{Scope, shipped};
 
@@ -212,10 +212,7 @@ fn figures(study: &Study, scope: Scope) -> Vec<(&'static str, Scene)> {
 fn statements(study: &Study, table: &mut Table) {
     let unstrained = Readings { support: Support::UnstrainedBase, ..Readings::default() };
     let still: Vec<Outcome> = [10.0, 40.0].iter().map(|t| tip(&loaded(&study.arm, unstrained, *t, 0.0))).collect();
-    let aside = still
-        .iter()
-        .map(|tip| tip.as_ref().map_or(f64::NAN, |tip| tip[1].abs()))
-        .fold(0.0, |a, b: f64| if b.is_nan() || b > a { b } else { a });
+    let aside = still.iter().map(|tip| tip.as_ref().map_or(f64::NAN, |tip| tip[1].abs())).fold(0.0, larger);
     table.push(
         Row::new([
             "an unstrained base: no bending without flow, at 10 N and 40 N".to_owned(),

@@ -332,10 +332,7 @@ fn check(law: FlowLaw) {
             last[k] = last[k].max(finest[k]);
         }
     }
-    println!(
-        "{law:?}: {} combinations, orders from {lowest:.2?} to {highest:.2?}, on 32 elements {last:.1e?}",
-        all.len()
-    );
+    println!("{law:?}: {} combinations, orders from {lowest:.2?} to {highest:.2?}, on 32 elements {last:?}", all.len());
     assert!(lowest.iter().all(|o| *o > 0.85 * (2 * M) as f64), "{lowest:?}");
     assert!(last.iter().all(|e| *e < 1e-11), "{last:?}");
 }
