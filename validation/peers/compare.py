@@ -27,8 +27,7 @@ OURS, SCIPY = 100, 5
 
 def main():
     options = arguments()
-    if os.environ.get(INSIDE) != "1":
-        enter(options)
+    enter_venv(options.venv)
     program = built(options.profile)
     report = {"paper": paper(program, options.batches), "cantilever": cantilever(program, options.batches)}
     if options.json:
@@ -44,9 +43,11 @@ def arguments():
     return parser.parse_args()
 
 
-def enter(options):
+def enter_venv(directory):
     """Goes on with the Python of the virtual environment, on one thread."""
-    venv = Path(options.venv)
+    if os.environ.get(INSIDE) == "1":
+        return
+    venv = Path(directory)
     python = venv / "bin" / "python"
     if not python.exists():
         subprocess.run([sys.executable, "-m", "venv", str(venv)], check=True)

@@ -6,6 +6,7 @@ mod path;
 mod plot;
 mod reach;
 mod sweep;
+mod validate;
 
 use std::path::PathBuf;
 
@@ -17,6 +18,7 @@ pub(crate) use path::PathArgs;
 pub(crate) use plot::PlotArgs;
 pub(crate) use reach::{By, Point, ReachArgs};
 pub(crate) use sweep::SweepArgs;
+pub(crate) use validate::ValidateArgs;
 
 const EXIT: &str = "\
 Exit status:
@@ -43,7 +45,8 @@ Examples:
   hydrostat reach silicone --target 0.182,0.078         the tensions that bring the tip there
   hydrostat identify silicone data.csv --fit young  parameters from measured shapes
   hydrostat sweep paper --vary flow.speed=0:1:101 --vary cable[0].tension=0:80:101 -o out.parquet
-  hydrostat solve my.toml --format csv --stations 101 -o my.csv";
+  hydrostat solve my.toml --format csv --stations 101 -o my.csv
+  hydrostat validate -o report                          every check again, with numbers and plots";
 
 /// The static shape of a soft arm under water: driven by cables, keeping its volume, in a stream.
 ///
@@ -78,6 +81,8 @@ pub(crate) enum Command {
     Arms(ArmsArgs),
     /// Read an arm file and say what it means: units, defaults, Cauchy number, tension limits
     Check(CheckArgs),
+    /// Run every check behind the program's claims again, and write a report with numbers and plots
+    Validate(ValidateArgs),
 }
 
 /// Solves the arm under its loads and prints tip, cables, base reaction and margins.

@@ -36,6 +36,7 @@ fn main() -> ExitCode {
         Some(Command::Figures(args)) => command::figures::run(&args),
         Some(Command::Arms(args)) => command::arms::run(&args),
         Some(Command::Check(args)) => command::check::run(&args),
+        Some(Command::Validate(args)) => command::validate::run(&args),
     });
     match outcome {
         Ok(result) => exit::of(result),

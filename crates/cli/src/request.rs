@@ -32,6 +32,8 @@ pub(crate) enum WrongRequest {
     Over(Vec<String>),
     /// A key whose values are words.
     Words(String),
+    /// Numbers of other programs that cannot be read.
+    Peers(PathBuf, String),
     /// A cable whose stroke was asked for.
     NoCable { asked: usize, cables: usize },
 }
@@ -67,6 +69,7 @@ impl std::fmt::Display for WrongRequest {
                 write!(f, "--over: expected one or two different keys of those that were varied, {}", keys.join(", "))
             }
             Self::Words(key) => write!(f, "--over: {key} has words for values, which a map has no axis for"),
+            Self::Peers(path, why) => write!(f, "--peers {}: {why}", path.display()),
             Self::NoCable { asked, cables } => {
                 write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")
             }

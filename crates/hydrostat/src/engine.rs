@@ -2,6 +2,8 @@
 
 mod held;
 mod kinks;
+#[cfg(test)]
+pub(crate) mod manufactured;
 mod settle;
 mod start;
 mod watch;

@@ -110,6 +110,9 @@ pub(crate) struct Equilibrium {
     pub(crate) evaluations: usize,
     /// At the last evaluation.
     pub(crate) nearness: Nearness,
+    /// A chosen shape, with the loads that make it an equilibrium.
+    #[cfg(test)]
+    pub(crate) manufactured: Option<crate::engine::manufactured::Manufactured>,
 }
 
 impl Equilibrium {
@@ -143,6 +146,8 @@ impl Equilibrium {
             switches: Vec::new(),
             evaluations: 0,
             nearness: Nearness::FAR,
+            #[cfg(test)]
+            manufactured: None,
         };
         let bending = this.place(0.0).stiffness.value[2];
         // At unit force the stiffness is C3 A0 / L^2: make it one at the base.

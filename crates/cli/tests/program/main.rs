@@ -4,11 +4,13 @@ mod cables;
 mod commands;
 mod equilibria;
 mod formats;
+mod guide;
 mod identify;
 mod paths;
 mod reach;
 mod refusals;
 mod sweeps;
+mod validate;
 mod verdicts;
 
 use std::path::Path;

@@ -27,7 +27,14 @@ impl Equilibrium {
     pub(super) fn place_of(&self, arm: &Arm, s: f64) -> Place<f64> {
         let l = self.units.length;
         let radius = arm.radius.at(s * l, l);
-        self.place_with(arm, s, [radius.value, radius.slope])
+        let place = self.place_with(arm, s, [radius.value, radius.slope]);
+        #[cfg(test)]
+        let place = self.manufactured.as_ref().map_or(place, |shape| {
+            let [f1, f2, couple] = shape.missing(self.units, &self.water, &place.body, s);
+            let Body { force: [x, y], couple: own, .. } = place.body;
+            Place { body: Body { force: [x + f1, y + f2], couple: own + couple, ..place.body }, ..place }
+        });
+        place
     }
 
     /// The same with a radius (m) and its slope that may carry derivatives.

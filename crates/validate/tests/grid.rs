@@ -1,48 +1,17 @@
 //! Every shipped arm over tensions, streams and gravity: each case is solved or ends in a verdict.
 //!
-//! The whole grid is ignored by default: `cargo test --release -p hydrostat --test grid -- --ignored --nocapture`.
+//! The whole grid is ignored by default: `cargo test --release -p hydrostat-validate --test grid -- --ignored --nocapture`.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use hydrostat::{Arm, Gravity, Options, SolveError, Solver, VerdictKind};
+use hydrostat::{Arm, Options, SolveError, Solver, VerdictKind};
 use hydrostat_files::{ArmFile, shipped};
+use hydrostat_validate::grid::cases;
+use hydrostat_validate::readings::alternatives;
 
 fn shipped_arm(name: &str) -> Arm {
     ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap()
-}
-
-/// The cases of one arm: which cables pull, how hard, and the stream.
-fn cases(arm: &Arm, thin: usize) -> Vec<(String, Arm)> {
-    let mut out = Vec::new();
-    let mut index = 0;
-    for side in ["left", "right", "all"] {
-        for k in 0..=12 {
-            for (speed, direction) in std::iter::once((0.0, 0.0))
-                .chain([0.05, 0.1, 0.3, 0.5, 1.0].iter().flat_map(|v| [0.0_f64, 60.0, 90.0, 180.0].map(|d| (*v, d))))
-            {
-                for gravity in [false, true] {
-                    index += 1;
-                    if index % thin != 0 {
-                        continue;
-                    }
-                    let mut case = arm.clone();
-                    for cable in &mut case.cables {
-                        let left = cable.offset.at(0.0, arm.length).value > 0.0;
-                        let pulls = side == "all" || (side == "left") == left;
-                        let most = cable.max_tension.unwrap_or(0.0);
-                        cable.tension = if pulls { most * f64::from(k) / 12.0 } else { 0.0 };
-                    }
-                    case.flow.speed = speed;
-                    case.flow.direction = direction.to_radians();
-                    case.gravity = gravity.then(Gravity::default);
-                    let name = format!("{} {side} {k}/12 v {speed} from {direction} gravity {gravity}", arm.name);
-                    out.push((name, case));
-                }
-            }
-        }
-    }
-    out
 }
 
 /// Solves, prints the table, and gives the numbers of all cases and of those that were not found.
@@ -197,25 +166,12 @@ fn strokes_lead_back_to_tensions_on_the_grid() {
     round_trips(7);
 }
 
-type Change = fn(&mut hydrostat::Readings);
-
 /// The alternatives of `docs/model.md`, section 9, each alone, and all that the source's letter asks for.
 fn other_readings(thin: usize) {
-    use hydrostat::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Volume, WettedLength};
-    let set: [(&str, Change); 8] = [
-        ("circular", |r| r.volume = Volume::Circular),
-        ("none", |r| r.volume = Volume::None),
-        ("lateral", |r| r.flow_surface = FlowSurface::Lateral),
-        ("resultant", |r| r.entering_speed = EnteringSpeed::Resultant),
-        ("momentum", |r| r.layer_mean = LayerMean::Momentum),
-        ("deformed", |r| r.wetted_length = WettedLength::Deformed),
-        ("normal-only", |r| r.hydrostatics = Hydrostatics::NormalOnly),
-        ("literal", |r| *r = Readings::LITERAL),
-    ];
     let mut all = [0; 2];
-    for (name, change) in set {
+    for (name, readings) in alternatives().into_iter().filter(|(name, _)| *name != "default") {
         println!("{name}");
-        let own = run(thin, |arm| change(&mut arm.readings));
+        let own = run(thin, |arm| arm.readings = readings);
         all = [all[0] + own[0], all[1] + own[1]];
     }
     println!("{} cases in all, {} not found", all[0], all[1]);

@@ -1,29 +1,7 @@
 //! The error against the tolerance that was asked for, and against its estimate.
 
-use hydrostat::cases;
-use hydrostat::{Arm, Cable, Configuration, Gravity, Options, Profile, Solver};
-
-/// Smooth problems of several kinds, easy and hard.
-fn arms() -> Vec<Arm> {
-    let mut arms = Vec::new();
-    let mut cone = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
-    cone.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.5));
-    cone.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)));
-    "cone".clone_into(&mut cone.name);
-    arms.push(cone.clone());
-    "cone along a stream".clone_into(&mut cone.name);
-    cone.flow.speed = 0.1;
-    arms.push(cone.clone());
-    "heavy cone across a stream".clone_into(&mut cone.name);
-    cone.flow.direction = 1.2;
-    cone.density = 1200.0;
-    cone.gravity = Some(Gravity::default());
-    arms.push(cone);
-    for mut cases in [cases::end_loads(), cases::own_weights(), cases::follower_loads(), cases::normal_drag()] {
-        arms.extend(cases.pop().map(|c| c.arm));
-    }
-    arms
-}
+use hydrostat::{Arm, Cable, Configuration, Options, Profile, Solver};
+use hydrostat_validate::convergence::arms;
 
 fn solve(arm: &Arm, tol: f64) -> Configuration {
     let mut solver = Solver::new(arm, Options { tol }).unwrap();

@@ -1,0 +1,99 @@
+//! What the source says about its figure, held against solved shapes.
+
+use hydrostat_figures::source::{Claim, Finding, SPEED, Study, TIP_ANGLE};
+
+use crate::numbers::fixed;
+use crate::report::{Check, Row, Section, Table};
+use crate::shipped;
+
+/// The tension at which alpha(L) is [`TIP_ANGLE`], N (docs/model.md, section 10).
+const TENSION: f64 = 86.24;
+
+/// alpha in degrees at places of `paper` in 0, 0.5 and 1 m/s, to the digits of docs/model.md, section 10: tension (N), share of the length, values, half
+/// of the last digit.
+const ANGLES: [(f64, f64, [f64; 3], f64); 3] = [
+    (40.0, 0.5, [1.91, 1.68, 1.14], 5e-3),
+    (40.0, 1.0, [56.4004, 56.4004, 56.3988], 5e-5),
+    (20.0, 0.0, [0.61, 0.72, 1.06], 5e-3),
+];
+
+pub(crate) fn section() -> Section {
+    let mut section = Section::new("claims", "What the source says about its figure");
+    section.text(
+        "The source, \"Quasi-static continuum model of octopus arm configuration under water\", publishes of Fig. 1 the stream, 0.5 m/s, and alpha(L) = 72.25 \
+         deg at the highest tension. The parameters of the arm `paper` were found by trial; nothing here shows that they are the source's.",
+    );
+    let study = shipped::arm("paper").map(|arm| (Study::of(&arm), arm));
+    let (study, arm) = match study {
+        Some((Ok(study), arm)) => (study, arm),
+        other => {
+            let why = other.map_or_else(
+                || "the arm `paper` could not be read".to_owned(),
+                |(study, _)| study.err().map_or_else(String::new, |e| e.to_string()),
+            );
+            let mut table = Table::new("The figure", "the source", &["what", "here"]);
+            table.push(Row::new(["solving its shapes".to_owned(), why]).checked(Check::so(false)));
+            section.table(table);
+            return section;
+        }
+    };
+    let mut table = Table::new(
+        "Statements of the source",
+        "the source's text. What fails is a statement of which not even a part holds.",
+        &["statement", "finding", "numbers"],
+    );
+    for Claim { statement, finding, evidence } in &study.claims {
+        table.push(
+            Row::new([(*statement).to_owned(), finding.words().to_owned(), evidence.clone()])
+                .checked(Check::so(*finding != Finding::DoesNotHold)),
+        );
+    }
+    section.table(table);
+
+    let mut table = Table::new(
+        "Numbers",
+        "alpha(L) = 72.25 deg: the source. All others: docs/model.md, section 10, computed by the independent program of validation/reference and to the \
+         digits printed there.",
+        &["quantity", "here", "known"],
+    );
+    let angle = study.raised.last().map_or(f64::NAN, |c| c.tip().alpha.to_degrees());
+    table.push(
+        Row::new([format!("largest alpha(L) in {SPEED} m/s (deg)"), fixed(angle, 6), TIP_ANGLE.to_string()])
+            .checked(Check::within(angle - TIP_ANGLE, 1e-5)),
+    );
+    let tension = study.highest_tension();
+    table.push(
+        Row::new(["tension there (N)".to_owned(), fixed(tension, 4), TENSION.to_string()])
+            .checked(Check::within(tension - TENSION, 5e-3)),
+    );
+    for (tension, share, known, half) in ANGLES {
+        for (speed, known) in [0.0, 0.5, 1.0].into_iter().zip(known) {
+            let mut arm = arm.clone();
+            arm.flow.speed = speed;
+            for (k, cable) in arm.cables.iter_mut().enumerate() {
+                cable.tension = if k == 0 { tension } else { 0.0 };
+            }
+            let alpha = arm.solve().map_or(f64::NAN, |c| c.at(share * arm.length).alpha.to_degrees());
+            let decimals = if half < 1e-3 { 4 } else { 2 };
+            table.push(
+                Row::new([
+                    format!("alpha at {share} L, {tension} N, {speed} m/s (deg)"),
+                    fixed(alpha, decimals + 2),
+                    fixed(known, decimals),
+                ])
+                // A digit that is rounded from a five is as good either way.
+                .checked(Check::within(alpha - known, 1.02 * half)),
+            );
+        }
+    }
+    section.table(table);
+    for figure in study.figures() {
+        let caption = match figure.name {
+            "fig1a" => "The source's Fig. 1a: tension raised in 0.5 m/s.",
+            "fig1b" => "Its Fig. 1b: one tension in ever faster streams.",
+            _ => "Its Fig. 1c: the section's rotation alpha along the arm.",
+        };
+        section.figure(figure.name, caption, figure.scene);
+    }
+    section
+}
