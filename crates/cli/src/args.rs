@@ -4,6 +4,7 @@ mod equilibria;
 mod path;
 mod plot;
 mod reach;
+mod serve;
 mod sweep;
 
 use std::path::PathBuf;
@@ -14,6 +15,7 @@ pub(crate) use equilibria::{EquilibriaArgs, Over};
 pub(crate) use path::PathArgs;
 pub(crate) use plot::PlotArgs;
 pub(crate) use reach::ReachArgs;
+pub(crate) use serve::ServeArgs;
 pub(crate) use sweep::SweepArgs;
 
 const EXIT: &str = "\
@@ -40,6 +42,7 @@ Examples:
                                                         all shapes under the same loads
   hydrostat reach silicone --target 0.182,0.078         the tensions that bring the tip there
   hydrostat sweep paper --vary flow.speed=0:1:101 --vary cable[0].tension=0:80:101 -o out.parquet
+  hydrostat serve silicone --open                       pull on an arm in the browser
   hydrostat solve my.toml --format csv --stations 101 -o my.csv";
 
 /// The static shape of a soft arm under water: driven by cables, keeping its volume, in a stream.
@@ -67,6 +70,8 @@ pub(crate) enum Command {
     Sweep(SweepArgs),
     /// Draw a sweep: a map over two keys, and where the tip goes
     Plot(PlotArgs),
+    /// Show an arm in the browser, to pull on
+    Serve(ServeArgs),
     /// Remake the source's Fig. 1a, 1b and 1c as SVG, PNG and CSV
     Figures(FiguresArgs),
     /// List the arms that ship with the program, or print one as TOML

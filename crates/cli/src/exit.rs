@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use hydrostat::{PathError, ReachError, SensitivityError, SolveError};
 use hydrostat_figures::source::StudyError;
 use hydrostat_files::{FileError, WriteError};
+use hydrostat_serve::ServeError;
 use hydrostat_sweep::SweepError;
 
 use crate::command::NoAnswer;
@@ -78,6 +79,9 @@ fn code(error: &anyhow::Error) -> u8 {
         }
         // Whatever a sweep cannot do is wrong with its request: keys, values, options, files.
         if matches!(cause.downcast_ref(), Some(error) if !matches!(error, SweepError::Threads(_))) {
+            return WRONG_REQUEST;
+        }
+        if let Some(ServeError::Bind { .. }) = cause.downcast_ref() {
             return WRONG_REQUEST;
         }
         if cause.is::<WrongRequest>() || cause.is::<FileError>() || cause.is::<WriteError>() {

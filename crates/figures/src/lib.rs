@@ -28,7 +28,7 @@ mod svg;
 mod sweep;
 mod tip_labels;
 
-pub use arm_figure::{arm_figure, reach_figure};
+pub use arm_figure::{arm_figure, last_good_note, reach_figure};
 pub use axes::Scale;
 pub use chart::{Abscissa, over_figure, path_figure};
 pub use lines::{Measure, Panel, lines_figure};

@@ -7,6 +7,7 @@ mod formats;
 mod paths;
 mod reach;
 mod refusals;
+mod serve;
 mod sweeps;
 mod verdicts;
 
