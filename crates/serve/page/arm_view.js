@@ -94,11 +94,12 @@ export class ArmView {
       const { x, y } = boundsOf(lines);
       const { width, height } = this.view;
       const [w, h] = [Math.max(x[1] - x[0], 1e-9), Math.max(y[1] - y[0], 1e-9)];
-      // Room for the directors at the tip.
-      const k = Math.min((width - 150) / w, (height - 150) / h, (0.8 * width) / Math.max(w, h));
+      // Room for the directors at the tip, and for what stands above and below.
+      const [top, bottom] = [this.scene.caption.length > 0 || width < 640 ? 110 : 70, 60];
+      const k = Math.min((width - Math.min(150, 0.3 * width)) / w, (height - top - bottom) / h);
       this.view.k = Math.max(k, 1e-3);
       this.view.ox = 0.5 * width - 0.5 * this.view.k * (x[0] + x[1]);
-      this.view.oy = 0.5 * height + 0.5 * this.view.k * (y[0] + y[1]);
+      this.view.oy = 0.5 * (height + top - bottom) + 0.5 * this.view.k * (y[0] + y[1]);
     }
     this.paint();
   }

@@ -209,7 +209,7 @@ export class Controls {
   range(range, more = []) {
     const { key, label, unit, per, min, max, colour } = range;
     const id = `control-${key.replaceAll(/[^a-z0-9]/g, "-")}`;
-    const slider = element("input", { type: "range", id, min: String(min), max: String(max), step: String((max - min) / 1000), "data-key": key });
+    const slider = element("input", { type: "range", id, min: String(min), max: String(max), step: "any", "data-key": key });
     const box = element("input", { type: "number", step: "any", "data-box": key, "aria-label": `${label}${unit ? `, ${unit}` : ""}` });
     const named = unit === "" ? label : `${label} (${unit})`;
     const row = element("div", { class: "control" }, [
@@ -220,7 +220,7 @@ export class Controls {
     ]);
     slider.addEventListener("input", (event) => {
       this.moved = event.timeStamp;
-      // A thousandth of the range is as fine as a slider gets: no more digits than that.
+      // A slider is not finer than a thousandth of its range: no more digits than that.
       this.state.change({ [key]: Number(Number(slider.value).toPrecision(4)) });
     });
     box.addEventListener("change", (event) => {

@@ -489,9 +489,11 @@ export class Painter {
   caption() {
     const { ctx, scene, view } = this;
     ctx.font = `600 ${FONT}`;
-    let y = 22;
-    for (const { text, level } of scene.caption) {
-      for (const line of wrapped(ctx, text, Math.min(560, view.width - 40, Math.max(160, view.width - 330)))) {
+    // On a phone the tools take the first line, and only the title finds room; the rest stands right below the picture.
+    const narrow = view.width < 640;
+    let y = narrow ? 68 : 24;
+    for (const { text, level } of narrow ? scene.caption.slice(0, 1) : scene.caption) {
+      for (const line of wrapped(ctx, text, narrow ? view.width - 32 : Math.min(560, view.width - 330))) {
         this.text(line, [16, y], this.colour(level), "left", "600 ");
         y += 17;
       }

@@ -28,8 +28,14 @@ export function wordsOf(answer) {
     lines.push(`The tip's balance is not met: a force of (${answer.unmet.force.map((f) => number(f, 4)).join(", ")}) N and a moment of ${number(answer.unmet.moment, 4)} N m are left.`);
   }
   const { title, level } = stabilityOf(answer);
-  if (lines.length > 0) return { level: level === "good" ? "warn" : level, title: `${title}, with ${lines.length === 1 ? "a warning" : "warnings"}`, lines };
+  if (lines.length > 0) return { level: level === "good" ? "warn" : level, title: `${title}, with ${kindsOf(answer)}`, lines };
   return { level, title, lines };
+}
+
+/** @param {Solution} answer */
+function kindsOf(answer) {
+  const kinds = [...answer.warnings.map(({ kind }) => kind.replaceAll("_", " ")), ...(answer.unmet ? ["unmet balance of the tip"] : [])];
+  return `${kinds.length === 1 ? "a warning" : "warnings"}: ${kinds.join(", ")}`;
 }
 
 /**
