@@ -29,6 +29,9 @@ const QUANTITIES = [
   { key: "m", name: "M, contact moment", unit: () => [1e3, "N mm"] },
 ];
 
+/** What rounding leaves of zero is zero: else a chart of nothing would show it. @param {number} value */
+const clean = (value) => (Math.abs(value) < 1e-12 ? 0 : value);
+
 /** @param {number[]} values */
 const greatest = (values) => values.reduce((most, v) => Math.max(most, Math.abs(v)), 0);
 
@@ -156,7 +159,7 @@ export class AlongCharts {
     for (const { quantity, chart, unit } of this.charts) {
       const [factor, name] = quantity.unit(shape);
       const line = (/** @type {Solution} */ one, /** @type {string} */ ink, /** @type {number[]} */ dash) => ({
-        data: one.stations.s.map((s, i) => ({ x: 1e3 * s, y: factor * one.stations[quantity.key][i] })),
+        data: one.stations.s.map((s, i) => ({ x: 1e3 * s, y: clean(factor * one.stations[quantity.key][i]) })),
         borderColor: ink, borderDash: dash,
       });
       unit.textContent = name === "" ? "" : `(${name})`;
@@ -240,7 +243,7 @@ export class PathCharts {
     this.charts.forEach((chart, c) => {
       const read = [(/** @type {any} */ p) => 1e3 * p.tip.x, (/** @type {any} */ p) => 1e3 * p.tip.y, (/** @type {any} */ p) => degrees(p.tip.alpha)][c];
       chart.data.datasets = path.branches.map((branch, b) => ({
-        data: branch.points.map((p) => ({ x: shown(p.value), y: read(p) })),
+        data: branch.points.map((p) => ({ x: shown(p.value), y: clean(read(p)) })),
         borderColor: colour(`series-${(b + 1) % 7}`),
         pointRadius: branch.points.map((p) => (p.event ? 5 : 1.6)),
         pointBackgroundColor: branch.points.map((p) => (p.event ? colour("series-0") : colour(`series-${(b + 1) % 7}`))),

@@ -40,6 +40,7 @@ const along = new AlongCharts(byId("along", HTMLElement), hover);
 const controls = new Controls(byId("controls", HTMLElement), state, ramp);
 const connection = new Connection(receive, (open) => {
   byId("link", HTMLElement).textContent = open ? "" : "not connected";
+  if (!open) say({ level: "bad", title: "Not connected", lines: ["The server does not answer: is `hydrostat serve` still running? The page looks for it again by itself."] });
 });
 const studies = new Studies(state, view, controls, () => (present?.asked ? present : undefined));
 
