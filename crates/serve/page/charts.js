@@ -10,8 +10,8 @@ import { colours } from "./paint.js";
 /** The library comes as a script of its own and is found by its name. @type {typeof ChartJs} */
 const Chart = /** @type {any} */ (globalThis).Chart;
 
-/** How often charts follow a moving arm, ms. */
-const PACE = 90;
+/** From one chart to the next while an arm moves, ms: the drawing goes first. */
+const PACE = 40;
 
 /**
  * @typedef {{ key: keyof Stations, name: string, unit: (shape: Solution) => [number, string] }} Quantity
@@ -51,12 +51,10 @@ export class AlongCharts {
   constructor(place, onHover) {
     /** Where the mark stands, m. @type {number | undefined} */
     this.mark = undefined;
-    /** @type {{ shape: Solution, pins: { shape: Solution, colour: number }[] } | undefined} */
-    this.waiting = undefined;
-    this.last = 0;
+    /** The newest shape, with those to compare it with. @type {{ shape: Solution, pins: { shape: Solution, colour: number }[] } | undefined} */
+    this.newest = undefined;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.timer = undefined;
-    this.visible = true;
     this.charts = QUANTITIES.map((quantity) => {
       const canvas = element("canvas", { role: "img", "aria-label": `${quantity.name} along the arm` });
       const value = element("output");
@@ -66,8 +64,17 @@ export class AlongCharts {
         element("div", {}, [canvas]),
       ]));
       const chart = new Chart(canvas, this.configuration(onHover));
-      return { quantity, chart, value, unit };
+      return { quantity, chart, canvas, value, unit, stale: false, seen: false };
     });
+    // What is out of sight costs no time.
+    const watch = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) {
+        const one = this.charts.find(({ canvas }) => canvas === target);
+        if (one) one.seen = isIntersecting;
+      }
+      this.go();
+    });
+    for (const { canvas } of this.charts) watch.observe(canvas);
     this.recolour();
   }
 
@@ -124,49 +131,49 @@ export class AlongCharts {
       Object.assign(scales.y, { grid, ticks, border: { display: false } });
       chart.update("none");
     }
-    if (this.drawn) this.draw(this.drawn.shape, this.drawn.pins);
+    if (this.newest) this.show(this.newest.shape, this.newest.pins);
   }
 
   /**
-   * Shows a shape, not more often than eyes can follow: the drawing goes first.
+   * Shows a shape, one chart after the other.
    * @param {Solution} shape
    * @param {{ shape: Solution, colour: number }[]} pins
    */
   show(shape, pins) {
-    this.waiting = { shape, pins };
-    if (this.timer !== undefined || !this.visible) return;
+    this.newest = { shape, pins };
+    for (const one of this.charts) one.stale = true;
+    this.go();
+  }
+
+  /** Draws the next of those that are stale and in sight, and comes back for the others. */
+  go() {
+    if (this.timer !== undefined) return;
+    const next = this.charts.find(({ stale, seen }) => stale && seen);
+    if (!next) return;
     this.timer = setTimeout(() => {
       this.timer = undefined;
-      this.last = performance.now();
-      if (this.waiting && this.visible) this.draw(this.waiting.shape, this.waiting.pins);
-      this.waiting = undefined;
-    }, Math.max(0, PACE - (performance.now() - this.last)));
+      // The next in turn: a moving arm makes all of them stale again before the last is reached.
+      this.charts.push(...this.charts.splice(this.charts.indexOf(next), 1));
+      next.stale = false;
+      this.draw(next);
+      this.go();
+    }, PACE);
   }
 
-  /** @param {boolean} visible */
-  see(visible) {
-    this.visible = visible;
-    if (visible && this.waiting) this.show(this.waiting.shape, this.waiting.pins);
-  }
-
-  /**
-   * @param {Solution} shape
-   * @param {{ shape: Solution, colour: number }[]} pins
-   */
-  draw(shape, pins) {
-    this.drawn = { shape, pins };
+  /** @param {AlongCharts["charts"][number]} one */
+  draw({ quantity, chart, unit }) {
+    if (!this.newest) return;
+    const { shape, pins } = this.newest;
     const { colour } = look();
-    for (const { quantity, chart, unit } of this.charts) {
-      const [factor, name] = quantity.unit(shape);
-      const line = (/** @type {Solution} */ one, /** @type {string} */ ink, /** @type {number[]} */ dash) => ({
-        data: one.stations.s.map((s, i) => ({ x: 1e3 * s, y: clean(factor * one.stations[quantity.key][i]) })),
-        borderColor: ink, borderDash: dash,
-      });
-      unit.textContent = name === "" ? "" : `(${name})`;
-      chart.data.datasets = [line(shape, colour("series-1"), []), ...pins.map((pin) => line(pin.shape, colour(`series-${pin.colour}`), [5, 3]))];
-      if (chart.options.scales?.x) chart.options.scales.x.max = 1e3 * shape.inputs.arm.length;
-      chart.update("none");
-    }
+    const [factor, name] = quantity.unit(shape);
+    const line = (/** @type {Solution} */ one, /** @type {string} */ ink, /** @type {number[]} */ dash) => ({
+      data: one.stations.s.map((s, i) => ({ x: 1e3 * s, y: clean(factor * one.stations[quantity.key][i]) })),
+      borderColor: ink, borderDash: dash,
+    });
+    unit.textContent = name === "" ? "" : `(${name})`;
+    chart.data.datasets = [line(shape, colour("series-1"), []), ...pins.map((pin) => line(pin.shape, colour(`series-${pin.colour}`), [5, 3]))];
+    if (chart.options.scales?.x) chart.options.scales.x.max = 1e3 * shape.inputs.arm.length;
+    chart.update("none");
     this.values();
   }
 
@@ -183,7 +190,7 @@ export class AlongCharts {
 
   /** The values at the mark. */
   values() {
-    const shape = this.drawn?.shape;
+    const shape = this.newest?.shape;
     for (const { quantity, value } of this.charts) {
       if (!shape || this.mark === undefined) {
         value.textContent = "";

@@ -322,7 +322,6 @@ function open(chosen) {
     tab.tabIndex = on ? 0 : -1;
     byId(tab.getAttribute("aria-controls") ?? "", HTMLElement).hidden = !on;
   }
-  along.see(chosen.id === "tab-along");
   if (chosen.id === "tab-readings") studies.compare();
 }
 for (const [i, tab] of tabs.entries()) {
