@@ -75,6 +75,7 @@ state.onChange(async (what) => {
   connection.send(wish(), controls.moved || undefined);
   controls.moved = 0;
   remember();
+  compareSoon();
 });
 
 /** The panel and the choice of arms for the present arm. */

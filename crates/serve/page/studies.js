@@ -41,6 +41,8 @@ export class Studies {
     this.track = undefined;
     /** Counts states: what was asked of an earlier one comes too late. */
     this.epoch = 0;
+    /** What the path that is shown is of. */
+    this.traced = "";
     this.paths = new PathCharts(byId("path-charts", HTMLElement), (value) => {
       if (this.track) this.state.change({ [this.track.key]: value / this.track.per });
     });
@@ -73,6 +75,16 @@ export class Studies {
     byId("all-table", HTMLElement).replaceChildren();
     byId("all-words", HTMLElement).textContent = "";
     byId("all-picture", HTMLImageElement).hidden = true;
+    if (this.traced !== "" && this.traced !== this.others()) {
+      this.traced = "";
+      this.view.scene.way = [];
+      byId("path-words", HTMLElement).textContent = "The other loads have changed since: trace again.";
+    }
+  }
+
+  /** All that a path is of: arm and values but the one that varies. */
+  others() {
+    return JSON.stringify([this.state.arm, [...this.state.set].filter(([key]) => key !== this.track?.key)]);
   }
 
   chooseTrack() {
@@ -93,12 +105,17 @@ export class Studies {
     const [from, to] = [byId("path-from", HTMLInputElement), byId("path-to", HTMLInputElement)].map((box) => box.valueAsNumber / track.per);
     const settings = this.state.settings();
     words.textContent = "Tracing\u2026";
+    const { epoch } = this;
     try {
-      // The range begins where the path does: what is varied has no value of its own.
       const vary = `${track.key}=${from}:${to}`;
       const response = await ask("/api/path", { arm: armOf(this.state.arm), set: settings, vary, max_points: 600 });
       /** @type {PathDocument} */
       const path = await response.json();
+      if (epoch !== this.epoch) {
+        words.textContent = "The loads have changed since: trace again.";
+        return;
+      }
+      this.traced = this.others();
       const angle = path.unit === "rad";
       const shown = (/** @type {number} */ si) => (angle ? degrees(si) : si) * track.per;
       this.paths.show(path, `${track.key}${track.unit ? ` (${track.unit})` : ""}`, shown);

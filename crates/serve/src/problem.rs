@@ -60,10 +60,11 @@ impl Problem {
         Self::new(StatusCode::SERVICE_UNAVAILABLE, "busy", None, message)
     }
 
+    /// No fault of the server's, and no better when it is tried again.
     pub(crate) fn too_long() -> Self {
         let seconds = crate::limits::TIME.as_secs();
         let message = format!("the work took longer than the {seconds} s that a request has; loosen tol or ask for less");
-        Self::new(StatusCode::SERVICE_UNAVAILABLE, "time_limit", None, message)
+        Self::new(StatusCode::UNPROCESSABLE_ENTITY, "time_limit", None, message)
     }
 
     pub(crate) fn defect() -> Self {
