@@ -89,8 +89,9 @@ export class ArmView {
   fit() {
     const { shown, ghost } = this.scene;
     const lines = [shown?.outline, ghost].flatMap((o) => (o ? [o.left, o.right] : []));
+    lines.push(this.scene.way.map(({ place }) => place));
     this.fitted = true;
-    if (lines.length > 0) {
+    if (shown) {
       const { x, y } = boundsOf(lines);
       const { width, height } = this.view;
       const [w, h] = [Math.max(x[1] - x[0], 1e-9), Math.max(y[1] - y[0], 1e-9)];

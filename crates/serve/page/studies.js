@@ -121,7 +121,8 @@ export class Studies {
       this.paths.show(path, `${track.key}${track.unit ? ` (${track.unit})` : ""}`, shown);
       const points = path.branches[0]?.points ?? [];
       this.view.scene.way = points.map(({ tip, stability, event }) => ({ place: [tip.x, tip.y], stable: stability.state === "stable", event }));
-      this.view.paint();
+      if (this.view.fitted) this.view.fit();
+      else this.view.paint();
       words.textContent = pathWords(path);
     } catch (error) {
       words.textContent = said(error);

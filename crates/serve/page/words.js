@@ -80,6 +80,8 @@ function sentence(text) {
  */
 export function numbersOf(shape) {
   const { tip, base, cables } = shape;
+  // What rounding leaves of nothing is nothing.
+  const clean = (/** @type {number} */ value) => number(Math.abs(value) < 1e-12 ? 0 : value, 4);
   const degree = (/** @type {number} */ rad) => `${fixed((rad * 180) / Math.PI, 3)}\u00b0`;
   /** @type {[string, string][]} */
   const rows = [
@@ -93,8 +95,8 @@ export function numbersOf(shape) {
     rows.push([`Cable ${cable.name}`, `${force(cable.tension)}${slack}`], [`${cable.name} reeled in`, `${fixed(1e3 * cable.stroke, 2)} mm`]);
   }
   rows.push(
-    ["Base force", `(${number(base.force[0], 3)}, ${number(base.force[1], 3)}) N`],
-    ["Base moment", `${number(1e3 * base.moment, 4)} N mm`],
+    ["Base force", `(${clean(base.force[0])}, ${clean(base.force[1])}) N`],
+    ["Base moment", `${clean(1e3 * base.moment)} N mm`],
     ["Fold margin", number(shape.fold_margin, 3)],
     ["Tip error, about", `${(1e6 * shape.error_estimate).toExponential(1).replace("-", "\u2212")} \u00b5m`],
   );
