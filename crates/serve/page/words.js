@@ -2,7 +2,7 @@
 
 /** @import { Answer, CableState, Pulled, Solution } from "./types" */
 
-import { fixed, force, number } from "./numbers.js";
+import { fixed, force, forceUnit, number } from "./numbers.js";
 
 /**
  * @typedef {{ level: "good" | "warn" | "bad", title: string, lines: string[] }} Words
@@ -81,7 +81,8 @@ function sentence(text) {
 export function numbersOf(shape) {
   const { tip, base, cables } = shape;
   // What rounding leaves of nothing is nothing.
-  const clean = (/** @type {number} */ value) => number(Math.abs(value) < 1e-12 ? 0 : value, 4);
+  const clean = (/** @type {number} */ value) => number(Math.abs(value) < 1e-10 ? 0 : value, 3);
+  const [factor, unit] = forceUnit(Math.hypot(...base.force));
   const degree = (/** @type {number} */ rad) => `${fixed((rad * 180) / Math.PI, 3)}\u00b0`;
   /** @type {[string, string][]} */
   const rows = [
@@ -95,7 +96,7 @@ export function numbersOf(shape) {
     rows.push([`Cable ${cable.name}`, `${force(cable.tension)}${slack}`], [`${cable.name} reeled in`, `${fixed(1e3 * cable.stroke, 2)} mm`]);
   }
   rows.push(
-    ["Base force", `(${clean(base.force[0])}, ${clean(base.force[1])}) N`],
+    ["Base force", `(${base.force.map((f) => clean(factor * f)).join(", ")}) ${unit}`],
     ["Base moment", `${clean(1e3 * base.moment)} N mm`],
     ["Fold margin", number(shape.fold_margin, 3)],
     ["Tip error, about", `${(1e6 * shape.error_estimate).toExponential(1).replace("-", "\u2212")} \u00b5m`],
