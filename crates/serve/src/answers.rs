@@ -18,7 +18,8 @@ use crate::arm_source::{Given, tension_scale};
 use crate::limits;
 use crate::problem::Problem;
 use crate::requests::{
-    AboutAnArm, CheckRequest, EquilibriaRequest, Format, PathRequest, ReachRequest, SolveRequest, count, stations, varied,
+    AboutAnArm, CheckRequest, EquilibriaRequest, Format, PathRequest, ReachRequest, SolveRequest, count, stations,
+    varied,
 };
 use crate::work::Deadline;
 
@@ -141,9 +142,7 @@ fn no_shape(
     match request.format {
         Format::Csv => Err(refused(failure)),
         Format::Svg | Format::Png => match &failure.last_good {
-            Some(shape) => {
-                Answer::figure(&arm_figure(shape, Some(&last_good_note(&failure.verdict))), request.format)
-            }
+            Some(shape) => Answer::figure(&arm_figure(shape, Some(&last_good_note(&failure.verdict))), request.format),
             None => Err(refused(failure)),
         },
         Format::Json => {

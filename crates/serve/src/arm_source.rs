@@ -66,7 +66,8 @@ impl ArmSource {
                 Some(text) => Ok(ArmFile::parse(text, name)?),
                 None => {
                     let names: Vec<&str> = shipped::names().collect();
-                    let message = format!("arm: expected one of {}, found \"{}\"", names.join(", "), name.escape_debug());
+                    let message =
+                        format!("arm: expected one of {}, found \"{}\"", names.join(", "), name.escape_debug());
                     Err(Problem::field("arm", message))
                 }
             },
@@ -137,7 +138,9 @@ pub(crate) fn tension_scale(arm: &Arm, cable: usize) -> f64 {
 /// A JSON value as TOML, inline.
 fn toml_value(out: &mut String, value: &Value) -> Result<(), Problem> {
     match value {
-        Value::Null => return Err(Problem::field("arm", "arm: expected a value, found null; leave the key out instead")),
+        Value::Null => {
+            return Err(Problem::field("arm", "arm: expected a value, found null; leave the key out instead"));
+        }
         Value::Bool(value) => out.push_str(if *value { "true" } else { "false" }),
         Value::Number(number) => out.push_str(&number_text(number)),
         Value::String(text) => out.push_str(&quoted(text)),

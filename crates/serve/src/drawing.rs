@@ -67,9 +67,8 @@ mod tests {
             let drawing = Drawing::new(&shape);
             let st = &shape.stations;
             for i in 0..st.len() {
-                let place = |distance: f64| {
-                    [st.x[i] - distance * st.theta[i].sin(), st.y[i] + distance * st.theta[i].cos()]
-                };
+                let place =
+                    |distance: f64| [st.x[i] - distance * st.theta[i].sin(), st.y[i] + distance * st.theta[i].cos()];
                 let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-9;
                 let [left, right] = shape.surfaces(st.s[i]);
                 assert!(near(left, place(st.beta[i] * drawing.radius[i])));

@@ -45,7 +45,8 @@ pub(crate) async fn guard(State(names): State<Names>, request: Request, next: Ne
 
 /// A page that has made its own name point here still sends that name as the host; a page of elsewhere sends its origin.
 fn check(headers: &HeaderMap, of_uri: Option<&str>, names: &[String]) -> Result<(), Problem> {
-    let refuse = |field: &str, message: String| Err(Problem::new(StatusCode::FORBIDDEN, "forbidden", Some(field), message));
+    let refuse =
+        |field: &str, message: String| Err(Problem::new(StatusCode::FORBIDDEN, "forbidden", Some(field), message));
     let text = |name| headers.get(name).map(|value: &HeaderValue| value.to_str().unwrap_or_default());
     let Some(host) = text(header::HOST).or(of_uri) else {
         return refuse("Host", "Host: expected the address of this server, found nothing".to_owned());
@@ -63,7 +64,9 @@ fn check(headers: &HeaderMap, of_uri: Option<&str>, names: &[String]) -> Result<
 
 fn own_origin(origin: &str, host: &str) -> bool {
     // Behind a proxy that ends TLS the page has https.
-    ["http://", "https://"].iter().any(|scheme| origin.strip_prefix(scheme).is_some_and(|o| o.eq_ignore_ascii_case(host)))
+    ["http://", "https://"]
+        .iter()
+        .any(|scheme| origin.strip_prefix(scheme).is_some_and(|o| o.eq_ignore_ascii_case(host)))
 }
 
 /// An address needs no name and so cannot be rebound.
@@ -95,7 +98,9 @@ mod tests {
         for host in ["127.0.0.1:8080", "localhost:8080", "LOCALHOST", "[::1]:8080", "192.168.0.7", "arm.example:80"] {
             assert!(passes(host, None), "{host}");
         }
-        for host in ["evil.example", "evil.example:8080", "localhost.evil.example", "127.0.0.1.evil.example", "", "[evil]"] {
+        for host in
+            ["evil.example", "evil.example:8080", "localhost.evil.example", "127.0.0.1.evil.example", "", "[evil]"]
+        {
             assert!(!passes(host, None), "{host}");
         }
         assert!(check(&HeaderMap::new(), None, &[]).is_err());
@@ -105,7 +110,9 @@ mod tests {
     fn only_pages_of_this_server_may_ask() {
         assert!(passes("localhost:8080", Some("http://localhost:8080")));
         assert!(passes("arm.example", Some("https://arm.example")));
-        for origin in ["http://evil.example", "null", "http://localhost:8081", "http://127.0.0.1:8080", "localhost:8080"] {
+        for origin in
+            ["http://evil.example", "null", "http://localhost:8081", "http://127.0.0.1:8080", "localhost:8080"]
+        {
             assert!(!passes("localhost:8080", Some(origin)), "{origin}");
         }
     }

@@ -63,7 +63,8 @@ impl Problem {
     /// No fault of the server's, and no better when it is tried again.
     pub(crate) fn too_long() -> Self {
         let seconds = crate::limits::TIME.as_secs();
-        let message = format!("the work took longer than the {seconds} s that a request has; loosen tol or ask for less");
+        let message =
+            format!("the work took longer than the {seconds} s that a request has; loosen tol or ask for less");
         Self::new(StatusCode::UNPROCESSABLE_ENTITY, "time_limit", None, message)
     }
 

@@ -209,6 +209,8 @@ mod tests {
         assert_eq!(amount("0.2").value("station", Dimension::Length).unwrap(), 0.2);
         assert_eq!(amount(r#""20 mm""#).value("station", Dimension::Length).unwrap(), 0.02);
         assert_eq!(amount("90").value("angle", Dimension::Angle).unwrap(), std::f64::consts::FRAC_PI_2);
-        assert!(amount(r#""20 N""#).value("station", Dimension::Length).unwrap_err().body.error.message.contains("length"));
+        assert!(
+            amount(r#""20 N""#).value("station", Dimension::Length).unwrap_err().body.error.message.contains("length")
+        );
     }
 }

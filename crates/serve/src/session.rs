@@ -206,8 +206,7 @@ impl Memory {
         }
         let ghost = self.ghost(&arm, count);
         let mut solver = Solver::new(&arm, Options::default())?;
-        let mut reply =
-            Reply { id, answer: None, drawing: None, ghost, pulled, error: None, dropped, microseconds: 0 };
+        let mut reply = Reply { id, answer: None, drawing: None, ghost, pulled, error: None, dropped, microseconds: 0 };
         match solver.solve() {
             Ok(mut shape) => {
                 if let (Some(pulled), Some(following)) = (&mut reply.pulled, &self.following) {
@@ -386,7 +385,8 @@ mod tests {
         let start = reply(&mut memory, r#"{"id": 1, "arm": "silicone", "set": {"cable[0].tension": 0.3}}"#);
         let tip = |v: &Value| ["x", "y"].map(|k| v["answer"]["tip"][k].as_f64().unwrap());
         let [x, y] = tip(&start);
-        let text = format!(r#"{{"id": 2, "set": {{"cable[0].tension": 0.3}}, "target": [{}, {}]}}"#, x - 0.01, y - 0.02);
+        let text =
+            format!(r#"{{"id": 2, "set": {{"cable[0].tension": 0.3}}, "target": [{}, {}]}}"#, x - 0.01, y - 0.02);
         let pulled = reply(&mut memory, &text);
         assert_eq!(pulled["pulled"]["reached"], true, "{}", pulled["pulled"]);
         assert_eq!(pulled["pulled"]["elsewhere"], false);

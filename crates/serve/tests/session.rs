@@ -72,7 +72,10 @@ async fn what_is_no_wish_is_refused_and_the_session_goes_on() {
         (json!({ "id": 1, "arm": "paper", "stations": 100_000 }), "stations"),
         (json!({ "id": 1, "arm": "paper", "set": { "flow.speed": -1 } }), "set"),
         (json!({ "id": 1, "arm": "paper", "target": [0.1] }), "target"),
-        (json!({ "id": 1, "arm": { "toml": "[arm]\nlength = 0.1\nradius = 0.01\n[material]\nyoung = 1e5" }, "target": [0.1, 0] }), "arm"),
+        (
+            json!({ "id": 1, "arm": { "toml": "[arm]\nlength = 0.1\nradius = 0.01\n[material]\nyoung = 1e5" }, "target": [0.1, 0] }),
+            "arm",
+        ),
         (json!("what"), "body"),
     ] {
         ask(&mut socket, &wrong).await;
