@@ -62,15 +62,14 @@ impl ArmSource {
     /// The arm file, without overrides.
     pub(crate) fn file(&self) -> Result<ArmFile, Problem> {
         match self {
-            Self::Name(name) => match shipped::get(name) {
-                Some(text) => Ok(ArmFile::parse(text, name)?),
-                None => {
+            Self::Name(name) => {
+                let text = shipped::get(name).ok_or_else(|| {
                     let names: Vec<&str> = shipped::names().collect();
-                    let message =
-                        format!("arm: expected one of {}, found \"{}\"", names.join(", "), name.escape_debug());
-                    Err(Problem::field("arm", message))
-                }
-            },
+                    let names = names.join(", ");
+                    Problem::field("arm", format!("arm: expected one of {names}, found \"{}\"", name.escape_debug()))
+                })?;
+                Ok(ArmFile::parse(text, name)?)
+            }
             Self::Toml(text) => Ok(ArmFile::parse(text, "arm")?),
             Self::Json(map) => {
                 let mut text = String::new();

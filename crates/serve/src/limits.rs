@@ -30,7 +30,7 @@ pub(crate) const WAITING: usize = 256;
 pub(crate) const SESSIONS: usize = 64;
 
 /// A viewer that says nothing for so long is let go; its page comes back by itself when it is used again.
-pub(crate) const SILENCE: Duration = Duration::from_secs(1800);
+pub(crate) const SILENCE: Duration = Duration::from_mins(30);
 
 /// A viewer that takes nothing for so long is let go.
 pub(crate) const STALLED: Duration = Duration::from_secs(10);

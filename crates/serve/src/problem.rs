@@ -11,7 +11,7 @@ use serde::Serialize;
 #[derive(Debug, Clone)]
 pub(crate) struct Problem {
     pub(crate) status: StatusCode,
-    pub(crate) body: ProblemOut,
+    pub(crate) body: Box<ProblemOut>,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -39,7 +39,7 @@ impl Problem {
         let field = field.map(str::to_owned);
         let error = Details { kind, field, key: None, line: None, column: None, message: message.into() };
         let body = ProblemOut { schema: hydrostat_files::results::SCHEMA, version: env!("CARGO_PKG_VERSION"), error };
-        Self { status, body }
+        Self { status, body: Box::new(body) }
     }
 
     /// A field of the body with a wrong value.

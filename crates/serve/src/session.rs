@@ -120,10 +120,10 @@ struct Following {
 
 /// Answers until the page goes away.
 pub(crate) async fn converse(mut socket: WebSocket, work: Arc<Work>) {
-    let mut memory = Some(Memory::default());
+    let mut memory = Some(Box::<Memory>::default());
     let mut next: Option<String> = None;
     let mut dropped = 0_u64;
-    let (tell, mut told) = tokio::sync::mpsc::channel::<(Memory, String)>(1);
+    let (tell, mut told) = tokio::sync::mpsc::channel::<(Box<Memory>, String)>(1);
     loop {
         if memory.is_some()
             && let Some(text) = next.take()
@@ -162,7 +162,7 @@ async fn close(mut socket: WebSocket, code: u16, reason: &'static str) {
 }
 
 /// The memory and the reply to one wish.
-async fn answer(memory: Memory, work: &Work, text: String, dropped: u64) -> (Memory, String) {
+async fn answer(memory: Box<Memory>, work: &Work, text: String, dropped: u64) -> (Box<Memory>, String) {
     let wish: Wish = match read(text.as_bytes()) {
         Ok(wish) => wish,
         Err(problem) => return (memory, refusal(0, problem, dropped)),
@@ -174,7 +174,7 @@ async fn answer(memory: Memory, work: &Work, text: String, dropped: u64) -> (Mem
         (memory, text)
     });
     // Work that was given up or failed took the memory with it.
-    done.await.unwrap_or_else(|problem| (Memory::default(), refusal(id, problem, dropped)))
+    done.await.unwrap_or_else(|problem| (Box::default(), refusal(id, problem, dropped)))
 }
 
 fn refusal(id: u64, problem: Problem, dropped: u64) -> String {
