@@ -5,6 +5,7 @@ mod identify;
 mod path;
 mod plot;
 mod reach;
+mod serve;
 mod sweep;
 mod validate;
 
@@ -17,6 +18,7 @@ pub(crate) use identify::IdentifyArgs;
 pub(crate) use path::PathArgs;
 pub(crate) use plot::PlotArgs;
 pub(crate) use reach::{By, Point, ReachArgs};
+pub(crate) use serve::ServeArgs;
 pub(crate) use sweep::SweepArgs;
 pub(crate) use validate::ValidateArgs;
 
@@ -45,6 +47,7 @@ Examples:
   hydrostat reach silicone --target 0.182,0.078         the tensions that bring the tip there
   hydrostat identify silicone data.csv --fit young  parameters from measured shapes
   hydrostat sweep paper --vary flow.speed=0:1:101 --vary cable[0].tension=0:80:101 -o out.parquet
+  hydrostat serve silicone --open                       pull on an arm in the browser
   hydrostat solve my.toml --format csv --stations 101 -o my.csv
   hydrostat validate -o report                          every check again, with numbers and plots";
 
@@ -75,6 +78,8 @@ pub(crate) enum Command {
     Sweep(SweepArgs),
     /// Draw a sweep: a map over two keys, and where the tip goes
     Plot(PlotArgs),
+    /// Show an arm in the browser, to pull on
+    Serve(ServeArgs),
     /// Remake the source's Fig. 1a, 1b and 1c as SVG, PNG and CSV
     Figures(FiguresArgs),
     /// List the arms that ship with the program, or print one as TOML

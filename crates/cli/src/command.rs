@@ -12,6 +12,7 @@ pub(crate) mod main_job;
 pub(crate) mod path;
 pub(crate) mod plot;
 pub(crate) mod reach;
+pub(crate) mod serve;
 pub(crate) mod solve;
 mod summary;
 pub(crate) mod sweep;

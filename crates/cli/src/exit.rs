@@ -7,6 +7,7 @@ use hydrostat::{PathError, ReachError, SensitivityError, SolveError};
 use hydrostat_figures::source::StudyError;
 use hydrostat_files::{FileError, FitKeyError, MeasurementsError, TargetsError, WriteError};
 use hydrostat_identify::{IdentifyError, Trial};
+use hydrostat_serve::ServeError;
 use hydrostat_sweep::SweepError;
 
 use crate::command::NoAnswer;
@@ -83,6 +84,9 @@ fn code(error: &anyhow::Error) -> u8 {
         }
         if let Some(error) = cause.downcast_ref::<IdentifyError>() {
             return code_of_fit(error);
+        }
+        if let Some(ServeError::Bind { .. }) = cause.downcast_ref() {
+            return WRONG_REQUEST;
         }
         if cause.is::<MeasurementsError>() || cause.is::<FitKeyError>() || cause.is::<TargetsError>() {
             return WRONG_REQUEST;

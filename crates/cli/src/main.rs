@@ -33,6 +33,7 @@ fn main() -> ExitCode {
         Some(Command::Identify(args)) => command::identify::run(&args),
         Some(Command::Sweep(args)) => command::sweep::run(&args),
         Some(Command::Plot(args)) => command::plot::run(&args),
+        Some(Command::Serve(args)) => command::serve::run(&args),
         Some(Command::Figures(args)) => command::figures::run(&args),
         Some(Command::Arms(args)) => command::arms::run(&args),
         Some(Command::Check(args)) => command::check::run(&args),

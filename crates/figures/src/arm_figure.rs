@@ -1,6 +1,6 @@
 //! One arm drawn to scale.
 
-use hydrostat::Configuration;
+use hydrostat::{Configuration, Verdict};
 
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, DESCENT, Label};
@@ -88,6 +88,25 @@ pub fn reach_figure(configuration: &Configuration, targets: &[[f64; 2]], note: O
     }
     draw_tip(&mut scene, configuration, axes.at(outline.tip()), &mut page);
     scene
+}
+
+/// What a drawing of the last good shape before `verdict` says of it.
+///
+/// ```
+/// use hydrostat::{Arm, Cable, Profile, SolveError};
+///
+/// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+/// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(1.5));
+/// let Err(SolveError::NoEquilibrium(no)) = arm.solve() else { panic!("1.5 N fold the tip") };
+/// assert!(hydrostat_figures::last_good_note(&no.verdict).ends_with("(cable fold)"));
+/// ```
+pub fn last_good_note(verdict: &Verdict) -> String {
+    format!(
+        "Not the loads asked for: last good shape, at load fraction {:.4} of the phase \u{201c}{}\u{201d} ({})",
+        verdict.load_fraction,
+        verdict.phase.name(),
+        verdict.kind.name().replace('_', " ")
+    )
 }
 
 /// `size`, or what makes the text fit the page.

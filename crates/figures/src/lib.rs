@@ -30,7 +30,7 @@ mod svg;
 mod sweep;
 mod tip_labels;
 
-pub use arm_figure::{arm_figure, reach_figure};
+pub use arm_figure::{arm_figure, last_good_note, reach_figure};
 pub use axes::Scale;
 pub use boundary::boundary_figure;
 pub use chart::{Abscissa, over_figure, path_figure};

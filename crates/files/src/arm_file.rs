@@ -105,6 +105,11 @@ impl ArmFile {
         &self.path
     }
 
+    /// The text, without what overrides it.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// Overrides one value: `key` is a dotted path (`flow.speed`, `cable[0].tension`), `value` is
     /// TOML or, where it is none, a string. Tables that are not there are made; cables are not.
     ///

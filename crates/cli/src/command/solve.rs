@@ -1,7 +1,7 @@
 //! `hydrostat solve`: one arm.
 
-use hydrostat::{Arm, Configuration, NoEquilibrium, Options, SolveError, Solver, Stability, Verdict, VerdictKind};
-use hydrostat_figures::arm_figure;
+use hydrostat::{Arm, Configuration, NoEquilibrium, Options, SolveError, Solver, Stability, VerdictKind};
+use hydrostat_figures::{arm_figure, last_good_note};
 use hydrostat_files::{Failure, Note, Others, Solution, stations_csv};
 
 use super::summary::summary;
@@ -52,7 +52,9 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
 /// JSON gets the verdict with the last good shape; text and CSV have nothing to say.
 fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium, others: Option<Others>) -> anyhow::Result<()> {
     match (&args.plot, &failure.last_good) {
-        (Some(plot), Some(last_good)) => output::draw(&arm_figure(last_good, Some(&note(&failure.verdict))), plot)?,
+        (Some(plot), Some(last_good)) => {
+            output::draw(&arm_figure(last_good, Some(&last_good_note(&failure.verdict))), plot)?
+        }
         (Some(plot), None) => eprintln!("warning: no good shape on the way, {} is not drawn", plot.display()),
         (None, _) => {}
     }
@@ -93,16 +95,6 @@ fn others_message(others: Others) -> String {
             others.stable
         ),
     }
-}
-
-/// What the drawing of a last good shape says of it.
-fn note(verdict: &Verdict) -> String {
-    format!(
-        "Not the loads asked for: last good shape, at load fraction {:.4} of the phase \u{201c}{}\u{201d} ({})",
-        verdict.load_fraction,
-        verdict.phase.name(),
-        verdict.kind.name().replace('_', " ")
-    )
 }
 
 fn resample(args: &SolveArgs, configuration: &mut Configuration) {

@@ -9,6 +9,7 @@ mod identify;
 mod paths;
 mod reach;
 mod refusals;
+mod serve;
 mod sweeps;
 mod validate;
 mod verdicts;

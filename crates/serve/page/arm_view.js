@@ -1,0 +1,284 @@
+// The drawing: pan, zoom, hover, and the tip that can be pulled.
+
+/** @import { Point, Shown } from "./types" */
+/** @import { Scene, View } from "./paint.js" */
+
+import { boundsOf, nearest } from "./geometry.js";
+import { byId } from "./page.js";
+import { Painter, colours } from "./paint.js";
+
+/** Most points of the tip's trail. */
+const TRAIL = 400;
+
+export class ArmView {
+  /**
+   * @param {(target: Point, asked: number) => void} onPull
+   * @param {() => void} onRelease
+   * @param {(s: number | undefined) => void} onHover
+   */
+  constructor(onPull, onRelease, onHover) {
+    this.canvas = byId("drawing", HTMLCanvasElement);
+    this.handle = byId("tip", HTMLButtonElement);
+    const ctx = this.canvas.getContext("2d");
+    if (!ctx) throw new Error("the browser has no canvas");
+    this.ctx = ctx;
+    this.onPull = onPull;
+    this.onRelease = onRelease;
+    this.onHover = onHover;
+    /** @type {Scene} */
+    this.scene = {
+      shown: undefined, ghost: undefined, pins: [], extra: undefined, trail: [], way: [], target: undefined, hover: undefined,
+      caption: [], tints: "plain",
+      layers: { sections: true, stream: true, layer: true, ghost: true, trail: true, directors: true, contact: false },
+    };
+    /** @type {View} */
+    this.view = { k: 1000, ox: 0, oy: 0, width: 1, height: 1 };
+    this.fitted = true;
+    this.colour = colours();
+    new ResizeObserver(() => this.resize()).observe(this.canvas);
+    this.listen();
+    this.resize();
+  }
+
+  /** Takes the size of the page's place for it, in the pixels of the screen. */
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    this.canvas.width = Math.max(1, Math.round(width * ratio));
+    this.canvas.height = Math.max(1, Math.round(height * ratio));
+    this.ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const moved = [0.5 * (width - this.view.width), 0.5 * (height - this.view.height)];
+    this.view = { ...this.view, width, height, ox: this.view.ox + moved[0], oy: this.view.oy + moved[1] };
+    if (this.fitted) this.fit();
+    else this.paint();
+  }
+
+  /** The theme has changed. */
+  recolour() {
+    this.colour = colours();
+    this.paint();
+  }
+
+  /** @param {Shown} shown */
+  show(shown) {
+    const first = this.scene.shown === undefined;
+    this.scene.shown = shown;
+    const tip = shown.outline.centre[shown.outline.centre.length - 1];
+    const last = this.scene.trail[this.scene.trail.length - 1];
+    if (shown.asked && (!last || Math.hypot(last[0] - tip[0], last[1] - tip[1]) * this.view.k > 0.5)) {
+      this.scene.trail.push(tip);
+      if (this.scene.trail.length > TRAIL) this.scene.trail.shift();
+    }
+    if (first || (this.fitted && !this.scene.target && this.isOut(tip))) this.fit();
+    else this.paint();
+  }
+
+  /** Whether a place is off the page or at its edge. @param {Point} point */
+  isOut(point) {
+    const [x, y] = this.toPage(point);
+    return x < 20 || y < 20 || x > this.view.width - 20 || y > this.view.height - 20;
+  }
+
+  /** Forgets what belongs to the arm before. */
+  clear() {
+    Object.assign(this.scene, { shown: undefined, trail: [], way: [], extra: undefined, target: undefined, hover: undefined });
+    this.fitted = true;
+  }
+
+  /** Shows all of the arm. */
+  fit() {
+    const { shown, ghost } = this.scene;
+    const lines = [shown?.outline, ghost].flatMap((o) => (o ? [o.left, o.right] : []));
+    lines.push(this.scene.way.map(({ place }) => place));
+    this.fitted = true;
+    if (shown) {
+      const { x, y } = boundsOf(lines);
+      const { width, height } = this.view;
+      const [w, h] = [Math.max(x[1] - x[0], 1e-9), Math.max(y[1] - y[0], 1e-9)];
+      // Room for the directors at the tip, and for what stands above and below.
+      const [top, bottom] = [this.scene.caption.length > 0 || width < 640 ? 110 : 70, 60];
+      const k = Math.min((width - Math.min(150, 0.3 * width)) / w, (height - top - bottom) / h);
+      this.view.k = Math.max(k, 1e-3);
+      this.view.ox = 0.5 * width - 0.5 * this.view.k * (x[0] + x[1]);
+      this.view.oy = 0.5 * (height + top - bottom) + 0.5 * this.view.k * (y[0] + y[1]);
+    }
+    this.paint();
+  }
+
+  paint() {
+    new Painter(this.ctx, this.view, this.scene, this.colour).paint();
+    const centre = this.scene.shown?.outline.centre;
+    this.handle.hidden = !centre || !this.scene.shown?.asked;
+    if (centre) {
+      const [x, y] = this.toPage(centre[centre.length - 1]);
+      this.handle.style.transform = `translate(${x}px, ${y}px)`;
+    }
+  }
+
+  /** @param {Point} point @returns {Point} */
+  toPage([x, y]) {
+    return [this.view.ox + this.view.k * x, this.view.oy - this.view.k * y];
+  }
+
+  /** @param {Point} point @returns {Point} */
+  toArm([x, y]) {
+    return [(x - this.view.ox) / this.view.k, (this.view.oy - y) / this.view.k];
+  }
+
+  /**
+   * @param {PointerEvent | WheelEvent} event
+   * @returns {Point}
+   */
+  placeOf(event) {
+    const box = this.canvas.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  }
+
+  /**
+   * @param {number} factor
+   * @param {Point} [about] the place on the page that stays
+   */
+  zoom(factor, about = [0.5 * this.view.width, 0.5 * this.view.height]) {
+    const k = Math.min(Math.max(this.view.k * factor, 20), 2e6);
+    const [x, y] = this.toArm(about);
+    Object.assign(this.view, { k, ox: about[0] - k * x, oy: about[1] + k * y });
+    this.fitted = false;
+    this.paint();
+  }
+
+  /** @param {number} dx @param {number} dy */
+  pan(dx, dy) {
+    this.view.ox += dx;
+    this.view.oy += dy;
+    this.fitted = false;
+    this.paint();
+  }
+
+  /** @param {number | undefined} index */
+  hover(index) {
+    if (this.scene.hover === index) return;
+    this.scene.hover = index;
+    this.paint();
+  }
+
+  listen() {
+    byId("zoom-in", HTMLButtonElement).addEventListener("click", () => this.zoom(1.3));
+    byId("zoom-out", HTMLButtonElement).addEventListener("click", () => this.zoom(1 / 1.3));
+    byId("fit", HTMLButtonElement).addEventListener("click", () => this.fit());
+    this.canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.zoom(Math.exp(-0.0015 * event.deltaY), this.placeOf(event));
+    }, { passive: false });
+    this.canvas.addEventListener("keydown", (event) => {
+      const step = event.shiftKey ? 100 : 25;
+      /** @type {Record<string, () => void>} */
+      const keys = {
+        ArrowLeft: () => this.pan(step, 0), ArrowRight: () => this.pan(-step, 0), ArrowUp: () => this.pan(0, step),
+        ArrowDown: () => this.pan(0, -step), "+": () => this.zoom(1.3), "=": () => this.zoom(1.3), "-": () => this.zoom(1 / 1.3),
+        0: () => this.fit(),
+      };
+      if (!keys[event.key] || event.ctrlKey || event.metaKey) return;
+      event.preventDefault();
+      keys[event.key]();
+    });
+    this.listenToFingers();
+    this.listenToTip();
+  }
+
+  /** One pointer pans, two pan and zoom. */
+  listenToFingers() {
+    /** @type {Map<number, Point>} */
+    const down = new Map();
+    this.canvas.addEventListener("pointerdown", (event) => {
+      down.set(event.pointerId, this.placeOf(event));
+      this.canvas.setPointerCapture(event.pointerId);
+    });
+    this.canvas.addEventListener("pointermove", (event) => {
+      const before = down.get(event.pointerId);
+      const now = this.placeOf(event);
+      if (!before) {
+        this.pointAt(now);
+        return;
+      }
+      const others = [...down].filter(([id]) => id !== event.pointerId).map(([, place]) => place);
+      down.set(event.pointerId, now);
+      if (others.length === 0) {
+        this.pan(now[0] - before[0], now[1] - before[1]);
+      } else {
+        const other = others[0];
+        const [was, is] = [before, now].map(([x, y]) => Math.hypot(x - other[0], y - other[1]));
+        this.zoom(is / Math.max(was, 1), other);
+      }
+    });
+    for (const kind of ["pointerup", "pointercancel"]) {
+      this.canvas.addEventListener(kind, (event) => down.delete(/** @type {PointerEvent} */ (event).pointerId));
+    }
+    this.canvas.addEventListener("pointerleave", () => this.onHover(undefined));
+  }
+
+  /** @param {Point} place on the page */
+  pointAt(place) {
+    const shown = this.scene.shown;
+    if (!shown) return;
+    const { index, distance } = nearest(shown.outline.centre, this.toArm(place));
+    this.onHover(distance * this.view.k < 40 ? shown.shape.stations.s[index] : undefined);
+  }
+
+  listenToTip() {
+    const { handle } = this;
+    /** From the pointer to the tip, on the page. @type {Point | undefined} */
+    let grip;
+    handle.addEventListener("pointerdown", (event) => {
+      const centre = this.scene.shown?.outline.centre;
+      if (!centre) return;
+      const [x, y] = this.placeOf(event);
+      const tip = this.toPage(centre[centre.length - 1]);
+      grip = [tip[0] - x, tip[1] - y];
+      handle.setPointerCapture(event.pointerId);
+      event.preventDefault();
+      handle.focus();
+    });
+    handle.addEventListener("pointermove", (event) => {
+      if (!grip) return;
+      const [x, y] = this.placeOf(event);
+      this.pull(this.toArm([x + grip[0], y + grip[1]]), event.timeStamp);
+    });
+    for (const kind of ["pointerup", "pointercancel"]) {
+      handle.addEventListener(kind, () => {
+        if (grip) this.release();
+        grip = undefined;
+      });
+    }
+    handle.addEventListener("keydown", (event) => {
+      /** @type {Record<string, Point>} */
+      const keys = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+      const centre = this.scene.shown?.outline.centre;
+      if (!keys[event.key] || !centre) return;
+      event.preventDefault();
+      const step = (event.shiftKey ? 0.05 : 0.01) * (this.scene.shown?.shape.inputs.arm.length ?? 0);
+      const [x, y] = this.scene.target ?? centre[centre.length - 1];
+      this.pull([x + step * keys[event.key][0], y + step * keys[event.key][1]], event.timeStamp);
+    });
+    handle.addEventListener("keyup", () => this.scene.target && this.release());
+    handle.addEventListener("blur", () => this.scene.target && this.release());
+  }
+
+  /** @param {Point} target @param {number} asked */
+  pull(target, asked) {
+    this.scene.target = target;
+    handleHeld(this.handle, true);
+    this.onPull(target, asked);
+  }
+
+  release() {
+    this.scene.target = undefined;
+    handleHeld(this.handle, false);
+    this.onRelease();
+    this.paint();
+  }
+}
+
+/** @param {HTMLElement} handle @param {boolean} held */
+function handleHeld(handle, held) {
+  handle.dataset.held = String(held);
+}

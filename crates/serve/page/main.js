@@ -1,0 +1,376 @@
+// Puts the page together: what is wished goes to the server, what comes back to drawing, words, numbers and charts.
+
+/** @import { Drawing, Point, Reply, Setting, Solution, Wish } from "./types" */
+/** @import { Range } from "./controls.js" */
+
+import { ArmView } from "./arm_view.js";
+import { AlongCharts } from "./charts.js";
+import { Connection, armOf, ask } from "./connection.js";
+import { Controls } from "./controls.js";
+import { outlineOf, outlineOfGhost, stationAt } from "./geometry.js";
+import { force } from "./numbers.js";
+import { byId, element, settled, tidyMenus, toast } from "./page.js";
+import { listenToFiles, listenToShare } from "./share.js";
+import { State } from "./state.js";
+import { Studies } from "./studies.js";
+import { numbersOf, wordsOf, wordsOfPull } from "./words.js";
+
+/** Most shapes that are kept to compare with. */
+const PINS = 4;
+/** How long raising a load from zero takes, ms. */
+const RAMP = 6000;
+
+const state = new State();
+/** What is looked at. @type {{ shape: Solution, drawing: Drawing, asked: boolean } | undefined} */
+let present;
+/** @type {{ shape: Solution, outline: import("./types").Outline, colour: number, label: string }[]} */
+let pins = [];
+/** Whether the tip has been let go and the last answer to a pull is still to come. */
+let letGo = false;
+let pulling = false;
+/** Stops what raises a load. @type {(() => void) | undefined} */
+let stopRamp;
+
+const hover = (/** @type {number | undefined} */ s) => {
+  along.hover(s);
+  view.hover(s === undefined || !present ? undefined : stationAt(present.shape.stations.s, s));
+};
+const view = new ArmView(pull, release, hover);
+const along = new AlongCharts(byId("along", HTMLElement), hover);
+const controls = new Controls(byId("controls", HTMLElement), state, ramp);
+const connection = new Connection(receive, (open) => {
+  byId("link", HTMLElement).textContent = open ? "" : "not connected";
+  if (!open) say({ level: "bad", title: "Not connected", lines: ["The server does not answer: is `hydrostat serve` still running? The page looks for it again by itself."] });
+});
+const studies = new Studies(state, view, controls, () => (present?.asked ? present : undefined));
+
+controls.strokeOf = (/** @type {number} */ c) => Number((present?.shape.cables[c]?.stroke ?? 0).toPrecision(6));
+controls.tensionOf = (/** @type {number} */ c) => Number((present?.shape.cables[c]?.tension ?? 0).toPrecision(6));
+
+/** @returns {Wish} */
+const wish = () => ({ arm: state.arm, set: state.settings() });
+
+// --- What the user does ---------------------------------------------------------------------------------------------
+
+const remember = settled(250, async () => {
+  history.replaceState(null, "", `#${await state.toHash()}`);
+});
+const compareSoon = settled(400, () => {
+  if (!byId("readings", HTMLElement).hidden) studies.compare();
+});
+
+state.onChange(async (what) => {
+  studies.outdated();
+  if (what === "arm") {
+    view.clear();
+    present = undefined;
+    try {
+      await build();
+    } catch (error) {
+      refused({ kind: "", field: "arm", key: null, line: null, message: error instanceof Error ? error.message : String(error) });
+      return;
+    }
+  }
+  controls.refresh();
+  connection.send(wish(), controls.moved || undefined);
+  controls.moved = 0;
+  remember();
+  compareSoon();
+});
+
+/** The panel and the choice of arms for the present arm. */
+async function build() {
+  const { inputs, tension_scale: scale } = await (await ask("/api/check", { arm: armOf(state.arm) })).json();
+  controls.build(inputs, scale);
+  studies.rebuilt();
+  const select = byId("arm", HTMLSelectElement);
+  if (![...select.options].some((option) => option.value === state.arm.name)) select.append(element("option", { value: state.arm.name, text: state.arm.name }));
+  select.value = state.arm.name;
+  if (state.arm.toml !== undefined) own.set(state.arm.name, state.arm.toml);
+}
+
+/** Arms that came as files, by their names. @type {Map<string, string>} */
+const own = new Map();
+
+byId("arm", HTMLSelectElement).addEventListener("change", (event) => {
+  const name = /** @type {HTMLSelectElement} */ (event.currentTarget).value;
+  const toml = own.get(name);
+  state.choose(toml === undefined ? { name } : { name, toml });
+});
+
+/** @param {Point} target @param {number} asked */
+function pull(target, asked) {
+  stopRamp?.();
+  pulling = true;
+  letGo = false;
+  const most = Math.max(...controls.most, 0);
+  connection.send({ ...wish(), target, ...(most > 0 ? { max_tension: most } : {}) }, asked);
+}
+
+function release() {
+  letGo = true;
+  if (connection.asked.size === 0) endPull();
+}
+
+/** The tensions that the pull led to are the state from now on. */
+function endPull() {
+  pulling = false;
+  letGo = false;
+  connection.send(wish());
+  remember();
+  compareSoon();
+}
+
+/**
+ * Raises a load from zero to the end of its slider; where there is no shape any more it stops.
+ * @param {string} key
+ * @param {Range} range
+ */
+function ramp(key, range) {
+  if (stopRamp) {
+    stopRamp();
+    return;
+  }
+  view.scene.trail = [];
+  const start = performance.now();
+  const from = Math.max(range.min, 0);
+  let running = true;
+  stopRamp = () => {
+    running = false;
+    stopRamp = undefined;
+  };
+  const step = (/** @type {number} */ now) => {
+    if (!running) return;
+    if (present && !present.asked) {
+      stopRamp?.();
+      return;
+    }
+    const share = Math.min((now - start) / RAMP, 1);
+    if (connection.asked.size === 0) state.change({ [key]: Number((from + share * (range.max - from)).toPrecision(5)) });
+    if (share < 1) requestAnimationFrame(step);
+    else stopRamp?.();
+  };
+  state.change({ [key]: from });
+  requestAnimationFrame(step);
+}
+
+// --- What the server says --------------------------------------------------------------------------------------------
+
+/** The latest times from wish to picture, ms: for whoever measures. @type {number[]} */
+const latencies = [];
+Object.assign(globalThis, { hydrostatLatencies: latencies });
+
+/** @param {Reply} reply @param {number} asked */
+function receive(reply, asked) {
+  if (reply.ghost) view.scene.ghost = outlineOfGhost(reply.ghost);
+  if (reply.error) {
+    refused(reply.error);
+  } else if (reply.answer) {
+    controls.blame(null);
+    if (reply.pulled && pulling) takeTensions(reply.pulled.tensions);
+    answered(reply);
+  }
+  const took = performance.now() - asked;
+  latencies.push(took);
+  if (latencies.length > 1000) latencies.shift();
+  byId("link", HTMLElement).textContent = `${took.toFixed(1)} ms`;
+  byId("link", HTMLElement).title = `From wish to picture; ${(reply.microseconds / 1e3).toFixed(1)} ms of it in the server`;
+  if (letGo && connection.asked.size === 0) endPull();
+}
+
+/** @param {number[]} tensions */
+function takeTensions(tensions) {
+  /** @type {Record<string, Setting | undefined>} */
+  const values = {};
+  tensions.forEach((tension, c) => {
+    values[`cable[${c}].tension`] = tension;
+    values[`cable[${c}].stroke`] = undefined;
+  });
+  state.change(values, true);
+  controls.refresh();
+}
+
+/** @param {Reply} reply */
+function answered(reply) {
+  const { answer, drawing, pulled } = reply;
+  if (!answer) return;
+  const words = wordsOf(answer);
+  const shape = answer.converged ? answer : answer.last_good;
+  if (pulled && shape) {
+    const lines = wordsOfPull(pulled, shape.cables);
+    if (lines.length > 0) {
+      words.lines.unshift(...lines);
+      if (words.level === "good") words.level = "warn";
+    }
+  }
+  // The picture says it, too: all but a plain stable shape.
+  view.scene.caption = words.level === "good" ? [] : [words.title, ...words.lines].map((text) => ({ text, level: words.level }));
+  say(words);
+  if (!shape || !drawing) return;
+  present = { shape, drawing, asked: answer.converged };
+  view.show({ shape, outline: outlineOf(shape.stations, drawing), asked: answer.converged });
+  tabulate(shape);
+  along.show(shape, pins);
+  legend(shape);
+}
+
+/** @param {import("./types").Problem} problem */
+function refused(problem) {
+  say({ level: "bad", title: "The request is refused", lines: [problem.message] });
+  view.scene.caption = [{ text: problem.message, level: "bad" }];
+  view.paint();
+  controls.blame(problem.key);
+  stopRamp?.();
+}
+
+/** @param {import("./words.js").Words} words */
+function say(words) {
+  const box = byId("verdict", HTMLElement);
+  const key = JSON.stringify(words);
+  // A screen reader reads what changes: what stays is not written again.
+  if (box.dataset.key === key) return;
+  box.dataset.key = key;
+  box.dataset.level = words.level;
+  byId("verdict-title", HTMLElement).textContent = words.title;
+  byId("verdict-lines", HTMLElement).replaceChildren(...words.lines.map((text) => element("li", { text })));
+}
+
+/** @param {Solution} shape */
+function tabulate(shape) {
+  const list = byId("numbers", HTMLElement);
+  const rows = numbersOf(shape);
+  if (list.children.length !== rows.length) list.replaceChildren(...rows.map(() => element("div", {}, [element("dt"), element("dd")])));
+  rows.forEach(([name, value], i) => {
+    const [term, text] = list.children[i].children;
+    if (term.textContent !== name) term.textContent = name;
+    if (text.textContent !== value) text.textContent = value;
+  });
+}
+
+/** @param {Solution} shape */
+function legend(shape) {
+  const place = byId("legend", HTMLElement);
+  const { speed, direction } = shape.inputs.flow;
+  /** @type {[string, string][]} */
+  const items = shape.cables.map((cable, c) => [`swatch c${c % 7}${cable.tension > 0 ? "" : " slack"}`, `${cable.name}: ${cable.tension > 0 ? force(cable.tension) : "slack"}`]);
+  items.push(["swatch cflow", speed > 0 ? `stream ${Number(speed.toPrecision(4))} m/s at ${Number(direction.toPrecision(4))}\u00b0` : "still water"]);
+  if (view.scene.layers.ghost) items.push(["swatch cghost slack", "unloaded"]);
+  const key = JSON.stringify(items);
+  if (place.dataset.key === key) return;
+  place.dataset.key = key;
+  place.replaceChildren(...items.map(([kind, text]) => element("span", {}, [element("i", { class: kind }), text])));
+}
+
+// --- Pins, layers, tabs, theme -----------------------------------------------------------------------------------------
+
+byId("pin", HTMLButtonElement).addEventListener("click", () => {
+  if (!present) return;
+  const free = [0, 2, 3, 4].find((colour) => pins.every((pin) => pin.colour !== colour));
+  if (free === undefined || pins.length >= PINS) {
+    toast(`${PINS} shapes are pinned already; take one off first`, "bad");
+    return;
+  }
+  const { shape, drawing } = present;
+  const label = `${shape.inputs.name}: ${shape.cables.map((c) => force(c.tension)).join(", ")}; ${shape.inputs.flow.speed} m/s`;
+  pins.push({ shape, outline: outlineOf(shape.stations, drawing), colour: free, label });
+  showPins();
+});
+
+function showPins() {
+  byId("pins", HTMLElement).replaceChildren(...pins.map((pin) => {
+    const off = element("button", { type: "button", text: "\u00d7", "aria-label": `Take off ${pin.label}` });
+    off.addEventListener("click", () => {
+      pins = pins.filter((other) => other !== pin);
+      showPins();
+    });
+    return element("span", {}, [element("i", { class: `dot c${pin.colour}` }), pin.label, off]);
+  }));
+  view.scene.pins = pins;
+  view.paint();
+  if (present) along.show(present.shape, pins);
+}
+
+/** @type {[string, string][]} */
+const LAYERS = [
+  ["sections", "Section lines"], ["directors", "Directors at the tip"], ["stream", "Stream"], ["layer", "Layer of the stream"],
+  ["ghost", "Unloaded arm"], ["trail", "Trail of the tip"], ["contact", "Contact forces"],
+];
+const tints = element("select", { "aria-label": "Colour of the body" }, [
+  element("option", { value: "plain", text: "plain" }), element("option", { value: "alpha", text: "by \u03b1" }),
+  element("option", { value: "eta", text: "by shear \u03b7" }), element("option", { value: "nu", text: "by stretch \u03bd" }),
+]);
+tints.addEventListener("change", () => {
+  view.scene.tints = /** @type {import("./paint.js").Scene["tints"]} */ (tints.value);
+  view.paint();
+});
+byId("layers", HTMLElement).append(...LAYERS.map(([name, text]) => {
+  const box = element("input", { type: "checkbox", checked: view.scene.layers[name] });
+  box.addEventListener("change", () => {
+    view.scene.layers[name] = box.checked;
+    if (name === "trail") view.scene.trail = [];
+    view.paint();
+    if (present) legend(present.shape);
+  });
+  return element("label", {}, [box, text]);
+}), element("label", {}, ["Body", tints]));
+
+const tabs = /** @type {HTMLButtonElement[]} */ ([...byId("tabs", HTMLElement).children]);
+/** @param {HTMLButtonElement} chosen */
+function open(chosen) {
+  for (const tab of tabs) {
+    const on = tab === chosen;
+    tab.setAttribute("aria-selected", String(on));
+    tab.tabIndex = on ? 0 : -1;
+    byId(tab.getAttribute("aria-controls") ?? "", HTMLElement).hidden = !on;
+  }
+  if (chosen.id === "tab-readings") studies.compare();
+}
+for (const [i, tab] of tabs.entries()) {
+  tab.addEventListener("click", () => open(tab));
+  tab.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (step === undefined) return;
+    const next = tabs[(i + step + tabs.length) % tabs.length];
+    next.focus();
+    open(next);
+  });
+}
+
+/** @param {string} name */
+function theme(name) {
+  document.documentElement.dataset.theme = name;
+  byId("theme", HTMLButtonElement).textContent = name === "dark" ? "\u2600" : "\u263e";
+  view.recolour();
+  along.recolour();
+}
+const dark = matchMedia("(prefers-color-scheme: dark)");
+/** What the user chose, if anything. */
+let chosenTheme = localStorage.getItem("theme");
+dark.addEventListener("change", () => chosenTheme ?? theme(dark.matches ? "dark" : "light"));
+byId("theme", HTMLButtonElement).addEventListener("click", () => {
+  chosenTheme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+  localStorage.setItem("theme", chosenTheme);
+  theme(chosenTheme);
+});
+
+// --- The beginning ---------------------------------------------------------------------------------------------------
+
+/** Takes what the address says, or what the program was started with. */
+async function begin() {
+  theme(chosenTheme ?? (dark.matches ? "dark" : "light"));
+  tidyMenus();
+  listenToShare(state, view.canvas);
+  listenToFiles(state);
+  const { arms, start, given } = await (await ask("/api/arms")).json();
+  byId("arm", HTMLSelectElement).replaceChildren(...arms.map((/** @type {{ name: string, description: string }} */ { name, description }) =>
+    element("option", { value: name, text: name, title: description })));
+  if (given) own.set(given.name, given.toml);
+  if (await state.fromHash(location.hash).catch(() => false)) return;
+  state.choose(given ?? { name: start ?? arms[0].name });
+}
+
+window.addEventListener("hashchange", async () => {
+  if (location.hash !== `#${await state.toHash()}`) state.fromHash(location.hash);
+});
+
+begin().catch((error) => toast(error instanceof Error ? error.message : String(error), "bad"));

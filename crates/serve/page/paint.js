@@ -1,0 +1,526 @@
+// Paints a scene on a canvas: arm, cables, stream, ghost, trail. Lengths are in m, y up, and drawn true to scale.
+
+/** @import { Outline, Point, Shown, Solution } from "./types" */
+
+import { layerSpeed, streamAt } from "./geometry.js";
+import { degrees, fixed, force } from "./numbers.js";
+
+/**
+ * What there is to paint.
+ * @typedef {{
+ *   shown: Shown | undefined,
+ *   ghost: Outline | undefined,
+ *   pins: { outline: Outline, colour: number }[],
+ *   extra: Outline | undefined,
+ *   trail: Point[],
+ *   way: { place: Point, stable: boolean, event: string | null }[],
+ *   target: Point | undefined,
+ *   hover: number | undefined,
+ *   caption: { text: string, level: string }[],
+ *   layers: Record<string, boolean>,
+ *   tints: "plain" | "alpha" | "eta" | "nu",
+ * }} Scene
+ */
+
+/**
+ * From m to pixels: x = ox + k x, y = oy - k y.
+ * @typedef {{ k: number, ox: number, oy: number, width: number, height: number }} View
+ */
+
+/** The stops of the program's drawings for shares from 0 to 1. */
+const SHADES = [[232, 158, 60], [214, 96, 77], [172, 52, 104], [104, 32, 112], [34, 20, 74]];
+
+const FONT = '12px system-ui, "Noto Sans", "Liberation Sans", sans-serif';
+
+/** Colours by name, from the style sheet. */
+export function colours() {
+  const style = getComputedStyle(document.documentElement);
+  return (/** @type {string} */ name) => style.getPropertyValue(`--${name}`).trim();
+}
+
+export class Painter {
+  /**
+   * @param {CanvasRenderingContext2D} ctx
+   * @param {View} view
+   * @param {Scene} scene
+   * @param {(name: string) => string} colour
+   */
+  constructor(ctx, view, scene, colour) {
+    this.ctx = ctx;
+    this.view = view;
+    this.scene = scene;
+    this.colour = colour;
+  }
+
+  paint() {
+    const { ctx, view, scene } = this;
+    ctx.clearRect(0, 0, view.width, view.height);
+    ctx.lineJoin = "round";
+    ctx.lineCap = "round";
+    ctx.font = FONT;
+    ctx.fillStyle = this.colour("water");
+    ctx.fillRect(0, 0, view.width, view.height);
+    const shape = scene.shown?.shape;
+    if (shape && scene.layers.stream) this.stream(shape);
+    if (scene.ghost && scene.layers.ghost) this.outline(scene.ghost, this.colour("ghost"), 1, [5, 4]);
+    if (scene.layers.trail) this.trail();
+    this.way();
+    for (const pin of scene.pins) this.outline(pin.outline, this.colour(`series-${pin.colour}`), 1.3);
+    if (scene.shown) {
+      if (scene.layers.layer) this.layer(scene.shown);
+      this.arm(scene.shown);
+      if (scene.layers.contact) this.contact(scene.shown);
+      if (scene.layers.directors) this.directors(scene.shown);
+    }
+    if (scene.extra) this.outline(scene.extra, this.colour("series-3"), 1.6, [7, 3]);
+    if (scene.shown && scene.hover !== undefined) this.hovered(scene.shown, scene.hover);
+    if (scene.target) this.target(scene.target);
+    this.scale();
+    this.caption();
+  }
+
+  /** @param {Point} point @returns {Point} */
+  at([x, y]) {
+    return [this.view.ox + this.view.k * x, this.view.oy - this.view.k * y];
+  }
+
+  /** @param {Point[]} points */
+  trace(points) {
+    const { ctx } = this;
+    ctx.beginPath();
+    for (const point of points) ctx.lineTo(...this.at(point));
+  }
+
+  /**
+   * @param {Point[]} points
+   * @param {string} colour
+   * @param {number} width
+   * @param {number[]} [dash]
+   */
+  line(points, colour, width, dash = []) {
+    const { ctx } = this;
+    this.trace(points);
+    ctx.setLineDash(dash);
+    ctx.strokeStyle = colour;
+    ctx.lineWidth = width;
+    ctx.stroke();
+    ctx.setLineDash([]);
+  }
+
+  /**
+   * @param {Outline} outline
+   * @param {string} colour
+   * @param {number} width
+   * @param {number[]} [dash]
+   */
+  outline(outline, colour, width, dash = []) {
+    this.line([...outline.left, ...[...outline.right].reverse(), outline.left[0]], colour, width, dash);
+  }
+
+  /**
+   * An arrow between two places on the page.
+   * @param {Point} from
+   * @param {Point} to
+   * @param {string} colour
+   * @param {number} width
+   */
+  arrow([x0, y0], [x1, y1], colour, width) {
+    const { ctx } = this;
+    const length = Math.hypot(x1 - x0, y1 - y0);
+    if (length < 1) return;
+    const head = Math.min(3 + 2.2 * width, 0.6 * length);
+    const [ux, uy] = [(x1 - x0) / length, (y1 - y0) / length];
+    ctx.strokeStyle = colour;
+    ctx.fillStyle = colour;
+    ctx.lineWidth = width;
+    ctx.beginPath();
+    ctx.moveTo(x0, y0);
+    ctx.lineTo(x1 - 0.7 * head * ux, y1 - 0.7 * head * uy);
+    ctx.stroke();
+    ctx.beginPath();
+    ctx.moveTo(x1, y1);
+    ctx.lineTo(x1 - head * ux - 0.45 * head * uy, y1 - head * uy + 0.45 * head * ux);
+    ctx.lineTo(x1 - head * ux + 0.45 * head * uy, y1 - head * uy - 0.45 * head * ux);
+    ctx.fill();
+  }
+
+  /**
+   * The free stream: rows of arrows, longer where it is faster.
+   * @param {Solution} shape
+   */
+  stream(shape) {
+    const { ctx, view } = this;
+    const { speed, direction } = shape.inputs.flow;
+    if (!(speed > 0)) return;
+    const psi = (direction * Math.PI) / 180;
+    const length = 12 + 34 * Math.min(1, Math.sqrt(speed));
+    const step = 72;
+    ctx.globalAlpha = 0.5;
+    const [dx, dy] = [0.5 * length * Math.cos(psi), -0.5 * length * Math.sin(psi)];
+    for (let j = 0; j * step < view.height + step; j += 1) {
+      for (let i = 0; i * step < view.width + step; i += 1) {
+        const [x, y] = [i * step + (j % 2) * 0.5 * step, j * step + 0.5 * step];
+        this.arrow([x - dx, y - dy], [x + dx, y + dy], this.colour("stream"), 1.1);
+      }
+    }
+    ctx.globalAlpha = 1;
+  }
+
+  /**
+   * The layer of equation (7) over the windward surface: its thickness as a band, its speeds as profiles.
+   * @param {Shown} shown
+   */
+  layer({ shape, outline }) {
+    const { ctx, view } = this;
+    const { speed, layer_thickness: thickness } = shape.inputs.flow;
+    if (!(speed > 0)) return;
+    const colour = this.colour("layer");
+    const count = shape.stations.s.length;
+    const normal = (/** @type {number} */ i) => {
+      const { phi, windward } = streamAt(shape, i);
+      return /** @type {Point} */ ([-windward * Math.sin(phi), windward * Math.cos(phi)]);
+    };
+    const surface = (/** @type {number} */ i) => (streamAt(shape, i).windward > 0 ? outline.left[i] : outline.right[i]);
+    ctx.fillStyle = colour;
+    for (let i = 0; i + 1 < count; i += 1) {
+      if (streamAt(shape, i).windward !== streamAt(shape, i + 1).windward) continue;
+      const share = Math.abs(streamAt(shape, i).along) / speed;
+      const far = (/** @type {number} */ j) => {
+        const [[x, y], [nx, ny]] = [surface(j), normal(j)];
+        return /** @type {Point} */ ([x + thickness * nx, y + thickness * ny]);
+      };
+      ctx.globalAlpha = 0.04 + 0.16 * share;
+      this.trace([surface(i), surface(i + 1), far(i + 1), far(i)]);
+      ctx.fill();
+    }
+    ctx.globalAlpha = 1;
+    // The longest arrow is as long as the layer is thick twice over, and still seen from afar.
+    const longest = Math.max(2 * thickness, 16 / view.k);
+    const profiles = 13;
+    for (let k = 0; k < profiles; k += 1) {
+      const i = Math.round(((k + 0.5) / profiles) * (count - 1));
+      const { along, phi } = streamAt(shape, i);
+      const [[x, y], [nx, ny]] = [surface(i), normal(i)];
+      /** @type {Point[]} */
+      const curve = [];
+      for (let j = 0; j <= 8; j += 1) {
+        const height = (j / 8) * thickness;
+        const reach = (longest * layerSpeed(along, height, thickness)) / speed;
+        curve.push([x + height * nx + reach * Math.cos(phi), y + height * ny + reach * Math.sin(phi)]);
+      }
+      this.line(curve, colour, 0.9);
+      this.line([[x, y], [x + thickness * nx, y + thickness * ny]], colour, 0.5);
+      this.arrow(this.at([x + thickness * nx, y + thickness * ny]), this.at(curve[8]), colour, 1);
+    }
+  }
+
+  /**
+   * Body, sections, centreline and cables.
+   * @param {Shown} shown
+   */
+  arm({ shape, outline, asked }) {
+    const { ctx, scene } = this;
+    const { left, right, centre, cables } = outline;
+    ctx.globalAlpha = asked ? 0.88 : 0.45;
+    if (scene.tints === "plain") {
+      this.trace([...left, ...[...right].reverse()]);
+      ctx.fillStyle = this.colour("body");
+      ctx.fill();
+    } else {
+      this.tinted(shape, outline);
+    }
+    ctx.globalAlpha = 1;
+    if (scene.layers.sections) {
+      const count = left.length - 1;
+      for (let k = 0; k <= 40; k += 1) {
+        const i = Math.round((k / 40) * count);
+        this.line([left[i], right[i]], this.colour("section"), 0.7);
+      }
+    }
+    this.line(centre, this.colour("section"), 0.9, [7, 3]);
+    const dash = asked ? [] : [3, 3];
+    this.outline(outline, asked ? this.colour("outline") : this.colour("bad"), 1.4, dash);
+    // The support.
+    const [base, top, bottom] = [this.at(centre[0]), this.at(left[0]), this.at(right[0])];
+    const reach = 1.5;
+    this.support([base[0] + reach * (top[0] - base[0]), base[1] + reach * (top[1] - base[1])],
+      [base[0] + reach * (bottom[0] - base[0]), base[1] + reach * (bottom[1] - base[1])]);
+    const largest = Math.max(...shape.cables.map((c) => c.tension), 1e-300);
+    cables.forEach((line, c) => {
+      const { tension } = shape.cables[c];
+      const colour = this.colour(`series-${c % 7}`);
+      if (tension > 0) this.line(line, colour, 1 + 2.4 * (tension / largest));
+      else this.line(line, colour, 1, [4, 3]);
+      if (line.length > 0 && line.length < left.length) {
+        ctx.fillStyle = colour;
+        ctx.beginPath();
+        ctx.arc(...this.at(line[line.length - 1]), 3, 0, 2 * Math.PI);
+        ctx.fill();
+      }
+    });
+  }
+
+  /**
+   * A wall with hatching, from one end to the other; the arm leaves it to its left.
+   * @param {Point} from
+   * @param {Point} to
+   */
+  support([x0, y0], [x1, y1]) {
+    const { ctx } = this;
+    const length = Math.hypot(x1 - x0, y1 - y0) || 1;
+    const [ux, uy] = [(x1 - x0) / length, (y1 - y0) / length];
+    ctx.strokeStyle = this.colour("outline");
+    ctx.lineWidth = 1.6;
+    ctx.beginPath();
+    ctx.moveTo(x0, y0);
+    ctx.lineTo(x1, y1);
+    ctx.stroke();
+    ctx.lineWidth = 0.8;
+    ctx.beginPath();
+    for (let d = 3; d < length; d += 6) {
+      ctx.moveTo(x0 + d * ux, y0 + d * uy);
+      ctx.lineTo(x0 + (d + 5) * ux - 6 * uy, y0 + (d + 5) * uy + 6 * ux);
+    }
+    ctx.stroke();
+  }
+
+  /**
+   * The body in colours: the more of the quantity, the darker.
+   * @param {Solution} shape
+   * @param {Outline} outline
+   */
+  tinted(shape, { left, right }) {
+    const { ctx, scene } = this;
+    const values = scene.tints === "nu" ? shape.stations.nu.map((nu) => nu - 1) : shape.stations[scene.tints === "eta" ? "eta" : "alpha"];
+    const most = Math.max(...values.map(Math.abs), 1e-12);
+    for (let i = 0; i + 1 < left.length; i += 1) {
+      ctx.fillStyle = shade(Math.abs(0.5 * (values[i] + values[i + 1])) / most);
+      this.trace([left[i], left[i + 1], right[i + 1], right[i]]);
+      ctx.fill();
+    }
+  }
+
+  /**
+   * The contact force along the arm: what the part towards the tip exerts on the section.
+   * @param {Shown} shown
+   */
+  contact({ shape, outline }) {
+    const st = shape.stations;
+    const most = Math.max(...st.n_a.map((n, i) => Math.hypot(n, st.n_b[i])), 1e-300);
+    const count = st.s.length - 1;
+    for (let k = 0; k <= 14; k += 1) {
+      const i = Math.round((k / 14) * count);
+      this.contactAt(shape, outline, i, 58 / most);
+    }
+  }
+
+  /**
+   * @param {Solution} shape
+   * @param {Outline} outline
+   * @param {number} i
+   * @param {number} scale pixels a newton
+   */
+  contactAt(shape, outline, i, scale) {
+    const st = shape.stations;
+    const [cos, sin] = [Math.cos(st.theta[i]), Math.sin(st.theta[i])];
+    const [fx, fy] = [st.n_a[i] * cos - st.n_b[i] * sin, st.n_a[i] * sin + st.n_b[i] * cos];
+    const [x, y] = this.at(outline.centre[i]);
+    this.arrow([x, y], [x + scale * fx, y - scale * fy], this.colour("series-3"), 1.5);
+  }
+
+  /**
+   * Directors a, b and tangent t at the tip, with the angle from a to t.
+   * @param {Shown} shown
+   */
+  directors({ shape, outline }) {
+    const { ctx } = this;
+    const { theta, alpha } = shape.tip;
+    const tip = this.at(outline.centre[outline.centre.length - 1]);
+    const end = (/** @type {number} */ angle, /** @type {number} */ length) =>
+      /** @type {Point} */ ([tip[0] + length * Math.cos(angle), tip[1] - length * Math.sin(angle)]);
+    const ink = this.colour("ink");
+    const green = this.colour("series-2");
+    /** @type {[string, number, string][]} */
+    const arrows = [["a", theta, ink], ["b", theta + Math.PI / 2, ink]];
+    if (Math.abs(alpha) > 0.02) arrows.push(["t", theta + alpha, green]);
+    for (const [name, angle, colour] of arrows) {
+      this.arrow(tip, end(angle, 42), colour, 1.4);
+      this.text(name, end(angle, 53), colour, "center", "italic ");
+    }
+    if (Math.abs(alpha) > 0.02) {
+      ctx.strokeStyle = green;
+      ctx.lineWidth = 1.2;
+      ctx.beginPath();
+      ctx.arc(tip[0], tip[1], 25, -theta, -(theta + alpha), alpha > 0);
+      ctx.stroke();
+    }
+    const label = `\u03b1(L) = ${fixed(degrees(alpha), 2)}\u00b0`;
+    const away = end(theta - (Math.PI * 3) / 4, 58);
+    this.text(label, away, ink, Math.cos(theta - (Math.PI * 3) / 4) < 0 ? "right" : "left");
+  }
+
+  /**
+   * Text that stays readable on whatever is below it.
+   * @param {string} text
+   * @param {Point} place
+   * @param {string} colour
+   * @param {CanvasTextAlign} align
+   * @param {string} [style]
+   */
+  text(text, [x, y], colour, align, style = "") {
+    const { ctx, view } = this;
+    ctx.font = style + FONT;
+    ctx.textAlign = align;
+    ctx.textBaseline = "middle";
+    const width = ctx.measureText(text).width;
+    const least = align === "right" ? width + 6 : align === "center" ? 0.5 * width + 6 : 6;
+    const most = view.width - (align === "left" ? width + 6 : align === "center" ? 0.5 * width + 6 : 6);
+    const [px, py] = [Math.max(least, Math.min(most, x)), Math.max(10, Math.min(view.height - 10, y))];
+    ctx.strokeStyle = this.colour("water");
+    ctx.lineWidth = 4;
+    ctx.strokeText(text, px, py);
+    ctx.fillStyle = colour;
+    ctx.fillText(text, px, py);
+  }
+
+  trail() {
+    const { ctx, scene } = this;
+    const { trail } = scene;
+    const colour = this.colour("accent");
+    for (let i = 1; i < trail.length; i += 1) {
+      ctx.globalAlpha = 0.08 + (0.6 * i) / trail.length;
+      this.line([trail[i - 1], trail[i]], colour, 2);
+    }
+    ctx.globalAlpha = 1;
+  }
+
+  /** The tip's way along a path: dotted where shapes are unstable, with its events. */
+  way() {
+    const { ctx, scene } = this;
+    const ink = this.colour("series-1");
+    for (let i = 1; i < scene.way.length; i += 1) {
+      const [a, b] = [scene.way[i - 1], scene.way[i]];
+      this.line([a.place, b.place], ink, 1.4, a.stable && b.stable ? [] : [2, 4]);
+    }
+    for (const { place, event } of scene.way) {
+      if (event === null) continue;
+      ctx.fillStyle = this.colour("series-0");
+      ctx.beginPath();
+      ctx.arc(...this.at(place), 5, 0, 2 * Math.PI);
+      ctx.fill();
+      const [x, y] = this.at(place);
+      this.text(event.replaceAll("_", " "), [x + 9, y - 9], this.colour("series-0"), "left");
+    }
+  }
+
+  /**
+   * A station: its section against the normal of the centreline, its contact force, and its numbers.
+   * @param {Shown} shown
+   * @param {number} i
+   */
+  hovered({ shape, outline }, i) {
+    const { ctx } = this;
+    const st = shape.stations;
+    if (i >= st.s.length) return;
+    const phi = st.theta[i] + st.alpha[i];
+    const centre = this.at(outline.centre[i]);
+    const half = 0.5 * Math.hypot(outline.left[i][0] - outline.right[i][0], outline.left[i][1] - outline.right[i][1]);
+    const reach = Math.max(this.view.k * half, 14);
+    const [nx, ny] = [-reach * Math.sin(phi), -reach * Math.cos(phi)];
+    ctx.setLineDash([3, 3]);
+    ctx.strokeStyle = this.colour("series-2");
+    ctx.lineWidth = 1.4;
+    ctx.beginPath();
+    ctx.moveTo(centre[0] + nx, centre[1] + ny);
+    ctx.lineTo(centre[0] - nx, centre[1] - ny);
+    ctx.stroke();
+    ctx.setLineDash([]);
+    this.line([outline.left[i], outline.right[i]], this.colour("accent"), 2.6);
+    const size = Math.hypot(st.n_a[i], st.n_b[i]);
+    if (size > 0) this.contactAt(shape, outline, i, 60 / size);
+    const lines = [
+      `s = ${fixed(1e3 * st.s[i], 1)} mm`,
+      `\u03b1 = ${fixed(degrees(st.alpha[i]), 2)}\u00b0   \u03b7 = ${fixed(st.eta[i], 4)}   \u03bd = ${fixed(st.nu[i], 4)}`,
+      `contact ${force(size)}   moment ${fixed(1e3 * st.m[i], 3)} N mm`,
+    ];
+    const right = centre[0] < 0.6 * this.view.width;
+    lines.forEach((line, k) => {
+      this.text(line, [centre[0] + (right ? 26 : -26), centre[1] - 34 + 16 * k], this.colour("ink"), right ? "left" : "right");
+    });
+  }
+
+  /** @param {Point} target */
+  target(target) {
+    const { ctx, scene } = this;
+    const [x, y] = this.at(target);
+    ctx.strokeStyle = this.colour("bad");
+    ctx.lineWidth = 2;
+    ctx.beginPath();
+    for (const [dx, dy] of [[6, 6], [6, -6]]) {
+      ctx.moveTo(x - dx, y - dy);
+      ctx.lineTo(x + dx, y + dy);
+    }
+    ctx.stroke();
+    const centre = scene.shown?.outline.centre;
+    if (centre) this.line([centre[centre.length - 1], target], this.colour("bad"), 1, [2, 3]);
+  }
+
+  /** A bar of a round length. */
+  scale() {
+    const { ctx, view } = this;
+    const most = 130 / view.k;
+    const power = 10 ** Math.floor(Math.log10(most));
+    const length = ([5, 2, 1].find((step) => step * power <= most) ?? 1) * power;
+    const [x1, y] = [view.width - 18, view.height - 18];
+    const x0 = x1 - view.k * length;
+    ctx.strokeStyle = this.colour("quiet");
+    ctx.lineWidth = 1.2;
+    ctx.beginPath();
+    ctx.moveTo(x0, y - 4);
+    ctx.lineTo(x0, y);
+    ctx.lineTo(x1, y);
+    ctx.lineTo(x1, y - 4);
+    ctx.stroke();
+    const text = length >= 1 ? `${length} m` : length >= 1e-3 ? `${Number((1e3 * length).toPrecision(2))} mm` : `${Number((1e6 * length).toPrecision(2))} \u00b5m`;
+    this.text(text, [0.5 * (x0 + x1), y - 12], this.colour("quiet"), "center");
+  }
+
+  /** What the solver says, in the picture itself. */
+  caption() {
+    const { ctx, scene, view } = this;
+    ctx.font = `600 ${FONT}`;
+    // On a phone the tools take the first line, and only the title finds room; the rest stands right below the picture.
+    const narrow = view.width < 640;
+    let y = narrow ? 68 : 24;
+    for (const { text, level } of narrow ? scene.caption.slice(0, 1) : scene.caption) {
+      for (const line of wrapped(ctx, text, narrow ? view.width - 32 : Math.min(560, view.width - 330))) {
+        this.text(line, [16, y], this.colour(level), "left", "600 ");
+        y += 17;
+      }
+    }
+  }
+}
+
+/**
+ * The text in lines that are no wider than `width`.
+ * @param {CanvasRenderingContext2D} ctx
+ * @param {string} text
+ * @param {number} width
+ */
+function wrapped(ctx, text, width) {
+  const lines = [""];
+  for (const word of text.split(" ")) {
+    const longer = `${lines[lines.length - 1]} ${word}`.trimStart();
+    if (ctx.measureText(longer).width > width && lines[lines.length - 1] !== "") lines.push(word);
+    else lines[lines.length - 1] = longer;
+  }
+  return lines;
+}
+
+/** @param {number} share */
+function shade(share) {
+  const place = Math.min(Math.max(share, 0), 1) * (SHADES.length - 1);
+  const at = Math.min(Math.floor(place), SHADES.length - 2);
+  const mixed = SHADES[at].map((v, c) => Math.round(v + (place - at) * (SHADES[at + 1][c] - v)));
+  return `rgb(${mixed.join(" ")})`;
+}

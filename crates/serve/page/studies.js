@@ -1,0 +1,229 @@
+// What takes longer than a solve: paths, readings side by side, all equilibria. They come over the HTTP interface.
+
+/** @import { Answer, Drawing, EquilibriaDocument, Outline, PathDocument, Solution } from "./types" */
+/** @import { ArmView } from "./arm_view.js" */
+/** @import { Controls, Range } from "./controls.js" */
+/** @import { State } from "./state.js" */
+
+import { PathCharts } from "./charts.js";
+import { armOf, ask } from "./connection.js";
+import { READINGS } from "./controls.js";
+import { outlineOf } from "./geometry.js";
+import { degrees, fixed } from "./numbers.js";
+import { byId, element, toast } from "./page.js";
+
+const STATIONS = 121;
+
+/** A table. @param {string[]} head @param {(string | Node)[][]} rows */
+function table(head, rows) {
+  return element("table", {}, [
+    element("thead", {}, [element("tr", {}, head.map((text) => element("th", { scope: "col", text })))]),
+    element("tbody", {}, rows.map((cells) => element("tr", {}, cells.map((cell) => element("td", {}, [cell]))))),
+  ]);
+}
+
+/** @param {unknown} error */
+const said = (error) => (error instanceof Error ? error.message : String(error));
+
+export class Studies {
+  /**
+   * @param {State} state
+   * @param {ArmView} view
+   * @param {Controls} controls
+   * @param {() => { shape: Solution, drawing: Drawing } | undefined} present
+   */
+  constructor(state, view, controls, present) {
+    this.state = state;
+    this.view = view;
+    this.controls = controls;
+    this.present = present;
+    /** @type {Range | undefined} */
+    this.track = undefined;
+    /** Counts states: what was asked of an earlier one comes too late. */
+    this.epoch = 0;
+    /** What the path that is shown is of. */
+    this.traced = "";
+    this.paths = new PathCharts(byId("path-charts", HTMLElement), (value) => {
+      if (this.track) this.state.change({ [this.track.key]: value / this.track.per });
+    });
+    byId("path-key", HTMLSelectElement).addEventListener("change", () => this.chooseTrack());
+    byId("path-form", HTMLFormElement).addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.trace();
+    });
+    byId("search", HTMLButtonElement).addEventListener("click", () => this.search());
+  }
+
+  body() {
+    return { arm: armOf(this.state.arm), set: this.state.settings() };
+  }
+
+  /** The panel of controls is another one. */
+  rebuilt() {
+    const select = byId("path-key", HTMLSelectElement);
+    const before = select.value;
+    const tracks = this.controls.tracks();
+    select.replaceChildren(...tracks.map(({ key }) => element("option", { value: key, text: key })));
+    if (tracks.some(({ key }) => key === before)) select.value = before;
+    this.chooseTrack();
+  }
+
+  /** The state is another one: what was found of the one before does not hold. */
+  outdated() {
+    this.epoch += 1;
+    if (this.view.scene.extra) this.view.scene.extra = undefined;
+    byId("all-table", HTMLElement).replaceChildren();
+    byId("all-words", HTMLElement).textContent = "";
+    byId("all-picture", HTMLImageElement).hidden = true;
+    if (this.traced !== "" && this.traced !== this.others()) {
+      this.traced = "";
+      this.view.scene.way = [];
+      byId("path-words", HTMLElement).textContent = "The other loads have changed since: trace again.";
+    }
+  }
+
+  /** All that a path is of: arm and values but the one that varies. */
+  others() {
+    return JSON.stringify([this.state.arm, [...this.state.set].filter(([key]) => key !== this.track?.key)]);
+  }
+
+  chooseTrack() {
+    const key = byId("path-key", HTMLSelectElement).value;
+    this.track = this.controls.tracks().find((track) => track.key === key);
+    if (!this.track) return;
+    const { min, max, per, unit } = this.track;
+    byId("path-from", HTMLInputElement).value = String(Number((min * per).toPrecision(6)));
+    byId("path-to", HTMLInputElement).value = String(Number((max * per).toPrecision(6)));
+    byId("path-unit", HTMLElement).textContent = unit;
+  }
+
+  /** The equilibria over the range that the form has. */
+  async trace() {
+    const { track } = this;
+    const words = byId("path-words", HTMLElement);
+    if (!track) return;
+    const [from, to] = [byId("path-from", HTMLInputElement), byId("path-to", HTMLInputElement)].map((box) => box.valueAsNumber / track.per);
+    const settings = this.state.settings();
+    words.textContent = "Tracing\u2026";
+    const { epoch } = this;
+    try {
+      const vary = `${track.key}=${from}:${to}`;
+      const response = await ask("/api/path", { arm: armOf(this.state.arm), set: settings, vary, max_points: 600 });
+      /** @type {PathDocument} */
+      const path = await response.json();
+      if (epoch !== this.epoch) {
+        words.textContent = "The loads have changed since: trace again.";
+        return;
+      }
+      this.traced = this.others();
+      const angle = path.unit === "rad";
+      const shown = (/** @type {number} */ si) => (angle ? degrees(si) : si) * track.per;
+      this.paths.show(path, `${track.key}${track.unit ? ` (${track.unit})` : ""}`, shown);
+      const points = path.branches[0]?.points ?? [];
+      this.view.scene.way = points.map(({ tip, stability, event }) => ({ place: [tip.x, tip.y], stable: stability.state === "stable", event }));
+      if (this.view.fitted) this.view.fit();
+      else this.view.paint();
+      words.textContent = pathWords(path);
+    } catch (error) {
+      words.textContent = said(error);
+    }
+  }
+
+  /** This arm under each alternative reading. */
+  async compare() {
+    const place = byId("readings-table", HTMLElement);
+    const present = this.present();
+    if (!present) return;
+    const { epoch } = this;
+    const own = this.state.settings();
+    const base = present.shape;
+    const chosen = base.inputs.model;
+    /** @type {{ label: string, word: string, key: string | null }[]} */
+    const cases = [{ label: "As chosen", word: "", key: null }];
+    for (const { key, label, words } of READINGS) {
+      for (const word of words) if (word !== chosen[key]) cases.push({ label, word, key: `model.${key}` });
+    }
+    /** @type {(string | Node)[][]} */
+    const rows = [];
+    for (const { label, word, key } of cases) {
+      const set = key === null ? own : { ...own, [key]: word };
+      const name = key === null ? label : `${label}: ${word}`;
+      try {
+        const response = await ask("/api/solve", { arm: armOf(this.state.arm), set, stations: STATIONS });
+        if (epoch !== this.epoch) return;
+        rows.push(this.reading(name, await response.json(), present));
+      } catch (error) {
+        rows.push([name, "", "", "", "", said(error)]);
+      }
+      place.replaceChildren(table(["Reading", "Tip x (mm)", "Tip y (mm)", "\u03b1(L) (\u00b0)", "Tip moves (mm)", "What the solver says"], rows));
+    }
+  }
+
+  /**
+   * @param {string} name
+   * @param {Answer} answer
+   * @param {{ shape: Solution, drawing: Drawing }} present
+   * @returns {(string | Node)[]}
+   */
+  reading(name, answer, present) {
+    if (!answer.converged) return [name, "", "", "", "", answer.verdict.message];
+    const { tip } = answer;
+    const moved = 1e3 * Math.hypot(tip.x - present.shape.tip.x, tip.y - present.shape.tip.y);
+    const button = element("button", { type: "button", text: name, "aria-pressed": "false" });
+    button.addEventListener("click", () => {
+      const on = button.getAttribute("aria-pressed") !== "true";
+      for (const other of byId("readings-table", HTMLElement).querySelectorAll("button")) other.setAttribute("aria-pressed", "false");
+      button.setAttribute("aria-pressed", String(on));
+      this.overlay(on ? outlineOf(answer.stations, present.drawing) : undefined);
+    });
+    const stable = answer.stable === true ? "stable" : answer.stable === false ? "unstable" : "stability not established";
+    const words = [stable, ...answer.warnings.map((w) => w.kind.replaceAll("_", " "))].join(", ");
+    return [button, fixed(1e3 * tip.x, 3), fixed(1e3 * tip.y, 3), fixed(degrees(tip.alpha), 3), fixed(moved, 3), words];
+  }
+
+  /** @param {Outline | undefined} outline */
+  overlay(outline) {
+    this.view.scene.extra = outline;
+    this.view.paint();
+  }
+
+  /** All equilibria under the present loads. */
+  async search() {
+    const words = byId("all-words", HTMLElement);
+    const { epoch } = this;
+    words.textContent = "Searching\u2026";
+    try {
+      /** @type {EquilibriaDocument} */
+      const all = await (await ask("/api/equilibria", this.body())).json();
+      const picture = await (await ask("/api/equilibria", { ...this.body(), format: "svg" })).blob();
+      if (epoch !== this.epoch) return;
+      const stable = all.equilibria.filter((one) => one.stability.state === "stable").length;
+      const whole = all.complete ? "These are all." : `The search is not complete: ${all.ends.flatMap((end) => end?.message ?? []).join("; and ")}.`;
+      words.textContent = `${all.equilibria.length} found, ${stable} of them stable. ${whole}`;
+      const row = (/** @type {EquilibriaDocument["equilibria"][number]} */ { tip, stability }, /** @type {number} */ i) => [
+        String(i + 1), fixed(1e3 * tip.x, 3), fixed(1e3 * tip.y, 3), fixed(degrees(tip.theta), 3), fixed(degrees(tip.alpha), 3),
+        stability.state === "unstable" ? `unstable (${stability.directions})` : stability.state ?? "not established",
+      ];
+      byId("all-table", HTMLElement).replaceChildren(table(["Number", "Tip x (mm)", "Tip y (mm)", "Turned (\u00b0)", "\u03b1(L) (\u00b0)", "Stability"], all.equilibria.map(row)));
+      const image = byId("all-picture", HTMLImageElement);
+      URL.revokeObjectURL(image.src);
+      image.src = URL.createObjectURL(picture);
+      image.alt = `All ${all.equilibria.length} shapes to scale`;
+      image.hidden = false;
+    } catch (error) {
+      words.textContent = "";
+      toast(said(error), "bad");
+    }
+  }
+}
+
+/** @param {PathDocument} path */
+function pathWords(path) {
+  const [first] = path.branches;
+  if (!first) return "No point of the path was found.";
+  const count = (/** @type {string} */ event) => first.points.filter((p) => p.event === event).length;
+  const unstable = first.points.filter((p) => p.stability.state === "unstable").length;
+  const many = (/** @type {number} */ n, /** @type {string} */ one) => `${n === 0 ? "no" : n} ${one}${n === 1 ? "" : "s"}`;
+  const stability = unstable === 0 ? "stable all along" : `unstable at ${unstable} of them (dotted)`;
+  return `${many(first.points.length, "point")}, ${stability}; ${many(count("limit_point"), "limit point")}, ${many(count("bifurcation"), "bifurcation")}. The path ends: ${first.end.message}. A click on a chart goes to that shape.`;
+}

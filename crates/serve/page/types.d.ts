@@ -1,0 +1,89 @@
+// The documents that the page gets, as docs/interface.md has them. For the type checker alone: nothing of this is served.
+
+export interface Stations {
+  s: number[]; x: number[]; y: number[]; theta: number[]; nu: number[]; eta: number[]; mu: number[]; beta: number[];
+  alpha: number[]; n_a: number[]; n_b: number[]; m: number[];
+}
+
+export interface Note { kind: string; message: string }
+export interface Tip { x: number; y: number; theta: number; alpha: number }
+export interface Wrench { force: [number, number]; moment: number }
+
+export interface CableState {
+  name: string; tension: number; length: number; stroke: number;
+  command?: { stroke: number; length: number; slack: boolean };
+}
+
+export type Profile = number | { base: number; tip: number } | [number, number][];
+
+export interface Inputs {
+  name: string;
+  arm: { length: number; radius: Profile; density: number; base: { x: number; y: number; angle: number } };
+  material: Record<string, Profile>;
+  cable?: {
+    name: string; offset: Profile; tension?: number; stroke?: number; max_tension?: number; end: number; friction?: number;
+  }[];
+  flow: { speed: number; direction: number; density: number; layer_thickness: number; law: string; cn?: number; ct?: number };
+  gravity?: { acceleration: number; direction: number };
+  tip: { force: [number, number]; moment: number; follower: [number, number] };
+  model: Record<string, string>;
+}
+
+export interface Solution {
+  converged: true; stable: boolean | null; warnings: Note[]; tip: Tip; stations: Stations; cables: CableState[]; base: Wrench;
+  unmet?: Wrench; error_estimate: number; fold_margin: number; inputs: Inputs; statistics: Record<string, number>;
+}
+
+export interface Verdict {
+  kind: string; phase: string; load_fraction: number; s: number | null; message: string; advice: string;
+  other_equilibria: { count: number; stable: number; complete: boolean } | null;
+}
+
+export interface Failure { converged: false; verdict: Verdict; last_good: Solution | null }
+export type Answer = Solution | Failure;
+
+export interface Drawing { radius: number[]; offsets: number[][]; tension_scale: number[] }
+export interface Ghost { x: number[]; y: number[]; theta: number[]; half_width: number[] }
+
+export interface Pulled {
+  tensions: number[]; reached: boolean; distance: number; bounds: { cable: number; kind: "slack" | "most" }[];
+  jumped: boolean; elsewhere: boolean;
+}
+
+export interface Problem { kind: string; field: string | null; key: string | null; line: number | null; message: string }
+
+export interface Reply {
+  id: number; answer?: Answer; drawing?: Drawing; ghost?: Ghost; pulled?: Pulled; error?: Problem; dropped: number;
+  microseconds: number;
+}
+
+export type Setting = number | string;
+
+export interface Wish {
+  arm: ArmChoice; set: Record<string, Setting>; target?: Point; max_tension?: number;
+}
+
+/** A shipped arm by its name, or the text of an arm file. */
+export type ArmChoice = { name: string; toml?: undefined } | { name: string; toml: string };
+
+export type Point = [number, number];
+
+/** A shape in the form that it is painted in, m. */
+export interface Outline {
+  left: Point[]; right: Point[]; centre: Point[]; cables: Point[][];
+}
+
+/** An answer that can be looked at: its shape, and whether it is the one asked for. */
+export interface Shown { shape: Solution; outline: Outline; asked: boolean }
+
+export interface State {
+  value: number; tip: Tip; event: string | null; cable: number | null;
+  stability: { state: "stable" | "unstable" | "marginal" | null; directions: number | null };
+}
+
+export interface PathDocument {
+  parameter: string; unit: string; range: [number, number];
+  branches: { end: { kind: string; message: string }; points: State[] }[];
+}
+
+export interface EquilibriaDocument { complete: boolean; equilibria: State[]; ends: ({ message: string } | null)[] }

@@ -1,0 +1,105 @@
+// What the solver says about a state, in words.
+
+/** @import { Answer, CableState, Pulled, Solution } from "./types" */
+
+import { fixed, force, forceUnit, number } from "./numbers.js";
+
+/**
+ * @typedef {{ level: "good" | "warn" | "bad", title: string, lines: string[] }} Words
+ */
+
+/**
+ * Of an answer.
+ * @param {Answer} answer
+ * @returns {Words}
+ */
+export function wordsOf(answer) {
+  if (!answer.converged) {
+    const { verdict, last_good: shape } = answer;
+    const lines = [sentence(verdict.message), `Try: ${verdict.advice}.`];
+    if (shape) {
+      lines.push(`Shown is the last good shape, at load fraction ${number(verdict.load_fraction, 4)} of the phase \u201c${verdict.phase}\u201d: not the loads asked for.`);
+      lines.push(...shape.warnings.map((note) => sentence(note.message)));
+    }
+    return { level: "bad", title: `No equilibrium at these loads: ${verdict.kind.replaceAll("_", " ")}`, lines };
+  }
+  const lines = answer.warnings.map((note) => sentence(note.message));
+  if (answer.unmet) {
+    lines.push(`The tip's balance is not met: a force of (${answer.unmet.force.map((f) => number(f, 4)).join(", ")}) N and a moment of ${number(answer.unmet.moment, 4)} N m are left.`);
+  }
+  const { title, level } = stabilityOf(answer);
+  if (lines.length > 0) return { level: level === "good" ? "warn" : level, title: `${title}, with ${kindsOf(answer)}`, lines };
+  return { level, title, lines };
+}
+
+/** @param {Solution} answer */
+function kindsOf(answer) {
+  const kinds = [...answer.warnings.map(({ kind }) => kind.replaceAll("_", " ")), ...(answer.unmet ? ["unmet balance of the tip"] : [])];
+  return `${kinds.length === 1 ? "a warning" : "warnings"}: ${kinds.join(", ")}`;
+}
+
+/**
+ * @param {Solution} answer
+ * @returns {{ title: string, level: "good" | "warn" }}
+ */
+function stabilityOf(answer) {
+  if (answer.stable === true) return { title: "In equilibrium, stable", level: "good" };
+  if (answer.stable === false) return { title: "In equilibrium, but unstable: the arm would leave this shape at the slightest push", level: "warn" };
+  return { title: "In equilibrium; whether it is stable is not established", level: "warn" };
+}
+
+/**
+ * What pulling the tip came to; empty where it went where it was pulled.
+ * @param {Pulled} pulled
+ * @param {CableState[]} cables
+ */
+export function wordsOfPull(pulled, cables) {
+  const lines = [];
+  if (!pulled.reached) {
+    const bounds = pulled.bounds.map(({ cable, kind }) => {
+      const { name, tension } = cables[cable] ?? { name: String(cable), tension: 0 };
+      return kind === "slack" ? `cable ${name} is slack` : `cable ${name} has its largest tension (${force(tension)})`;
+    });
+    const why = bounds.length > 0 ? `: ${bounds.join(", ")}` : ": pulling further leads no nearer";
+    lines.push(`The tip cannot go there; it is ${fixed(1e3 * pulled.distance, 1)} mm away${why}.`);
+  }
+  if (pulled.elsewhere) lines.push("A solve from the unloaded arm at these tensions leads to another shape than the pull did; that shape is drawn.");
+  else if (pulled.jumped) lines.push("The arm has gone to another branch of its equilibria on the way.");
+  return lines;
+}
+
+/** @param {string} text */
+function sentence(text) {
+  return `${text.charAt(0).toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? "" : "."}`;
+}
+
+/**
+ * The names and values beside the picture.
+ * @param {Solution} shape
+ * @returns {[string, string][]}
+ */
+export function numbersOf(shape) {
+  const { tip, base, cables } = shape;
+  // What rounding leaves of nothing is nothing.
+  const clean = (/** @type {number} */ value) => number(Math.abs(value) < 1e-10 ? 0 : value, 3);
+  const [factor, unit] = forceUnit(Math.hypot(...base.force));
+  const degree = (/** @type {number} */ rad) => `${fixed((rad * 180) / Math.PI, 3)}\u00b0`;
+  /** @type {[string, string][]} */
+  const rows = [
+    ["Tip x", `${fixed(1e3 * tip.x, 3)} mm`],
+    ["Tip y", `${fixed(1e3 * tip.y, 3)} mm`],
+    ["Tip turned by", degree(tip.theta)],
+    ["Tip section, \u03b1(L)", degree(tip.alpha)],
+  ];
+  for (const cable of cables) {
+    const slack = cable.command?.slack ? " (slack)" : "";
+    rows.push([`Cable ${cable.name}`, `${force(cable.tension)}${slack}`], [`${cable.name} reeled in`, `${fixed(1e3 * cable.stroke, 2)} mm`]);
+  }
+  rows.push(
+    ["Base force", `(${base.force.map((f) => clean(factor * f)).join(", ")}) ${unit}`],
+    ["Base moment", `${clean(1e3 * base.moment)} N mm`],
+    ["Fold margin", number(shape.fold_margin, 3)],
+    ["Tip error, about", `${(1e6 * shape.error_estimate).toExponential(1).replace("-", "\u2212")} \u00b5m`],
+  );
+  return rows;
+}

@@ -1,0 +1,163 @@
+//! Why a request gets no answer, in one form: a status, the field that is wrong, and words.
+
+use axum::body::Body;
+use axum::http::{HeaderValue, Response, StatusCode, header};
+use axum::response::IntoResponse;
+use hydrostat::{PathError, ReachError, SensitivityError, SolveError};
+use hydrostat_files::{FileError, Place};
+use serde::Serialize;
+
+/// A request that is refused.
+#[derive(Debug, Clone)]
+pub(crate) struct Problem {
+    pub(crate) status: StatusCode,
+    pub(crate) body: Box<ProblemOut>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct ProblemOut {
+    schema: u32,
+    version: &'static str,
+    pub(crate) error: Details,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Details {
+    pub(crate) kind: &'static str,
+    /// The field of the body, or the header, that is wrong.
+    pub(crate) field: Option<String>,
+    /// The key of the arm file, where that is what is wrong.
+    pub(crate) key: Option<String>,
+    /// Place in the text of the arm, from 1.
+    line: Option<usize>,
+    column: Option<usize>,
+    pub(crate) message: String,
+}
+
+impl Problem {
+    pub(crate) fn new(status: StatusCode, kind: &'static str, field: Option<&str>, message: impl Into<String>) -> Self {
+        let field = field.map(str::to_owned);
+        let error = Details { kind, field, key: None, line: None, column: None, message: message.into() };
+        let body = ProblemOut { schema: hydrostat_files::results::SCHEMA, version: env!("CARGO_PKG_VERSION"), error };
+        Self { status, body: Box::new(body) }
+    }
+
+    /// A field of the body with a wrong value.
+    pub(crate) fn field(field: &str, message: impl Into<String>) -> Self {
+        Self::new(StatusCode::BAD_REQUEST, "bad_request", Some(field), message)
+    }
+
+    pub(crate) fn missing(field: &str, expected: &str) -> Self {
+        Self::field(field, format!("{field}: expected {expected}, found nothing"))
+    }
+
+    /// A body that is not JSON, or no body at all.
+    pub(crate) fn body(message: impl Into<String>) -> Self {
+        Self::new(StatusCode::BAD_REQUEST, "bad_request", Some("body"), message)
+    }
+
+    pub(crate) fn busy(message: &'static str) -> Self {
+        Self::new(StatusCode::SERVICE_UNAVAILABLE, "busy", None, message)
+    }
+
+    /// No fault of the server's, and no better when it is tried again.
+    pub(crate) fn too_long() -> Self {
+        let seconds = crate::limits::TIME.as_secs();
+        let message =
+            format!("the work took longer than the {seconds} s that a request has; loosen tol or ask for less");
+        Self::new(StatusCode::UNPROCESSABLE_ENTITY, "time_limit", None, message)
+    }
+
+    pub(crate) fn defect() -> Self {
+        let message = "this is a defect of the program, not of the request";
+        Self::new(StatusCode::INTERNAL_SERVER_ERROR, "defect", None, message)
+    }
+
+    pub(crate) fn not_found() -> Self {
+        let message = "there is nothing here; /api/openapi.json lists what there is";
+        Self::new(StatusCode::NOT_FOUND, "not_found", None, message)
+    }
+
+    pub(crate) fn method_not_allowed() -> Self {
+        let message = "this address takes another method; /api/openapi.json says which";
+        Self::new(StatusCode::METHOD_NOT_ALLOWED, "method_not_allowed", None, message)
+    }
+
+    fn of_key(mut self, key: Option<String>) -> Self {
+        self.body.error.key = key;
+        self
+    }
+}
+
+impl From<FileError> for Problem {
+    fn from(error: FileError) -> Self {
+        let field = if matches!(error.place(), Some(Place::Setting { .. })) { "set" } else { "arm" };
+        let mut problem = Self::field(field, error.to_string()).of_key(error.key().map(str::to_owned));
+        if let Some(Place::Line { line, column, .. }) = error.place() {
+            (problem.body.error.line, problem.body.error.column) = (Some(*line), Some(*column));
+        }
+        problem
+    }
+}
+
+impl From<SolveError> for Problem {
+    fn from(error: SolveError) -> Self {
+        match &error {
+            SolveError::Option { option, .. } => Self::field(option, error.to_string()),
+            SolveError::Arm(source) => Self::field("arm", error.to_string()).of_key(Some(source.key().to_owned())),
+            SolveError::NoEquilibrium(failure) => {
+                let message = format!("{error}; try: {}", failure.verdict.advice());
+                Self::new(StatusCode::UNPROCESSABLE_ENTITY, failure.verdict.kind.name(), None, message)
+            }
+        }
+    }
+}
+
+impl From<PathError> for Problem {
+    fn from(error: PathError) -> Self {
+        let message = error.to_string();
+        match error {
+            PathError::Option { option, .. } => {
+                Self::field(if option == "longest" { "max_step" } else { option }, message)
+            }
+            PathError::Value { .. } => Self::field("vary", message),
+            PathError::Support => Self::field("arm", message).of_key(Some("model.support".to_owned())),
+            PathError::Stroke { .. } | PathError::Friction { .. } => {
+                Self::field("arm", message).of_key(Some("cable".to_owned()))
+            }
+            PathError::Start { source, .. } => {
+                let mut problem = Self::from(source);
+                problem.body.error.message = message;
+                problem
+            }
+        }
+    }
+}
+
+impl From<ReachError> for Problem {
+    fn from(error: ReachError) -> Self {
+        let message = error.to_string();
+        match error {
+            ReachError::Solve(source) => source.into(),
+            ReachError::Target => Self::field("target", message),
+            ReachError::Option { option, .. } => Self::field(option, message),
+            ReachError::NoCables => Self::field("arm", message).of_key(Some("cable".to_owned())),
+            ReachError::Sensitivity(SensitivityError::Station { .. }) => Self::field("station", message),
+            ReachError::Sensitivity(_) => Self::field("arm", message),
+        }
+    }
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response<Body> {
+        let text = serde_json::to_vec(&self.body).unwrap_or_default();
+        let mut response = Response::new(Body::from(text));
+        *response.status_mut() = self.status;
+        let headers = response.headers_mut();
+        headers.insert(header::CONTENT_TYPE, HeaderValue::from_static("application/json"));
+        if self.status == StatusCode::SERVICE_UNAVAILABLE {
+            headers.insert(header::RETRY_AFTER, HeaderValue::from_static("1"));
+        }
+        response
+    }
+}

@@ -1,0 +1,146 @@
+//! The WebSocket from outside: what is dropped, what is refused, and who has to wait for whom.
+
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use futures_util::{SinkExt, StreamExt};
+use hydrostat_serve::{Options, Server};
+use serde_json::{Value, json};
+use tokio::net::TcpStream;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest;
+use tokio_tungstenite::tungstenite::{Error, Message};
+use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
+
+type Socket = WebSocketStream<MaybeTlsStream<TcpStream>>;
+
+async fn server() -> SocketAddr {
+    let server = Server::bind(Options { port: 0, ..Options::default() }).await.unwrap();
+    let address = server.address();
+    tokio::spawn(server.run());
+    address
+}
+
+async fn session(address: SocketAddr) -> Socket {
+    connect_async(format!("ws://{address}/api/session")).await.unwrap().0
+}
+
+async fn ask(socket: &mut Socket, message: &Value) {
+    socket.send(Message::text(message.to_string())).await.unwrap();
+}
+
+async fn reply(socket: &mut Socket) -> Value {
+    loop {
+        let message = tokio::time::timeout(Duration::from_secs(60), socket.next()).await.unwrap().unwrap().unwrap();
+        if let Message::Text(text) = message {
+            return serde_json::from_str(&text).unwrap();
+        }
+    }
+}
+
+fn pulled(id: u64) -> Value {
+    json!({ "id": id, "arm": "silicone", "set": { "cable[0].tension": 0.001 * f64::from(u32::try_from(id).unwrap()) } })
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn of_wishes_that_wait_the_newest_is_answered() {
+    let mut socket = session(server().await).await;
+    for id in 1..=300 {
+        socket.feed(Message::text(pulled(id).to_string())).await.unwrap();
+    }
+    socket.flush().await.unwrap();
+    let (mut last, mut answered, mut dropped) = (0, 0, 0);
+    while last < 300 {
+        let reply = reply(&mut socket).await;
+        let id = reply["id"].as_u64().unwrap();
+        assert!(id > last, "answers are in order");
+        assert_eq!(reply["answer"]["converged"], true);
+        let tension = reply["answer"]["cables"][0]["tension"].as_f64().unwrap();
+        assert!((tension - 0.001 * id as f64).abs() < 1e-12, "an answer is that of its own wish");
+        (last, answered) = (id, answered + 1);
+        dropped += reply["dropped"].as_u64().unwrap();
+    }
+    assert_eq!(answered + dropped, 300, "{answered} answered, {dropped} dropped");
+    assert!(dropped > 0);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn what_is_no_wish_is_refused_and_the_session_goes_on() {
+    let mut socket = session(server().await).await;
+    for (wrong, field) in [
+        (json!({ "id": 1 }), "arm"),
+        (json!({ "id": 1, "arm": "nobody" }), "arm"),
+        (json!({ "id": 1, "arm": "paper", "stations": 100_000 }), "stations"),
+        (json!({ "id": 1, "arm": "paper", "set": { "flow.speed": -1 } }), "set"),
+        (json!({ "id": 1, "arm": "paper", "target": [0.1] }), "target"),
+        (
+            json!({ "id": 1, "arm": { "toml": "[arm]\nlength = 0.1\nradius = 0.01\n[material]\nyoung = 1e5" }, "target": [0.1, 0] }),
+            "arm",
+        ),
+        (json!("what"), "body"),
+    ] {
+        ask(&mut socket, &wrong).await;
+        let reply = reply(&mut socket).await;
+        assert!(reply["answer"].is_null());
+        let found = reply["error"]["field"].as_str().unwrap();
+        assert!(found.starts_with(field), "{wrong}: {reply}");
+    }
+    ask(&mut socket, &pulled(2)).await;
+    assert_eq!(reply(&mut socket).await["answer"]["converged"], true);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn foreign_pages_get_no_session() {
+    let address = server().await;
+    let mut request = format!("ws://{address}/api/session").into_client_request().unwrap();
+    request.headers_mut().insert("Origin", "http://elsewhere.example".parse().unwrap());
+    match connect_async(request).await {
+        Err(Error::Http(response)) => assert_eq!(response.status(), 403),
+        other => panic!("expected a refusal, found {other:?}"),
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn thirty_viewers_are_served_in_turn() {
+    const VIEWERS: u64 = 30;
+    const WISHES: u64 = 8;
+    let address = server().await;
+    let viewers: Vec<_> = (0..VIEWERS)
+        .map(|viewer| {
+            tokio::spawn(async move {
+                let mut socket = session(address).await;
+                for wish in 1..=WISHES {
+                    ask(&mut socket, &pulled(wish * VIEWERS + viewer)).await;
+                    let reply = reply(&mut socket).await;
+                    assert_eq!(reply["id"], wish * VIEWERS + viewer);
+                    assert!(reply["answer"].is_object(), "{reply}");
+                }
+                viewer
+            })
+        })
+        .collect();
+    for viewer in viewers {
+        viewer.await.unwrap();
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn there_are_seats_for_so_many_and_they_are_given_back() {
+    let address = server().await;
+    let mut seated = Vec::new();
+    let refused = loop {
+        match connect_async(format!("ws://{address}/api/session")).await {
+            Ok((socket, _)) => seated.push(socket),
+            Err(Error::Http(response)) => break response.status(),
+            Err(other) => panic!("{other}"),
+        }
+    };
+    assert_eq!((refused.as_u16(), seated.len()), (503, 64));
+    seated.clear();
+    for _ in 0..100 {
+        if connect_async(format!("ws://{address}/api/session")).await.is_ok() {
+            return;
+        }
+        tokio::time::sleep(Duration::from_millis(50)).await;
+    }
+    panic!("seats are not given back");
+}
