@@ -151,7 +151,20 @@ impl Arm {
     /// # Ok::<(), hydrostat::ReachError>(())
     /// ```
     pub fn reach(&self, targets: &[Target], options: &ReachOptions) -> Result<Reach, ReachError> {
-        Search::new(self, Goal::Places(targets.to_vec()), options)?.run(options)
+        self.reach_while(targets, options, || true)
+    }
+
+    /// [`Arm::reach`] while `go_on`, which is asked every round, says so; then with what was found until then.
+    ///
+    /// # Errors
+    /// [`ReachError`].
+    pub fn reach_while(
+        &self,
+        targets: &[Target],
+        options: &ReachOptions,
+        go_on: impl Fn() -> bool,
+    ) -> Result<Reach, ReachError> {
+        Search::new(self, Goal::Places(targets.to_vec()), options)?.run(options, &go_on)
     }
 
     /// [`Arm::reach`] by the lengths of the cables: of what is found the strokes are commanded that its tensions make. It is
@@ -175,7 +188,7 @@ impl Arm {
     pub fn reach_by_strokes(&self, targets: &[Target], options: &ReachOptions) -> Result<Reach, ReachError> {
         let mut search = Search::new(self, Goal::Places(targets.to_vec()), options)?;
         search.hold_lengths();
-        search.run(options)
+        search.run(options, &|| true)
     }
 
     /// Tensions of one cable, all others slack, that turn the tip section to the angle `alpha` (rad) against the centreline; distances
@@ -198,17 +211,20 @@ impl Arm {
         check(self, &[Parameter::Tension(cable)], &[])?;
         let mut search = Search::new(self, Goal::TipAngle(alpha), options)?;
         search.pull_only(cable);
-        search.run(options)
+        search.run(options, &|| true)
     }
 }
 
 impl Search {
-    fn run(&self, options: &ReachOptions) -> Result<Reach, ReachError> {
+    fn run(&self, options: &ReachOptions, go_on: &dyn Fn() -> bool) -> Result<Reach, ReachError> {
         let mut out = Reach { solutions: Vec::new(), closest: None };
         let mut failure = None;
         let mut nearest: Option<State> = None;
         for start in self.starts() {
-            let state = match self.from(&start) {
+            if !go_on() {
+                break;
+            }
+            let state = match self.from(&start, go_on) {
                 Ok(state) => state,
                 Err(error) => {
                     failure = Some(error);

@@ -242,11 +242,14 @@ impl Search {
     }
 
     /// From a start to the nearest that can be had, of least effort.
-    pub(super) fn from(&self, start: &[f64]) -> Result<State, ReachError> {
+    pub(super) fn from(&self, start: &[f64], go_on: &dyn Fn() -> bool) -> Result<State, ReachError> {
         let mut state = self.begin(start)?;
         let mut damping = 1e-3;
         let mut refined = 0;
         for _ in 0..ROUNDS {
+            if !go_on() {
+                break;
+            }
             let Some(jacobian) = self.jacobian(&state.solver) else { break };
             let reached = state.distance() <= 0.1 * self.tol;
             if let Some(next) = self.towards_least_effort(&jacobian, &state) {
