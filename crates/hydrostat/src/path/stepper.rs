@@ -193,10 +193,6 @@ impl<'e> Stepper<'e> {
         let determinant = self.engine.determinant();
         let rise = self.orientation * determinant.sign / norm;
         let (state, response) = (self.engine.state(), self.round.response.clone());
-        if response.nodes.len() != state.solution.nodes.len() {
-            // A tangent on another mesh than its point leads nowhere.
-            return Err(Trouble::Mesh);
-        }
         let (tensions, margins) = (self.round.tension[1].clone(), self.margins());
         Ok(Point { state, fraction, response, tensions, margins, rise, size: determinant.log, error: self.error })
     }
