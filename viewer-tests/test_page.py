@@ -38,8 +38,14 @@ def agree(page: Page, solution: Any) -> None:
 
 
 def settle(page: Page) -> None:
-    """Until the address has what is shown."""
-    page.wait_for_timeout(450)
+    """Until the address has what is shown, and both stay as they are."""
+    before = None
+    for _ in range(40):
+        page.wait_for_timeout(400)
+        now = (page.url, page.locator("#numbers").inner_text())
+        if now == before:
+            return
+        before = now
 
 
 def hash_of(page: Page) -> dict[str, str]:
@@ -299,6 +305,7 @@ def test_downloads(page: Page, kind: str, tmp_path: Path) -> None:
 def test_charts_and_drawing_are_linked(page: Page) -> None:
     stations = solved("paper", "--stations", "121")["stations"]
     chart = page.locator("#along .chart").first
+    chart.scroll_into_view_if_needed()
     canvas = chart.locator("canvas").bounding_box()
     assert canvas is not None
     page.mouse.move(canvas["x"] + 0.9 * canvas["width"], canvas["y"] + 0.5 * canvas["height"])
@@ -309,6 +316,7 @@ def test_charts_and_drawing_are_linked(page: Page) -> None:
     assert min(alphas) <= value <= max(alphas) and value > 1
     # The mark is in all charts, and comes from the drawing, too.
     page.mouse.move(5, 5)
+    page.locator("#tip").scroll_into_view_if_needed()
     tip = page.locator("#tip").bounding_box()
     assert tip is not None
     page.mouse.move(tip["x"] - 12, tip["y"] + 10)
@@ -320,7 +328,8 @@ def test_shapes_are_pinned_and_compared(page: Page) -> None:
     set_slider(page, "cable[0].tension", 10)
     page.locator("#pin").click()
     expect(page.locator("#pins > span")).to_have_count(2)
-    page.wait_for_timeout(300)
+    page.locator("#along .chart").first.scroll_into_view_if_needed()
+    page.wait_for_timeout(1000)
     assert page.evaluate("Chart.getChart(document.querySelector('#along canvas')).data.datasets.length") == 3
     page.locator("#pins button").first.click()
     expect(page.locator("#pins > span")).to_have_count(1)
