@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_fitted_is_said_with_what_can() {
-        for key in ["arm.length", "arm.radius.base", "model.volume", "cable[0].offset"] {
+        for key in ["arm.length", "arm.inner_radius", "model.volume", "cable[0].end"] {
             let message = error(key);
             assert!(message.starts_with(&format!("{key} cannot be fitted")), "{message}");
             assert!(message.contains("cable[0].tension") && message.contains("flow.ct"), "{message}");

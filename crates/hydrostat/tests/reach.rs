@@ -241,7 +241,9 @@ fn strokes_that_are_found_lead_to_the_target() {
     for tensions in [[0.2, 0.1, 0.1], [0.0, 0.3, 0.0], [0.3, 0.0, 0.2]] {
         let target = target_of(&arm, &tensions).unwrap();
         let found = arm.reach_by_strokes(&[target], &options(0.6)).unwrap();
-        let best = found.solutions.iter().find(|one| one.on_the_path).unwrap();
+        let seen: Vec<_> = found.solutions.iter().map(|s| (&s.tensions, s.on_the_path, s.distance, s.effort)).collect();
+        let best = found.solutions.iter().find(|one| one.on_the_path);
+        let best = best.unwrap_or_else(|| panic!("{tensions:?}: {seen:?}"));
         assert!(best.configuration.arm.cables.iter().all(|cable| cable.stroke.is_some()));
         // By strokes alone: the tensions that it comes with do not count.
         let mut commanded = best.configuration.arm.clone();

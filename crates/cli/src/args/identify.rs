@@ -29,6 +29,7 @@ Examples:
   hydrostat identify my.toml data.csv --fit \"young=100 kPa:50 kPa:200 kPa\" --prior \"young=110±10 kPa\" --out fitted.toml
 
 {EXIT}"))]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct IdentifyArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,

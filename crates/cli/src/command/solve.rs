@@ -53,7 +53,7 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
 fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium, others: Option<Others>) -> anyhow::Result<()> {
     match (&args.plot, &failure.last_good) {
         (Some(plot), Some(last_good)) => {
-            output::draw(&arm_figure(last_good, Some(&last_good_note(&failure.verdict))), plot)?
+            output::draw(&arm_figure(last_good, Some(&last_good_note(&failure.verdict))), plot)?;
         }
         (Some(plot), None) => eprintln!("warning: no good shape on the way, {} is not drawn", plot.display()),
         (None, _) => {}

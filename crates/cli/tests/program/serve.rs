@@ -38,7 +38,7 @@ impl Viewer {
 
     fn connect(&self) -> Connection {
         let stream = TcpStream::connect(&self.host).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+        stream.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
         stream.set_nodelay(true).unwrap();
         Connection { host: self.host.clone(), stream: BufReader::new(stream) }
     }

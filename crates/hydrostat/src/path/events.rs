@@ -10,8 +10,8 @@ use crate::equilibrium::{N, Q};
 /// The climb that stands for none in the tangent of a branch that crosses.
 const MODE: f64 = 1e-9;
 
-/// The climb that is none at a limit point: the fraction is off by its square.
-const LEVEL: f64 = 1e-5;
+/// The climb that is none at a limit point: the fraction is off by its square, the shape by itself.
+const LEVEL: f64 = 1e-6;
 
 impl Stepper<'_> {
     /// The point where the fraction is extreme between two whose tangents rise and fall, or fall and rise, and its
