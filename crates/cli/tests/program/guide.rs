@@ -75,6 +75,12 @@ fn played(text: &str, place: &Path) -> String {
                 assert_eq!(run.code, 0, "{name}: {}", run.err);
                 out.push_str(&text);
             }
+            "csv" => {
+                let text = block.concat();
+                let name = text.lines().next().and_then(|line| line.strip_prefix("# ")).expect("a file's name");
+                fs::write(place.join(name), &text).unwrap();
+                out.push_str(&text);
+            }
             _ => out.push_str(&block.concat()),
         }
         out.push_str("```\n");
