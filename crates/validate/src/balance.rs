@@ -1,6 +1,6 @@
 //! Balance of whole arms and of their parts: what acts beyond a section against what its strains carry.
 //!
-//! The loads are written out a second time ([`crate::loads`]) and integrated over the dense solution by an adaptive quadrature of
+//! The loads are written out a second time (`loads`) and integrated over the dense solution by an adaptive quadrature of
 //! its own, so that nothing is shared with the solver but the shape.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
