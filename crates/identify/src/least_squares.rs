@@ -141,7 +141,7 @@ impl Local {
 /// }
 /// let free = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 /// let found = minimise(&mut Valley, &[-1.2, 1.0], &free, &Settings::default(), |_, _| ()).unwrap();
-/// assert!(found.converged && (found.x[0] - 1.0).abs() < 1e-6 && (found.x[1] - 1.0).abs() < 1e-6);
+/// assert!(found.converged && (found.x[0] - 1.0).abs() < 1e-5 && (found.x[1] - 1.0).abs() < 1e-5);
 /// ```
 ///
 /// # Errors

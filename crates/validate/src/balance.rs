@@ -29,7 +29,7 @@ pub struct Residuals {
 /// ```
 /// let arm = hydrostat::cases::distributed_loads().remove(1).arm;
 /// let off = hydrostat_validate::balance::residuals(&arm.solve().unwrap());
-/// assert!(off.whole < 1e-8 && off.parts < 1e-8);
+/// assert!(off.whole < 1e-8 && off.law < 1e-8);
 /// ```
 pub fn residuals(solved: &Configuration) -> Residuals {
     let arm = &solved.arm;
