@@ -439,6 +439,18 @@ impl Arm {
         Ok(())
     }
 
+    /// Whether bodies, cables and readings of both arms are laid out alike, whatever they are made of and whatever loads them.
+    pub(crate) fn has_geometry_of(&self, other: &Self) -> bool {
+        self.length == other.length
+            && self.radius == other.radius
+            && self.inner_radius == other.inner_radius
+            && self.cavity == other.cavity
+            && self.reference == other.reference
+            && self.readings == other.readings
+            && self.cables.len() == other.cables.len()
+            && self.cables.iter().zip(&other.cables).all(|(a, b)| a.offset == b.offset && a.end == b.end)
+    }
+
     /// Whether a cable that may be pulled rubs in its channel.
     pub(crate) fn rubs(&self) -> bool {
         self.cables.iter().any(|c| c.friction > 0.0)

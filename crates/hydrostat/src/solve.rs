@@ -401,15 +401,8 @@ impl Solver {
 
 /// Whether a solution for one arm is a start for the other: the same geometry, equations and unknowns.
 fn alike(a: &Arm, b: &Arm) -> bool {
-    let cables = || a.cables.iter().zip(&b.cables);
-    a.length == b.length
-        && a.radius == b.radius
-        && a.inner_radius == b.inner_radius
-        && a.cavity == b.cavity
-        && a.reference == b.reference
-        && a.readings == b.readings
-        && a.cables.len() == b.cables.len()
-        && cables().all(|(a, b)| a.offset == b.offset && a.end == b.end && a.stroke.is_some() == b.stroke.is_some())
+    a.has_geometry_of(b)
+        && a.cables.iter().zip(&b.cables).all(|(a, b)| a.stroke.is_some() == b.stroke.is_some())
         && !a.rubs()
         && !b.rubs()
         && a.breaks() == b.breaks()
