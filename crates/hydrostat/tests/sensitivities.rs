@@ -314,14 +314,14 @@ fn what_has_no_derivative_is_refused() {
     assert!(matches!(found, Err(SensitivityError::Station { .. })));
 }
 
-/// How good derivatives are where the solve is not tight: of the size of its error, by some hundred times where the radius changes what
-/// the base carries.
+/// How good derivatives are where the solve is not tight: of the size of its error, which counts for more where a parameter moves the arm
+/// little. At 1e-8 the largest is 2.1e-6 (below 1e-6 on the mesh that paths without hurry led to), at 1e-6 it is 4.4e-6.
 #[test]
 fn derivatives_are_as_good_as_the_solve() {
     let arm = loaded();
     let s = 0.6 * arm.length;
     let exact = sensitivities(&arm, TIGHT, s, SensitivityMethod::Best);
-    for (tol, bound) in [(1e-8, 5e-6), (1e-6, 5e-4)] {
+    for (tol, bound) in [(1e-8, 3e-6), (1e-6, 1e-4)] {
         let found = sensitivities(&arm, Options { tol }, s, SensitivityMethod::Best);
         let mut worst = 0.0_f64;
         for (found, exact) in found.iter().zip(&exact) {
