@@ -5,7 +5,7 @@
 
 import { boundsOf, nearest } from "./geometry.js";
 import { byId } from "./page.js";
-import { Painter, colours } from "./paint.js";
+import { captionLines, Painter, colours } from "./paint.js";
 
 /** Most points of the tip's trail. */
 const TRAIL = 400;
@@ -69,7 +69,7 @@ export class ArmView {
       this.scene.trail.push(tip);
       if (this.scene.trail.length > TRAIL) this.scene.trail.shift();
     }
-    if (first || (this.fitted && !this.scene.target && this.isOut(tip))) this.fit();
+    if (first || (this.fitted && !this.scene.target && (this.isOut(tip) || this.isUnderWords()))) this.fit();
     else this.paint();
   }
 
@@ -77,6 +77,15 @@ export class ArmView {
   isOut(point) {
     const [x, y] = this.toPage(point);
     return x < 20 || y < 20 || x > this.view.width - 20 || y > this.view.height - 20;
+  }
+
+  /** Whether words may cover the arm. */
+  isUnderWords() {
+    const words = captionLines(this.ctx, this.scene, this.view);
+    const outline = this.scene.shown?.outline;
+    if (words.length === 0 || !outline) return false;
+    const { y } = boundsOf([outline.left, outline.right]);
+    return this.toPage([0, y[1]])[1] < words[words.length - 1].y + 8;
   }
 
   /** Forgets what belongs to the arm before. */
@@ -96,13 +105,20 @@ export class ArmView {
       const { width, height } = this.view;
       const [w, h] = [Math.max(x[1] - x[0], 1e-9), Math.max(y[1] - y[0], 1e-9)];
       // Room for the directors at the tip, and for what stands above and below.
-      const [top, bottom] = [this.scene.caption.length > 0 || width < 640 ? 110 : 70, 60];
+      const [top, bottom] = [this.topRoom(), 60];
       const k = Math.min((width - Math.min(150, 0.3 * width)) / w, (height - top - bottom) / h);
       this.view.k = Math.max(k, 1e-3);
       this.view.ox = 0.5 * width - 0.5 * this.view.k * (x[0] + x[1]);
       this.view.oy = 0.5 * (height + top - bottom) + 0.5 * this.view.k * (y[0] + y[1]);
     }
     this.paint();
+  }
+
+  /** What the tools, the words and the directors at the tip take above the arm; words at most half of the picture. */
+  topRoom() {
+    const words = captionLines(this.ctx, this.scene, this.view);
+    const last = words.length > 0 ? words[words.length - 1].y + 30 : 0;
+    return Math.max(words.length > 0 || this.view.width < 640 ? 110 : 70, Math.min(last, 0.5 * this.view.height));
   }
 
   paint() {

@@ -487,18 +487,26 @@ export class Painter {
 
   /** What the solver says, in the picture itself. */
   caption() {
-    const { ctx, scene, view } = this;
-    ctx.font = `600 ${FONT}`;
-    // On a phone the tools take the first line, and only the title finds room; the rest stands right below the picture.
-    const narrow = view.width < 640;
-    let y = narrow ? 68 : 24;
-    for (const { text, level } of narrow ? scene.caption.slice(0, 1) : scene.caption) {
-      for (const line of wrapped(ctx, text, narrow ? view.width - 32 : Math.min(560, view.width - 330))) {
-        this.text(line, [16, y], this.colour(level), "left", "600 ");
-        y += 17;
-      }
+    for (const { line, level, y } of captionLines(this.ctx, this.scene, this.view)) {
+      this.text(line, [16, y], this.colour(level), "left", "600 ");
     }
   }
+}
+
+/**
+ * What the solver says, line by line as it stands in the picture.
+ * @param {CanvasRenderingContext2D} ctx
+ * @param {Scene} scene
+ * @param {View} view
+ */
+export function captionLines(ctx, scene, view) {
+  ctx.font = `600 ${FONT}`;
+  // On a phone the tools take the first line, and only the title finds room; the rest stands right below the picture.
+  const narrow = view.width < 640;
+  const width = narrow ? view.width - 32 : Math.min(560, view.width - 330);
+  const lines = (narrow ? scene.caption.slice(0, 1) : scene.caption)
+    .flatMap(({ text, level }) => wrapped(ctx, text, width).map((line) => ({ line, level })));
+  return lines.map((line, i) => ({ ...line, y: (narrow ? 68 : 24) + 17 * i }));
 }
 
 /**
