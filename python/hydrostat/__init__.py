@@ -23,6 +23,7 @@ from hydrostat._errors import (
     CableFold,
     LimitPoint,
     LoadJump,
+    MeasurementsError,
     NoDerivative,
     NoEquilibrium,
     NoSectionSolution,
@@ -43,6 +44,7 @@ from hydrostat.figures import (
     source_figures,
     workspace_figure,
 )
+from hydrostat.identification import Estimate, Fit, LeftOut
 from hydrostat.many import Many, solve_many
 from hydrostat.paths import Branch, Equilibria, Event, Path
 from hydrostat.reach import Bound, Followed, Follower, Reach, Reached, Target
@@ -62,14 +64,18 @@ __all__ = [
     "Command",
     "Ellipse",
     "Equilibria",
+    "Estimate",
     "Event",
     "Figure",
+    "Fit",
     "FoldMargin",
     "Followed",
     "Follower",
+    "LeftOut",
     "LimitPoint",
     "LoadJump",
     "Many",
+    "MeasurementsError",
     "NoDerivative",
     "NoEquilibrium",
     "NoSectionSolution",

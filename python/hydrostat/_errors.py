@@ -28,6 +28,29 @@ class ArmError(ValueError):
         return type(self), (str(self), self.key)
 
 
+class MeasurementsError(ValueError):
+    """A table of measured numbers is none.
+
+    Attributes
+    ----------
+    row : int or None
+        The row that is wrong, from 1 as a spreadsheet counts.
+    column : str or None
+        The head of its column.
+    """
+
+    row: int | None
+    column: str | None
+
+    def __init__(self, message: str, row: int | None = None, column: str | None = None) -> None:
+        super().__init__(message)
+        self.row = row
+        self.column = column
+
+    def __reduce__(self) -> tuple[type[MeasurementsError], tuple[str, int | None, str | None]]:
+        return type(self), (str(self), self.row, self.column)
+
+
 class NoEquilibrium(RuntimeError):
     """The arm has no such equilibrium, or none was found.
 

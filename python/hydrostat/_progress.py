@@ -1,4 +1,4 @@
-"""How many rows are done, on one line of standard error."""
+"""How far the work is, on one line of standard error."""
 
 from __future__ import annotations
 
@@ -45,3 +45,24 @@ class Progress:
     ) -> None:
         if self._shown:
             sys.stderr.write("\n")
+
+
+class Line:
+    """A line that what is said last takes the place of; drawn when `shown` is true, or on a terminal when it is None."""
+
+    def __init__(self, shown: bool | None) -> None:
+        self.shown = sys.stderr.isatty() if shown is None else shown
+
+    def __call__(self, words: str) -> None:
+        """Says how far the work is."""
+        sys.stderr.write(f"\r\x1b[K{words}")
+        sys.stderr.flush()
+
+    def __enter__(self) -> Line:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.shown:
+            sys.stderr.write("\r\x1b[K")

@@ -16,6 +16,7 @@ from hydrostat.solution import Solution
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from hydrostat.identification import Fit, Keys, Measured, Priors
     from hydrostat.paths import Equilibria, Path
     from hydrostat.reach import Reach, Targets
     from hydrostat.sensitivity import Sensitivities
@@ -402,6 +403,82 @@ class Arm:
         from hydrostat.solver import Solver
 
         return Solver(self, tol).sensitivities(parameters, stations=stations, method=method)
+
+    def measurements_template(self) -> str:
+        """A CSV table to fill in with what was measured of this arm, for `identify`; it explains itself."""
+        from hydrostat.identification import measurements_template
+
+        return measurements_template(self)
+
+    def identify(
+        self,
+        data: Measured,
+        fit: Keys,
+        *,
+        prior: Priors = (),
+        sd: str | Sequence[str] = (),
+        loss: str = "none",
+        rescale: bool = False,
+        cross_validate: bool = True,
+        tol: float = 1e-8,
+        progress: bool | None = None,
+    ) -> Fit:
+        """The parameters that make this arm agree best with what was measured, and how well the data know them.
+
+        Ctrl-C interrupts it.
+
+        Parameters
+        ----------
+        data : path, mapping or DataFrame
+            A CSV file, or its columns by their heads, such as ``{"case": ..., "s [mm]": ..., "x [mm]": ...}``; NaN and None are not
+            measured. `measurements_template` has the columns.
+        fit : str, sequence of str, or mapping
+            Keys of the arm file, or their last parts (``"young"``), with or without a start and bounds: ``"young=80 kPa:50 kPa:200 kPa"``, or
+            ``{"young": ("80 kPa", "50 kPa", "200 kPa")}``.
+        prior : sequence of str, or mapping
+            What was known before: ``["flow.cn=2.5±0.5"]`` or ``{"flow.cn": (2.5, 0.5)}``.
+        sd : str or sequence of str
+            Standard deviations of what has none in the data, with their units: ``"0.5 mm"``.
+        loss : str
+            ``"none"``, ``"huber"`` or ``"cauchy"``: how far-out numbers count.
+        rescale : bool
+            Whether standard deviations are known up to a common factor only.
+        cross_validate : bool
+            Whether to fit again without each load case.
+        tol : float
+            Error of the tip position over the length that every solve is asked for.
+        progress : bool, optional
+            Whether a line on standard error says how far the search is; by default on a terminal.
+
+        Raises
+        ------
+        MeasurementsError
+            A `ValueError` that names file, row and column.
+        NoEquilibrium
+            A load case has none where the search starts; a note names it.
+        ValueError
+            An argument that cannot be meant, named.
+
+        Examples
+        --------
+        >>> import hydrostat as hs
+        >>> arm = hs.Arm.load("silicone")
+        >>> tips = [arm.solve(tensions=[pull, 0]).tip for pull in (0.1, 0.2, 0.3)]
+        >>> data = {
+        ...     "case": ["a", "b", "c"],
+        ...     "cable[0].tension [N]": [0.1, 0.2, 0.3],
+        ...     "x [m]": [tip.x for tip in tips],
+        ...     "y [m]": [tip.y for tip in tips],
+        ... }
+        >>> found = arm.identify(data, {"young": "80 kPa"}, sd="1 mm")
+        >>> round(found.values[0])
+        110000
+        >>> found.verdict
+        ('the data tell all parameters apart',)
+        """
+        from hydrostat.identification import identify
+
+        return identify(self, data, fit, prior, sd, loss, rescale, cross_validate, tol, progress)
 
 
 def _from_parts(text: str, path: str, settings: list[tuple[str, str, str]]) -> Arm:

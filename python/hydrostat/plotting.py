@@ -10,7 +10,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.typing import ColorType
+    from numpy.typing import NDArray
 
+    from hydrostat.identification import Fit
     from hydrostat.paths import Equilibria, Path
     from hydrostat.reach import Reach
     from hydrostat.sensitivity import Sensitivities
@@ -205,6 +207,33 @@ def plot_reach(reach: Reach, ax: Axes | None) -> Axes:
             ax.plot(ends[:, 0], ends[:, 1], color=_MARK, linewidth=1.8, zorder=6)
     ax.legend(frameon=False, fontsize=9)
     return ax
+
+
+def plot_fit(fit: Fit, ax: Axes | None) -> Axes:
+    """See `Fit.plot`."""
+    import matplotlib.pyplot as plt
+
+    ax = _new_axes(ax)
+    cases = fit.residuals["case"]
+    colors = plt.colormaps["viridis"](np.linspace(0.15, 0.85, max(len(fit.solutions), 2)))
+    for (name, solution), color in zip(fit.solutions.items(), colors, strict=False):
+        plot_shape(solution, ax, color=color, sections=0, cables=False, flow=False, label=name)
+        places = _measured_places(fit, cases == name)
+        ax.plot(_MM * places[:, 0], _MM * places[:, 1], "+", color=color, markersize=9, markeredgewidth=1.5, zorder=6)
+    ax.legend(frameon=False, fontsize=9)
+    return ax
+
+
+def _measured_places(fit: Fit, own: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Where both coordinates of a place were measured, m."""
+    columns = fit.residuals
+
+    def measured(name: str) -> dict[float, float]:
+        rows = own & (columns["quantity"] == name)
+        return dict(zip(columns["s"][rows].tolist(), columns["measured"][rows].tolist(), strict=True))
+
+    x, y = measured("x"), measured("y")
+    return np.array([(x[s], y[s]) for s in x if s in y]).reshape(-1, 2)
 
 
 def plot_manipulability(found: Sensitivities, ax: Axes | None, effort: float | None) -> Axes:

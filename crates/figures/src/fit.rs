@@ -1,6 +1,7 @@
 //! A fit beside what was measured: shapes with markers, residuals, and how estimates hang together.
 
 use hydrostat::Configuration;
+use hydrostat_identify::{Case, Fit, Quantity, Residual};
 
 use crate::arm_figure::fitting;
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE, TICK_SIZE};
@@ -22,37 +23,73 @@ const CELL: f64 = 34.0;
 const MOST_NAMES: usize = 12;
 
 /// One load case of a fit.
-#[derive(Debug, Clone)]
-pub struct FittedCase<'a> {
-    /// For people.
-    pub name: String,
+struct FittedCase<'a> {
+    name: &'a str,
     /// The fitted arm under the loads of the case.
-    pub shape: &'a Configuration,
+    shape: &'a Configuration,
     /// Measured places, m.
-    pub markers: Vec<[f64; 2]>,
+    markers: Vec<[f64; 2]>,
     /// Residuals in standard deviations, in the order of the data.
-    pub residuals: Vec<f64>,
+    residuals: Vec<f64>,
+}
+
+impl<'a> FittedCase<'a> {
+    fn new(name: &'a str, shape: &'a Configuration, residuals: &[&Residual]) -> Self {
+        let measured = |of: fn(f64) -> Quantity, s: f64| {
+            residuals.iter().find(|one| one.measurement.quantity == of(s)).map(|one| one.measurement.value)
+        };
+        // A marker with one coordinate only has no place on the page.
+        let markers = residuals.iter().filter_map(|one| match one.measurement.quantity {
+            Quantity::X(s) => Some([one.measurement.value, measured(Quantity::Y, s)?]),
+            _ => None,
+        });
+        Self {
+            name,
+            shape,
+            markers: markers.collect(),
+            residuals: residuals.iter().map(|one| one.standardised).collect(),
+        }
+    }
 }
 
 /// Fitted shapes to scale with the measured places, every residual in standard deviations, and, of two parameters or more, the correlations
-/// of the estimates. `names` are the parameters, `correlation` has a row for each.
+/// of the estimates. `cases` are those that were fitted to.
 ///
 /// ```
-/// use hydrostat_figures::{FittedCase, fit_figure};
+/// use hydrostat::{Arm, Parameter};
+/// use hydrostat_figures::fit_figure;
+/// use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, Quantity, fit};
 ///
-/// let shape = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
-/// let case = FittedCase { name: "a".to_owned(), shape: &shape, markers: vec![[0.1, 0.001]], residuals: vec![0.2, -1.1] };
-/// let names = ["young", "density"].map(str::to_owned);
-/// let figure = fit_figure("a cone", &[case], &names, &[vec![1.0, -0.5], vec![-0.5, 1.0]]);
-/// assert!(figure.texts().any(|text| text == "\u{2212}0.50"));
+/// let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+/// (arm.density, arm.flow.density) = (1500.0, 1000.0); // kg/m3: it sinks
+/// arm.gravity.acceleration = 9.81;
+/// let measurements = vec![Measurement::new(Quantity::X(0.2), 0.196, 1e-3), Measurement::new(Quantity::Y(0.2), -0.02, 1e-3)];
+/// let cases = [Case { name: "at rest".to_owned(), arm: arm.clone(), measurements }];
+/// let wanted = [Fitted::new(Parameter::Young, &arm).unwrap()];
+/// let found = fit(&cases, &wanted, &FitOptions::default(), |_| std::ops::ControlFlow::Continue(())).unwrap();
+/// let figure = fit_figure("a cone", &cases, &found);
+/// assert!(figure.texts().any(|text| text == "at rest"));
 /// ```
-pub fn fit_figure(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &[Vec<f64>]) -> Scene {
+pub fn fit_figure(title: &str, cases: &[Case], fit: &Fit) -> Scene {
+    let shown: Vec<FittedCase<'_>> = fit
+        .shapes
+        .iter()
+        .map(|(case, shape)| {
+            let own: Vec<&Residual> = fit.residuals.iter().filter(|one| one.case == *case).collect();
+            FittedCase::new(cases.get(*case).map_or("", |case| case.name.as_str()), shape, &own)
+        })
+        .collect();
+    let names: Vec<String> = fit.estimates.iter().map(|one| one.fitted.parameter.to_string()).collect();
+    drawn(title, &shown, &names, &fit.correlation)
+}
+
+fn drawn(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &[Vec<f64>]) -> Scene {
     let outlines: Vec<Outline> = cases.iter().map(|case| Outline::new(case.shape, 0)).collect();
     let markers = || cases.iter().flat_map(|case| &case.markers).map(|[x, y]| [1e3 * x, 1e3 * y]);
     let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).chain(markers()).collect();
     let mut legend = Legend::default();
     for (index, case) in cases.iter().enumerate().take(MOST_NAMES) {
-        legend.add(Sample::Mark(Mark::Filled(series(index))), Label::plain(clipped(&case.name)));
+        legend.add(Sample::Mark(Mark::Filled(series(index))), Label::plain(clipped(case.name)));
     }
     legend.add(Sample::Mark(Mark::Cross(INK)), Label::plain("measured"));
     let below = MARGIN + CAP_HEIGHT * TITLE_SIZE + 8.0;
@@ -161,20 +198,16 @@ mod tests {
     #[test]
     fn unknown_correlations_and_many_cases_can_be_drawn() {
         let shape = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
-        let case = |k: usize| FittedCase {
-            name: format!("case {k}"),
-            shape: &shape,
-            markers: Vec::new(),
-            residuals: vec![9.0],
-        };
-        let cases: Vec<_> = (0..30).map(case).collect();
+        let named: Vec<String> = (0..30).map(|k| format!("case {k}")).collect();
+        let case = |name| FittedCase { name, shape: &shape, markers: Vec::new(), residuals: vec![9.0] };
+        let cases: Vec<_> = named.iter().map(|name| case(name)).collect();
         let names = ["a", "b"].map(str::to_owned);
-        let figure = fit_figure("t", &cases, &names, &[vec![1.0, f64::NAN], vec![f64::NAN, 1.0]]);
+        let figure = drawn("t", &cases, &names, &[vec![1.0, f64::NAN], vec![f64::NAN, 1.0]]);
         assert!(figure.texts().any(|text| text == "?"));
         assert!(!figure.texts().any(|text| text == "case 20"));
         let svg = figure.svg();
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
-        let one = fit_figure("t", &cases[..1], &names[..1], &[vec![1.0]]);
+        let one = drawn("t", &cases[..1], &names[..1], &[vec![1.0]]);
         assert!(one.size()[1] < figure.size()[1]);
     }
 }

@@ -34,7 +34,7 @@ pub use arm_figure::{arm_figure, last_good_note, reach_figure};
 pub use axes::Scale;
 pub use boundary::boundary_figure;
 pub use chart::{Abscissa, over_figure, path_figure};
-pub use fit::{FittedCase, fit_figure};
+pub use fit::fit_figure;
 pub use lines::{Measure, Panel, lines_figure};
 pub use png::PngError;
 pub use quantity::{Quantity, UnknownQuantity};

@@ -1,5 +1,7 @@
 //! Cross-validation by load case: what the others say of each.
 
+use std::ops::ControlFlow;
+
 use crate::error::Trial;
 use crate::fit::search;
 use crate::least_squares::Settings;
@@ -18,13 +20,14 @@ pub struct LeftOut {
     pub shifts: Vec<f64>,
 }
 
-/// Fits without each load case, from the estimates `x` with the standard deviations `sds`.
+/// Fits without each load case, from the estimates `x` with the standard deviations `sds`; with those alone that were left out before `say`
+/// ended it.
 pub(crate) fn leave_out(
     model: &Cases,
     index: &[usize],
     (x, sds): (&[f64], &[f64]),
     settings: &Settings,
-    mut say: impl FnMut(usize, usize),
+    mut say: impl FnMut(usize, usize) -> ControlFlow<()>,
 ) -> Vec<LeftOut> {
     let mut from = model.clone();
     for (one, x) in from.fitted.iter_mut().zip(x) {
@@ -32,24 +35,30 @@ pub(crate) fn leave_out(
     }
     let parameters = model.parameters();
     let count = model.observed.len();
-    (0..count)
-        .map(|left| {
-            let one = &model.observed[left];
-            let size = |values: &[f64]| {
-                let all: Vec<f64> = residuals(&one.case, values).map(|r| r * r).collect();
-                (all.iter().sum::<f64>() / all.len() as f64).sqrt()
-            };
-            let within = size(&model.answers[left].values);
-            let found = search(&mut from.without(left), settings, |_, _| ()).map_err(|refusal| refusal.why);
-            say(left + 1, count);
-            let mut shifts = vec![0.0; x.len()];
-            let predicted = found.and_then(|found| {
-                for ((shift, (new, old)), sd) in shifts.iter_mut().zip(found.x.iter().zip(x)).zip(sds) {
-                    *shift = (new - old) / sd;
-                }
-                one.clone().answer(&parameters, &found.x).map(|answer| size(&answer.values))
-            });
-            LeftOut { case: index[left], within, predicted, shifts }
-        })
-        .collect()
+    let mut out = Vec::with_capacity(count);
+    for left in 0..count {
+        let one = &model.observed[left];
+        let size = |values: &[f64]| {
+            let all: Vec<f64> = residuals(&one.case, values).map(|r| r * r).collect();
+            (all.iter().sum::<f64>() / all.len() as f64).sqrt()
+        };
+        let within = size(&model.answers[left].values);
+        let mut told = ControlFlow::Continue(());
+        let found = search(&mut from.without(left), settings, |_, _| {
+            told = say(left, count);
+            told
+        });
+        if told.is_break() {
+            break;
+        }
+        let mut shifts = vec![0.0; x.len()];
+        let predicted = found.map_err(|refusal| refusal.why).and_then(|found| {
+            for ((shift, (new, old)), sd) in shifts.iter_mut().zip(found.x.iter().zip(x)).zip(sds) {
+                *shift = (new - old) / sd;
+            }
+            one.clone().answer(&parameters, &found.x).map(|answer| size(&answer.values))
+        });
+        out.push(LeftOut { case: index[left], within, predicted, shifts });
+    }
+    out
 }

@@ -1,5 +1,8 @@
 //! From load cases to estimates and what they are worth.
 
+use std::fmt;
+use std::ops::ControlFlow;
+
 use hydrostat::{Configuration, Parameter};
 
 use crate::certainty::{Direction, correlation, covariance, directions};
@@ -38,8 +41,17 @@ impl Default for FitOptions {
 pub enum Progress {
     /// Steps of the search, and half the sum of squares (or of what the loss makes of them) there.
     Round(usize, f64),
-    /// Load cases that were left out once, of how many.
+    /// Load cases that have been left out once, of how many; said at every step of a search without one.
     LeftOut(usize, usize),
+}
+
+impl fmt::Display for Progress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Round(round, cost) => write!(f, "step {round}: half the sum of squares {cost:.4}"),
+            Self::LeftOut(done, all) => write!(f, "load case {done} of {all} left out"),
+        }
+    }
 }
 
 /// A parameter that was fitted, in its unit.
@@ -154,9 +166,11 @@ impl Fit {
     }
 }
 
-/// Fits parameters to load cases.
+/// Fits parameters to load cases. `say` is told how far the work is, and may end it: the fit is then what was found until there.
 ///
 /// ```
+/// use std::ops::ControlFlow;
+///
 /// use hydrostat::{Arm, Cable, Parameter, Profile};
 /// use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, Quantity, fit};
 ///
@@ -171,7 +185,7 @@ impl Fit {
 /// }
 ///
 /// let young = Fitted { start: 80e3, ..Fitted::new(Parameter::Young, &arm).expect("a cone is homogeneous") };
-/// let found = fit(&cases, &[young], &FitOptions::default(), |_| ()).expect("these can be solved");
+/// let found = fit(&cases, &[young], &FitOptions::default(), |_| ControlFlow::Continue(())).expect("these can be solved");
 /// assert!((found.estimates[0].value / 110e3 - 1.0).abs() < 1e-6);
 /// assert_eq!(found.verdict(), ["the data tell all parameters apart"]);
 /// # Ok::<(), hydrostat::SolveError>(())
@@ -183,7 +197,7 @@ pub fn fit(
     cases: &[Case],
     fitted: &[Fitted],
     options: &FitOptions,
-    mut say: impl FnMut(Progress),
+    mut say: impl FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Fit, IdentifyError> {
     let fitted = checked(fitted)?;
     let measured: usize = cases.iter().map(|case| case.measurements.len()).sum();
@@ -199,7 +213,11 @@ pub fn fit(
     let index: Vec<usize> = with_numbers().map(|(i, _)| i).collect();
     let mut model = Cases { observed: observed?, fitted, answers: Vec::new() };
     let settings = Settings { loss: options.loss, rounds: options.rounds, ..Settings::default() };
-    let found = search(&mut model, &settings, |rounds, cost| say(Progress::Round(rounds, cost)));
+    let mut told = ControlFlow::Continue(());
+    let found = search(&mut model, &settings, |rounds, cost| {
+        told = say(Progress::Round(rounds, cost));
+        told
+    });
     let found = found.map_err(|refusal| start(cases, &index, refusal))?;
     // The answers at hand may be those of a trial.
     let at_end = crate::least_squares::Model::evaluate(&mut model, &found.x);
@@ -227,7 +245,7 @@ pub fn fit(
     let directions = directions(&rows, &sizes);
     let correlation = correlation(&covariance);
     let findings = findings(&parameters, &directions, &correlation);
-    let left_out = if options.cross_validate && model.observed.len() > 1 {
+    let left_out = if options.cross_validate && model.observed.len() > 1 && told.is_continue() {
         let sds: Vec<f64> = estimates.iter().map(|one| one.sd.unwrap_or(f64::INFINITY)).collect();
         leave_out(&model, &index, (&found.x, &sds), &settings, |done, all| say(Progress::LeftOut(done, all)))
     } else {
@@ -255,7 +273,7 @@ pub fn fit(
 pub(crate) fn search(
     model: &mut Cases,
     settings: &Settings,
-    say: impl FnMut(usize, f64),
+    say: impl FnMut(usize, f64) -> ControlFlow<()>,
 ) -> Result<Minimum<Refusal>, Refusal> {
     let start: Vec<f64> = model.fitted.iter().map(|one| one.start).collect();
     let bounds: Vec<[f64; 2]> = model.fitted.iter().map(|one| one.bounds).collect();

@@ -1,7 +1,9 @@
 //! Estimates and intervals on synthetic data with known truth.
 
+use std::ops::ControlFlow;
+
 use hydrostat::Parameter;
-use hydrostat_identify::{Case, Finding, Fit, FitOptions, Fitted, Loss, Prior, Quantity, fit};
+use hydrostat_identify::{Case, Finding, Fit, FitOptions, Fitted, Loss, Prior, Progress, Quantity, fit};
 
 mod common;
 use common::{Random, exact, loads, markers, noisy, silicone};
@@ -13,7 +15,7 @@ fn wanted(parameters: &[Parameter]) -> Vec<Fitted> {
 }
 
 fn found(cases: &[Case], wanted: &[Fitted], options: &FitOptions) -> Fit {
-    let found = fit(cases, wanted, options, |_| ()).unwrap();
+    let found = fit(cases, wanted, options, |_| ControlFlow::Continue(())).unwrap();
     assert!(found.converged);
     found
 }
@@ -234,8 +236,29 @@ fn trials_without_an_equilibrium_are_survived_and_named() {
     assert!(error.starts_with("case hard pull has no answer where the search starts: a cable folds"), "{error}");
 }
 
+/// What is told how far the search is can end it, and gets what was found until there.
+#[test]
+fn a_search_is_ended_on_request() {
+    let cases = exact(&loads(), &markers(2), |_| 1e-3);
+    let mut wanted = wanted(&[Parameter::Young]);
+    wanted[0].start = 200e3;
+    let options = FitOptions { cross_validate: true, ..QUICK };
+    let ended_at = |end: Progress| {
+        let say = |step| {
+            let ends = matches!((step, end), (Progress::Round(a, _), Progress::Round(b, _)) | (Progress::LeftOut(a, _), Progress::LeftOut(b, _)) if a == b);
+            if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        fit(&cases, &wanted, &options, say).unwrap()
+    };
+    let early = ended_at(Progress::Round(2, 0.0));
+    assert!(!early.converged && early.rounds == 2 && early.left_out.is_empty());
+    assert!((early.estimates[0].value - 110e3).abs() < 90e3, "nearer than the start");
+    let late = ended_at(Progress::LeftOut(2, 0));
+    assert!(late.converged && late.left_out.len() == 2 && late.left_out[1].case == 1);
+}
+
 fn fit_error(cases: &[Case], wanted: &[Fitted]) -> String {
-    fit(cases, wanted, &QUICK, |_| ()).unwrap_err().to_string()
+    fit(cases, wanted, &QUICK, |_| ControlFlow::Continue(())).unwrap_err().to_string()
 }
 
 #[test]

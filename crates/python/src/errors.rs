@@ -2,7 +2,8 @@
 //! the verdict's fields.
 
 use hydrostat::{NoEquilibrium, PathError, ReachError, SensitivityError, SolveError};
-use hydrostat_files::FileError;
+use hydrostat_files::{FileError, MeasurementsError};
+use hydrostat_identify::{IdentifyError, Trial};
 use hydrostat_sweep::SweepError;
 use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -71,6 +72,26 @@ pub(crate) fn reach_error(py: Python<'_>, error: ReachError, tol: f64) -> PyErr 
         ReachError::Target => wrong(format!("targets: {error}")),
         // Its words begin with the argument.
         ReachError::Option { .. } => wrong(error),
+    }
+}
+
+/// A table of measured numbers that is none; a `ValueError` that knows its row and column.
+pub(crate) fn measurements_error(py: Python<'_>, error: MeasurementsError) -> PyErr {
+    static MEASUREMENTS_ERROR: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let row = (error.row > 0).then_some(error.row);
+    made(py, &MEASUREMENTS_ERROR, "MeasurementsError", (error.to_string(), row, error.column))
+}
+
+/// What a fit ends with.
+pub(crate) fn identify_error(py: Python<'_>, error: IdentifyError, tol: f64) -> PyErr {
+    let words = error.to_string();
+    let IdentifyError::Start { case, source } = error else { return wrong(words) };
+    let Trial::Sensitivity(source) = *source else { return wrong(words) };
+    let found = sensitivity_error(py, source, tol);
+    let note = format!("load case {case} has no answer where the search starts");
+    match found.value(py).call_method1("add_note", (note,)) {
+        Ok(_) => found,
+        Err(error) => error,
     }
 }
 

@@ -7,6 +7,7 @@ mod arm;
 mod arrays;
 mod errors;
 mod figure;
+mod identification;
 mod interrupt;
 mod many;
 mod paths;
@@ -25,6 +26,8 @@ mod _native {
     use super::arm::{Arm, shipped, shipped_names};
     #[pymodule_export]
     use super::figure::{Figure, curve_figure, map_figure, over_figure, source_figures, workspace_figure};
+    #[pymodule_export]
+    use super::identification::{Fit, identify, measurements_template};
     #[pymodule_export]
     use super::many::{parameter_names, solve_many};
     #[pymodule_export]

@@ -1,14 +1,15 @@
 //! `hydrostat identify`: parameters from measured shapes.
 
 use std::fmt::Write as _;
+use std::ops::ControlFlow;
 
 use hydrostat::{Arm, Parameter};
-use hydrostat_figures::{FittedCase, fit_figure};
+use hydrostat_figures::fit_figure;
 use hydrostat_files::{
     Deviations, IdentificationDocument, arm_to_toml, fitted, measurements_template, number, read_measurements,
     residuals_csv,
 };
-use hydrostat_identify::{Case, Fit, FitOptions, Progress as Step, Quantity, fit};
+use hydrostat_identify::{Case, Fit, FitOptions, fit};
 
 use super::NoAnswer;
 use super::table::table;
@@ -46,10 +47,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     };
     let mut progress = Progress::new();
     let found = fit(&cases, &wanted, &options, |step| {
-        progress.say(|| match step {
-            Step::Round(round, cost) => format!("step {round}: half the sum of squares {}", number(cost)),
-            Step::LeftOut(done, all) => format!("load case {done} of {all} left out"),
-        });
+        progress.say(|| step.to_string());
+        ControlFlow::Continue(())
     })?;
     drop(progress);
 
@@ -61,7 +60,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         output::put(Some(path), &arm_to_toml(&best))?;
     }
     if let Some(path) = &args.plot {
-        output::draw(&figure(&arm, &cases, &found), path)?;
+        let title = format!("{}: fitted to {} load cases", arm.name, found.shapes.len());
+        output::draw(&fit_figure(&title, &cases, &found), path)?;
     }
     let format = if args.json { Format::Json } else { args.format };
     let text = match format {
@@ -82,36 +82,6 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         );
     }
     Err(NoAnswer(words).into())
-}
-
-fn figure(arm: &Arm, cases: &[Case], found: &Fit) -> hydrostat_figures::Scene {
-    let shown: Vec<FittedCase<'_>> = found
-        .shapes
-        .iter()
-        .map(|(case, shape)| {
-            let own = || found.residuals.iter().filter(|one| one.case == *case);
-            let at = |s: f64, y: bool| {
-                own().find_map(|one| match one.measurement.quantity {
-                    Quantity::X(place) if !y && place == s => Some(one.measurement.value),
-                    Quantity::Y(place) if y && place == s => Some(one.measurement.value),
-                    _ => None,
-                })
-            };
-            // A marker with one coordinate only has no place on the page.
-            let markers = own().filter_map(|one| match one.measurement.quantity {
-                Quantity::X(s) => Some([at(s, false)?, at(s, true)?]),
-                _ => None,
-            });
-            FittedCase {
-                name: cases[*case].name.clone(),
-                shape,
-                markers: markers.collect(),
-                residuals: own().map(|one| one.standardised).collect(),
-            }
-        })
-        .collect();
-    let names: Vec<String> = found.estimates.iter().map(|one| one.fitted.parameter.to_string()).collect();
-    fit_figure(&format!("{}: fitted to {} load cases", arm.name, shown.len()), &shown, &names, &found.correlation)
 }
 
 /// A parameter's value as a user reads it: angles in degrees.
