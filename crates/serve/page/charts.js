@@ -10,8 +10,10 @@ import { colours } from "./paint.js";
 /** The library comes as a script of its own and is found by its name. @type {typeof ChartJs} */
 const Chart = /** @type {any} */ (globalThis).Chart;
 
-/** From one chart to the next while an arm moves, ms: the drawing goes first. */
-const PACE = 40;
+/** From one chart to the next, ms: the drawing of the arm goes first, and while the arm moves it gets most of the time. */
+const PACE = { moving: 120, still: 15 };
+/** So long after the last shape an arm has stopped, ms. */
+const STILL = 150;
 
 /**
  * @typedef {{ key: keyof Stations, name: string, unit: (shape: Solution) => [number, string] }} Quantity
@@ -53,8 +55,11 @@ export class AlongCharts {
     this.mark = undefined;
     /** The newest shape, with those to compare it with. @type {{ shape: Solution, pins: { shape: Solution, colour: number }[] } | undefined} */
     this.newest = undefined;
+    /** When the newest and the one before came, ms. */
+    this.came = [-STILL, -STILL];
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.timer = undefined;
+    this.look = look();
     this.charts = QUANTITIES.map((quantity) => {
       const canvas = element("canvas", { role: "img", "aria-label": `${quantity.name} along the arm` });
       const value = element("output");
@@ -91,7 +96,7 @@ export class AlongCharts {
         const { ctx, chartArea } = chart;
         const x = chart.scales.x.getPixelForValue(1e3 * this.mark);
         ctx.save();
-        ctx.strokeStyle = String(look().colour("accent"));
+        ctx.strokeStyle = String(this.look.colour("accent"));
         ctx.beginPath();
         ctx.moveTo(x, chartArea.top);
         ctx.lineTo(x, chartArea.bottom);
@@ -122,7 +127,8 @@ export class AlongCharts {
 
   /** The theme has changed. */
   recolour() {
-    const { colour, grid, ticks } = look();
+    this.look = look();
+    const { colour, grid, ticks } = this.look;
     for (const { chart } of this.charts) {
       const { scales } = chart.options;
       if (!scales?.x || !scales.y) continue;
@@ -141,6 +147,7 @@ export class AlongCharts {
    */
   show(shape, pins) {
     this.newest = { shape, pins };
+    this.came = [performance.now(), this.came[0]];
     for (const one of this.charts) one.stale = true;
     this.go();
   }
@@ -150,6 +157,7 @@ export class AlongCharts {
     if (this.timer !== undefined) return;
     const next = this.charts.find(({ stale, seen }) => stale && seen);
     if (!next) return;
+    const moving = performance.now() - this.came[1] < STILL;
     this.timer = setTimeout(() => {
       this.timer = undefined;
       // The next in turn: a moving arm makes all of them stale again before the last is reached.
@@ -157,14 +165,14 @@ export class AlongCharts {
       next.stale = false;
       this.draw(next);
       this.go();
-    }, PACE);
+    }, moving ? PACE.moving : PACE.still);
   }
 
   /** @param {AlongCharts["charts"][number]} one */
   draw({ quantity, chart, unit }) {
     if (!this.newest) return;
     const { shape, pins } = this.newest;
-    const { colour } = look();
+    const { colour } = this.look;
     const [factor, name] = quantity.unit(shape);
     const line = (/** @type {Solution} */ one, /** @type {string} */ ink, /** @type {number[]} */ dash) => ({
       data: one.stations.s.map((s, i) => ({ x: 1e3 * s, y: clean(factor * one.stations[quantity.key][i]) })),

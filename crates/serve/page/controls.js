@@ -258,13 +258,17 @@ export class Controls {
     for (const [key, { range, slider, box, row }] of this.ranges) {
       const set = this.state.set.get(key);
       const value = typeof set === "number" ? set : range.value;
-      if (document.activeElement !== slider || Number(slider.value) !== value) slider.value = String(value);
-      if (document.activeElement !== box) box.value = String(Number((value * range.per).toPrecision(6)));
-      slider.setAttribute("aria-valuetext", `${number(value * range.per, 4)} ${range.unit}`);
+      if (Number(slider.value) !== value) slider.value = String(value);
+      const shown = String(Number((value * range.per).toPrecision(6)));
+      // What stays costs no time.
+      if (document.activeElement !== box && box.value !== shown) box.value = shown;
+      const spoken = `${number(value * range.per, 4)} ${range.unit}`;
+      if (slider.getAttribute("aria-valuetext") !== spoken) slider.setAttribute("aria-valuetext", spoken);
       row.classList.toggle("moved", set !== undefined);
     }
     for (const [key, { select, own, row }] of this.choices) {
-      select.value = String(this.state.set.get(key) ?? own);
+      const chosen = String(this.state.set.get(key) ?? own);
+      if (select.value !== chosen) select.value = chosen;
       row.classList.toggle("moved", this.state.set.has(key));
     }
     if (this.preset) {

@@ -71,9 +71,10 @@ state.onChange(async (what) => {
       return;
     }
   }
-  controls.refresh();
+  // The server works while the panel is brought up to date.
   connection.send(wish(), controls.moved || undefined);
   controls.moved = 0;
+  controls.refresh();
   remember();
   compareSoon();
 });
@@ -160,6 +161,18 @@ function ramp(key, range) {
 const latencies = [];
 Object.assign(globalThis, { hydrostatLatencies: latencies });
 
+/** Nobody reads faster than this, ms, and every change has the page laid out anew. */
+const READABLE = 250;
+let tookSaid = -READABLE;
+/** @param {string} text @param {string} title */
+function sayTook(text, title) {
+  const now = performance.now();
+  if (now - tookSaid < READABLE) return;
+  tookSaid = now;
+  const link = byId("link", HTMLElement);
+  [link.textContent, link.title] = [text, title];
+}
+
 /** @param {Reply} reply @param {number} asked */
 function receive(reply, asked) {
   if (reply.ghost) view.scene.ghost = outlineOfGhost(reply.ghost);
@@ -173,8 +186,7 @@ function receive(reply, asked) {
   const took = performance.now() - asked;
   latencies.push(took);
   if (latencies.length > 1000) latencies.shift();
-  byId("link", HTMLElement).textContent = `${took.toFixed(1)} ms`;
-  byId("link", HTMLElement).title = `From wish to picture; ${(reply.microseconds / 1e3).toFixed(1)} ms of it in the server`;
+  sayTook(`${took.toFixed(1)} ms`, `From wish to picture; ${(reply.microseconds / 1e3).toFixed(1)} ms of it in the server`);
   if (letGo && connection.asked.size === 0) endPull();
 }
 
@@ -204,7 +216,9 @@ function answered(reply) {
     }
   }
   // The picture says it, too: all but a plain stable shape.
-  view.scene.caption = words.level === "good" ? [] : [words.title, ...words.lines].map((text) => ({ text, level: words.level }));
+  const caption = words.level === "good" ? [] : [words.title, ...words.lines].map((text) => ({ text, level: words.level }));
+  // The same words stay the same object, whose lines are known.
+  if (JSON.stringify(caption) !== JSON.stringify(view.scene.caption)) view.scene.caption = caption;
   say(words);
   if (!shape || !drawing) return;
   present = { shape, drawing, asked: answer.converged };

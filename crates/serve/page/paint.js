@@ -32,10 +32,19 @@ const SHADES = [[232, 158, 60], [214, 96, 77], [172, 52, 104], [104, 32, 112], [
 
 const FONT = '12px system-ui, "Noto Sans", "Liberation Sans", sans-serif';
 
-/** Colours by name, from the style sheet. */
+/** Colours by name, from the style sheet as it is now. */
 export function colours() {
   const style = getComputedStyle(document.documentElement);
-  return (/** @type {string} */ name) => style.getPropertyValue(`--${name}`).trim();
+  /** @type {Map<string, string>} */
+  const known = new Map();
+  return (/** @type {string} */ name) => {
+    let colour = known.get(name);
+    if (colour === undefined) {
+      colour = style.getPropertyValue(`--${name}`).trim();
+      known.set(name, colour);
+    }
+    return colour;
+  };
 }
 
 export class Painter {
@@ -493,6 +502,11 @@ export class Painter {
   }
 }
 
+/** What captions were last wrapped to. @type {WeakMap<Scene["caption"], { width: number, lines: CaptionLine[] }>} */
+const wrappedBefore = new WeakMap();
+
+/** @typedef {{ line: string, level: string, y: number }} CaptionLine */
+
 /**
  * What the solver says, line by line as it stands in the picture.
  * @param {CanvasRenderingContext2D} ctx
@@ -500,13 +514,17 @@ export class Painter {
  * @param {View} view
  */
 export function captionLines(ctx, scene, view) {
+  const before = wrappedBefore.get(scene.caption);
+  if (before?.width === view.width) return before.lines;
   ctx.font = `600 ${FONT}`;
   // On a phone the tools take the first line, and only the title finds room; the rest stands right below the picture.
   const narrow = view.width < 640;
   const width = narrow ? view.width - 32 : Math.min(560, view.width - 330);
   const lines = (narrow ? scene.caption.slice(0, 1) : scene.caption)
     .flatMap(({ text, level }) => wrapped(ctx, text, width).map((line) => ({ line, level })));
-  return lines.map((line, i) => ({ ...line, y: (narrow ? 68 : 24) + 17 * i }));
+  const placed = lines.map((line, i) => ({ ...line, y: (narrow ? 68 : 24) + 17 * i }));
+  wrappedBefore.set(scene.caption, { width: view.width, lines: placed });
+  return placed;
 }
 
 /**
