@@ -403,6 +403,33 @@ def test_a_phone_shows_everything_without_scrolling_sideways(watched: Watched) -
     agree(page, solved("paper", *overrides(page)))
 
 
+def test_two_fingers_zoom_about_what_they_hold(page: Page) -> None:
+    stage = page.locator("#drawing").bounding_box()
+    assert stage is not None
+    middle = [stage["x"] + 0.5 * stage["width"], stage["y"] + 0.5 * stage["height"]]
+    fingers = page.context.new_cdp_session(page)
+
+    def tip() -> tuple[float, float]:
+        box = page.locator("#tip").bounding_box()
+        assert box is not None
+        return box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
+
+    def touch(kind: str, apart: float) -> None:
+        points = [{"x": middle[0] + side * apart, "y": middle[1] + 40, "id": k} for k, side in enumerate((-1, 1))]
+        fingers.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points if kind != "touchEnd" else []})
+
+    before = tip()
+    touch("touchStart", 60)
+    for apart in (70, 80, 90):
+        touch("touchMove", apart)
+    touch("touchEnd", 90)
+    page.wait_for_timeout(100)
+    after = tip()
+    held = (middle[0], middle[1] + 40)
+    for was, now, about in zip(before, after, held, strict=True):
+        assert now - about == pytest.approx(1.5 * (was - about), abs=2)
+
+
 def test_dark_and_light(page: Page) -> None:
     before = page.evaluate("getComputedStyle(document.body).backgroundColor")
     page.locator("#theme").click()

@@ -207,7 +207,7 @@ pub(crate) fn equilibria(request: &EquilibriaRequest, deadline: Deadline) -> Res
 }
 
 /// The tensions that bring a place of the arm to a target.
-pub(crate) fn reach(request: &ReachRequest) -> Result<Answer, Problem> {
+pub(crate) fn reach(request: &ReachRequest, deadline: Deadline) -> Result<Answer, Problem> {
     let arm = request.arm()?;
     let [x, y] = request.target.as_ref().ok_or_else(|| Problem::missing("target", "[x, y] in m"))?;
     let [x, y] = [x.value("target[0]", Dimension::Length)?, y.value("target[1]", Dimension::Length)?];
@@ -224,7 +224,11 @@ pub(crate) fn reach(request: &ReachRequest) -> Result<Answer, Problem> {
         tol: request.tol.unwrap_or(ReachOptions::default().tol),
         all: true,
     };
-    let found = arm.reach(&[target], &options)?;
+    let found = arm.reach_while(&[target], &options, || deadline.is_ahead())?;
+    if !deadline.is_ahead() {
+        // What was not looked at may have been the answer.
+        return Err(Problem::too_long());
+    }
     match request.format {
         Format::Json => Answer::json(&ReachDocument::new(&arm, &found)),
         Format::Csv => Ok(Answer::csv(reach_csv(arm.cables.len(), &found))),

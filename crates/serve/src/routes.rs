@@ -108,7 +108,7 @@ async fn equilibria(State(shared): State<Shared>, headers: HeaderMap, body: Body
 }
 
 async fn reach(State(shared): State<Shared>, headers: HeaderMap, body: Body) -> Result<Answer, Problem> {
-    worked(&shared, &headers, body, Weight::Heavy, |text, _| answers::reach(&read(text)?)).await
+    worked(&shared, &headers, body, Weight::Heavy, |text, deadline| answers::reach(&read(text)?, deadline)).await
 }
 
 /// One of the viewers; counted while it lives.
