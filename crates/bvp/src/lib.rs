@@ -85,17 +85,22 @@
 //! assert!((area - d * (0.5 / d).tanh()).abs() < 1e-11);
 //! ```
 mod block;
+mod carry;
 pub mod collocation;
+mod condense;
 pub mod gauss;
 pub mod groups;
 pub mod mesh;
 pub mod problem;
 pub mod real;
+pub mod solution;
 pub mod step;
-pub use collocation::{Collocation, Correction, Determinant, RoundError, Singular, Solution};
+pub use carry::Determinant;
+pub use collocation::{Collocation, RoundError, Singular};
 pub use gauss::{Gauss, Hermite};
 pub use groups::Groups;
 pub use mesh::{Limits, Mesh};
 pub use problem::{Condition, Local, OneByOne, Plain, Problem};
 pub use real::{LANES, Lanes, Real, each};
+pub use solution::{Correction, Solution};
 pub use step::step;

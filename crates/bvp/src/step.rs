@@ -1,6 +1,6 @@
 //! One Gauss step from a known state: values of a solution between its nodes, to the order of the nodes.
 
-use crate::collocation::eliminate;
+use crate::condense::eliminate;
 use crate::gauss::Gauss;
 use crate::problem::Local;
 
