@@ -1,6 +1,6 @@
 //! A solution between its nodes.
 
-use hydrostat_bvp::{Gauss, LANES, Solution, step};
+use hydrostat_bvp::{Gauss, LANES, Local, Solution, step};
 
 use crate::configuration::Station;
 use crate::dispatch::widest;
@@ -53,6 +53,31 @@ impl Dense {
         }
     }
 
+    /// What the problem is at stages within element `i`.
+    fn stages(&self, i: usize, s: &[f64; M], z: &[[f64; N]; M]) -> Result<[Local<N, Q>; M], SectionFailure> {
+        let mesh = &self.solution.mesh;
+        let mut out = [Local::default(); M];
+        for first in (0..M).step_by(LANES) {
+            let stage = |lane: usize| (first + lane).min(M - 1);
+            let asked: [Asked; LANES] = std::array::from_fn(|lane| {
+                let (s, z) = (s[stage(lane)], z[stage(lane)]);
+                let (strain, beta) = self.guess(i, (s - mesh.nodes()[i]) / mesh.step(i));
+                Asked { s, from_left: false, z, strain, beta }
+            });
+            let found = widest(
+                #[inline(always)]
+                || self.equations.at_places(&asked),
+            );
+            for lane in 0..LANES.min(M - first) {
+                out[first + lane] = match &found {
+                    Some(found) => found.local.lane(lane),
+                    None => self.section(i, asked[lane].s, false, asked[lane].z)?.local,
+                };
+            }
+        }
+        Ok(out)
+    }
+
     /// Everything at nodes, each the start of an element, or its end.
     pub(crate) fn at_nodes(&self, nodes: &[(usize, bool)]) -> Result<Vec<(Station, AtPlace)>, SectionFailure> {
         let mesh = &self.solution.mesh;
@@ -103,8 +128,7 @@ impl Dense {
                 }
             }
             let from = self.solution.nodes[i];
-            let local = |_: usize, s: f64, z: &[f64; N]| self.section(i, s, false, *z).map(|p| p.local);
-            match step(&self.gauss, from, start, h, slopes, local)? {
+            match step(&self.gauss, from, start, h, slopes, |s, z| self.stages(i, s, z))? {
                 Some((z, moved)) => {
                     let p = self.positions[i];
                     (z, [p[0] + moved[0], p[1] + moved[1]])
