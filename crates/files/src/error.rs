@@ -181,6 +181,7 @@ fn expected(error: &ArmError) -> String {
             format!("increasing places, here one above s = {previous} m")
         }
         ArmError::Table { source: TableError::NotFinite { .. }, .. } => "finite numbers".to_owned(),
+        ArmError::TooManyBreaks { most, .. } => format!("at most {most} places at which tables have points and cables end"),
         ArmError::TensionCount { cables, .. } => format!("{cables} tensions, one a cable"),
     }
 }
@@ -199,6 +200,7 @@ fn found(error: &ArmError) -> String {
         ArmError::Table { source: TableError::TooShort { found }, .. } => format!("{found}"),
         ArmError::Table { source: TableError::NotIncreasing { s, .. }, .. } => format!("s = {s} m"),
         ArmError::Table { source: TableError::NotFinite { s, value, .. }, .. } => format!("[{s}, {value}]"),
+        ArmError::TooManyBreaks { found, .. } => format!("{found}"),
         ArmError::TensionCount { given, .. } => format!("{given}"),
     }
 }
