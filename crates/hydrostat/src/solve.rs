@@ -87,7 +87,6 @@ impl Solver {
         self.engine.allow(work);
         let rubs = self.engine.equations.arm().rubs();
         let solved = if rubs { self.solve_rubbing() } else { self.solve_smooth() };
-        if std::env::var_os("HWORK").is_some() { eprintln!("WORK {} of {} ok {} {}", self.engine.work(), self.engine.equations.arm().cables.len(), solved.is_ok(), solved.as_ref().err().map(ToString::to_string).unwrap_or_default()); }
         // What is done with the answer, a path say, has bounds of its own.
         self.engine.lift_limit();
         solved

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hydrostat_files::{ArmFile, Axis, Deviations, Fitted, Varied, arm_to_toml, parse_measurements, parse_targets, shipped};
+use hydrostat_files::{ArmFile, Axis, Deviations, Varied, arm_to_toml, parse_measurements, parse_targets, shipped};
 use hydrostat_fuzz::{fuzz, mutations_of};
 
 /// A message for people.
@@ -55,8 +55,8 @@ fn measurements() {
         match parse_measurements(&text, "data.csv", &arm, &Deviations::default(), &[]) {
             Err(error) => said(&error.to_string()),
             Ok(cases) => {
-                let numbers = cases.iter().flat_map(|case| &case.measurements);
-                let fine = numbers.clone().all(|m| m.s.is_finite() && m.value.is_finite());
+                let mut numbers = cases.iter().flat_map(|case| &case.measurements);
+                let fine = numbers.all(|m| m.sd > 0.0 && m.value.is_finite());
                 if fine { Ok(()) } else { Err(format!("{cases:?}")) }
             }
         }
@@ -86,11 +86,12 @@ fn ranges_and_grids() {
         .to_vec();
     fuzz("ranges and grids", &mutations_of(wholes), |bytes| {
         let text = String::from_utf8_lossy(&bytes.0).into_owned();
-        let messages = [
-            text.parse::<Axis>().err().map(|e| e.to_string()),
-            text.parse::<Varied>().err().map(|e| e.to_string()),
-            text.parse::<Fitted>().err().map(|e| e.to_string()),
-        ];
-        messages.into_iter().flatten().try_for_each(|message| said(&message))
+        if let Err(error) = text.parse::<Axis>() {
+            said(&error.to_string())?;
+        }
+        if let Err(error) = text.parse::<Varied>() {
+            said(&error.to_string())?;
+        }
+        Ok(())
     });
 }
