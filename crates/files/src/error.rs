@@ -181,7 +181,9 @@ fn expected(error: &ArmError) -> String {
             format!("increasing places, here one above s = {previous} m")
         }
         ArmError::Table { source: TableError::NotFinite { .. }, .. } => "finite numbers".to_owned(),
-        ArmError::TooManyBreaks { most, .. } => format!("at most {most} places at which tables have points and cables end"),
+        ArmError::TooManyBreaks { most, .. } => {
+            format!("at most {most} places at which tables have points and cables end")
+        }
         ArmError::TensionCount { cables, .. } => format!("{cables} tensions, one a cable"),
     }
 }

@@ -4,9 +4,9 @@ use std::fmt;
 
 use proptest::collection::vec;
 use proptest::prelude::any;
+use proptest::prop_oneof;
 use proptest::sample::{Index, select};
 use proptest::strategy::{Just, Strategy};
-use proptest::prop_oneof;
 
 /// Bytes that show as text where they are some.
 #[derive(Clone)]
@@ -20,9 +20,46 @@ impl fmt::Debug for Bytes {
 
 /// What formats give a meaning.
 const TOKENS: [&str; 40] = [
-    "[", "]", "{", "}", "[[", "]]", "\"", "'", "\"\"\"", "'''", "\n", "\r\n", "\r", "\t", ",", ";", ":", "=", ".", "#", "\\", "\\u0000",
-    "\u{feff}", "\0", "1e999", "-0", "nan", "inf", "0x7fffffffffffffff", "99999999999999999999", "1979-05-27T07:32:00Z", "true", "null",
-    "mm", "N m", "deg", "[[cable]]\n", "base", "tip", "1e-308",
+    "[",
+    "]",
+    "{",
+    "}",
+    "[[",
+    "]]",
+    "\"",
+    "'",
+    "\"\"\"",
+    "'''",
+    "\n",
+    "\r\n",
+    "\r",
+    "\t",
+    ",",
+    ";",
+    ":",
+    "=",
+    ".",
+    "#",
+    "\\",
+    "\\u0000",
+    "\u{feff}",
+    "\0",
+    "1e999",
+    "-0",
+    "nan",
+    "inf",
+    "0x7fffffffffffffff",
+    "99999999999999999999",
+    "1979-05-27T07:32:00Z",
+    "true",
+    "null",
+    "mm",
+    "N m",
+    "deg",
+    "[[cable]]\n",
+    "base",
+    "tip",
+    "1e-308",
 ];
 
 /// One change.

@@ -51,7 +51,9 @@ pub fn fuzz<S: Strategy>(target: &str, strategy: &S, check: impl Fn(S::Value) ->
         cases += AT_ONCE;
         match outcome {
             Ok(()) => {}
-            Err(TestError::Fail(why, value)) => panic!("{target}, seed {seed}, within {cases} cases: {why}\n{value:#?}"),
+            Err(TestError::Fail(why, value)) => {
+                panic!("{target}, seed {seed}, within {cases} cases: {why}\n{value:#?}")
+            }
             Err(TestError::Abort(why)) => panic!("{target}, seed {seed}: {why}"),
         }
         if start.elapsed() >= time {

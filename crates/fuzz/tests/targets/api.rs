@@ -60,7 +60,8 @@ fn api() {
     let paths = vec!["/api/check", "/api/solve", "/api/solve", "/api/path", "/api/reach", "/api/equilibria"];
     fuzz("api", &(select(paths), mutations_of(bodies)), |(path, body)| {
         let (status, answer) = post(path, &body.0).map_err(|error| format!("no answer: {error}"))?;
-        let named = || serde_json::from_str::<serde_json::Value>(&answer).is_ok_and(|v| v["error"]["message"].is_string());
+        let named =
+            || serde_json::from_str::<serde_json::Value>(&answer).is_ok_and(|v| v["error"]["message"].is_string());
         match status {
             200 => Ok(()),
             // Wrong, without an equilibrium, too large, too long, too busy.

@@ -64,11 +64,8 @@ fn setting() -> impl Strategy<Value = (String, String)> {
 
 #[test]
 fn arms() {
-    let cases = (
-        select(shipped::names().collect::<Vec<_>>()),
-        vec(setting(), 1..4),
-        select(vec![1e-2, 1e-3, 1e-6, 1e-8]),
-    );
+    let cases =
+        (select(shipped::names().collect::<Vec<_>>()), vec(setting(), 1..4), select(vec![1e-2, 1e-3, 1e-6, 1e-8]));
     fuzz("arms", &cases, |(name, settings, tol)| {
         let mut file = ArmFile::parse(shipped::get(name).unwrap(), name).unwrap();
         for (key, value) in &settings {

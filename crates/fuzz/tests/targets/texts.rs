@@ -47,7 +47,8 @@ fn measurements() {
     let arm = ArmFile::parse(shipped::get("silicone").unwrap(), "silicone").unwrap();
     let wholes = vec![
         document("docs/identification.csv"),
-        b"case,cable[0].tension [N],s [mm],x [mm],y [mm],sd position [mm]\na,0.1,245,230.1,62.3,1\na,,120,118.2,,1\n".to_vec(),
+        b"case,cable[0].tension [N],s [mm],x [mm],y [mm],sd position [mm]\na,0.1,245,230.1,62.3,1\na,,120,118.2,,1\n"
+            .to_vec(),
         b"case;s [mm];x [mm];y [mm];theta [deg]\nb;245;230,1;62,3;\nb;120;118,2;;4\n".to_vec(),
     ];
     fuzz("measurements", &mutations_of(wholes), |bytes| {
@@ -81,9 +82,15 @@ fn targets() {
 
 #[test]
 fn ranges_and_grids() {
-    let wholes: Vec<Vec<u8>> = ["flow.speed=0:1 m/s:5", "cable[0].tension=0,0.5,1", "base.angle=-90 deg:90 deg", "arm.length=0.1:0.2", "young=80 kPa:1:1e9"]
-        .map(|text| text.as_bytes().to_vec())
-        .to_vec();
+    let wholes: Vec<Vec<u8>> = [
+        "flow.speed=0:1 m/s:5",
+        "cable[0].tension=0,0.5,1",
+        "base.angle=-90 deg:90 deg",
+        "arm.length=0.1:0.2",
+        "young=80 kPa:1:1e9",
+    ]
+    .map(|text| text.as_bytes().to_vec())
+    .to_vec();
     fuzz("ranges and grids", &mutations_of(wholes), |bytes| {
         let text = String::from_utf8_lossy(&bytes.0).into_owned();
         if let Err(error) = text.parse::<Axis>() {

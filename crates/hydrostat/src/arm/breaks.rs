@@ -84,11 +84,17 @@ mod tests {
         arm.reference.mu = table(100);
         arm.radius = table(MOST + 2);
         let refused = arm.check().unwrap_err();
-        assert!(refused.key() == "arm.radius" && refused.to_string().ends_with("an arm like this may have 10000"), "{refused}");
+        assert!(
+            refused.key() == "arm.radius" && refused.to_string().ends_with("an arm like this may have 10000"),
+            "{refused}"
+        );
         // Tables that have their points at the same places count once.
         arm.reference.mu = table(MOST + 2);
         arm.check().unwrap();
         arm.cables = (0..8).map(|_| Cable::new("one", 0.001.into())).collect();
-        assert_eq!(arm.check().unwrap_err(), ArmError::TooManyBreaks { key: "arm.radius".to_owned(), found: MOST, most: MOST / 2 });
+        assert_eq!(
+            arm.check().unwrap_err(),
+            ArmError::TooManyBreaks { key: "arm.radius".to_owned(), found: MOST, most: MOST / 2 }
+        );
     }
 }
