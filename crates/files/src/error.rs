@@ -199,10 +199,11 @@ fn found(error: &ArmError) -> String {
         ArmError::OffsetOutside { offset, .. } => format!("{offset} m there"),
         ArmError::TensionAboveMax { tension, .. } => format!("{tension} N"),
         ArmError::TableDoesNotCover { from, to, .. } => format!("one from {from} m to {to} m"),
-        ArmError::Table { source: TableError::TooShort { found }, .. } => format!("{found}"),
+        ArmError::Table { source: TableError::TooShort { found }, .. } | ArmError::TooManyBreaks { found, .. } => {
+            format!("{found}")
+        }
         ArmError::Table { source: TableError::NotIncreasing { s, .. }, .. } => format!("s = {s} m"),
         ArmError::Table { source: TableError::NotFinite { s, value, .. }, .. } => format!("[{s}, {value}]"),
-        ArmError::TooManyBreaks { found, .. } => format!("{found}"),
         ArmError::TensionCount { given, .. } => format!("{given}"),
     }
 }

@@ -143,7 +143,9 @@ impl Change {
 /// One of `wholes` with a few changes; now and then bytes at random.
 pub fn mutations_of(wholes: Vec<Vec<u8>>) -> impl Strategy<Value = Bytes> {
     let changed = (select(wholes), vec(change(), 0..6)).prop_map(|(mut bytes, changes)| {
-        changes.iter().for_each(|change| change.apply(&mut bytes));
+        for change in &changes {
+            change.apply(&mut bytes);
+        }
         bytes
     });
     prop_oneof![20 => changed, 1 => vec(any::<u8>(), 0..200), 1 => Just(Vec::new())].prop_map(Bytes)

@@ -7,8 +7,8 @@ use hydrostat::{Arm, Cable, Options, Profile, SolveError, Solver, VerdictKind};
 /// The arm `paper` without its loads.
 fn uniform() -> Arm {
     let mut arm = Arm::cone(1.0, 0.05, 0.05, 1e6, 0.5);
-    arm.cables.push(Cable::new("left", 0.025.into()).pulled(20.0));
-    arm.cables.push(Cable::new("right", Profile::from(-0.025)));
+    arm.cables.push(Cable::new("left", 0.025).pulled(20.0));
+    arm.cables.push(Cable::new("right", -0.025));
     arm
 }
 

@@ -16,7 +16,7 @@ const LARGEST: usize = 1_000_000;
 const MOST_MEMORY: u64 = 500_000;
 
 /// When a run hangs: far beyond what any of these takes.
-const HANGS: Duration = Duration::from_secs(120);
+const HANGS: Duration = Duration::from_mins(2);
 
 /// The most that a process has had resident so far, kB; `None` where the system does not tell.
 fn peak_memory(process: u32) -> Option<u64> {
@@ -219,8 +219,8 @@ fn broken_measurements() -> Vec<(&'static str, Vec<u8>, &'static str)> {
         ("a long head", repeated("case", ",x [mm]", "\na,1\n"), "row 1"),
         ("a long cell", repeated(head, "x", "\n"), "row 2"),
         ("an open quote", repeated(&format!("{head}\""), "a,1\n", ""), "row 2"),
-        ("commas", repeated(head, ",", "\n"), "row 2"),
-        ("rows of which the last is none", repeated(head, "a,,98,96.3,8.9\n", "a,,98,here,8.9\n"), "here"),
+        ("commas", repeated(head, ",", "\n"), "no measured number"),
+        ("the same place again and again", repeated(head, "a,,98,96.3,8.9\n", "a,,98,here,8.9\n"), "row 3"),
         ("comments", repeated("", "# none\n", ""), "empty"),
         ("ends of lines", repeated("", "\r", ""), "empty"),
         ("zeros", vec![0; LARGEST], "row 1"),
@@ -252,7 +252,7 @@ fn measurements_that_are_none_are_refused() {
         let (code, said) =
             run_on(name, &bytes, &["identify", "silicone", "{}", "--fit", "young=80 kPa", "--sd", "1 mm"]);
         assert_eq!(code, 2, "{name}: {said}");
-        assert!(said.contains("input") && said.contains(words), "{name}: {said}");
+        assert!(said.contains(words), "{name}: {said}");
     }
 }
 

@@ -24,7 +24,7 @@ static SERVER: LazyLock<SocketAddr> = LazyLock::new(|| {
 });
 
 /// Longer than the server takes for any request, its waiting included.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// Status and body of the answer.
 fn post(path: &str, body: &[u8]) -> std::io::Result<(u16, String)> {

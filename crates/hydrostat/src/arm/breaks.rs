@@ -91,7 +91,7 @@ mod tests {
         // Tables that have their points at the same places count once.
         arm.reference.mu = table(MOST + 2);
         arm.check().unwrap();
-        arm.cables = (0..8).map(|_| Cable::new("one", 0.001.into())).collect();
+        arm.cables = (0..8).map(|_| Cable::new("one", 0.001)).collect();
         assert_eq!(
             arm.check().unwrap_err(),
             ArmError::TooManyBreaks { key: "arm.radius".to_owned(), found: MOST, most: MOST / 2 }
