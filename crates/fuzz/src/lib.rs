@@ -40,13 +40,15 @@ pub fn fuzz<S: Strategy>(target: &str, strategy: &S, check: impl Fn(S::Value) ->
     let time = Duration::from_secs(long.unwrap_or(SHORT));
     let by_clock = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let seed = asked("HYDROSTAT_FUZZ_SEED").unwrap_or_else(|| if long.is_some() { by_clock() } else { 0 });
-    let mut bytes = [0; 32];
-    bytes[..8].copy_from_slice(&seed.to_le_bytes());
-    let config = Config { cases: AT_ONCE, max_shrink_iters: 400, failure_persistence: None, ..Config::default() };
-    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &bytes));
     let start = Instant::now();
     let mut cases = 0;
     loop {
+        let mut bytes = [0; 32];
+        bytes[..8].copy_from_slice(&seed.to_le_bytes());
+        bytes[8..12].copy_from_slice(&cases.to_le_bytes());
+        let config = Config { cases: AT_ONCE, max_shrink_iters: 400, failure_persistence: None, ..Config::default() };
+        // A runner counts its cases and does no more than these.
+        let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &bytes));
         let outcome = runner.run(strategy, |value| check(value).map_err(TestCaseError::fail));
         cases += AT_ONCE;
         match outcome {
