@@ -41,7 +41,7 @@ pub fn fuzz<S: Strategy>(target: &str, strategy: &S, check: impl Fn(S::Value) ->
     let by_clock = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let seed = asked("HYDROSTAT_FUZZ_SEED").unwrap_or_else(|| if long.is_some() { by_clock() } else { 0 });
     let start = Instant::now();
-    let mut cases = 0;
+    let mut cases: u32 = 0;
     loop {
         let mut bytes = [0; 32];
         bytes[..8].copy_from_slice(&seed.to_le_bytes());
