@@ -10,10 +10,13 @@ use hydrostat::{
 };
 
 use crate::document::{self, Field, Origin};
-use crate::error::{FileError, Place};
+use crate::error::{FileError, Place, shortened};
 use crate::format::MAX_BYTES;
 use crate::reading::{Fault, FaultKind, Values};
 use crate::setting;
+
+/// Keys of the format are shorter by far.
+const LONGEST_KEY: usize = 200;
 
 /// An arm file: its text, where it came from, and what overrides it.
 ///
@@ -86,7 +89,9 @@ impl ArmFile {
         }
         let fields = document::parse(text).map_err(|error| {
             let place = line_of(path, text, error.at);
-            let key = document::key_at(text, error.at);
+            // A key may be as long as the file, a message may not.
+            let short = |key: String| if key.len() > LONGEST_KEY { shortened(&key) } else { key };
+            let key = document::key_at(text, error.at).map(short);
             if error.message == "duplicate key" {
                 // Inside an inline table the line's key is not the one that is there twice.
                 let what = error.what.trim();

@@ -181,6 +181,9 @@ fn expected(error: &ArmError) -> String {
             format!("increasing places, here one above s = {previous} m")
         }
         ArmError::Table { source: TableError::NotFinite { .. }, .. } => "finite numbers".to_owned(),
+        ArmError::TooManyBreaks { most, .. } => {
+            format!("at most {most} places at which tables have points and cables end")
+        }
         ArmError::TensionCount { cables, .. } => format!("{cables} tensions, one a cable"),
     }
 }
@@ -196,7 +199,9 @@ fn found(error: &ArmError) -> String {
         ArmError::OffsetOutside { offset, .. } => format!("{offset} m there"),
         ArmError::TensionAboveMax { tension, .. } => format!("{tension} N"),
         ArmError::TableDoesNotCover { from, to, .. } => format!("one from {from} m to {to} m"),
-        ArmError::Table { source: TableError::TooShort { found }, .. } => format!("{found}"),
+        ArmError::Table { source: TableError::TooShort { found }, .. } | ArmError::TooManyBreaks { found, .. } => {
+            format!("{found}")
+        }
         ArmError::Table { source: TableError::NotIncreasing { s, .. }, .. } => format!("s = {s} m"),
         ArmError::Table { source: TableError::NotFinite { s, value, .. }, .. } => format!("[{s}, {value}]"),
         ArmError::TensionCount { given, .. } => format!("{given}"),

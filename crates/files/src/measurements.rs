@@ -18,6 +18,10 @@ use crate::quantity::Dimension;
 const MOST_BYTES: u64 = 64 << 20;
 /// Places (over L) that are this near are the same.
 const SAME: f64 = 1e-9;
+/// The most load cases: a fit keeps a solver and a shape of each, up to a megabyte.
+const MOST_CASES: usize = 300;
+/// The most numbers of a load case: a mesh has a node at each place.
+const MOST_NUMBERS: usize = 1000;
 
 /// What is wrong with a file of measurements.
 #[derive(Debug, thiserror::Error)]
@@ -308,7 +312,11 @@ impl Table<'_> {
             };
             found.push((Measurement { quantity: measured.at(s), value, sd, row }, head.text.clone()));
         }
-        let index = self.case_of(case, row);
+        let index = self.case_of(case, row)?;
+        if self.cases[index].measurements.len() + found.len() > MOST_NUMBERS {
+            let why = format!("expected at most {MOST_NUMBERS} measured numbers a load case, found more");
+            return Err(self.fault(row, None, why));
+        }
         for (measurement, column) in found {
             if let Some(other) =
                 self.cases[index].measurements.iter().find(|own| same(own.quantity, measurement.quantity, slack))
@@ -325,12 +333,15 @@ impl Table<'_> {
     }
 
     /// The index of a case, which begins in this row if there is none of that name.
-    fn case_of(&mut self, name: String, row: usize) -> usize {
+    fn case_of(&mut self, name: String, row: usize) -> Result<usize, MeasurementsError> {
         if let Some(index) = self.cases.iter().position(|own| own.name == name) {
-            return index;
+            return Ok(index);
+        }
+        if self.cases.len() == MOST_CASES {
+            return Err(self.fault(row, None, format!("expected at most {MOST_CASES} load cases, found more")));
         }
         self.cases.push(Building { name, settings: Vec::new(), measurements: Vec::new(), row });
-        self.cases.len() - 1
+        Ok(self.cases.len() - 1)
     }
 
     /// What a row gives of a case's loads.

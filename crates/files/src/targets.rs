@@ -6,6 +6,8 @@ use std::path::Path;
 
 use hydrostat::Target;
 
+use crate::error::shortened;
+
 /// The most that is read, in bytes.
 const MOST: u64 = 64 << 20;
 
@@ -139,12 +141,7 @@ pub fn parse_targets(text: &str, path: &str, s: Option<f64>) -> Result<Vec<Targe
         let mut target = Target { s, ..Target::tip(0.0, 0.0) };
         for (cell, (column, unit, kind)) in cells.iter().zip(columns) {
             let Some(value) = cell.parse().ok().filter(|value: &f64| value.is_finite()) else {
-                return Err(TargetsError::Value {
-                    path,
-                    line,
-                    column: (*column).to_owned(),
-                    found: (*cell).to_owned(),
-                });
+                return Err(TargetsError::Value { path, line, column: (*column).to_owned(), found: shortened(cell) });
             };
             match kind {
                 Kind::X => target.x = value * unit,
@@ -166,7 +163,7 @@ fn header(cells: &[&str]) -> Result<Vec<(&'static str, f64, Kind)>, String> {
     let mut out: Vec<(&'static str, f64, Kind)> = Vec::new();
     for cell in cells {
         let Some(known) = COLUMNS.into_iter().find(|(name, ..)| name == cell) else {
-            return Err(format!("the column \"{cell}\""));
+            return Err(format!("the column \"{}\"", shortened(cell)));
         };
         if let Some((other, ..)) = out.iter().find(|(.., kind)| *kind == known.2) {
             return Err(format!("{other} and {cell}"));
@@ -196,6 +193,10 @@ mod tests {
             ("x_m,y_m\n\n# none\n", "t.csv: expected at least one target"),
             ("# units in the header\nx_m,y_m\n1,2\n1,2,3\n", "t.csv:4: expected 2 cells as in the header, found 3"),
             ("x_m,y_m\n1,inf\n", "t.csv:2: y_m: expected a finite number, found \"inf\""),
+            (
+                format!("x_m,y_m\n1,{}\n", "9".repeat(9000)).as_str(),
+                format!("t.csv:2: y_m: expected a finite number, found \"{}...\"", "9".repeat(60)).as_str(),
+            ),
             ("x_m,y_m\n,1\n", "t.csv:2: x_m: expected a finite number, found \"\""),
         ] {
             let error = parse_targets(text, "t.csv", None).unwrap_err().to_string();

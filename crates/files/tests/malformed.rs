@@ -271,3 +271,12 @@ fn large_and_deep_files() {
     assert_eq!(ArmFile::parse(&largest, "large.toml").unwrap().arm().unwrap().cables.len(), 100);
     assert!(started.elapsed().as_secs() < 60, "{:?}", started.elapsed());
 }
+
+/// The message had the whole key, as long as the file.
+#[test]
+fn a_key_as_long_as_the_file_filled_the_message() {
+    for text in [format!("[{}a]", "a.".repeat(400_000)), format!("{}a = 1", "a.".repeat(400_000))] {
+        let message = refusal(&text).to_string();
+        assert!(message.starts_with("case.toml:1: ") && message.len() < 500, "{} bytes", message.len());
+    }
+}

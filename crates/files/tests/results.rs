@@ -130,6 +130,7 @@ fn the_document_of_a_verdict() {
         load_fraction: 0.5,
         s: Some(0.2),
         residual: f64::INFINITY,
+        spent: None,
     };
     let failure = NoEquilibrium { verdict: verdict.clone(), last_good: Some(configuration()) };
     let text = Failure::new(&failure, 0.5, &[]).to_json().unwrap();

@@ -3,6 +3,8 @@
 //! SI units; angles in radians. All fields are public: set what you need, then
 //! [`Arm::check`] (which every solve calls) says whether it makes an arm.
 
+mod breaks;
+
 use crate::profile::{Profile, TableError};
 use crate::readings::Readings;
 
@@ -354,6 +356,16 @@ pub enum ArmError {
         /// Why.
         source: TableError,
     },
+    /// More places at which tables have points and cables end than meshes have room for.
+    #[error("`{key}`: tables have points and cables end at {found} places, an arm like this may have {most}")]
+    TooManyBreaks {
+        /// The longest table.
+        key: String,
+        /// How many places.
+        found: usize,
+        /// The most with as many cables.
+        most: usize,
+    },
     /// A number of tensions that is not the number of cables.
     #[error(
         "the arm has {cables} cable{}, {given} tension{} given",
@@ -379,6 +391,7 @@ impl ArmError {
             | Self::OffsetOutside { key, .. }
             | Self::TensionAboveMax { key, .. }
             | Self::TableDoesNotCover { key, .. }
+            | Self::TooManyBreaks { key, .. }
             | Self::Table { key, .. } => key,
             Self::InnerRadius { .. } => "arm.inner_radius",
             Self::TensionCount { .. } => "cable",
@@ -467,36 +480,13 @@ impl Arm {
         [self.flow.speed * cos, self.flow.speed * sin]
     }
 
-    /// The places inside (0, L), sorted, where a profile's curvature jumps or a cable ends, m.
-    pub fn breaks(&self) -> Vec<f64> {
-        let mut at: Vec<f64> = Vec::new();
-        let mut add = |p: &Profile| at.extend_from_slice(p.knots());
-        add(&self.radius);
-        add(&self.inner_radius);
-        if let Material::Coefficients { c1, c2, c3 } = &self.material {
-            [c1, c2, c3].into_iter().for_each(&mut add);
-        }
-        [&self.reference.nu, &self.reference.eta, &self.reference.mu].into_iter().for_each(&mut add);
-        [&self.distributed.force[0], &self.distributed.force[1], &self.distributed.couple]
-            .into_iter()
-            .for_each(&mut add);
-        for cable in &self.cables {
-            add(&cable.offset);
-        }
-        at.extend(self.cables.iter().map(|c| c.end * self.length));
-        let slack = 1e-9 * self.length;
-        at.retain(|s| *s > slack && *s < self.length - slack);
-        at.sort_by(f64::total_cmp);
-        at.dedup_by(|b, a| *b - *a <= slack);
-        at
-    }
-
     /// Says whether these numbers make an arm.
     ///
     /// # Errors
     /// The first thing that is wrong, with its key and its numbers.
     pub fn check(&self) -> Result<(), ArmError> {
         let length = positive("arm.length", self.length)?;
+        self.check_breaks()?;
         self.radius.check("arm.radius", length)?;
         self.inner_radius.check("arm.inner_radius", length)?;
         self.check_sections(length)?;

@@ -1,5 +1,6 @@
 //! From an arm to its configuration.
 
+mod budget;
 mod held;
 mod kinks;
 #[cfg(test)]
@@ -19,6 +20,7 @@ use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Nearness, Q, SectionFai
 use crate::friction::Grip;
 use crate::verdict::Phase;
 
+pub(crate) use self::budget::WORK;
 pub(crate) use self::held::{Pulled, Round, at_stations, pull_taut, solved};
 pub(crate) use self::settle::First;
 
@@ -37,6 +39,8 @@ pub(crate) enum Trouble {
     Singular,
     Stalled(f64),
     Mesh,
+    /// The work that was allowed is done.
+    Spent,
 }
 
 impl From<RoundError<SectionFailure>> for Trouble {
@@ -101,6 +105,10 @@ pub(crate) struct Engine {
     pub(crate) tip: [f64; Q],
     /// The part of unknown tensions in the determinant of the last round.
     border: Determinant,
+    /// The work that may be done, see `budget`.
+    allowed: usize,
+    /// The part of it that other engines did.
+    done_beside: usize,
 }
 
 /// Strains, beta' and beta'' at a station to be.
@@ -218,7 +226,10 @@ impl Engine {
 
     pub(crate) fn restore(&mut self, state: &State) {
         self.solution.clone_from(&state.solution);
+        let (evaluations, work) = (self.equations.evaluations, self.equations.work);
         self.equations.clone_from(&state.equations);
+        // What was done stays done.
+        (self.equations.evaluations, self.equations.work) = (evaluations, work);
         self.spans.clone_from(&state.spans);
         self.tip = state.tip;
         // Friction belongs to the shape, and the check is of the same arm.
@@ -272,6 +283,8 @@ impl Engine {
             in_a_hurry: false,
             tip: [0.0; 2],
             border: Determinant { sign: 1.0, log: 0.0 },
+            allowed: usize::MAX,
+            done_beside: 0,
         }
     }
 
@@ -341,6 +354,7 @@ impl Engine {
         let mut before = 0.0;
         let mut pins = if resolution.is_some() { PINS } else { 0 };
         loop {
+            self.may_go_on()?;
             match linearise(&mut self.system, &mut self.equations, &self.solution, false) {
                 Ok(()) => {}
                 Err(RoundError::Slopes(failure)) => {
@@ -415,6 +429,7 @@ impl Engine {
 
     /// Factorises at the present solution.
     pub(crate) fn linearise(&mut self, parameter: bool) -> Result<(), Trouble> {
+        self.may_go_on()?;
         self.rounds += 1;
         Ok(linearise(&mut self.system, &mut self.equations, &self.solution, parameter)?)
     }

@@ -108,6 +108,8 @@ pub(crate) struct Equilibrium {
     /// Load switches.
     switches: Vec<[Lanes; 3]>,
     pub(crate) evaluations: usize,
+    /// Evaluations with what cables add to them, see `engine/budget`.
+    pub(crate) work: usize,
     /// At the last evaluation.
     pub(crate) nearness: Nearness,
     /// A chosen shape, with the loads that make it an equilibrium.
@@ -145,6 +147,7 @@ impl Equilibrium {
             drifts: Vec::new(),
             switches: Vec::new(),
             evaluations: 0,
+            work: 0,
             nearness: Nearness::FAR,
             #[cfg(test)]
             manufactured: None,
@@ -513,7 +516,9 @@ impl Problem<N, Q> for Equilibrium {
         z: &[[Lanes; N]],
         out: &mut [Local<N, Q, Lanes>],
     ) -> Result<(), SectionFailure> {
-        self.evaluations += groups.elements * groups.stages;
+        let evaluations = groups.elements * groups.stages;
+        self.evaluations += evaluations;
+        self.work += evaluations * self.arm.dearness();
         let mut near = NearnessLanes::far();
         self.follow(z);
         let mut pulled = Few::new();

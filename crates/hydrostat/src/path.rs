@@ -8,7 +8,7 @@ mod limits;
 mod ramp;
 mod range;
 #[cfg(test)]
-mod small_steps;
+pub(crate) mod small_steps;
 mod stepper;
 
 pub use circle::{Equilibria, Equilibrium};

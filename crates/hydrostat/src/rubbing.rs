@@ -5,7 +5,7 @@ use crate::engine::{First, Trouble};
 use crate::friction::Grip;
 use crate::path::{Travelled, name_limit};
 use crate::solve::Solver;
-use crate::verdict::{Phase, SolveError, Verdict};
+use crate::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
 /// Most rounds at one level of friction and load.
 const ROUNDS: usize = 60;
@@ -84,8 +84,13 @@ impl Solver {
                     step *= 0.4;
                     if step < 1e-6 {
                         let residual = self.engine.last;
-                        let (kind, s) = name_limit(&mut self.engine, Some(&trouble), residual);
-                        return Err(Some(Verdict { kind, phase: Phase::Tension, load_fraction: share, s, residual }));
+                        let spent = self.engine.spent();
+                        let (kind, s) = match spent {
+                            Some(_) => (VerdictKind::NotFound, None),
+                            None => name_limit(&mut self.engine, Some(&trouble), residual),
+                        };
+                        let phase = Phase::Tension;
+                        return Err(Some(Verdict { kind, phase, load_fraction: share, s, residual, spent }));
                     }
                 }
             }

@@ -380,6 +380,6 @@ fn unsettled(trouble: &Trouble) -> SensitivityError {
     match *trouble {
         Trouble::Singular => SensitivityError::Singular,
         Trouble::Stalled(size) => SensitivityError::Unsettled(size),
-        Trouble::Section(_) | Trouble::Mesh => SensitivityError::Unsettled(f64::NAN),
+        Trouble::Section(_) | Trouble::Mesh | Trouble::Spent => SensitivityError::Unsettled(f64::NAN),
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::arm::{Arm, FlowLaw};
 use crate::configuration::{Configuration, Statistics, Tip};
-use crate::engine::{Engine, First, Trouble};
+use crate::engine::{Engine, First, Trouble, WORK};
 use crate::path::{LOOSE, Pace, Travelled, follow};
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
 
@@ -79,10 +79,17 @@ impl Solver {
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
     pub fn solve(&mut self) -> Result<Configuration, SolveError> {
-        if self.engine.equations.arm().rubs() {
-            return self.solve_rubbing();
-        }
-        self.solve_smooth()
+        self.solve_within(WORK)
+    }
+
+    /// [`Solver::solve`] in so much work.
+    pub(crate) fn solve_within(&mut self, work: usize) -> Result<Configuration, SolveError> {
+        self.engine.allow(work);
+        let rubs = self.engine.equations.arm().rubs();
+        let solved = if rubs { self.solve_rubbing() } else { self.solve_smooth() };
+        // What is done with the answer, a path say, has bounds of its own.
+        self.engine.lift_limit();
+        solved
     }
 
     /// Without friction of the cables.
@@ -358,13 +365,15 @@ impl Solver {
     }
 
     pub(crate) fn last_verdict(&self, load_fraction: Option<f64>) -> Verdict {
-        let jumps = self.engine.equations.arm().readings.load_can_jump();
+        let spent = self.engine.spent();
+        let jumps = spent.is_none() && self.engine.equations.arm().readings.load_can_jump();
         Verdict {
             kind: if jumps { VerdictKind::LoadJump } else { VerdictKind::NotFound },
             phase: Phase::Tension,
             load_fraction: load_fraction.unwrap_or(1.0),
             s: if jumps { self.engine.nearest_switch().map(|s| s * self.engine.equations.units.length) } else { None },
             residual: self.engine.last,
+            spent,
         }
     }
 

@@ -57,6 +57,9 @@ impl Solver {
                 }
                 other => return other,
             }
+            if self.engine.spent().is_some() {
+                break;
+            }
         }
         if let Some(configuration) = self.solve_strokes_by_tensions(&arm) {
             return Ok(configuration);
@@ -92,7 +95,7 @@ impl Solver {
     /// kinks all along when its cables begin to pull, and the path of the strokes may not get past them.
     fn solve_strokes_by_tensions(&mut self, arm: &Arm) -> Option<Configuration> {
         // Loads that stretch the arm leave cables less to reel in than a straight arm would.
-        let slack = Self::new(&without_strokes(&with_tensions(arm, |_| 0.0)), self.options).ok()?.solve().ok()?;
+        let slack = self.solve_beside(&without_strokes(&with_tensions(arm, |_| 0.0)))?;
         let mut left = arm.clone();
         for (cable, state) in left.cables.iter_mut().zip(&slack.cables) {
             cable.stroke = cable.stroke.map(|stroke| stroke - state.stroke);
@@ -104,13 +107,21 @@ impl Solver {
         }
         let found = self.read_strokes(estimate).ok()?;
         let pulled = without_strokes(&with_tensions(arm, |c| found.cables[c].tension));
-        let led = Self::new(&pulled, self.options).ok()?.solve().ok()?;
+        let led = self.solve_beside(&pulled)?;
         let off = (led.tip().x - found.tip().x).hypot(led.tip().y - found.tip().y);
         if off > SAME * arm.length {
             self.forget();
             return None;
         }
         Some(found)
+    }
+
+    /// Another arm, in what work is left.
+    fn solve_beside(&mut self, arm: &Arm) -> Option<Configuration> {
+        let mut other = Self::new(arm, self.options).ok()?;
+        let solved = other.solve_within(self.engine.left());
+        self.engine.count_beside(other.engine.work());
+        solved.ok()
     }
 
     /// From the tensions that the strokes take in a straight arm without other loads.

@@ -71,6 +71,9 @@ pub struct Verdict {
     pub s: Option<f64>,
     /// What was left unbalanced when the solver stopped: the largest Newton correction, in rad.
     pub residual: f64,
+    /// The evaluations of the section law that were made (those of arms with many cables count for more), where the solver stopped because
+    /// a solve may take no more.
+    pub spent: Option<usize>,
 }
 
 impl Verdict {
@@ -84,6 +87,13 @@ impl Verdict {
                 format!("{:.6} of the way from the slack cables' strokes to those commanded", self.load_fraction)
             }
         };
+        if let Some(spent) = self.spent {
+            return format!(
+                "no equilibrium was found past {load} in {spent} evaluations of the section law, which is all that a solve may take \
+                 (last correction {:.1e} rad)",
+                self.residual
+            );
+        }
         match self.kind {
             VerdictKind::CableFold => format!("a cable folds its side of the arm shut{place}, at {load}"),
             VerdictKind::SectionCrushed => format!("net compression crushes the section{place}, at {load}"),
@@ -105,6 +115,9 @@ impl Verdict {
 
     /// What to try.
     pub fn advice(&self) -> &'static str {
+        if self.spent.is_some() {
+            return "look at what `check` says of the file: sizes, units, or loads that are far beyond what the arm carries";
+        }
         match self.kind {
             VerdictKind::CableFold => {
                 "lower the tension, move the cable towards the centreline near that place, or stiffen the section there"

@@ -5,6 +5,7 @@ mod commands;
 mod equilibria;
 mod formats;
 mod guide;
+mod hostile;
 mod identify;
 mod paths;
 mod reach;

@@ -65,6 +65,7 @@ impl Engine {
             }
             return Ok(());
         };
+        self.may_go_on()?;
         let count = held.cables.len();
         let taut = held.tight();
         let pulled = pull_taut(&mut self.equations, &mut self.system, &self.solution, &held)?;

@@ -8,6 +8,10 @@ pub(crate) fn kink_resolution(tolerance: f64) -> f64 {
     (0.02 * tolerance.sqrt()).max(5e-8)
 }
 
+/// Kinks that nodes are placed on. An arm with more winds through the stream so often that no mesh of any use resolves it, and a node
+/// for each would take gigabytes: the estimate then says what that costs.
+const MOST: usize = 500;
+
 impl Engine {
     /// Places inside (0, 1) where the load of the stream has a kink: where a switch changes sign.
     /// Changes closer than `resolution`, or than interpolation in an element tells apart, count as one, or
@@ -73,6 +77,9 @@ impl Engine {
         out.retain(|s| *s > resolution && *s < 1.0 - resolution);
         out.sort_by(f64::total_cmp);
         out.dedup_by(|b, a| *b - *a < resolution);
+        if out.len() > MOST {
+            out.clear();
+        }
     }
 
     /// The place of a change of sign of switch `w`, given where the polynomial of element `i` has it: near a node, that

@@ -118,6 +118,7 @@ impl Engine {
 
     /// How far a Newton round with one more stage puts the tip from where the solve has it.
     fn compare(&mut self) -> Result<f64, Trouble> {
+        self.may_go_on()?;
         linearise(&mut self.check, &mut self.check_equations, &self.finer, false)?;
         self.rounds += 1;
         solve(&self.check, &self.finer, 0, &mut self.check_correction);
@@ -170,7 +171,7 @@ impl Engine {
                 (0, First::Warm) if tolerance > TIGHT => tolerance,
                 (0, First::Warm | First::Fair) => least,
                 (0, First::Rough) => tolerance.max(FIRST),
-                _ => (1e-4 * estimate).clamp(least, tolerance.max(1e-3)),
+                _ => (1e-4 * estimate).min(tolerance.max(1e-3)).max(least),
             };
             let mut fine = goal <= 3.0 * tolerance;
             // The warm mesh has met the tolerance before: nothing but Newton's rest can have been added.

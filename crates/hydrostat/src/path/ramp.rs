@@ -21,6 +21,7 @@ pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdi
     let mut outcome = follow_at(engine, pace, pace.accuracy >= LOOSE);
     if let Err(verdict) = &outcome
         && engine.in_a_hurry
+        && verdict.spent.is_none()
         && (verdict.kind == VerdictKind::NotFound || verdict.load_fraction < HASTE)
     {
         // Nothing that has physics behind it: it may be the haste.
@@ -96,6 +97,10 @@ impl Ramp<'_> {
         let mut steeper = (here.fraction, here.rise);
         let mut sharpened = false;
         for attempt in 0.. {
+            if self.stepper.engine.spent().is_some() {
+                self.stepper.engine.restore(&here.state);
+                return Err(self.end(VerdictKind::NotFound, here.fraction, None));
+            }
             if attempt >= pace.most || step < 1e-8 {
                 if !sharpened && let Some(point) = self.sharpen(&here) {
                     sharpened = true;
@@ -223,12 +228,15 @@ impl Ramp<'_> {
     /// A verdict at `s`, m.
     fn end(&self, kind: VerdictKind, load_fraction: f64, s: Option<f64>) -> Verdict {
         let load_fraction = if load_fraction <= START { 0.0 } else { load_fraction.min(1.0) };
-        Verdict { kind, phase: self.phase, load_fraction, s, residual: self.stepper.engine.last }
+        let engine = &self.stepper.engine;
+        let spent = engine.spent().filter(|_| kind == VerdictKind::NotFound);
+        Verdict { kind, phase: self.phase, load_fraction, s, residual: engine.last, spent }
     }
 
     fn never_started(&mut self) -> Verdict {
         self.stepper.engine.last = 0.0;
-        if self.stepper.engine.equations.arm().readings.load_can_jump() {
+        let engine = &self.stepper.engine;
+        if engine.spent().is_none() && engine.equations.arm().readings.load_can_jump() {
             let length = self.stepper.engine.equations.units.length;
             self.end(VerdictKind::LoadJump, 0.0, self.stepper.engine.nearest_switch().map(|s| s * length))
         } else {

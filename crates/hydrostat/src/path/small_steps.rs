@@ -5,7 +5,7 @@ use crate::solve::{Options, Solver};
 use crate::{Arm, Cable, Gravity, Profile, SolveError};
 
 /// Numbers in [0, 1) that are the same everywhere (Knuth's MMIX generator).
-struct Dice(u64);
+pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
     fn roll(&mut self) -> f64 {
@@ -23,7 +23,7 @@ impl Dice {
     }
 }
 
-fn random_arm(dice: &mut Dice) -> Arm {
+pub(crate) fn random_arm(dice: &mut Dice) -> Arm {
     let length = dice.between(0.1, 0.4);
     let base = length * dice.between(0.03, 0.06);
     let tip = base * dice.between(0.1, 0.6);
