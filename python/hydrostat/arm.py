@@ -444,7 +444,7 @@ class Arm:
         rescale : bool
             Whether standard deviations are known up to a common factor only.
         cross_validate : bool
-            Whether to fit again without each load case.
+            Whether to fit again without each load case, of at most 200.
         tol : float
             Error of the tip position over the length that every solve is asked for.
         progress : bool, optional

@@ -155,7 +155,7 @@ class Fit:
 
     @cached_property
     def solutions(self) -> dict[str, Solution]:
-        """The fitted arm in every load case, by the names of these."""
+        """The fitted arm in the load cases, by the names of these; of many cases in the first 200."""
         return {name: Solution(shape) for name, shape in self._inner.shapes()}
 
     @property
@@ -193,7 +193,7 @@ class Fit:
 
     def figure(self, title: str | None = None) -> Figure:
         """Fitted shapes with the measured places, residuals and correlations, as ``hydrostat identify --plot`` draws them."""
-        return Figure(self._inner.figure(title or f"{self.arm.name}: fitted to {len(self.solutions)} load cases"))
+        return Figure(self._inner.figure(title or f"{self.arm.name}: fitted to {len(set(self.residuals['case']))} load cases"))
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the fitted shapes with the measured places on one axis. Needs matplotlib."""

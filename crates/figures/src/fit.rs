@@ -25,8 +25,8 @@ const MOST_NAMES: usize = 12;
 /// One load case of a fit.
 struct FittedCase<'a> {
     name: &'a str,
-    /// The fitted arm under the loads of the case.
-    shape: &'a Configuration,
+    /// The fitted arm under the loads of the case, if it was kept.
+    shape: Option<&'a Configuration>,
     /// Measured places, m.
     markers: Vec<[f64; 2]>,
     /// Residuals in standard deviations, in the order of the data.
@@ -34,7 +34,7 @@ struct FittedCase<'a> {
 }
 
 impl<'a> FittedCase<'a> {
-    fn new(name: &'a str, shape: &'a Configuration, residuals: &[&Residual]) -> Self {
+    fn new(name: &'a str, shape: Option<&'a Configuration>, residuals: &[Residual]) -> Self {
         let measured = |of: fn(f64) -> Quantity, s: f64| {
             residuals.iter().find(|one| one.measurement.quantity == of(s)).map(|one| one.measurement.value)
         };
@@ -72,11 +72,12 @@ impl<'a> FittedCase<'a> {
 /// ```
 pub fn fit_figure(title: &str, cases: &[Case], fit: &Fit) -> Scene {
     let shown: Vec<FittedCase<'_>> = fit
-        .shapes
-        .iter()
-        .map(|(case, shape)| {
-            let own: Vec<&Residual> = fit.residuals.iter().filter(|one| one.case == *case).collect();
-            FittedCase::new(cases.get(*case).map_or("", |case| case.name.as_str()), shape, &own)
+        .residuals
+        .chunk_by(|one, next| one.case == next.case)
+        .map(|own| {
+            let case = own[0].case;
+            let shape = fit.shapes.iter().find(|(index, _)| *index == case).map(|(_, shape)| shape);
+            FittedCase::new(cases.get(case).map_or("", |case| case.name.as_str()), shape, own)
         })
         .collect();
     let names: Vec<String> = fit.estimates.iter().map(|one| one.fitted.parameter.to_string()).collect();
@@ -84,7 +85,7 @@ pub fn fit_figure(title: &str, cases: &[Case], fit: &Fit) -> Scene {
 }
 
 fn drawn(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &[Vec<f64>]) -> Scene {
-    let outlines: Vec<Outline> = cases.iter().map(|case| Outline::new(case.shape, 0)).collect();
+    let outlines: Vec<Outline> = cases.iter().filter_map(|case| Some(Outline::new(case.shape?, 0))).collect();
     let markers = || cases.iter().flat_map(|case| &case.markers).map(|[x, y]| [1e3 * x, 1e3 * y]);
     let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).chain(markers()).collect();
     let mut legend = Legend::default();
@@ -199,7 +200,7 @@ mod tests {
     fn unknown_correlations_and_many_cases_can_be_drawn() {
         let shape = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
         let named: Vec<String> = (0..30).map(|k| format!("case {k}")).collect();
-        let case = |name| FittedCase { name, shape: &shape, markers: Vec::new(), residuals: vec![9.0] };
+        let case = |name| FittedCase { name, shape: Some(&shape), markers: Vec::new(), residuals: vec![9.0] };
         let cases: Vec<_> = named.iter().map(|name| case(name)).collect();
         let names = ["a", "b"].map(str::to_owned);
         let figure = drawn("t", &cases, &names, &[vec![1.0, f64::NAN], vec![f64::NAN, 1.0]]);

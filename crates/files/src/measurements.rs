@@ -18,8 +18,8 @@ use crate::quantity::Dimension;
 const MOST_BYTES: u64 = 64 << 20;
 /// Places (over L) that are this near are the same.
 const SAME: f64 = 1e-9;
-/// The most load cases: a fit keeps a solver and a shape of each, up to a megabyte.
-const MOST_CASES: usize = 300;
+/// The most load cases: a fit solves all of them several times, and without each of them.
+const MOST_CASES: usize = 1000;
 /// The most numbers of a load case: a mesh has a node at each place.
 const MOST_NUMBERS: usize = 1000;
 

@@ -11,7 +11,7 @@ use crate::data::{Case, Fitted, Measurement, natural_bounds};
 use crate::error::{IdentifyError, Trial};
 use crate::least_squares::{Minimum, Settings, minimise};
 use crate::loss::Loss;
-use crate::model::{Cases, Observed, Refusal, residuals};
+use crate::model::{Cases, KEPT, Observed, Refusal, residuals};
 use crate::student::{NORMAL_95, student_95};
 use crate::verdict::{Finding, Scale, findings, verdict};
 
@@ -22,7 +22,7 @@ pub struct FitOptions {
     pub loss: Loss,
     /// Whether standard deviations are known up to a common factor only, which the residuals then give.
     pub rescale: bool,
-    /// Whether to fit again without each load case and predict it.
+    /// Whether to fit again without each load case and predict it; not done for more than 200.
     pub cross_validate: bool,
     /// Error of the tip position over L that every solve is asked for, in [1e-12, 1e-2].
     pub tol: f64,
@@ -120,9 +120,11 @@ pub struct Fit {
     pub freedom: i64,
     /// The factor on standard deviations, one unless these are rescaled.
     pub spread: f64,
-    /// The fitted arm in every load case with measured numbers: the index of the case, and the shape.
+    /// Load cases with measured numbers.
+    pub load_cases: usize,
+    /// The fitted arm in the first 200 of them: the index of the case, and the shape.
     pub shapes: Vec<(usize, Configuration)>,
-    /// What each load case is predicted to be by the others; empty if not asked for and for one load case.
+    /// What each load case is predicted to be by the others; empty if not asked for, for one load case and for more than 200.
     pub left_out: Vec<LeftOut>,
     /// Load cases without an answer on the way.
     pub no_answer: Vec<NoAnswer>,
@@ -209,7 +211,10 @@ pub fn fit(
     }
     // A case without numbers would be solved for nothing.
     let with_numbers = || cases.iter().enumerate().filter(|(_, case)| !case.measurements.is_empty());
-    let observed: Result<_, _> = with_numbers().map(|(_, case)| Observed::new(case, &fitted, options.tol)).collect();
+    let observed: Result<_, _> = with_numbers()
+        .enumerate()
+        .map(|(count, (_, case))| Observed::new(case, count < KEPT, &fitted, options.tol))
+        .collect();
     let index: Vec<usize> = with_numbers().map(|(i, _)| i).collect();
     let mut model = Cases { observed: observed?, fitted, answers: Vec::new() };
     let settings = Settings { loss: options.loss, rounds: options.rounds, ..Settings::default() };
@@ -245,7 +250,7 @@ pub fn fit(
     let directions = directions(&rows, &sizes);
     let correlation = correlation(&covariance);
     let findings = findings(&parameters, &directions, &correlation);
-    let left_out = if options.cross_validate && model.observed.len() > 1 && told.is_continue() {
+    let left_out = if options.cross_validate && (2..=KEPT).contains(&model.observed.len()) && told.is_continue() {
         let sds: Vec<f64> = estimates.iter().map(|one| one.sd.unwrap_or(f64::INFINITY)).collect();
         leave_out(&model, &index, (&found.x, &sds), &settings, |done, all| say(Progress::LeftOut(done, all)))
     } else {
@@ -261,7 +266,13 @@ pub fn fit(
         chi_square,
         freedom,
         spread,
-        shapes: index.iter().copied().zip(model.answers.iter().map(|answer| answer.shape.clone())).collect(),
+        load_cases: index.len(),
+        shapes: index
+            .iter()
+            .copied()
+            .zip(&mut model.answers)
+            .filter_map(|(i, one)| Some((i, one.shape.take()?)))
+            .collect(),
         left_out,
         no_answer: no_answer(&found, &index),
         rounds: found.rounds,

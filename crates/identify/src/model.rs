@@ -14,10 +14,14 @@ use crate::least_squares::{Model, Rows};
 /// Places (over L) that are this near are the same, and one this far beyond an end is at it.
 const SAME: f64 = 1e-9;
 
+/// So many load cases keep their solvers and shapes, some 0.4 MB each; others are solved anew.
+pub(crate) const KEPT: usize = 200;
+
 /// A load case with its solver, which starts from its last answer.
 #[derive(Debug, Clone)]
 pub(crate) struct Observed {
     pub(crate) case: Case,
+    kept: bool,
     /// Places along the arm, m, that were measured.
     stations: Vec<f64>,
     options: Options,
@@ -31,11 +35,12 @@ pub(crate) struct Answer {
     pub(crate) values: Vec<f64>,
     /// By the parameters, one row a measurement.
     pub(crate) rows: Vec<Vec<f64>>,
-    pub(crate) shape: Configuration,
+    /// Of cases that keep it.
+    pub(crate) shape: Option<Configuration>,
 }
 
 impl Observed {
-    pub(crate) fn new(case: &Case, fitted: &[Fitted], tol: f64) -> Result<Self, IdentifyError> {
+    pub(crate) fn new(case: &Case, kept: bool, fitted: &[Fitted], tol: f64) -> Result<Self, IdentifyError> {
         let name = || case.name.clone();
         let mut arm = case.arm.clone();
         for one in fitted {
@@ -67,7 +72,7 @@ impl Observed {
             }
         }
         let case = Case { arm, ..case.clone() };
-        Ok(Self { case, stations, options: Options { tol }, solver: None })
+        Ok(Self { case, kept, stations, options: Options { tol }, solver: None })
     }
 
     /// The arm at these values of the parameters.
@@ -93,13 +98,13 @@ impl Observed {
         // What a trial without an answer leaves behind is no start for the next one.
         let found = solver.sensitivities_with(parameters, &wanted)?;
         let shape = solver.configuration()?;
-        self.solver = Some(solver);
+        self.solver = self.kept.then_some(solver);
         let (mut values, mut rows) = (Vec::new(), Vec::new());
         for one in &self.case.measurements {
             values.push(value_of(&shape, one.quantity));
             rows.push((0..parameters.len()).map(|k| self.change(&found, one.quantity, k)).collect());
         }
-        Ok(Answer { values, rows, shape })
+        Ok(Answer { values, rows, shape: self.kept.then_some(shape) })
     }
 
     /// d quantity / d parameter `k`.

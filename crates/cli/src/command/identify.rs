@@ -60,7 +60,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         output::put(Some(path), &arm_to_toml(&best))?;
     }
     if let Some(path) = &args.plot {
-        let title = format!("{}: fitted to {} load cases", arm.name, found.shapes.len());
+        let title = format!("{}: fitted to {} load cases", arm.name, found.load_cases);
         output::draw(&fit_figure(&title, &cases, &found), path)?;
     }
     let format = if args.json { Format::Json } else { args.format };
@@ -99,12 +99,8 @@ fn named(parameter: Parameter) -> String {
 
 fn report(arm: &Arm, cases: &[Case], found: &Fit) -> String {
     let count = found.residuals.len();
-    let mut out = format!(
-        "{}: {} load cases, {count} measured numbers, {} steps\n\n",
-        arm.name,
-        found.shapes.len(),
-        found.rounds
-    );
+    let mut out =
+        format!("{}: {} load cases, {count} measured numbers, {} steps\n\n", arm.name, found.load_cases, found.rounds);
     out.push_str(&estimates(found));
     out.push('\n');
     for sentence in found.verdict() {
