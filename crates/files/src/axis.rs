@@ -81,7 +81,7 @@ pub enum AxisError {
         text: String,
     },
     /// No key of the arm file.
-    #[error("{key}: expected a key of the arm file, found an unknown one{}", hint(.suggestion.as_ref()))]
+    #[error("{}: expected a key of the arm file, found an unknown one{}", shortened(.key), hint(.suggestion.as_ref()))]
     Unknown {
         /// What was given.
         key: String,
@@ -89,7 +89,7 @@ pub enum AxisError {
         suggestion: Option<String>,
     },
     /// No values.
-    #[error("{key}: expected at least one value, found none")]
+    #[error("{}: expected at least one value, found none", shortened(.key))]
     Empty {
         /// The key.
         key: String,
@@ -115,7 +115,7 @@ pub enum AxisError {
         count: u64,
     },
     /// A range of words.
-    #[error("{key}: expected words with commas between, because it is no number, found \"{}\"", shortened(.text))]
+    #[error("{}: expected words with commas between, because it is no number, found \"{}\"", shortened(.key), shortened(.text))]
     Range {
         /// The key.
         key: String,

@@ -2,6 +2,7 @@
 
 use hydrostat_identify::Quantity;
 
+use crate::error::shortened;
 use crate::format::{dimension_at, is_key, nearest};
 use crate::quantity::Dimension;
 
@@ -104,7 +105,9 @@ pub(crate) fn head(text: &str) -> Result<Head, String> {
         return Err(unknown(&lower));
     };
     match dimension {
-        None | Some(Dimension::Number) if !unit.is_empty() => Err(format!("expected no unit, found [{unit}]")),
+        None | Some(Dimension::Number) if !unit.is_empty() => {
+            Err(format!("expected no unit, found [{}]", shortened(unit)))
+        }
         None | Some(Dimension::Number) => Ok(()),
         Some(dimension) => check_unit(name, unit, dimension),
     }?;
@@ -150,6 +153,6 @@ fn check_unit(name: &str, unit: &str, dimension: Dimension) -> Result<(), String
     let other = Dimension::ALL.into_iter().find(|other| other.spellings().any(|known| known == unit));
     Err(match other {
         Some(other) => format!("{expected}; `{unit}` is the unit of {other}"),
-        None => format!("{expected}; `{unit}` is no unit known here"),
+        None => format!("{expected}; `{}` is no unit known here", shortened(unit)),
     })
 }

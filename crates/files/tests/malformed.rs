@@ -3,7 +3,7 @@
 
 mod common;
 
-use hydrostat_files::{ArmFile, FileError, Place};
+use hydrostat_files::{ArmFile, Axis, Deviations, FileError, Place, parse_measurements};
 
 use common::ARM;
 
@@ -267,8 +267,12 @@ fn large_and_deep_files() {
     for text in cases {
         assert!(ArmFile::parse(&text, "large.toml").and_then(|f| f.arm()).is_err());
     }
-    let largest = arm(&points(9_000)) + &"[[cable]]\noffset=0\n".repeat(100);
+    let cables = "[[cable]]\noffset=0\n".repeat(100);
+    let largest = arm(&points(760)) + &cables;
     assert_eq!(ArmFile::parse(&largest, "large.toml").unwrap().arm().unwrap().cables.len(), 100);
+    // Both at their largest take more memory than meshes may.
+    let both = ArmFile::parse(&(arm(&points(9_000)) + &cables), "large.toml").unwrap().arm().unwrap_err().to_string();
+    assert!(both.contains("arm.radius: expected at most 769 places") && both.contains("found 8998"), "{both}");
     assert!(started.elapsed().as_secs() < 60, "{:?}", started.elapsed());
 }
 
@@ -279,4 +283,17 @@ fn a_key_as_long_as_the_file_filled_the_message() {
         let message = refusal(&text).to_string();
         assert!(message.starts_with("case.toml:1: ") && message.len() < 500, "{} bytes", message.len());
     }
+}
+
+/// Found by fuzzing: the key of a grid and the unit of a column stood in messages as they were, over many lines or pages.
+#[test]
+fn keys_of_grids_and_units_of_columns_filled_the_message() {
+    for text in ["[[cable]]\nflow.speed=0:1:5".to_owned(), "\u{e}\n=".to_owned(), format!("{}=1", "k".repeat(9000))] {
+        let message = text.parse::<Axis>().unwrap_err().to_string();
+        assert!(!message.contains('\n') && message.len() < 500, "{message:?}");
+    }
+    let arm = ArmFile::parse(ARM, "arm.toml").unwrap();
+    let text = format!("case,s [{}],x [mm]\n", "m[".repeat(4000));
+    let message = parse_measurements(&text, "data.csv", &arm, &Deviations::default(), &[]).unwrap_err().to_string();
+    assert!(message.len() < 500, "{} bytes", message.len());
 }
