@@ -14,10 +14,15 @@ fn options(most: f64) -> ReachOptions {
     ReachOptions { max_tension: Some(most), ..ReachOptions::default() }
 }
 
+fn shipped_arm(name: &str) -> Arm {
+    ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap()
+}
+
 fn target_of(arm: &Arm, tensions: &[f64]) -> Option<Target> {
     let mut arm = arm.clone();
     arm.set_tensions(tensions).unwrap();
-    // Where a solve does not meet its tolerance, tips cannot be told as closely as they are to be reached.
+    // Where a solve does not meet its tolerance, tips cannot be told as closely as they are to be reached: `paper` with both cables
+    // pulled, whose tip, of C1 A = 1 N, tens of newtons press to a tenth of its length.
     let shape = arm.solve().ok().filter(|shape| shape.error_estimate <= 1e-8 * arm.length)?;
     Some(Target::tip(shape.tip().x, shape.tip().y))
 }
@@ -49,7 +54,7 @@ fn round_trips(arm: &Arm, most: f64, per_cable: u32) -> (usize, usize) {
 fn shipped_round_trips(per_cable: u32) {
     let mut sums = (0, 0);
     for name in shipped::names() {
-        let mut arm = ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap();
+        let mut arm = shipped_arm(name);
         let most = arm.cables[0].max_tension.unwrap();
         for speed in [0.0, 0.1] {
             arm.flow.speed = speed;
@@ -59,7 +64,7 @@ fn shipped_round_trips(per_cable: u32) {
         }
     }
     println!("{} of {}", sums.0, sums.1);
-    assert!(sums.0 as f64 >= 0.97 * sums.1 as f64, "{} of {}", sums.0, sums.1);
+    assert!(sums.0 as f64 >= 0.999 * sums.1 as f64, "{} of {}", sums.0, sums.1);
 }
 
 #[test]
@@ -71,6 +76,29 @@ fn tips_of_shipped_arms_are_reached_on_a_thinned_grid() {
 #[ignore = "minutes: the whole grid, on request"]
 fn tips_of_shipped_arms_are_reached_on_the_grid() {
     shipped_round_trips(11);
+}
+
+/// Near folds of the map from tensions to tips Newton's method finds another solution, or none: what was solved with is found all the same.
+#[test]
+fn all_tensions_near_folds_are_found() {
+    let arm = shipped_arm("silicone");
+    for tensions in [
+        [0.328, 0.0156],
+        [0.328, 0.0234],
+        [0.0, 0.319_266_538],
+        [0.0, 0.6],
+        [0.043_234_867, 0.297_319_235],
+        [0.348_683_05, 0.072_911_004],
+        [0.998_043_55, 0.194_675_974],
+    ] {
+        let target = target_of(&arm, &tensions).unwrap();
+        let found = arm.reach(&[target], &ReachOptions::default()).unwrap();
+        let seen: Vec<_> = found.solutions.iter().map(|one| (&one.tensions, one.distance)).collect();
+        // At a fold a distance of 1e-8 is a change of tensions of its root.
+        let own = |found: &&Vec<f64>| found.iter().zip(&tensions).all(|(a, b)| (a - b).abs() < 1.5e-4);
+        assert!(seen.iter().any(|(found, _)| own(found)), "{tensions:?}: {seen:?}");
+        assert!(seen.iter().all(|(_, distance)| *distance <= 1e-8), "{tensions:?}: {seen:?}");
+    }
 }
 
 #[test]
@@ -214,6 +242,30 @@ fn a_path_of_targets_is_followed() {
     }
     println!("{solves} solves for 100 targets");
     assert!(solves <= 400, "{solves}");
+}
+
+/// Six cables, from tensions that are not of least effort: these are left bit by bit, without losing a target.
+#[test]
+fn a_redundant_arm_follows_a_path_and_comes_to_less_effort() {
+    let mut arm = shipped_arm("multi-bending");
+    let pulls = |k: u32| {
+        let angle = 0.003 * f64::from(k);
+        let at = |angle: f64| 0.75 * (0.5 + 0.35 * angle.sin());
+        [at(angle), 0.0, 0.0, 0.0, 0.0, at(2.0 * angle + 5.0)]
+    };
+    let effort = |tensions: &[f64]| tensions.iter().map(|t| t * t).sum::<f64>();
+    arm.set_tensions(&pulls(0)).unwrap();
+    let first = target_of(&arm, &pulls(0)).unwrap();
+    let mut follower = Follower::new(&arm, &[first], &ReachOptions::default()).unwrap();
+    let (mut own, mut least) = (0.0, 0.0);
+    for k in 1..=60 {
+        let target = target_of(&arm, &pulls(k)).unwrap();
+        let found = follower.follow(&[target]).unwrap();
+        assert!(found.reached && !found.jumped, "{k}: {found:?}");
+        (own, least) = (effort(&pulls(k)), effort(&found.tensions));
+    }
+    println!("{least} N2 for {own} N2");
+    assert!(least < 0.9 * own, "{least} N2 for {own} N2");
 }
 
 /// A target that leaps to where the arm has to uncurl: whatever it ends with, it is not silent about a miss.
