@@ -1,6 +1,8 @@
 //! Inverse kinetics: round trips, targets out of reach, redundancy, and paths of targets.
 
-use hydrostat::{Arm, Bound, Cable, Follower, Options, Profile, ReachError, ReachOptions, Solver, Target};
+use hydrostat::{
+    Arm, Bound, Cable, Follower, Options, Profile, ReachError, ReachOptions, SolveError, Solver, Target, VerdictKind,
+};
 use hydrostat_files::{ArmFile, shipped};
 
 fn cone() -> Arm {
@@ -281,6 +283,41 @@ fn a_target_that_cannot_be_followed_is_said() {
     assert!(back.reached, "{back:?}");
     let station = [Target { s: Some(0.1), ..start }];
     assert!(matches!(follower.follow(&station), Err(ReachError::Target)));
+}
+
+/// Nearly against the stream the arm folds over past a limit point of its tensions. Targets that shapes beyond it have, in a slower
+/// stream where there is none, are not leapt to: the follower stays on its branch, says that it misses them, and comes back.
+#[test]
+fn a_limit_point_is_not_leapt_over() {
+    let mut arm = cone();
+    (arm.flow.speed, arm.flow.direction) = (0.115, 175.0_f64.to_radians());
+    let mut slower = arm.clone();
+    slower.flow.speed = 0.111;
+    let pulls = |r: f64| [0.2 * (1.0 + r), 0.2 * (1.0 - r)];
+    let near: Vec<Target> =
+        [0.02, 0.04, 0.06, 0.08, 0.1].iter().map(|r| target_of(&arm, &pulls(*r)).unwrap()).collect();
+    let mut beyond = arm.clone();
+    beyond.set_tensions(&pulls(0.15)).unwrap();
+    let Err(SolveError::NoEquilibrium(no)) = beyond.solve() else { panic!("there is an equilibrium beyond") };
+    assert_eq!(no.verdict.kind, VerdictKind::LimitPoint);
+
+    arm.set_tensions(&pulls(0.02)).unwrap();
+    let mut follower = Follower::new(&arm, &near[..1], &options(0.9)).unwrap();
+    for target in &near {
+        let found = follower.follow(&[*target]).unwrap();
+        assert!(found.reached && !found.jumped, "{found:?}");
+    }
+    for r in [0.15, 0.2] {
+        let target = target_of(&slower, &pulls(r)).unwrap();
+        let found = follower.follow(&[target]).unwrap();
+        let own = target_of(&arm, &found.tensions).unwrap();
+        let off = (found.tip.x - own.x).hypot(found.tip.y - own.y) / arm.length;
+        println!("{r}: {found:?}, {off:e} L from what a solve gives");
+        assert!(!found.reached && found.distance > 0.1, "{r}: {found:?}");
+        assert!(found.jumped || off < 1e-6, "{r}: elsewhere, and silent about it: {off:e} L");
+    }
+    let back = follower.follow(&near[2..3]).unwrap();
+    assert!(back.reached, "{back:?}");
 }
 
 #[test]
