@@ -3,12 +3,14 @@
 //! The distances to the targets, over L, are made small by Newton's method on the tensions, with the exact jacobian
 //! (`sensitivity`) on warm solves. A round asks for the least effort |T|^2 among the tensions within their bounds
 //! that meet the targets to first order (`reach/effort`); where there are none, or they lead no nearer, it takes a damped least-squares step
-//! whose tensions stop at their bounds. Several starts find several answers.
+//! whose tensions stop at their bounds. Several starts find several answers, and, of as many cables as conditions, lines through the
+//! target (`reach/lines`) the others, across folds of the map from tensions to places.
 
 mod boundary;
 mod effort;
 mod folds;
 mod follow;
+mod lines;
 mod search;
 
 use self::search::{Goal, Search, State};
@@ -21,6 +23,10 @@ use crate::verdict::SolveError;
 
 pub use self::boundary::{Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint};
 pub use self::follow::{Followed, Follower};
+
+/// Most steps along lines, and misses that lines are followed from.
+const STEPS: usize = 600;
+const MISSED: usize = 3;
 
 /// Where a place of the arm is to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +57,7 @@ pub struct ReachOptions {
     pub max_tension: Option<f64>,
     /// Distance over L at which a target is reached, in [1e-10, 1e-2].
     pub tol: f64,
-    /// Whether to look from all starts; else the first that reaches the target ends the search.
+    /// Whether to look from all starts, and along lines from what they find; else the first that reaches the target ends the search.
     pub all: bool,
 }
 
@@ -217,42 +223,92 @@ impl Arm {
 
 impl Search {
     fn run(&self, options: &ReachOptions, go_on: &dyn Fn() -> bool) -> Result<Reach, ReachError> {
-        let mut out = Reach { solutions: Vec::new(), closest: None };
-        let mut failure = None;
-        let mut nearest: Option<State> = None;
+        let mut found = Found { search: self, solutions: Vec::new(), missed: Vec::new(), failure: None };
         for start in self.starts() {
-            if !go_on() {
+            if !go_on() || (!options.all && !found.solutions.is_empty()) {
                 break;
             }
-            let state = match self.from(&start, go_on) {
-                Ok(state) => state,
-                Err(error) => {
-                    failure = Some(error);
-                    continue;
-                }
-            };
-            if state.distance() > options.tol {
-                if nearest.as_ref().is_none_or(|n| state.distance() < n.distance()) {
-                    nearest = Some(state);
-                }
-                continue;
-            }
-            let known = |own: &Reached| self.same(&own.tensions, &state.tensions);
-            if !out.solutions.iter().any(known) {
-                out.solutions.push(self.read(state)?);
-                if !options.all {
-                    break;
-                }
-            }
+            found.look_from(&start, go_on);
+        }
+        if options.all || found.solutions.is_empty() {
+            found.look_along_lines(options.all, go_on);
+        }
+        let Found { solutions, missed, failure, .. } = found;
+        let mut out = Reach { solutions: Vec::new(), closest: None };
+        for state in solutions {
+            out.solutions.push(self.read(state)?);
         }
         out.solutions.sort_by(|a, b| a.effort.total_cmp(&b.effort));
         if out.solutions.is_empty() {
-            out.closest = match (nearest, failure) {
+            out.closest = match (missed.into_iter().next(), failure) {
                 (Some(state), _) => Some(self.read(state)?),
                 (None, Some(failure)) => return Err(failure),
                 (None, None) => None,
             };
         }
         Ok(out)
+    }
+}
+
+/// What a search has found so far.
+struct Found<'a> {
+    search: &'a Search,
+    /// Different tensions that reach the targets.
+    solutions: Vec<State>,
+    /// Different ones from which nothing leads nearer, the nearest first.
+    missed: Vec<State>,
+    failure: Option<ReachError>,
+}
+
+impl Found<'_> {
+    fn look_from(&mut self, start: &[f64], go_on: &dyn Fn() -> bool) {
+        let state = match self.search.from(start, go_on) {
+            Ok(state) => state,
+            Err(error) => {
+                self.failure = Some(error);
+                return;
+            }
+        };
+        let reached = state.distance() <= self.search.tol;
+        let list = if reached { &mut self.solutions } else { &mut self.missed };
+        if !list.iter().any(|own| self.search.same(&own.tensions, &state.tensions)) {
+            list.push(state);
+        }
+        self.missed.sort_by(|a, b| a.distance().total_cmp(&b.distance()));
+    }
+
+    /// Along lines through the targets: from the nearest misses, until something is found, and from all that is found.
+    fn look_along_lines(&mut self, all: bool, go_on: &dyn Fn() -> bool) {
+        let mut steps = STEPS;
+        for k in 0..self.missed.len().min(MISSED) {
+            if !self.solutions.is_empty() {
+                break;
+            }
+            let state = self.missed[k].clone();
+            self.look_along(&state, &state.rest, all, &mut steps, go_on);
+        }
+        let mut k = 0;
+        while all && k < self.solutions.len() {
+            let state = self.solutions[k].clone();
+            if let Some(direction) = self.search.stiffest(&state) {
+                self.look_along(&state, &direction, all, &mut steps, go_on);
+            }
+            k += 1;
+        }
+    }
+
+    fn look_along(&mut self, from: &State, direction: &[f64], all: bool, steps: &mut usize, go_on: &dyn Fn() -> bool) {
+        if !self.search.has_lines(from) {
+            return;
+        }
+        let mut more = || {
+            *steps = steps.saturating_sub(1);
+            *steps > 0 && go_on()
+        };
+        for start in self.search.along(from, direction, &mut more) {
+            if go_on() && (all || self.solutions.is_empty()) {
+                self.look_from(&start, go_on);
+            }
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! Inverse kinetics: round trips, targets out of reach, redundancy, and paths of targets.
 
-use hydrostat::{Arm, Bound, Cable, Follower, Options, Profile, ReachError, ReachOptions, Solver, Target};
+use hydrostat::{
+    Arm, Bound, Cable, Follower, Options, Profile, ReachError, ReachOptions, SolveError, Solver, Target, VerdictKind,
+};
 use hydrostat_files::{ArmFile, shipped};
 
 fn cone() -> Arm {
@@ -14,10 +16,15 @@ fn options(most: f64) -> ReachOptions {
     ReachOptions { max_tension: Some(most), ..ReachOptions::default() }
 }
 
+fn shipped_arm(name: &str) -> Arm {
+    ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap()
+}
+
 fn target_of(arm: &Arm, tensions: &[f64]) -> Option<Target> {
     let mut arm = arm.clone();
     arm.set_tensions(tensions).unwrap();
-    // Where a solve does not meet its tolerance, tips cannot be told as closely as they are to be reached.
+    // Where a solve does not meet its tolerance, tips cannot be told as closely as they are to be reached: `paper` with both cables
+    // pulled, whose tip, of C1 A = 1 N, tens of newtons press to a tenth of its length.
     let shape = arm.solve().ok().filter(|shape| shape.error_estimate <= 1e-8 * arm.length)?;
     Some(Target::tip(shape.tip().x, shape.tip().y))
 }
@@ -49,7 +56,7 @@ fn round_trips(arm: &Arm, most: f64, per_cable: u32) -> (usize, usize) {
 fn shipped_round_trips(per_cable: u32) {
     let mut sums = (0, 0);
     for name in shipped::names() {
-        let mut arm = ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap();
+        let mut arm = shipped_arm(name);
         let most = arm.cables[0].max_tension.unwrap();
         for speed in [0.0, 0.1] {
             arm.flow.speed = speed;
@@ -59,7 +66,7 @@ fn shipped_round_trips(per_cable: u32) {
         }
     }
     println!("{} of {}", sums.0, sums.1);
-    assert!(sums.0 as f64 >= 0.97 * sums.1 as f64, "{} of {}", sums.0, sums.1);
+    assert!(sums.0 as f64 >= 0.999 * sums.1 as f64, "{} of {}", sums.0, sums.1);
 }
 
 #[test]
@@ -71,6 +78,29 @@ fn tips_of_shipped_arms_are_reached_on_a_thinned_grid() {
 #[ignore = "minutes: the whole grid, on request"]
 fn tips_of_shipped_arms_are_reached_on_the_grid() {
     shipped_round_trips(11);
+}
+
+/// Near folds of the map from tensions to tips Newton's method finds another solution, or none: what was solved with is found all the same.
+#[test]
+fn all_tensions_near_folds_are_found() {
+    let arm = shipped_arm("silicone");
+    for tensions in [
+        [0.328, 0.0156],
+        [0.328, 0.0234],
+        [0.0, 0.319_266_538],
+        [0.0, 0.6],
+        [0.043_234_867, 0.297_319_235],
+        [0.348_683_05, 0.072_911_004],
+        [0.998_043_55, 0.194_675_974],
+    ] {
+        let target = target_of(&arm, &tensions).unwrap();
+        let found = arm.reach(&[target], &ReachOptions::default()).unwrap();
+        let seen: Vec<_> = found.solutions.iter().map(|one| (&one.tensions, one.distance)).collect();
+        // At a fold a distance of 1e-8 is a change of tensions of its root.
+        let own = |found: &&Vec<f64>| found.iter().zip(&tensions).all(|(a, b)| (a - b).abs() < 1.5e-4);
+        assert!(seen.iter().any(|(found, _)| own(found)), "{tensions:?}: {seen:?}");
+        assert!(seen.iter().all(|(_, distance)| *distance <= 1e-8), "{tensions:?}: {seen:?}");
+    }
 }
 
 #[test]
@@ -216,6 +246,30 @@ fn a_path_of_targets_is_followed() {
     assert!(solves <= 400, "{solves}");
 }
 
+/// Six cables, from tensions that are not of least effort: these are left bit by bit, without losing a target.
+#[test]
+fn a_redundant_arm_follows_a_path_and_comes_to_less_effort() {
+    let mut arm = shipped_arm("multi-bending");
+    let pulls = |k: u32| {
+        let angle = 0.003 * f64::from(k);
+        let at = |angle: f64| 0.75 * (0.5 + 0.35 * angle.sin());
+        [at(angle), 0.0, 0.0, 0.0, 0.0, at(2.0 * angle + 5.0)]
+    };
+    let effort = |tensions: &[f64]| tensions.iter().map(|t| t * t).sum::<f64>();
+    arm.set_tensions(&pulls(0)).unwrap();
+    let first = target_of(&arm, &pulls(0)).unwrap();
+    let mut follower = Follower::new(&arm, &[first], &ReachOptions::default()).unwrap();
+    let (mut own, mut least) = (0.0, 0.0);
+    for k in 1..=60 {
+        let target = target_of(&arm, &pulls(k)).unwrap();
+        let found = follower.follow(&[target]).unwrap();
+        assert!(found.reached && !found.jumped, "{k}: {found:?}");
+        (own, least) = (effort(&pulls(k)), effort(&found.tensions));
+    }
+    println!("{least} N2 for {own} N2");
+    assert!(least < 0.9 * own, "{least} N2 for {own} N2");
+}
+
 /// A target that leaps to where the arm has to uncurl: whatever it ends with, it is not silent about a miss.
 #[test]
 fn a_target_that_cannot_be_followed_is_said() {
@@ -229,6 +283,41 @@ fn a_target_that_cannot_be_followed_is_said() {
     assert!(back.reached, "{back:?}");
     let station = [Target { s: Some(0.1), ..start }];
     assert!(matches!(follower.follow(&station), Err(ReachError::Target)));
+}
+
+/// Nearly against the stream the arm folds over past a limit point of its tensions. Targets that shapes beyond it have, in a slower
+/// stream where there is none, are not leapt to: the follower stays on its branch, says that it misses them, and comes back.
+#[test]
+fn a_limit_point_is_not_leapt_over() {
+    let mut arm = cone();
+    (arm.flow.speed, arm.flow.direction) = (0.115, 175.0_f64.to_radians());
+    let mut slower = arm.clone();
+    slower.flow.speed = 0.111;
+    let pulls = |r: f64| [0.2 * (1.0 + r), 0.2 * (1.0 - r)];
+    let near: Vec<Target> =
+        [0.02, 0.04, 0.06, 0.08, 0.1].iter().map(|r| target_of(&arm, &pulls(*r)).unwrap()).collect();
+    let mut beyond = arm.clone();
+    beyond.set_tensions(&pulls(0.15)).unwrap();
+    let Err(SolveError::NoEquilibrium(no)) = beyond.solve() else { panic!("there is an equilibrium beyond") };
+    assert_eq!(no.verdict.kind, VerdictKind::LimitPoint);
+
+    arm.set_tensions(&pulls(0.02)).unwrap();
+    let mut follower = Follower::new(&arm, &near[..1], &options(0.9)).unwrap();
+    for target in &near {
+        let found = follower.follow(&[*target]).unwrap();
+        assert!(found.reached && !found.jumped, "{found:?}");
+    }
+    for r in [0.15, 0.2] {
+        let target = target_of(&slower, &pulls(r)).unwrap();
+        let found = follower.follow(&[target]).unwrap();
+        let own = target_of(&arm, &found.tensions).unwrap();
+        let off = (found.tip.x - own.x).hypot(found.tip.y - own.y) / arm.length;
+        println!("{r}: {found:?}, {off:e} L from what a solve gives");
+        assert!(!found.reached && found.distance > 0.1, "{r}: {found:?}");
+        assert!(found.jumped || off < 1e-6, "{r}: elsewhere, and silent about it: {off:e} L");
+    }
+    let back = follower.follow(&near[2..3]).unwrap();
+    assert!(back.reached, "{back:?}");
 }
 
 #[test]

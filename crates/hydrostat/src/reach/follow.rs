@@ -13,10 +13,16 @@ const ROUNDS: usize = 12;
 /// The share of a distance that a round may leave before the jacobian is taken anew.
 const SLOW: f64 = 0.1;
 
+/// How far (tensions over their scale) more cables than conditions go towards their least effort a target, beyond what the target takes.
+const SLIDE: f64 = 0.02;
+
 /// How far (over L) the arm may end from where its derivatives lead before it has jumped to another branch.
 const JUMP: f64 = 0.1;
 
 /// Follows a path of targets.
+///
+/// With more cables than conditions tensions are those of least effort, or on their way there: from others they go a little with every
+/// target, since shapes on the way have to stay at the targets.
 ///
 /// ```
 /// use hydrostat::{Arm, Cable, Follower, Profile, ReachOptions, Target};
@@ -95,11 +101,12 @@ impl Follower {
         self.state.rest = self.search.rest(&self.state.solver);
         let sign = self.state.solver.engine.determinant().sign;
         let (mut jumped, mut solves, mut fresh) = (false, 0, false);
+        // After a step that led no nearer, with the jacobian of where it began: shorter ones.
+        let mut careful = false;
         let mut damping = 1e-9;
         while self.state.distance() > self.search.tol && solves < ROUNDS {
             let before = self.state.distance();
-            let to_least = self.search.towards_least_effort(&self.jacobian, &self.state);
-            let next = to_least.unwrap_or_else(|| self.search.damped(&self.jacobian, &self.state, damping));
+            let next = self.next(damping, careful);
             let change: Vec<f64> = next.iter().zip(&self.state.tensions).map(|(a, b)| a - b).collect();
             if self.search.change(&next, &self.state.tensions) < STILL {
                 break;
@@ -114,6 +121,7 @@ impl Follower {
                 solver.set_tensions(&kept)?;
                 solver.update()?;
                 damping = if fresh { (100.0 * damping).max(1e-4) } else { damping };
+                careful |= fresh;
                 self.renew()?;
                 fresh = true;
                 continue;
@@ -148,6 +156,23 @@ impl Follower {
         let distance = self.state.distance();
         let reached = distance <= self.search.tol;
         Ok(Followed { tensions: self.state.tensions.clone(), tip, distance, reached, jumped, solves })
+    }
+
+    /// Tensions that meet the targets to first order: those of least effort, or, where these are far, some on the way there from the nearest.
+    fn next(&self, damping: f64, careful: bool) -> Vec<f64> {
+        let (search, state) = (&self.search, &self.state);
+        let nearest = || search.damped(&self.jacobian, state, damping);
+        if careful {
+            return nearest();
+        }
+        let Some(least) = search.towards_least_effort(&self.jacobian, state) else { return nearest() };
+        if state.tensions.len() <= state.rest.len() {
+            return least;
+        }
+        let nearest = nearest();
+        let far = search.change(&least, &nearest);
+        let share = if far > SLIDE { SLIDE / far } else { 1.0 };
+        nearest.iter().zip(&least).map(|(near, least)| near + share * (least - near)).collect()
     }
 
     fn renew(&mut self) -> Result<(), ReachError> {
