@@ -36,6 +36,8 @@ pub(crate) struct Key {
 
 /// Most cables that an arm can have. Keeps the time to check a file bounded.
 pub(crate) const MAX_CABLES: usize = 100;
+/// The longest text, in characters: names are drawn.
+pub(crate) const MAX_NAME: usize = 200;
 /// Most points that a profile's table can have. Keeps the time to check a file bounded.
 pub(crate) const MAX_POINTS: usize = 10_000;
 /// Largest arm file, in bytes.
@@ -180,7 +182,7 @@ impl Kind {
     /// What a value may be, in words.
     pub(crate) fn expected(self) -> String {
         match self {
-            Text => "a string".to_owned(),
+            Text => format!("a string of at most {MAX_NAME} characters"),
             Choice(words) => {
                 let quoted: Vec<String> = words.iter().map(|w| format!("{w:?}")).collect();
                 quoted.join(" or ")

@@ -136,7 +136,7 @@ impl Values {
 
     fn value(&mut self, path: &str, kind: Kind, entry: &Entry) -> Result<(), Fault> {
         let value = match (kind, &entry.node) {
-            (Kind::Text, Node::Text(text)) => Value::Text(text.clone()),
+            (Kind::Text, Node::Text(text)) if text.chars().count() <= format::MAX_NAME => Value::Text(text.clone()),
             (Kind::Choice(words), Node::Text(text)) => match words.iter().find(|w| *w == text) {
                 Some(word) => Value::Word(word),
                 None => return Err(refuse(path, kind, entry)),

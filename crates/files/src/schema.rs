@@ -5,7 +5,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::format::{self, COEFFICIENTS, DRAG, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_POINTS};
+use crate::format::{self, COEFFICIENTS, DRAG, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_NAME, MAX_POINTS};
 use crate::quantity::Dimension;
 
 /// The JSON Schema (draft 2020-12) of the arm file.
@@ -91,7 +91,7 @@ fn kind(kind: Kind) -> Value {
         json!({ "type": "array", "prefixItems": [reference, reference], "minItems": 2, "maxItems": 2 })
     };
     match kind {
-        Kind::Text => json!({ "type": "string" }),
+        Kind::Text => json!({ "type": "string", "maxLength": MAX_NAME }),
         Kind::Choice(words) => json!({ "enum": words }),
         Kind::Quantity(d) => json!({ "$ref": format!("#/$defs/{}", id("quantity", d)) }),
         Kind::Pair(d) => pair(id("quantity", d)),

@@ -276,6 +276,14 @@ fn large_and_deep_files() {
     assert!(started.elapsed().as_secs() < 60, "{:?}", started.elapsed());
 }
 
+/// A name of a megabyte was drawn letter by letter, in 500 MB.
+#[test]
+fn a_name_as_long_as_the_file_was_drawn() {
+    let message = refusal(&format!("name = \"{}\"\n", "n".repeat(900_000))).to_string();
+    assert!(message.starts_with("case.toml:1: name: expected a string of at most 200 characters"), "{message:.300}");
+    assert!(message.len() < 500, "{} bytes", message.len());
+}
+
 /// The message had the whole key, as long as the file.
 #[test]
 fn a_key_as_long_as_the_file_filled_the_message() {
