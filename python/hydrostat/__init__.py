@@ -47,7 +47,7 @@ from hydrostat.figures import (
 from hydrostat.identification import Estimate, Fit, LeftOut
 from hydrostat.many import Many, solve_many
 from hydrostat.paths import Branch, Equilibria, Event, Path
-from hydrostat.reach import Bound, Followed, Follower, Reach, Reached, Target
+from hydrostat.reach import Bound, Boundary, BoundaryPiece, Followed, Follower, Reach, Reached, Target
 from hydrostat.sensitivity import Ellipse, PoseChange, Sensitivities
 from hydrostat.solution import CableState, Command, FoldMargin, Note, Solution, Stations, Tip, Wrench
 from hydrostat.solver import Answer, Solver
@@ -58,6 +58,8 @@ __all__ = [
     "Arm",
     "ArmError",
     "Bound",
+    "Boundary",
+    "BoundaryPiece",
     "Branch",
     "CableFold",
     "CableState",

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from hydrostat.identification import Fit, Keys, Measured, Priors
     from hydrostat.paths import Equilibria, Path
-    from hydrostat.reach import Reach, Targets
+    from hydrostat.reach import Boundary, Reach, Targets
     from hydrostat.sensitivity import Sensitivities
 
 #: A table of the arm file.
@@ -339,7 +339,13 @@ class Arm:
         return Equilibria(_native.equilibria(self._inner, _inputs.number("tol", tol), time_limit))
 
     def reach(
-        self, targets: Targets, *, max_tension: float | None = None, tol: float = 1e-8, all: bool = True
+        self,
+        targets: Targets,
+        *,
+        by: str = "tensions",
+        max_tension: float | None = None,
+        tol: float = 1e-8,
+        all: bool = True,
     ) -> Reach:
         """Tensions, from 0 to their largest, that bring the arm to targets; the arm's own tensions and strokes do not count.
 
@@ -349,6 +355,9 @@ class Arm:
         ----------
         targets : Target, sequence of Target, or (x, y)
             Where places of the arm are to be, m and rad; (x, y) is for the tip.
+        by : str
+            ``"tensions"``, or ``"strokes"``: the lengths are then commanded that the tensions make, and stability is that with
+            lengths held.
         max_tension : float, optional
             The largest tension of every cable, N, where the cable itself has none.
         tol : float
@@ -380,7 +389,35 @@ class Arm:
 
         goals = targets_of(targets)
         most = None if max_tension is None else _inputs.number("max_tension", max_tension)
-        return Reach(_native.reach(self._inner, goals, most, _inputs.number("tol", tol), all), tuple(goals))
+        if by not in ("tensions", "strokes"):
+            raise ValueError(f"by: expected tensions or strokes, found {by!r}")
+        found = _native.reach(self._inner, goals, most, _inputs.number("tol", tol), all, by == "strokes")
+        return Reach(found, tuple(goals))
+
+    def reachable(self, *, max_tension: float | None = None, spacing: float = 0.01, tol: float = 1e-7) -> Boundary:
+        """What bounds the places that the tip reaches with tensions from 0 to their largest.
+
+        Parameters
+        ----------
+        max_tension : float, optional
+            The largest tension of every cable, N, where the cable itself has less or none.
+        spacing : float
+            Distance of points over the length, in [1e-3, 0.1].
+        tol : float
+            Error of tips over the length, in [1e-9, 1e-3].
+
+        Examples
+        --------
+        >>> import hydrostat as hs
+        >>> boundary = hs.Arm.load("silicone").reachable(max_tension=0.2, spacing=0.05)
+        >>> [piece.kind for piece in boundary]
+        ['edge', 'edge', 'edge', 'edge']
+        """
+        from hydrostat.reach import Boundary
+
+        most = None if max_tension is None else _inputs.number("max_tension", max_tension)
+        found = _native.reachable(self._inner, most, _inputs.number("spacing", spacing), _inputs.number("tol", tol))
+        return Boundary(found)
 
     def sensitivities(
         self,

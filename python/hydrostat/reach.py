@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, Union, overload
+
+import numpy as np
 
 from hydrostat import _inputs, _native
 from hydrostat.figures import Figure
 from hydrostat.solution import Solution, Tip
 
 if TYPE_CHECKING:
-    import numpy as np
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
@@ -93,6 +95,77 @@ class Reached:
     def __repr__(self) -> str:
         pulls = ", ".join(f"{tension:.6g}" for tension in self.tensions)
         return f"<Reached with ({pulls}) N, off by {self.distance:.2g} of the length>"
+
+
+class BoundaryPiece(NamedTuple):
+    """Places of the tip on its boundary, one after the other.
+
+    Attributes
+    ----------
+    kind : str
+        ``"edge"``: all cables but one are at a bound; ``"fold"``: two move the tip along the same line; ``"limit"``: two pulled further
+        have no equilibrium.
+    cables : tuple of int
+        The cables that are between their bounds.
+    tensions : ndarray, shape (n, cables)
+        N.
+    x, y : ndarray, shape (n,)
+        The tip, m.
+    theta, alpha : ndarray, shape (n,)
+        Its angles, rad.
+    """
+
+    kind: str
+    cables: tuple[int, ...]
+    tensions: NDArray[np.float64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    theta: NDArray[np.float64]
+    alpha: NDArray[np.float64]
+
+
+class Boundary(Sequence[BoundaryPiece]):
+    """All that bounds what a tip reaches, and pieces inside where the image lies over itself; see `Arm.reachable`. A sequence of
+    `BoundaryPiece`: edges first, then folds, then limits."""
+
+    def __init__(self, native: _native.Boundary) -> None:
+        self._inner = native
+        self._pieces = tuple(_piece(one) for one in json.loads(native.to_json())["pieces"])
+
+    def __len__(self) -> int:
+        return len(self._pieces)
+
+    @overload
+    def __getitem__(self, index: int) -> BoundaryPiece: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[BoundaryPiece]: ...
+    def __getitem__(self, index: int | slice) -> BoundaryPiece | Sequence[BoundaryPiece]:
+        return self._pieces[index]
+
+    def __repr__(self) -> str:
+        return f"<Boundary: {len(self)} piece(s)>"
+
+    def to_json(self) -> str:
+        """The document of ``hydrostat reach --boundary --format json``."""
+        return self._inner.to_json()
+
+    def to_csv(self) -> str:
+        """One row a point, as ``hydrostat reach --boundary --format csv`` prints them."""
+        return self._inner.to_csv()
+
+    def figure(self) -> Figure:
+        """The boundary to scale with the slack arm, as ``hydrostat reach --boundary --plot`` draws it."""
+        return Figure(self._inner.figure())
+
+
+def _piece(one: dict[str, Any]) -> BoundaryPiece:
+    def column(name: str) -> NDArray[np.float64]:
+        return np.array([point["tip"][name] for point in one["points"]], dtype=np.float64)
+
+    tensions = np.array([point["tensions"] for point in one["points"]], dtype=np.float64)
+    return BoundaryPiece(
+        one["kind"], tuple(one["cables"]), tensions, column("x"), column("y"), column("theta"), column("alpha")
+    )
 
 
 class Reach(Sequence[Reached]):

@@ -56,13 +56,13 @@ impl<'a> FittedCase<'a> {
 /// of the estimates. `cases` are those that were fitted to.
 ///
 /// ```
-/// use hydrostat::{Arm, Parameter};
+/// use hydrostat::{Arm, Gravity, Parameter};
 /// use hydrostat_figures::fit_figure;
 /// use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, Quantity, fit};
 ///
 /// let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
 /// (arm.density, arm.flow.density) = (1500.0, 1000.0); // kg/m3: it sinks
-/// arm.gravity.acceleration = 9.81;
+/// arm.gravity = Some(Gravity::default());
 /// let measurements = vec![Measurement::new(Quantity::X(0.2), 0.196, 1e-3), Measurement::new(Quantity::Y(0.2), -0.02, 1e-3)];
 /// let cases = [Case { name: "at rest".to_owned(), arm: arm.clone(), measurements }];
 /// let wanted = [Fitted::new(Parameter::Young, &arm).unwrap()];

@@ -62,10 +62,15 @@ pub enum Parameter {
 
 /// A name that no parameter has.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{name}` is no quantity that a path can vary; those are {}", names().join(", "))]
+#[error("`{}` is no quantity that a path can vary; those are {}", on_one_line(.name), names().join(", "))]
 pub struct UnknownParameter {
     /// The name given.
     pub name: String,
+}
+
+/// The beginning of what may be anything, as a message can show it.
+fn on_one_line(name: &str) -> String {
+    name.chars().take(60).flat_map(char::escape_debug).collect()
 }
 
 /// A parameter that the arm at hand does not have.

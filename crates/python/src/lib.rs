@@ -33,7 +33,7 @@ mod _native {
     #[pymodule_export]
     use super::paths::{Equilibria, Path, equilibria, path};
     #[pymodule_export]
-    use super::reach::{Follower, Reach, reach};
+    use super::reach::{Boundary, Follower, Reach, reach, reachable};
     #[pymodule_export]
     use super::sensitivity::{Sensitivities, ellipse};
     #[pymodule_export]

@@ -1,10 +1,10 @@
 //! Tensions that bring an arm to targets.
 
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use hydrostat::{Bound as TensionBound, ReachOptions, Reached, Target};
-use hydrostat_figures::reach_figure;
-use hydrostat_files::{ReachDocument, reach_csv};
+use hydrostat::{Bound as TensionBound, BoundaryOptions, Configuration, ReachError, ReachOptions, Reached, Target};
+use hydrostat_figures::{boundary_figure, reach_figure};
+use hydrostat_files::{BoundaryDocument, ReachDocument, boundary_csv, reach_csv};
 use numpy::PyArray1;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -55,16 +55,61 @@ pub(crate) fn reach(
     max_tension: Option<f64>,
     tol: f64,
     all: bool,
+    by_strokes: bool,
 ) -> PyResult<Reach> {
     let targets = targets_of(targets);
     let options = ReachOptions { max_tension, tol, all };
-    let found = interruptible(
-        py,
-        |_| Ok(()),
-        |stop| arm.given.reach_while(&targets, &options, || !stop.load(Ordering::Relaxed)),
-    )?;
+    let found = if by_strokes {
+        py.detach(|| arm.given.reach_by_strokes(&targets, &options))
+    } else {
+        let search = |stop: &AtomicBool| arm.given.reach_while(&targets, &options, || !stop.load(Ordering::Relaxed));
+        interruptible(py, |_| Ok(()), search)?
+    };
     let found = found.map_err(|error| reach_error(py, error, tol))?;
     Ok(Reach { found, arm: arm.given.clone(), targets, tol })
+}
+
+/// What bounds the places that the tip reaches.
+#[pyclass(frozen, module = "hydrostat._native")]
+pub(crate) struct Boundary {
+    found: hydrostat::Boundary,
+    arm: hydrostat::Arm,
+    /// The shape with slack cables.
+    slack: Configuration,
+}
+
+/// Traces the boundary.
+#[pyfunction]
+pub(crate) fn reachable(
+    py: Python<'_>,
+    arm: &Arm,
+    max_tension: Option<f64>,
+    spacing: f64,
+    tol: f64,
+) -> PyResult<Boundary> {
+    let options = BoundaryOptions { max_tension, spacing, tol };
+    let mut slack = arm.given.clone();
+    for cable in &mut slack.cables {
+        (cable.tension, cable.stroke) = (0.0, None);
+    }
+    let found = py.detach(|| -> Result<_, ReachError> { Ok((arm.given.reachable(&options)?, slack.solve()?)) });
+    let (found, slack) = found.map_err(|error| reach_error(py, error, tol))?;
+    Ok(Boundary { found, arm: arm.given.clone(), slack })
+}
+
+#[pymethods]
+impl Boundary {
+    fn to_json(&self) -> PyResult<String> {
+        BoundaryDocument::new(&self.arm, &self.found).to_json().map_err(wrong)
+    }
+
+    fn to_csv(&self) -> String {
+        boundary_csv(self.arm.cables.len(), &self.found)
+    }
+
+    fn figure(&self) -> Figure {
+        Figure::new(boundary_figure(&self.found, &self.slack))
+    }
 }
 
 impl Reach {
