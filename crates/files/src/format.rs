@@ -205,6 +205,20 @@ pub(crate) fn names(keys: &[Key]) -> String {
     names.join(", ")
 }
 
+/// The name and the indices of a step of a key; `None` where what follows the name is not indices.
+fn indexed(step: &str) -> Option<(&str, &str)> {
+    let (name, indices) = step.split_at(step.find('[').unwrap_or(step.len()));
+    let mut rest = indices;
+    while !rest.is_empty() {
+        let (index, after) = rest.strip_prefix('[')?.split_once(']')?;
+        if index.is_empty() || !index.bytes().all(|byte| byte.is_ascii_digit()) {
+            return None;
+        }
+        rest = after;
+    }
+    Some((name, indices))
+}
+
 /// What the number at a dotted key measures, such as `cable[0].tension` or `tip.force[1]`, or a profile, one of its ends or a
 /// number of its table; `None` where there is none.
 pub(crate) fn dimension_at(key: &str) -> Option<Dimension> {
@@ -215,7 +229,7 @@ pub(crate) fn dimension_at(key: &str) -> Option<Dimension> {
     let (mut keys, mut found) = (FILE, None);
     let steps: Vec<&str> = whole.split('.').collect();
     for (k, step) in steps.iter().enumerate() {
-        let (name, indices) = step.split_once('[').unwrap_or((step, ""));
+        let (name, indices) = indexed(step)?;
         let last = k + 1 == steps.len();
         match keys.iter().find(|key| key.name == name)?.kind {
             Table(inner) | Tables(inner) if !last => keys = inner,
@@ -235,7 +249,7 @@ pub(crate) fn dimension_at(key: &str) -> Option<Dimension> {
 pub(crate) fn is_key(key: &str) -> bool {
     let mut keys = FILE;
     for step in key.split('.') {
-        let name = step.split('[').next().unwrap_or(step);
+        let Some((name, _)) = indexed(step) else { return false };
         match keys.iter().find(|key| key.name == name).map(|key| key.kind) {
             Some(Table(inner) | Tables(inner)) => keys = inner,
             Some(_) => return true,
