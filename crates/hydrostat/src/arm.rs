@@ -464,6 +464,24 @@ impl Arm {
             && self.cables.iter().zip(&other.cables).all(|(a, b)| a.offset == b.offset && a.end == b.end)
     }
 
+    /// The arm with slack cables: no tension, and no stroke commanded.
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Cable};
+    ///
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.cables.push(Cable::new("left", 0.001).pulled(0.3));
+    /// assert_eq!(arm.slackened().cables[0].tension, 0.0);
+    /// ```
+    #[must_use]
+    pub fn slackened(&self) -> Self {
+        let mut out = self.clone();
+        for cable in &mut out.cables {
+            (cable.tension, cable.stroke) = (0.0, None);
+        }
+        out
+    }
+
     /// Whether a cable that may be pulled rubs in its channel.
     pub(crate) fn rubs(&self) -> bool {
         self.cables.iter().any(|c| c.friction > 0.0)

@@ -88,11 +88,8 @@ pub(crate) fn reachable(
     tol: f64,
 ) -> PyResult<Boundary> {
     let options = BoundaryOptions { max_tension, spacing, tol };
-    let mut slack = arm.given.clone();
-    for cable in &mut slack.cables {
-        (cable.tension, cable.stroke) = (0.0, None);
-    }
-    let found = py.detach(|| -> Result<_, ReachError> { Ok((arm.given.reachable(&options)?, slack.solve()?)) });
+    let trace = || -> Result<_, ReachError> { Ok((arm.given.reachable(&options)?, arm.given.slackened().solve()?)) };
+    let found = py.detach(trace);
     let (found, slack) = found.map_err(|error| reach_error(py, error, tol))?;
     Ok(Boundary { found, arm: arm.given.clone(), slack })
 }

@@ -112,13 +112,13 @@ pub(crate) fn arm(file: &ArmFile) -> Result<Arm, Problem> {
 
 /// The arm with no load at all: what a ghost is drawn of.
 pub(crate) fn unloaded(arm: &Arm) -> Arm {
-    let mut bare = arm.clone();
+    let mut bare = arm.slackened();
     bare.flow.speed = 0.0;
     bare.gravity = None;
     bare.tip = hydrostat::TipLoad::default();
     bare.distributed = hydrostat::DistributedLoad::default();
     for cable in &mut bare.cables {
-        (cable.tension, cable.stroke, cable.friction) = (0.0, None, 0.0);
+        cable.friction = 0.0;
     }
     bare
 }

@@ -255,7 +255,7 @@ impl Memory {
         if !target.iter().all(|v| v.is_finite()) {
             return Err(Problem::field("target", "target: expected two finite numbers, m"));
         }
-        let of = (slack(arm), most);
+        let of = (arm.slackened(), most);
         if self.following.as_ref().is_none_or(|own| own.of != of) {
             self.following = Some(begin(arm, of, most)?);
         }
@@ -304,15 +304,6 @@ impl Memory {
             elsewhere: false,
         })
     }
-}
-
-/// The arm with slack cables: what must not change while its tip is pulled.
-fn slack(arm: &Arm) -> Arm {
-    let mut slack = arm.clone();
-    for cable in &mut slack.cables {
-        (cable.tension, cable.stroke) = (0.0, None);
-    }
-    slack
 }
 
 /// Takes hold of the tip where it is.

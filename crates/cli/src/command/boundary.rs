@@ -17,11 +17,7 @@ pub(super) fn run(arm: &Arm, args: &ReachArgs) -> anyhow::Result<()> {
     };
     let found = arm.reachable(&options)?;
     if let Some(file) = &args.plot {
-        let mut slack = arm.clone();
-        for cable in &mut slack.cables {
-            (cable.stroke, cable.tension) = (None, 0.0);
-        }
-        output::draw(&boundary_figure(&found, &slack.solve()?), file)?;
+        output::draw(&boundary_figure(&found, &arm.slackened().solve()?), file)?;
     }
     let text = match args.format {
         Format::Text => summary(arm, &found),

@@ -1,7 +1,8 @@
 //! How much work a solve may be, counted so that every machine ends it at the same place.
 //!
-//! A piece of work is one evaluation of the section law and the loads at a station, more with many cables ([`crate::Arm::dearness`]). All ways of a solve to its answer are finite in themselves, but meshes of an arm that winds thousands of times
-//! through the stream are long, and rounds on them many.
+//! A piece of work is one evaluation of the section law and the loads at a station, more with many cables ([`crate::Arm::dearness`]). All
+//! ways of a solve to its answer are finite in themselves, but meshes of an arm that winds thousands of times through the stream are
+//! long, and rounds on them many.
 
 use super::{Engine, Trouble};
 

@@ -64,13 +64,10 @@ pub(super) struct Search {
 
 impl Search {
     pub(super) fn new(arm: &Arm, goal: Goal, options: &ReachOptions) -> Result<Self, ReachError> {
-        let mut arm = arm.clone();
         if arm.cables.is_empty() {
             return Err(ReachError::NoCables);
         }
-        for cable in &mut arm.cables {
-            (cable.stroke, cable.tension) = (None, 0.0);
-        }
+        let arm = arm.slackened();
         arm.check().map_err(SolveError::from)?;
         let fine = |t: &Target| {
             t.x.is_finite()
