@@ -216,9 +216,7 @@ function answered(reply) {
     }
   }
   // The picture says it, too: all but a plain stable shape.
-  const caption = words.level === "good" ? [] : [words.title, ...words.lines].map((text) => ({ text, level: words.level }));
-  // The same words stay the same object, whose lines are known.
-  if (JSON.stringify(caption) !== JSON.stringify(view.scene.caption)) view.scene.caption = caption;
+  view.scene.caption = words.level === "good" ? [] : [words.title, ...words.lines].map((text) => ({ text, level: words.level }));
   say(words);
   if (!shape || !drawing) return;
   present = { shape, drawing, asked: answer.converged };

@@ -502,11 +502,6 @@ export class Painter {
   }
 }
 
-/** What captions were last wrapped to. @type {WeakMap<Scene["caption"], { width: number, lines: CaptionLine[] }>} */
-const wrappedBefore = new WeakMap();
-
-/** @typedef {{ line: string, level: string, y: number }} CaptionLine */
-
 /**
  * What the solver says, line by line as it stands in the picture.
  * @param {CanvasRenderingContext2D} ctx
@@ -514,18 +509,19 @@ const wrappedBefore = new WeakMap();
  * @param {View} view
  */
 export function captionLines(ctx, scene, view) {
-  const before = wrappedBefore.get(scene.caption);
-  if (before?.width === view.width) return before.lines;
   ctx.font = `600 ${FONT}`;
   // On a phone the tools take the first line, and only the title finds room; the rest stands right below the picture.
   const narrow = view.width < 640;
   const width = narrow ? view.width - 32 : Math.min(560, view.width - 330);
   const lines = (narrow ? scene.caption.slice(0, 1) : scene.caption)
     .flatMap(({ text, level }) => wrapped(ctx, text, width).map((line) => ({ line, level })));
-  const placed = lines.map((line, i) => ({ ...line, y: (narrow ? 68 : 24) + 17 * i }));
-  wrappedBefore.set(scene.caption, { width: view.width, lines: placed });
-  return placed;
+  return lines.map((line, i) => ({ ...line, y: (narrow ? 68 : 24) + 17 * i }));
 }
+
+/** What texts were wrapped to: the same words stand in the picture again and again, and to measure them takes long. */
+const known = { width: 0, lines: /** @type {Map<string, string[]>} */ (new Map()) };
+/** Texts that are known at most. */
+const MOST_KNOWN = 50;
 
 /**
  * The text in lines that are no wider than `width`.
@@ -534,12 +530,19 @@ export function captionLines(ctx, scene, view) {
  * @param {number} width
  */
 function wrapped(ctx, text, width) {
+  if (known.width !== width || known.lines.size > MOST_KNOWN) {
+    known.width = width;
+    known.lines.clear();
+  }
+  const before = known.lines.get(text);
+  if (before) return before;
   const lines = [""];
   for (const word of text.split(" ")) {
     const longer = `${lines[lines.length - 1]} ${word}`.trimStart();
     if (ctx.measureText(longer).width > width && lines[lines.length - 1] !== "") lines.push(word);
     else lines[lines.length - 1] = longer;
   }
+  known.lines.set(text, lines);
   return lines;
 }
 
