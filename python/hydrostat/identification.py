@@ -158,24 +158,15 @@ class Fit:
         """The fitted arm in the load cases, by the names of these; of many cases in the first 200."""
         return {name: Solution(shape) for name, shape in self._inner.shapes()}
 
-    @property
+    @cached_property
     def residuals(self) -> dict[str, NDArray[Any]]:
         """Every measured number beside the fit, columns by name: ``case``, ``quantity``, ``s`` (m, NaN for what has no place), ``unit``,
         ``measured``, ``sd``, ``fitted``, ``residual`` (fitted less measured, over sd), ``weight`` (what the loss leaves of its pull) and
         ``row`` (of the file)."""
+        types: dict[str, Any] = {"case": object, "quantity": object, "unit": object, "row": np.int64}
         rows = self._found["residuals"]
-        words = ("case", "quantity", "unit")
-        whole = {"row": 0}
-        columns: dict[str, NDArray[Any]] = {}
-        for name in ("case", "quantity", "s", "unit", "measured", "sd", "fitted", "residual", "weight", "row"):
-            column = [row[name] for row in rows]
-            if name in words:
-                columns[name] = np.array(column, dtype=object)
-            elif name in whole:
-                columns[name] = np.array([whole[name] if value is None else value for value in column], dtype=np.int64)
-            else:
-                columns[name] = np.array(column, dtype=np.float64)
-        return columns
+        names = ("case", "quantity", "s", "unit", "measured", "sd", "fitted", "residual", "weight", "row")
+        return {name: np.array([row[name] for row in rows], dtype=types.get(name, np.float64)) for name in names}
 
     def to_pandas(self) -> pd.DataFrame:
         """`residuals` as a table. Needs pandas."""
@@ -191,9 +182,9 @@ class Fit:
         """One row a measured number, as ``hydrostat identify --format csv`` prints them."""
         return self._inner.to_csv()
 
-    def figure(self, title: str | None = None) -> Figure:
+    def figure(self) -> Figure:
         """Fitted shapes with the measured places, residuals and correlations, as ``hydrostat identify --plot`` draws them."""
-        return Figure(self._inner.figure(title or f"{self.arm.name}: fitted to {len(set(self.residuals['case']))} load cases"))
+        return Figure(self._inner.figure())
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the fitted shapes with the measured places on one axis. Needs matplotlib."""

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import pickle
-import subprocess
-import sys
-import textwrap
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -164,30 +161,3 @@ def test_wrong_requests_name_the_argument(silicone: hs.Arm, tmp_path: Path) -> N
     with pytest.raises(hs.CableFold) as fold:
         silicone.identify({**good, "cable[0].tension [N]": [0.1, 0.2, 1.5]}, "young", sd="1 mm")
     assert fold.value.__notes__ == ["load case 0.3 N has no answer where the search starts"]
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="signals are sent")
-def test_ctrl_c_ends_a_fit_in_its_middle() -> None:
-    script = """
-        import os, signal, threading
-        import numpy as np
-        import hydrostat as hs
-        arm = hs.Arm.load("silicone")
-        pulls = np.linspace(0.01, 0.5, 200)
-        cases = [f"{k}" for k in range(200)]
-        data = {"case": cases, "cable[0].tension [N]": pulls, "x [m]": 0.1 + 0.1 * pulls, "y [m]": 0.1 * pulls}
-        threading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-        try:
-            # Every load case would be left out once: hours.
-            arm.identify(data, "young,arm.density,poisson", sd="0.01 mm", progress=True)
-        except KeyboardInterrupt:
-            print("interrupted")
-    """
-    done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(script)],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=120,
-    )
-    assert (done.stdout.strip(), done.returncode) == ("interrupted", 0), done.stderr

@@ -53,7 +53,7 @@ impl<'a> FittedCase<'a> {
 }
 
 /// Fitted shapes to scale with the measured places, every residual in standard deviations, and, of two parameters or more, the correlations
-/// of the estimates. `cases` are those that were fitted to.
+/// of the estimates. `cases` are those that were fitted to, `name` the arm's.
 ///
 /// ```
 /// use hydrostat::{Arm, Gravity, Parameter};
@@ -66,11 +66,11 @@ impl<'a> FittedCase<'a> {
 /// let measurements = vec![Measurement::new(Quantity::X(0.2), 0.196, 1e-3), Measurement::new(Quantity::Y(0.2), -0.02, 1e-3)];
 /// let cases = [Case { name: "at rest".to_owned(), arm: arm.clone(), measurements }];
 /// let wanted = [Fitted::new(Parameter::Young, &arm).unwrap()];
-/// let found = fit(&cases, &wanted, &FitOptions::default(), |_| std::ops::ControlFlow::Continue(())).unwrap();
+/// let found = fit(&cases, &wanted, &FitOptions::default(), |_| true).unwrap();
 /// let figure = fit_figure("a cone", &cases, &found);
 /// assert!(figure.texts().any(|text| text == "at rest"));
 /// ```
-pub fn fit_figure(title: &str, cases: &[Case], fit: &Fit) -> Scene {
+pub fn fit_figure(name: &str, cases: &[Case], fit: &Fit) -> Scene {
     let shown: Vec<FittedCase<'_>> = fit
         .residuals
         .chunk_by(|one, next| one.case == next.case)
@@ -81,7 +81,8 @@ pub fn fit_figure(title: &str, cases: &[Case], fit: &Fit) -> Scene {
         })
         .collect();
     let names: Vec<String> = fit.estimates.iter().map(|one| one.fitted.parameter.to_string()).collect();
-    drawn(title, &shown, &names, &fit.correlation)
+    let title = format!("{name}: fitted to {} load cases", fit.load_cases);
+    drawn(&title, &shown, &names, &fit.correlation)
 }
 
 fn drawn(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &[Vec<f64>]) -> Scene {

@@ -1,7 +1,5 @@
 //! Cross-validation by load case: what the others say of each.
 
-use std::ops::ControlFlow;
-
 use crate::error::Trial;
 use crate::fit::search;
 use crate::least_squares::Settings;
@@ -27,7 +25,7 @@ pub(crate) fn leave_out(
     index: &[usize],
     (x, sds): (&[f64], &[f64]),
     settings: &Settings,
-    mut say: impl FnMut(usize, usize) -> ControlFlow<()>,
+    mut say: impl FnMut(usize, usize) -> bool,
 ) -> Vec<LeftOut> {
     let mut from = model.clone();
     for (one, x) in from.fitted.iter_mut().zip(x) {
@@ -43,12 +41,12 @@ pub(crate) fn leave_out(
             (all.iter().sum::<f64>() / all.len() as f64).sqrt()
         };
         let within = size(&model.answers[left].values);
-        let mut told = ControlFlow::Continue(());
+        let mut go_on = true;
         let found = search(&mut from.without(left), settings, |_, _| {
-            told = say(left, count);
-            told
+            go_on = say(left, count);
+            go_on
         });
-        if told.is_break() {
+        if !go_on {
             break;
         }
         let mut shifts = vec![0.0; x.len()];

@@ -1,7 +1,6 @@
 //! From load cases to estimates and what they are worth.
 
 use std::fmt;
-use std::ops::ControlFlow;
 
 use hydrostat::{Configuration, Parameter};
 
@@ -168,11 +167,9 @@ impl Fit {
     }
 }
 
-/// Fits parameters to load cases. `say` is told how far the work is, and may end it: the fit is then what was found until there.
+/// Fits parameters to load cases. `say` is told how far the work is, and says whether to go on: else the fit is what was found until there.
 ///
 /// ```
-/// use std::ops::ControlFlow;
-///
 /// use hydrostat::{Arm, Cable, Parameter, Profile};
 /// use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, Quantity, fit};
 ///
@@ -187,7 +184,7 @@ impl Fit {
 /// }
 ///
 /// let young = Fitted { start: 80e3, ..Fitted::new(Parameter::Young, &arm).expect("a cone is homogeneous") };
-/// let found = fit(&cases, &[young], &FitOptions::default(), |_| ControlFlow::Continue(())).expect("these can be solved");
+/// let found = fit(&cases, &[young], &FitOptions::default(), |_| true).expect("these can be solved");
 /// assert!((found.estimates[0].value / 110e3 - 1.0).abs() < 1e-6);
 /// assert_eq!(found.verdict(), ["the data tell all parameters apart"]);
 /// # Ok::<(), hydrostat::SolveError>(())
@@ -199,7 +196,7 @@ pub fn fit(
     cases: &[Case],
     fitted: &[Fitted],
     options: &FitOptions,
-    mut say: impl FnMut(Progress) -> ControlFlow<()>,
+    mut say: impl FnMut(Progress) -> bool,
 ) -> Result<Fit, IdentifyError> {
     let fitted = checked(fitted)?;
     let measured: usize = cases.iter().map(|case| case.measurements.len()).sum();
@@ -218,10 +215,10 @@ pub fn fit(
     let index: Vec<usize> = with_numbers().map(|(i, _)| i).collect();
     let mut model = Cases { observed: observed?, fitted, answers: Vec::new() };
     let settings = Settings { loss: options.loss, rounds: options.rounds, ..Settings::default() };
-    let mut told = ControlFlow::Continue(());
+    let mut go_on = true;
     let found = search(&mut model, &settings, |rounds, cost| {
-        told = say(Progress::Round(rounds, cost));
-        told
+        go_on = say(Progress::Round(rounds, cost));
+        go_on
     });
     let found = found.map_err(|refusal| start(cases, &index, refusal))?;
     // The answers at hand may be those of a trial.
@@ -250,7 +247,7 @@ pub fn fit(
     let directions = directions(&rows, &sizes);
     let correlation = correlation(&covariance);
     let findings = findings(&parameters, &directions, &correlation);
-    let left_out = if options.cross_validate && (2..=KEPT).contains(&model.observed.len()) && told.is_continue() {
+    let left_out = if options.cross_validate && (2..=KEPT).contains(&model.observed.len()) && go_on {
         let sds: Vec<f64> = estimates.iter().map(|one| one.sd.unwrap_or(f64::INFINITY)).collect();
         leave_out(&model, &index, (&found.x, &sds), &settings, |done, all| say(Progress::LeftOut(done, all)))
     } else {
@@ -284,7 +281,7 @@ pub fn fit(
 pub(crate) fn search(
     model: &mut Cases,
     settings: &Settings,
-    say: impl FnMut(usize, f64) -> ControlFlow<()>,
+    say: impl FnMut(usize, f64) -> bool,
 ) -> Result<Minimum<Refusal>, Refusal> {
     let start: Vec<f64> = model.fitted.iter().map(|one| one.start).collect();
     let bounds: Vec<[f64; 2]> = model.fitted.iter().map(|one| one.bounds).collect();

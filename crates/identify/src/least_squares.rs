@@ -15,8 +15,6 @@
 //! Bounds: parameters that stand on a bound and are pushed against it rest for the round; the step of the others is cut off at theirs
 //! (the projected method of Kanzow, Yamashita and Fukushima 2004). A trial that the model refuses counts as one that went too far.
 
-use std::ops::ControlFlow;
-
 use nalgebra::{DMatrix, DVector, SVD};
 
 use crate::loss::Loss;
@@ -125,11 +123,9 @@ impl Local {
     }
 }
 
-/// Seeks a minimum from `start`, which is moved into the bounds. `say` is told the steps taken and F there, and may end the search.
+/// Seeks a minimum from `start`, which is moved into the bounds. `say` is told the steps taken and F there, and says whether to go on.
 ///
 /// ```
-/// use std::ops::ControlFlow;
-///
 /// use hydrostat_identify::least_squares::{Model, Rows, Settings, minimise};
 /// use nalgebra::{DMatrix, DVector};
 ///
@@ -144,7 +140,7 @@ impl Local {
 ///     }
 /// }
 /// let free = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
-/// let found = minimise(&mut Valley, &[-1.2, 1.0], &free, &Settings::default(), |_, _| ControlFlow::Continue(())).unwrap();
+/// let found = minimise(&mut Valley, &[-1.2, 1.0], &free, &Settings::default(), |_, _| true).unwrap();
 /// assert!(found.converged && (found.x[0] - 1.0).abs() < 1e-5 && (found.x[1] - 1.0).abs() < 1e-5);
 /// ```
 ///
@@ -155,7 +151,7 @@ pub fn minimise<M: Model>(
     start: &[f64],
     bounds: &[[f64; 2]],
     settings: &Settings,
-    mut say: impl FnMut(usize, f64) -> ControlFlow<()>,
+    mut say: impl FnMut(usize, f64) -> bool,
 ) -> Result<Minimum<M::Refusal>, M::Refusal> {
     const LEAST_LAMBDA: f64 = 1e-12;
     const MOST_LAMBDA: f64 = 1e16;
@@ -171,7 +167,7 @@ pub fn minimise<M: Model>(
     let (mut rounds, mut evaluations, mut converged, mut refused) = (0, 1, false, Vec::new());
     let mut costs = Vec::new();
     loop {
-        let told = say(rounds, local.cost);
+        let go_on = say(rounds, local.cost);
         costs.push(local.cost);
         converged |= costs.iter().rev().nth(CALM.0).is_some_and(|before| before - local.cost <= CALM.1);
         for (j, scale) in scale.iter_mut().enumerate() {
@@ -184,7 +180,7 @@ pub fn minimise<M: Model>(
         if step.as_ref().is_none_or(|step| step.most() <= small) {
             converged = true;
         }
-        if converged || rounds >= settings.rounds || told.is_break() {
+        if converged || rounds >= settings.rounds || !go_on {
             return Ok(Minimum { x, cost: local.cost, rows, held, rounds, evaluations, converged, refused });
         }
         let Some(step) = step else { continue };

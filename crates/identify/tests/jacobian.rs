@@ -1,7 +1,5 @@
 //! The rows that the search sees, against differences of solves.
 
-use std::ops::ControlFlow;
-
 use hydrostat::{Arm, Options, Parameter, Solver};
 use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, Quantity, fit, value_of};
 
@@ -33,7 +31,7 @@ fn derivative(name: &str, arm: &Arm, quantity: Quantity, parameter: Parameter) -
     let measurements = vec![Measurement::new(quantity, value(arm, quantity), 1.0)];
     let case = Case { name: name.to_owned(), arm: arm.clone(), measurements };
     let options = FitOptions { tol: 1e-10, ..FitOptions::default() };
-    let found = fit(&[case], &[Fitted::new(parameter, arm).unwrap()], &options, |_| ControlFlow::Continue(())).unwrap();
+    let found = fit(&[case], &[Fitted::new(parameter, arm).unwrap()], &options, |_| true).unwrap();
     let direction = &found.directions[0];
     direction.singular_value / found.estimates[0].scale.size
 }

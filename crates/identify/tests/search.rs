@@ -1,7 +1,5 @@
 //! The search by itself: linear problems in closed form, bounds, robust losses, models with holes.
 
-use std::ops::ControlFlow;
-
 use hydrostat_identify::Loss;
 use hydrostat_identify::least_squares::{Model, Rows, Settings, minimise};
 use nalgebra::{DMatrix, DVector};
@@ -43,15 +41,7 @@ fn a_linear_problem_has_the_answer_of_the_normal_equations() {
         let mut linear = Linear::random(12, 3, seed);
         let normal = linear.matrix.tr_mul(&linear.matrix);
         let want = normal.lu().solve(&linear.matrix.tr_mul(&linear.right)).unwrap();
-        let found =
-            minimise(
-                &mut linear,
-                &[5.0, -3.0, 1.0],
-                &[FREE; 3],
-                &Settings::default(),
-                |_, _| ControlFlow::Continue(()),
-            )
-            .unwrap();
+        let found = minimise(&mut linear, &[5.0, -3.0, 1.0], &[FREE; 3], &Settings::default(), |_, _| true).unwrap();
         assert!(found.converged);
         for (j, (found, want)) in found.x.iter().zip(want.iter()).enumerate() {
             // In standard deviations of the parameter, were it the only one.
@@ -69,15 +59,7 @@ fn bounds_are_kept_and_what_is_pushed_against_them_is_said() {
     for seed in 0..200 {
         let mut linear = Linear::random(10, 3, seed);
         let bounds = [[-20.0, 20.0], [-0.02, 0.05], [0.0, 1e-4]];
-        let found =
-            minimise(
-                &mut linear,
-                &[100.0, 0.01, 5e-5],
-                &bounds,
-                &Settings::default(),
-                |_, _| ControlFlow::Continue(()),
-            )
-            .unwrap();
+        let found = minimise(&mut linear, &[100.0, 0.01, 5e-5], &bounds, &Settings::default(), |_, _| true).unwrap();
         assert!(found.converged, "{seed}");
         let gradient = linear.matrix.tr_mul(&linear.residuals(&found.x));
         for j in 0..3 {
@@ -100,8 +82,7 @@ fn a_singular_jacobian_does_no_harm() {
     let mut linear = Linear::random(8, 2, 3);
     let first = linear.matrix.column(0).into_owned();
     linear.matrix.set_column(1, &first);
-    let found =
-        minimise(&mut linear, &[0.0, 0.0], &[FREE; 2], &Settings::default(), |_, _| ControlFlow::Continue(())).unwrap();
+    let found = minimise(&mut linear, &[0.0, 0.0], &[FREE; 2], &Settings::default(), |_, _| true).unwrap();
     let want = first.dot(&linear.right) / first.norm_squared();
     assert!(found.converged);
     assert!((found.x[0] + found.x[1] - want).abs() < 1e-8 * want.abs(), "{:?} {want}", found.x);
@@ -116,7 +97,7 @@ fn robust_means_are_those_found_by_bisection() {
         let mut model =
             Linear { matrix: DMatrix::from_element(right.len(), 1, 1.0), right: DVector::from_column_slice(&right) };
         let settings = Settings { loss, ..Settings::default() };
-        let found = minimise(&mut model, &[0.5], &[FREE], &settings, |_, _| ControlFlow::Continue(())).unwrap();
+        let found = minimise(&mut model, &[0.5], &[FREE], &settings, |_, _| true).unwrap();
         let slope = |x: f64| right.iter().map(|r| loss.slope(x - r)).sum::<f64>();
         let (mut low, mut high) = (-2.0, 3.0);
         for _ in 0..100 {
@@ -151,14 +132,11 @@ impl Model for Saturating {
 fn where_there_is_no_model_steps_are_shorter() {
     let mut model = Saturating { refusals: 0 };
     // The slopes at -3 lead far beyond 2.
-    let found = minimise(&mut model, &[-3.0], &[FREE], &Settings::default(), |_, _| ControlFlow::Continue(())).unwrap();
+    let found = minimise(&mut model, &[-3.0], &[FREE], &Settings::default(), |_, _| true).unwrap();
     assert!(found.converged && (found.x[0] - 1.99).abs() < 1e-4, "{:?}", found.x);
     assert!(model.refusals > 0 && found.refused.len() == model.refusals);
     assert!(found.refused.iter().all(|refused| refused.why == refused.at[0] && refused.why > 2.0));
-    assert_eq!(
-        minimise(&mut model, &[3.0], &[FREE], &Settings::default(), |_, _| ControlFlow::Continue(())).unwrap_err(),
-        3.0
-    );
+    assert_eq!(minimise(&mut model, &[3.0], &[FREE], &Settings::default(), |_, _| true).unwrap_err(), 3.0);
 }
 
 /// A valley along x y = 1 that falls for ever, with 1/x^2.
@@ -177,7 +155,7 @@ impl Model for Valley {
 #[test]
 fn what_falls_for_ever_is_left_where_nothing_can_be_seen_any_more() {
     let settings = Settings { rounds: 1000, ..Settings::default() };
-    let found = minimise(&mut Valley, &[1.0, 1.0], &[FREE; 2], &settings, |_, _| ControlFlow::Continue(())).unwrap();
+    let found = minimise(&mut Valley, &[1.0, 1.0], &[FREE; 2], &settings, |_, _| true).unwrap();
     assert!(found.converged && found.rounds < 200, "{} rounds", found.rounds);
     assert!((found.x[0] * found.x[1] - 1.0).abs() < 1e-3 && found.cost < 0.004, "{:?} {}", found.x, found.cost);
 }

@@ -1,6 +1,5 @@
 //! Parameters from measured shapes.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
@@ -78,7 +77,7 @@ pub(crate) fn identify(
                 if let Ok(mut step) = step.lock() {
                     *step = Some(now);
                 }
-                if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                !stop.load(Ordering::Relaxed)
             })
         },
     )?;
@@ -127,7 +126,7 @@ impl Fit {
     }
 
     /// Shapes with markers, residuals and correlations.
-    fn figure(&self, title: &str) -> Figure {
-        Figure::new(fit_figure(title, &self.cases, &self.found))
+    fn figure(&self) -> Figure {
+        Figure::new(fit_figure(&self.best.name, &self.cases, &self.found))
     }
 }

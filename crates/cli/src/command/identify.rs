@@ -1,8 +1,5 @@
 //! `hydrostat identify`: parameters from measured shapes.
 
-use std::fmt::Write as _;
-use std::ops::ControlFlow;
-
 use hydrostat::{Arm, Parameter};
 use hydrostat_figures::fit_figure;
 use hydrostat_files::{
@@ -10,6 +7,7 @@ use hydrostat_files::{
     residuals_csv,
 };
 use hydrostat_identify::{Case, Fit, FitOptions, fit};
+use std::fmt::Write as _;
 
 use super::NoAnswer;
 use super::table::table;
@@ -48,7 +46,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     let mut progress = Progress::new();
     let found = fit(&cases, &wanted, &options, |step| {
         progress.say(|| step.to_string());
-        ControlFlow::Continue(())
+        true
     })?;
     drop(progress);
 
@@ -60,8 +58,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         output::put(Some(path), &arm_to_toml(&best))?;
     }
     if let Some(path) = &args.plot {
-        let title = format!("{}: fitted to {} load cases", arm.name, found.load_cases);
-        output::draw(&fit_figure(&title, &cases, &found), path)?;
+        output::draw(&fit_figure(&arm.name, &cases, &found), path)?;
     }
     let format = if args.json { Format::Json } else { args.format };
     let text = match format {
