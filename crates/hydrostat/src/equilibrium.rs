@@ -12,17 +12,21 @@
 //! and at every s the section law gives (nu, eta, mu), see [`crate::section`]. The centreline r is a
 //! quadrature. Lengths are in units of L, forces in a unit of [`Units`].
 
+mod adversity;
 mod at_place;
+mod cable_paths;
+mod ends;
 mod few;
 mod gradients;
 mod held;
 mod nearness;
 mod partials;
 mod places;
+mod remembered;
 mod strains;
 mod varied;
 
-use hydrostat_bvp::{Condition, Gauss, Groups, Hermite, LANES, Lanes, Local, Problem, Real, each};
+use hydrostat_bvp::{Condition, Gauss, Groups, LANES, Lanes, Local, Problem, Real, each};
 
 pub(crate) use self::at_place::{Asked, AtPlace};
 use self::few::Few;
@@ -33,9 +37,8 @@ pub(crate) use self::nearness::{Nearness, SectionFailure};
 pub(crate) use self::partials::{BY, ByState, CLOSED, OUT, RATE, Spot, VALUE};
 use self::places::Place;
 use self::strains::{STATION, Solved, solve_section};
-use crate::arm::{Arm, TipLoad};
+use crate::arm::Arm;
 use crate::beta_along::{BetaAlong, Coupling};
-use crate::cable::tangent;
 use crate::flow::Law;
 use crate::loads::{Load, Water, load};
 use crate::readings::{Support, Volume};
@@ -225,81 +228,6 @@ impl Equilibrium {
         self.water.tangential_factor = factor;
     }
 
-    /// |tau| of cable `c` in a block of stations, now and at the reference strains.
-    #[inline(always)]
-    fn cable_stretch(&self, c: usize, block: usize) -> [Lanes; 2] {
-        let offset = &self.cables[block * self.tensions.len() + c].offset;
-        let stiffness = &self.places[block].stiffness;
-        let reference = swelling(self.volume, stiffness.reference[0]);
-        let reference_slope = reference.slope * stiffness.reference_slope[0];
-        let strain = self.memory[block].strain;
-        [
-            tangent(offset, strain, &swelling(self.volume, strain[0]), self.beta.slope[block]).stretch,
-            tangent(offset, stiffness.reference, &reference, reference_slope).stretch,
-        ]
-    }
-
-    /// psi' of cable `c` in a block of stations, over L: see [`crate::friction`].
-    pub(crate) fn cable_turns(&self, c: usize, block: usize) -> Lanes {
-        let offset = &self.cables[block * self.tensions.len() + c].offset;
-        let [nu, eta, mu] = self.memory[block].strain;
-        let [nu_s, eta_s, mu_s] = self.strain_slopes[block];
-        let beta = swelling(self.volume, nu).beta;
-        let (beta_s, beta_ss) = (self.beta.slope[block], self.beta.curvature[block]);
-        let along = nu - offset.y * beta * mu;
-        let across = eta + offset.slope * beta + offset.y * beta_s;
-        let along_s = nu_s - (offset.slope * beta + offset.y * beta_s) * mu - offset.y * beta * mu_s;
-        let twice = Lanes::of(2.0) * offset.slope * beta_s;
-        let across_s = eta_s + offset.curvature * beta + twice + offset.y * beta_ss;
-        mu + (along * across_s - across * along_s) / (along * along + across * across)
-    }
-
-    /// Length of the path of cable `c`, now and at the reference strains, over L, with the weights of the stages.
-    pub(crate) fn cable_lengths(&self, c: usize, weights: &[f64]) -> [f64; 2] {
-        let mut lengths = [0.0; 2];
-        let groups = self.groups();
-        for block in 0..groups.count() * groups.stages {
-            let (group, stage) = (block / groups.stages, block % groups.stages);
-            let stretches = self.cable_stretch(c, block);
-            for lane in 0..groups.filled(group) {
-                if self.stations[groups.station_in(block, lane)] < self.ends[c] {
-                    let weight = self.steps[group].0[lane] * weights[stage];
-                    lengths[0] += weight * stretches[0].0[lane];
-                    lengths[1] += weight * stretches[1].0[lane];
-                }
-            }
-        }
-        lengths
-    }
-
-    /// Stroke (over L) of cable `a` a unit of tension of cable `b` in the straight arm, by compression and bending.
-    pub(crate) fn straight_compliance(&self, a: usize, b: usize) -> f64 {
-        let end = self.ends[a].min(self.ends[b]);
-        (0..64).map(|k| (f64::from(k) + 0.5) / 64.0).filter(|s| *s < end).fold(0.0, |sum, s| {
-            let [axial, _, bending] = self.place(s).stiffness.value;
-            sum + (1.0 / axial + self.offset(a, s).y * self.offset(b, s).y / bending) / 64.0
-        })
-    }
-
-    /// Where cable `c` ends, over L.
-    pub(crate) fn cable_end(&self, c: usize) -> f64 {
-        self.ends[c]
-    }
-
-    /// Strain measure 1/2 (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A per length in a block of stations.
-    #[inline(always)]
-    pub(crate) fn strain_energy(&self, block: usize) -> Lanes {
-        let stiffness = &self.places[block].stiffness;
-        let strain = self.memory[block].strain;
-        let beta = swelling(self.volume, strain[0]).beta;
-        let mut sum = Lanes::of(0.0);
-        for a in 0..3 {
-            let strained = strain[a] - stiffness.reference[a];
-            sum += Lanes::of(0.5) * stiffness.value[a] * beta * beta * strained * strained;
-        }
-        sum
-    }
-
     /// How the stations stand in blocks.
     pub(crate) fn groups(&self) -> Groups {
         self.groups
@@ -307,78 +235,6 @@ impl Equilibrium {
 
     pub(crate) fn stations(&self) -> &[f64] {
         &self.stations
-    }
-
-    /// Strains at station `k`.
-    pub(crate) fn strain(&self, k: usize) -> [f64; 3] {
-        let (block, lane) = self.groups.station(k);
-        self.memory[block].strain.map(|v| v.0[lane])
-    }
-
-    /// Strains, beta' and beta'' at station `k`.
-    pub(crate) fn station_guess(&self, k: usize) -> ([f64; 3], f64, f64) {
-        let (block, lane) = self.groups.station(k);
-        (self.strain(k), self.beta.slope[block].0[lane], self.beta.curvature[block].0[lane])
-    }
-
-    /// Switch `which` of the load at stage `j` of element `i`.
-    pub(crate) fn switch(&self, i: usize, j: usize, which: usize) -> f64 {
-        let (block, lane) = self.groups.at(i, j);
-        self.switches[block][which].0[lane]
-    }
-
-    /// Strains, and beta' and beta'', between the stages of element `i`, weighed by `weights`.
-    pub(crate) fn remembered<const M: usize>(&self, i: usize, weights: &[f64; M]) -> ([f64; 3], [f64; 2]) {
-        let mut strain = [0.0; 3];
-        let mut beta = [0.0; 2];
-        for (j, w) in weights.iter().enumerate() {
-            let (block, lane) = self.groups.at(i, j);
-            for a in 0..3 {
-                strain[a] += w * self.memory[block].strain[a].0[lane];
-            }
-            beta[0] += w * self.beta.slope[block].0[lane];
-            beta[1] += w * self.beta.curvature[block].0[lane];
-        }
-        (strain, beta)
-    }
-
-    /// [`Equilibrium::remembered`] with beta' and beta'' from the polynomial through beta and beta' at the stages where
-    /// the element is long enough for it.
-    pub(crate) fn remembered_sharply<const M: usize>(
-        &self,
-        i: usize,
-        weights: &[f64; M],
-        sharp: &Hermite<M>,
-    ) -> ([f64; 3], [f64; 2]) {
-        let (mut strain, mut beta) = ([0.0; 3], [0.0; 2]);
-        let (group, own) = (i / LANES, i % LANES);
-        let inverse = 1.0 / self.steps[group].0[own];
-        if self.beta.is_short(group, own, inverse) {
-            return self.remembered(i, weights);
-        }
-        for l in 0..M {
-            let block = group * self.groups.stages + l;
-            for a in 0..3 {
-                strain[a] += weights[l] * self.memory[block].strain[a].0[own];
-            }
-            let (value, slope) = (self.beta.value[block].0[own] * inverse, self.beta.slope[block].0[own]);
-            beta[0] += sharp.slope[0][l] * value + sharp.slope[1][l] * slope;
-            beta[1] += (sharp.curvature[0][l] * value + sharp.curvature[1][l] * slope) * inverse;
-        }
-        (strain, beta)
-    }
-
-    /// Strains of the unloaded arm at station `k`, mu times L.
-    pub(crate) fn reference_strain(&self, k: usize) -> [f64; 3] {
-        let (block, lane) = self.groups.station(k);
-        self.places[block].stiffness.reference.map(|v| v.0[lane])
-    }
-
-    /// Takes the reference strains at every station.
-    pub(crate) fn forget_strains(&mut self) {
-        for (memory, place) in self.memory.iter_mut().zip(&self.places) {
-            memory.strain = place.stiffness.reference;
-        }
     }
 
     pub(crate) fn volume(&self) -> Volume {
@@ -398,61 +254,6 @@ impl Equilibrium {
     /// Whether a cable is pulled.
     pub(crate) fn has_tension(&self) -> bool {
         self.tensions.iter().any(|t| *t != 0.0)
-    }
-
-    /// How hard loads push against the arm at station `k`, over what its bending stiffness there
-    /// resists over the rest of its length: compression of the contact force by (1 - s)^2/EI, and
-    /// stream and weight by (1 - s)^3/EI where they run against the tangent, now or in the unloaded
-    /// arm (at the angle `unloaded`). Well below one, equilibria are unique.
-    pub(crate) fn adversity(&self, k: usize, s: f64, z: [f64; N], unloaded: f64) -> f64 {
-        let rest = 1.0 - s;
-        let (block, lane) = self.groups.station(k);
-        let place = &self.places[block];
-        let beta = self.beta.value[block].0[lane];
-        let [nu, eta, _] = self.strain(k);
-        let stiffness = place.stiffness.value[2].0[lane] * beta * beta;
-        let alpha = eta.atan2(nu);
-        let (sin, cos) = (z[0] + alpha).sin_cos();
-        let compression = -(cos * z[1] + sin * z[2]) * rest * rest / stiffness;
-        let stream = self.water.stream;
-        let speed_square = stream[0] * stream[0] + stream[1] * stream[1];
-        let drag = place.body.wetted.0[lane] * beta * speed_square * nu.hypot(eta);
-        let net = self.net_weight(k);
-        let cube = rest * rest * rest / stiffness;
-        let mut worst = compression;
-        let (unloaded_sin, unloaded_cos) = unloaded.sin_cos();
-        for (cos, sin) in [(cos, sin), (unloaded_cos, unloaded_sin)] {
-            if cos * stream[0] + sin * stream[1] < -1e-9 * speed_square.sqrt() {
-                worst = worst.max(drag * cube);
-            }
-            worst = worst.max(-(cos * net[0] + sin * net[1]) * cube);
-        }
-        let (tip, _) = self.tip_load(unloaded);
-        worst.max(-(unloaded_cos * tip[0] + unloaded_sin * tip[1]) * rest * rest / stiffness)
-    }
-
-    /// Weight less buoyancy, and forces along the arm, at station `k`, per length.
-    fn net_weight(&self, k: usize) -> [f64; 2] {
-        let (block, lane) = self.groups.station(k);
-        let (place, beta) = (&self.places[block], self.beta.value[block].0[lane]);
-        let nu = self.strain(k)[0];
-        [0, 1].map(|c| {
-            place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * nu * beta * beta
-                + place.body.force[c].0[lane]
-        })
-    }
-
-    /// Whether the arm at station `k`, turned to `theta`, is nearly in line with a load: small angles to it decide then to
-    /// which side it goes.
-    pub(crate) fn is_in_line(&self, k: usize, theta: f64) -> bool {
-        const NEARLY: f64 = 0.05;
-        let [nu, eta, _] = self.strain(k);
-        let (sin, cos) = (theta + eta.atan2(nu)).sin_cos();
-        let (tip, _) = self.tip_load(theta);
-        [self.water.stream, self.net_weight(k), [tip[0], tip[1]]].iter().any(|[x, y]| {
-            let size = x.hypot(*y);
-            size > 0.0 && (cos * y - sin * x).abs() < NEARLY * size
-        })
     }
 
     /// The other fraction is whole in the tension phase, zero in the loads phase.
@@ -562,53 +363,12 @@ impl Problem<N, Q> for Equilibrium {
         }
     }
 
-    /// theta(0) = theta_0; with the unstrained base also n_f(0) = sum T t_c(0) and
-    /// m_f(0) = -sum T y (t_c . a)(0) at nu = beta = 1, eta = mu = beta' = 0.
     fn left(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
-        out[0].residual = z[0] - self.arm.base.angle;
-        out[0].gradient[0] = 1.0;
-        out[0].drift = -self.base_turn();
-        if self.arm.readings.support == Support::UnstrainedBase {
-            let (sin, cos) = self.arm.base.angle.sin_cos();
-            let mut at_base = [0.0; 3];
-            for c in 0..self.tensions.len() {
-                let offset = self.offset(c, 0.0);
-                let stretch = 1.0_f64.hypot(offset.slope);
-                let (t_a, t_b) = (1.0 / stretch, offset.slope / stretch);
-                at_base[0] += self.tension(c) * (t_a * cos - t_b * sin);
-                at_base[1] += self.tension(c) * (t_a * sin + t_b * cos);
-                at_base[2] -= self.tension(c) * offset.y * t_a;
-            }
-            for k in 0..3 {
-                out[k + 1].residual = z[k + 1] - at_base[k];
-                out[k + 1].gradient[k + 1] = 1.0;
-            }
-            if let Some(c) = self.pulled {
-                let offset = self.offset(c, 0.0);
-                let stretch = 1.0_f64.hypot(offset.slope);
-                let (t_a, t_b) = (1.0 / stretch, offset.slope / stretch);
-                out[1].drift = -(t_a * cos - t_b * sin);
-                out[2].drift = -(t_a * sin + t_b * cos);
-                out[3].drift = offset.y * t_a;
-            }
-        }
+        self.base_conditions(z, out);
     }
 
-    /// n_f(L) = tip force (dead, and following a(L), b(L)), m_f(L) = tip moment.
     fn right(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
-        if self.arm.readings.support == Support::UnstrainedBase {
-            return;
-        }
-        let (load, turn) = self.tip_load(z[0]);
-        let drift = self.tip_drift(z[0]);
-        let per_fraction =
-            if self.phase == Phase::Loads && self.fraction[0] != 0.0 { 1.0 / self.fraction[0] } else { 0.0 };
-        for k in 0..3 {
-            out[k].residual = z[k + 1] - load[k];
-            out[k].gradient[k + 1] = 1.0;
-            out[k].gradient[0] = -turn[k];
-            out[k].drift = -load[k] * per_fraction - drift[k];
-        }
+        self.tip_conditions(z, out);
     }
 }
 
@@ -757,24 +517,6 @@ impl Equilibrium {
             nu: solved.strain[0].0[lane],
             regularity: solved.regularity.0[lane],
         }
-    }
-
-    /// Force and moment on the tip at the present fraction, and their derivative by theta(L).
-    pub(crate) fn tip_load(&self, theta: f64) -> ([f64; 3], [f64; 3]) {
-        self.load_of(&self.arm.tip, theta)
-    }
-
-    fn load_of(&self, tip: &TipLoad, theta: f64) -> ([f64; 3], [f64; 3]) {
-        let (sin, cos) = theta.sin_cos();
-        let f = self.fraction[0] / self.units.force;
-        let [fa, fb] = tip.follower;
-        let load = [
-            f * (tip.force[0] + fa * cos - fb * sin),
-            f * (tip.force[1] + fa * sin + fb * cos),
-            f * tip.moment / self.units.length,
-        ];
-        let turn = [f * (-fa * sin - fb * cos), f * (fa * cos - fb * sin), 0.0];
-        (load, turn)
     }
 
     /// d z' / d fraction of the phase, and that of nu, at fixed z and beta'.

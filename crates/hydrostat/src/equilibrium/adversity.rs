@@ -1,0 +1,60 @@
+//! How hard loads push against the arm, and whether it is in line with them.
+
+use super::{Equilibrium, N};
+
+impl Equilibrium {
+    /// How hard loads push against the arm at station `k`, over what its bending stiffness there
+    /// resists over the rest of its length: compression of the contact force by (1 - s)^2/EI, and
+    /// stream and weight by (1 - s)^3/EI where they run against the tangent, now or in the unloaded
+    /// arm (at the angle `unloaded`). Well below one, equilibria are unique.
+    pub(crate) fn adversity(&self, k: usize, s: f64, z: [f64; N], unloaded: f64) -> f64 {
+        let rest = 1.0 - s;
+        let (block, lane) = self.groups.station(k);
+        let place = &self.places[block];
+        let beta = self.beta.value[block].0[lane];
+        let [nu, eta, _] = self.strain(k);
+        let stiffness = place.stiffness.value[2].0[lane] * beta * beta;
+        let alpha = eta.atan2(nu);
+        let (sin, cos) = (z[0] + alpha).sin_cos();
+        let compression = -(cos * z[1] + sin * z[2]) * rest * rest / stiffness;
+        let stream = self.water.stream;
+        let speed_square = stream[0] * stream[0] + stream[1] * stream[1];
+        let drag = place.body.wetted.0[lane] * beta * speed_square * nu.hypot(eta);
+        let net = self.net_weight(k);
+        let cube = rest * rest * rest / stiffness;
+        let mut worst = compression;
+        let (unloaded_sin, unloaded_cos) = unloaded.sin_cos();
+        for (cos, sin) in [(cos, sin), (unloaded_cos, unloaded_sin)] {
+            if cos * stream[0] + sin * stream[1] < -1e-9 * speed_square.sqrt() {
+                worst = worst.max(drag * cube);
+            }
+            worst = worst.max(-(cos * net[0] + sin * net[1]) * cube);
+        }
+        let (tip, _) = self.tip_load(unloaded);
+        worst.max(-(unloaded_cos * tip[0] + unloaded_sin * tip[1]) * rest * rest / stiffness)
+    }
+
+    /// Weight less buoyancy, and forces along the arm, at station `k`, per length.
+    fn net_weight(&self, k: usize) -> [f64; 2] {
+        let (block, lane) = self.groups.station(k);
+        let (place, beta) = (&self.places[block], self.beta.value[block].0[lane]);
+        let nu = self.strain(k)[0];
+        [0, 1].map(|c| {
+            place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * nu * beta * beta
+                + place.body.force[c].0[lane]
+        })
+    }
+
+    /// Whether the arm at station `k`, turned to `theta`, is nearly in line with a load: small angles to it decide then to
+    /// which side it goes.
+    pub(crate) fn is_in_line(&self, k: usize, theta: f64) -> bool {
+        const NEARLY: f64 = 0.05;
+        let [nu, eta, _] = self.strain(k);
+        let (sin, cos) = (theta + eta.atan2(nu)).sin_cos();
+        let (tip, _) = self.tip_load(theta);
+        [self.water.stream, self.net_weight(k), [tip[0], tip[1]]].iter().any(|[x, y]| {
+            let size = x.hypot(*y);
+            size > 0.0 && (cos * y - sin * x).abs() < NEARLY * size
+        })
+    }
+}

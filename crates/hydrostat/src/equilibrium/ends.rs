@@ -1,0 +1,77 @@
+//! The conditions at base and tip (`docs/model.md`, section 7).
+
+use hydrostat_bvp::Condition;
+
+use super::{Equilibrium, N};
+use crate::arm::TipLoad;
+use crate::readings::Support;
+use crate::verdict::Phase;
+
+impl Equilibrium {
+    /// theta(0) = theta_0; with the unstrained base also n_f(0) = sum T t_c(0) and
+    /// m_f(0) = -sum T y (t_c . a)(0) at nu = beta = 1, eta = mu = beta' = 0.
+    pub(super) fn base_conditions(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
+        out[0].residual = z[0] - self.arm.base.angle;
+        out[0].gradient[0] = 1.0;
+        out[0].drift = -self.base_turn();
+        if self.arm.readings.support == Support::UnstrainedBase {
+            let (sin, cos) = self.arm.base.angle.sin_cos();
+            let mut at_base = [0.0; 3];
+            for c in 0..self.tensions.len() {
+                let offset = self.offset(c, 0.0);
+                let stretch = 1.0_f64.hypot(offset.slope);
+                let (t_a, t_b) = (1.0 / stretch, offset.slope / stretch);
+                at_base[0] += self.tension(c) * (t_a * cos - t_b * sin);
+                at_base[1] += self.tension(c) * (t_a * sin + t_b * cos);
+                at_base[2] -= self.tension(c) * offset.y * t_a;
+            }
+            for k in 0..3 {
+                out[k + 1].residual = z[k + 1] - at_base[k];
+                out[k + 1].gradient[k + 1] = 1.0;
+            }
+            if let Some(c) = self.pulled {
+                let offset = self.offset(c, 0.0);
+                let stretch = 1.0_f64.hypot(offset.slope);
+                let (t_a, t_b) = (1.0 / stretch, offset.slope / stretch);
+                out[1].drift = -(t_a * cos - t_b * sin);
+                out[2].drift = -(t_a * sin + t_b * cos);
+                out[3].drift = offset.y * t_a;
+            }
+        }
+    }
+
+    /// n_f(L) = tip force (dead, and following a(L), b(L)), m_f(L) = tip moment.
+    pub(super) fn tip_conditions(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
+        if self.arm.readings.support == Support::UnstrainedBase {
+            return;
+        }
+        let (load, turn) = self.tip_load(z[0]);
+        let drift = self.tip_drift(z[0]);
+        let per_fraction =
+            if self.phase == Phase::Loads && self.fraction[0] != 0.0 { 1.0 / self.fraction[0] } else { 0.0 };
+        for k in 0..3 {
+            out[k].residual = z[k + 1] - load[k];
+            out[k].gradient[k + 1] = 1.0;
+            out[k].gradient[0] = -turn[k];
+            out[k].drift = -load[k] * per_fraction - drift[k];
+        }
+    }
+
+    /// Force and moment on the tip at the present fraction, and their derivative by theta(L).
+    pub(crate) fn tip_load(&self, theta: f64) -> ([f64; 3], [f64; 3]) {
+        self.load_of(&self.arm.tip, theta)
+    }
+
+    pub(super) fn load_of(&self, tip: &TipLoad, theta: f64) -> ([f64; 3], [f64; 3]) {
+        let (sin, cos) = theta.sin_cos();
+        let f = self.fraction[0] / self.units.force;
+        let [fa, fb] = tip.follower;
+        let load = [
+            f * (tip.force[0] + fa * cos - fb * sin),
+            f * (tip.force[1] + fa * sin + fb * cos),
+            f * tip.moment / self.units.length,
+        ];
+        let turn = [f * (-fa * sin - fb * cos), f * (fa * cos - fb * sin), 0.0];
+        (load, turn)
+    }
+}
