@@ -13,8 +13,11 @@
 //! where w' and reach' are differentiated along an element. What is left out is reach times the slope
 //! of the change of beta', which is the fast mode that no shape of an arm has.
 
+mod carried;
+
 use hydrostat_bvp::{Gauss, LANES, Lanes, Local, Real};
 
+pub(crate) use self::carried::{Carried, Side};
 use crate::equilibrium::{N, Q};
 
 /// No method here has more stages.
@@ -38,6 +41,8 @@ pub(crate) enum Rule<'a> {
     Plain(&'a Weights),
     /// beta' from the polynomial through beta, beta'' from that through beta'.
     Own(&'a Weights),
+    /// beta' such that beta goes on from a neighbour's, beta'' from the polynomial through beta'.
+    Carried(Carried<'a>, &'a Weights),
 }
 
 /// Weights that give beta'' at the stages of an element of length one.
@@ -50,11 +55,21 @@ struct Differentiation {
     plain: Weights,
     /// Largest row sum of `by_slope`: how it amplifies what beta' is off by.
     hermite_gain: f64,
+    /// Integrals of the polynomial through beta' over an element, and from its left end to each stage.
+    whole: [f64; MOST_STAGES],
+    upto: Weights,
+    /// beta at the left and right end, from the polynomial through beta and beta' at all stages.
+    ends: [[[f64; MOST_STAGES]; 2]; 2],
 }
 
 impl Differentiation {
     fn new<const M: usize>(gauss: &Gauss<M>) -> Self {
         const { assert!(M == 4 || M == 5, "BetaAlong::close is compiled for these") };
+        let row = |v: &[f64; M]| {
+            let mut out = [0.0; MOST_STAGES];
+            out[..M].copy_from_slice(v);
+            out
+        };
         let weights = |m: &[[f64; M]; M]| {
             let mut out = [[0.0; MOST_STAGES]; MOST_STAGES];
             for j in 0..M {
@@ -68,6 +83,16 @@ impl Differentiation {
             by_value: weights(&gauss.hermite[0]),
             by_slope: weights(&gauss.hermite[1]),
             plain: weights(&gauss.d),
+            whole: row(&gauss.b),
+            upto: weights(&gauss.a),
+            ends: [0.0, 1.0].map(|x| {
+                let cardinals = gauss.cardinals(x);
+                let slopes: [f64; M] = std::array::from_fn(|l| (x - gauss.c[l]) * cardinals[l] * cardinals[l]);
+                let values: [f64; M] = std::array::from_fn(|l| {
+                    (1.0 - 2.0 * (x - gauss.c[l]) * gauss.d[l][l]) * cardinals[l] * cardinals[l]
+                });
+                [row(&values), row(&slopes)]
+            }),
         }
     }
 }
@@ -215,6 +240,13 @@ pub(crate) struct BetaAlong {
     pub(crate) blunt: bool,
     /// Whether nothing was evaluated at these stations yet: beta'' is what was given.
     fresh: bool,
+    /// Elements at whose right end beta jumps.
+    jumps: Vec<usize>,
+    /// beta at both ends of the elements, and where they take theirs over from, as [`BetaAlong::carry`] left it.
+    at_ends: Vec<[f64; 2]>,
+    sides: Vec<Option<(Side, usize)>>,
+    /// Whether [`BetaAlong::close`] met elements that are short against `reach`.
+    pub(crate) some_short: bool,
 }
 
 impl BetaAlong {
@@ -231,6 +263,10 @@ impl BetaAlong {
             by_state: Vec::new(),
             blunt: false,
             fresh: true,
+            jumps: Vec::new(),
+            at_ends: Vec::new(),
+            sides: Vec::new(),
+            some_short: false,
         }
     }
 
@@ -260,6 +296,16 @@ impl BetaAlong {
         self.largest_reach(group, lane) * inverse * self.weights.hermite_gain >= SHARP
     }
 
+    /// Where element `i` takes its beta over from, and which element that is.
+    pub(crate) fn carried(&self, i: usize) -> Option<(Side, usize)> {
+        self.sides.get(i).copied().flatten()
+    }
+
+    /// Weights of beta, and of beta' of an element of length one, at its stages: beta at its left (0) or right (1) end.
+    pub(crate) fn end_weights(&self, end: usize) -> &[[f64; MOST_STAGES]; 2] {
+        &self.weights.ends[end]
+    }
+
     #[inline(always)]
     fn largest_reach(&self, group: usize, lane: usize) -> f64 {
         let reach = &self.reach[group * self.stages..(group + 1) * self.stages];
@@ -269,6 +315,9 @@ impl BetaAlong {
     /// Which formulas hold on an element, `inverse` one over its length.
     pub(crate) fn rule(&self, group: usize, lane: usize, inverse: f64) -> Rule<'_> {
         let weights = &self.weights;
+        if let Some((side, _)) = self.carried(group * LANES + lane) {
+            return Rule::Carried(Carried { side, whole: &weights.whole, upto: &weights.upto }, &weights.plain);
+        }
         if !self.is_short(group, lane, inverse) {
             Rule::Sharp(&weights.by_value, &weights.by_slope)
         } else if self.largest_reach(group, lane) * inverse < OWN {
@@ -363,6 +412,8 @@ impl BetaAlong {
         drifts: &mut [[Lanes; N]],
     ) {
         self.fresh = self.blunt;
+        self.some_short = false;
+        self.sides.clear();
         // Loops of a length that the compiler knows are several times faster.
         if self.stages == 4 {
             self.close_on::<FUSED, 4>(steps, out, drifts);
@@ -394,7 +445,7 @@ impl BetaAlong {
             if self.blunt {
                 group.close_bluntly(slope, curvature, by_state, out);
             } else {
-                group.close::<FUSED>(&self.weights, slope, curvature, by_state, out, drifts);
+                self.some_short |= group.close::<FUSED>(&self.weights, slope, curvature, by_state, out, drifts);
             }
         }
     }
@@ -437,10 +488,10 @@ impl<const M: usize> Group<'_, M> {
         by_state: &mut [[Lanes; N]; M],
         out: &mut [Local<N, Q, Lanes>; M],
         drifts: &mut [[Lanes; N]; M],
-    ) {
+    ) -> bool {
         let before = *slope;
         let own_part: [Lanes; M] = each_stage(|j| dot(&self.coupling[j].value, &self.coupling[j].slope));
-        self.next(weights, &own_part, slope, curvature);
+        let short = self.next(weights, &own_part, slope, curvature);
         for j in 0..M {
             let (mut along, mut reach_slope, mut drift) = ([ZERO; N], ZERO, ZERO);
             for l in 0..M {
@@ -480,9 +531,10 @@ impl<const M: usize> Group<'_, M> {
             }
             by_state[j] = along;
         }
+        short
     }
 
-    /// The next beta' and beta''.
+    /// The next beta' and beta''; whether an element is short.
     ///
     /// beta'' feeds back into beta' as `reach` beta''. Where a step is long against `reach` the
     /// sharpest formula serves, one round behind. Where it is not, lagging would excite the fast mode
@@ -496,7 +548,7 @@ impl<const M: usize> Group<'_, M> {
         own_part: &[Lanes; M],
         slope: &mut [Lanes; M],
         curvature: &mut [Lanes; M],
-    ) {
+    ) -> bool {
         let given = (*slope, *curvature);
         let sharp = weights.sharpness(self.reach, self.inverse);
         let bound = Lanes::of(SHARP);
@@ -506,13 +558,15 @@ impl<const M: usize> Group<'_, M> {
             slope[j] += (self.closed[j] - slope[j]) / share;
         }
         *curvature = weights.second_derivative(self.value, slope, self.inverse);
-        if !sharp.all_below(SHARP) {
+        let some_short = !sharp.all_below(SHARP);
+        if some_short {
             let (short, short_curvature) = self.next_on_short(weights, sharp / Lanes::of(weights.hermite_gain), given);
             for j in 0..M {
                 slope[j] = sharp.if_less(bound, slope[j], short[j]);
                 curvature[j] = sharp.if_less(bound, curvature[j], short_curvature[j]);
             }
         }
+        some_short
     }
 
     /// The next beta' and beta'' where a step is not long against `reach`; `largest` is the largest `reach` over the

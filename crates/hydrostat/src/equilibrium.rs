@@ -272,13 +272,9 @@ impl Equilibrium {
         self.tensions[c] * self.fraction[1]
     }
 
-    /// The shortest part of element `i` that beta' can still be differentiated on.
+    /// The shortest part of element `i` that beta' can still be found on.
     pub(crate) fn shortest_element(&self, i: usize) -> f64 {
-        let reach = (0..self.groups.stages).map(|j| {
-            let (block, lane) = self.groups.at(i, j);
-            self.beta.reach[block].0[lane].abs()
-        });
-        (4.0 * reach.fold(0.0, f64::max)).max(1e-6)
+        self.beta.shortest(i, self.groups.elements).max(1e-6)
     }
 
     #[inline(always)]
@@ -333,6 +329,10 @@ impl Problem<N, Q> for Equilibrium {
         }
         self.nearness = near.nearest();
         self.beta.close::<FUSED>(&self.steps, out, &mut self.drifts);
+        if self.beta.some_short {
+            let memory = &self.memory;
+            self.beta.carry(groups.elements, &self.steps, |block, lane| memory[block].beta_slope.0[lane], out);
+        }
         Ok(())
     }
 

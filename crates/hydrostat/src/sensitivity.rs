@@ -15,6 +15,7 @@
 //! ```
 
 mod band;
+mod carry;
 pub(crate) mod dual;
 mod linear;
 mod quantities;

@@ -154,6 +154,10 @@ impl Equilibrium {
         }
         self.stations.clear();
         self.stations.extend_from_slice(stations);
+        // Where a cable ends strains jump.
+        let ends = &self.ends;
+        let jumps = |i: &usize| ends.iter().any(|end| *end < 1.0 && (mesh.nodes()[i + 1] - end).abs() < 1e-9);
+        self.beta.take_jumps((0..mesh.elements()).filter(jumps));
     }
 
     /// Takes the data at `s` into a lane of a block.

@@ -15,7 +15,8 @@
 use hydrostat_bvp::{Condition, Gauss, Problem};
 
 use super::band::Band;
-use crate::beta_along::Rule;
+use super::carry::Carry;
+use crate::beta_along::{BetaAlong, Rule};
 use crate::compliance::solve_in_place;
 use crate::dispatch::widest;
 use crate::engine::{Engine, M};
@@ -74,6 +75,8 @@ struct Element {
     inner: [[f64; SLOPES]; M],
     by_closed: [[f64; M]; M],
     by_value: [[f64; M]; M],
+    /// The same by the beta that is carried into the element, if one is.
+    by_known: [f64; M],
     /// Of the stage equations.
     inverse: [[f64; SLOPES]; SLOPES],
     /// Stage slopes by the state at the left node.
@@ -88,6 +91,7 @@ pub(super) struct Linear {
     stretch: Vec<[f64; BY]>,
     cables: usize,
     band: Band,
+    carry: Option<Carry>,
 }
 
 /// The change of the solution with a parameter.
@@ -120,16 +124,32 @@ impl Linear {
         equations.left(&engine.solution.nodes[0], &mut left);
         equations.right(&engine.solution.nodes[n], &mut right);
         let band = Band::new(&transitions, &left[0].gradient, &[0, 1, 2].map(|r| right[r].gradient))?;
-        Some(Self { gauss, elements, stretch, cables, band })
+        let mut this = Self { gauss, elements, stretch, cables, band, carry: None };
+        if (0..n).any(|i| equations.beta.carried(i).is_some()) {
+            this.carry = Some(Carry::new(&this, &equations.beta, n)?);
+        }
+        Some(this)
     }
 
     /// The change of the solution with a parameter.
     pub(super) fn response(&self, drift: &Drift) -> Response {
+        let response = self.response_given(drift, &[]);
+        match &self.carry {
+            None => response,
+            Some(carry) => self.response_given(drift, &carry.known(self, &response, drift)),
+        }
+    }
+
+    /// The change of the solution with a parameter, given that of the beta that elements take over, none where there are no numbers.
+    pub(super) fn response_given(&self, drift: &Drift, known: &[f64]) -> Response {
         let n = self.elements.len();
         let mut nodes = vec![0.0; N * (n + 1)];
         nodes[0] = drift.left;
         nodes[1 + N * n..].copy_from_slice(&drift.right);
-        let own: Vec<_> = drift.stations.as_chunks::<M>().0.iter().zip(&self.elements).map(|(d, e)| e.own(d)).collect();
+        let drifts = drift.stations.as_chunks::<M>().0;
+        let given = if drifts.is_empty() && known.is_empty() { 0 } else { n };
+        let own: Vec<_> =
+            self.elements[..given].iter().enumerate().map(|(i, e)| e.own(drifts.get(i), known.get(i))).collect();
         for (i, (element, (_, slopes))) in self.elements.iter().zip(&own).enumerate() {
             for (l, weight) in self.gauss.b.iter().enumerate() {
                 for a in 0..N {
@@ -168,6 +188,13 @@ impl Linear {
 
     /// The weights on drifts that a functional comes to.
     pub(super) fn adjoint(&self, functional: &Functional) -> Cotangent {
+        match &self.carry {
+            None => self.adjoint_given(functional),
+            Some(carry) => self.adjoint_given(&carry.with_known(self, functional)),
+        }
+    }
+
+    fn adjoint_given(&self, functional: &Functional) -> Cotangent {
         let n = self.elements.len();
         let mut nodes = vec![0.0; N * (n + 1)];
         for (i, weights) in &functional.nodes {
@@ -254,6 +281,24 @@ impl Linear {
         Functional { stages: stages.collect(), cable: c, ..Functional::default() }
     }
 
+    /// beta at an end (left 0, right 1) of element `i`, less that which is carried into it, if one is.
+    pub(super) fn beta_at_end(&self, beta: &BetaAlong, i: usize, end: usize) -> Functional {
+        let element = &self.elements[i];
+        let carried = beta.carried(i).is_some();
+        let [by_value, by_slope] = beta.end_weights(end);
+        let mut stage = [StageWeights::default(); M];
+        for (j, out) in stage.iter_mut().enumerate() {
+            if carried {
+                out.beta_slope = element.h * if end == 0 { -self.gauss.b[j] } else { self.gauss.b[j] };
+            } else {
+                out.add(by_value[j], &element.value[j]);
+                out.beta_slope += element.h * by_slope[j];
+                out.direct[VALUE] = by_value[j];
+            }
+        }
+        Functional { first: i, stages: vec![stage], ..Functional::default() }
+    }
+
     /// Weights on the state at node `node`, and `by_curvature` times beta'' at the end `x` (0 or 1) of element `i`.
     pub(super) fn at_end(
         &self,
@@ -270,7 +315,7 @@ impl Linear {
                 let ends = &self.gauss.ends[x].curvature;
                 (ends[0].map(|w| w * inverse * inverse), ends[1].map(|w| w * inverse))
             }
-            Rule::Plain(d) | Rule::Own(d) => {
+            Rule::Plain(d) | Rule::Own(d) | Rule::Carried(_, d) => {
                 let ends = self.gauss.cardinals(if x == 0 { 0.0 } else { 1.0 });
                 let of = |l: usize| (0..M).map(|j| ends[j] * d[j][l]).sum::<f64>() * inverse;
                 ([0.0; M], std::array::from_fn(of))
@@ -286,6 +331,13 @@ impl Linear {
 }
 
 impl Functional {
+    /// The same with weights from the first element on.
+    pub(super) fn padded(&self) -> Self {
+        let mut stages = vec![[StageWeights::default(); M]; self.first];
+        stages.extend_from_slice(&self.stages);
+        Self { nodes: self.nodes.clone(), first: 0, stages, cable: self.cable }
+    }
+
     /// Adds `factor` times another one in which no cable counts.
     pub(super) fn add(&mut self, factor: f64, other: &Self) {
         self.nodes.extend(other.nodes.iter().map(|(i, weights)| (*i, weights.map(|w| factor * w))));
@@ -320,55 +372,12 @@ impl StageWeights {
 impl Element {
     #[inline(always)]
     fn new(gauss: &Gauss<M>, h: f64, stations: &[ByState; M], rule: Rule) -> Option<Self> {
-        let inverse = 1.0 / h;
         let row = |j: usize, out: usize| -> [f64; BY] { stations[j].by[out] };
         let value: [[f64; BY]; M] = std::array::from_fn(|j| row(j, VALUE));
-        let closed: [[f64; BY]; M] = std::array::from_fn(|j| row(j, CLOSED));
-        // (1 - ...) b = ... dz + drifts.
-        let mut matrix = [[0.0; M]; M];
-        let mut right = [[0.0; SLOPES + 2 * M]; M];
-        for j in 0..M {
-            let reach = stations[j].reach;
-            matrix[j][j] = 1.0;
-            let mut on_value = [0.0; M];
-            match rule {
-                Rule::Sharp(by_value, by_slope) => {
-                    for l in 0..M {
-                        on_value[l] = reach * by_value[j][l] * inverse * inverse;
-                        matrix[j][l] -= reach * by_slope[j][l] * inverse;
-                    }
-                }
-                Rule::Plain(d) => {
-                    for l in 0..M {
-                        matrix[j][l] -= reach * d[j][l] * inverse;
-                    }
-                }
-                Rule::Own(d) => {
-                    for l in 0..M {
-                        on_value[l] = d[j][l] * inverse;
-                    }
-                }
-            }
-            if !matches!(rule, Rule::Own(_)) {
-                matrix[j][j] -= closed[j][N];
-                for a in 0..N {
-                    right[j][N * j + a] += closed[j][a];
-                }
-                right[j][SLOPES + j] = 1.0;
-            }
-            for l in 0..M {
-                matrix[j][l] -= on_value[l] * value[l][N];
-                for a in 0..N {
-                    right[j][N * l + a] += on_value[l] * value[l][a];
-                }
-                right[j][SLOPES + M + l] = on_value[l];
-            }
-        }
-        if !solve_in_place(&mut matrix, &mut right) {
-            return None;
-        }
+        let right = beta_slopes(h, stations, &value, rule)?;
         let part = |from: usize| std::array::from_fn(|j| std::array::from_fn(|l| right[j][from + l]));
         let (by_closed, by_value) = (part(SLOPES), part(SLOPES + M));
+        let by_known = std::array::from_fn(|j| right[j][SLOPES + 2 * M]);
         let inner: [[f64; SLOPES]; M] = std::array::from_fn(|j| std::array::from_fn(|c| right[j][c]));
         let mut slope_by_beta = [[0.0; N]; M];
         // J = F_z + F_b inner, by all states of the element.
@@ -412,6 +421,7 @@ impl Element {
             inner,
             by_closed,
             by_value,
+            by_known,
             inverse: std::array::from_fn(|r| std::array::from_fn(|c| right[r][c])),
             response: std::array::from_fn(|r| std::array::from_fn(|c| right[r][SLOPES + c])),
         })
@@ -430,18 +440,20 @@ impl Element {
         out
     }
 
-    /// beta' and the stage slopes by a drift alone.
-    fn own(&self, drift: &[[f64; OUT]; M]) -> ([f64; M], [f64; SLOPES]) {
-        let mut beta = [0.0; M];
-        for j in 0..M {
-            for l in 0..M {
-                beta[j] += self.by_closed[j][l] * drift[l][CLOSED] + self.by_value[j][l] * drift[l][VALUE];
+    /// beta' and the stage slopes by a drift, and the beta that is carried into the element, alone.
+    fn own(&self, drift: Option<&[[f64; OUT]; M]>, known: Option<&f64>) -> ([f64; M], [f64; SLOPES]) {
+        let mut beta = self.by_known.map(|by| by * known.unwrap_or(&0.0));
+        if let Some(drift) = drift {
+            for j in 0..M {
+                for l in 0..M {
+                    beta[j] += self.by_closed[j][l] * drift[l][CLOSED] + self.by_value[j][l] * drift[l][VALUE];
+                }
             }
         }
         let mut given = [0.0; SLOPES];
         for j in 0..M {
             for a in 0..N {
-                given[N * j + a] = drift[j][a] + self.slope_by_beta[j][a] * beta[j];
+                given[N * j + a] = drift.map_or(0.0, |drift| drift[j][a]) + self.slope_by_beta[j][a] * beta[j];
             }
         }
         (beta, std::array::from_fn(|r| dot(&self.inverse[r], &given)))
@@ -519,6 +531,65 @@ impl Element {
             }
         }
     }
+}
+
+/// Columns of beta' at the stages of an element: by the states there, by the drifts of the closed form and of beta, and by the beta that is carried
+/// into it. From (1 - ...) b = ... dz + drifts.
+#[inline(always)]
+fn beta_slopes(
+    h: f64,
+    stations: &[ByState; M],
+    value: &[[f64; BY]; M],
+    rule: Rule,
+) -> Option<[[f64; SLOPES + 2 * M + 1]; M]> {
+    let inverse = 1.0 / h;
+    let mut matrix = [[0.0; M]; M];
+    let mut right = [[0.0; SLOPES + 2 * M + 1]; M];
+    for j in 0..M {
+        let reach = stations[j].reach;
+        matrix[j][j] = 1.0;
+        let mut on_value = [0.0; M];
+        match rule {
+            Rule::Sharp(by_value, by_slope) => {
+                for l in 0..M {
+                    on_value[l] = reach * by_value[j][l] * inverse * inverse;
+                    matrix[j][l] -= reach * by_slope[j][l] * inverse;
+                }
+            }
+            Rule::Plain(d) => {
+                for l in 0..M {
+                    matrix[j][l] -= reach * d[j][l] * inverse;
+                }
+            }
+            Rule::Own(d) => {
+                for l in 0..M {
+                    on_value[l] = d[j][l] * inverse;
+                }
+            }
+            Rule::Carried(by, _) => {
+                for l in 0..M {
+                    matrix[j][l] = h * by.since_known(j, l);
+                }
+                on_value[j] = 1.0;
+                right[j][SLOPES + 2 * M] = -1.0;
+            }
+        }
+        if !matches!(rule, Rule::Own(_) | Rule::Carried(..)) {
+            matrix[j][j] -= stations[j].by[CLOSED][N];
+            for a in 0..N {
+                right[j][N * j + a] += stations[j].by[CLOSED][a];
+            }
+            right[j][SLOPES + j] = 1.0;
+        }
+        for l in 0..M {
+            matrix[j][l] -= on_value[l] * value[l][N];
+            for a in 0..N {
+                right[j][N * l + a] += on_value[l] * value[l][a];
+            }
+            right[j][SLOPES + M + l] = on_value[l];
+        }
+    }
+    solve_in_place(&mut matrix, &mut right).then_some(right)
 }
 
 #[inline(always)]
