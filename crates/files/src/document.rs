@@ -89,8 +89,40 @@ pub(crate) struct SyntaxError {
 /// Deeper nesting than the format has, so that no text can exhaust the stack.
 const MAX_DEPTH: usize = 16;
 
+/// Opening brackets up to which a text is parsed on the stack that there is.
+const FEW_OPEN: usize = 200;
+
+/// Stack for each opening bracket of other texts: what a level takes, with room to spare.
+const STACK_EACH: usize = if cfg!(debug_assertions) { 8192 } else { 2048 };
+
 /// The fields of a TOML document.
 pub(crate) fn parse(text: &str) -> Result<Vec<Field>, SyntaxError> {
+    with_stack_for(text, || parse_here(text)).unwrap_or_else(|| {
+        let message = "more opening brackets than there is memory for".to_owned();
+        Err(SyntaxError { at: 0, what: String::new(), message })
+    })
+}
+
+/// The value after `KEY=` of an override: TOML if it is, else a string.
+pub(crate) fn parse_setting(text: &str, index: usize) -> Node {
+    let node = with_stack_for(text, || parse_setting_here(text, index)).flatten();
+    node.unwrap_or_else(|| Node::Text(text.to_owned()))
+}
+
+/// Parses with a stack that no nesting of brackets in `text` exhausts: the parser stops at a depth of its own, but counts a level less for
+/// closing brackets that belong to nothing. `None` where there is no memory for it.
+fn with_stack_for<T: Send>(text: &str, parse: impl FnOnce() -> T + Send) -> Option<T> {
+    let open = text.bytes().filter(|byte| matches!(byte, b'{' | b'[')).count();
+    if open <= FEW_OPEN {
+        return Some(parse());
+    }
+    std::thread::scope(|scope| {
+        let builder = std::thread::Builder::new().stack_size(open.saturating_mul(STACK_EACH));
+        builder.spawn_scoped(scope, parse).ok()?.join().ok()
+    })
+}
+
+fn parse_here(text: &str) -> Result<Vec<Field>, SyntaxError> {
     let (table, errors) = DeTable::parse_recoverable(text);
     let table = DeValue::Table(table.into_inner());
     let result = match first(text, errors) {
@@ -104,13 +136,12 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Field>, SyntaxError> {
     result
 }
 
-/// The value after `KEY=` of an override: TOML if it is, else a string.
-pub(crate) fn parse_setting(text: &str, index: usize) -> Node {
+fn parse_setting_here(text: &str, index: usize) -> Option<Node> {
     let (value, errors) = DeValue::parse_recoverable(text);
     let value = value.into_inner();
     let node = if errors.is_empty() { convert(&value, 0, 0, &|_| Origin::Setting(index)).ok() } else { None };
     dismantle(value);
-    node.unwrap_or_else(|| Node::Text(text.to_owned()))
+    node
 }
 
 fn first(text: &str, errors: Vec<toml::de::Error>) -> Option<SyntaxError> {

@@ -277,6 +277,19 @@ fn large_and_deep_files() {
 }
 
 /// A name of a megabyte was drawn letter by letter, in 500 MB.
+/// The parser counts a level less for brackets that close nothing, and went down until the stack was full.
+#[test]
+fn nesting_behind_stray_brackets_filled_the_stack() {
+    for unit in ["a = {[b]]\nc = 1\nd = {[b]]\n", "a = {b]", "a = [{b]}", "a = {[]]", "a={b=[}]"] {
+        let text = format!("[arm]\n{}", unit.repeat(1_000_000 / unit.len()));
+        let error = refusal(&text).to_string();
+        assert!(error.starts_with("case.toml:") && error.len() < 4000, "{error}");
+        let value = unit.repeat(100_000 / unit.len());
+        let mut file = ArmFile::parse(ARM, "case.toml").unwrap();
+        assert!(file.set("arm.length", &value).is_err() || file.arm().is_err(), "{unit}");
+    }
+}
+
 #[test]
 fn a_name_as_long_as_the_file_was_drawn() {
     let message = refusal(&format!("name = \"{}\"\n", "n".repeat(900_000))).to_string();

@@ -293,3 +293,27 @@ fn a_sweep_that_is_ended_goes_on() {
     let summary = sweep.run_while(&out, true, 1, &|_| true).unwrap();
     assert_eq!((summary.rows, summary.resumed), (240, 120));
 }
+
+/// Of what a file says of its columns at its end every number can be wrong: places before the file's begin, and dictionaries that are not there, were panics.
+#[test]
+fn damaged_columns_panicked() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("out.parquet");
+    sweep("silicone", &["cable[0].tension=0,0.1"], &SweepOptions::default()).run(&path, false, 1, &|_| {}).unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    // The footer's length stands before the last word.
+    let place = whole.len() - 8;
+    let length = u32::from_le_bytes(whole[place..place + 4].try_into().unwrap()) as usize;
+    let mut refused = 0;
+    for k in (place - length..place).step_by(7) {
+        let mut changed = whole.clone();
+        changed[k] ^= 1;
+        std::fs::write(&path, changed).unwrap();
+        let table = names(&path).and_then(|names| {
+            let wanted: Vec<&str> = names.iter().map(String::as_str).collect();
+            Table::read(&path, &wanted)
+        });
+        refused += usize::from(table.is_err());
+    }
+    assert!(refused > 20, "{refused} of the footer's {length} bytes matter");
+}
