@@ -4,6 +4,9 @@
 ///
 /// The constants are those with which the estimate of a mean is 95 % as efficient as the arithmetic one when all errors are normal
 /// (Huber 1981; Holland and Welsch 1977).
+///
+/// For outliers take `Cauchy`. Under `Huber` each of them pulls with the strength of 1.345 standard deviations however far out it is; a share e of n
+/// numbers, all off to one side, so moves an estimate by up to some 1.345 e sqrt(n) of its own standard deviations, which no number of data mends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Loss {
     /// By their square: least squares.
