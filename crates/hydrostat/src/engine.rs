@@ -1,27 +1,31 @@
 //! From an arm to its configuration.
 
 mod budget;
+mod carry_over;
 mod held;
 mod kinks;
+mod loads;
 #[cfg(test)]
 pub(crate) mod manufactured;
+mod newton;
+mod rounds;
 mod settle;
 mod start;
 mod watch;
 
 use std::sync::LazyLock;
 
-use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Hermite, Mesh, RoundError, Singular, Solution};
+use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Hermite, Mesh, RoundError, Solution};
 
 use crate::arm::Arm;
 use crate::configuration::{Statistics, Tip};
-use crate::dispatch::{Work, dispatch, widest};
+use crate::dispatch::widest;
 use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
-use crate::friction::Grip;
 use crate::verdict::Phase;
 
 pub(crate) use self::budget::WORK;
 pub(crate) use self::held::{Pulled, Round, at_stations, pull_taut, solved};
+pub(crate) use self::rounds::{evaluate, linearise, solve};
 pub(crate) use self::settle::First;
 
 /// Stages of the solve, and of the check that estimates its error.
@@ -51,12 +55,6 @@ impl From<RoundError<SectionFailure>> for Trouble {
         }
     }
 }
-
-/// Corrections (rad) after which kinks of the load are where they will be, but for second order.
-const SMALL: f64 = 0.1;
-
-/// Rounds of Newton after which nodes are moved onto the kinks before the next.
-const PINS: usize = 2;
 
 /// Corrections (rad) that may go on hopping across a kink of the load.
 pub(crate) const HOP: f64 = 1e-4;
@@ -129,71 +127,6 @@ static METHODS: LazyLock<Methods> = LazyLock::new(|| {
     let sharp = check.c.map(|x| solve.hermite_at(x));
     Methods { solve, check, values, sharp }
 });
-
-struct Evaluate<'a, const S: usize> {
-    system: &'a mut Collocation<N, S, Q>,
-    equations: &'a mut Equilibrium,
-    solution: &'a Solution<N, S>,
-}
-
-impl<const S: usize> Work for Evaluate<'_, S> {
-    type Output = Result<(), SectionFailure>;
-
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Self::Output {
-        self.system.evaluate_with::<_, FUSED>(self.equations, self.solution)
-    }
-}
-
-/// [`Collocation::evaluate`] in the processor's widest vectors.
-pub(crate) fn evaluate<const S: usize>(
-    system: &mut Collocation<N, S, Q>,
-    equations: &mut Equilibrium,
-    solution: &Solution<N, S>,
-) -> Result<(), SectionFailure> {
-    dispatch(Evaluate { system, equations, solution })
-}
-
-struct Factorise<'a, const S: usize> {
-    system: &'a mut Collocation<N, S, Q>,
-    equations: &'a mut Equilibrium,
-    solution: &'a Solution<N, S>,
-    parameter: bool,
-}
-
-impl<const S: usize> Work for Factorise<'_, S> {
-    type Output = Result<(), Singular>;
-
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Self::Output {
-        let Self { system, equations, solution, parameter } = self;
-        system.factorise_with::<_, FUSED>(equations, solution, parameter)
-    }
-}
-
-/// [`Collocation::linearise`] in the processor's widest vectors.
-pub(crate) fn linearise<const S: usize>(
-    system: &mut Collocation<N, S, Q>,
-    equations: &mut Equilibrium,
-    solution: &Solution<N, S>,
-    parameter: bool,
-) -> Result<(), RoundError<SectionFailure>> {
-    evaluate(system, equations, solution).map_err(RoundError::Slopes)?;
-    dispatch(Factorise { system, equations, solution, parameter }).map_err(RoundError::Singular)
-}
-
-/// [`Collocation::solve`] in the processor's widest vectors.
-pub(crate) fn solve<const S: usize>(
-    system: &Collocation<N, S, Q>,
-    solution: &Solution<N, S>,
-    column: usize,
-    correction: &mut Correction<N, S, Q>,
-) {
-    widest(
-        #[inline(always)]
-        || system.solve(solution, column, correction),
-    );
-}
 
 /// How far the tip (over L) would move, to first order, if the stream's tangential load on `solution`
 /// were `factor` of what it is.
@@ -334,99 +267,6 @@ impl Engine {
             .map(|k| self.equations.stations()[k])
     }
 
-    /// Newton on the present mesh until the tip moves by less than `tolerance`.
-    pub(crate) fn newton(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
-        self.iterate(tolerance, most, false, None)
-    }
-
-    /// Newton until the tip moves by less than `tolerance`, or, looking `ahead`, until it would move by
-    /// less in the round to come. Given how close to the kinks of the load nodes have to be, they are moved there as soon
-    /// as corrections are small: a round on nodes that are off is as good as lost.
-    fn iterate(&mut self, tolerance: f64, most: usize, ahead: bool, resolution: Option<f64>) -> Result<(), Trouble> {
-        if self.equations.held.is_some() {
-            return self.iterate_held(tolerance, most);
-        }
-        let clamped = self.equations.arm().readings.support == crate::Support::Clamped;
-        let most = if clamped { most } else { 60 };
-        let mut applied = 0.0;
-        let mut halvings = 0;
-        let mut round = 0;
-        let mut before = 0.0;
-        let mut pins = if resolution.is_some() { PINS } else { 0 };
-        loop {
-            self.may_go_on()?;
-            match linearise(&mut self.system, &mut self.equations, &self.solution, false) {
-                Ok(()) => {}
-                Err(RoundError::Slopes(failure)) => {
-                    if applied == 0.0 || halvings == 8 {
-                        return Err(Trouble::Section(failure));
-                    }
-                    applied *= 0.5;
-                    halvings += 1;
-                    self.solution.add(&self.correction, -applied);
-                    continue;
-                }
-                Err(singular) => return Err(singular.into()),
-            }
-            self.rounds += 1;
-            round += 1;
-            solve(&self.system, &self.solution, 0, &mut self.correction);
-            let size = self.correction.largest(0);
-            if !size.is_finite() {
-                return Err(Trouble::Singular);
-            }
-            let [dx, dy] = self.correction.total;
-            applied = if size > 1.0 { 1.0 / size } else { 1.0 };
-            halvings = 0;
-            self.solution.add(&self.correction, applied);
-            let [x, y] = self.system.totals();
-            let tip = [x + dx, y + dy];
-            // beta'' runs a round behind: what it still moves shows from round to round.
-            let drifted = if round > 1 { (tip[0] - self.tip[0]).hypot(tip[1] - self.tip[1]) } else { 0.0 };
-            self.tip = tip;
-            let moved = if ahead {
-                // What is left falls with the square of the correction, but not below the share of beta'',
-                // which is a round behind, and no faster than it was seen to fall.
-                let seen = if round > 1 { size / before } else { 0.0 };
-                let rate =
-                    if applied < 1.0 { 1.0 } else { (10.0 * self.reached().max(size)).max(seen).clamp(0.05, 1.0) };
-                dx.hypot(dy).max(0.1 * size) * rate
-            } else {
-                dx.hypot(dy).max(0.1 * size).max(0.1 * drifted)
-            };
-            before = size;
-            self.last = size;
-            self.rest = if ahead || tolerance <= TIGHT { moved } else { 0.0 };
-            let stop = round == most || (clamped && round >= 4 && size > 3.0);
-            if moved <= tolerance || stop {
-                self.system.quadratures(&mut self.spans);
-                for (span, change) in self.spans.iter_mut().zip(&self.correction.by_element) {
-                    for q in 0..Q {
-                        span[q] += change[q];
-                    }
-                }
-                return if moved <= tolerance { Ok(()) } else { Err(Trouble::Stalled(size)) };
-            }
-            if size < SMALL
-                && pins > 0
-                && let Some(resolution) = resolution
-            {
-                pins -= 1;
-                if self.pin_kinks(resolution) {
-                    // The correction belongs to the mesh before.
-                    applied = 0.0;
-                }
-            }
-        }
-    }
-
-    /// The largest change of the angle within an element by the last correction.
-    fn reached(&self) -> f64 {
-        let mesh = &self.solution.mesh;
-        let each = self.correction.slopes.iter().enumerate();
-        each.fold(0.0, |m, (i, k)| k.iter().fold(m, |m, k| f64::max(m, mesh.step(i) * k[0].abs())))
-    }
-
     /// Factorises at the present solution.
     pub(crate) fn linearise(&mut self, parameter: bool) -> Result<(), Trouble> {
         self.may_go_on()?;
@@ -447,60 +287,6 @@ impl Engine {
         Ok(())
     }
 
-    /// Moves the solution to another mesh.
-    pub(crate) fn move_to(&mut self, mesh: Mesh) {
-        std::mem::swap(&mut self.solution, &mut self.before);
-        self.solution.mesh = mesh;
-        self.come_from_before();
-    }
-
-    /// Carries the solution before over to the mesh of the present one.
-    fn come_from_before(&mut self) {
-        self.meshes += 1;
-        let gauss = &self.system.gauss;
-        let old = &self.before;
-        old.onto(gauss, &mut self.solution);
-        let mesh = &self.solution.mesh;
-        self.system.stations(mesh, &mut self.stations);
-        self.guesses.clear();
-        let mut e = 0;
-        for s in &self.stations {
-            while e + 1 < old.mesh.elements() && old.mesh.nodes()[e + 1] <= *s {
-                e += 1;
-            }
-            let w = gauss.cardinals((s - old.mesh.nodes()[e]) / old.mesh.step(e));
-            let (strain, [slope, curvature]) = self.equations.remembered(e, &w);
-            self.guesses.push((strain, slope, curvature));
-        }
-        let guesses = &self.guesses;
-        self.equations.place_stations(&self.stations, mesh, |k| guesses[k]);
-    }
-
-    /// Moves the solution on by `share` times its way from the solution `before`, nodes on kinks with it. Left as it is where the
-    /// two do not correspond node by node.
-    pub(crate) fn lead_on(&mut self, before: &Guess, share: f64) {
-        let Some(mesh) = self.solution.mesh.led_on(&before.mesh, share) else { return };
-        let lead = |own: &mut [f64; N], other: &[f64; N]| {
-            for a in 0..N {
-                own[a] += share * (own[a] - other[a]);
-            }
-        };
-        let Solution { nodes, slopes, .. } = &mut self.solution;
-        nodes.iter_mut().zip(&before.nodes).for_each(|(own, other)| lead(own, other));
-        slopes.iter_mut().flatten().zip(before.slopes.iter().flatten()).for_each(|(own, other)| lead(own, other));
-        if mesh == self.solution.mesh {
-            return;
-        }
-        self.foresee();
-        let remembered = (0..self.stations.len()).map(|k| self.equations.station_guess(k));
-        self.guesses.clear();
-        self.guesses.extend(remembered);
-        self.solution.mesh = mesh;
-        self.system.stations(&self.solution.mesh, &mut self.stations);
-        let guesses = &self.guesses;
-        self.equations.place_stations(&self.stations, &self.solution.mesh, |k| guesses[k]);
-    }
-
     /// Brings what is remembered at the stations up to the solution, to first order.
     pub(crate) fn foresee(&mut self) {
         let (system, equations, solution) = (&mut self.system, &mut self.equations, &self.solution);
@@ -508,83 +294,6 @@ impl Engine {
             #[inline(always)]
             || equations.foresee(system.take_states(solution)),
         );
-    }
-
-    /// Whether something pushes against the arm hard enough that a direct solve may have landed on a
-    /// branch that the path does not lead to. Cheap and on the safe side.
-    pub(crate) fn may_have_left_the_branch(&self) -> bool {
-        if self.equations.arm().readings.support == crate::Support::UnstrainedBase {
-            // An initial-value problem has one solution.
-            return false;
-        }
-        if self.system.determinant().sign <= 0.0 {
-            return true;
-        }
-        let base = self.equations.arm().base.angle;
-        let mut reference_angle = base;
-        let mesh = &self.solution.mesh;
-        for i in 0..mesh.elements() {
-            for j in 0..M {
-                let k = i * M + j;
-                let s = self.equations.stations()[k];
-                let z = self.system.state(i, j);
-                let mu = self.equations.reference_strain(k)[2];
-                reference_angle += mesh.step(i) * self.system.gauss.b[j] * mu;
-                if self.equations.adversity(k, s, z, reference_angle) > 0.3 {
-                    return true;
-                }
-            }
-        }
-        false
-    }
-
-    /// Whether any of the arm is nearly in line with a load.
-    pub(crate) fn is_in_line(&self) -> bool {
-        (0..self.equations.stations().len()).any(|k| self.equations.is_in_line(k, self.system.state(k / M, k % M)[0]))
-    }
-
-    /// Changes loads of the arm in place.
-    pub(crate) fn change_loads(&mut self, change: impl Fn(&mut Arm)) {
-        self.equations.change_loads(&change);
-        self.check_equations.change_loads(&change);
-    }
-
-    /// [`Engine::set_loads`] of an arm that differs in tensions, stream, weight and tip loads only.
-    pub(crate) fn take_loads(&mut self, arm: &Arm) {
-        let own = self.equations.arm();
-        if own.gravity != arm.gravity || own.flow.density != arm.flow.density {
-            self.set_loads(arm);
-            return;
-        }
-        self.change_loads(|own| {
-            for (own, cable) in own.cables.iter_mut().zip(&arm.cables) {
-                own.tension = cable.tension;
-                own.max_tension = cable.max_tension;
-            }
-            own.flow.clone_from(&arm.flow);
-            own.tip.clone_from(&arm.tip);
-        });
-    }
-
-    /// Takes other tensions, stream or loads for the same arm.
-    pub(crate) fn set_loads(&mut self, arm: &Arm) {
-        self.equations.set_loads(arm);
-        self.check_equations.set_loads(arm);
-    }
-
-    /// Ends a path: `arm` stays, with all angles less by whole turns of the size `angle`.
-    pub(crate) fn hold(&mut self, arm: &Arm, angle: f64) {
-        self.equations.hold(arm, angle);
-        self.check_equations.hold(arm, angle);
-        for z in &mut self.solution.nodes {
-            z[0] -= angle;
-        }
-    }
-
-    /// What friction leaves of the tensions from now on.
-    pub(crate) fn set_grip(&mut self, grip: Option<&Grip>) {
-        self.equations.set_grip(grip);
-        self.check_equations.set_grip(grip);
     }
 
     /// The section on either side of node `i`.
