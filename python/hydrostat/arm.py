@@ -117,8 +117,8 @@ class Arm:
         Parameters
         ----------
         arm : str or path
-            ``"paper"``, ``"silicone"``, ``"multi-bending"``, ``"octopus"``, or a TOML file. A file of a shipped arm's name
-            wins.
+            ``"paper"``, ``"paper-statements"``, ``"silicone"``, ``"multi-bending"``, ``"octopus"``, or a TOML file. A file
+            of a shipped arm's name wins.
 
         Raises
         ------

@@ -128,8 +128,19 @@ def curve_figure(dataset: xr.Dataset, quantity: str = "tip_y", title: str = "a s
     return Figure(figure)
 
 
-def source_figures(arm: Arm) -> tuple[dict[str, Figure], list[tuple[str, str, str]]]:
+def source_figures(
+    arm: Arm, *, at_highest: bool = False, faster: Sequence[float] = (1.0, 2.0)
+) -> tuple[dict[str, Figure], list[tuple[str, str, str]]]:
     """The source's Fig. 1a, 1b and 1c for `arm`, and what its text says about them held against the numbers.
+
+    Parameters
+    ----------
+    arm : Arm
+        Its first cable is pulled, the others are slack.
+    at_highest : bool
+        Compare streams at the highest tension alone, not at half of it, too.
+    faster : sequence of float
+        The streams beside still water and 0.5 m/s, m/s, rising.
 
     Returns
     -------
@@ -138,7 +149,7 @@ def source_figures(arm: Arm) -> tuple[dict[str, Figure], list[tuple[str, str, st
     claims : list of tuple
         Statement, finding and evidence of each.
     """
-    figures, claims = _native.source_figures(arm._inner)
+    figures, claims = _native.source_figures(arm._inner, at_highest, [float(speed) for speed in faster])
     return {name: Figure(figure) for name, figure, _ in figures}, claims
 
 

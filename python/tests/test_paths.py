@@ -102,3 +102,7 @@ def test_the_source_figure() -> None:
     assert all(finding in {"holds", "holds in part", "does not hold", "cannot be decided"} for _, finding, _ in claims)
     with pytest.raises(ValueError, match="no cable"):
         hs.source_figures(hs.Arm(arm={"length": 0.1, "radius": 0.01}, material={"young": 1e5}))
+    with pytest.raises(ValueError, match=r"expected rising speeds above 0\.5 m/s"):
+        hs.source_figures(hs.Arm.load("paper"), faster=[0.2])
+    _, claims = hs.source_figures(hs.Arm.load("paper-statements"), at_highest=True, faster=[1.0])
+    assert [finding for _, finding, _ in claims[:8]] == ["holds"] * 8

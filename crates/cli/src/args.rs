@@ -148,12 +148,27 @@ pub(crate) enum Format {
     Csv,
 }
 
-/// Remakes the source's Fig. 1a, 1b and 1c: nine files, each part as SVG, PNG and CSV.
+/// Remakes the source's Fig. 1a, 1b and 1c: nine files, each part as SVG, PNG and CSV. Prints what the
+/// source says about them beside the numbers.
 ///
 /// Of the figure's parameters only the speed of the stream, 0.5 m/s, and alpha(L) = 72.25 deg at
-/// the highest tension are published; the rest was found by trial.
+/// the highest tension are published; the rest was found by trial. Tensions below the highest are
+/// sixteenths, eighths, quarters and halves of it, to one digit.
 #[derive(Debug, ClapArgs)]
+#[command(after_help = "\
+Examples:
+  hydrostat figures
+  hydrostat figures paper-statements --at-highest --faster 1    all statements hold")]
 pub(crate) struct FiguresArgs {
+    /// An arm file, or the name of a shipped arm. Its first cable is pulled, the others are slack
+    #[arg(value_name = "ARM", default_value = "paper")]
+    pub(crate) arm: String,
+    /// Compare streams at the highest tension alone, not at half of it, too
+    #[arg(long)]
+    pub(crate) at_highest: bool,
+    /// The streams beside still water and 0.5 m/s, m/s, rising
+    #[arg(long, value_name = "SPEED,...", value_delimiter = ',', default_value = "1,2")]
+    pub(crate) faster: Vec<f64>,
     /// The directory, made if it is not there
     #[arg(short, long, value_name = "DIR", default_value = "figures")]
     pub(crate) output: PathBuf,

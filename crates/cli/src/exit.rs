@@ -85,6 +85,11 @@ fn code(error: &anyhow::Error) -> u8 {
         if let Some(error) = cause.downcast_ref::<IdentifyError>() {
             return code_of_fit(error);
         }
+        if let Some(StudyError::NoCable { .. } | StudyError::Faster { .. } | StudyError::NoTension { .. }) =
+            cause.downcast_ref()
+        {
+            return WRONG_REQUEST;
+        }
         if let Some(ServeError::Bind { .. }) = cause.downcast_ref() {
             return WRONG_REQUEST;
         }

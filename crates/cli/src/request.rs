@@ -94,10 +94,19 @@ pub(crate) fn arm_file(arm: &str) -> anyhow::Result<ArmFile> {
     if looks_like_path || path.is_file() {
         return Ok(ArmFile::read(path)?);
     }
-    match shipped::get(arm) {
-        Some(text) => Ok(ArmFile::parse(text, arm)?),
-        None => Err(WrongRequest::UnknownArm(arm.to_owned()).into()),
+    shipped_file(arm)
+}
+
+fn shipped_file(name: &str) -> anyhow::Result<ArmFile> {
+    match shipped::get(name) {
+        Some(text) => Ok(ArmFile::parse(text, name)?),
+        None => Err(WrongRequest::UnknownArm(name.to_owned()).into()),
     }
+}
+
+/// The arm that ships under this name, whatever files there are.
+pub(crate) fn shipped_arm(name: &str) -> anyhow::Result<Arm> {
+    Ok(shipped_file(name)?.arm()?)
 }
 
 /// The arm that is asked for: a file, then what overrides it.

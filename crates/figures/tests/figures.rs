@@ -2,7 +2,7 @@
 
 use hydrostat::{Arm, Cable, Gravity, Material, Parameter, PathOptions, Profile};
 use hydrostat_figures::source::Finding::{Holds, InPart, Open};
-use hydrostat_figures::source::{Finding, Study, StudyError, TIP_ANGLE};
+use hydrostat_figures::source::{Finding, Shown, Study, StudyError, TIP_ANGLE};
 use hydrostat_figures::{
     Abscissa, Quantity, arm_figure, equilibria_figure, over_figure, path_figure, path_shapes_figure,
 };
@@ -146,10 +146,13 @@ fn all_equilibria_are_drawn_and_numbered() {
 
 #[test]
 fn the_study_finds_the_published_angle_and_judges_the_claims() {
-    let study = Study::of(&source_arm()).unwrap();
+    let study = Study::of(&source_arm(), &Shown::default()).unwrap();
     let angle = study.raised.last().unwrap().tip().alpha.to_degrees();
     assert!((angle - TIP_ANGLE).abs() <= 1e-6, "{angle}");
     assert!((study.highest_tension() - 86.24).abs() < 0.01, "{}", study.highest_tension());
+    let tensions: Vec<f64> = study.raised.iter().map(|c| c.cables[0].tension).collect();
+    assert_eq!(tensions[..5], [0.0, 5.0, 10.0, 20.0, 40.0]);
+    assert!(study.faster.iter().all(|c| c.cables[0].tension == 40.0));
     let found: Vec<Finding> = study.claims.iter().map(|c| c.finding).collect();
     assert_eq!(found, [Holds, Holds, Holds, Holds, Holds, InPart, InPart, InPart, InPart, Open]);
     assert!(study.claims.iter().all(|c| !c.evidence.contains("NaN")));
@@ -165,7 +168,11 @@ fn the_study_finds_the_published_angle_and_judges_the_claims() {
 fn a_study_needs_a_cable_and_a_tension_that_turns_the_tip() {
     let mut arm = source_arm();
     arm.cables[0].max_tension = Some(50.0);
-    assert!(matches!(Study::of(&arm), Err(StudyError::NoTension { largest: 50.0, .. })));
+    assert!(matches!(Study::of(&arm, &Shown::default()), Err(StudyError::NoTension { largest: 50.0, .. })));
+    for faster in [vec![], vec![0.5], vec![2.0, 1.0], vec![f64::NAN]] {
+        let shown = Shown { faster, ..Shown::default() };
+        assert!(matches!(Study::of(&arm, &shown), Err(StudyError::Faster { .. })), "{shown:?}");
+    }
     arm.cables.clear();
-    assert!(matches!(Study::of(&arm), Err(StudyError::NoCable { .. })));
+    assert!(matches!(Study::of(&arm, &Shown::default()), Err(StudyError::NoCable { .. })));
 }

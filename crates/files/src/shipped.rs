@@ -6,11 +6,16 @@ struct Shipped {
     text: &'static str,
 }
 
-const ARMS: [Shipped; 4] = [
+const ARMS: [Shipped; 5] = [
     Shipped {
         name: "paper",
         description: "the source's arm: two cables, the left one pulled, 0.5 m/s; parameters found by trial",
         text: include_str!("../../../arms/paper.toml"),
+    },
+    Shipped {
+        name: "paper-statements",
+        description: "the same with parameters that meet every statement of the source at the highest tension",
+        text: include_str!("../../../arms/paper-statements.toml"),
     },
     Shipped {
         name: "silicone",

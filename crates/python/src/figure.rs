@@ -1,6 +1,6 @@
 //! Drawings of `hydrostat-figures`.
 
-use hydrostat_figures::source::Study;
+use hydrostat_figures::source::{Shown, Study};
 use hydrostat_figures::{Abscissa, Coloured, ColouredColumn, KeyValues, Quantity, Scene};
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyRuntimeError;
@@ -127,8 +127,9 @@ type Parts = (Vec<(&'static str, Figure, String)>, Vec<(&'static str, &'static s
 
 /// The source's figure, and what its text says about it.
 #[pyfunction]
-pub(crate) fn source_figures(py: Python<'_>, arm: &Arm) -> PyResult<Parts> {
-    let study = interruptible(py, |_| Ok(()), |_| Study::of(&arm.given))?.map_err(wrong)?;
+pub(crate) fn source_figures(py: Python<'_>, arm: &Arm, at_highest: bool, faster: Vec<f64>) -> PyResult<Parts> {
+    let shown = Shown { at_highest, faster };
+    let study = interruptible(py, |_| Ok(()), |_| Study::of(&arm.given, &shown))?.map_err(wrong)?;
     let figures = study.figures().map(|figure| (figure.name, Figure::new(figure.scene), figure.csv));
     let claims = study.claims.iter().map(|claim| (claim.statement, claim.finding.words(), claim.evidence.clone()));
     Ok((figures.into(), claims.collect()))

@@ -225,7 +225,7 @@ mod tests {
         let wrong = problem(r#"{ "arm": { "length": null } }"#);
         assert!(wrong.message.contains("null"));
         let wrong = problem(r#""papper""#);
-        assert!(wrong.message.contains("one of paper, silicone"), "{}", wrong.message);
+        assert!(wrong.message.contains("one of paper, paper-statements, silicone"), "{}", wrong.message);
 
         let settings = Settings::from([("flow.sped".to_owned(), Setting::Number(1.0))]);
         let file = ArmSource::Name("paper".to_owned()).file().unwrap();

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use hydrostat::{Arm, Cavity, Configuration, FlowLaw, Gravity, Options, Profile, SolveError, Solver, VerdictKind};
 use rayon::prelude::*;
 
-use crate::loads::{Pair, cross, sectional, spread, stream_load, weight};
+use crate::loads::{Pair, cross, sectional, spread, stream_load, switches, weight};
 use crate::numbers::{larger, size};
 use crate::report::{Check, Row, Section, Table};
 use crate::{Listener, Scope, readings, shipped};
@@ -35,7 +35,8 @@ pub fn residuals(solved: &Configuration) -> Residuals {
     let arm = &solved.arm;
     let scale = sizes(solved);
     let base = solved.at(0.0);
-    let total = beyond(solved, 0.0, scale);
+    let pieces = pieces(solved);
+    let total = beyond(solved, 0.0, &pieces, scale);
     let reaction = &solved.base_reaction;
     let about_base = total[2] - cross([base.x, base.y], [total[0], total[1]]);
     let whole = worst([
@@ -47,7 +48,7 @@ pub fn residuals(solved: &Configuration) -> Residuals {
     for k in 0..12 {
         let s = arm.length * (f64::from(k) + 0.37) / 12.0;
         let st = solved.at(s);
-        let want = beyond(solved, s, scale);
+        let want = beyond(solved, s, &pieces, scale);
         let got = sectional(arm, &st);
         let about = want[2] - cross([st.x, st.y], [want[0], want[1]]);
         let [n1, n2, m] = got.carried;
@@ -96,8 +97,38 @@ fn integral(f: &dyn Fn(f64) -> [f64; 3], from: f64, to: f64, allowed: [f64; 3], 
     [0, 1, 2].map(|k| left[k] + right[k])
 }
 
+/// Places between which the spread loads are smooth: those of the arm's own steps, and where a switch of the stream's load
+/// changes sign. A rule that bisects comes no nearer to a jump than its last halving, 6e-5 of the length.
+fn pieces(solved: &Configuration) -> Vec<f64> {
+    const SAMPLES: u32 = 512;
+    let arm = &solved.arm;
+    let mut out = arm.breaks();
+    if arm.flow.speed > 0.0 {
+        let at = |s: f64| switches(arm, &solved.at(s));
+        let samples: Vec<f64> = (0..=SAMPLES).map(|k| arm.length * f64::from(k) / f64::from(SAMPLES)).collect();
+        let values: Vec<[f64; 3]> = samples.iter().map(|s| at(*s)).collect();
+        for (ends, values) in samples.windows(2).zip(values.windows(2)) {
+            for k in 0..3 {
+                if values[0][k] * values[1][k] >= 0.0 {
+                    continue;
+                }
+                let (mut low, mut high) = (ends[0], ends[1]);
+                for _ in 0..50 {
+                    let middle = 0.5 * (low + high);
+                    let same = at(middle)[k] * values[0][k] > 0.0;
+                    if same { low = middle } else { high = middle }
+                }
+                out.push(high);
+            }
+        }
+    }
+    out.push(arm.length);
+    out.sort_by(f64::total_cmp);
+    out
+}
+
 /// What the spread loads and the tip add up to beyond `from`: force and moment about the origin.
-fn beyond(solved: &Configuration, from: f64, scale: Pair) -> [f64; 3] {
+fn beyond(solved: &Configuration, from: f64, pieces: &[f64], scale: Pair) -> [f64; 3] {
     let arm = &solved.arm;
     let tip = solved.tip();
     let (a, b) = ([tip.theta.cos(), tip.theta.sin()], [-tip.theta.sin(), tip.theta.cos()]);
@@ -105,8 +136,7 @@ fn beyond(solved: &Configuration, from: f64, scale: Pair) -> [f64; 3] {
     let mut total = [force[0], force[1], arm.tip.moment + cross([tip.x, tip.y], force)];
     let allowed = [1e-9 * scale[0], 1e-9 * scale[0], 1e-9 * scale[1]];
     let mut places = vec![from];
-    places.extend(arm.breaks().into_iter().filter(|s| *s > from));
-    places.push(arm.length);
+    places.extend(pieces.iter().filter(|s| **s > from));
     for piece in places.windows(2) {
         // No point lies on the ends, where `at` gives the tip's side of a step.
         let part = integral(&|s| spread(arm, &solved.at(s)), piece[0], piece[1], allowed, 14);
@@ -136,9 +166,11 @@ fn sizes(solved: &Configuration) -> Pair {
 /// What a balance may be off by at the tolerance 1e-8.
 const ALLOWED: f64 = 1e-6;
 
-/// The same where the reading makes loads that jump: an answer is unique only within a gap there, and at a tie of both sides the solver's load is
-/// between those of either side.
-const ALLOWED_AT_JUMPS: f64 = 2e-4;
+/// The same where the reading makes loads that jump. Which side of the jump a section is on depends on beta', and beta' on the load: between the
+/// places at which the one and the other load change sides, neither or both would do. That gap is about
+/// R df / (C1 A) |U| / |u_t'| wide, no tolerance closes it, and the solver's node lies in it. For `silicone` with `closure = "literal"`, where df = 0.05 N/m, it is
+/// 3.4e-6 of the length at tolerances from 1e-7 to 1e-11, and a residual of 1.0e-6.
+const ALLOWED_AT_JUMPS: f64 = 1e-5;
 
 /// Arms with all kinds of loads, under every reading of the source.
 fn arms(scope: Scope) -> Vec<Arm> {
@@ -216,7 +248,7 @@ pub(crate) fn section(scope: Scope, listener: &dyn Listener) -> Section {
         "Residuals over the largest force and moment in play, at tol 1e-8",
         "the loads of docs/model.md, sections 2 to 7, written out a second time in crates/validate/src/loads.rs and integrated by an \
          adaptive Gauss-Kronrod rule. The larger of whole and parts is checked; where a \
-         reading makes loads that jump, answers are unique only within a gap, and 2e-4 is allowed as for the references.",
+         reading makes loads that jump, answers are unique only within a gap of some 1e-6 of the length, and 1e-5 is allowed.",
         &["arm and reading", "whole", "parts", "section law"],
     );
     for row in rows {

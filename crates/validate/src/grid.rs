@@ -134,7 +134,7 @@ pub(crate) fn section(scope: Scope, listener: &dyn Listener) -> Section {
     let mut cells = vec!["all".to_owned()];
     cells.extend(names.iter().map(|name| all.iter().filter(|(own, _)| own == name).count().to_string()));
     cells.extend([total.to_string(), "100.00".to_owned()]);
-    table.push(Row::new(cells).checked(Check::so(arms.len() == 4 && total > 0)));
+    table.push(Row::new(cells).checked(Check::so(arms.len() == 5 && total > 0)));
     section.table(table);
     let lost: Vec<&str> = all
         .iter()

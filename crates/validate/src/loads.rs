@@ -24,8 +24,8 @@ fn sign(v: f64) -> f64 {
 
 /// The load of the stream per undeformed length, (7)-(10) with the water resisting.
 pub(crate) fn stream_load(arm: &Arm, st: &Station) -> Pair {
-    let (a, b) = ([st.theta.cos(), st.theta.sin()], [-st.theta.sin(), st.theta.cos()]);
-    let stream = [arm.flow.speed * arm.flow.direction.cos(), arm.flow.speed * arm.flow.direction.sin()];
+    let (a, b) = axes(st);
+    let stream = stream(arm);
     let radius = arm.radius.at(st.s, arm.length);
     let speed = st.nu.hypot(st.eta);
     let wet = if arm.readings.wetted_length == WettedLength::Deformed { speed } else { 1.0 };
@@ -56,18 +56,52 @@ pub(crate) fn stream_load(arm: &Arm, st: &Station) -> Pair {
     if arm.readings.flow_surface == FlowSurface::Centreline {
         return on(st.nu, st.eta, &|v| v);
     }
-    let tangent = |sigma: f64| {
-        let widening = st.beta_slope * radius.value + st.beta * radius.slope;
-        (st.nu - sigma * st.beta * radius.value * st.mu, st.eta + sigma * widening)
-    };
-    let outward = |sigma: f64| {
-        let (x, y) = tangent(sigma);
-        let u = [x * a[0] + y * b[0], x * a[1] + y * b[1]];
-        sigma * dot(stream, [-u[1], u[0]]) / x.hypot(y)
-    };
-    let sigma = if outward(1.0) < outward(-1.0) { 1.0 } else { -1.0 };
-    let (x, y) = tangent(sigma);
+    let sigma = if outward(arm, st, 1.0) < outward(arm, st, -1.0) { 1.0 } else { -1.0 };
+    let (x, y) = lateral(arm, st, sigma);
     on(x, y, &|v| if sigma * v < 0.0 { v } else { 0.0 })
+}
+
+fn axes(st: &Station) -> (Pair, Pair) {
+    ([st.theta.cos(), st.theta.sin()], [-st.theta.sin(), st.theta.cos()])
+}
+
+fn stream(arm: &Arm) -> Pair {
+    [arm.flow.speed * arm.flow.direction.cos(), arm.flow.speed * arm.flow.direction.sin()]
+}
+
+/// The tangent of a lateral surface, along a and b.
+fn lateral(arm: &Arm, st: &Station, sigma: f64) -> (f64, f64) {
+    let radius = arm.radius.at(st.s, arm.length);
+    let widening = st.beta_slope * radius.value + st.beta * radius.slope;
+    (st.nu - sigma * st.beta * radius.value * st.mu, st.eta + sigma * widening)
+}
+
+/// The stream's speed out of a lateral surface.
+fn outward(arm: &Arm, st: &Station, sigma: f64) -> f64 {
+    let (a, b) = axes(st);
+    let (x, y) = lateral(arm, st, sigma);
+    let u = [x * a[0] + y * b[0], x * a[1] + y * b[1]];
+    sigma * dot(stream(arm), [-u[1], u[0]]) / x.hypot(y)
+}
+
+/// Where one of these changes sign the load of the stream kinks or jumps: the stream's speed along the surface and
+/// into it, and on lateral surfaces which side is windward.
+pub(crate) fn switches(arm: &Arm, st: &Station) -> [f64; 3] {
+    let (a, b) = axes(st);
+    let stream = stream(arm);
+    let on = |(x, y): (f64, f64)| {
+        let size = x.hypot(y);
+        let u = [(x * a[0] + y * b[0]) / size, (x * a[1] + y * b[1]) / size];
+        [dot(stream, u), dot(stream, [-u[1], u[0]])]
+    };
+    if arm.readings.flow_surface == FlowSurface::Centreline {
+        let [along, across] = on((st.nu, st.eta));
+        return [along, across, 1.0];
+    }
+    let sides = [1.0, -1.0].map(|sigma| outward(arm, st, sigma));
+    let sigma = if sides[0] < sides[1] { 1.0 } else { -1.0 };
+    let [along, across] = on(lateral(arm, st, sigma));
+    [along, across, sides[0] - sides[1]]
 }
 
 /// Weight less buoyancy per undeformed length.

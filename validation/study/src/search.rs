@@ -26,7 +26,7 @@ pub struct Found {
 
 impl Found {
     fn of(number: u64, set: Set) -> Self {
-        Self { number, set, outcome: judge(&set, TOL) }
+        Self { number, set, outcome: judge(&set.arm(0.0, 0.0), TOL) }
     }
 
     /// [`Judged::shortfall`]; infinite where the published angle is not reached.

@@ -1,7 +1,5 @@
 //! What the source leaves open, and the arm that it makes.
 
-use std::f64::consts::PI;
-
 use hydrostat::{
     Arm, Cable, EnteringSpeed, FlowSurface, LayerMean, Material, Profile, Readings, Support, Volume, WettedLength,
 };
@@ -120,12 +118,6 @@ impl Set {
         let [base, _] = self.radii();
         let at_base = self.bending * self.c1 * base * base / 4.0;
         [at_base, at_base * self.taper.powf(self.bending_taper)]
-    }
-
-    /// C2 times the area of the tip section, N: what the tension at which that section shears compares with.
-    pub fn tip_shear_stiffness(&self) -> f64 {
-        let [_, tip] = self.radii();
-        self.shear * self.c1 * PI * tip * tip
     }
 
     /// The arm: its left cable pulled with `tension` (N), its right one slack, in a stream of `speed` (m/s) along it.

@@ -1,8 +1,8 @@
 //! What the source says of its figure, as numbers of a set.
 
-use hydrostat::{Configuration, Options, SolveError, Solver};
+use std::f64::consts::PI;
 
-use crate::set::{LENGTH, Set};
+use hydrostat::{Arm, Configuration, Material, Options, Profile, SolveError, Solver};
 
 /// alpha(L) at the highest tension, deg (published).
 pub const TIP_ANGLE: f64 = 72.25;
@@ -130,12 +130,13 @@ impl Judged {
     }
 }
 
-/// Holds all statements against a set, to a tip error of `tol` over the length.
+/// Holds all statements against an arm, of which the first cable is pulled and the others are slack, to a tip error of `tol` over
+/// the length. What its tensions, their limits and its stream's speed are does not matter.
 ///
 /// # Errors
 /// [`Miss`] where the published angle is not reached, or one of the shapes that are compared does not exist.
-pub fn judge(set: &Set, tol: f64) -> Result<Judged, Miss> {
-    let bench = Bench { set, tol };
+pub fn judge(arm: &Arm, tol: f64) -> Result<Judged, Miss> {
+    let bench = Bench { arm, tol };
     let highest = bench.highest()?;
     let tension = highest.arm.cables[0].tension;
     let at = |share: f64, speed: f64| bench.solved(share * tension, speed);
@@ -210,8 +211,10 @@ pub fn compare(slow: &Configuration, fast: &Configuration) -> [(Statement, f64);
 
 /// How far the tip is from its place in the straight arm (over L), and how far it is turned (rad).
 fn deformation(c: &Configuration) -> [f64; 2] {
-    let tip = c.tip();
-    [(tip.x - LENGTH).hypot(tip.y) / LENGTH, tip.theta.abs()]
+    let (tip, base, length) = (c.tip(), c.arm.base, c.arm.length);
+    let (sin, cos) = base.angle.sin_cos();
+    let moved = (tip.x - base.x - length * cos).hypot(tip.y - base.y - length * sin);
+    [moved / length, (tip.theta - base.angle).abs()]
 }
 
 /// alpha(L), deg.
@@ -221,7 +224,17 @@ pub fn tip_angle(c: &Configuration) -> f64 {
 
 /// alpha(s) at even stations, deg.
 pub fn alphas(c: &Configuration) -> Vec<f64> {
-    (0..STATIONS).map(|k| c.at(LENGTH * k as f64 / (STATIONS - 1) as f64).alpha.to_degrees()).collect()
+    (0..STATIONS).map(|k| c.at(c.arm.length * k as f64 / (STATIONS - 1) as f64).alpha.to_degrees()).collect()
+}
+
+/// C2 times the area of the tip section, N: what the tension at which that section shears compares with.
+fn tip_shear_stiffness(arm: &Arm) -> f64 {
+    let at_tip = |profile: &Profile| profile.at(arm.length, arm.length).value;
+    let c2 = match &arm.material {
+        Material::Coefficients { c2, .. } => at_tip(c2),
+        Material::Homogeneous { young, poisson, shear_factor } => shear_factor * young / (2.0 * (1.0 + poisson)),
+    };
+    c2 * PI * at_tip(&arm.radius).powi(2)
 }
 
 fn share_of(flags: impl Iterator<Item = bool>) -> f64 {
@@ -229,9 +242,9 @@ fn share_of(flags: impl Iterator<Item = bool>) -> f64 {
     f64::from(set) / f64::from(all.max(1))
 }
 
-/// Solves for a set.
+/// Solves for an arm.
 struct Bench<'a> {
-    set: &'a Set,
+    arm: &'a Arm,
     tol: f64,
 }
 
@@ -242,7 +255,14 @@ impl Bench<'_> {
 
     /// The shape, or why there is none and the last one before that.
     fn tried(&self, tension: f64, speed: f64) -> Result<Configuration, Box<(Miss, Option<Configuration>)>> {
-        let found = Solver::new(&self.set.arm(tension, speed), Options { tol: self.tol }).and_then(|mut s| s.solve());
+        let mut arm = self.arm.clone();
+        arm.flow.speed = speed;
+        for (k, cable) in arm.cables.iter_mut().enumerate() {
+            cable.tension = if k == 0 { tension } else { 0.0 };
+            // The statements are asked wherever the tension leads.
+            cable.max_tension = None;
+        }
+        let found = Solver::new(&arm, Options { tol: self.tol }).and_then(|mut s| s.solve());
         found.map_err(|error| match error {
             SolveError::NoEquilibrium(no) => {
                 let angle = no.last_good.as_ref().map_or(0.0, tip_angle);
@@ -256,7 +276,7 @@ impl Bench<'_> {
     fn highest(&self) -> Result<Configuration, Miss> {
         let mut low = (0.0, -TIP_ANGLE);
         let mut found = None;
-        let mut tension = GENTLE * self.set.tip_shear_stiffness();
+        let mut tension = GENTLE * tip_shear_stiffness(self.arm);
         for _ in 0..DOUBLINGS {
             let (shape, miss) = match self.tried(tension, SPEEDS[0]) {
                 Ok(shape) => (Some(shape), None),

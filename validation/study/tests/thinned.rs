@@ -1,5 +1,8 @@
 //! The study on few sets: its answers are those of its parts.
 
+use hydrostat::{Options, Readings, Solver};
+use hydrostat_files::{ArmFile, shipped};
+use hydrostat_study::statements::compare;
 use hydrostat_study::{Drawn, Set, Statement, judge, refine, report, sample};
 
 /// The shipped arm `paper` as a set: what is known of it is found again.
@@ -9,7 +12,7 @@ fn the_shipped_arm_is_judged_as_its_claims_are() {
     (paper.slenderness, paper.taper) = (0.05, 0.08);
     (paper.base_offset, paper.tip_offset) = (0.8, 0.125);
     (paper.c1, paper.shear, paper.bending, paper.bending_taper) = (500e3, 1.0 / 3.0, 12.0, 0.0);
-    let judged = judge(&paper, 1e-9).unwrap();
+    let judged = judge(&paper.arm(0.0, 0.0), 1e-9).unwrap();
     println!("{judged:?}");
     assert!((judged.tension - 86.24).abs() < 0.01, "{}", judged.tension);
     let failing = judged.failing(true);
@@ -18,7 +21,7 @@ fn the_shipped_arm_is_judged_as_its_claims_are() {
         assert!(!failing.contains(&held), "{held:?}");
     }
     // Word by word, the base bends nothing without a stream: the angle is not reached, or more stream deforms more.
-    let literal = judge(&paper.with_unstrained_base(), 1e-8);
+    let literal = judge(&paper.with_unstrained_base().arm(0.0, 0.0), 1e-8);
     println!("{literal:?}");
     assert!(literal.is_err() || !literal.unwrap().failing(true).is_empty());
 }
@@ -45,6 +48,35 @@ fn a_sample_is_drawn_judged_and_written() {
     assert!(report::summary(&drawn, &[best, Vec::new()]).contains("48 sets drawn"));
 }
 
+/// What the arm that ships for it says of itself, at every one of the stations, in streams of 0.5 and 1 m/s; and with still water beside them.
+#[test]
+fn the_shipped_arm_satisfies_all_statements_at_the_highest_tension() {
+    let text = shipped::get("paper-statements").unwrap();
+    let arm = ArmFile::parse(text, "paper-statements").unwrap().arm().unwrap();
+    assert_eq!(arm.readings, Readings::default());
+    let judged = judge(&arm, 1e-9).unwrap();
+    println!("{judged:?}");
+    assert!(judged.failing(false).is_empty(), "{:?}", judged.failing(false));
+    assert_eq!((judged.growing, judged.smaller), (1.0, 1.0));
+    assert!((judged.tension - arm.cables[0].tension).abs() < 0.01, "{}", judged.tension);
+    // By how much, as README.md has it: deformation over L or in rad, alpha(L) in deg, its growth a length, alpha(s) in deg.
+    let margins = &judged.margins(false)[Statement::DeformsLess as usize..];
+    for (margin, known) in margins.iter().zip([0.0114, 0.0200, 0.0268, 0.0200]) {
+        assert!((margin - known).abs() < 1e-4, "{margins:?}");
+    }
+    assert!((judged.least_stretch - 0.190).abs() < 1e-3 && (judged.fold_margin - 0.108).abs() < 1e-3, "{judged:?}");
+    let shape = |speed: f64| {
+        let mut arm = arm.clone();
+        (arm.flow.speed, arm.cables[0].tension) = (speed, judged.tension);
+        Solver::new(&arm, Options { tol: 1e-9 }).unwrap().solve().unwrap()
+    };
+    for (statement, margin) in compare(&shape(0.0), &shape(0.5)) {
+        assert!(margin > 0.0, "{statement:?}: {margin}");
+    }
+    // Pulled less, its base is sheared by the stream as that of other arms.
+    assert!(!judged.failing(true).is_empty());
+}
+
 /// What `README.md` says of the best set that was found.
 #[test]
 #[expect(clippy::unreadable_literal, reason = "coordinates as the search found them")]
@@ -64,7 +96,7 @@ fn the_best_set_satisfies_all_statements_at_the_highest_tension() {
         0.17672896676231176,
         0.7003339064540341,
     ]);
-    let judged = judge(&best, 1e-9).unwrap();
+    let judged = judge(&best.arm(0.0, 0.0), 1e-9).unwrap();
     println!("{judged:?}");
     assert!(judged.failing(false).is_empty(), "{:?}", judged.failing(false));
     assert!((judged.tension - 53.246).abs() < 0.01 && judged.fold_margin > 0.45);

@@ -1,26 +1,22 @@
-//! `hydrostat figures`: the source's Fig. 1 as SVG, PNG and CSV.
+//! `hydrostat figures`: the source's Fig. 1 as SVG, PNG and CSV, and what its text says about it.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
-use hydrostat_figures::source::Study;
-use hydrostat_files::{ArmFile, shipped, write_whole};
+use hydrostat_figures::source::{Claim, Finding, Shown, Study};
+use hydrostat_files::write_whole;
 
 use crate::args::FiguresArgs;
-use crate::output;
+use crate::{output, request};
 
 pub(crate) fn run(args: &FiguresArgs) -> anyhow::Result<()> {
+    let shown = Shown { at_highest: args.at_highest, faster: args.faster.clone() };
+    let arm = request::arm_file(&args.arm)?.arm()?;
     output::make_directory(&args.output)?;
-    let files = write(&study()?, &args.output)?;
-    let mut out = files.join("\n");
-    out.push('\n');
+    let study = Study::of(&arm, &shown)?;
+    let files = write(&study, &args.output)?;
+    let out = format!("{}\n{}\n", table(&study.claims), files.join("\n"));
     Ok(output::print(&out)?)
-}
-
-/// The shapes of the source's figure, solved.
-pub(super) fn study() -> anyhow::Result<Study> {
-    const NAME: &str = "paper";
-    let text = shipped::get(NAME).unwrap_or_default();
-    Ok(Study::of(&ArmFile::parse(text, NAME)?.arm()?)?)
 }
 
 /// Writes nine files and says which.
@@ -36,4 +32,44 @@ pub(super) fn write(study: &Study, directory: &Path) -> anyhow::Result<Vec<Strin
         }
     }
     Ok(files)
+}
+
+const WIDTH: usize = 100;
+const INDENT: usize = 19;
+
+/// The claims, one below the other: finding, statement, numbers.
+pub(super) fn table(claims: &[Claim]) -> String {
+    let mut out = "What the source says about its Fig. 1, and what the model gives\n\n".to_owned();
+    for claim in claims {
+        let mut finding = claim.finding.words();
+        for line in wrapped(claim.statement, WIDTH - INDENT) {
+            let _ = writeln!(out, "{finding:INDENT$}{line}");
+            finding = "";
+        }
+        for line in wrapped(&claim.evidence, WIDTH - INDENT - 2) {
+            let _ = writeln!(out, "{:INDENT$}  {line}", "");
+        }
+    }
+    let count = |finding: Finding| claims.iter().filter(|c| c.finding == finding).count();
+    let all = [Finding::Holds, Finding::InPart, Finding::DoesNotHold, Finding::Open];
+    let counts: Vec<String> = all.iter().map(|f| format!("{}: {}", f.words(), count(*f))).collect();
+    let _ = writeln!(out, "\n{}", counts.join(", "));
+    out
+}
+
+/// `text` in lines of at most `width` characters.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().expect("never empty");
+        if line.is_empty() {
+            line.push_str(word);
+        } else if line.chars().count() + 1 + word.chars().count() <= width {
+            line.push(' ');
+            line.push_str(word);
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
 }

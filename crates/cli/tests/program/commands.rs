@@ -4,7 +4,7 @@ use std::io::Read as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::{directory, files, hydrostat, hydrostat_in, picture, solved};
+use super::{directory, files, hydrostat, hydrostat_in, picture, refused, solved};
 
 const NINE: [&str; 9] = [
     "fig1a.csv",
@@ -56,17 +56,39 @@ fn figures_go_where_they_are_asked_to() {
     let directory = directory();
     let run = hydrostat_in(directory.path(), &["figures", "-o", "deep/er"]);
     assert_eq!(run.code, 0, "{}", run.err);
-    assert_eq!(run.out.lines().count(), 9);
+    assert_eq!(run.out.lines().filter(|line| line.starts_with("deep/er/fig1")).count(), 9);
+    assert!(run.out.contains("holds in part"), "{}", run.out);
     check_figures(&directory.path().join("deep/er"));
     let svg = std::fs::read_to_string(directory.path().join("deep/er/fig1a.svg")).unwrap();
     assert!(svg.contains("α(L) = 72.25°") && svg.contains("α(L) = 0.00°"));
+}
+
+/// The arm that was found for it: all that the source says of its figure, in a faster stream and at the highest tension.
+#[test]
+fn every_statement_about_the_figure_holds_on_one_shipped_arm() {
+    let directory = directory();
+    let run = hydrostat_in(directory.path(), &["figures", "paper-statements", "--at-highest", "--faster", "1"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let text = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in ["(1a).", "(15).", "(1b).", "(1c)."] {
+        assert!(text.contains(part), "{part}: {}", run.out);
+    }
+    // Findings stand in a column of their own; the two last ones are the source's conclusions, which are about more than the figure.
+    let findings: Vec<&str> = run.out.lines().skip(1).filter_map(|line| line.get(..19)).map(str::trim).collect();
+    let findings: Vec<&str> = findings.into_iter().filter(|word| !word.is_empty()).take(10).collect();
+    assert_eq!(findings[..8], ["holds"; 8], "{}", run.out);
+    assert_eq!(findings[8..], ["holds in part", "cannot be decided"], "{}", run.out);
+    assert_eq!(files(&directory.path().join("figures")), NINE);
+    let message = refused(&["figures", "--faster", "0.2"]);
+    assert!(message.contains("expected rising speeds above 0.5 m/s"), "{message}");
+    assert!(refused(&["figures", "octopus"]).contains("turns the tip section by 72.25 deg"));
 }
 
 #[test]
 fn shipped_arms_are_listed_printed_and_valid() {
     let list = solved(&["arms"]).out;
     let names: Vec<&str> = list.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
-    assert_eq!(names, ["paper", "silicone", "multi-bending", "octopus"]);
+    assert_eq!(names, ["paper", "paper-statements", "silicone", "multi-bending", "octopus"]);
     let directory = directory();
     for name in names {
         let text = solved(&["arms", name]).out;

@@ -295,9 +295,9 @@ fn paths_of_targets_that_are_none_are_refused() {
 
 /// Changes of the arms that are shipped, each from its own seed: what the parser lets through is solved.
 fn changed_arms(count: u64) {
-    let names = ["paper", "silicone", "multi-bending", "octopus"];
+    let names = ["paper", "paper-statements", "silicone", "multi-bending", "octopus"];
     for seed in 0..count {
-        let name = names[usize::try_from(seed % 4).unwrap()];
+        let name = names[usize::try_from(seed).unwrap() % names.len()];
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../arms").join(format!("{name}.toml"));
         let mut text = std::fs::read(path).unwrap();
         let dice = bytes_of(0x9e37_79b9_7f4a_7c15 ^ (seed + 1), 64);

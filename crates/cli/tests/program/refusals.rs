@@ -5,7 +5,7 @@ use super::{directory, files, hydrostat, hydrostat_in, refused};
 #[test]
 fn unknown_arms_are_answered_with_the_known_ones() {
     let message = refused(&["solve", "silicon"]);
-    for name in ["paper", "silicone", "multi-bending", "octopus", "did you mean `silicone`?"] {
+    for name in ["paper", "paper-statements", "silicone", "multi-bending", "octopus", "did you mean `silicone`?"] {
         assert!(message.contains(name), "{message}");
     }
     assert!(!refused(&["solve", "zzz"]).contains("did you mean"));

@@ -2,7 +2,7 @@
 
 use hydrostat::Configuration;
 
-use super::{SPEED, Study, speed, tension};
+use super::{SPEED, Study, TIP_ANGLE, speed, tension};
 use crate::arm_figure::{degrees, short};
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, Label};
@@ -16,7 +16,10 @@ const WIDTH: f64 = 450.0;
 const MARGIN: f64 = 10.0;
 const LINE: f64 = 13.0;
 /// Said on every part: the numbers are not the source's.
-const NOTE: &str = "Parameters found by trial; published are only the stream of 0.5 m/s and 72.25°.";
+fn note(study: &Study) -> String {
+    let arm = study.raised.first().map_or("", |c| c.arm.name.as_str());
+    format!("Arm {arm}, parameters found by trial; published are only the stream of {SPEED} m/s and {TIP_ANGLE}°.")
+}
 
 /// Fig. 1a: tension raised in one stream.
 pub(super) fn raised(study: &Study) -> Scene {
@@ -32,7 +35,7 @@ pub(super) fn raised(study: &Study) -> Scene {
             Member { configuration: c, color: ordered(i, count), label }
         })
         .collect();
-    arms("Fig. 1a", &heading, &shapes)
+    arms("Fig. 1a", &heading, &shapes, &note(study))
 }
 
 /// Fig. 1b: one tension in ever faster streams.
@@ -50,7 +53,7 @@ pub(super) fn faster(study: &Study) -> Scene {
             Member { configuration: c, color: speed_color(i), label }
         })
         .collect();
-    arms("Fig. 1b", &heading, &shapes)
+    arms("Fig. 1b", &heading, &shapes, &note(study))
 }
 
 /// The colour of the speed `index`; 0.5 m/s is the blue one, as in the source.
@@ -66,7 +69,7 @@ struct Member<'a> {
 }
 
 /// Several arms on equal axes, each with a label at its tip.
-fn arms(part: &str, heading: &Label, shapes: &[Member<'_>]) -> Scene {
+fn arms(part: &str, heading: &Label, shapes: &[Member<'_>], note: &str) -> Scene {
     let outlines: Vec<Outline> = shapes.iter().map(|m| Outline::new(m.configuration, 26)).collect();
     let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).collect();
     let [x, y] = bounds(&all);
@@ -77,7 +80,7 @@ fn arms(part: &str, heading: &Label, shapes: &[Member<'_>]) -> Scene {
     let mut scene = Scene::new(WIDTH, axes.frame.bottom + BELOW + LINE + MARGIN, format!("{part}: {heading}"));
     header(&mut scene, part, heading);
     cable_key(&mut scene, MARGIN + LINE + 2.0 + CAP_HEIGHT * TEXT_SIZE);
-    footer(&mut scene);
+    footer(&mut scene, note);
     axes.draw(&mut scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
     let mut page = Occupied::new(axes.frame.grown(-3.0));
     for (outline, Member { configuration, color, .. }) in outlines.iter().zip(shapes) {
@@ -117,9 +120,9 @@ fn header(scene: &mut Scene, part: &str, heading: &Label) {
     scene.text(&label, [LEFT, MARGIN + CAP_HEIGHT * 9.5], Anchor::Start, 9.5);
 }
 
-fn footer(scene: &mut Scene) {
+fn footer(scene: &mut Scene, note: &str) {
     let at = [LEFT, scene.height - MARGIN];
-    scene.text_in(&Label::plain(NOTE), at, Anchor::Start, 7.0, GREY, false);
+    scene.text_in(&Label::plain(note), at, Anchor::Start, 7.0, GREY, false);
 }
 
 fn cable_key(scene: &mut Scene, baseline: f64) {
@@ -141,12 +144,12 @@ fn cable_key(scene: &mut Scene, baseline: f64) {
 
 /// Fig. 1c: alpha(s), whole on the left, enlarged where the speeds part on the right.
 pub(super) fn angles(study: &Study) -> Scene {
-    let top = MARGIN + 3.0 * LINE + 8.0;
+    let rows = study.rows();
+    let top = MARGIN + (1.0 + rows.len() as f64) * LINE + 8.0;
     let height = 190.0;
     let gap = 46.0;
     let width = 0.5 * (WIDTH - LEFT - MARGIN - gap);
     let frame = |left: f64| Rect { left, top, right: left + width, bottom: top + height };
-    let rows = [&study.faster, &study.faster_highest];
     let length = 1e3 * study.faster.first().map_or(1.0, |c| c.arm.length);
     let curves: Vec<(usize, usize, Vec<[f64; 2]>)> = rows
         .iter()
@@ -165,13 +168,13 @@ pub(super) fn angles(study: &Study) -> Scene {
     let heading = Label::math("Section rotation $α$($s$) along the arm");
     let mut scene = Scene::new(WIDTH, top + height + BELOW + LINE + MARGIN, format!("Fig. 1c: {heading}"));
     header(&mut scene, "Fig. 1c", &heading);
-    footer(&mut scene);
-    angle_key(&mut scene, study, &rows);
+    footer(&mut scene, &note(study));
+    angle_key(&mut scene, &rows);
     for (axes, title) in [(&whole, "$α$ (°)"), (&enlarged, "$α$ (°), enlarged")] {
         axes.draw(&mut scene, &Label::math("$s$ (mm)"), &Label::math(title));
         for (row, i, points) in &curves {
             for part in axes.clipped(points) {
-                scene.line(&part, angle_stroke(*row, *i));
+                scene.line(&part, angle_stroke(*row + 1 == rows.len(), *i));
             }
         }
     }
@@ -181,9 +184,9 @@ pub(super) fn angles(study: &Study) -> Scene {
     scene
 }
 
-fn angle_stroke(row: usize, index: usize) -> Stroke {
+fn angle_stroke(highest: bool, index: usize) -> Stroke {
     let color = speed_color(index);
-    if row == 1 { Stroke::solid(color, 1.0) } else { Stroke::dashed(color, 1.0, [4.0, 2.0]) }
+    if highest { Stroke::solid(color, 1.0) } else { Stroke::dashed(color, 1.0, [4.0, 2.0]) }
 }
 
 /// alpha (deg) over s (mm).
@@ -194,16 +197,16 @@ fn curve(c: &Configuration) -> Vec<[f64; 2]> {
     places.iter().map(|s| [1e3 * s, c.at(*s).alpha.to_degrees()]).collect()
 }
 
-fn angle_key(scene: &mut Scene, study: &Study, rows: &[&Vec<Configuration>; 2]) {
-    for (line, row) in [1, 0].into_iter().enumerate() {
+fn angle_key(scene: &mut Scene, rows: &[&[Configuration]]) {
+    for (line, row) in rows.iter().rev().enumerate() {
         let baseline = MARGIN + 2.0 + (line as f64 + 1.0) * LINE + CAP_HEIGHT * TEXT_SIZE;
         let middle = baseline - 0.5 * CAP_HEIGHT * TEXT_SIZE;
-        let value = rows[row].first().map_or(0.0, tension);
+        let value = row.first().map_or(0.0, tension);
         let name = Label::math(&format!("$T_1$ = {} N:", short(value)));
         scene.text(&name, [LEFT, baseline], Anchor::Start, TEXT_SIZE);
         let mut x = LEFT + 68.0;
-        for (i, c) in study.faster.iter().enumerate() {
-            scene.line(&[[x, middle], [x + 18.0, middle]], angle_stroke(row, i));
+        for (i, c) in row.iter().enumerate() {
+            scene.line(&[[x, middle], [x + 18.0, middle]], angle_stroke(line == 0, i));
             let label = Label::plain(format!("{} m/s", speed(c)));
             scene.text(&label, [x + 22.0, baseline], Anchor::Start, TEXT_SIZE);
             x += 76.0;

@@ -2,7 +2,8 @@
 
 use hydrostat::{Arm, Configuration, Volume};
 
-use super::{RESOLUTION, SPEED, Study, StudyError, TIP_ANGLE, loaded, solved, speed, tension, tip_angle};
+use super::{RESOLUTION, SPEED, Study, TIP_ANGLE, loaded, solved, speed, tension, tip_angle};
+use crate::arm_figure::short;
 
 /// What became of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -50,8 +51,8 @@ pub struct Claim {
 
 const SAMPLES: u32 = 400;
 
-pub(super) fn judge(study: &Study, arm: &Arm) -> Result<Vec<Claim>, StudyError> {
-    Ok(vec![
+pub(super) fn judge(study: &Study, arm: &Arm) -> Vec<Claim> {
+    vec![
         more_tension(study),
         straight_tip(study),
         tip_rises(study),
@@ -61,8 +62,8 @@ pub(super) fn judge(study: &Study, arm: &Arm) -> Result<Vec<Claim>, StudyError> 
         grows_along(study),
         locally_smaller(study),
         fluid_matters(study),
-        precision(study, arm)?,
-    ])
+        precision(study, arm),
+    ]
 }
 
 /// How far the tip has left its place in the straight arm, mm.
@@ -90,7 +91,7 @@ fn more_tension(study: &Study) -> Claim {
         finding: Finding::of(held, 2 * (bend.len() - 1)),
         evidence: format!(
             "T1 = {} N: the tip is displaced by {} mm and turned by {} deg.",
-            joined(study.raised.iter().map(|c| crate::arm_figure::short(tension(c)))),
+            joined(study.raised.iter().map(|c| short(tension(c)))),
             joined(off.iter().map(|v| format!("{v:.1}"))),
             joined(bend.iter().map(|v| format!("{v:.1}"))),
         ),
@@ -150,7 +151,7 @@ fn less_deformed(study: &Study) -> Claim {
         finding: Finding::of(2 * steps - rising(&bend) - rising(&off), 2 * steps),
         evidence: format!(
             "T1 = {} N in {} m/s: the tip is displaced by {} mm and turned by {} deg.",
-            study.faster.first().map_or(0.0, tension),
+            short(study.faster.first().map_or(0.0, tension)),
             joined(study.faster.iter().map(|c| speed(c).to_string())),
             joined(off.iter().map(|v| format!("{v:.1}"))),
             joined(bend.iter().map(|v| format!("{v:.1}"))),
@@ -159,8 +160,8 @@ fn less_deformed(study: &Study) -> Claim {
 }
 
 fn tip_turns_less(study: &Study) -> Claim {
-    let rows = [&study.faster, &study.faster_highest];
-    let angles = rows.map(|row| row.iter().map(tip_angle).collect::<Vec<_>>());
+    let rows = study.rows();
+    let angles: Vec<Vec<f64>> = rows.iter().map(|row| row.iter().map(tip_angle).collect()).collect();
     let steps: usize = angles.iter().map(|row| row.len() - 1).sum();
     let falls: usize = angles.iter().map(|row| row.windows(2).filter(|w| w[1] < w[0] - RESOLUTION).count()).sum();
     let words = |i: usize| {
@@ -174,10 +175,9 @@ fn tip_turns_less(study: &Study) -> Claim {
         statement: "Therefore the tip section turns less in a faster stream, alpha(L) (1b).",
         finding: Finding::of(falls, steps),
         evidence: format!(
-            "In {} m/s: {}; {}: no more than {:.3} deg apart, because nothing but the cable loads the tip section.",
+            "In {} m/s: {}: no more than {:.3} deg apart, because nothing but the cable loads the tip section.",
             joined(study.faster.iter().map(|c| speed(c).to_string())),
-            words(0),
-            words(1),
+            (0..rows.len()).map(words).collect::<Vec<_>>().join("; "),
             angles.iter().map(|row| spread(row)).fold(0.0, f64::max),
         ),
     }
@@ -204,10 +204,17 @@ fn share(flags: impl Iterator<Item = bool>) -> f64 {
 
 fn grows_along(study: &Study) -> Claim {
     let shapes = study.angle_configurations();
-    let grows: Vec<f64> = shapes.iter().map(|c| share(alphas(c).windows(2).map(|w| w[1] > w[0]))).collect();
+    let grown = |c: &Configuration| share(alphas(c).windows(2).map(|w| w[1] > w[0]));
+    let grows: Vec<f64> = shapes.iter().map(|c| grown(c)).collect();
     let everywhere = grows.iter().filter(|g| **g == 1.0).count();
-    let list = |lot: std::ops::Range<usize>| joined(grows[lot].iter().map(|g| format!("{:.0}", 100.0 * g)));
-    let half = study.faster.len();
+    let lots: Vec<String> = study
+        .rows()
+        .into_iter()
+        .map(|row| {
+            let percent = joined(row.iter().map(|c| format!("{:.0}", 100.0 * grown(c))));
+            format!("{percent} % at {:.1} N", row.first().map_or(0.0, tension))
+        })
+        .collect();
     let in_all = shapes.iter().filter(|c| c.tip().alpha > c.at(0.0).alpha).count();
     Claim {
         statement: "The rotation angle alpha(s) grows along the arm (1c).",
@@ -217,29 +224,38 @@ fn grows_along(study: &Study) -> Claim {
             Finding::of(everywhere, shapes.len())
         },
         evidence: format!(
-            "It grows over this share of the length, in {} m/s: {} % at {:.1} N, {} % at {:.1} N. From base to tip it \
-             grows in {in_all} of {}; near the base drag shears the section.",
+            "It grows over this share of the length, in {} m/s: {}. From base to tip it grows in {in_all} of {}{}.",
             joined(study.faster.iter().map(|c| speed(c).to_string())),
-            list(0..half),
-            shapes.first().map_or(0.0, |c| tension(c)),
-            list(half..shapes.len()),
-            study.highest_tension(),
+            lots.join(", "),
             shapes.len(),
+            if everywhere == shapes.len() { "" } else { "; near the base drag shears the section" },
         ),
     }
 }
 
 fn locally_smaller(study: &Study) -> Claim {
-    let rows = [&study.faster, &study.faster_highest];
-    // For each tension the shares of the length over which alpha falls from each speed to the next.
-    let shares = rows.map(|row| {
-        let angles: Vec<Vec<f64>> = row.iter().map(alphas).collect();
-        angles.windows(2).map(|w| share(w[0].iter().zip(&w[1]).map(|(slow, fast)| fast < slow))).collect::<Vec<_>>()
-    });
+    let rows = study.rows();
+    // For each tension how far alpha falls from each speed to the next, deg, at all places.
+    let falls: Vec<Vec<Vec<f64>>> = rows
+        .iter()
+        .map(|row| {
+            let angles: Vec<Vec<f64>> = row.iter().map(alphas).collect();
+            angles.windows(2).map(|w| w[0].iter().zip(&w[1]).map(|(slow, fast)| slow - fast).collect()).collect()
+        })
+        .collect();
+    // The shares of the length over which it does.
+    let shares: Vec<Vec<f64>> =
+        falls.iter().map(|row| row.iter().map(|fall| share(fall.iter().map(|d| *d > 0.0))).collect()).collect();
     let all = || shares.iter().flatten();
+    let least = falls.iter().flatten().flatten().copied().fold(f64::INFINITY, f64::min);
     let list = |i: usize| {
         let percent = joined(shares[i].iter().map(|s| format!("{:.0}", 100.0 * s)));
         format!("{percent} % at {:.1} N", rows[i].first().map_or(0.0, tension))
+    };
+    let base = if least > 0.0 {
+        format!("everywhere it falls by at least {least:.4} deg, and alpha(0) =")
+    } else {
+        "but at the base, where drag shears the section, alpha(0) =".to_owned()
     };
     let middles = joined(study.faster.iter().map(|c| format!("{:.2}", c.at(0.5 * c.arm.length).alpha.to_degrees())));
     let bases = joined(study.faster.iter().map(|c| format!("{:.2}", c.at(0.0).alpha.to_degrees())));
@@ -253,12 +269,11 @@ fn locally_smaller(study: &Study) -> Claim {
             Finding::InPart
         },
         evidence: format!(
-            "From each of {} m/s to the next it becomes smaller over this share of the length: {}, {}. At {} N \
-             alpha(L/2) = {middles} deg, but at the base, where drag shears the section, alpha(0) = {bases} deg.",
+            "From each of {} m/s to the next it becomes smaller over this share of the length: {}. At {} N \
+             alpha(L/2) = {middles} deg, {base} {bases} deg.",
             joined(study.faster.iter().map(|c| speed(c).to_string())),
-            list(0),
-            list(1),
-            study.faster.first().map_or(0.0, tension),
+            (0..rows.len()).map(list).collect::<Vec<_>>().join(", "),
+            short(study.faster.first().map_or(0.0, tension)),
         ),
     }
 }
@@ -281,24 +296,27 @@ fn fluid_matters(study: &Study) -> Claim {
             "From still water to {} m/s the tip moves by {} mm at {} N; {limit:.0} mm (2 % of L) is taken as significant.",
             joined(study.faster[1..].iter().map(|c| speed(c).to_string())),
             joined(moved.iter().map(|v| format!("{v:.1}"))),
-            tension(still),
+            short(tension(still)),
         ),
     }
 }
 
-fn precision(study: &Study, arm: &Arm) -> Result<Claim, StudyError> {
+fn precision(study: &Study, arm: &Arm) -> Claim {
     let planar = &study.faster[1];
     let mut round = loaded(arm, tension(planar), speed(planar));
     round.readings.volume = Volume::Circular;
-    let moved = apart(planar, &solved(&round, tension(planar), speed(planar))?);
-    Ok(Claim {
+    let otherwise = match solved(&round, tension(planar), speed(planar)) {
+        Ok(round) => format!("moves the tip by {:.1} mm", apart(planar, &round)),
+        Err(_) => "leaves the arm without an equilibrium".to_owned(),
+    };
+    Claim {
         statement: "Free rotation and planar deformation of the section enhance the precision (conclusion).",
         finding: Finding::Open,
         evidence: format!(
             "The source has no measurement to be precise about. They do matter: at {} N the tip section stands at \
-             alpha(L) = {:.1} deg, and a section that keeps its round volume instead moves the tip by {moved:.1} mm.",
-            tension(planar),
+             alpha(L) = {:.1} deg, and a section that keeps its round volume instead {otherwise}.",
+            short(tension(planar)),
             tip_angle(planar),
         ),
-    })
+    }
 }

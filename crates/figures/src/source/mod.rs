@@ -1,9 +1,10 @@
 //! The source's Fig. 1 and what its text says about it.
 //!
-//! Of the figure's parameters only the speed of the stream, 0.5 m/s, is published; the arm that
-//! ships as `paper` is a set found by trial. [`Study::of`] solves every shape that the figure
-//! shows, finding the tension at which alpha(L) is the published 72.25 deg, and
-//! [`Study::claims`] holds what the text says against the numbers.
+//! Of the figure's parameters only the speed of the stream, 0.5 m/s, is published; the arms that
+//! ship as `paper` and `paper-statements` are sets found by trial. [`Study::of`] solves every shape
+//! that the figure shows, finding the tension at which alpha(L) is the published 72.25 deg, and
+//! [`Study::claims`] holds what the text says against the numbers. At which tension streams are
+//! compared, and which faster ones, the source leaves open: [`Shown`].
 
 mod charts;
 mod claims;
@@ -20,12 +21,10 @@ pub use claims::{Claim, Finding};
 pub const TIP_ANGLE: f64 = 72.25;
 /// The published speed of the stream, m/s.
 pub const SPEED: f64 = 0.5;
-/// Tensions of the pulled cable below the highest, N: ours.
-const TENSIONS: [f64; 5] = [0.0, 5.0, 10.0, 20.0, 40.0];
-/// The tension of the comparison of speeds, N: ours.
-const FIXED_TENSION: f64 = 40.0;
-/// The speeds compared, m/s: [`SPEED`] is published, the others are ours.
-const SPEEDS: [f64; 4] = [0.0, SPEED, 1.0, 2.0];
+/// Tensions of the pulled cable below the highest, over it and before they are rounded: ours.
+const SHARES: [f64; 5] = [0.0, 1.0 / 16.0, 0.125, 0.25, HALF];
+/// The tension at which speeds are compared, over the highest and before it is rounded: ours.
+const HALF: f64 = 0.5;
 /// Tip error over L that is asked for. alpha(L), a strain, is then good to about [`RESOLUTION`].
 const TOL: f64 = 1e-9;
 /// Differences of alpha(L) below this are not told apart, deg.
@@ -39,6 +38,12 @@ pub enum StudyError {
     NoCable {
         /// The arm.
         name: String,
+    },
+    /// Speeds that are no faster streams.
+    #[error("faster streams: expected rising speeds above {SPEED} m/s, found {found:?}")]
+    Faster {
+        /// m/s.
+        found: Vec<f64>,
     },
     /// A shape of the figure has no equilibrium.
     #[error("at T1 = {tension} N and {speed} m/s: {source}")]
@@ -63,6 +68,21 @@ pub enum StudyError {
     },
 }
 
+/// What the source leaves open of its figure besides the arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shown {
+    /// Speeds are compared at the highest tension alone, that of the blue curve of Fig. 1c; else at half of it, too.
+    pub at_highest: bool,
+    /// The streams faster than [`SPEED`], m/s, rising. Still water and [`SPEED`] are always shown.
+    pub faster: Vec<f64>,
+}
+
+impl Default for Shown {
+    fn default() -> Self {
+        Self { at_highest: false, faster: vec![1.0, 2.0] }
+    }
+}
+
 /// Every shape of the source's Fig. 1, solved.
 #[derive(Debug, Clone)]
 pub struct Study {
@@ -70,7 +90,7 @@ pub struct Study {
     pub raised: Vec<Configuration>,
     /// Fig. 1b: one tension in ever faster streams.
     pub faster: Vec<Configuration>,
-    /// Fig. 1c besides those of 1b: the highest tension in the same streams.
+    /// Fig. 1c besides those of 1b: the highest tension in the same streams. Empty where 1b is of that tension.
     pub faster_highest: Vec<Configuration>,
     /// What the text says, held against these shapes.
     pub claims: Vec<Claim>,
@@ -92,19 +112,24 @@ impl Study {
     ///
     /// # Errors
     /// [`StudyError`].
-    pub fn of(arm: &Arm) -> Result<Self, StudyError> {
+    pub fn of(arm: &Arm, shown: &Shown) -> Result<Self, StudyError> {
+        let speeds = shown.speeds()?;
         if arm.cables.is_empty() {
             return Err(StudyError::NoCable { name: arm.name.clone() });
         }
         let highest = target::configuration(arm)?;
-        let mut raised = TENSIONS.iter().map(|t| solved(arm, *t, SPEED)).collect::<Result<Vec<_>, _>>()?;
         let highest_tension = highest.arm.cables[0].tension;
+        let lower = SHARES.map(|share| one_digit(share * highest_tension));
+        let mut raised = lower.iter().map(|t| solved(arm, *t, SPEED)).collect::<Result<Vec<_>, _>>()?;
         raised.push(highest);
-        let at = |tension: f64| SPEEDS.iter().map(|v| solved(arm, tension, *v)).collect::<Result<Vec<_>, _>>();
-        let faster = at(FIXED_TENSION)?;
-        let faster_highest = at(highest_tension)?;
+        let at = |tension: f64| speeds.iter().map(|v| solved(arm, tension, *v)).collect::<Result<Vec<_>, _>>();
+        let (faster, faster_highest) = if shown.at_highest {
+            (at(highest_tension)?, Vec::new())
+        } else {
+            (at(one_digit(HALF * highest_tension))?, at(highest_tension)?)
+        };
         let mut study = Self { raised, faster, faster_highest, claims: Vec::new() };
-        study.claims = claims::judge(&study, arm)?;
+        study.claims = claims::judge(&study, arm);
         Ok(study)
     }
 
@@ -126,6 +151,32 @@ impl Study {
     fn angle_configurations(&self) -> Vec<&Configuration> {
         self.faster.iter().chain(&self.faster_highest).collect()
     }
+
+    /// The same, those of each tension by themselves, rising; the highest is the last.
+    fn rows(&self) -> Vec<&[Configuration]> {
+        [&self.faster, &self.faster_highest].into_iter().map(Vec::as_slice).filter(|row| !row.is_empty()).collect()
+    }
+}
+
+impl Shown {
+    /// The speeds compared, m/s.
+    fn speeds(&self) -> Result<Vec<f64>, StudyError> {
+        let speeds: Vec<f64> = [0.0, SPEED].into_iter().chain(self.faster.iter().copied()).collect();
+        let rising = speeds.windows(2).all(|pair| pair[1] > pair[0] && pair[1].is_finite());
+        if !rising || self.faster.is_empty() {
+            return Err(StudyError::Faster { found: self.faster.clone() });
+        }
+        Ok(speeds)
+    }
+}
+
+/// To one digit, for tensions that are ours to choose.
+fn one_digit(value: f64) -> f64 {
+    if value <= 0.0 {
+        return 0.0;
+    }
+    let unit = 10_f64.powf(value.log10().floor());
+    (value / unit).round() * unit
 }
 
 /// `arm` with its first cable pulled by `tension` (N) and the others slack, in a stream of `speed` (m/s).
