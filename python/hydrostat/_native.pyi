@@ -12,6 +12,7 @@ _Array = NDArray[np.float64]
 _Setting = tuple[str, str, str]
 _Axis = tuple[str, str, float]
 _Goal = tuple[float, float, float | None, float | None, float]
+_Most = tuple[float | None, float | None]
 _States = tuple[list[_Array], list[str | None], list[int | None]]
 
 class Arm:
@@ -107,7 +108,7 @@ class Boundary:
 
 class Follower:
     def __new__(
-        cls, arm: Arm, targets: Sequence[_Goal], max_tension: float | None, tol: float, all: bool
+        cls, arm: Arm, targets: Sequence[_Goal], most: _Most, tol: float, all: bool
     ) -> Follower: ...
     def follow(
         self, targets: Sequence[_Goal]
@@ -208,7 +209,7 @@ def solve_many(
 def path(arm: Arm, vary: str, tol: float, longest: float, most: int, branches: bool) -> Path: ...
 def equilibria(arm: Arm, tol: float, time_limit: float | None) -> Equilibria: ...
 def reach(
-    arm: Arm, targets: Sequence[_Goal], max_tension: float | None, tol: float, all: bool, by_strokes: bool
+    arm: Arm, targets: Sequence[_Goal], most: _Most, tol: float, all: bool, by_strokes: bool
 ) -> Reach: ...
 def reachable(arm: Arm, max_tension: float | None, spacing: float, tol: float) -> Boundary: ...
 def measurements_template(arm: Arm) -> str: ...

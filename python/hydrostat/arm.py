@@ -344,6 +344,7 @@ class Arm:
         *,
         by: str = "tensions",
         max_tension: float | None = None,
+        max_stroke: float | None = None,
         tol: float = 1e-8,
         all: bool = True,
     ) -> Reach:
@@ -360,6 +361,8 @@ class Arm:
             lengths held.
         max_tension : float, optional
             The largest tension of every cable, N, where the cable itself has none.
+        max_stroke : float, optional
+            The largest stroke of every cable that pulls, m: how far it can be wound in.
         tol : float
             Distance over the length at which a target is reached, in [1e-10, 1e-2].
         all : bool
@@ -385,10 +388,10 @@ class Arm:
         >>> round(tip.x, 6), round(tip.y, 6)
         (0.182, 0.078)
         """
-        from hydrostat.reach import Reach, targets_of
+        from hydrostat.reach import Reach, most_of, targets_of
 
         goals = targets_of(targets)
-        most = None if max_tension is None else _inputs.number("max_tension", max_tension)
+        most = most_of(max_tension, max_stroke)
         if by not in ("tensions", "strokes"):
             raise ValueError(f"by: expected tensions or strokes, found {by!r}")
         found = _native.reach(self._inner, goals, most, _inputs.number("tol", tol), all, by == "strokes")

@@ -47,7 +47,8 @@ Targets = Union[Target, tuple[float, float], Sequence[Target]]
 
 
 class Bound(NamedTuple):
-    """A bound that tensions lie on: of the `cable` (its index) that is ``"slack"`` and would have to push, or has the ``"most"``."""
+    """A bound that tensions lie on: of the `cable` (its index) that is ``"slack"`` and would have to push, has the ``"most"`` tension, or its
+    largest ``"stroke"``."""
 
     kind: str
     cable: int
@@ -261,6 +262,8 @@ class Follower:
         The first targets, m and rad.
     max_tension : float, optional
         The largest tension of every cable, N, where the cable itself has none.
+    max_stroke : float, optional
+        The largest stroke of every cable that pulls, m: how far it can be wound in.
     tol : float
         Distance over the length at which a target is reached, in [1e-10, 1e-2].
 
@@ -284,8 +287,16 @@ class Follower:
 
     __slots__ = ("_inner",)
 
-    def __init__(self, arm: Arm, targets: Targets, *, max_tension: float | None = None, tol: float = 1e-8) -> None:
-        most = None if max_tension is None else _inputs.number("max_tension", max_tension)
+    def __init__(
+        self,
+        arm: Arm,
+        targets: Targets,
+        *,
+        max_tension: float | None = None,
+        max_stroke: float | None = None,
+        tol: float = 1e-8,
+    ) -> None:
+        most = most_of(max_tension, max_stroke)
         self._inner = _native.Follower(arm._inner, targets_of(targets), most, _inputs.number("tol", tol), True)
 
     def follow(self, targets: Targets) -> Followed:
@@ -300,6 +311,13 @@ class Follower:
         """
         tensions, tip, distance, reached, jumped, solves = self._inner.follow(targets_of(targets))
         return Followed(tensions, Tip(*tip), distance, reached, jumped, solves)
+
+
+def most_of(max_tension: float | None, max_stroke: float | None) -> tuple[float | None, float | None]:
+    """Bounds as numbers; what is wrong is a `ValueError`."""
+    given = (("max_tension", max_tension), ("max_stroke", max_stroke))
+    tension, stroke = (None if value is None else _inputs.number(name, value) for name, value in given)
+    return tension, stroke
 
 
 def targets_of(targets: Targets) -> list[Target]:

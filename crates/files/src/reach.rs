@@ -18,6 +18,7 @@ impl From<&Bound> for BoundOut {
         match *bound {
             Bound::Slack(cable) => Self { cable, kind: "slack" },
             Bound::Most(cable) => Self { cable, kind: "most" },
+            Bound::Stroke(cable) => Self { cable, kind: "stroke" },
         }
     }
 }

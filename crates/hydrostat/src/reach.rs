@@ -3,7 +3,7 @@
 //! The distances to the targets, over L, are made small by Newton's method on the tensions, with the exact jacobian
 //! (`sensitivity`) on warm solves. A round asks for the least effort |T|^2 among the tensions within their bounds
 //! that meet the targets to first order (`reach/effort`); where there are none, or they lead no nearer, it takes a damped least-squares step
-//! whose tensions stop at their bounds. Several starts find several answers, and, of as many cables as conditions, lines through the
+//! within the bounds. Strokes have theirs, too (`reach/strokes`). Several starts find several answers, and, of as many cables as conditions, lines through the
 //! target (`reach/lines`) the others, across folds of the map from tensions to places.
 
 mod boundary;
@@ -12,6 +12,7 @@ mod folds;
 mod follow;
 mod lines;
 mod search;
+mod strokes;
 
 use self::search::{Goal, Search, State};
 use crate::arm::Arm;
@@ -55,6 +56,8 @@ impl Target {
 pub struct ReachOptions {
     /// The largest tension of every cable, N, where the cable itself has none.
     pub max_tension: Option<f64>,
+    /// The largest stroke of every cable that pulls, m: how far it can be wound in.
+    pub max_stroke: Option<f64>,
     /// Distance over L at which a target is reached, in [1e-10, 1e-2].
     pub tol: f64,
     /// Whether to look from all starts, and along lines from what they find; else the first that reaches the target ends the search.
@@ -63,7 +66,7 @@ pub struct ReachOptions {
 
 impl Default for ReachOptions {
     fn default() -> Self {
-        Self { max_tension: None, tol: 1e-8, all: true }
+        Self { max_tension: None, max_stroke: None, tol: 1e-8, all: true }
     }
 }
 
@@ -74,6 +77,8 @@ pub enum Bound {
     Slack(usize),
     /// The cable has its largest tension.
     Most(usize),
+    /// The cable is wound in as far as it can be.
+    Stroke(usize),
 }
 
 /// Tensions, and the shape that they lead to.

@@ -20,7 +20,8 @@ pub(crate) mod dual;
 mod linear;
 mod quantities;
 
-use self::quantities::{POSE, Quantity};
+use self::quantities::POSE;
+pub(crate) use self::quantities::Quantity;
 use crate::arm::Arm;
 use crate::configuration::Wrench;
 use crate::engine::Trouble;

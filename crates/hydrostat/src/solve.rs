@@ -258,16 +258,21 @@ impl Solver {
     /// # Ok::<(), hydrostat::SolveError>(())
     /// ```
     pub fn update(&mut self) -> Result<Answer, SolveError> {
-        if let Some(estimate) = self.settle_warm()
-            && let Ok(tip) = self.engine.read_tip()
-        {
-            self.settled = true;
-            self.estimate = Some(estimate);
-            let length = self.engine.equations.units.length;
-            return Ok(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(0) });
+        if let Some(answer) = self.update_warm() {
+            return Ok(answer);
         }
         let found = self.resolve()?;
         Ok(Answer { tip: found.tip(), error_estimate: found.error_estimate, statistics: found.statistics })
+    }
+
+    /// [`Solver::update`], as far as a few rounds lead from the configuration before: on its branch. After `None` nothing is solved.
+    pub(crate) fn update_warm(&mut self) -> Option<Answer> {
+        let estimate = self.settle_warm()?;
+        let tip = self.engine.read_tip().ok()?;
+        self.settled = true;
+        self.estimate = Some(estimate);
+        let length = self.engine.equations.units.length;
+        Some(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(0) })
     }
 
     /// Everything about the last [`Solver::update`], or, without one, of [`Solver::resolve`].

@@ -164,27 +164,40 @@ fn three_cables_take_the_least_effort() {
     assert!(best.effort > 0.98 * least, "{} for {least}: the scan is too coarse", best.effort);
 }
 
-/// Newton by differences on the first two tensions.
 fn effort_with_third(arm: &Arm, target: Target, third: f64) -> Option<f64> {
+    with_given(arm, target, [0.15, 0.1, third], 2).map(|tensions| effort(&tensions))
+}
+
+fn effort(tensions: &[f64]) -> f64 {
+    tensions.iter().map(|t| t * t).sum()
+}
+
+/// Newton by differences on two of three tensions, from some; that of cable `given` stays.
+fn with_given(arm: &Arm, target: Target, start: [f64; 3], given: usize) -> Option<Vec<f64>> {
     let mut solver = Solver::new(arm, Options { tol: 1e-9 }).ok()?;
-    let mut tip = |t: [f64; 2]| {
-        solver.set_tensions(&[t[0], t[1], third]).ok()?;
+    let [a, b] = [(given + 1) % 3, (given + 2) % 3];
+    let mut tip = |t: [f64; 3]| {
+        solver.set_tensions(&t).ok()?;
         let tip = solver.update().ok()?.tip;
         Some([tip.x - target.x, tip.y - target.y])
     };
-    let mut t = [0.15, 0.1];
+    let mut t = start;
     for _ in 0..25 {
         let here = tip(t)?;
         if here[0].hypot(here[1]) < 1e-8 {
-            return Some(t[0] * t[0] + t[1] * t[1] + third * third);
+            return Some(t.to_vec());
         }
         let h = 1e-5;
-        let (a, b) = (tip([t[0] + h, t[1]])?, tip([t[0], t[1] + h])?);
-        let j = [[(a[0] - here[0]) / h, (b[0] - here[0]) / h], [(a[1] - here[1]) / h, (b[1] - here[1]) / h]];
-        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-        let step = [(j[1][1] * here[0] - j[0][1] * here[1]) / det, (j[0][0] * here[1] - j[1][0] * here[0]) / det];
+        let mut by = |c: usize| {
+            let mut moved = t;
+            moved[c] += h;
+            tip(moved).map(|there| [(there[0] - here[0]) / h, (there[1] - here[1]) / h])
+        };
+        let (by_a, by_b) = (by(a)?, by(b)?);
+        let det = by_a[0] * by_b[1] - by_b[0] * by_a[1];
+        let step = [(by_b[1] * here[0] - by_b[0] * here[1]) / det, (by_a[0] * here[1] - by_a[1] * here[0]) / det];
         let share = (0.05 / step[0].hypot(step[1])).min(1.0);
-        t = [t[0] - share * step[0], t[1] - share * step[1]];
+        (t[a], t[b]) = (t[a] - share * step[0], t[b] - share * step[1]);
         if t.iter().any(|t| *t < 0.0) {
             return None;
         }
@@ -374,4 +387,219 @@ fn wrong_requests_are_refused() {
     assert!(matches!(arm.reach(&off, &options(1.0)), Err(ReachError::Sensitivity(_))));
     let bare = Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5);
     assert!(matches!(bare.reach(&target, &options(1.0)), Err(ReachError::NoCables)));
+}
+
+/// Tensions on a lattice with their tips, as solves of their own give them, of which every cable that pulls is wound in by `most` at most.
+fn scan_within_strokes(arm: &Arm, largest: f64, count: u32, most: f64) -> Vec<(Vec<f64>, [f64; 2])> {
+    let share = |k: u32| largest * f64::from(k) / f64::from(count);
+    let pairs = (0..=count).flat_map(|a| (0..=count).map(move |b| [share(a), share(b)]));
+    let solved = pairs.filter_map(|tensions| {
+        let mut arm = arm.clone();
+        arm.set_tensions(&tensions).unwrap();
+        let shape = arm.solve().ok()?;
+        let fine = shape.cables.iter().all(|cable| cable.tension == 0.0 || cable.stroke <= most);
+        fine.then(|| (tensions.to_vec(), [shape.tip().x, shape.tip().y]))
+    });
+    solved.collect()
+}
+
+/// Strokes (m) at tensions, what stretches of an elastic cable reeled in, too, as a solve says.
+fn strokes_at(arm: &Arm, tensions: &[f64]) -> Vec<f64> {
+    let mut arm = arm.clone();
+    arm.set_tensions(tensions).unwrap();
+    let shape = arm.solve().unwrap();
+    let stroke = |(cable, state): (&Cable, &hydrostat::CableState)| {
+        let unloaded = state.length + state.stroke;
+        unloaded - state.length / cable.stiffness.map_or(1.0, |stiffness| 1.0 + state.tension / stiffness)
+    };
+    arm.cables.iter().zip(&shape.cables).map(stroke).collect()
+}
+
+fn wound_in_by(most: f64, tension: f64) -> ReachOptions {
+    ReachOptions { max_stroke: Some(most), ..options(tension) }
+}
+
+/// Targets within and beyond what strokes allow: what is found is within, named where it lies on its bound, and no farther than the nearest of a scan.
+#[test]
+fn strokes_are_bounded() {
+    const MOST: f64 = 0.012;
+    let mut flowing = cone();
+    (flowing.flow.speed, flowing.flow.direction) = (0.1, 1.0);
+    for arm in [cone(), flowing] {
+        let scan = scan_within_strokes(&arm, 0.4, 24, MOST);
+        println!("{} tensions within", scan.len());
+        let mut on_bound = 0;
+        for (x, y) in [(0.20, 0.20), (0.10, -0.20), (0.182, 0.078), (0.1, 0.1), (0.05, 0.0), (0.23, 0.05), (0.0, 0.15)]
+        {
+            let found = arm.reach(&[Target::tip(x, y)], &wound_in_by(MOST, 0.4)).unwrap();
+            let nearest = scan.iter().map(|(_, tip)| (tip[0] - x).hypot(tip[1] - y)).fold(f64::INFINITY, f64::min);
+            for one in found.solutions.iter().chain(&found.closest) {
+                let strokes = strokes_at(&arm, &one.tensions);
+                println!(
+                    "({x}, {y}): {:?} N, {strokes:?} m, {:e} for {nearest:e} m, {:?}",
+                    one.tensions,
+                    one.distance * arm.length,
+                    one.bounds
+                );
+                for (c, (stroke, tension)) in strokes.iter().zip(&one.tensions).enumerate() {
+                    assert!(*tension == 0.0 || *stroke < MOST + 1e-8, "({x}, {y}): {stroke} m");
+                    let on = *tension > 0.0 && *stroke > MOST - 2e-8;
+                    assert_eq!(one.bounds.contains(&Bound::Stroke(c)), on, "({x}, {y}): {stroke} m");
+                    on_bound += usize::from(on);
+                }
+            }
+            if let Some(closest) = &found.closest {
+                assert!(
+                    closest.distance * arm.length < nearest + 1e-6,
+                    "({x}, {y}): {} for {nearest} m",
+                    closest.distance * arm.length
+                );
+            }
+            // What needs no more than is allowed is found, as without a bound.
+            let free = arm.reach(&[Target::tip(x, y)], &options(0.4)).unwrap();
+            let allowed = |one: &&hydrostat::Reached| {
+                strokes_at(&arm, &one.tensions).iter().zip(&one.tensions).all(|(s, t)| *t == 0.0 || *s < MOST)
+            };
+            let count = free.solutions.iter().filter(allowed).count();
+            assert_eq!(found.solutions.len(), count, "({x}, {y})");
+        }
+        assert!(on_bound >= 3, "{on_bound}");
+    }
+}
+
+/// What the bound on its stroke forbids a cable takes another one that is nearer to the centreline, at more effort, which a scan cannot better.
+#[test]
+fn bounded_strokes_take_another_cable() {
+    let mut arm = cone();
+    let mut inner = Cable::new("inner", Profile::linear(0.0025, 0.0005));
+    (inner.end, inner.stiffness) = (0.8, Some(200.0));
+    arm.cables.push(inner);
+    let within = |tensions: &[f64], most: f64| {
+        strokes_at(&arm, tensions).iter().zip(tensions).all(|(stroke, t)| *t == 0.0 || *stroke <= most)
+    };
+    let mut bounded = 0;
+    for tensions in [[0.0, 0.1, 0.35], [0.0, 0.05, 0.2]] {
+        let target = target_of(&arm, &tensions).unwrap();
+        let free = arm.reach(&[target], &options(2.0)).unwrap().solutions.remove(0);
+        let own = strokes_at(&arm, &free.tensions)[0];
+        for share in [1.02, 0.999, 0.97, 0.9, 0.4] {
+            let most = share * own;
+            let mut least = f64::INFINITY;
+            for (given, value) in [0, 2].into_iter().flat_map(|c| (0..=16).map(move |k| (c, 0.025 * f64::from(k)))) {
+                let mut start = tensions;
+                start[given] = value;
+                let found = with_given(&arm, target, start, given).filter(|tensions| within(tensions, most));
+                least = found.map_or(least, |tensions| least.min(effort(&tensions)));
+            }
+            let found = arm.reach(&[target], &wound_in_by(most, 2.0)).unwrap();
+            let seen: Vec<_> = found.solutions.iter().map(|one| (&one.tensions, one.effort, &one.bounds)).collect();
+            println!("{share} of {own} m: {seen:?}, scan {least} (free {:?} {})", free.tensions, free.effort);
+            assert!(seen.iter().all(|(tensions, ..)| within(tensions, most + 1e-8)), "{share}");
+            let best = found.solutions.first().map_or(f64::INFINITY, |one| one.effort);
+            assert!(best <= least * (1.0 + 1e-5), "{share}: {best} for {least}");
+            for one in &found.solutions {
+                bounded += usize::from(one.bounds.contains(&Bound::Stroke(0)));
+            }
+        }
+    }
+    assert!(bounded >= 5, "{bounded}");
+}
+
+/// A cable that hangs slack takes no stroke: another one nearer to the centreline, on the same side, bends the arm further than its bound lets it.
+#[test]
+fn a_slack_cable_may_be_shorter_than_it_can_be_wound_in() {
+    const MOST: f64 = 0.005;
+    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    arm.cables.push(Cable::new("outer", Profile::linear(0.009, 0.0018)));
+    arm.cables.push(Cable::new("inner", Profile::linear(0.006, 0.0012)));
+    let scan = scan_within_strokes(&arm, 0.12, 40, MOST);
+    for (x, y) in [(0.15, 0.12), (0.2, 0.1), (0.1, 0.05)] {
+        let closest = arm.reach(&[Target::tip(x, y)], &wound_in_by(MOST, 0.6)).unwrap().closest.unwrap();
+        let nearest = scan.iter().map(|(_, tip)| (tip[0] - x).hypot(tip[1] - y)).fold(f64::INFINITY, f64::min);
+        let strokes = strokes_at(&arm, &closest.tensions);
+        println!(
+            "({x}, {y}): {:?} N, {strokes:?} m, {} for {nearest} m",
+            closest.tensions,
+            closest.distance * arm.length
+        );
+        assert_eq!(closest.bounds, [Bound::Slack(0), Bound::Stroke(1)]);
+        assert!(strokes[0] > 1.2 * MOST && strokes[1] < MOST + 1e-8, "{strokes:?}");
+        assert!(closest.distance * arm.length < nearest + 1e-6);
+    }
+}
+
+/// Every target of a path: within the bound, said where that holds the arm back, and again reached where it does not.
+#[test]
+fn a_follower_keeps_to_its_strokes() {
+    const MOST: f64 = 0.016;
+    let mut arm = cone();
+    arm.flow.speed = 0.1;
+    arm.flow.direction = 1.0;
+    let targets = loop_of_targets(&arm, 60);
+    arm.set_tensions(&[0.15, 0.2]).unwrap();
+    let most = strokes_at(&arm, &[0.15, 0.2]);
+    println!("{most:?}");
+    let mut follower = Follower::new(&arm, &targets[30..31], &wound_in_by(MOST, 0.6)).unwrap();
+    let mut missed = 0;
+    for (k, target) in targets[30..].iter().chain(&targets[1..=30]).enumerate() {
+        let found = follower.follow(&[*target]).unwrap();
+        let strokes = strokes_at(&arm, &found.tensions);
+        assert!(strokes.iter().all(|stroke| *stroke < MOST + 1e-8), "{k}: {strokes:?} m, {found:?}");
+        let needed = (k + 30) % 60;
+        let angle = needed as f64 * std::f64::consts::TAU / 60.0;
+        let own = strokes_at(&arm, &[0.25 + 0.1 * angle.cos(), 0.2 + 0.1 * angle.sin()]);
+        let within = own.iter().all(|stroke| *stroke < MOST);
+        if within {
+            assert!(found.reached, "{k}: {own:?} {strokes:?} {found:?}");
+        } else {
+            assert!(!found.reached && strokes.iter().any(|stroke| *stroke > MOST - 1e-4), "{k}: {own:?} {strokes:?}");
+            missed += 1;
+        }
+    }
+    println!("{missed} beyond");
+    assert!(missed > 5 && missed < 55, "{missed}");
+}
+
+#[test]
+fn strokes_that_are_no_bounds_are_refused() {
+    for value in [0.0, -0.01, f64::NAN, f64::INFINITY] {
+        let refused = cone().reach(&[Target::tip(0.2, 0.05)], &wound_in_by(value, 1.0));
+        assert!(matches!(refused, Err(ReachError::Option { option: "max_stroke", .. })));
+    }
+}
+
+/// What is found by strokes with slack cables is what a solve with these strokes gives, along with the tensions.
+#[test]
+fn strokes_with_slack_cables_lead_to_the_target() {
+    let mut arm = cone();
+    let mut short = Cable::new("short", Profile::linear(0.006, 0.003));
+    (short.end, short.stiffness) = (0.6, Some(20.0));
+    arm.cables.push(short);
+    let (mut all, mut met) = (0, 0);
+    for (speed, direction) in [(0.0, 0.0), (0.05, 0.0), (0.1, 1.0)] {
+        (arm.flow.speed, arm.flow.direction) = (speed, direction);
+        for tensions in [
+            [0.3, 0.0, 0.2],
+            [0.2, 0.0, 0.1],
+            [0.1, 0.0, 0.3],
+            [0.0, 0.3, 0.0],
+            [0.0, 0.15, 0.0],
+            [0.2, 0.0, 0.0],
+            [0.3, 1e-6, 0.2],
+        ] {
+            let target = target_of(&arm, &tensions).unwrap();
+            let found = arm.reach_by_strokes(&[target], &options(0.6)).unwrap();
+            for one in &found.solutions {
+                all += 1;
+                met += usize::from(one.on_the_path);
+                let commands = one.configuration.cables.iter().map(|cable| cable.command);
+                assert!(
+                    !one.on_the_path
+                        || commands.zip(&one.tensions).all(|(command, t)| command.unwrap().slack == (*t < 1e-9))
+                );
+            }
+        }
+    }
+    println!("{met} of {all}");
+    assert_eq!(met, all);
 }

@@ -46,19 +46,22 @@ fn targets_of(goals: Vec<Goal>) -> Vec<Target> {
     goals.into_iter().map(|(x, y, s, angle, weight)| Target { s, x, y, angle, weight }).collect()
 }
 
+/// The largest tension (N) and stroke (m) of every cable.
+type Most = (Option<f64>, Option<f64>);
+
 /// Looks for tensions of `arm` that meet the targets.
 #[pyfunction]
 pub(crate) fn reach(
     py: Python<'_>,
     arm: &Arm,
     targets: Vec<Goal>,
-    max_tension: Option<f64>,
+    (max_tension, max_stroke): Most,
     tol: f64,
     all: bool,
     by_strokes: bool,
 ) -> PyResult<Reach> {
     let targets = targets_of(targets);
-    let options = ReachOptions { max_tension, tol, all };
+    let options = ReachOptions { max_tension, max_stroke, tol, all };
     let found = if by_strokes {
         py.detach(|| arm.given.reach_by_strokes(&targets, &options))
     } else {
@@ -130,6 +133,7 @@ impl Reach {
         let bound = |bound: &TensionBound| match *bound {
             TensionBound::Slack(cable) => ("slack", cable),
             TensionBound::Most(cable) => ("most", cable),
+            TensionBound::Stroke(cable) => ("stroke", cable),
         };
         let bounds = one.bounds.iter().map(bound).collect();
         let tensions = given(py, one.tensions.clone());
@@ -162,12 +166,12 @@ impl Follower {
         py: Python<'_>,
         arm: &Arm,
         targets: Vec<Goal>,
-        max_tension: Option<f64>,
+        (max_tension, max_stroke): Most,
         tol: f64,
         all: bool,
     ) -> PyResult<Self> {
         let targets = targets_of(targets);
-        let options = ReachOptions { max_tension, tol, all };
+        let options = ReachOptions { max_tension, max_stroke, tol, all };
         let follower = py.detach(|| hydrostat::Follower::new(&arm.given, &targets, &options));
         Ok(Self { follower: follower.map_err(|error| reach_error(py, error, tol))?, tol })
     }

@@ -222,7 +222,7 @@ pub(crate) fn reach(request: &ReachRequest, deadline: Deadline) -> Result<Answer
     let options = ReachOptions {
         max_tension: read("max_tension", &request.max_tension, Dimension::Force)?,
         tol: request.tol.unwrap_or(ReachOptions::default().tol),
-        all: true,
+        ..ReachOptions::default()
     };
     let found = arm.reach_while(&[target], &options, || deadline.is_ahead())?;
     if !deadline.is_ahead() {

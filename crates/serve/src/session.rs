@@ -315,7 +315,7 @@ fn begin(arm: &Arm, of: (Arm, Option<f64>), most: Option<f64>) -> Result<Followi
     for (cable, state) in held.cables.iter_mut().zip(&found.cables) {
         cable.tension = cable.max_tension.map_or(state.tension, |max| state.tension.min(max));
     }
-    let options = ReachOptions { max_tension: most, tol: REACHED, all: false };
+    let options = ReachOptions { max_tension: most, tol: REACHED, all: false, ..ReachOptions::default() };
     let follower = Follower::new(&held, &[Target::tip(tip.x, tip.y)], &options)?;
     Ok(Following { of, follower, at: [tip.x, tip.y] })
 }

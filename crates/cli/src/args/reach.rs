@@ -28,7 +28,7 @@ Examples:
   hydrostat reach silicone --target \"150 mm,120 mm\" --plot reached.svg
   hydrostat reach paper --target 0.12,0.05 --station 0.15 --flow-speed 0.2
   hydrostat reach multi-bending --target 0.3,0.1 --angle \"30 deg\"
-  hydrostat reach silicone --target 0.182,0.078 --by strokes
+  hydrostat reach silicone --target 0.182,0.078 --by strokes --max-stroke \"12 mm\"
   hydrostat reach silicone --path targets.csv --max-tension \"0.6 N\" --format csv -o followed.csv
   hydrostat reach silicone --boundary --max-tension \"0.6 N\" --plot boundary.svg --format csv -o boundary.csv
 
@@ -59,6 +59,9 @@ pub(crate) struct ReachArgs {
     /// The largest tension of every cable, N; those of the arm file hold too
     #[arg(long, value_name = "T", value_parser = force, allow_hyphen_values = true)]
     pub(crate) max_tension: Option<f64>,
+    /// The largest stroke of every cable that pulls, m: how far it can be wound in
+    #[arg(long, value_name = "S", value_parser = length, allow_hyphen_values = true, conflicts_with = "boundary")]
+    pub(crate) max_stroke: Option<f64>,
     /// Distance over the length at which a target is reached, from 1e-10 to 1e-2; with --boundary the error of tips, from 1e-9 to 1e-3
     #[arg(long, value_name = "TOL", allow_hyphen_values = true)]
     pub(crate) tol: Option<f64>,

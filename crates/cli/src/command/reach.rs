@@ -48,7 +48,12 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
 }
 
 pub(super) fn options(args: &ReachArgs) -> ReachOptions {
-    ReachOptions { max_tension: args.max_tension, tol: args.tol.unwrap_or(ReachOptions::default().tol), all: true }
+    ReachOptions {
+        max_tension: args.max_tension,
+        max_stroke: args.max_stroke,
+        tol: args.tol.unwrap_or(ReachOptions::default().tol),
+        all: true,
+    }
 }
 
 /// By how much the closest misses.
@@ -65,6 +70,7 @@ fn bound_words(arm: &Arm, bound: Bound) -> String {
     match bound {
         Bound::Slack(c) => format!("cable {} is slack and cannot push", arm.cables[c].name),
         Bound::Most(c) => format!("cable {} has its largest tension", arm.cables[c].name),
+        Bound::Stroke(c) => format!("cable {} is wound in as far as it can be", arm.cables[c].name),
     }
 }
 

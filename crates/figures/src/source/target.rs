@@ -13,7 +13,7 @@ const CLOSE: f64 = 1e-9;
 /// The shape at that tension: of those that solves lead to, the one with the least.
 pub(super) fn configuration(arm: &Arm) -> Result<Configuration, StudyError> {
     let largest = arm.cables[0].max_tension.unwrap_or(LARGEST);
-    let options = ReachOptions { max_tension: Some(largest), tol: CLOSE, all: true };
+    let options = ReachOptions { max_tension: Some(largest), tol: CLOSE, ..ReachOptions::default() };
     let Reach { solutions, closest } =
         loaded(arm, 0.0, SPEED).reach_tip_angle(0, TIP_ANGLE.to_radians(), &options).map_err(|error| match error {
             ReachError::Solve(source) => StudyError::Solve { tension: 0.0, speed: SPEED, source: Box::new(source) },

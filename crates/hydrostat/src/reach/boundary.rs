@@ -115,7 +115,7 @@ impl Arm {
                 return Err(ReachError::Option { option, value, expected });
             }
         }
-        let reach = ReachOptions { max_tension: options.max_tension, tol: options.tol, all: false };
+        let reach = ReachOptions { max_tension: options.max_tension, tol: options.tol, ..ReachOptions::default() };
         let search = Search::new(self, Goal::Places(vec![Target::tip(self.base.x, self.base.y)]), &reach)?;
         if let Some(value) = search.most.iter().copied().find(|most| !most.is_finite()) {
             return Err(ReachError::Option { option: "max_tension", value, expected: "finite, for every cable" });
@@ -202,7 +202,10 @@ impl Tracer {
 
     /// From another shape.
     pub(super) fn to(&self, from: &Here, tensions: &[f64]) -> Option<Here> {
-        self.here(self.search.step(&from.state, tensions, Some(f64::INFINITY))?)
+        let mut solver = from.state.solver.clone();
+        solver.set_tensions(tensions).ok()?;
+        solver.update().ok()?;
+        self.here(self.search.state(solver, tensions.to_vec()))
     }
 
     fn here(&self, mut state: State) -> Option<Here> {

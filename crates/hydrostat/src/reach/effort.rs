@@ -1,6 +1,6 @@
-//! The least effort that meets linear conditions within bounds.
+//! Linear conditions within bounds: met with the least effort, or as nearly as a damped step may.
 //!
-//! A least-squares problem with a little weight on the tensions themselves has one answer within the bounds, which a
+//! For the least effort, a least-squares problem with a little weight on the tensions themselves has one answer within the bounds, which a
 //! finite number of changes of the set of free cables finds. What it leaves of the conditions is added to what is asked for, and again,
 //! until nothing is left: the method of multipliers, whose limit is the least effort. It needs no
 //! start within the bounds, and none where the conditions leave a single point of them.
@@ -27,12 +27,21 @@ enum Place {
     Most,
 }
 
-/// The t of least |t|^2 with J t = c and 0 <= t <= most, J given by its columns. `None` where no t does.
-pub(super) fn least_effort(columns: &[Vec<f64>], wanted: &[f64], most: &[f64]) -> Option<Vec<f64>> {
+/// The t with J t = c and 0 <= t <= most, J given by its columns, for which the sum of squares of the first `cables` is least: what comes
+/// after these takes no effort. `None` where no t does.
+pub(super) fn least_effort(columns: &[Vec<f64>], wanted: &[f64], most: &[f64], cables: usize) -> Option<Vec<f64>> {
     let size = dot(wanted, wanted).sqrt().max(f64::MIN_POSITIVE);
     let weight = WEIGHT * columns.iter().map(|column| dot(column, column)).fold(f64::MIN_POSITIVE, f64::max);
-    let mut problem =
-        Bounded { columns, most, weight, t: vec![0.0; most.len()], places: vec![Place::Least; most.len()] };
+    let weights: Vec<f64> = (0..most.len()).map(|c| if c < cables { weight } else { 0.0 }).collect();
+    let centre = vec![0.0; most.len()];
+    let mut problem = Bounded {
+        columns,
+        most,
+        weights: &weights,
+        centre: &centre,
+        t: centre.clone(),
+        places: vec![Place::Least; most.len()],
+    };
     let mut asked = wanted.to_vec();
     let mut before = f64::INFINITY;
     for round in 0..ROUNDS {
@@ -54,11 +63,32 @@ pub(super) fn least_effort(columns: &[Vec<f64>], wanted: &[f64], most: &[f64]) -
     (dot(&left, &left).sqrt() <= MET[1] * size).then_some(problem.t)
 }
 
-/// |J t - asked|^2 + weight |t|^2 within bounds.
+/// The t of the least |J t - c|^2 + sum of weights (t - centre)^2 with 0 <= t <= most, from the centre, which is within. `None` where
+/// it is not determined.
+pub(super) fn nearest(
+    columns: &[Vec<f64>],
+    wanted: &[f64],
+    most: &[f64],
+    weights: &[f64],
+    centre: &[f64],
+) -> Option<Vec<f64>> {
+    let place = |(t, most): (&f64, &f64)| match *t {
+        t if t <= 0.0 => Place::Least,
+        t if t >= *most => Place::Most,
+        _ => Place::Free,
+    };
+    let places = centre.iter().zip(most).map(place).collect();
+    let mut problem = Bounded { columns, most, weights, centre, t: centre.to_vec(), places };
+    problem.solve(wanted)?;
+    Some(problem.t)
+}
+
+/// |J t - asked|^2 + sum of weights (t - centre)^2 within bounds.
 struct Bounded<'a> {
     columns: &'a [Vec<f64>],
     most: &'a [f64],
-    weight: f64,
+    weights: &'a [f64],
+    centre: &'a [f64],
     t: Vec<f64>,
     places: Vec<Place>,
 }
@@ -70,6 +100,11 @@ impl Bounded<'_> {
         wanted.iter().enumerate().map(|(r, wanted)| wanted - met(r)).collect()
     }
 
+    /// Half of how fast the sum falls with `t[c]`, of what t leaves.
+    fn downhill(&self, c: usize, left: &[f64]) -> f64 {
+        dot(&self.columns[c], left) - self.weights[c] * (self.t[c] - self.centre[c])
+    }
+
     /// From the tensions before: free cables go to the least of the sum until one meets a bound, and what would leave its bound downhill
     /// is let go, one at a time. The sum falls with every change, so that no set of free cables comes twice.
     fn solve(&mut self, asked: &[f64]) -> Option<()> {
@@ -78,7 +113,7 @@ impl Bounded<'_> {
         for _ in 0..8 * (self.t.len() + 2) {
             self.settle(asked)?;
             let left = self.left(asked);
-            let downhill = |c: &usize| dot(&self.columns[*c], &left) - self.weight * self.t[*c];
+            let downhill = |c: &usize| self.downhill(*c, &left);
             let leaves = |c: &usize| match self.places[*c] {
                 Place::Free => false,
                 Place::Least => self.most[*c] > 0.0 && downhill(c) > still,
@@ -102,8 +137,8 @@ impl Bounded<'_> {
             let row = |a: &usize| {
                 let by = free
                     .iter()
-                    .map(|b| dot(&self.columns[*a], &self.columns[*b]) + if a == b { self.weight } else { 0.0 });
-                (by.collect(), [dot(&self.columns[*a], &left) - self.weight * self.t[*a], 0.0])
+                    .map(|b| dot(&self.columns[*a], &self.columns[*b]) + if a == b { self.weights[*a] } else { 0.0 });
+                (by.collect(), [self.downhill(*a, &left), 0.0])
             };
             let (step, _) = solved(free.iter().map(row).collect())?;
             // How much of the step there is room for, and who stops it.
@@ -145,7 +180,7 @@ mod tests {
             [([0.5, 0.2, 0.3], [1.0; 3]), ([0.9, 0.1, 0.0], [1.0; 3]), ([0.2, 0.6, 0.4], [0.25, 1.0, 1.0])]
         {
             let wanted: Vec<f64> = (0..2).map(|r| (0..3).map(|c| columns[c][r] * at[c]).sum()).collect();
-            let found = least_effort(&columns, &wanted, &most).unwrap();
+            let found = least_effort(&columns, &wanted, &most, most.len()).unwrap();
             // The null vector is the cross product of the rows.
             let null = [
                 columns[1][0] * columns[2][1] - columns[2][0] * columns[1][1],
@@ -179,7 +214,7 @@ mod tests {
             let share = |at: f64| (1.6 * at - 0.3).clamp(0.0, 1.0);
             let t: Vec<f64> = most.iter().map(|most| most * share(draw())).collect();
             let wanted: Vec<f64> = (0..rows).map(|r| columns.iter().zip(&t).map(|(c, t)| c[r] * t).sum()).collect();
-            let Some(found) = least_effort(&columns, &wanted, &most) else { continue };
+            let Some(found) = least_effort(&columns, &wanted, &most, most.len()) else { continue };
             met += 1;
             assert!(found.iter().zip(&most).all(|(t, most)| (0.0..=*most).contains(t)), "{found:?}");
             assert!(dot(&found, &found) <= dot(&t, &t) * (1.0 + 1e-6) + 1e-12, "{found:?} {t:?}");
@@ -194,7 +229,7 @@ mod tests {
 
     #[test]
     fn what_bounds_forbid_is_not_found() {
-        assert!(least_effort(&[vec![1.0, 0.0], vec![0.0, 1.0]], &[-1.0, 0.2], &[1.0, 1.0]).is_none());
-        assert!(least_effort(&[vec![1.0, 0.0], vec![0.0, 1.0]], &[2.0, 0.2], &[1.0, 1.0]).is_none());
+        assert!(least_effort(&[vec![1.0, 0.0], vec![0.0, 1.0]], &[-1.0, 0.2], &[1.0, 1.0], 2).is_none());
+        assert!(least_effort(&[vec![1.0, 0.0], vec![0.0, 1.0]], &[2.0, 0.2], &[1.0, 1.0], 2).is_none());
     }
 }

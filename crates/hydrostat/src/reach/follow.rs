@@ -1,11 +1,13 @@
 //! Targets one after the other, each from the tensions of the last.
 
 use super::effort::dot;
-use super::search::{Goal, STILL, Search, State};
+use super::search::{Goal, SAME, STILL, Search, State};
+use super::strokes::Slopes;
 use super::{ReachError, ReachOptions, Reached, Target};
 use crate::arm::Arm;
 use crate::configuration::Tip;
 use crate::sensitivity::SensitivityError;
+use crate::solve::Solver;
 
 /// Most rounds a target.
 const ROUNDS: usize = 12;
@@ -18,6 +20,9 @@ const SLIDE: f64 = 0.02;
 
 /// How far (over L) the arm may end from where its derivatives lead before it has jumped to another branch.
 const JUMP: f64 = 0.1;
+
+/// The least part of a change of the tensions that is tried on its own.
+const LEAST: f64 = 1e-2;
 
 /// Follows a path of targets.
 ///
@@ -43,7 +48,7 @@ const JUMP: f64 = 0.1;
 pub struct Follower {
     search: Search,
     state: State,
-    jacobian: Vec<Vec<f64>>,
+    slopes: Slopes,
 }
 
 /// Where a follower got to.
@@ -57,8 +62,8 @@ pub struct Followed {
     pub distance: f64,
     /// Whether that is within the tolerance.
     pub reached: bool,
-    /// Whether the arm went to another branch of its equilibria on the way: the determinant changed its sign, or the arm ended elsewhere
-    /// than its derivatives lead.
+    /// Whether the arm went to another branch of its equilibria on the way: small changes of the tensions lead neither there nor back, or the
+    /// arm ended elsewhere than its derivatives lead.
     pub jumped: bool,
     /// Solves that it took.
     pub solves: usize,
@@ -79,16 +84,17 @@ impl Follower {
                 state = search.begin(&tensions)?;
             }
         }
-        let jacobian = search.jacobian(&state.solver).ok_or(SensitivityError::Singular)?;
-        Ok(Self { search, state, jacobian })
+        let slopes = search.slopes(&state.solver).ok_or(SensitivityError::Singular)?;
+        Ok(Self { search, state, slopes })
     }
 
     /// Goes to the next targets, which have to be for the same places as the first.
     ///
-    /// Where they cannot be reached the arm stays as near as it came.
+    /// Where they cannot be reached, or derivatives end (at a limit point), the arm stays as near as it came, and the next targets are followed
+    /// from there.
     ///
     /// # Errors
-    /// [`ReachError::Target`] for other places, [`ReachError::Solve`] where the arm is lost.
+    /// [`ReachError::Target`] for other places.
     pub fn follow(&mut self, targets: &[Target]) -> Result<Followed, ReachError> {
         let places = |targets: &[Target]| targets.iter().map(|t| (t.s, t.angle.is_some())).collect::<Vec<_>>();
         match &mut self.search.goal {
@@ -99,73 +105,78 @@ impl Follower {
             _ => return Err(ReachError::Target),
         }
         self.state.rest = self.search.rest(&self.state.solver);
-        let sign = self.state.solver.engine.determinant().sign;
         let (mut jumped, mut solves, mut fresh) = (false, 0, false);
         // After a step that led no nearer, with the jacobian of where it began: shorter ones.
         let mut careful = false;
         let mut damping = 1e-9;
         while self.state.distance() > self.search.tol && solves < ROUNDS {
             let before = self.state.distance();
-            let next = self.next(damping, careful);
-            let change: Vec<f64> = next.iter().zip(&self.state.tensions).map(|(a, b)| a - b).collect();
-            if self.search.change(&next, &self.state.tensions) < STILL {
+            let wanted = self.next(damping, careful);
+            if self.search.change(&wanted, &self.state.tensions) < STILL {
                 break;
             }
-            let kept = self.state.tensions.clone();
             solves += 1;
-            let solver = &mut self.state.solver;
-            let moved = solver.set_tensions(&next).and_then(|()| solver.update());
-            let rest = moved.ok().map(|_| self.search.rest(solver));
-            let Some(rest) = rest.filter(|rest| dot(rest, rest).sqrt() < before) else {
-                // No nearer: back, with the jacobian of here, and shorter steps.
-                solver.set_tensions(&kept)?;
-                solver.update()?;
+            let Some((next, another_branch)) = self.at(&wanted).filter(|(next, _)| next.distance() < before) else {
+                // No nearer: from here again with the jacobian of here, and shorter steps.
                 damping = if fresh { (100.0 * damping).max(1e-4) } else { damping };
                 careful |= fresh;
-                self.renew()?;
+                if !self.renew() {
+                    break;
+                }
                 fresh = true;
                 continue;
             };
-            // Where the derivatives lead, and by how much they were off: Broyden's update.
-            let off: Vec<f64> = (0..rest.len())
-                .map(|r| {
-                    let led: f64 = self.jacobian.iter().zip(&change).map(|(column, d)| column[r] * d).sum();
-                    rest[r] - self.state.rest[r] - led
-                })
-                .collect();
-            jumped |= dot(&off, &off).sqrt() > JUMP;
-            (self.state.rest, self.state.tensions) = (rest, next);
+            let last = std::mem::replace(&mut self.state, next);
+            let change: Vec<f64> = self.state.tensions.iter().zip(&last.tensions).map(|(a, b)| a - b).collect();
+            let off = led_astray(&self.slopes.rest, &change, &last.rest, &self.state.rest);
+            jumped |= another_branch || dot(&off, &off).sqrt() > JUMP;
             let after = self.state.distance();
-            if after > self.search.tol && after > SLOW * before {
-                self.renew()?;
+            if after > self.search.tol && (another_branch || after > SLOW * before) {
+                if !self.renew() {
+                    break;
+                }
                 fresh = true;
                 continue;
             }
             fresh = false;
+            // Broyden's update.
             let scale = &self.search.scale;
             let square: f64 = change.iter().zip(scale).map(|(d, s)| (d / s) * (d / s)).sum();
-            for ((column, d), s) in self.jacobian.iter_mut().zip(&change).zip(scale) {
-                for (v, off) in column.iter_mut().zip(&off) {
-                    *v += off * d / (s * s * square);
+            let of_strokes = led_astray(&self.slopes.strokes, &change, &last.strokes, &self.state.strokes);
+            for (columns, off) in [(&mut self.slopes.rest, off), (&mut self.slopes.strokes, of_strokes)] {
+                for ((column, d), s) in columns.iter_mut().zip(&change).zip(scale) {
+                    for (v, off) in column.iter_mut().zip(&off) {
+                        *v += off * d / (s * s * square);
+                    }
                 }
             }
         }
-        let engine = &self.state.solver.engine;
-        jumped |= engine.determinant().sign != sign;
         let tip = self.state.solver.tip()?;
         let distance = self.state.distance();
         let reached = distance <= self.search.tol;
         Ok(Followed { tensions: self.state.tensions.clone(), tip, distance, reached, jumped, solves })
     }
 
+    /// The arm at other tensions, changed by what strokes are too long there, and whether that is on another branch.
+    fn at(&self, tensions: &[f64]) -> Option<(State, bool)> {
+        let mut tensions = tensions.to_vec();
+        let mut solver = self.state.solver.clone();
+        let mut another_branch = false;
+        self.search.pull(&mut solver, &mut tensions, &self.slopes, |solver, tensions| {
+            another_branch |= go(solver, tensions, &self.state.solver)?;
+            Some(())
+        })?;
+        Some((self.search.state(solver, tensions), another_branch))
+    }
+
     /// Tensions that meet the targets to first order: those of least effort, or, where these are far, some on the way there from the nearest.
     fn next(&self, damping: f64, careful: bool) -> Vec<f64> {
         let (search, state) = (&self.search, &self.state);
-        let nearest = || search.damped(&self.jacobian, state, damping);
+        let nearest = || search.damped(&self.slopes, state, damping);
         if careful {
             return nearest();
         }
-        let Some(least) = search.towards_least_effort(&self.jacobian, state) else { return nearest() };
+        let Some(least) = search.towards_least_effort(&self.slopes, state) else { return nearest() };
         if state.tensions.len() <= state.rest.len() {
             return least;
         }
@@ -175,8 +186,58 @@ impl Follower {
         nearest.iter().zip(&least).map(|(near, least)| near + share * (least - near)).collect()
     }
 
-    fn renew(&mut self) -> Result<(), ReachError> {
-        self.jacobian = self.search.jacobian(&self.state.solver).ok_or(SensitivityError::Singular)?;
-        Ok(())
+    /// Derivatives of here, if there are any.
+    fn renew(&mut self) -> bool {
+        let found = self.search.slopes(&self.state.solver);
+        let is_some = found.is_some();
+        self.slopes = found.unwrap_or_else(|| self.slopes.clone());
+        is_some
     }
+}
+
+/// By how much values after a change are off from where their derivatives lead.
+fn led_astray(columns: &[Vec<f64>], change: &[f64], before: &[f64], after: &[f64]) -> Vec<f64> {
+    let led = |r: usize| columns.iter().zip(change).map(|(column, d)| column[r] * d).sum::<f64>();
+    (0..after.len()).map(|r| after[r] - before[r] - led(r)).collect()
+}
+
+/// Solves at other tensions, from `kept`: in parts where one is too far, and where none lead there, as if nothing had been solved before. Whether that
+/// is another branch, which does not lead back. `None` where there is no equilibrium.
+fn go(solver: &mut Solver, tensions: &[f64], kept: &Solver) -> Option<bool> {
+    solver.set_tensions(tensions).ok()?;
+    if solver.update_warm().is_some() {
+        return Some(false);
+    }
+    if let Some(led) = led_to(kept.clone(), tensions) {
+        *solver = led;
+        return Some(false);
+    }
+    solver.update().ok()?;
+    let from: Vec<f64> = kept.arm().cables.iter().map(|cable| cable.tension).collect();
+    let place = |solver: &Solver| solver.engine.pose_of(1.0);
+    let there = place(kept);
+    let back = led_to(solver.clone(), &from).map(|back| place(&back));
+    Some(!back.is_some_and(|back| back.iter().zip(there).all(|(a, b)| (a - b).abs() < SAME)))
+}
+
+/// To other tensions by small changes, on one branch.
+fn led_to(mut solver: Solver, tensions: &[f64]) -> Option<Solver> {
+    let from: Vec<f64> = solver.arm().cables.iter().map(|cable| cable.tension).collect();
+    let (mut done, mut part) = (0.0, 0.5);
+    while done < 1.0 {
+        if part < LEAST {
+            return None;
+        }
+        let to = f64::min(done + part, 1.0);
+        let mut next = solver.clone();
+        let between: Vec<f64> =
+            from.iter().zip(tensions).map(|(a, b)| if to < 1.0 { a + to * (b - a) } else { *b }).collect();
+        next.set_tensions(&between).ok()?;
+        if next.update_warm().is_some() {
+            (solver, done) = (next, to);
+        } else {
+            part *= 0.5;
+        }
+    }
+    Some(solver)
 }

@@ -210,7 +210,7 @@ impl Line<'_> {
         let mut to: Vec<f64> = shares.iter().zip(&here.tangent).map(|(share, t)| share + length * t).collect();
         let mut solver = here.state.solver.clone();
         let mut corrections = 0;
-        let rest = loop {
+        loop {
             if let Some((c, bound)) = stop {
                 to[c] = bound;
             }
@@ -229,7 +229,7 @@ impl Line<'_> {
             }
             let off: Vec<f64> = self.across.iter().map(|a| -dot(a, &rest)).collect();
             if dot(&off, &off).sqrt() <= CLOSE {
-                break rest;
+                break;
             }
             corrections += 1;
             if corrections > CORRECTIONS {
@@ -237,9 +237,9 @@ impl Line<'_> {
             }
             let change = self.change(&here.columns, &off, &guide, 0.0)?;
             to.iter_mut().zip(&change).for_each(|(to, d)| *to += d);
-        };
+        }
         let tensions = solver.arm().cables.iter().map(|cable| cable.tension).collect();
-        let state = State { solver, tensions, rest };
+        let state = self.search.state(solver, tensions);
         let columns = self.columns(&state)?;
         let tangent = self.tangent(&columns, &here.tangent)?;
         let straight = dot(&tangent, &here.tangent) > STRAIGHT || length < 10.0 * SHORTEST;

@@ -1,12 +1,13 @@
 //! Newton's method on the tensions, from several starts.
 
-use super::effort::{dot, least_effort};
+use super::effort::{dot, least_effort, nearest};
+use super::strokes::{Pulled, Slopes};
 use super::{Bound, ReachError, ReachOptions, Reached, Target};
 use crate::arm::Arm;
 use crate::configuration::Configuration;
-use crate::engine::{Engine, solved};
+use crate::engine::Engine;
 use crate::parameter::Parameter;
-use crate::sensitivity::{SensitivityError, SensitivityMethod, check};
+use crate::sensitivity::{Quantity, SensitivityError, SensitivityMethod, check};
 use crate::solve::{Options, Solver};
 use crate::verdict::SolveError;
 
@@ -14,13 +15,22 @@ use crate::verdict::SolveError;
 const ROUNDS: usize = 60;
 
 /// Tips (over L) that are this near are at the same place.
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 
 /// The longest step: how far it moves what has a target, over L, to first order.
 const LONGEST: f64 = 0.3;
 
 /// Tolerance of solves over the distance at which a target is reached.
 const SOLVED: f64 = 0.3;
+
+/// What a slack cable is paid out beyond the length that it would be taut at, over that of the whole cable.
+const PAID_OUT: f64 = 0.01;
+
+/// How often less is pulled where a search cannot begin.
+const LESS: usize = 6;
+
+/// How heavy strokes are in a damped step, over the targets.
+const HEAVY: f64 = 1e3;
 
 /// Change of the tensions, over their scale, at which least effort and least distance are found.
 pub(super) const STILL: f64 = 1e-9;
@@ -40,11 +50,17 @@ pub(super) struct State {
     pub(super) solver: Solver,
     pub(super) tensions: Vec<f64>,
     pub(super) rest: Vec<f64>,
+    /// Strokes over L; none where they have no bound.
+    pub(super) strokes: Vec<f64>,
 }
 
 impl State {
     pub(super) fn distance(&self) -> f64 {
         dot(&self.rest, &self.rest).sqrt()
+    }
+
+    pub(super) fn pulled(&self) -> Pulled<'_> {
+        Pulled { tensions: &self.tensions, strokes: &self.strokes }
     }
 }
 
@@ -57,6 +73,8 @@ pub(super) struct Search {
     pub(super) most: Vec<f64>,
     /// Tensions, N, that bend the arm a good deal.
     pub(super) scale: Vec<f64>,
+    /// The largest stroke of a cable that pulls, over L.
+    pub(super) longest: Option<f64>,
     pub(super) tol: f64,
     /// Whether the lengths of cables are commanded of what is found, in place of their tensions.
     by_strokes: bool,
@@ -87,8 +105,10 @@ impl Search {
         if !(1e-10..=1e-2).contains(&options.tol) {
             return Err(ReachError::Option { option: "tol", value: options.tol, expected: "in [1e-10, 1e-2]" });
         }
-        if let Some(value) = options.max_tension.filter(|most| !(*most > 0.0 && most.is_finite())) {
-            return Err(ReachError::Option { option: "max_tension", value, expected: "above 0" });
+        for (option, value) in [("max_tension", options.max_tension), ("max_stroke", options.max_stroke)] {
+            if let Some(value) = value.filter(|most| !(*most > 0.0 && most.is_finite())) {
+                return Err(ReachError::Option { option, value, expected: "above 0" });
+            }
         }
         let bending = Engine::new(&arm).equations.units.force * arm.length * arm.length;
         let scale: Vec<f64> = arm
@@ -105,7 +125,8 @@ impl Search {
         };
         let most: Vec<f64> = arm.cables.iter().map(|cable| bound(cable.max_tension)).collect();
         let scale = scale.iter().zip(&most).map(|(scale, most)| scale.min(*most)).collect();
-        Ok(Self { arm, goal, most, scale, tol: options.tol, by_strokes: false })
+        let longest = options.max_stroke.map(|stroke| stroke / arm.length);
+        Ok(Self { arm, goal, most, scale, longest, tol: options.tol, by_strokes: false })
     }
 
     /// Commands the lengths of cables of what is found.
@@ -120,7 +141,8 @@ impl Search {
         }
     }
 
-    /// Tensions to start from: every cable alone, and in pairs, gently and less so.
+    /// Tensions to start from: every cable alone, and in pairs, gently and less so. Where strokes have a bound every cable also with all
+    /// others slack, since these can then be beyond it.
     pub(super) fn starts(&self) -> Vec<Vec<f64>> {
         let n = self.scale.len();
         let at = |shares: &dyn Fn(usize) -> f64| {
@@ -149,6 +171,11 @@ impl Search {
                 }
             }
         }
+        if self.longest.is_some() {
+            for (strong, own) in [0.2, 0.6].into_iter().flat_map(|strong| (0..n).map(move |own| (strong, own))) {
+                out.push(at(&|c| if c == own { strong } else { 0.0 }));
+            }
+        }
         out.dedup();
         out
     }
@@ -168,24 +195,43 @@ impl Search {
         if solver.engine.watch(&places, solver.options.tol).is_err() {
             return Err(SensitivityError::Unsettled(f64::NAN).into());
         }
-        let rest = self.rest(&solver);
-        Ok(State { solver, tensions: tensions.to_vec(), rest })
+        Ok(self.state(solver, tensions.to_vec()))
     }
 
-    /// [`Search::at`], with less of the tensions where there is no equilibrium.
+    /// The state of a solved arm.
+    pub(super) fn state(&self, solver: Solver, tensions: Vec<f64>) -> State {
+        let (rest, strokes) = (self.rest(&solver), self.strokes(&solver));
+        State { solver, tensions, rest, strokes }
+    }
+
+    /// [`Search::at`], with less of the tensions where there is no equilibrium or strokes are too long.
     pub(super) fn begin(&self, start: &[f64]) -> Result<State, ReachError> {
         let mut tensions = start.to_vec();
-        let mut found = self.at(&tensions);
-        for _ in 0..6 {
-            if !matches!(found, Err(ReachError::Solve(_))) {
+        let mut found = self.at(&tensions).map(|state| self.within(state));
+        for _ in 0..LESS {
+            if !matches!(found, Ok(None) | Err(ReachError::Solve(_))) {
                 break;
             }
             for tension in &mut tensions {
                 *tension *= 0.4;
             }
-            found = self.at(&tensions);
+            found = self.at(&tensions).map(|state| self.within(state));
         }
-        found
+        match found? {
+            Some(state) => Ok(state),
+            // A slack cable takes no stroke.
+            None => self.at(&vec![0.0; tensions.len()]),
+        }
+    }
+
+    /// With strokes within their bounds, if they get there.
+    fn within(&self, mut state: State) -> Option<State> {
+        if self.longest.is_none() {
+            return Some(state);
+        }
+        let slopes = self.slopes(&state.solver)?;
+        self.pull(&mut state.solver, &mut state.tensions, &slopes, updated)?;
+        Some(self.state(state.solver, state.tensions))
     }
 
     /// Weighted distances to the targets, over L.
@@ -213,6 +259,15 @@ impl Search {
 
     /// Derivatives of the distances by the tensions: one column a cable. `None` at a limit point.
     pub(super) fn jacobian(&self, solver: &Solver) -> Option<Vec<Vec<f64>>> {
+        self.derivatives(solver, false).map(|slopes| slopes.rest)
+    }
+
+    /// [`Search::jacobian`], with the derivatives of strokes where they have a bound.
+    pub(super) fn slopes(&self, solver: &Solver) -> Option<Slopes> {
+        self.derivatives(solver, self.longest.is_some())
+    }
+
+    fn derivatives(&self, solver: &Solver, of_strokes: bool) -> Option<Slopes> {
         let cables: Vec<Parameter> = (0..self.scale.len()).map(Parameter::Tension).collect();
         let mut quantities = Vec::new();
         let mut weights = Vec::new();
@@ -233,9 +288,16 @@ impl Search {
                 weights.push(target.weight);
             }
         }
+        let count = quantities.len();
+        if of_strokes {
+            quantities.extend((0..cables.len()).map(Quantity::Command));
+            weights.resize(quantities.len(), 1.0 / self.arm.length);
+        }
         let found = solver.engine.derivatives(&quantities, &cables, SensitivityMethod::Best)?;
         let column = |c: usize| found.rows.iter().zip(&weights).map(|(row, weight)| weight * row[c]).collect();
-        Some((0..cables.len()).map(column).collect())
+        let mut rest: Vec<Vec<f64>> = (0..cables.len()).map(column).collect();
+        let strokes = rest.iter_mut().map(|column| column.split_off(count)).collect();
+        Some(Slopes { rest, strokes })
     }
 
     /// From a start to the nearest that can be had, of least effort.
@@ -247,14 +309,14 @@ impl Search {
             if !go_on() {
                 break;
             }
-            let Some(jacobian) = self.jacobian(&state.solver) else { break };
+            let Some(slopes) = self.slopes(&state.solver) else { break };
             let reached = state.distance() <= 0.1 * self.tol;
-            if let Some(next) = self.towards_least_effort(&jacobian, &state) {
+            if let Some(next) = self.towards_least_effort(&slopes, &state) {
                 let still = self.change(&next, &state.tensions) < STILL;
                 if reached && (still || refined > 20) {
                     break;
                 }
-                if let Some(better) = self.step(&state, &next, if reached { Some(self.tol) } else { None }) {
+                if let Some(better) = self.step(&state, &slopes, &next, if reached { Some(self.tol) } else { None }) {
                     refined += usize::from(reached);
                     state = better;
                     continue;
@@ -266,11 +328,11 @@ impl Search {
             // Damped least squares, ever shorter.
             let mut moved = false;
             while damping < 1e9 {
-                let next = self.damped(&jacobian, &state, damping);
+                let next = self.damped(&slopes, &state, damping);
                 if self.change(&next, &state.tensions) < STILL {
                     break;
                 }
-                if let Some(better) = self.step(&state, &next, None) {
+                if let Some(better) = self.step(&state, &slopes, &next, None) {
                     state = better;
                     damping = (0.2 * damping).max(1e-12);
                     moved = true;
@@ -290,90 +352,103 @@ impl Search {
     }
 
     /// Tensions of least effort that meet the targets to first order, or as much of the way as a step may go.
-    pub(super) fn towards_least_effort(&self, jacobian: &[Vec<f64>], state: &State) -> Option<Vec<f64>> {
+    pub(super) fn towards_least_effort(&self, slopes: &Slopes, state: &State) -> Option<Vec<f64>> {
         let distance = state.distance();
         let share = if distance > LONGEST { LONGEST / distance } else { 1.0 };
-        let carried = |r: usize| jacobian.iter().zip(&state.tensions).map(|(column, t)| column[r] * t).sum::<f64>();
-        let wanted: Vec<f64> = state.rest.iter().enumerate().map(|(r, rest)| carried(r) - share * rest).collect();
-        least_effort(jacobian, &wanted, &self.most)
+        let wanted = linear(&slopes.rest, state, share);
+        self.within_strokes(state.pulled(), slopes, |held, most| {
+            let targets = (slopes.rest.clone(), wanted.clone());
+            let all = self.conditions(targets, state.pulled(), slopes, (held, most), 1.0);
+            let mut found = least_effort(&all.columns, &all.wanted, &all.most, most.len())?;
+            found.truncate(most.len());
+            Some(found)
+        })
     }
 
-    /// A damped least-squares step within the bounds: cables on a bound that they would leave stay there.
-    pub(super) fn damped(&self, jacobian: &[Vec<f64>], state: &State, damping: f64) -> Vec<f64> {
-        let n = self.scale.len();
-        let scaled: Vec<Vec<f64>> =
-            jacobian.iter().zip(&self.scale).map(|(column, s)| column.iter().map(|v| v * s).collect()).collect();
-        let size = scaled.iter().map(|column| dot(column, column)).fold(f64::MIN_POSITIVE, f64::max);
-        // Only what would leave its bound downhill stays there.
-        let downhill = |c: usize| -dot(&scaled[c], &state.rest);
-        let on_bound = |c: usize| match downhill(c) {
-            slope if slope < 0.0 => state.tensions[c] <= 0.0,
-            _ => state.tensions[c] >= self.most[c],
+    /// A damped least-squares step within the bounds.
+    pub(super) fn damped(&self, slopes: &Slopes, state: &State, damping: f64) -> Vec<f64> {
+        let sizes = slopes.rest.iter().zip(&self.scale).map(|(column, scale)| scale * scale * dot(column, column));
+        let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
+        let wanted = linear(&slopes.rest, state, 1.0);
+        let found = self.within_strokes(state.pulled(), slopes, |held, most| {
+            let targets = (slopes.rest.clone(), wanted.clone());
+            let all = self.conditions(targets, state.pulled(), slopes, (held, most), HEAVY);
+            let mut weights: Vec<f64> = self.scale.iter().map(|scale| damping * size / (scale * scale)).collect();
+            weights.resize(all.now.len(), 0.0);
+            let mut found = nearest(&all.columns, &all.wanted, &all.most, &weights, &all.now)?;
+            found.truncate(most.len());
+            Some(found)
+        });
+        let Some(mut next) = found else { return state.tensions.clone() };
+        let moved = |r: usize| -> f64 {
+            let by = slopes.rest.iter().zip(next.iter().zip(&state.tensions));
+            by.map(|(column, (to, from))| column[r] * (to - from)).sum()
         };
-        let mut fixed: Vec<bool> = (0..n).map(on_bound).collect();
-        let mut next = state.tensions.clone();
-        for _ in 0..=n {
-            let free: Vec<usize> = (0..n).filter(|c| !fixed[*c]).collect();
-            let row = |a: &usize| {
-                let by = free.iter().map(|b| dot(&scaled[*a], &scaled[*b]) + if a == b { damping * size } else { 0.0 });
-                (by.collect(), [downhill(*a), 0.0])
-            };
-            let Some((step, _)) = solved(free.iter().map(row).collect()) else { return next };
-            let mut longest = 0.0_f64;
-            for r in 0..state.rest.len() {
-                longest = longest.hypot(free.iter().zip(&step).map(|(c, [d, _])| scaled[*c][r] * d).sum());
-            }
-            let share = if longest > LONGEST { LONGEST / longest } else { 1.0 };
-            next.clone_from(&state.tensions);
-            let mut stopped = false;
-            for (c, [d, _]) in free.iter().zip(&step) {
-                let wanted = state.tensions[*c] + share * d * self.scale[*c];
-                next[*c] = wanted.clamp(0.0, self.most[*c]);
-                if wanted != next[*c] && state.tensions[*c] == next[*c] && !stopped {
-                    (fixed[*c], stopped) = (true, true);
-                }
-            }
-            if !stopped {
-                break;
+        let longest = (0..state.rest.len()).map(moved).fold(0.0, f64::hypot);
+        if longest > LONGEST {
+            for ((to, from), most) in next.iter_mut().zip(&state.tensions).zip(&self.most) {
+                *to = (from + LONGEST / longest * (*to - from)).clamp(0.0, *most);
             }
         }
         next
     }
 
-    /// The arm at other tensions, if that is nearer; near enough where a distance is `allowed`.
-    pub(super) fn step(&self, state: &State, next: &[f64], allowed: Option<f64>) -> Option<State> {
+    /// The arm at other tensions, changed by what strokes are too long there, if that is nearer; near enough where a distance is `allowed`.
+    pub(super) fn step(&self, state: &State, slopes: &Slopes, next: &[f64], allowed: Option<f64>) -> Option<State> {
         let mut solver = state.solver.clone();
-        solver.set_tensions(next).ok()?;
-        solver.update().ok()?;
-        let rest = self.rest(&solver);
-        let better = State { solver, tensions: next.to_vec(), rest };
+        let mut tensions = next.to_vec();
+        self.pull(&mut solver, &mut tensions, slopes, updated)?;
+        let better = self.state(solver, tensions);
         let enough = allowed.unwrap_or((1.0 - 1e-6) * state.distance());
         (better.distance() <= enough).then_some(better)
     }
 
     pub(super) fn read(&self, mut state: State) -> Result<Reached, ReachError> {
         let configuration = state.solver.configuration()?;
-        let at_bound = |c: usize| {
-            let near = 1e-9 * self.scale[c];
-            if state.tensions[c] <= near {
-                Some(Bound::Slack(c))
-            } else {
-                (self.most[c] - state.tensions[c] <= near).then_some(Bound::Most(c))
+        let mut bounds = Vec::new();
+        for c in 0..self.scale.len() {
+            if self.is_slack(c, state.tensions[c]) {
+                bounds.push(Bound::Slack(c));
+                continue;
             }
-        };
-        let asked = if self.by_strokes { commanded(&configuration) } else { configuration.arm.clone() };
+            if self.most[c] - state.tensions[c] <= 1e-9 * self.scale[c] {
+                bounds.push(Bound::Most(c));
+            }
+            if self.longest.is_some_and(|longest| longest - state.strokes[c] <= 10.0 * self.tol) {
+                bounds.push(Bound::Stroke(c));
+            }
+        }
+        let asked = if self.by_strokes { self.commanded(&configuration) } else { configuration.arm.clone() };
         let led = asked.solve().ok().filter(|other| near(other, &configuration));
         let on_the_path = led.is_some();
         let configuration = led.filter(|_| self.by_strokes).unwrap_or(configuration);
         Ok(Reached {
             effort: dot(&state.tensions, &state.tensions),
             distance: state.distance(),
-            bounds: (0..self.scale.len()).filter_map(at_bound).collect(),
+            bounds,
             on_the_path,
             stability: configuration.stability(),
             tensions: state.tensions,
             configuration,
         })
+    }
+}
+
+impl Search {
+    /// The arm with its cables at the lengths that they have; of an elastic one what its tension stretches is reeled in, too. One that
+    /// hangs slack is paid out a little beyond that: any longer one has the same shape, and one just taut is not to pull on the way there.
+    fn commanded(&self, configuration: &Configuration) -> Arm {
+        let mut arm = configuration.arm.clone();
+        for (c, (cable, state)) in arm.cables.iter_mut().zip(&configuration.cables).enumerate() {
+            let unloaded = state.length + state.stroke;
+            cable.stroke = Some(if self.is_slack(c, state.tension) {
+                state.stroke - PAID_OUT * unloaded
+            } else {
+                let stretch = cable.stiffness.map_or(1.0, |stiffness| 1.0 + state.tension / stiffness);
+                unloaded - state.length / stretch
+            });
+        }
+        arm
     }
 }
 
@@ -388,17 +463,19 @@ impl Goal {
     }
 }
 
+/// What the derivatives times tensions have to be for a share of the way to the targets.
+fn linear(columns: &[Vec<f64>], state: &State, share: f64) -> Vec<f64> {
+    let carried = |r: usize| columns.iter().zip(&state.tensions).map(|(column, t)| column[r] * t).sum::<f64>();
+    state.rest.iter().enumerate().map(|(r, rest)| carried(r) - share * rest).collect()
+}
+
+/// Solves at other tensions, if it can.
+fn updated(solver: &mut Solver, tensions: &[f64]) -> Option<()> {
+    solver.set_tensions(tensions).ok()?;
+    solver.update().ok().map(drop)
+}
+
 /// Whether two tips are at the same place.
 fn near(a: &Configuration, b: &Configuration) -> bool {
     (a.tip().x - b.tip().x).hypot(a.tip().y - b.tip().y) < SAME * a.arm.length
-}
-
-/// The arm with its cables at the lengths that they have; of an elastic one what its tension stretches is reeled in, too.
-fn commanded(configuration: &Configuration) -> Arm {
-    let mut arm = configuration.arm.clone();
-    for (cable, state) in arm.cables.iter_mut().zip(&configuration.cables) {
-        let stretch = cable.stiffness.map_or(1.0, |stiffness| 1.0 + state.tension / stiffness);
-        cable.stroke = Some(state.length + state.stroke - state.length / stretch);
-    }
-    arm
 }
