@@ -260,7 +260,7 @@ class Follower:
     targets : Target, sequence of Target, or (x, y)
         The first targets, m and rad.
     max_tension : float, optional
-        The largest tension of every cable, N, where the cable itself has none.
+        The largest tension of every cable, N; of this and the cable's own `max_tension` the smaller counts.
     tol : float
         Distance over the length at which a target is reached, in [1e-10, 1e-2].
 
