@@ -251,7 +251,7 @@ mod tests {
     #[tokio::test]
     async fn a_path_out_of_time_was_called_one_of_too_many_points() {
         let text =
-            r#"{ "arm": "silicone", "vary": "base.angle=80:-80", "set": { "flow.speed": 0.1 }, "branches": true }"#;
+            r#"{ "arm": "silicone", "vary": "arm.base.angle=80:-80", "set": { "flow.speed": 0.1 }, "branches": true }"#;
         let request = read::<PathRequest>(text.as_bytes()).unwrap();
         let work = Work::new(std::time::Duration::from_millis(1));
         let answer = work.run(Weight::Heavy, move |deadline| path(&request, deadline)).await.unwrap().unwrap();
