@@ -41,7 +41,9 @@ pub(crate) fn covariance(rows: &Rows, loss: Loss, free: &[usize], spread: f64) -
     let SVD { v_t, singular_values, .. } = SVD::new(own, false, true);
     let Some(directions) = v_t else {
         // Asked for above; without them nothing is known.
-        free.iter().for_each(|i| out[(*i, *i)] = f64::INFINITY);
+        for i in free {
+            out[(*i, *i)] = f64::INFINITY;
+        }
         return out;
     };
     let least = NOTHING * singular_values.max();
