@@ -261,7 +261,7 @@ class Follower:
     targets : Target, sequence of Target, or (x, y)
         The first targets, m and rad.
     max_tension : float, optional
-        The largest tension of every cable, N, where the cable itself has none.
+        The largest tension of every cable, N; of this and the cable's own `max_tension` the smaller counts.
     max_stroke : float, optional
         The largest stroke of every cable that pulls, m: how far it can be wound in.
     tol : float

@@ -17,7 +17,7 @@ pub(crate) struct Rows<const N: usize> {
     pub(crate) rows: Block<N>,
     pub(crate) load: [[f64; 2]; N],
     pub(crate) pivot: [usize; N],
-    /// Reduced = `undo`^-1 times carried; kept for the adjoint.
+    /// Reduced = `reduction` times carried; kept for the adjoint.
     pub(crate) reduction: Block<N>,
 }
 

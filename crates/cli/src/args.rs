@@ -45,7 +45,7 @@ Examples:
   hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
                                                         all shapes under the same loads
   hydrostat reach silicone --target 0.182,0.078         the tensions that bring the tip there
-  hydrostat identify silicone data.csv --fit young  parameters from measured shapes
+  hydrostat identify silicone data.csv --fit young      parameters from measured shapes
   hydrostat sweep paper --vary flow.speed=0:1:101 --vary cable[0].tension=0:80:101 -o out.parquet
   hydrostat serve silicone --open                       pull on an arm in the browser
   hydrostat solve my.toml --format csv --stations 101 -o my.csv

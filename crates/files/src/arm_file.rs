@@ -290,41 +290,20 @@ fn flow(v: &Values) -> Flow {
 
 fn readings(v: &Values) -> Readings {
     let mut r = if v.word("model.closure") == Some("literal") { Readings::LITERAL } else { Readings::default() };
-    match v.word("model.volume") {
-        Some("planar") => r.volume = Volume::Planar,
-        Some("circular") => r.volume = Volume::Circular,
-        Some("none") => r.volume = Volume::None,
-        _ => {}
-    }
-    match v.word("model.flow_surface") {
-        Some("centreline") => r.flow_surface = FlowSurface::Centreline,
-        Some("lateral") => r.flow_surface = FlowSurface::Lateral,
-        _ => {}
-    }
-    match v.word("model.entering_speed") {
-        Some("tangential") => r.entering_speed = EnteringSpeed::Tangential,
-        Some("resultant") => r.entering_speed = EnteringSpeed::Resultant,
-        _ => {}
-    }
-    match v.word("model.layer_mean") {
-        Some("speed") => r.layer_mean = LayerMean::Speed,
-        Some("momentum") => r.layer_mean = LayerMean::Momentum,
-        _ => {}
-    }
-    match v.word("model.wetted_length") {
-        Some("reference") => r.wetted_length = WettedLength::Reference,
-        Some("deformed") => r.wetted_length = WettedLength::Deformed,
-        _ => {}
-    }
-    match v.word("model.hydrostatics") {
-        Some("archimedes") => r.hydrostatics = Hydrostatics::Archimedes,
-        Some("normal-only") => r.hydrostatics = Hydrostatics::NormalOnly,
-        _ => {}
-    }
-    match v.word("model.support") {
-        Some("clamped") => r.support = Support::Clamped,
-        Some("unstrained-base") => r.support = Support::UnstrainedBase,
-        _ => {}
-    }
+    take(v, "volume", &Volume::ALL, &Volume::NAMES, &mut r.volume);
+    take(v, "flow_surface", &FlowSurface::ALL, &FlowSurface::NAMES, &mut r.flow_surface);
+    take(v, "entering_speed", &EnteringSpeed::ALL, &EnteringSpeed::NAMES, &mut r.entering_speed);
+    take(v, "layer_mean", &LayerMean::ALL, &LayerMean::NAMES, &mut r.layer_mean);
+    take(v, "wetted_length", &WettedLength::ALL, &WettedLength::NAMES, &mut r.wetted_length);
+    take(v, "hydrostatics", &Hydrostatics::ALL, &Hydrostatics::NAMES, &mut r.hydrostatics);
+    take(v, "support", &Support::ALL, &Support::NAMES, &mut r.support);
     r
+}
+
+/// Sets an option to what its word at `key` means, if there is one.
+fn take<T: Copy>(v: &Values, key: &str, all: &[T], names: &[&str], out: &mut T) {
+    let word = v.word(&format!("model.{key}"));
+    if let Some((one, _)) = all.iter().zip(names).find(|(_, name)| word == Some(**name)) {
+        *out = *one;
+    }
 }

@@ -1,5 +1,7 @@
 //! The arm file's format as data. Parser, `--set`, schema and messages all read this one table.
 
+use hydrostat::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Support, Volume, WettedLength};
+
 use crate::quantity::Dimension;
 
 /// What may stand at a key.
@@ -166,13 +168,13 @@ const DISTRIBUTED: &[Key] = &[
 
 const MODEL: &[Key] = &[
     default("closure", Choice(&["default", "literal"]), "\"default\"", "All readings together."),
-    optional("volume", Choice(&["planar", "circular", "none"]), "How a section swells."),
-    optional("flow_surface", Choice(&["centreline", "lateral"]), "The surface that directs the loads of the stream."),
-    optional("entering_speed", Choice(&["tangential", "resultant"]), "The speed that enters the layer."),
-    optional("layer_mean", Choice(&["speed", "momentum"]), "The mean over the layer's profile."),
-    optional("wetted_length", Choice(&["reference", "deformed"]), "The length on which the stream acts."),
-    optional("hydrostatics", Choice(&["archimedes", "normal-only"]), "The part of weight and buoyancy that acts."),
-    optional("support", Choice(&["clamped", "unstrained-base"]), "The conditions at the base."),
+    optional("volume", Choice(&Volume::NAMES), "How a section swells."),
+    optional("flow_surface", Choice(&FlowSurface::NAMES), "The surface that directs the loads of the stream."),
+    optional("entering_speed", Choice(&EnteringSpeed::NAMES), "The speed that enters the layer."),
+    optional("layer_mean", Choice(&LayerMean::NAMES), "The mean over the layer's profile."),
+    optional("wetted_length", Choice(&WettedLength::NAMES), "The length on which the stream acts."),
+    optional("hydrostatics", Choice(&Hydrostatics::NAMES), "The part of weight and buoyancy that acts."),
+    optional("support", Choice(&Support::NAMES), "The conditions at the base."),
 ];
 
 /// The keys of a profile given at both ends.

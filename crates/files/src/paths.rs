@@ -70,14 +70,7 @@ pub fn end_message(end: PathEnd, varied: &Varied, value: f64) -> String {
 
 /// What no equilibrium goes past, in a phrase, and where along the arm (m).
 pub fn limit_message(kind: VerdictKind, s: Option<f64>) -> String {
-    let why = match kind {
-        VerdictKind::CableFold => "a cable folds its side of the arm shut",
-        VerdictKind::SectionCrushed => "net compression crushes the section",
-        VerdictKind::NoSectionSolution => "no section strains carry the contact force",
-        VerdictKind::LimitPoint => "the equilibrium ends in a limit point",
-        VerdictKind::LoadJump => "the load of the stream jumps against the motion",
-        VerdictKind::NotFound => "no further equilibrium was found and no physical limit established",
-    };
+    let why = kind.phrase();
     s.map_or_else(|| why.to_owned(), |s| format!("{why}, at s = {s:.4} m,"))
 }
 

@@ -5,7 +5,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::format::{self, COEFFICIENTS, DRAG, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_NAME, MAX_POINTS};
+use crate::format::{self, COEFFICIENTS, DRAG, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_NAME, MAX_POINTS, PULL};
 use crate::quantity::Dimension;
 
 /// The JSON Schema (draft 2020-12) of the arm file.
@@ -57,6 +57,7 @@ fn property(key: &Key) -> Value {
                 { "required": COEFFICIENTS, "allOf": [absent(HOMOGENEOUS)] },
             ]);
         }
+        "cable" => schema["items"]["not"] = json!({ "required": PULL }),
         "flow" => {
             schema["if"] = json!({ "required": ["law"], "properties": { "law": { "const": "quadratic-drag" } } });
             schema["then"] = json!({ "required": DRAG });

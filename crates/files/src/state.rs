@@ -14,13 +14,7 @@ struct StabilityOut {
 
 impl From<Option<Stability>> for StabilityOut {
     fn from(stability: Option<Stability>) -> Self {
-        let (state, directions) = match stability {
-            Some(Stability::Stable) => (Some("stable"), Some(0)),
-            Some(Stability::Unstable(count)) => (Some("unstable"), Some(count)),
-            Some(Stability::Marginal) => (Some("marginal"), None),
-            None => (None, None),
-        };
-        Self { state, directions }
+        Self { state: stability.map(Stability::name), directions: stability.and_then(Stability::directions) }
     }
 }
 

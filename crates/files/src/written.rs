@@ -2,10 +2,7 @@
 
 use std::fmt::Write;
 
-use hydrostat::{
-    Arm, Cavity, EnteringSpeed, FlowLaw, FlowSurface, Hydrostatics, LayerMean, Material, Profile, Readings, Support,
-    Volume, WettedLength,
-};
+use hydrostat::{Arm, Cavity, FlowLaw, Material, Profile, Readings};
 use serde::{Serialize, Serializer};
 
 /// An arm in the form of its file, every default filled in: SI numbers, angles as bare numbers in
@@ -297,56 +294,13 @@ fn flow(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
 
 fn model(r: Readings) -> Tree {
     let words = [
-        (
-            "volume",
-            match r.volume {
-                Volume::Planar => "planar",
-                Volume::Circular => "circular",
-                Volume::None => "none",
-            },
-        ),
-        (
-            "flow_surface",
-            match r.flow_surface {
-                FlowSurface::Centreline => "centreline",
-                FlowSurface::Lateral => "lateral",
-            },
-        ),
-        (
-            "entering_speed",
-            match r.entering_speed {
-                EnteringSpeed::Tangential => "tangential",
-                EnteringSpeed::Resultant => "resultant",
-            },
-        ),
-        (
-            "layer_mean",
-            match r.layer_mean {
-                LayerMean::Speed => "speed",
-                LayerMean::Momentum => "momentum",
-            },
-        ),
-        (
-            "wetted_length",
-            match r.wetted_length {
-                WettedLength::Reference => "reference",
-                WettedLength::Deformed => "deformed",
-            },
-        ),
-        (
-            "hydrostatics",
-            match r.hydrostatics {
-                Hydrostatics::Archimedes => "archimedes",
-                Hydrostatics::NormalOnly => "normal-only",
-            },
-        ),
-        (
-            "support",
-            match r.support {
-                Support::Clamped => "clamped",
-                Support::UnstrainedBase => "unstrained-base",
-            },
-        ),
+        ("volume", r.volume.name()),
+        ("flow_surface", r.flow_surface.name()),
+        ("entering_speed", r.entering_speed.name()),
+        ("layer_mean", r.layer_mean.name()),
+        ("wetted_length", r.wetted_length.name()),
+        ("hydrostatics", r.hydrostatics.name()),
+        ("support", r.support.name()),
     ];
     Tree::Table(words.into_iter().map(|(key, word)| (key, Tree::word(word))).collect())
 }

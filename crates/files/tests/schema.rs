@@ -58,6 +58,7 @@ fn parser_and_schema_take_the_same() {
         "[flow]\nspede = 1",
         "[flow]\nspeed = true",
         "[flow]\nspeed = [1]",
+        "[[cable]]\ntension = 1\nstroke = 0.001",
         "[flow]\nspeed = \"1 m\"",
         "[flow]\nspeed = \"1\"",
         "[flow]\nspeed = \"m/s\"",

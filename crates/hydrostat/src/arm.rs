@@ -264,6 +264,51 @@ impl Arm {
         out
     }
 
+    /// The arm with nothing that loads it: slack cables ([`Arm::slackened`]), still water, no weight, no load on the tip or along the arm.
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Cable};
+    ///
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.cables.push(Cable::new("left", 0.001).reeled_in(0.01));
+    /// arm.flow.speed = 0.3;
+    /// let tip = arm.unloaded().solve()?.tip();
+    /// assert!((tip.x - 0.245).abs() < 1e-9 && tip.y.abs() < 1e-9);
+    /// # Ok::<(), hydrostat::SolveError>(())
+    /// ```
+    #[must_use]
+    pub fn unloaded(&self) -> Self {
+        let mut out = self.slackened();
+        out.flow.speed = 0.0;
+        out.gravity = None;
+        out.tip = TipLoad::default();
+        out.distributed = DistributedLoad::default();
+        out
+    }
+
+    /// C1 A0 and C2 A0 (N) and C3 A0 (N m2) of the section at `s` (m), as it is before anything acts.
+    ///
+    /// ```
+    /// use hydrostat::Arm;
+    ///
+    /// let [ea, ga, ei] = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5).stiffness_at(0.0);
+    /// let area = std::f64::consts::PI * 0.010 * 0.010;
+    /// assert!((ea / (110e3 * area) - 1.0).abs() < 1e-12);
+    /// assert!((ga / (ea / 3.0) - 1.0).abs() < 1e-12);
+    /// assert!((ei / (110e3 * area * 0.010 * 0.010 / 4.0) - 1.0).abs() < 1e-12);
+    /// ```
+    pub fn stiffness_at(&self, s: f64) -> [f64; 3] {
+        let at = |profile: &Profile| profile.at(s, self.length).value;
+        let (square, inner) = (at(&self.radius).powi(2), at(&self.inner_radius).powi(2));
+        let coefficients = match &self.material {
+            Material::Homogeneous { young, poisson, shear_factor } => {
+                [*young, shear_factor * young / (2.0 * (1.0 + poisson)), 0.25 * young * (square + inner)]
+            }
+            Material::Coefficients { c1, c2, c3 } => [at(c1), at(c2), at(c3)],
+        };
+        coefficients.map(|c| c * std::f64::consts::PI * (square - inner))
+    }
+
     /// Whether a cable that may be pulled rubs in its channel.
     pub(crate) fn rubs(&self) -> bool {
         self.cables.iter().any(|c| c.friction > 0.0)

@@ -1,6 +1,6 @@
 //! Reference problems with exact answers: what tests, benchmarks and validation reports share.
 //!
-//! All are uniform arms of length 1 m and, but for the cable problems, of bending stiffness
+//! But for the cable problems (0.2 m, 100 kPa), all are uniform arms of length 1 m, bending stiffness
 //! EI = 1 N m2 and volume law `none`, so that the numbers of the tables are the answers in m and
 //! rad and the loads are the tables' load parameters.
 //!

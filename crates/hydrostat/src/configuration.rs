@@ -1,11 +1,15 @@
 //! The answer: the arm's shape and what it carries.
 
-use crate::arm::Arm;
+use crate::arm::{Arm, FlowLaw};
 use crate::dense::Dense;
 use crate::engine::{Engine, M, shift_by_tangential_load};
 use crate::equilibrium::{SectionFailure, Units};
 use crate::flow::layer_profile;
+use crate::loads::stream_along;
 use crate::readings::Support;
+
+/// The largest tangential drag coefficient that is published for such arms.
+const PUBLISHED_CT: f64 = 0.03;
 
 /// The static configuration of an arm.
 #[derive(Debug, Clone)]
@@ -28,11 +32,31 @@ pub struct Configuration {
     pub stable: Option<bool>,
     /// What the solve took.
     pub statistics: Statistics,
-    pub(crate) fold: FoldMargin,
-    /// The tangential coefficient to compare with, over that of the momentum law, where that acts.
-    pub(crate) tangential_factor: Option<f64>,
+    extremes: Extremes,
     energy: f64,
     dense: Box<Dense>,
+}
+
+/// What is looked for along the arm, at the nodes and at the stages between them.
+#[derive(Debug, Clone, Copy)]
+struct Extremes {
+    fold: FoldMargin,
+    /// The stretch that is furthest from one.
+    nu: f64,
+    /// Where, m.
+    nu_at: f64,
+}
+
+impl Extremes {
+    fn note(&mut self, s: f64, [nu, mu]: [f64; 2], half_width: f64) {
+        let value = (nu - half_width * mu.abs()) / nu;
+        if value < self.fold.value {
+            self.fold = FoldMargin { value, s };
+        }
+        if (nu - 1.0).abs() > (self.nu - 1.0).abs() {
+            (self.nu, self.nu_at) = (nu, s);
+        }
+    }
 }
 
 /// How far the surface is from folding over itself.
@@ -182,7 +206,10 @@ pub enum Warning {
     SealedCavity,
     /// The answer hangs on the tangential load of the source's momentum law.
     TangentialLoad {
-        /// How far the tip would move, over L, with a published tangential coefficient.
+        /// C_t that the law corresponds to along the stream: 4/9, or 8/15 with [`crate::LayerMean::Momentum`].
+        ct: f64,
+        /// How far the tip would move, over L, if the tangential load were 0.03/C_t of what it is: 0.03 is the largest
+        /// coefficient published.
         tip_shift: f64,
     },
 }
@@ -217,9 +244,9 @@ impl Warning {
                 "the cavity is sealed: the pressure of the water outside, which would load the wall, is left out"
                     .to_owned()
             }
-            Self::TangentialLoad { tip_shift } => format!(
-                "the shape hangs on the tangential load of the momentum law (C_t = 4/9; published arms have 0.005 to 0.03): \
-                 with C_t = 0.03 the tip would move by about {tip_shift:.3} of the length"
+            Self::TangentialLoad { ct, tip_shift } => format!(
+                "the shape hangs on the tangential load of the momentum law (C_t = {ct:.3} along the stream; published arms have \
+                 0.005 to {PUBLISHED_CT}): at {PUBLISHED_CT}/{ct:.3} of that load the tip would move by about {tip_shift:.3} of the length"
             ),
         }
     }
@@ -307,14 +334,8 @@ impl Configuration {
         let n = mesh.elements();
         let mut stations = Stations::default();
         stations.reserve(n + 1 + arm.cables.len());
-        let mut fold = FoldMargin { value: 1.0, s: 0.0 };
+        let mut extremes = Extremes { fold: FoldMargin { value: 1.0, s: 0.0 }, nu: 1.0, nu_at: 0.0 };
         let (l, f) = (arm.length, dense.equations.units.force);
-        let mut note = |s: f64, nu: f64, beta: f64, mu: f64, radius: f64| {
-            let value = (nu - beta * radius * mu.abs()) / nu;
-            if value < fold.value {
-                fold = FoldMargin { value, s: s * l };
-            }
-        };
         let mut nodes = Vec::with_capacity(n + 1 + arm.cables.len());
         for i in 0..n {
             let s = mesh.nodes()[i];
@@ -325,7 +346,7 @@ impl Configuration {
         }
         nodes.push((n - 1, true));
         for (station, place) in dense.at_nodes(&nodes)? {
-            note(station.s / l, station.nu, station.beta, station.mu * l, place.radius);
+            extremes.note(station.s, [station.nu, station.mu * l], station.beta * place.radius);
             stations.push(&station);
         }
 
@@ -342,6 +363,8 @@ impl Configuration {
             let own = (0..groups.filled(block / M)).map(|lane| (lane, groups.element(block / M, lane)));
             for (lane, i) in own {
                 energy += weight(i) * strained.0[lane];
+                let (s, [nu, mu], half_width) = equations.stretched(block, lane);
+                extremes.note(s * l, [nu, mu], half_width);
             }
         }
         for (c, cable) in cables.iter_mut().enumerate() {
@@ -377,8 +400,7 @@ impl Configuration {
             error_estimate,
             stable: None,
             statistics,
-            fold,
-            tangential_factor: None,
+            extremes,
             energy: energy * f,
             dense,
         })
@@ -401,7 +423,8 @@ impl Configuration {
     }
 
     /// Everything at `s` (m), to the accuracy of the nodes; `s` outside [0, L] is moved to the
-    /// nearer end. At the end of a cable, the values on the tip's side.
+    /// nearer end. At the end of a cable, the values on the tip's side. Should the section law have no strains at a place between two
+    /// nodes that have some, the values of the nearest node.
     pub fn at(&self, s: f64) -> Station {
         let share = (s / self.arm.length).clamp(0.0, 1.0);
         let share = if share.is_nan() { 0.0 } else { share };
@@ -409,13 +432,19 @@ impl Configuration {
         match self.dense.at(element, share) {
             Ok((station, _)) => station,
             // A section that cannot be solved between two that can: as near as the nodes come.
-            Err(_) => self.nearest(s),
+            Err(_) => self.nearest(element, share),
         }
     }
 
-    fn nearest(&self, s: f64) -> Station {
+    /// What was read at the nearer node of `element` to `share` (over L).
+    fn nearest(&self, element: usize, share: f64) -> Station {
         let st = &self.stations;
-        let i = (0..st.len()).min_by(|i, j| (st.s[*i] - s).abs().total_cmp(&(st.s[*j] - s).abs())).unwrap_or_default();
+        let nodes = self.dense.solution.mesh.nodes();
+        let at_end = nodes[element + 1] - share < share - nodes[element];
+        let node = nodes[element + usize::from(at_end)] * self.arm.length;
+        let i = (0..st.len())
+            .min_by(|i, j| (st.s[*i] - node).abs().total_cmp(&(st.s[*j] - node).abs()))
+            .unwrap_or_default();
         Station {
             s: st.s[i],
             x: st.x[i],
@@ -425,7 +454,7 @@ impl Configuration {
             eta: st.eta[i],
             mu: st.mu[i],
             beta: st.beta[i],
-            beta_slope: 0.0,
+            beta_slope: self.dense.beta_slope_beside(element, at_end) / self.arm.length,
             alpha: st.alpha[i],
             n_a: st.n_a[i],
             n_b: st.n_b[i],
@@ -462,11 +491,12 @@ impl Configuration {
 
     /// Speed (m/s) of the water along the arm at `s` (m) and the distance `y` (m) from the windward
     /// surface, (7): positive towards the tip. No slip at y = 0, the stream's tangential part from
-    /// y = h_inf on.
+    /// y = h_inf on: along the centreline, or, with [`crate::FlowSurface::Lateral`], along the windward surface.
     pub fn layer_speed(&self, s: f64, y: f64) -> f64 {
         let st = self.at(s);
-        let angle = st.theta + st.alpha - self.arm.flow.direction;
-        layer_profile(self.arm.flow.speed * angle.cos(), y, self.arm.flow.layer_thickness)
+        let radius = self.arm.radius.at(st.s, self.arm.length);
+        let outer = stream_along(self.arm.stream(), self.arm.readings.flow_surface, &st, [radius.value, radius.slope]);
+        layer_profile(outer, y, self.arm.flow.layer_thickness)
     }
 
     /// The strain measure 1/2 int (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A ds, J. Not
@@ -477,22 +507,19 @@ impl Configuration {
 
     /// How far the surface is from folding over itself.
     pub fn fold_margin(&self) -> FoldMargin {
-        self.fold
+        self.extremes.fold
     }
 
-    /// What should be known about this answer.
+    /// What should be known about this answer. Whether it is as good as was asked for is no part of that: compare
+    /// [`Configuration::error_estimate`] with the tolerance; results in files note `tolerance_missed`.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut out = Vec::new();
-        if self.fold.value <= 0.0 {
-            out.push(Warning::SurfaceFold { margin: self.fold.value, s: self.fold.s });
+        let Extremes { fold, nu, nu_at } = self.extremes;
+        if fold.value <= 0.0 {
+            out.push(Warning::SurfaceFold { margin: fold.value, s: fold.s });
         }
-        let worst = (0..self.stations.len())
-            .map(|i| (self.stations.nu[i], self.stations.s[i]))
-            .max_by(|a, b| (a.0 - 1.0).abs().total_cmp(&(b.0 - 1.0).abs()));
-        if let Some((nu, s)) = worst
-            && !(0.5..=1.5).contains(&nu)
-        {
-            out.push(Warning::StrainRange { nu, s });
+        if !(0.5..=1.5).contains(&nu) {
+            out.push(Warning::StrainRange { nu, s: nu_at });
         }
         for cable in self.arm.cables.iter().filter(|cable| cable.stroke.is_some()) {
             if let Some(max) = cable.max_tension.filter(|max| cable.tension > *max) {
@@ -502,14 +529,22 @@ impl Configuration {
         if self.arm.cavity == crate::Cavity::Sealed && !self.arm.inner_radius.is_zero() {
             out.push(Warning::SealedCavity);
         }
-        if let Some(factor) = self.tangential_factor
-            && let Some(tip_shift) = shift_by_tangential_load(&self.dense.equations, &self.dense.solution, factor)
+        if let Some(ct) = momentum_ct(&self.arm)
+            && let Some(tip_shift) =
+                shift_by_tangential_load(&self.dense.equations, &self.dense.solution, PUBLISHED_CT / ct)
             && tip_shift > 0.01
         {
-            out.push(Warning::TangentialLoad { tip_shift });
+            out.push(Warning::TangentialLoad { ct, tip_shift });
         }
         out
     }
+}
+
+/// The tangential coefficient that the momentum law corresponds to along the stream, the square of the layer's mean over its outer
+/// speed. `None` where that law does not act.
+fn momentum_ct(arm: &Arm) -> Option<f64> {
+    let acts = arm.flow.law == FlowLaw::Momentum && arm.flow.speed > 0.0 && arm.flow.density > 0.0;
+    acts.then(|| arm.readings.layer_mean.factor().powi(2))
 }
 
 fn offset_point(st: &Station, distance: f64) -> [f64; 2] {

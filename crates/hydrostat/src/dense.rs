@@ -133,11 +133,33 @@ impl Dense {
                     let p = self.positions[i];
                     (z, [p[0] + moved[0], p[1] + moved[1]])
                 }
-                None => (self.solution.state_in(&self.gauss, i, s), self.positions[i]),
+                // Equations of the step that are singular: by the polynomials, which are of lower order.
+                None => (self.solution.state_in(&self.gauss, i, s), self.position_in(i, s)),
             }
         };
         let place = self.section(i, s, s > start, z)?;
         Ok((self.station(s, z, position, &place), place))
+    }
+
+    /// x, y over L at `s` (over L) in element `i`, by the polynomial through the centreline's slopes at the stages.
+    fn position_in(&self, i: usize, s: f64) -> [f64; Q] {
+        let mesh = &self.solution.mesh;
+        let (start, step) = (mesh.nodes()[i], mesh.step(i));
+        let weights = self.gauss.integrals((s - start) / step);
+        let mut out = self.positions[i];
+        for (j, weight) in weights.iter().enumerate() {
+            let [theta, ..] = self.solution.state_in(&self.gauss, i, start + step * self.gauss.c[j]);
+            let [nu, eta, _] = self.equations.strain(i * M + j);
+            let (sin, cos) = theta.sin_cos();
+            out[0] += step * weight * (nu * cos - eta * sin);
+            out[1] += step * weight * (nu * sin + eta * cos);
+        }
+        out
+    }
+
+    /// beta' (times L) at the start or the end of element `i`, as its stages have it.
+    pub(crate) fn beta_slope_beside(&self, i: usize, end: bool) -> f64 {
+        self.guess(i, f64::from(u8::from(end))).1[0]
     }
 
     fn station(&self, s: f64, z: [f64; N], position: [f64; Q], place: &AtPlace) -> Station {
@@ -158,6 +180,38 @@ impl Dense {
             n_a: f * place.contact[0],
             n_b: f * place.contact[1],
             m: f * l * place.contact[2],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Arm, Cable, Profile};
+
+    /// Where a step between the nodes cannot be made, its place was that of the element's first node.
+    #[test]
+    fn a_place_by_the_polynomials_was_that_of_the_node_before() {
+        let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+        arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.3));
+        arm.flow.speed = 0.1;
+        let found = arm.solve().unwrap();
+        let dense = found.dense();
+        let nodes = dense.solution.mesh.nodes();
+        for i in 0..nodes.len() - 1 {
+            for share in [0.1, 0.5, 0.8, 1.0] {
+                let s = nodes[i] + share * (nodes[i + 1] - nodes[i]);
+                let (station, _) = dense.at(i, s).unwrap();
+                let [x, y] = dense.position_in(i, s).map(|v| arm.length * v);
+                let off = (x - station.x).hypot(y - station.y) / arm.length;
+                assert!(off < 1e-6, "{off:e} L off at s = {s} L");
+                let slope = dense.beta_slope_beside(i, true) / arm.length;
+                let (end, _) = dense.at(i, nodes[i + 1]).unwrap();
+                assert!(
+                    (slope - end.beta_slope).abs() < 1e-3 * end.beta_slope.abs().max(1.0),
+                    "{slope} {}",
+                    end.beta_slope
+                );
+            }
         }
     }
 }

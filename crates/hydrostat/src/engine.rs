@@ -1,4 +1,4 @@
-//! From an arm to its configuration.
+//! Newton rounds, meshes and estimates on one arm's equations.
 
 mod budget;
 mod carry_over;

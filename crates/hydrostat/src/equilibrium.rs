@@ -79,7 +79,7 @@ pub(crate) struct Equilibrium {
     water: Water,
     volume: Volume,
     tensions: Vec<f64>,
-    /// The largest offset of each cable past which it does not run, over L.
+    /// Arc length of each cable's anchor, over L.
     ends: Vec<f64>,
     /// Fractions of the loads and of the tensions.
     pub(crate) fraction: [f64; 2],

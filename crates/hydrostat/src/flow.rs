@@ -23,7 +23,7 @@ pub(crate) enum Law {
     MomentumTangential { layer: f64 },
     /// (8), (9) with V_in^2 = V_tin^2 + V_nin^2.
     MomentumResultant { layer: f64 },
-    /// Drag coefficients over pi: C_n on the diameter is C_n/pi on the half perimeter.
+    /// C_n/pi, which is C_n on the half perimeter in place of the diameter, and C_t.
     Quadratic { normal: f64, tangential: f64 },
 }
 
@@ -33,6 +33,16 @@ impl Law {
             (FlowLaw::Momentum, EnteringSpeed::Tangential) => Self::MomentumTangential { layer },
             (FlowLaw::Momentum, EnteringSpeed::Resultant) => Self::MomentumResultant { layer },
             (FlowLaw::QuadraticDrag { cn, ct }, _) => Self::drag(cn, ct),
+        }
+    }
+
+    /// The largest load over S U^2, along or across the surface, or one if that is less. The momentum laws exceed one at an angle to the
+    /// stream: with V_t = c U_t, (8) has c^2/2 + sqrt(c^4/4 + c^2) along the surface with V_in = V_tin, 1.05 at most, and 1 + c^2, 1.54
+    /// at most, with the resultant. That is left to those who compare with it.
+    pub(crate) fn largest(self) -> f64 {
+        match self {
+            Self::MomentumTangential { .. } | Self::MomentumResultant { .. } => 1.0,
+            Self::Quadratic { normal, tangential } => normal.max(tangential).max(1.0),
         }
     }
 
@@ -99,8 +109,8 @@ pub(crate) fn traction<R: Real>(law: Law, u_t: R, u_n: R, normal_share: R) -> Tr
 /// Speed in the layer over the windward surface, (7): `v_t_inf (2 y/h - (y/h)^2)` for a normal
 /// distance y in [0, h] (m) from the surface, v_t_inf beyond.
 pub(crate) fn layer_profile(v_t_inf: f64, y: f64, h: f64) -> f64 {
-    let eta = (y / h).clamp(0.0, 1.0);
-    v_t_inf * (2.0 * eta - eta * eta)
+    let depth = (y / h).clamp(0.0, 1.0);
+    v_t_inf * (2.0 * depth - depth * depth)
 }
 
 #[cfg(test)]

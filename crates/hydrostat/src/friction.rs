@@ -1,11 +1,11 @@
 //! Cables that rub in their channels: the capstan law along an arm.
 //!
 //! A cable under the tension T that bears on its channel while it slides loses the coefficient of friction times
-//! T times the angle that it turns through. With psi the angle of its tangent t_c in space,
+//! T times the angle that it turns through. With chi the angle of its tangent t_c in space,
 //!
 //! ```text
-//! T(s) = T(0) exp(-+ friction Phi(s))     Phi(s) = integral of |psi'| over [0, s], with the steps of psi
-//! psi' = mu + (tau_a tau_b' - tau_b tau_a') / |tau|^2
+//! T(s) = T(0) exp(-+ friction Phi(s))     Phi(s) = integral of |chi'| over [0, s], with the steps of chi
+//! chi' = mu + (tau_a tau_b' - tau_b tau_a') / |tau|^2
 //! tau_a = nu - y beta mu                  tau_b = eta + (y beta)'          (above (5) of the source)
 //! ```
 //!
@@ -38,7 +38,7 @@ struct Turns {
     exponent: f64,
     /// Phi at the left node of every element, its step there included.
     before: Vec<f64>,
-    /// |psi'| at the stages of every element.
+    /// |chi'| at the stages of every element.
     rate: Vec<[f64; M]>,
 }
 
@@ -115,7 +115,7 @@ fn step_at(engine: &Engine, c: usize, i: usize) -> Result<f64, SectionFailure> {
 }
 
 impl Equilibrium {
-    /// psi' of cable `c` at stage `j` of element `i`, over L.
+    /// chi' of cable `c` at stage `j` of element `i`, over L.
     fn cable_turn(&self, c: usize, i: usize, j: usize) -> f64 {
         let (block, lane) = self.groups().at(i, j);
         self.cable_turns(c, block).0[lane]

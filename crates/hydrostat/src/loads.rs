@@ -1,5 +1,6 @@
 //! All distributed loads at a station: stream (7)-(10), weight and buoyancy, and what the user adds.
 
+use crate::configuration::Station;
 use crate::flow::{Law, traction};
 use crate::readings::{FlowSurface, Hydrostatics, WettedLength};
 use crate::swelling::Swelling;
@@ -81,6 +82,46 @@ impl<R: Real> Direction<R> {
     }
 }
 
+/// The surface of the left side (`sigma` 1) or the right (-1): x_sigma' = (nu - sigma beta R mu) a + (eta + sigma (beta R)') b.
+#[inline(always)]
+fn lateral<R: Real>(
+    sigma: f64,
+    [nu, eta, mu]: [R; 3],
+    swelling: &Swelling<R>,
+    [radius, radius_slope]: [R; 2],
+    beta_slope: R,
+) -> Direction<R> {
+    let (zero, one, sigma) = (R::of(0.0), R::of(1.0), R::of(sigma));
+    let half_width = sigma * swelling.beta * radius;
+    Direction {
+        x: nu - half_width * mu,
+        y: eta + sigma * (beta_slope * radius + swelling.beta * radius_slope),
+        x_strain: [one - sigma * swelling.slope * radius * mu, zero, -half_width],
+        y_strain: [sigma * radius_slope * swelling.slope, one, zero],
+        y_beta_slope: sigma * radius,
+    }
+}
+
+/// The stream's tangential part U.u_t (m/s) at a station, along the surface that `surface` means; at the tie of both lateral sides, where
+/// it is the same on both, along the left one. `radius` is R (m) with its slope.
+pub(crate) fn stream_along(stream: [f64; 2], surface: FlowSurface, station: &Station, radius: [f64; 2]) -> f64 {
+    let (sin, cos) = station.theta.sin_cos();
+    let strain = [station.nu, station.eta, station.mu];
+    let swelling = Swelling { beta: station.beta, slope: 0.0 };
+    match surface {
+        FlowSurface::Centreline => {
+            let angle = station.theta + station.alpha;
+            stream[0] * angle.cos() + stream[1] * angle.sin()
+        }
+        FlowSurface::Lateral => {
+            let side = |sigma| lateral(sigma, strain, &swelling, radius, station.beta_slope).frame(cos, sin);
+            let (left, right) = (side(1.0), side(-1.0));
+            let windward = if dot(stream, left.w) <= -dot(stream, right.w) { left } else { right };
+            dot(stream, windward.u)
+        }
+    }
+}
+
 #[inline(always)]
 fn dot<R: Real>(a: [R; 2], b: [R; 2]) -> R {
     a[0] * b[0] + a[1] * b[1]
@@ -97,7 +138,7 @@ pub(crate) fn load<R: Real>(
     beta_slope: R,
 ) -> Load<R> {
     let (zero, one) = (R::of(0.0), R::of(1.0));
-    let [nu, eta, mu] = strain;
+    let [nu, eta, _] = strain;
     let centreline =
         Direction { x: nu, y: eta, x_strain: [one, zero, zero], y_strain: [zero, one, zero], y_beta_slope: zero };
     let along = centreline.frame(cos, sin);
@@ -123,20 +164,9 @@ pub(crate) fn load<R: Real>(
                 stream_load(water, &along, one, (s, s_strain), one, &mut out);
             }
             FlowSurface::Lateral => {
-                let side = |sigma: f64| {
-                    let sigma = R::of(sigma);
-                    // x_sigma' = (nu - sigma beta R mu) a + (eta + sigma (beta R)') b
-                    let half_width = sigma * swelling.beta * body.radius;
-                    Direction {
-                        x: nu - half_width * mu,
-                        y: eta + sigma * (beta_slope * body.radius + swelling.beta * body.radius_slope),
-                        x_strain: [one - sigma * swelling.slope * body.radius * mu, zero, -half_width],
-                        y_strain: [sigma * body.radius_slope * swelling.slope, one, zero],
-                        y_beta_slope: sigma * body.radius,
-                    }
-                    .frame(cos, sin)
-                };
-                let (left, right) = (side(1.0), side(-1.0));
+                let radius = [body.radius, body.radius_slope];
+                let left = lateral(1.0, strain, swelling, radius, beta_slope).frame(cos, sin);
+                let right = lateral(-1.0, strain, swelling, radius, beta_slope).frame(cos, sin);
                 let stream: [R; 2] = each(|k| R::of(water.stream[k]));
                 // U . u_n with u_n = sigma k x u_t outward: the smaller is windward.
                 let (hit_left, hit_right) = (dot(stream, left.w), -dot(stream, right.w));

@@ -15,6 +15,18 @@ pub enum Volume {
     None,
 }
 
+impl Volume {
+    /// All of them, in the order of [`Volume::NAMES`].
+    pub const ALL: [Self; 3] = [Self::Planar, Self::Circular, Self::None];
+    /// Their words in arm files.
+    pub const NAMES: [&'static str; 3] = ["planar", "circular", "none"];
+
+    /// Its word in arm files.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
 /// The surface whose tangent and normal direct the loads of the stream, (7)-(10).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FlowSurface {
@@ -24,6 +36,18 @@ pub enum FlowSurface {
     /// Those of the windward lateral surface, "tangent vector to the arm surface". The windward
     /// side can change, and there the load jumps.
     Lateral,
+}
+
+impl FlowSurface {
+    /// All of them, in the order of [`FlowSurface::NAMES`].
+    pub const ALL: [Self; 2] = [Self::Centreline, Self::Lateral];
+    /// Their words in arm files.
+    pub const NAMES: [&'static str; 2] = ["centreline", "lateral"];
+
+    /// Its word in arm files.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
 }
 
 /// The entering speed of (8), which has no subscript in the source.
@@ -37,6 +61,18 @@ pub enum EnteringSpeed {
     Resultant,
 }
 
+impl EnteringSpeed {
+    /// All of them, in the order of [`EnteringSpeed::NAMES`].
+    pub const ALL: [Self; 2] = [Self::Tangential, Self::Resultant];
+    /// Their words in arm files.
+    pub const NAMES: [&'static str; 2] = ["tangential", "resultant"];
+
+    /// Its word in arm files.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
 /// Which mean of the layer profile (7) enters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum LayerMean {
@@ -48,6 +84,16 @@ pub enum LayerMean {
 }
 
 impl LayerMean {
+    /// All of them, in the order of [`LayerMean::NAMES`].
+    pub const ALL: [Self; 2] = [Self::Speed, Self::Momentum];
+    /// Their words in arm files.
+    pub const NAMES: [&'static str; 2] = ["speed", "momentum"];
+
+    /// Its word in arm files.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
     /// V_tin / v_t_inf.
     pub fn factor(self) -> f64 {
         match self {
@@ -67,6 +113,18 @@ pub enum WettedLength {
     Deformed,
 }
 
+impl WettedLength {
+    /// All of them, in the order of [`WettedLength::NAMES`].
+    pub const ALL: [Self; 2] = [Self::Reference, Self::Deformed];
+    /// Their words in arm files.
+    pub const NAMES: [&'static str; 2] = ["reference", "deformed"];
+
+    /// Its word in arm files.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
 /// Which part of weight and buoyancy acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Hydrostatics {
@@ -75,6 +133,18 @@ pub enum Hydrostatics {
     Archimedes,
     /// Its part along the centreline's normal: (9) and (10) act along u_n only.
     NormalOnly,
+}
+
+impl Hydrostatics {
+    /// All of them, in the order of [`Hydrostatics::NAMES`].
+    pub const ALL: [Self; 2] = [Self::Archimedes, Self::NormalOnly];
+    /// Their words in arm files.
+    pub const NAMES: [&'static str; 2] = ["archimedes", "normal-only"];
+
+    /// Its word in arm files.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
 }
 
 /// The conditions at the base.
@@ -86,6 +156,18 @@ pub enum Support {
     /// nu = beta = 1, eta = mu = 0 at the base, integrated to the tip, whose balance is then left
     /// unmet: the source's closing line read as conditions on the solution.
     UnstrainedBase,
+}
+
+impl Support {
+    /// All of them, in the order of [`Support::NAMES`].
+    pub const ALL: [Self; 2] = [Self::Clamped, Self::UnstrainedBase];
+    /// Their words in arm files.
+    pub const NAMES: [&'static str; 2] = ["clamped", "unstrained-base"];
+
+    /// Its word in arm files.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
 }
 
 /// All readings together. `Readings::default()` is the consistent one, [`Readings::LITERAL`] the
@@ -123,5 +205,21 @@ impl Readings {
     /// Whether the load of the stream can jump with the motion under these readings.
     pub fn load_can_jump(&self) -> bool {
         self.flow_surface == FlowSurface::Lateral || self.entering_speed == EnteringSpeed::Resultant
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_in_the_order_of_the_options() {
+        assert!(Volume::ALL.iter().enumerate().all(|(k, one)| one.name() == Volume::NAMES[k]));
+        assert!(FlowSurface::ALL.iter().enumerate().all(|(k, one)| one.name() == FlowSurface::NAMES[k]));
+        assert!(EnteringSpeed::ALL.iter().enumerate().all(|(k, one)| one.name() == EnteringSpeed::NAMES[k]));
+        assert!(LayerMean::ALL.iter().enumerate().all(|(k, one)| one.name() == LayerMean::NAMES[k]));
+        assert!(WettedLength::ALL.iter().enumerate().all(|(k, one)| one.name() == WettedLength::NAMES[k]));
+        assert!(Hydrostatics::ALL.iter().enumerate().all(|(k, one)| one.name() == Hydrostatics::NAMES[k]));
+        assert!(Support::ALL.iter().enumerate().all(|(k, one)| one.name() == Support::NAMES[k]));
     }
 }

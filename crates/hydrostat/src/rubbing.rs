@@ -18,13 +18,7 @@ impl Solver {
         self.engine.set_grip(None);
         let commanded = self.engine.equations.arm().is_commanded();
         match self.solve_smooth() {
-            Ok(_) => match self.raise_friction() {
-                Ok(mut configuration) => {
-                    configuration.tangential_factor = self.tangential_factor();
-                    Ok(configuration)
-                }
-                Err(_) => Err(self.no_equilibrium(self.last_verdict(Some(1.0)))),
-            },
+            Ok(_) => self.raise_friction().map_err(|_| self.no_equilibrium(self.last_verdict(Some(1.0)))),
             Err(SolveError::NoEquilibrium(no)) if no.verdict.phase == Phase::Tension && !commanded => {
                 // Friction spares the tip, which may carry more with it.
                 let kept = self.engine.state();
@@ -95,7 +89,6 @@ impl Solver {
                 }
             }
         }
-        last.tangential_factor = self.tangential_factor();
         Ok(last)
     }
 

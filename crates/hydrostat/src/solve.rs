@@ -1,13 +1,10 @@
-//! From an arm to its configuration.
+//! The direct solve, else the path; verdicts.
 
-use crate::arm::{Arm, FlowLaw};
+use crate::arm::Arm;
 use crate::configuration::{Configuration, Statistics, Tip};
 use crate::engine::{Engine, First, Trouble, WORK};
 use crate::path::{LOOSE, Pace, Travelled, follow};
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
-
-/// The largest tangential drag coefficient that is published for such arms.
-const PUBLISHED_CT: f64 = 0.03;
 
 /// Tips (over L) that are this near belong to the same shape on two meshes.
 pub(crate) const SAME: f64 = 1e-6;
@@ -114,11 +111,10 @@ impl Solver {
             .and_then(|()| engine.settle(tol, First::Fair));
         if let Ok(estimate) = direct
             && !self.engine.may_have_left_the_branch()
-            && let Ok(mut configuration) = self.read(estimate, Travelled::default())
+            && let Ok(configuration) = self.read(estimate, Travelled::default())
         {
             self.settled = true;
             self.sign = 1.0;
-            configuration.tangential_factor = self.tangential_factor();
             return Ok(configuration);
         }
         self.solve_along_the_path(Pace::BRISK)
@@ -347,20 +343,10 @@ impl Solver {
                 }
                 self.settled = true;
                 self.sign = sign;
-                configuration.tangential_factor = self.tangential_factor();
                 Ok(configuration)
             }
             _ => Err(self.no_equilibrium(self.last_verdict(None))),
         }
-    }
-
-    /// The tangential coefficient of published arms over the momentum law's. `None` where that law does
-    /// not act.
-    pub(crate) fn tangential_factor(&self) -> Option<f64> {
-        let arm = self.engine.equations.arm();
-        let layer = arm.readings.layer_mean.factor();
-        (arm.flow.law == FlowLaw::Momentum && arm.flow.speed > 0.0 && arm.flow.density > 0.0)
-            .then(|| PUBLISHED_CT / (layer * layer))
     }
 
     /// The engine, which holds the last configuration.

@@ -12,7 +12,7 @@
 //! in lengths of L and forces of C3 A0/L^2 at the base, where K is the net linearised force and couple
 //! per length and C the compliance of `compliance`: base clamped, loads at the tip and along the
 //! arm following as they do. A motion in proportion to exp(lambda t) has -C lambda u = u, so that each
-//! eigenvalue mu of C is a rate lambda = -1/mu. Each rate with a positive real part is a direction in
+//! eigenvalue kappa of C is a rate lambda = -1/kappa. Each rate with a positive real part is a direction in
 //! which the arm leaves the equilibrium. Rates are given over the slowest decay of the same arm unloaded, which
 //! drops the coefficients' unit.
 //!
@@ -75,6 +75,24 @@ impl Stability {
         match self {
             Self::Stable => Some(true),
             Self::Unstable(_) => Some(false),
+            Self::Marginal => None,
+        }
+    }
+
+    /// The name in results: `stable`, `unstable` or `marginal`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stable => "stable",
+            Self::Unstable(_) => "unstable",
+            Self::Marginal => "marginal",
+        }
+    }
+
+    /// In how many directions it is unstable; `None` at a buckling load.
+    pub fn directions(self) -> Option<usize> {
+        match self {
+            Self::Stable => Some(0),
+            Self::Unstable(count) => Some(count),
             Self::Marginal => None,
         }
     }
@@ -145,7 +163,7 @@ fn growth(dense: &Dense) -> Option<(Growth, usize)> {
     None
 }
 
-/// The rates -1/mu of the first `functions` polynomials over `unit`, largest real part first.
+/// The rates -1/kappa of the first `functions` polynomials over `unit`, largest real part first.
 fn scaled_rates(compliance: &Compliance, functions: usize, unit: f64) -> Option<Vec<[f64; 2]>> {
     let least = if compliance.held { BLURRED } else { ROUNDING };
     let size = FIELDS * functions;
@@ -154,13 +172,13 @@ fn scaled_rates(compliance: &Compliance, functions: usize, unit: f64) -> Option<
         return None;
     }
     let eigenvalues = Schur::try_new(matrix, f64::EPSILON, 100 * size)?.complex_eigenvalues();
-    let largest = eigenvalues.iter().map(|mu| mu.norm()).fold(0.0, f64::max);
+    let largest = eigenvalues.iter().map(|kappa| kappa.norm()).fold(0.0, f64::max);
     let mut rates: Vec<[f64; 2]> = eigenvalues
         .iter()
-        .filter(|mu| mu.norm() * least > largest)
-        .map(|mu| {
-            let factor = 1.0 / (unit * mu.norm_sqr());
-            [-mu.re * factor, mu.im * factor]
+        .filter(|kappa| kappa.norm() * least > largest)
+        .map(|kappa| {
+            let factor = 1.0 / (unit * kappa.norm_sqr());
+            [-kappa.re * factor, kappa.im * factor]
         })
         .collect();
     rates.sort_by(|a, b| b[0].total_cmp(&a[0]));

@@ -2,17 +2,17 @@
 //!
 //! The stroke of a cable is its length at the reference strains less its present length, positive when
 //! reeled in; an elastic one of stiffness EA is longer by T/EA of its unstretched length, so that reeling in its
-//! stroke s means
+//! stroke q means
 //!
 //! ```text
-//! length of its path = (length at the reference strains - s) (1 + T/EA)
+//! length of its path = (length at the reference strains - q) (1 + T/EA)
 //! ```
 //!
-//! Its tension is then unknown, and a cable does not push: with the slack g, the stroke that the path of the cable has
+//! Its tension is then unknown, and a cable does not push: with the slack c, the stroke that the path of the cable has
 //! (unstretched) less the one commanded,
 //!
 //! ```text
-//! T >= 0,  g >= 0,  T g = 0
+//! T >= 0,  c >= 0,  T c = 0
 //! ```
 //!
 //! for every such cable, which is solved as it stands: Newton rounds on the shape and the tensions of the
@@ -21,8 +21,8 @@
 //! Several shapes can have the same strokes. The one meant is the end of this path: loads and given tensions first,
 //! the commanded cables slack (section 7 of `docs/model.md`), then all commanded strokes in proportion, from
 //! those that the slack cables have there to those asked for. It is followed by arclength (`path/ramp`, `path/contact`)
-//! unless Newton's rounds from the tensions of a straight arm lead to a shape that nothing pushes hard against. Where that path does not
-//! get away from its start, their shape also stands if the path of its tensions leads to it.
+//! unless the direct solve (Newton from the tensions of a straight arm) leads to a shape that no load pushes hard against: then that
+//! stands. If the path cannot leave its start, the direct shape also stands when the path in its tensions leads to the same shape.
 
 use crate::arm::Arm;
 use crate::configuration::Configuration;
@@ -87,7 +87,6 @@ impl Solver {
             configuration.stable = Some(false);
         }
         self.keep(sign);
-        configuration.tangential_factor = self.tangential_factor();
         Ok(configuration)
     }
 
@@ -145,8 +144,7 @@ impl Solver {
     }
 
     fn read_strokes(&mut self, estimate: f64) -> Result<Configuration, Trouble> {
-        let mut configuration = self.read(estimate, Travelled::default())?;
-        configuration.tangential_factor = self.tangential_factor();
+        let configuration = self.read(estimate, Travelled::default())?;
         self.keep(1.0);
         Ok(configuration)
     }

@@ -32,6 +32,18 @@ impl VerdictKind {
             Self::NotFound => "not_found",
         }
     }
+
+    /// What happens, in a phrase.
+    pub fn phrase(self) -> &'static str {
+        match self {
+            Self::CableFold => "a cable folds its side of the arm shut",
+            Self::SectionCrushed => "net compression crushes the section",
+            Self::NoSectionSolution => "no section strains carry the contact force",
+            Self::LimitPoint => "the equilibrium ends in a limit point",
+            Self::LoadJump => "the load of the stream jumps against the motion",
+            Self::NotFound => "no further equilibrium was found and no physical limit established",
+        }
+    }
 }
 
 /// The phases in which loads are raised from the unloaded arm: first everything but the cables, then
@@ -81,7 +93,9 @@ impl Verdict {
     pub fn message(&self) -> String {
         let place = self.s.map_or_else(String::new, |s| format!(" at s = {s:.4} m"));
         let load = match self.phase {
-            Phase::Loads => format!("{:.6} of the stream, weight and tip loads (cables slack)", self.load_fraction),
+            Phase::Loads => {
+                format!("{:.6} of the stream, weight, tip and distributed loads (cables slack)", self.load_fraction)
+            }
             Phase::Tension => format!("{:.6} of the tensions (all other loads whole)", self.load_fraction),
             Phase::Stroke => {
                 format!("{:.6} of the way from the slack cables' strokes to those commanded", self.load_fraction)
@@ -94,18 +108,13 @@ impl Verdict {
                 self.residual
             );
         }
+        let phrase = self.kind.phrase();
         match self.kind {
-            VerdictKind::CableFold => format!("a cable folds its side of the arm shut{place}, at {load}"),
-            VerdictKind::SectionCrushed => format!("net compression crushes the section{place}, at {load}"),
-            VerdictKind::NoSectionSolution => {
-                format!("no section strains carry the contact force{place}, at {load}")
+            VerdictKind::CableFold | VerdictKind::SectionCrushed | VerdictKind::NoSectionSolution => {
+                format!("{phrase}{place}, at {load}")
             }
-            VerdictKind::LimitPoint => {
-                format!("the equilibrium ends in a limit point at {load}: the arm would snap to another shape")
-            }
-            VerdictKind::LoadJump => format!(
-                "the load of the stream jumps against the motion{place}, at {load}: no shape balances it in this reading"
-            ),
+            VerdictKind::LimitPoint => format!("{phrase} at {load}: the arm would snap to another shape"),
+            VerdictKind::LoadJump => format!("{phrase}{place}, at {load}: no shape balances it in this reading"),
             VerdictKind::NotFound => format!(
                 "no equilibrium was found past {load}, and no physical limit was established (last correction {:.1e} rad)",
                 self.residual
@@ -126,7 +135,7 @@ impl Verdict {
             VerdictKind::NoSectionSolution => {
                 "lower the stream or the pull, or stiffen the section: the law softens in tension (planar: peak at nu = 2)"
             }
-            VerdictKind::LimitPoint => "stay below that load, or change the order in which loads are applied",
+            VerdictKind::LimitPoint => "stay below that load; `hydrostat path` and `equilibria` show the shapes beyond",
             VerdictKind::LoadJump => {
                 "use `flow_surface = \"centreline\"` and `entering_speed = \"tangential\"`, the smooth readings"
             }

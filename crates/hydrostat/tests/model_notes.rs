@@ -18,6 +18,27 @@ fn without_asides(text: &str) -> String {
     outside.collect()
 }
 
+/// What section 12 says of the tip of `paper`.
+#[test]
+fn the_tip_of_paper_was_described_at_another_tension() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(root.join("../../docs/model.md")).unwrap();
+    let tip = |tension: f64| {
+        let text = hydrostat_files::shipped::get("paper").unwrap();
+        let mut arm = hydrostat_files::ArmFile::parse(text, "paper").unwrap().arm().unwrap();
+        arm.set_tensions(&[tension, 0.0]).unwrap();
+        let shape = arm.solve().unwrap();
+        shape.at(arm.length)
+    };
+    let [slack, tight] = [40.0, 86.24].map(tip);
+    for words in [
+        format!("the tip of `paper` is at {:.3} at 40 N, at {:.3} at 86.24 N", slack.nu, tight.nu),
+        format!("nu beta^2 = beta, {:.1} and {:.1} at that tip", slack.beta, tight.beta),
+    ] {
+        assert!(page.contains(&words), "{words}");
+    }
+}
+
 #[test]
 fn the_table_of_equations_names_functions_that_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -292,3 +292,35 @@ fn in_still_water_only_the_volume_law_matters() {
     arm.readings.volume = Volume::Circular;
     assert!((solve(&arm).tip().theta - default.theta).abs() > 1e-2);
 }
+
+/// (7) has the tangent of the arm's surface, which is what `lateral` takes.
+#[test]
+fn the_layer_ran_along_the_centreline_in_every_reading() {
+    let taper: f64 = 0.2;
+    let mut arm = inextensible_arm("stiff cone");
+    arm.radius = Profile::linear(0.3, 0.3 - taper.tan());
+    arm.flow.speed = 1e-3;
+    for (direction, windward) in [(1.0_f64, taper), (-1.0, -taper)] {
+        arm.flow.direction = direction;
+        for (surface, angle) in [(FlowSurface::Centreline, 0.0), (FlowSurface::Lateral, windward)] {
+            arm.readings.flow_surface = surface;
+            let outer = solve(&arm).layer_speed(0.5, arm.flow.layer_thickness) / arm.flow.speed;
+            let want = (direction - angle).cos();
+            assert!((outer - want).abs() < 1e-4, "{surface:?} from {direction}: {outer}, want {want}");
+        }
+    }
+}
+
+/// "nu_o = beta_o = 1, eta_o = mu_o = 0" at the support are strains, also of an arm that has others when nothing acts.
+#[test]
+fn an_unstrained_base_kept_the_reference_strains() {
+    let mut arm = Arm::cone(0.245, 0.010, 0.004, 110e3, 0.5);
+    arm.readings.support = Support::UnstrainedBase;
+    arm.reference.nu = 1.04.into();
+    arm.reference.eta = 0.03.into();
+    arm.reference.mu = Profile::linear(2.0, -1.0);
+    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.002)).pulled(0.1));
+    let base = solve(&arm).at(0.0);
+    assert!((base.nu - 1.0).abs() < 1e-3 && base.eta.abs() < 1e-3, "{base:?}");
+    assert!(base.mu.abs() < 0.05, "{base:?}");
+}

@@ -39,7 +39,13 @@ pub(crate) fn covariance(rows: &Rows, loss: Loss, free: &[usize], spread: f64) -
         pull.row_mut(i).scale_mut((square * share).sqrt());
     }
     let SVD { v_t, singular_values, .. } = SVD::new(own, false, true);
-    let Some(directions) = v_t else { return out };
+    let Some(directions) = v_t else {
+        // Asked for above; without them nothing is known.
+        for i in free {
+            out[(*i, *i)] = f64::INFINITY;
+        }
+        return out;
+    };
     let least = NOTHING * singular_values.max();
     let known: Vec<usize> = (0..singular_values.len()).filter(|k| singular_values[*k] > least).collect();
     let mut inverse = DMatrix::zeros(free.len(), free.len());

@@ -145,9 +145,20 @@ pub fn natural_bounds(parameter: Parameter) -> [f64; 2] {
         | Parameter::FlowDensity
         | Parameter::GravityAcceleration
         | Parameter::Density
+        | Parameter::Radius(_)
         | Parameter::DragNormal
         | Parameter::DragTangential => [0.0, f64::INFINITY],
         Parameter::Poisson => [-1.0, 0.5],
         _ => [f64::NEG_INFINITY, f64::INFINITY],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_radius_could_be_searched_for_below_zero() {
+        assert_eq!(natural_bounds(Parameter::Radius(hydrostat::Point::Knot(0))), [0.0, f64::INFINITY]);
     }
 }

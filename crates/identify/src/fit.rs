@@ -40,7 +40,7 @@ impl Default for FitOptions {
 pub enum Progress {
     /// Steps of the search, and half the sum of squares (or of what the loss makes of them) there.
     Round(usize, f64),
-    /// Load cases that have been left out once, of how many; said at every step of a search without one.
+    /// Cross-validation: load cases done, and of how many. Told at every step of the fit that leaves one out.
     LeftOut(usize, usize),
 }
 

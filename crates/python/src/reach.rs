@@ -55,12 +55,13 @@ pub(crate) fn reach(
     py: Python<'_>,
     arm: &Arm,
     targets: Vec<Goal>,
-    (max_tension, max_stroke): Most,
+    most: Most,
     tol: f64,
     all: bool,
     by_strokes: bool,
 ) -> PyResult<Reach> {
     let targets = targets_of(targets);
+    let (max_tension, max_stroke) = most;
     let options = ReachOptions { max_tension, max_stroke, tol, all };
     let found = if by_strokes {
         py.detach(|| arm.given.reach_by_strokes(&targets, &options))
@@ -162,15 +163,9 @@ impl Reach {
 #[pymethods]
 impl Follower {
     #[new]
-    fn new(
-        py: Python<'_>,
-        arm: &Arm,
-        targets: Vec<Goal>,
-        (max_tension, max_stroke): Most,
-        tol: f64,
-        all: bool,
-    ) -> PyResult<Self> {
+    fn new(py: Python<'_>, arm: &Arm, targets: Vec<Goal>, most: Most, tol: f64, all: bool) -> PyResult<Self> {
         let targets = targets_of(targets);
+        let (max_tension, max_stroke) = most;
         let options = ReachOptions { max_tension, max_stroke, tol, all };
         let follower = py.detach(|| hydrostat::Follower::new(&arm.given, &targets, &options));
         Ok(Self { follower: follower.map_err(|error| reach_error(py, error, tol))?, tol })

@@ -38,12 +38,7 @@ impl Stations {
 
 /// The state and the count of unstable directions of a stability.
 pub(crate) fn words(stability: Option<Stability>) -> (Option<&'static str>, Option<usize>) {
-    match stability {
-        Some(Stability::Stable) => (Some("stable"), Some(0)),
-        Some(Stability::Unstable(count)) => (Some("unstable"), Some(count)),
-        Some(Stability::Marginal) => (Some("marginal"), None),
-        None => (None, None),
-    }
+    (stability.map(Stability::name), stability.and_then(Stability::directions))
 }
 
 fn wrench(wrench: Wrench) -> (Point, f64) {

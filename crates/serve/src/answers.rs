@@ -241,3 +241,22 @@ pub(crate) fn reach(request: &ReachRequest, deadline: Deadline) -> Result<Answer
         },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::requests::read;
+    use crate::work::{Weight, Work};
+
+    #[tokio::test]
+    async fn a_path_out_of_time_was_called_one_of_too_many_points() {
+        let text =
+            r#"{ "arm": "silicone", "vary": "arm.base.angle=80:-80", "set": { "flow.speed": 0.1 }, "branches": true }"#;
+        let request = read::<PathRequest>(text.as_bytes()).unwrap();
+        let work = Work::new(std::time::Duration::from_millis(1));
+        let answer = work.run(Weight::Heavy, move |deadline| path(&request, deadline)).await.unwrap().unwrap();
+        let document: serde_json::Value = serde_json::from_slice(&answer.bytes).unwrap();
+        let branches = document["branches"].as_array().unwrap();
+        assert_eq!((branches.len(), &branches[0]["end"]["kind"]), (1, &serde_json::Value::from("stopped")));
+    }
+}

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use hydrostat::{Arm, Material, Profile};
+use hydrostat::Arm;
 use hydrostat_files::{ArmFile, shipped};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
@@ -110,28 +110,10 @@ pub(crate) fn arm(file: &ArmFile) -> Result<Arm, Problem> {
     Ok(arm)
 }
 
-/// The arm with no load at all: what a ghost is drawn of.
-pub(crate) fn unloaded(arm: &Arm) -> Arm {
-    let mut bare = arm.slackened();
-    bare.flow.speed = 0.0;
-    bare.gravity = None;
-    bare.tip = hydrostat::TipLoad::default();
-    bare.distributed = hydrostat::DistributedLoad::default();
-    for cable in &mut bare.cables {
-        cable.friction = 0.0;
-    }
-    bare
-}
-
 /// A tension (N) that slider ends of cables without a largest one are made of: C1 A of the unloaded section at the anchor, which
 /// one cable alone does not exceed by much.
 pub(crate) fn tension_scale(arm: &Arm, cable: usize) -> f64 {
-    let at = |profile: &Profile| profile.at(arm.cables[cable].end * arm.length, arm.length).value;
-    let c1 = match &arm.material {
-        Material::Homogeneous { young, .. } => *young,
-        Material::Coefficients { c1, .. } => at(c1),
-    };
-    c1 * std::f64::consts::PI * (at(&arm.radius).powi(2) - at(&arm.inner_radius).powi(2))
+    arm.stiffness_at(arm.cables[cable].end * arm.length)[0]
 }
 
 /// A JSON value as TOML, inline.

@@ -3,8 +3,6 @@
 use hydrostat::{Arm, Configuration, Options, Solver};
 use serde::Serialize;
 
-use crate::arm_source::unloaded;
-
 /// Radii and cables of the straight arm at the stations of an answer: with x, y, theta and beta there they give the surface,
 /// r +- beta R b, and the cables, r + y beta b.
 #[derive(Debug, Clone, Serialize)]
@@ -43,7 +41,7 @@ pub(crate) struct Ghost {
 impl Ghost {
     /// Of the arm without its loads; `None` where even that has no shape.
     pub(crate) fn new(arm: &Arm, count: usize) -> Option<Self> {
-        let bare = unloaded(arm);
+        let bare = arm.unloaded();
         let shape = Solver::new(&bare, Options { tol: 1e-6 }).and_then(|mut solver| solver.solve()).ok()?;
         let stations = shape.resampled(count);
         let radius = |s: &f64| bare.radius.at(*s, bare.length).value;

@@ -14,7 +14,7 @@ use hydrostat_files::{ArmFile, Failure, Note, Solution};
 use serde::{Deserialize, Serialize};
 use tokio::time::{sleep, timeout};
 
-use crate::arm_source::{ArmSource, Settings, arm, overridden, unloaded};
+use crate::arm_source::{ArmSource, Settings, arm, overridden};
 use crate::drawing::{Drawing, Ghost};
 use crate::limits;
 use crate::problem::{Details, Problem};
@@ -49,7 +49,7 @@ struct Wish {
     stations: Option<usize>,
     /// Where the tip is to go, m: then tensions are found, beginning with those of the arm.
     target: Option<[f64; 2]>,
-    /// The largest tension (N) of cables that have none of their own, while the tip is pulled.
+    /// The largest tension (N) of every cable while the tip is pulled; of this and the cable's own the smaller counts.
     max_tension: Option<f64>,
 }
 
@@ -241,7 +241,7 @@ impl Memory {
 
     /// The unloaded arm, where it is not the one that the page has.
     fn ghost(&mut self, arm: &Arm, count: usize) -> Option<Ghost> {
-        let bare = unloaded(arm);
+        let bare = arm.unloaded();
         if self.ghost_of.as_ref() == Some(&bare) {
             return None;
         }
@@ -287,7 +287,7 @@ impl Memory {
             (cable.tension, cable.stroke) = (*tension, None);
         }
         let bound = |(cable, tension): (usize, &f64)| {
-            let largest = arm.cables[cable].max_tension.or(most);
+            let largest = arm.cables[cable].max_tension.into_iter().chain(most).reduce(f64::min);
             let kind = match largest {
                 Some(largest) if *tension >= largest * (1.0 - 1e-9) => "most",
                 _ if *tension <= 0.0 => "slack",

@@ -144,3 +144,19 @@ async fn there_are_seats_for_so_many_and_they_are_given_back() {
     }
     panic!("seats are not given back");
 }
+
+/// The bound that a pull is asked to keep may be below the cable's own.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_cable_at_a_bound_below_its_own_was_not_named() {
+    let mut socket = session(server().await).await;
+    let wish = json!({
+        "id": 1, "arm": "silicone", "set": { "cable[0].max_tension": 1.5 }, "target": [0.05, 0.2], "max_tension": 0.2,
+    });
+    ask(&mut socket, &wish).await;
+    let reply = reply(&mut socket).await;
+    let pulled = &reply["pulled"];
+    assert_eq!(pulled["reached"], false, "{reply}");
+    assert!((pulled["tensions"][0].as_f64().unwrap() - 0.2).abs() < 1e-9, "{pulled}");
+    let bounds = pulled["bounds"].as_array().unwrap();
+    assert!(bounds.contains(&json!({ "cable": 0, "kind": "most" })), "{pulled}");
+}

@@ -217,14 +217,9 @@ impl Layout {
                 }
                 Output::Error => cells.number(found.map_or(nothing, |row| row.error_estimate)),
                 Output::Stability => {
-                    let (word, directions) = match found.and_then(|row| row.stability) {
-                        Some(Stability::Stable) => (Some("stable"), Some(0)),
-                        Some(Stability::Unstable(count)) => (Some("unstable"), i64::try_from(count).ok()),
-                        Some(Stability::Marginal) => (Some("marginal"), None),
-                        None => (None, None),
-                    };
-                    cells.text(word);
-                    cells.whole(directions);
+                    let stability = found.and_then(|row| row.stability);
+                    cells.text(stability.map(Stability::name));
+                    cells.whole(stability.and_then(Stability::directions).and_then(|count| i64::try_from(count).ok()));
                 }
                 Output::Verdict => {
                     let verdict = row.as_ref().err().and_then(Option::as_ref);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{Arm, FlowLaw, Material};
+use hydrostat::{Arm, FlowLaw};
 use hydrostat_files::{arm_to_toml, number};
 
 use super::limits::{Limit, limits};
@@ -34,7 +34,7 @@ fn cauchy(out: &mut String, arm: &Arm) {
     );
     for (place, s) in [("at the base", 0.0), ("at half length", 0.5 * arm.length)] {
         let radius = arm.radius.at(s, arm.length).value;
-        let stiffness = bending_stiffness(arm, s);
+        let [_, _, stiffness] = arm.stiffness_at(s);
         let ca = 0.5 * arm.flow.density * cn * 2.0 * radius * arm.flow.speed.powi(2) * arm.length.powi(3) / stiffness;
         let _ = writeln!(
             out,
@@ -44,17 +44,6 @@ fn cauchy(out: &mut String, arm: &Arm) {
             number(ca)
         );
     }
-}
-
-/// EI = C3 A of the unloaded section at `s` (m), N m2.
-fn bending_stiffness(arm: &Arm, s: f64) -> f64 {
-    let r2 = arm.radius.at(s, arm.length).value.powi(2);
-    let in2 = arm.inner_radius.at(s, arm.length).value.powi(2);
-    let c3 = match &arm.material {
-        Material::Homogeneous { young, .. } => 0.25 * young * (r2 + in2),
-        Material::Coefficients { c3, .. } => c3.at(s, arm.length).value,
-    };
-    c3 * std::f64::consts::PI * (r2 - in2)
 }
 
 fn tension_limits(out: &mut String, arm: &Arm) {

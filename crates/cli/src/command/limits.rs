@@ -1,6 +1,6 @@
 //! How much tension an arm carries: by each cable alone, and by all cables of a side together.
 
-use hydrostat::{Arm, DistributedLoad, Material, Options, SolveError, Solver, TipLoad, VerdictKind};
+use hydrostat::{Arm, Options, SolveError, Solver, VerdictKind};
 
 /// What ends a rise in tension.
 pub(super) enum Limit {
@@ -38,15 +38,10 @@ fn side_of(arm: &Arm, cable: usize) -> f64 {
     c.offset.at(0.5 * c.end * arm.length, arm.length).value
 }
 
-/// The arm with slack cables and no other load.
+/// The arm without its loads, whose cables may be pulled as hard as it bears.
 fn bare(arm: &Arm) -> Arm {
-    let mut bare = arm.clone();
-    bare.flow.speed = 0.0;
-    bare.gravity = None;
-    bare.tip = TipLoad::default();
-    bare.distributed = DistributedLoad::default();
+    let mut bare = arm.unloaded();
     for cable in &mut bare.cables {
-        cable.tension = 0.0;
         cable.max_tension = None;
     }
     bare
@@ -55,10 +50,11 @@ fn bare(arm: &Arm) -> Arm {
 fn limit(bare: &Arm, group: &[usize]) -> Limit {
     // The section at the anchor gives the scale: it cannot carry much more than C1 A.
     let anchor = group.iter().map(|c| bare.cables[*c].end * bare.length).fold(0.0, f64::max);
-    let scale = axial_stiffness(bare, anchor) / group.len() as f64;
+    let axial = |s: f64| bare.stiffness_at(s)[0];
+    let scale = axial(anchor) / group.len() as f64;
     // A section that spreads under compression carries more, but nothing carries many times what
     // the widest section would.
-    let most = 10.0 * axial_stiffness(bare, 0.0).max(scale);
+    let most = 10.0 * axial(0.0).max(scale);
     let mut carried = 0.0;
     let mut tension = scale;
     while tension <= most {
@@ -90,20 +86,28 @@ fn solve(bare: &Arm, group: &[usize], tension: f64) -> Result<(), SolveError> {
 
 fn why(kind: VerdictKind) -> Option<&'static str> {
     match kind {
-        VerdictKind::CableFold => Some("a cable folds its side shut"),
-        VerdictKind::SectionCrushed => Some("the section is crushed"),
-        VerdictKind::NoSectionSolution => Some("no strains carry the load"),
         VerdictKind::LimitPoint => Some("the arm snaps to another shape"),
+        VerdictKind::CableFold | VerdictKind::SectionCrushed | VerdictKind::NoSectionSolution => Some(kind.phrase()),
         VerdictKind::LoadJump | VerdictKind::NotFound => None,
     }
 }
 
-/// C1 A of the unloaded section at `s` (m), N.
-fn axial_stiffness(arm: &Arm, s: f64) -> f64 {
-    let r2 = arm.radius.at(s, arm.length).value.powi(2) - arm.inner_radius.at(s, arm.length).value.powi(2);
-    let c1 = match &arm.material {
-        Material::Homogeneous { young, .. } => *young,
-        Material::Coefficients { c1, .. } => c1.at(s, arm.length).value,
-    };
-    c1 * std::f64::consts::PI * r2
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hydrostat::{Cable, Profile};
+
+    #[test]
+    fn a_commanded_stroke_kept_the_tension_from_being_raised() {
+        let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+        arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
+        let tension = |arm: &Arm| match limits(arm).remove(0).1 {
+            Limit::Reached { tension, .. } => tension,
+            Limit::NoneBelow(tension) => panic!("none below {tension}"),
+            Limit::Unknown(tension) => panic!("unknown above {tension}"),
+        };
+        let free = tension(&arm);
+        arm.cables[0].stroke = Some(0.005);
+        assert_eq!(tension(&arm), free);
+    }
 }

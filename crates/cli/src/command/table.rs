@@ -48,9 +48,8 @@ pub(super) fn tip_cells(c: &Configuration) -> [String; 4] {
 /// Stability in a word or two.
 pub(super) fn stability_words(stability: Option<Stability>) -> String {
     match stability {
-        Some(Stability::Stable) => "stable".to_owned(),
-        Some(Stability::Unstable(count)) => format!("unstable ({count})"),
-        Some(Stability::Marginal) => "marginal".to_owned(),
+        Some(stability @ Stability::Unstable(count)) => format!("{} ({count})", stability.name()),
+        Some(stability) => stability.name().to_owned(),
         None => "not established".to_owned(),
     }
 }

@@ -168,3 +168,33 @@ fn a_full_disk_is_a_failure_of_another_kind() {
     // As a file that was asked for, it is a path that cannot be written.
     assert_eq!(hydrostat(&["solve", "paper", "-o", "/dev/full"]).code, 2);
 }
+
+/// Every command of the program, and every option of a command, stands in `docs/interface.md` or, for fits, in `docs/identification.md`.
+#[test]
+fn serve_and_validate_were_not_documented() {
+    let page = include_str!("../../../../docs/interface.md");
+    let fits = include_str!("../../../../docs/identification.md");
+    let listed = |help: &str, heading: &str| -> Vec<String> {
+        let part = help.split_once(heading).unwrap_or_else(|| panic!("no {heading} in {help}")).1;
+        part.split("\n\nEx").next().unwrap().lines().map(|line| line.trim().to_owned()).collect()
+    };
+    let help = hydrostat(&["--help"]).out;
+    let commands: Vec<String> = listed(help.split("\nOptions:").next().unwrap(), "Commands:\n")
+        .iter()
+        .filter_map(|line| line.split_whitespace().next().map(str::to_owned))
+        .collect();
+    assert!(commands.len() > 10, "{commands:?}");
+    for command in &commands {
+        assert!(page.contains(&format!("\n    hydrostat {command} ")), "{command}");
+        let help = hydrostat(&[command, "--help"]).out;
+        for line in listed(&help, "Options:\n") {
+            let Some(option) = line.split_whitespace().find(|word| word.starts_with("--")) else { continue };
+            if !line.starts_with('-') || option == "--help" {
+                continue;
+            }
+            let (whole, valued) = (format!("`{option}`"), format!("`{option} "));
+            let found = [page, fits].iter().any(|text| text.contains(&whole) || text.contains(&valued));
+            assert!(found, "{command} {option}");
+        }
+    }
+}

@@ -138,11 +138,13 @@ impl Manufactured {
         let of = |p: &Profile| Series::of(p, s, l);
         // Steep near the base, as references are met there with their first derivatives.
         let still = Series::constant(1.0) - Series::wave(1.0, WAVE, 0.0, s);
-        let nu = of(&arm.reference.nu) - still.times(0.05);
-        let eta = of(&arm.reference.eta) + Series::wave(0.07, 0.8 * WAVE, -0.5 * PI, s);
+        let nu = Series::constant(1.0) - still.times(0.05);
+        let eta = Series::wave(0.07, 0.8 * WAVE, -0.5 * PI, s);
         let reference_mu = of(&arm.reference.mu).times(l);
-        let [mu_base, mu_slope, ..] = [arm.reference.mu.at(0.0, l).value * l, reference_mu.0[1]];
-        // theta has the reference's curvature and a wave that begins flat.
+        // theta has the reference's curvature and a wave that begins flat; the unstrained base is straight, whatever the reference is.
+        let straight = arm.readings.support == Support::UnstrainedBase;
+        let mu_base = if straight { 0.0 } else { arm.reference.mu.at(0.0, l).value * l };
+        let mu_slope = reference_mu.0[1];
         let turned = Series([mu_base * s + 0.5 * mu_slope * s * s, mu_base + mu_slope * s, 0.5 * mu_slope, 0.0]);
         let theta = Series::constant(arm.base.angle) + turned + still.times(0.12);
         let mu = theta.slope();
@@ -273,9 +275,12 @@ fn arm(readings: Readings, law: FlowLaw) -> Arm {
     arm.density = 1300.0;
     arm.base.angle = 0.1;
     arm.gravity = Some(Gravity { acceleration: 9.81, direction: -1.1 });
-    // The unstrained base is straight, whatever the reference is: `docs/model.md`, section 9.
-    let curved_from = if readings.support == Support::UnstrainedBase { 0.0 } else { 0.5 };
-    arm.reference.mu = Profile::linear(curved_from, -1.0);
+    arm.reference.mu = Profile::linear(0.5, -1.0);
+    if readings.support == Support::UnstrainedBase {
+        // As strains of the base, nu = 1 and eta = 0 whatever these are.
+        arm.reference.nu = 1.03.into();
+        arm.reference.eta = 0.02.into();
+    }
     arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.002)).pulled(0.4));
     arm.cables.push(Cable::new("right", Profile::linear(-0.004, -0.003)).pulled(0.25));
     arm.flow.law = law;

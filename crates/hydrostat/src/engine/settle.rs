@@ -24,8 +24,8 @@ const HOPS: usize = 2;
 /// Corrections of the tip (over L) that Newton is not asked to get below.
 const RESTLESS: f64 = 1e-11;
 
-/// Accuracies of a path in a hurry (tip over L) from which on what beta' lags behind counts, and with it the angles of an arm in line
-/// with the stream.
+/// At accuracies (tip over L) tighter than this, a hurried path brings beta' up to date before it estimates: the lag is of the size of the
+/// tiny angles that decide where an arm in line with the stream goes.
 const LED: f64 = 1e-6;
 
 /// Errors of the tip (over L) that rounding makes, which no comparison shows.

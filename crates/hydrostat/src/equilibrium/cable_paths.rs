@@ -21,7 +21,7 @@ impl Equilibrium {
         ]
     }
 
-    /// psi' of cable `c` in a block of stations, over L: see [`crate::friction`].
+    /// chi' of cable `c` in a block of stations, over L: see [`crate::friction`].
     pub(crate) fn cable_turns(&self, c: usize, block: usize) -> Lanes {
         let offset = &self.cables[block * self.tensions.len() + c].offset;
         let [nu, eta, mu] = self.memory[block].strain;

@@ -8,15 +8,18 @@ use crate::readings::Support;
 use crate::verdict::Phase;
 
 impl Equilibrium {
-    /// theta(0) = theta_0; with the unstrained base also n_f(0) = sum T t_c(0) and
-    /// m_f(0) = -sum T y (t_c . a)(0) at nu = beta = 1, eta = mu = beta' = 0.
+    /// theta(0) = theta_0; with the unstrained base also nu = beta = 1, eta = mu = beta' = 0 there, by the section law
+    /// n_f(0) = C1 (1 - nu_o) A0 a - C2 eta_o A0 b + sum T t_c(0) and m_f(0) = -C3 mu_o A0 - sum T y (t_c . a)(0).
     pub(super) fn base_conditions(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
         out[0].residual = z[0] - self.arm.base.angle;
         out[0].gradient[0] = 1.0;
         out[0].drift = -self.base_turn();
         if self.arm.readings.support == Support::UnstrainedBase {
             let (sin, cos) = self.arm.base.angle.sin_cos();
-            let mut at_base = [0.0; 3];
+            let stiffness = self.place(0.0).stiffness;
+            let unstrained = [1.0, 0.0, 0.0];
+            let [n_a, n_b, m] = [0, 1, 2].map(|k| stiffness.value[k] * (unstrained[k] - stiffness.reference[k]));
+            let mut at_base = [n_a * cos - n_b * sin, n_a * sin + n_b * cos, m];
             for c in 0..self.tensions.len() {
                 let offset = self.offset(c, 0.0);
                 let stretch = 1.0_f64.hypot(offset.slope);

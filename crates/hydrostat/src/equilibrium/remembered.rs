@@ -78,6 +78,13 @@ impl Equilibrium {
         }
     }
 
+    /// Place (over L), nu and mu (times L), and beta R (over L), in a lane of a block.
+    pub(crate) fn stretched(&self, block: usize, lane: usize) -> (f64, [f64; 2], f64) {
+        let (place, [nu, _, mu]) = (&self.places[block], self.memory[block].strain);
+        let half_width = self.beta.value[block] * place.body.radius;
+        (place.s.0[lane], [nu.0[lane], mu.0[lane]], half_width.0[lane])
+    }
+
     /// Strain measure 1/2 (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A per length in a block of stations.
     #[inline(always)]
     pub(crate) fn strain_energy(&self, block: usize) -> Lanes {

@@ -233,7 +233,21 @@ impl Arm {
     }
 
     /// [`Arm::path`] that hands every point to `watch` as it is found, and ends after the first for which that is
-    /// false.
+    /// false: with [`PathEnd::Stopped`], unless that point is the last anyway, and without the branches that were still to come.
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Parameter, PathEnd, PathOptions};
+    ///
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.flow.speed = 0.1;
+    /// let mut points = 0;
+    /// let path = arm.path_with(Parameter::BaseAngle, [1.5, -1.5], &PathOptions::default(), |_| {
+    ///     points += 1;
+    ///     points < 5
+    /// });
+    /// let branch = &path.unwrap().branches[0];
+    /// assert_eq!((branch.points.len(), branch.end), (5, PathEnd::Stopped));
+    /// ```
     ///
     /// # Errors
     /// [`PathError`].
@@ -261,6 +275,7 @@ impl Arm {
             pace,
             most: options.most,
             watch: &mut watch,
+            stopped: false,
             crossings: Vec::new(),
         };
         let first = if let Ok(start) = trace.start() {
@@ -305,6 +320,8 @@ struct Trace<'e, W> {
     /// Points that may still come.
     most: usize,
     watch: &'e mut W,
+    /// Whether it said that this is enough.
+    stopped: bool,
     /// Bifurcations, where the branch followed goes straight on.
     crossings: Vec<Point>,
 }
@@ -338,9 +355,9 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
 
     fn collect(&mut self, mut here: Point, points: &mut Vec<PathPoint>) -> PathEnd {
         if let Some(first) = read(self.stepper.engine, &here, None)
-            && !self.put(first, points)
+            && let Some(end) = self.put(first, points)
         {
-            return PathEnd::MostPoints;
+            return end;
         }
         let mut step = 0.05_f64.min(self.pace.longest);
         while step >= 1e-8 {
@@ -375,9 +392,9 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
                     self.stepper.limit_point(&here, &next, step_taken, self.pace).0
                 };
                 if let Some(read) = read(self.stepper.engine, &at, Some(event))
-                    && !self.put(read, points)
+                    && let Some(end) = self.put(read, points)
                 {
-                    return PathEnd::MostPoints;
+                    return end;
                 }
                 if event == Event::Bifurcation {
                     self.crossings.push(at);
@@ -391,9 +408,9 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
                 let turns_back = (contact.after.rise * next.rise < 0.0).then_some(Event::LimitPoint);
                 for event in turns_back.into_iter().chain([event]) {
                     if let Some(read) = read(self.stepper.engine, &contact.after, Some(event))
-                        && !self.put(read, points)
+                        && let Some(end) = self.put(read, points)
                     {
-                        return PathEnd::MostPoints;
+                        return end;
                     }
                 }
                 here = contact.after;
@@ -403,15 +420,15 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             }
             // Corrections may have left the range: then the next step lands on its end.
             let inside = (0.0..=1.0).contains(&next.fraction);
-            let more = read_next.filter(|_| inside).is_none_or(|read| self.put(read, points));
+            let end = read_next.filter(|_| inside).and_then(|read| self.put(read, points));
             if next.fraction == 1.0 {
                 return PathEnd::ReachedEnd;
             }
             if next.fraction == 0.0 {
                 return PathEnd::ReachedStart;
             }
-            if !more {
-                return PathEnd::MostPoints;
+            if let Some(end) = end {
+                return end;
             }
             here = next;
             step = (step * 1.6).min(self.pace.longest);
@@ -419,12 +436,15 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
         self.stepper.end_at(&here)
     }
 
-    /// Keeps a point; whether more may come.
-    fn put(&mut self, point: PathPoint, points: &mut Vec<PathPoint>) -> bool {
-        let more = (self.watch)(&point);
+    /// Keeps a point; why none may come after it.
+    fn put(&mut self, point: PathPoint, points: &mut Vec<PathPoint>) -> Option<PathEnd> {
+        self.stopped = !(self.watch)(&point);
         points.push(point);
         self.most = self.most.saturating_sub(1);
-        more && self.most > 0
+        if self.stopped {
+            return Some(PathEnd::Stopped);
+        }
+        (self.most == 0).then_some(PathEnd::MostPoints)
     }
 
     /// The branches to both sides of a bifurcation.
@@ -432,6 +452,9 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
         let mut out = Vec::new();
         for side in [1.0, -1.0] {
             let value = self.stepper.engine.equations.value_at(crossing.fraction);
+            if self.stopped {
+                break;
+            }
             if let Some(first) = self.stepper.switch(crossing, side, self.pace) {
                 out.push(self.from(first, Some(value)));
             }

@@ -36,7 +36,7 @@ pub(super) const LEAST: f64 = 1e-5;
 /// How a boundary is traced.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundaryOptions {
-    /// The largest tension of every cable, N, where the cable itself has less or none.
+    /// The largest tension of every cable, N; of this and the cable's own `max_tension` the smaller counts. Every cable needs one.
     pub max_tension: Option<f64>,
     /// Distance of points over L, in [1e-3, 0.1].
     pub spacing: f64,
