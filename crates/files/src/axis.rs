@@ -103,7 +103,12 @@ pub enum AxisError {
         text: String,
     },
     /// Two ends with one value, or one end with many.
-    #[error("{key}: expected {}, found {count} values from {from} to {to}", if *.count == 1 { "two ends that are the same with one value" } else { "two different ends" })]
+    #[error(
+        "{key}: expected {}, found {count} values from {} to {}",
+        if *.count == 1 { "two ends that are the same with one value" } else { "two different ends" },
+        shortened(.from),
+        shortened(.to)
+    )]
     Ends {
         /// The key.
         key: String,

@@ -323,7 +323,9 @@ impl Table<'_> {
             {
                 let why = format!(
                     "{} of load case {} is in row {} already",
-                    measurement.quantity, self.cases[index].name, other.row
+                    measurement.quantity,
+                    shortened(&self.cases[index].name),
+                    other.row
                 );
                 return Err(self.fault(row, Some(&column), why));
             }
@@ -363,7 +365,8 @@ impl Table<'_> {
             let case = &mut self.cases[index];
             match case.settings.iter().find(|(own, ..)| *own == at) {
                 Some((_, before, first)) if *before != text => {
-                    let why = format!("load case {} has \"{before}\" in row {first}, found \"{text}\"", case.name);
+                    let [name, before, found] = [&case.name, before, &text].map(|text| shortened(text));
+                    let why = format!("load case {name} has \"{before}\" in row {first}, found \"{found}\"");
                     return Err(self.fault(row, Some(&head.text), why));
                 }
                 Some(_) => {}
@@ -384,8 +387,9 @@ impl Table<'_> {
                         .map_err(|error| self.fault(*row, Some(&head.text), reason(&error.to_string())))?;
                 }
             }
-            let arm = arm_of(&file)
-                .map_err(|why| self.fault(case.row, None, format!("load case {}: {}", case.name, reason(&why))))?;
+            let arm = arm_of(&file).map_err(|why| {
+                self.fault(case.row, None, format!("load case {}: {}", shortened(&case.name), reason(&why)))
+            })?;
             out.push(Case { name: case.name.clone(), arm, measurements: case.measurements.clone() });
         }
         Ok(out)
