@@ -1,7 +1,8 @@
 //! Inverse kinetics: round trips, targets out of reach, redundancy, and paths of targets.
 
 use hydrostat::{
-    Arm, Bound, Cable, Follower, Options, Profile, ReachError, ReachOptions, SolveError, Solver, Target, VerdictKind,
+    Arm, Bound, Cable, Follower, Options, Profile, ReachError, ReachOptions, SolveError, Solver, Stability, Target,
+    VerdictKind,
 };
 use hydrostat_files::{ArmFile, shipped};
 
@@ -602,4 +603,80 @@ fn strokes_with_slack_cables_lead_to_the_target() {
     }
     println!("{met} of {all}");
     assert_eq!(met, all);
+}
+
+/// In a stream from almost ahead this arm has two stable shapes under some tensions, and one leads to the other round them: under stronger tensions of
+/// both cables. Led that way into where there are two, and on to where the one ends, the arm snaps to the other, as all equilibria under each of the tensions say.
+#[test]
+fn a_follower_says_that_the_arm_snapped() {
+    let arm = |[both, more]: [f64; 2]| {
+        let mut arm = cone();
+        arm.flow.speed = 0.12;
+        arm.flow.direction = 178.0_f64.to_radians();
+        arm.set_tensions(&[both + more, both - more]).unwrap();
+        arm
+    };
+    let leg = |from: [f64; 2], to: [f64; 2], steps: u32| {
+        (1..=steps).map(move |k| [0, 1].map(|i| from[i] + (to[i] - from[i]) * f64::from(k) / f64::from(steps)))
+    };
+    let [begin, strong, weak, end] = [[1.1, -0.02], [1.1, -0.1], [0.15, -0.1], [0.15, -0.02]];
+    let mut tips = vec![arm(begin).solve().unwrap().tip()];
+    let far = |a: &hydrostat::Tip, b: &hydrostat::Tip| (a.x - b.x).hypot(a.y - b.y) / 0.245;
+    let mut snaps = Vec::new();
+    for tensions in leg(begin, strong, 50).chain(leg(strong, weak, 20)).chain(leg(weak, end, 50)) {
+        let all = arm(tensions).equilibria(1e-9).unwrap();
+        assert!(all.complete);
+        let stable = all.found.iter().filter(|one| one.stability == Some(Stability::Stable));
+        let last = tips[tips.len() - 1];
+        let near = stable.map(|one| one.configuration.tip()).min_by(|a, b| far(a, &last).total_cmp(&far(b, &last)));
+        let near = near.unwrap();
+        if far(&near, &last) > 0.1 {
+            snaps.push(tips.len());
+        }
+        tips.push(near);
+    }
+    let [snap] = snaps[..] else { panic!("snaps at {snaps:?}") };
+    // With the angle, by which a place that other tensions lead to as well is told apart.
+    let target = |tip: &hydrostat::Tip| Target { angle: Some(tip.theta), ..Target::tip(tip.x, tip.y) };
+    let mut follower = Follower::new(&arm(begin), &[target(&tips[0])], &options(2.0)).unwrap();
+    for tip in &tips[..snap] {
+        let found = follower.follow(&[target(tip)]).unwrap();
+        assert!(found.reached && !found.jumped, "{found:?}");
+        assert!((found.tip.theta - tip.theta).abs() < 1e-4, "{found:?} {tip:?}");
+    }
+    let beyond = tips[snap];
+    let found = follower.follow(&[target(&beyond)]).unwrap();
+    println!("snap at {snap}, from {:.3} to {:.3} rad: {found:?}", tips[snap - 1].theta, beyond.theta);
+    assert!(found.jumped, "{found:?}");
+    assert!(far(&found.tip, &beyond) < 0.1 * far(&tips[snap - 1], &beyond), "{found:?} {beyond:?}");
+    // There it goes on without another.
+    for tip in &tips[snap..snap + 5] {
+        let found = follower.follow(&[target(tip)]).unwrap();
+        assert!(found.reached && !found.jumped, "{found:?}");
+    }
+}
+
+/// A column that symmetry holds upright under a load that would buckle it: steps aside fail, or have no derivative. Whatever a leap ends in, it
+/// is no error, and a target that is where the arm is by then is reached.
+#[test]
+fn a_column_outlives_failed_steps() {
+    let mut errors = 0;
+    for k in 0..12 {
+        let mut arm = cone();
+        arm.tip.force = [-0.002 * 1.6_f64.powi(k), 0.0];
+        arm.set_tensions(&[0.1, 0.1]).unwrap();
+        let Ok(shape) = arm.solve() else { continue };
+        let start = [Target::tip(shape.tip().x, shape.tip().y)];
+        let Ok(mut follower) = Follower::new(&arm, &start, &options(0.5)) else { continue };
+        for (x, y) in [(0.1, 0.2), (0.3, 0.0), (0.05, -0.1), (-0.2, 0.0)] {
+            let Ok(found) = follower.follow(&[Target::tip(x, y)]) else {
+                errors += 1;
+                continue;
+            };
+            assert!(found.distance.is_finite() && found.tensions.iter().all(|t| (0.0..=0.5).contains(t)), "{found:?}");
+            let again = follower.follow(&[Target::tip(found.tip.x, found.tip.y)]).unwrap();
+            assert!(again.reached && !again.jumped && again.solves <= 2, "{k}: {found:?}, {again:?}");
+        }
+    }
+    assert_eq!(errors, 0);
 }
