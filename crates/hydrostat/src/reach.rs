@@ -14,6 +14,7 @@ mod lines;
 mod search;
 mod strokes;
 
+use self::effort::dot;
 use self::search::{Goal, Search, State};
 use crate::arm::Arm;
 use crate::configuration::Configuration;
@@ -276,8 +277,18 @@ impl Found<'_> {
         };
         let reached = state.distance() <= self.search.tol;
         let list = if reached { &mut self.solutions } else { &mut self.missed };
-        if !list.iter().any(|own| self.search.same(&own.tensions, &state.tensions)) {
-            list.push(state);
+        match list.iter().position(|own| self.search.same(&own.tensions, &state.tensions)) {
+            Some(_) => {}
+            None if reached => match list.iter().position(|own| self.search.joined(own, &state)) {
+                // The same solution, as far as the tolerance tells.
+                Some(k) => {
+                    if dot(&state.tensions, &state.tensions) < dot(&list[k].tensions, &list[k].tensions) {
+                        list[k] = state;
+                    }
+                }
+                None => list.push(state),
+            },
+            None => list.push(state),
         }
         self.missed.sort_by(|a, b| a.distance().total_cmp(&b.distance()));
     }

@@ -680,3 +680,22 @@ fn a_column_outlives_failed_steps() {
     }
     assert_eq!(errors, 0);
 }
+
+/// At the edge of what is reached tensions within some root of the tolerance do as well: one solution, not one for each start.
+#[test]
+fn an_edge_was_a_list_of_neighbours() {
+    let mut arm = cone();
+    let mut short = Cable::new("short", Profile::linear(0.006, 0.003));
+    short.end = 0.6;
+    arm.cables.push(short);
+    for tensions in [[0.0, 0.3, 0.0], [0.3, 0.0, 0.0]] {
+        let target = target_of(&arm, &tensions).unwrap();
+        let found = arm.reach(&[target], &options(0.5)).unwrap();
+        let seen: Vec<_> = found.solutions.iter().map(|one| &one.tensions).collect();
+        let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 2e-3);
+        assert!(!seen.is_empty());
+        for (k, a) in seen.iter().enumerate() {
+            assert!(seen[k + 1..].iter().all(|b| apart(a, b)), "{tensions:?}: {seen:?}");
+        }
+    }
+}

@@ -35,6 +35,9 @@ const HEAVY: f64 = 1e3;
 /// Change of the tensions, over their scale, at which least effort and least distance are found.
 pub(super) const STILL: f64 = 1e-9;
 
+/// Change of the tensions, over their scale, within which solutions may be one.
+const NEIGHBOURS: f64 = 0.05;
+
 /// What is to be reached.
 #[derive(Debug, Clone)]
 pub(super) enum Goal {
@@ -183,6 +186,24 @@ impl Search {
     /// Whether tensions are the same.
     pub(super) fn same(&self, a: &[f64], b: &[f64]) -> bool {
         a.iter().zip(b).zip(&self.scale).all(|((a, b), scale)| (a - b).abs() < 1e-5 * scale)
+    }
+
+    /// Whether two solutions are near each other and what is between them is one, too: at the edge of what is reached, the tensions that bring
+    /// the arm to within the tolerance of a target are as many as its root allows.
+    pub(super) fn joined(&self, a: &State, b: &State) -> bool {
+        let near = a
+            .tensions
+            .iter()
+            .zip(&b.tensions)
+            .zip(&self.scale)
+            .all(|((a, b), scale)| (a - b).abs() < NEIGHBOURS * scale);
+        if !near {
+            return false;
+        }
+        let between: Vec<f64> = a.tensions.iter().zip(&b.tensions).map(|(a, b)| 0.5 * (a + b)).collect();
+        let mut solver = a.solver.clone();
+        let solved = solver.set_tensions(&between).is_ok() && solver.update_warm().is_some();
+        solved && self.state(solver, between).distance() <= 3.0 * self.tol
     }
 
     /// Settled at these tensions, from nothing.
