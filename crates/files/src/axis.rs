@@ -95,7 +95,7 @@ pub enum AxisError {
         key: String,
     },
     /// A count that is none.
-    #[error("{key}: expected a whole number from 1 to {MOST} as COUNT, found \"{}\"", shortened(.text))]
+    #[error("{}: expected a whole number from 1 to {MOST} as COUNT, found \"{}\"", shortened(.key), shortened(.text))]
     Count {
         /// The key.
         key: String,
@@ -104,7 +104,8 @@ pub enum AxisError {
     },
     /// Two ends with one value, or one end with many.
     #[error(
-        "{key}: expected {}, found {count} values from {} to {}",
+        "{}: expected {}, found {count} values from {} to {}",
+        shortened(.key),
         if *.count == 1 { "two ends that are the same with one value" } else { "two different ends" },
         shortened(.from),
         shortened(.to)

@@ -60,7 +60,7 @@ pub enum FitKeyError {
         expected: &'static str,
     },
     /// A key of the arm file without a derivative.
-    #[error("{key} cannot be fitted: shapes have no derivative by it here; those that can are {}", names().join(", "))]
+    #[error("{} cannot be fitted: shapes have no derivative by it here; those that can are {}", shortened(.key), names().join(", "))]
     NoDerivative {
         /// The key.
         key: String,

@@ -251,11 +251,14 @@ pub(crate) fn dimension_at(key: &str) -> Option<Dimension> {
 pub(crate) fn is_key(key: &str) -> bool {
     let mut keys = FILE;
     for step in key.split('.') {
-        let Some((name, _)) = indexed(step) else { return false };
+        let Some((name, indices)) = indexed(step) else { return false };
+        let depth = indices.matches('[').count();
         match keys.iter().find(|key| key.name == name).map(|key| key.kind) {
-            Some(Table(inner) | Tables(inner)) => keys = inner,
-            Some(_) => return true,
-            None => return false,
+            Some(Table(inner)) if depth == 0 => keys = inner,
+            Some(Tables(inner)) if depth <= 1 => keys = inner,
+            Some(Table(_) | Tables(_)) | None => return false,
+            // At most a point of a table, and its place or value.
+            Some(_) => return depth <= 2,
         }
     }
     true

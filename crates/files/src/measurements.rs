@@ -294,7 +294,7 @@ impl Table<'_> {
                         return Err(self.fault(
                             row,
                             Some(&head.text),
-                            format!("expected a standard deviation above zero, found {cell}"),
+                            format!("expected a standard deviation above zero, found {}", shortened(cell)),
                         ));
                     }
                     sd

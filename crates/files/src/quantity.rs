@@ -286,7 +286,7 @@ impl Dimension {
 
 /// A text that is no value of a key.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{key}: expected {}, found \"{}\": {source}", .dimension.expected(), shortened(.text))]
+#[error("{}: expected {}, found \"{}\": {source}", shortened(.key), .dimension.expected(), shortened(.text))]
 pub struct WrongValue {
     /// The key.
     pub key: String,

@@ -55,7 +55,7 @@ pub enum VariedError {
     #[error(transparent)]
     Value(#[from] WrongValue),
     /// A range without length.
-    #[error("{key}: expected a range with two different ends, found \"{}\" twice", shortened(.text))]
+    #[error("{}: expected a range with two different ends, found \"{}\" twice", shortened(.key), shortened(.text))]
     Empty {
         /// The quantity.
         key: String,

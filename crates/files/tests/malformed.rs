@@ -321,14 +321,25 @@ fn keys_of_grids_and_units_of_columns_filled_the_message() {
 
 #[test]
 fn names_of_load_cases_and_ends_of_ranges_filled_the_message() {
-    let message = format!("flow.speed=0.1:0.{}:1", "3".repeat(9000)).parse::<Axis>().unwrap_err().to_string();
-    assert!(message.len() < 500, "{} bytes", message.len());
+    let (digits, indices) = ("3".repeat(9000), "[0]".repeat(3000));
+    for text in [
+        format!("flow.speed=0.1:0.{digits}:1"),
+        format!("flow.speed=0.1:0.2:{digits}"),
+        format!("cable{indices}.tension=0:x:3"),
+        format!("cable{indices}.tension=0:1:x"),
+        format!("cable{indices}=0:1:x"),
+        format!("cable{indices}=0,x"),
+    ] {
+        let message = text.parse::<Axis>().unwrap_err().to_string();
+        assert!(message.len() < 500, "{} bytes: {message:.200}", message.len());
+    }
     let arm = ArmFile::parse(ARM, "arm.toml").unwrap();
     let name = "bo\n".repeat(3000);
     for rows in [
         format!("case,s [mm],x [mm]\n\"{name}\",50,49\n\"{name}\",50,49\n"),
         format!("case,flow.speed [m/s],s [mm],x [mm]\n\"{name}\",0.1,50,49\n\"{name}\",0.2,60,59\n"),
         format!("case,flow.speed [m/s],s [mm],x [mm]\n\"{name}\",-0.1,50,49\n"),
+        format!("case,s [mm],x [mm],sd position [mm]\na,50,49,{}\n", "0".repeat(9000)),
     ] {
         let message = parse_measurements(&rows, "data.csv", &arm, &Deviations::default(), &[]).unwrap_err().to_string();
         assert!(!message.contains('\n') && message.len() < 500, "{} bytes: {message:.200?}", message.len());
