@@ -112,3 +112,15 @@ def test_strokes_that_reach_are_the_programs(program: Program, silicone: hs.Arm)
     assert (again.tip.x, again.tip.y) == pytest.approx((0.182, 0.078), abs=1e-7)
     with pytest.raises(ValueError, match="by: expected tensions or strokes"):
         silicone.reach((0.182, 0.078), by="angles")
+
+
+def test_strokes_are_bounded_as_by_the_program(program: Program, silicone: hs.Arm) -> None:
+    words = ["reach", "silicone", "--target", "0.182,0.078", "--max-stroke", "10 mm"]
+    found = silicone.reach((0.182, 0.078), max_stroke=0.01)
+    assert found.to_json() == program(*words, "--format", "json")[1].strip()
+    closest = found.closest
+    assert closest is not None and not len(found)
+    assert [bound.kind for bound in closest.bounds] == ["stroke", "slack"]
+    assert closest.solution.cables[0].stroke == pytest.approx(0.01, abs=1e-8)
+    with pytest.raises(ValueError, match="max_stroke"):
+        silicone.reach((0.182, 0.078), max_stroke=-1.0)

@@ -161,6 +161,22 @@ fn strokes_are_found_in_place_of_tensions() {
 }
 
 #[test]
+fn a_cable_is_wound_in_no_further_than_it_may_be() {
+    let [x, y] = tip("0.3,0.1");
+    let target = &format!("{x},{y}");
+    let stroke = |document: &Value| document["cables"][0]["stroke"].as_f64().unwrap();
+    let free = json(&solved(&reach(target, &["--format", "json"])).out);
+    assert!(stroke(&free["solutions"][0]) > 0.015, "{free}");
+    let run = hydrostat(&reach(target, &["--max-stroke", "10 mm", "--format", "json"]));
+    assert_eq!(run.code, 3, "{}", run.err);
+    assert!(run.err.contains("cable left is wound in as far as it can be"), "{}", run.err);
+    let closest = &json(&run.out)["closest"];
+    assert!((stroke(closest) - 0.010).abs() < 1e-8, "{closest}");
+    assert_eq!(closest["bounds"][0]["kind"], "stroke");
+    assert!(refused(&reach(target, &["--max-stroke", "10 N"])).contains("expected a length"));
+}
+
+#[test]
 fn the_boundary_is_written_and_drawn() {
     let here = directory();
     let args = ["reach", "silicone", "--boundary", "--max-tension", "0.2", "--spacing", "0.05", "--format", "csv"];
