@@ -5,13 +5,13 @@ use hydrostat_bvp::{Gauss, LANES, Local, Solution, step};
 use crate::configuration::Station;
 use crate::dispatch::widest;
 use crate::engine::{Engine, M};
-use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Q, SectionFailure};
+use crate::equilibrium::{Asked, AtPlace, Equations, N, Q, SectionFailure};
 
 /// What it takes to evaluate a configuration anywhere: the nodes, which are accurate to the order
 /// of the method, and enough of the stages to start from.
 #[derive(Debug, Clone)]
 pub(crate) struct Dense {
-    pub(crate) equations: Equilibrium,
+    pub(crate) equations: Equations,
     pub(crate) solution: Solution<N, M>,
     /// x, y over L at the nodes, from the base.
     positions: Vec<[f64; Q]>,

@@ -20,7 +20,7 @@ use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Hermite, Mesh, 
 use crate::arm::Arm;
 use crate::configuration::{Statistics, Tip};
 use crate::dispatch::widest;
-use crate::equilibrium::{Asked, AtPlace, Equilibrium, N, Nearness, Q, SectionFailure};
+use crate::equilibrium::{Asked, AtPlace, Equations, N, Nearness, Q, SectionFailure};
 use crate::verdict::Phase;
 
 pub(crate) use self::budget::WORK;
@@ -69,9 +69,9 @@ pub(crate) fn roughly(result: Result<(), Trouble>) -> Result<(), Trouble> {
 
 #[derive(Debug, Clone)]
 pub(crate) struct Engine {
-    pub(crate) equations: Equilibrium,
+    pub(crate) equations: Equations,
     pub(crate) system: Collocation<N, M, Q>,
-    check_equations: Equilibrium,
+    check_equations: Equations,
     check: Collocation<N, K, Q>,
     pub(crate) solution: Solution<N, M>,
     correction: Correction<N, M, Q>,
@@ -130,7 +130,7 @@ static METHODS: LazyLock<Methods> = LazyLock::new(|| {
 
 /// How far the tip (over L) would move, to first order, if the stream's tangential load on `solution`
 /// were `factor` of what it is.
-pub(crate) fn shift_by_tangential_load(equations: &Equilibrium, solution: &Guess, factor: f64) -> Option<f64> {
+pub(crate) fn shift_by_tangential_load(equations: &Equations, solution: &Guess, factor: f64) -> Option<f64> {
     let (mut equations, mut system, mut correction) = (equations.clone(), Collocation::new(), Correction::default());
     equations.set_tangential_factor(factor);
     linearise(&mut system, &mut equations, solution, false).ok()?;
@@ -142,7 +142,7 @@ pub(crate) fn shift_by_tangential_load(equations: &Equilibrium, solution: &Guess
 #[derive(Debug, Clone)]
 pub(crate) struct State {
     pub(crate) solution: Guess,
-    pub(crate) equations: Equilibrium,
+    pub(crate) equations: Equations,
     spans: Vec<[f64; Q]>,
     pub(crate) tip: [f64; Q],
 }
@@ -192,8 +192,8 @@ impl Engine {
         let methods = &*METHODS;
         let breaks: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
         Self {
-            equations: Equilibrium::new(arm, &methods.solve),
-            check_equations: Equilibrium::new(arm, &methods.check),
+            equations: Equations::new(arm, &methods.solve),
+            check_equations: Equations::new(arm, &methods.check),
             system: Collocation::with(methods.solve.clone()),
             check: Collocation::with(methods.check.clone()),
             solution: Solution::constant(Mesh::uniform(1, &[]), [0.0; N]),

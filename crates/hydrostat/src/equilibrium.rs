@@ -73,7 +73,7 @@ struct Memory<R> {
 
 /// Equations of one arm at given fractions of its loads.
 #[derive(Debug, Clone)]
-pub(crate) struct Equilibrium {
+pub(crate) struct Equations {
     pub(crate) units: Units,
     arm: Arm,
     water: Water,
@@ -120,7 +120,7 @@ pub(crate) struct Equilibrium {
     pub(crate) manufactured: Option<crate::engine::manufactured::Manufactured>,
 }
 
-impl Equilibrium {
+impl Equations {
     /// The equations of `arm` (already checked), with all loads whole.
     pub(crate) fn new<const M: usize>(arm: &Arm, gauss: &Gauss<M>) -> Self {
         let length = arm.length;
@@ -303,7 +303,7 @@ fn water(arm: &Arm) -> Water {
     }
 }
 
-impl Problem<N, Q> for Equilibrium {
+impl Problem<N, Q> for Equations {
     type Failure = SectionFailure;
 
     #[inline(always)]
@@ -372,7 +372,7 @@ impl Problem<N, Q> for Equilibrium {
     }
 }
 
-impl Equilibrium {
+impl Equations {
     /// Fills `out` with the cables that pull in a block of stations.
     #[inline(always)]
     fn pulled_in(&self, block: usize, out: &mut Few<Lanes>) {

@@ -20,7 +20,7 @@ use hydrostat_bvp::{Gauss, LANES};
 
 use crate::arm::Motion;
 use crate::engine::{Engine, M};
-use crate::equilibrium::{AtPlace, Equilibrium, SectionFailure};
+use crate::equilibrium::{AtPlace, Equations, SectionFailure};
 
 /// How far each cable has turned, along an arm, with what that makes of its tension.
 #[derive(Debug, Clone)]
@@ -114,7 +114,7 @@ fn step_at(engine: &Engine, c: usize, i: usize) -> Result<f64, SectionFailure> {
     Ok((equations.cable_angle(c, s, &after) - equations.cable_angle(c, s, &before)).abs())
 }
 
-impl Equilibrium {
+impl Equations {
     /// chi' of cable `c` at stage `j` of element `i`, over L.
     fn cable_turn(&self, c: usize, i: usize, j: usize) -> f64 {
         let (block, lane) = self.groups().at(i, j);

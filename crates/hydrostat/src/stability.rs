@@ -33,7 +33,7 @@ use crate::configuration::Configuration;
 use crate::dense::Dense;
 use crate::dispatch::widest;
 use crate::engine::{M, Pulled, at_stations, linearise, pull_taut, solve, solved};
-use crate::equilibrium::{Equilibrium, N, Q};
+use crate::equilibrium::{Equations, N, Q};
 use crate::readings::Support;
 use crate::verdict::Phase;
 
@@ -187,7 +187,7 @@ fn scaled_rates(compliance: &Compliance, functions: usize, unit: f64) -> Option<
 
 /// The linearised equations about a solution.
 struct Tangent {
-    equations: Equilibrium,
+    equations: Equations,
     system: Collocation<N, M, Q>,
     solution: Solution<N, M>,
     /// Sign of the determinant.

@@ -13,7 +13,7 @@
 use hydrostat_bvp::{Collocation, Correction, Determinant, LANES, Lanes};
 
 use super::{Engine, Guess, M, Trouble, linearise, solve};
-use crate::equilibrium::{Column, Equilibrium, Held, N, Q, SectionFailure};
+use crate::equilibrium::{Column, Equations, Held, N, Q, SectionFailure};
 
 /// What strokes may be off by (over L) before the last round, which leaves the square of that.
 const STROKES: f64 = 1e-10;
@@ -243,7 +243,7 @@ pub(crate) struct Pulled {
 
 /// One linearisation for every taut cable, the last of which stands in `system`.
 pub(crate) fn pull_taut(
-    equations: &mut Equilibrium,
+    equations: &mut Equations,
     system: &mut Collocation<N, M, Q>,
     solution: &Guess,
     held: &Held,
@@ -266,7 +266,7 @@ pub(crate) fn pull_taut(
 
 /// Changes of the strokes of the held cables with a change of the shape and, with the column, of a parameter.
 fn stroke_changes(
-    equations: &Equilibrium,
+    equations: &Equations,
     system: &Collocation<N, M, Q>,
     solution: &Guess,
     held: &Held,
@@ -281,7 +281,7 @@ fn stroke_changes(
 
 /// A change of the shape at the stations, in their blocks; zero in lanes without an element of their own.
 pub(crate) fn at_stations(
-    equations: &Equilibrium,
+    equations: &Equations,
     system: &Collocation<N, M, Q>,
     solution: &Guess,
     change: &Correction<N, M, Q>,

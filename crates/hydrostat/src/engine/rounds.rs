@@ -3,11 +3,11 @@
 use hydrostat_bvp::{Collocation, Correction, RoundError, Singular, Solution};
 
 use crate::dispatch::{Work, dispatch, widest};
-use crate::equilibrium::{Equilibrium, N, Q, SectionFailure};
+use crate::equilibrium::{Equations, N, Q, SectionFailure};
 
 struct Evaluate<'a, const S: usize> {
     system: &'a mut Collocation<N, S, Q>,
-    equations: &'a mut Equilibrium,
+    equations: &'a mut Equations,
     solution: &'a Solution<N, S>,
 }
 
@@ -23,7 +23,7 @@ impl<const S: usize> Work for Evaluate<'_, S> {
 /// [`Collocation::evaluate`] in the processor's widest vectors.
 pub(crate) fn evaluate<const S: usize>(
     system: &mut Collocation<N, S, Q>,
-    equations: &mut Equilibrium,
+    equations: &mut Equations,
     solution: &Solution<N, S>,
 ) -> Result<(), SectionFailure> {
     dispatch(Evaluate { system, equations, solution })
@@ -31,7 +31,7 @@ pub(crate) fn evaluate<const S: usize>(
 
 struct Factorise<'a, const S: usize> {
     system: &'a mut Collocation<N, S, Q>,
-    equations: &'a mut Equilibrium,
+    equations: &'a mut Equations,
     solution: &'a Solution<N, S>,
     parameter: bool,
 }
@@ -49,7 +49,7 @@ impl<const S: usize> Work for Factorise<'_, S> {
 /// [`Collocation::linearise`] in the processor's widest vectors.
 pub(crate) fn linearise<const S: usize>(
     system: &mut Collocation<N, S, Q>,
-    equations: &mut Equilibrium,
+    equations: &mut Equations,
     solution: &Solution<N, S>,
     parameter: bool,
 ) -> Result<(), RoundError<SectionFailure>> {

@@ -1,8 +1,8 @@
 //! How hard loads push against the arm, and whether it is in line with them.
 
-use super::{Equilibrium, N};
+use super::{Equations, N};
 
-impl Equilibrium {
+impl Equations {
     /// How hard loads push against the arm at station `k`, over what its bending stiffness there
     /// resists over the rest of its length: compression of the contact force by (1 - s)^2/EI, and
     /// stream and weight by (1 - s)^3/EI where they run against the tangent, now or in the unloaded

@@ -5,8 +5,8 @@ use hydrostat_bvp::{LANES, Lanes, Local, Real, each};
 use super::few::Few;
 use super::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
 use super::places::{Place, blank_cable, set_lane, splat};
-use super::strains::{CLOSED, solve_section};
-use super::{Equilibrium, N, Q, SectionFailure};
+use super::strains::{FOLDED, solve_section};
+use super::{Equations, N, Q, SectionFailure};
 use crate::section::CableAt;
 use crate::sincos::sin_cos;
 
@@ -60,7 +60,7 @@ impl AtPlace<Lanes> {
     }
 }
 
-impl Equilibrium {
+impl Equations {
     /// Solves section law and loads at one place, for output between stations.
     pub(crate) fn at_place(&self, asked: &Asked) -> Result<AtPlace, SectionFailure> {
         let mut place = self.place(asked.s);
@@ -79,7 +79,7 @@ impl Equilibrium {
         }
     }
 
-    /// [`Equilibrium::at_place`] at four places; `None` when one of them has no solution.
+    /// [`Equations::at_place`] at four places; `None` when one of them has no solution.
     #[inline(always)]
     pub(crate) fn at_places(&self, asked: &[Asked; LANES]) -> Option<AtPlace<Lanes>> {
         let zero = Lanes::of(0.0);
@@ -154,7 +154,7 @@ impl Equilibrium {
             let solved = solve_section(self.volume, &place.stiffness, cables, contact, strain, beta, 1e-13);
             let fine = solved.step.all_below(1e-9)
                 && (-solved.regularity).all_below(0.0)
-                && (-solved.balance.openness).all_below(-CLOSED);
+                && (-solved.balance.openness).all_below(-FOLDED);
             strain = solved.strain;
             let load = self.load(place, [cos, sin], &solved, beta_slope);
             let slopes = slopes(place.body.couple, [cos, sin], contact, &solved, &load);

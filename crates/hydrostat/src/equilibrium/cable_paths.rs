@@ -2,11 +2,11 @@
 
 use hydrostat_bvp::{Lanes, Real};
 
-use super::Equilibrium;
+use super::Equations;
 use crate::cable::tangent;
 use crate::swelling::swelling;
 
-impl Equilibrium {
+impl Equations {
     /// |tau| of cable `c` in a block of stations, now and at the reference strains.
     #[inline(always)]
     fn cable_stretch(&self, c: usize, block: usize) -> [Lanes; 2] {

@@ -2,12 +2,12 @@
 
 use hydrostat_bvp::Condition;
 
-use super::{Equilibrium, N};
+use super::{Equations, N};
 use crate::arm::TipLoad;
 use crate::readings::Support;
 use crate::verdict::Phase;
 
-impl Equilibrium {
+impl Equations {
     /// theta(0) = theta_0; with the unstrained base also nu = beta = 1, eta = mu = beta' = 0 there, by the section law
     /// n_f(0) = C1 (1 - nu_o) A0 a - C2 eta_o A0 b + sum T t_c(0) and m_f(0) = -C3 mu_o A0 - sum T y (t_c . a)(0).
     pub(super) fn base_conditions(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {

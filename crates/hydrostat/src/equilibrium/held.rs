@@ -6,7 +6,7 @@ use hydrostat_bvp::{Groups, Lanes, Real, each};
 use super::few::Few;
 use super::gradients::by_strain_change;
 use super::strains::{STATION, solve_section};
-use super::{Equilibrium, LANES, N, Q};
+use super::{Equations, LANES, N, Q};
 use crate::cable::{pull, tangent};
 use crate::parameter::Parameter;
 use crate::section::apply3;
@@ -51,7 +51,7 @@ impl Held {
     }
 }
 
-impl Equilibrium {
+impl Equations {
     /// Commands the strokes of the arm, no cable taut but those that have a tension.
     pub(crate) fn hold_strokes(&mut self) {
         let cables: Vec<usize> = (0..self.arm.cables.len()).filter(|c| self.arm.cables[*c].stroke.is_some()).collect();

@@ -11,7 +11,7 @@ use super::few::Few;
 use super::gradients::slopes;
 use super::places::Place;
 use super::strains::Solved;
-use super::{Asked, Equilibrium, N, Q};
+use super::{Asked, Equations, N, Q};
 use crate::arm::Material;
 use crate::beta_along::Rule;
 use crate::cable::{Offset, tangent};
@@ -77,7 +77,7 @@ struct Raw {
     beta_by_force: [f64; 2],
 }
 
-impl Equilibrium {
+impl Equations {
     /// The stations, in order, as the last evaluation left them.
     pub(crate) fn spots(&self) -> Vec<Spot> {
         let count = self.tensions.len();

@@ -2,7 +2,7 @@
 
 use hydrostat_bvp::{Groups, LANES, Lanes, Mesh, Real, each};
 
-use super::{Equilibrium, Memory, N};
+use super::{Equations, Memory, N};
 use crate::arm::{Arm, Cavity, Material};
 use crate::cable::Offset;
 use crate::loads::Body;
@@ -17,7 +17,7 @@ pub(super) struct Place<R> {
     pub(super) body: Body<R>,
 }
 
-impl Equilibrium {
+impl Equations {
     /// Data at `s` (over L).
     pub(super) fn place(&self, s: f64) -> Place<f64> {
         self.place_of(&self.arm, s)

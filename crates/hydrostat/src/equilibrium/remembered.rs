@@ -2,10 +2,10 @@
 
 use hydrostat_bvp::{Hermite, LANES, Lanes, Real};
 
-use super::Equilibrium;
+use super::Equations;
 use crate::swelling::swelling;
 
-impl Equilibrium {
+impl Equations {
     /// Strains at station `k`.
     pub(crate) fn strain(&self, k: usize) -> [f64; 3] {
         let (block, lane) = self.groups.station(k);
@@ -39,7 +39,7 @@ impl Equilibrium {
         (strain, beta)
     }
 
-    /// [`Equilibrium::remembered`] with beta' and beta'' from the polynomial through beta and beta' at the stages where
+    /// [`Equations::remembered`] with beta' and beta'' from the polynomial through beta and beta' at the stages where
     /// the element is long enough for it.
     pub(crate) fn remembered_sharply<const M: usize>(
         &self,

@@ -21,7 +21,7 @@ impl Solved<Lanes> {
     /// Whether all lanes are.
     #[inline(always)]
     pub(super) fn fine(&self) -> bool {
-        let open = self.balance.openness - Lanes::of(CLOSED);
+        let open = self.balance.openness - Lanes::of(FOLDED);
         let positive = self.regularity.min(open).min(self.strain[0]);
         // A number that is none is below nothing.
         self.step.all_below(STATION) & (-positive).all_below(0.0) & (-self.regularity).all_below(0.0)
@@ -29,7 +29,7 @@ impl Solved<Lanes> {
 
     #[inline(always)]
     pub(super) fn fine_in(&self, lane: usize) -> bool {
-        let positive = [self.regularity, self.balance.openness - Lanes::of(CLOSED), self.strain[0]];
+        let positive = [self.regularity, self.balance.openness - Lanes::of(FOLDED), self.strain[0]];
         (self.step.0[lane] < STATION) & positive.iter().all(|v| v.0[lane] > 0.0)
     }
 }
@@ -38,7 +38,7 @@ impl Solved<Lanes> {
 pub(super) const STATION: f64 = 1e-6;
 
 /// Openness at which a cable has folded its side shut: below, steps are small because the law is steep, not because it is met.
-pub(super) const CLOSED: f64 = 1e-8;
+pub(super) const FOLDED: f64 = 1e-8;
 
 /// Where cables pull, steps below the tolerance but above this are followed by one more. What a step leaves is its square times what may be 1e6
 /// where a cable nearly folds its side shut, and must not change from round to round: the length of such an arm

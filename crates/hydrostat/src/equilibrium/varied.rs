@@ -2,7 +2,7 @@
 
 use hydrostat_bvp::{Local, Problem, Real, each};
 
-use super::{Column, Equilibrium, LANES, Lanes, N};
+use super::{Column, Equations, LANES, Lanes, N};
 use crate::arm::{Arm, TipLoad};
 use crate::parameter::Parameter;
 
@@ -27,7 +27,7 @@ impl Varied {
     }
 }
 
-impl Equilibrium {
+impl Equations {
     /// Lets `parameter` run from `from` to `to`; the equations are at share 0 of the range.
     pub(crate) fn vary(&mut self, parameter: Parameter, from: f64, to: f64) {
         self.varied = Some(Varied { parameter, from, to, share: 0.0 });

@@ -73,7 +73,7 @@ impl Load {
 pub(super) enum Along {
     /// The loads of a phase.
     Phase(Phase),
-    /// The range of a parameter, see [`crate::equilibrium::Equilibrium::vary`].
+    /// The range of a parameter, see [`crate::equilibrium::Equations::vary`].
     Range,
 }
 

@@ -20,7 +20,7 @@ use crate::beta_along::{BetaAlong, Rule};
 use crate::compliance::solve_in_place;
 use crate::dispatch::widest;
 use crate::engine::{Engine, M};
-use crate::equilibrium::{BY, ByState, CLOSED, Equilibrium, N, OUT, Q, RATE, Spot, VALUE};
+use crate::equilibrium::{BY, ByState, CLOSED, Equations, N, OUT, Q, RATE, Spot, VALUE};
 
 /// Stage slopes of an element.
 const SLOPES: usize = N * M;
@@ -266,7 +266,7 @@ impl Linear {
     }
 
     /// The length of cable `c` over L, times `factor`.
-    pub(super) fn length(&self, equations: &Equilibrium, c: usize, factor: f64) -> Functional {
+    pub(super) fn length(&self, equations: &Equations, c: usize, factor: f64) -> Functional {
         let end = equations.cable_end(c);
         let stages = self.elements.iter().enumerate().map(|(i, element)| {
             std::array::from_fn(|j| {
@@ -302,7 +302,7 @@ impl Linear {
     /// Weights on the state at node `node`, and `by_curvature` times beta'' at the end `x` (0 or 1) of element `i`.
     pub(super) fn at_end(
         &self,
-        equations: &Equilibrium,
+        equations: &Equations,
         (node, weights): (usize, [f64; N]),
         (i, x): (usize, usize),
         by_curvature: f64,

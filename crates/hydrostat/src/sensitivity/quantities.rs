@@ -4,7 +4,7 @@ use super::dual::WAYS;
 use super::linear::{Drift, Functional, Linear};
 use super::{SensitivityError, SensitivityMethod, unsettled};
 use crate::engine::{Engine, M, Trouble, solved};
-use crate::equilibrium::{Asked, CLOSED, Equilibrium, N, OUT, RATE, Spot};
+use crate::equilibrium::{Asked, CLOSED, Equations, N, OUT, RATE, Spot};
 use crate::parameter::Parameter;
 
 /// What Newton's last round moves (rad, and the tip over L) before an exact derivative is taken.
@@ -278,7 +278,7 @@ impl Engine {
 }
 
 /// How what is evaluated at one place follows a parameter.
-fn direct_change(equations: &Equilibrium, spot: &[Spot], source: Parameter) -> [f64; OUT] {
+fn direct_change(equations: &Equations, spot: &[Spot], source: Parameter) -> [f64; OUT] {
     if is_of_section_law(source) {
         return equations.by_section(spot, &[source], &mut Vec::new())[0].map(|by| by.0[0]);
     }
