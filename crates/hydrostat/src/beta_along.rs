@@ -14,193 +14,20 @@
 //! of the change of beta', which is the fast mode that no shape of an arm has.
 
 mod carried;
+mod formulas;
 
 use hydrostat_bvp::{Gauss, LANES, Lanes, Local, Real};
 
 pub(crate) use self::carried::{Carried, Side};
+pub(crate) use self::formulas::Rule;
+use self::formulas::{Differentiation, MOST_STAGES, ONE, Weights, ZERO, each_stage, solve_small};
 use crate::equilibrium::{N, Q};
-
-/// No method here has more stages.
-const MOST_STAGES: usize = 5;
 
 /// `reach` over the step from which on beta' is the slope of the element's own polynomial.
 const OWN: f64 = 0.05;
 
 /// `reach` over the step, times how the sharpest formula for beta'' amplifies, up to which that formula serves.
 const SHARP: f64 = 0.3;
-
-/// Numbers by two stages.
-pub(crate) type Weights = [[f64; MOST_STAGES]; MOST_STAGES];
-
-/// How beta' and beta'' of an element hang together once rounds have converged, with weights by two stages for a length of one.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Rule<'a> {
-    /// beta' by the closed form, beta'' from the polynomial through beta (weights 0) and beta' (1).
-    Sharp(&'a Weights, &'a Weights),
-    /// beta' by the closed form, beta'' from the polynomial through beta'.
-    Plain(&'a Weights),
-    /// beta' from the polynomial through beta, beta'' from that through beta'.
-    Own(&'a Weights),
-    /// beta' such that beta goes on from a neighbour's, beta'' from the polynomial through beta'.
-    Carried(Carried<'a>, &'a Weights),
-}
-
-/// Weights that give beta'' at the stages of an element of length one.
-#[derive(Debug, Clone)]
-struct Differentiation {
-    /// From the polynomial through beta and beta' at all stages.
-    by_value: Weights,
-    by_slope: Weights,
-    /// From the polynomial through beta'.
-    plain: Weights,
-    /// Largest row sum of `by_slope`: how it amplifies what beta' is off by.
-    hermite_gain: f64,
-    /// Integrals of the polynomial through beta' over an element, and from its left end to each stage.
-    whole: [f64; MOST_STAGES],
-    upto: Weights,
-    /// beta at the left and right end, from the polynomial through beta and beta' at all stages.
-    ends: [[[f64; MOST_STAGES]; 2]; 2],
-}
-
-impl Differentiation {
-    fn new<const M: usize>(gauss: &Gauss<M>) -> Self {
-        const { assert!(M == 4 || M == 5, "BetaAlong::close is compiled for these") };
-        let row = |v: &[f64; M]| {
-            let mut out = [0.0; MOST_STAGES];
-            out[..M].copy_from_slice(v);
-            out
-        };
-        let weights = |m: &[[f64; M]; M]| {
-            let mut out = [[0.0; MOST_STAGES]; MOST_STAGES];
-            for j in 0..M {
-                out[j][..M].copy_from_slice(&m[j]);
-            }
-            out
-        };
-        let rows = gauss.hermite[1].iter().map(|row| row.iter().map(|v| v.abs()).sum::<f64>());
-        Self {
-            hermite_gain: rows.fold(0.0, f64::max),
-            by_value: weights(&gauss.hermite[0]),
-            by_slope: weights(&gauss.hermite[1]),
-            plain: weights(&gauss.d),
-            whole: row(&gauss.b),
-            upto: weights(&gauss.a),
-            ends: [0.0, 1.0].map(|x| {
-                let cardinals = gauss.cardinals(x);
-                let slopes: [f64; M] = std::array::from_fn(|l| (x - gauss.c[l]) * cardinals[l] * cardinals[l]);
-                let values: [f64; M] = std::array::from_fn(|l| {
-                    (1.0 - 2.0 * (x - gauss.c[l]) * gauss.d[l][l]) * cardinals[l] * cardinals[l]
-                });
-                [row(&values), row(&slopes)]
-            }),
-        }
-    }
-}
-
-impl Differentiation {
-    /// Largest `reach` over the step, `inverse` being one over that, times the gain.
-    #[inline(always)]
-    fn sharpness<const M: usize>(&self, reach: &[Lanes; M], inverse: Lanes) -> Lanes {
-        let mut largest = ZERO;
-        for reach in reach {
-            largest = largest.max(reach.abs());
-        }
-        largest * inverse * Lanes::of(self.hermite_gain)
-    }
-
-    /// The second derivative of what has these values and slopes at the stages.
-    #[inline(always)]
-    fn second_derivative<const M: usize>(&self, value: &[Lanes; M], slope: &[Lanes; M], inverse: Lanes) -> [Lanes; M] {
-        let over_step: [Lanes; M] = each_stage(|l| value[l] * inverse);
-        each_stage(|j| {
-            let mut sum = ZERO;
-            for l in 0..M {
-                sum += Lanes::of(self.by_value[j][l]) * over_step[l] + Lanes::of(self.by_slope[j][l]) * slope[l];
-            }
-            sum * inverse
-        })
-    }
-}
-
-/// Solves the equations; where they are singular, `otherwise`.
-#[inline(always)]
-fn solve_small<const M: usize>(matrix: &[[Lanes; M]; M], right: &[Lanes; M], otherwise: &[Lanes; M]) -> [Lanes; M] {
-    let (mut a, mut out) = (*matrix, *right);
-    let mut fine = ONE;
-    for k in 0..M {
-        let pivot = a[k][k].abs();
-        fine = Lanes::of(1e-12).if_less(pivot, fine, ZERO);
-        for i in k + 1..M {
-            fine = pivot.if_less(Lanes::of(0.1) * a[i][k].abs(), ZERO, fine);
-        }
-        let scale = ONE / a[k][k];
-        for c in k + 1..M {
-            a[k][c] = a[k][c] * scale;
-        }
-        out[k] = out[k] * scale;
-        for i in 0..M {
-            if i != k {
-                let f = a[i][k];
-                for c in k + 1..M {
-                    a[i][c] -= f * a[k][c];
-                }
-                let own = out[k];
-                out[i] -= f * own;
-            }
-        }
-    }
-    if !(-fine).all_below(0.0) {
-        for lane in 0..LANES {
-            if fine.0[lane] == 0.0 {
-                solve_lane(matrix, right, lane, otherwise, &mut out);
-            }
-        }
-    }
-    out
-}
-
-/// [`solve_small`] in one lane, with row pivoting.
-#[cold]
-#[inline(never)]
-fn solve_lane<const M: usize>(
-    matrix: &[[Lanes; M]; M],
-    right: &[Lanes; M],
-    lane: usize,
-    otherwise: &[Lanes; M],
-    out: &mut [Lanes; M],
-) {
-    let mut a = matrix.map(|row| row.map(|v| v.0[lane]));
-    let mut own = right.map(|v| v.0[lane]);
-    for j in 0..M {
-        out[j].0[lane] = otherwise[j].0[lane];
-    }
-    for k in 0..M {
-        let mut best = k;
-        for i in k + 1..M {
-            if a[i][k].abs() > a[best][k].abs() {
-                best = i;
-            }
-        }
-        if a[best][k].abs() < 1e-12 || !a[best][k].is_finite() {
-            return;
-        }
-        a.swap(k, best);
-        own.swap(k, best);
-        let inverse = 1.0 / a[k][k];
-        for i in 0..M {
-            if i != k {
-                let f = a[i][k] * inverse;
-                for c in k..M {
-                    a[i][c] -= f * a[k][c];
-                }
-                own[i] -= f * own[k];
-            }
-        }
-    }
-    for j in 0..M {
-        out[j].0[lane] = own[j] / a[j][j];
-    }
-}
 
 /// How beta and the slopes hang together at a station.
 #[derive(Debug, Clone, Copy)]
@@ -214,9 +41,6 @@ pub(crate) struct Coupling {
     /// d beta / d parameter at fixed z and beta'.
     pub(crate) value_drift: Lanes,
 }
-
-const ZERO: Lanes = Lanes([0.0; LANES]);
-const ONE: Lanes = Lanes([1.0; LANES]);
 
 /// beta, beta' and beta'' at the stations, the same stage of four elements side by side.
 #[derive(Debug, Clone)]
@@ -616,16 +440,6 @@ fn add_change(by: &Coupling, change: Lanes, local: &mut Local<N, Q, Lanes>) {
     for q in 0..Q {
         local.rate[q] += by.rate[q] * change;
     }
-}
-
-/// A number for every stage.
-#[inline(always)]
-fn each_stage<const M: usize>(mut f: impl FnMut(usize) -> Lanes) -> [Lanes; M] {
-    let mut out = [ZERO; M];
-    for j in 0..M {
-        out[j] = f(j);
-    }
-    out
 }
 
 #[inline(always)]

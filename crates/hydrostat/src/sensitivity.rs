@@ -17,6 +17,7 @@
 mod band;
 mod carry;
 pub(crate) mod dual;
+mod element;
 mod linear;
 mod quantities;
 
