@@ -1,47 +1,10 @@
 //! Paths of targets, followed from one to the next.
 
-use hydrostat::{Arm, Cable, Follower, Profile, ReachError, ReachOptions, SolveError, Stability, Target, VerdictKind};
-use hydrostat_files::{ArmFile, shipped};
+mod common;
 
-fn shipped_arm(name: &str) -> Arm {
-    ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap()
-}
+use hydrostat::{Arm, Follower, ReachError, ReachOptions, SolveError, Stability, Target, VerdictKind};
 
-fn cone() -> Arm {
-    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
-    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
-    arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)));
-    arm
-}
-
-fn options(most: f64) -> ReachOptions {
-    ReachOptions { max_tension: Some(most), ..ReachOptions::default() }
-}
-
-fn target_of(arm: &Arm, tensions: &[f64]) -> Option<Target> {
-    let mut arm = arm.clone();
-    arm.set_tensions(tensions).unwrap();
-    let shape = arm.solve().ok()?;
-    // Else tips could not be told as closely as they are to be reached.
-    assert!(shape.error_estimate <= 1e-8 * arm.length, "{} at {tensions:?}: {:e}", arm.name, shape.error_estimate);
-    Some(Target::tip(shape.tip().x, shape.tip().y))
-}
-
-/// Strokes (m) at tensions, what stretches of an elastic cable reeled in, too, as a solve says.
-fn strokes_at(arm: &Arm, tensions: &[f64]) -> Vec<f64> {
-    let mut arm = arm.clone();
-    arm.set_tensions(tensions).unwrap();
-    let shape = arm.solve().unwrap();
-    let stroke = |(cable, state): (&Cable, &hydrostat::CableState)| {
-        let unloaded = state.length + state.stroke;
-        unloaded - state.length / cable.stiffness.map_or(1.0, |stiffness| 1.0 + state.tension / stiffness)
-    };
-    arm.cables.iter().zip(&shape.cables).map(stroke).collect()
-}
-
-fn wound_in_by(most: f64, tension: f64) -> ReachOptions {
-    ReachOptions { max_stroke: Some(most), ..options(tension) }
-}
+use common::{cone, options, shipped_arm, strokes_at, target_of, wound_in_by};
 
 /// Targets on a loop, which tensions on a circle lead to.
 fn loop_of_targets(arm: &Arm, count: u32) -> Vec<Target> {

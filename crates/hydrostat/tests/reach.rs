@@ -1,31 +1,11 @@
 //! Inverse kinetics: round trips, targets out of reach, redundancy, and bounds.
 
+mod common;
+
 use hydrostat::{Arm, Bound, Cable, Options, Profile, ReachError, ReachOptions, Solver, Target};
-use hydrostat_files::{ArmFile, shipped};
+use hydrostat_files::shipped;
 
-fn cone() -> Arm {
-    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
-    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
-    arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)));
-    arm
-}
-
-fn options(most: f64) -> ReachOptions {
-    ReachOptions { max_tension: Some(most), ..ReachOptions::default() }
-}
-
-fn shipped_arm(name: &str) -> Arm {
-    ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap()
-}
-
-fn target_of(arm: &Arm, tensions: &[f64]) -> Option<Target> {
-    let mut arm = arm.clone();
-    arm.set_tensions(tensions).unwrap();
-    let shape = arm.solve().ok()?;
-    // Else tips could not be told as closely as they are to be reached.
-    assert!(shape.error_estimate <= 1e-8 * arm.length, "{} at {tensions:?}: {:e}", arm.name, shape.error_estimate);
-    Some(Target::tip(shape.tip().x, shape.tip().y))
-}
+use common::{cone, options, shipped_arm, strokes_at, target_of, wound_in_by};
 
 /// Tensions of the first and the last cable to a tip, and from there to tensions that lead to the same tip, as a solve of its own says:
 /// how many, and how many of them are met.
@@ -294,22 +274,6 @@ fn scan_within_strokes(arm: &Arm, largest: f64, count: u32, most: f64) -> Vec<(V
         fine.then(|| (tensions.to_vec(), [shape.tip().x, shape.tip().y]))
     });
     solved.collect()
-}
-
-/// Strokes (m) at tensions, what stretches of an elastic cable reeled in, too, as a solve says.
-fn strokes_at(arm: &Arm, tensions: &[f64]) -> Vec<f64> {
-    let mut arm = arm.clone();
-    arm.set_tensions(tensions).unwrap();
-    let shape = arm.solve().unwrap();
-    let stroke = |(cable, state): (&Cable, &hydrostat::CableState)| {
-        let unloaded = state.length + state.stroke;
-        unloaded - state.length / cable.stiffness.map_or(1.0, |stiffness| 1.0 + state.tension / stiffness)
-    };
-    arm.cables.iter().zip(&shape.cables).map(stroke).collect()
-}
-
-fn wound_in_by(most: f64, tension: f64) -> ReachOptions {
-    ReachOptions { max_stroke: Some(most), ..options(tension) }
 }
 
 /// Targets within and beyond what strokes allow: what is found is within, named where it lies on its bound, and no farther than the nearest of a scan.
