@@ -14,6 +14,12 @@ fn configurations_agree_with_an_independent_solver() {
         .map(|(reference, compared)| format!("{}: {compared:?}", reference.name))
         .collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
+    let off = compared.iter().filter_map(|one| match one {
+        Compared::Solved { off, .. } => Some(*off),
+        _ => None,
+    });
+    let (count, largest) = off.fold((0, 0.0_f64), |(count, largest), off| (count + 1, largest.max(off)));
+    assert!(count == 158 && largest < 2e-8, "{count} answered, off by {largest:e} at most");
 
     // The estimate: true errors at most 3 estimates in 95 % of cases and never more than 10, and
     // the median estimate at most 30 true errors.
