@@ -27,6 +27,8 @@ pub struct Gauss<const M: usize> {
 /// Weights of the values and of the slopes at the stages of an element of length one.
 #[derive(Debug, Clone, Copy)]
 pub struct Hermite<const M: usize> {
+    /// For the value: of values, of slopes.
+    pub value: [[f64; M]; 2],
     /// For the first derivative: of values, of slopes.
     pub slope: [[f64; M]; 2],
     /// For the second derivative: of values, of slopes.
@@ -54,7 +56,7 @@ impl<const M: usize> Gauss<M> {
             c[j] = 0.5 * (1.0 + x);
             b[j] = 1.0 / ((1.0 - x * x) * slope * slope);
         }
-        let blank = Hermite { slope: [[0.0; M]; 2], curvature: [[0.0; M]; 2] };
+        let blank = Hermite { value: [[0.0; M]; 2], slope: [[0.0; M]; 2], curvature: [[0.0; M]; 2] };
         let zero = [[0.0; M]; M];
         let mut gauss = Self { c, b, a: zero, d: zero, hermite: [zero; 2], ends: [blank; 2], legendre: zero };
         for n in 0..M {
@@ -113,18 +115,20 @@ impl<const M: usize> Gauss<M> {
         out
     }
 
-    /// First and second derivative at `x` of the polynomial that [`Gauss::hermite`] is of.
+    /// Value, first and second derivative at `x` of the polynomial that [`Gauss::hermite`] is of.
     pub fn hermite_at(&self, x: f64) -> Hermite<M> {
         let values = self.cardinals(x);
         let slopes = self.slopes(x);
         let t = 2.0 * x - 1.0;
         let curvatures = self.combine(&std::array::from_fn(|n| 4.0 * legendre_curvature(n, t)));
-        let mut out = Hermite { slope: [[0.0; M]; 2], curvature: [[0.0; M]; 2] };
+        let mut out = Hermite { value: [[0.0; M]; 2], slope: [[0.0; M]; 2], curvature: [[0.0; M]; 2] };
         for l in 0..M {
             let (v, v1, v2) = (values[l], slopes[l], curvatures[l]);
             let own = self.d[l][l];
             let distance = x - self.c[l];
             let lean = 1.0 - 2.0 * distance * own;
+            out.value[0][l] = lean * v * v;
+            out.value[1][l] = distance * v * v;
             out.slope[0][l] = -2.0 * own * v * v + 2.0 * lean * v * v1;
             out.slope[1][l] = v * v + 2.0 * distance * v * v1;
             out.curvature[0][l] = -8.0 * own * v * v1 + 2.0 * lean * (v1 * v1 + v * v2);

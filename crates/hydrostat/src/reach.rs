@@ -14,7 +14,6 @@ mod lines;
 mod search;
 mod strokes;
 
-use self::effort::dot;
 use self::search::{Goal, Search, State};
 use crate::arm::Arm;
 use crate::configuration::Configuration;
@@ -29,6 +28,9 @@ pub use self::follow::{Followed, Follower};
 /// Most steps along lines, and misses that lines are followed from.
 const STEPS: usize = 600;
 const MISSED: usize = 3;
+
+/// Change of the tensions, over their scale, between starts that led to the same.
+const SAME: f64 = 1e-5;
 
 /// Where a place of the arm is to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -277,17 +279,14 @@ impl Found<'_> {
         };
         let reached = state.distance() <= self.search.tol;
         let list = if reached { &mut self.solutions } else { &mut self.missed };
-        match list.iter().position(|own| self.search.same(&own.tensions, &state.tensions)) {
+        let search = self.search;
+        if list.iter().any(|own| search.change(&own.tensions, &state.tensions) < SAME) {
+            return;
+        }
+        // The same solution, as far as the tolerance tells: that of less effort stays.
+        match list.iter_mut().find(|own| reached && search.joined(own, &state)) {
+            Some(own) if state.effort() < own.effort() => *own = state,
             Some(_) => {}
-            None if reached => match list.iter().position(|own| self.search.joined(own, &state)) {
-                // The same solution, as far as the tolerance tells.
-                Some(k) => {
-                    if dot(&state.tensions, &state.tensions) < dot(&list[k].tensions, &list[k].tensions) {
-                        list[k] = state;
-                    }
-                }
-                None => list.push(state),
-            },
             None => list.push(state),
         }
         self.missed.sort_by(|a, b| a.distance().total_cmp(&b.distance()));

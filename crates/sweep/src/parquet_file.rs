@@ -9,7 +9,7 @@ use parquet::basic::{Compression, ConvertedType, Encoding, LogicalType, Repetiti
 use parquet::column::writer::ColumnCloseResult;
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
-use parquet::file::metadata::{KeyValue, ParquetMetaDataReader};
+use parquet::file::metadata::{KeyValue, ParquetMetaData, ParquetMetaDataReader, RowGroupMetaData};
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
@@ -115,6 +115,7 @@ pub(crate) fn join(
     for part in parts {
         let file = File::open(part).map_err(|error| read_error(part, error))?;
         let metadata = ParquetMetaDataReader::new().parse_and_finish(&file).map_err(|error| read_error(part, error))?;
+        check_places(part, &metadata)?;
         if metadata.file_metadata().schema_descr().root_schema() != &*schema {
             return Err(read_error(part, "expected the columns of this sweep, found others"));
         }
@@ -138,6 +139,20 @@ pub(crate) fn join(
     writer.inner_mut().flush().map_err(|error| crate::error::write_error(path, error))
 }
 
+/// Whether columns begin within the file: reader and writer trust the numbers that say where to be none below zero.
+fn check_places(path: &Path, metadata: &ParquetMetaData) -> Result<(), SweepError> {
+    let mut columns = metadata.row_groups().iter().flat_map(RowGroupMetaData::columns);
+    let placed = columns.all(|column| {
+        let dictionary = column.dictionary_page_offset().unwrap_or(0);
+        column.data_page_offset() >= 0 && dictionary >= 0 && column.compressed_size() >= 0
+    });
+    if placed {
+        Ok(())
+    } else {
+        Err(read_error(path, "expected columns that begin within the file, found one before its begin"))
+    }
+}
+
 /// A file that is read column by column.
 pub(crate) struct Reader {
     path: PathBuf,
@@ -148,16 +163,7 @@ impl Reader {
     pub(crate) fn open(path: &Path) -> Result<Self, SweepError> {
         let file = File::open(path).map_err(|error| read_error(path, error))?;
         let file = SerializedFileReader::new(file).map_err(|error| read_error(path, error))?;
-        // The reader trusts these to be lengths.
-        let mut columns =
-            file.metadata().row_groups().iter().flat_map(parquet::file::metadata::RowGroupMetaData::columns);
-        let placed = columns.all(|column| {
-            let dictionary = column.dictionary_page_offset().unwrap_or(0);
-            column.data_page_offset() >= 0 && dictionary >= 0 && column.compressed_size() >= 0
-        });
-        if !placed {
-            return Err(read_error(path, "expected columns that begin within the file, found one before its begin"));
-        }
+        check_places(path, file.metadata())?;
         Ok(Self { path: path.to_owned(), file })
     }
 

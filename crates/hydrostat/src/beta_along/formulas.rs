@@ -66,19 +66,10 @@ impl Differentiation {
             plain: weights(&gauss.d),
             whole: row(&gauss.b),
             upto: weights(&gauss.a),
-            ends: [0.0, 1.0].map(|x| {
-                let cardinals = gauss.cardinals(x);
-                let slopes: [f64; M] = std::array::from_fn(|l| (x - gauss.c[l]) * cardinals[l] * cardinals[l]);
-                let values: [f64; M] = std::array::from_fn(|l| {
-                    (1.0 - 2.0 * (x - gauss.c[l]) * gauss.d[l][l]) * cardinals[l] * cardinals[l]
-                });
-                [row(&values), row(&slopes)]
-            }),
+            ends: gauss.ends.map(|end| end.value.map(|weights| row(&weights))),
         }
     }
-}
 
-impl Differentiation {
     /// Largest `reach` over the step, `inverse` being one over that, times the gain.
     #[inline(always)]
     pub(super) fn sharpness<const M: usize>(&self, reach: &[Lanes; M], inverse: Lanes) -> Lanes {

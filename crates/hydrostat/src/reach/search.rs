@@ -62,6 +62,11 @@ impl State {
         dot(&self.rest, &self.rest).sqrt()
     }
 
+    /// Sum of the squares of the tensions, N^2.
+    pub(super) fn effort(&self) -> f64 {
+        dot(&self.tensions, &self.tensions)
+    }
+
     pub(super) fn pulled(&self) -> Pulled<'_> {
         Pulled { tensions: &self.tensions, strokes: &self.strokes }
     }
@@ -183,21 +188,10 @@ impl Search {
         out
     }
 
-    /// Whether tensions are the same.
-    pub(super) fn same(&self, a: &[f64], b: &[f64]) -> bool {
-        a.iter().zip(b).zip(&self.scale).all(|((a, b), scale)| (a - b).abs() < 1e-5 * scale)
-    }
-
     /// Whether two solutions are near each other and what is between them is one, too: at the edge of what is reached, the tensions that bring
     /// the arm to within the tolerance of a target are as many as its root allows.
     pub(super) fn joined(&self, a: &State, b: &State) -> bool {
-        let near = a
-            .tensions
-            .iter()
-            .zip(&b.tensions)
-            .zip(&self.scale)
-            .all(|((a, b), scale)| (a - b).abs() < NEIGHBOURS * scale);
-        if !near {
+        if self.change(&a.tensions, &b.tensions) >= NEIGHBOURS {
             return false;
         }
         let between: Vec<f64> = a.tensions.iter().zip(&b.tensions).map(|(a, b)| 0.5 * (a + b)).collect();
@@ -368,6 +362,7 @@ impl Search {
         Ok(state)
     }
 
+    /// The largest change of the tensions over their scale.
     pub(super) fn change(&self, a: &[f64], b: &[f64]) -> f64 {
         a.iter().zip(b).zip(&self.scale).fold(0.0, |m, ((a, b), scale)| f64::max(m, (a - b).abs() / scale))
     }
@@ -444,7 +439,7 @@ impl Search {
         let on_the_path = led.is_some();
         let configuration = led.filter(|_| self.by_strokes).unwrap_or(configuration);
         Ok(Reached {
-            effort: dot(&state.tensions, &state.tensions),
+            effort: state.effort(),
             distance: state.distance(),
             bounds,
             on_the_path,
