@@ -103,6 +103,9 @@ class Run:
         futures = [self._submit(_written, tiles, str(path)) for tiles, path in work]
         self._wait(futures, chunks)
         rows = sum(rows for rows, _ in self._client.gather(futures))
+        # A worker that was killed while it wrote leaves what it had, under a hidden name of its own; others wrote those rows again.
+        for leftover in directory.glob(".rows-*.tmp"):
+            leftover.unlink(missing_ok=True)
         present = sorted(directory.glob("rows-*.parquet"))
         if rows != self._sweep.rows or [path.name for path in present] != [path.name for path in paths]:
             raise RuntimeError(f"output: {directory} has {len(present)} files of {rows} rows, where {self._sweep.rows} were solved")
