@@ -28,6 +28,7 @@ mod varied;
 
 use hydrostat_bvp::{Condition, Gauss, Groups, LANES, Lanes, Local, Problem, Real, each};
 
+pub(crate) use self::adversity::Unloaded;
 pub(crate) use self::at_place::{Asked, AtPlace};
 use self::few::Few;
 use self::gradients::{by_strain_change, jacobian, rate_gradient, slopes, strain_by_state};

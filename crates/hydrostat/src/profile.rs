@@ -2,6 +2,10 @@
 
 mod points;
 
+use std::fmt;
+
+use hydrostat_bvp::{LANES, Lanes, Real};
+
 use crate::arm::ArmError;
 
 pub use self::points::Point;
@@ -69,6 +73,29 @@ impl Profile {
         }
     }
 
+    /// Values, slopes and curvatures at four places, to the bit those of [`Profile::at`].
+    #[inline(always)]
+    pub(crate) fn at_four(&self, s: Lanes, length: f64) -> [Lanes; 3] {
+        let zero = Lanes::of(0.0);
+        match self {
+            Self::Constant(value) => [Lanes::of(*value), zero, zero],
+            Self::Linear { base, tip } => {
+                let slope = Lanes::of((tip - base) / length);
+                [Lanes::of(*base) + slope * s, slope, zero]
+            }
+            Self::Table(table) => {
+                let mut out = [zero; 3];
+                for lane in 0..LANES {
+                    let Sample { value, slope, curvature } = table.at(s.0[lane]);
+                    for (out, own) in out.iter_mut().zip([value, slope, curvature]) {
+                        out.0[lane] = own;
+                    }
+                }
+                out
+            }
+        }
+    }
+
     /// The places strictly inside (0, length) where the curvature jumps: the knots of a table.
     pub fn knots(&self) -> &[f64] {
         match self {
@@ -111,20 +138,20 @@ impl Profile {
     }
 
     /// Refuses values that are not finite and tables that do not cover [0, `length`].
-    pub(crate) fn check(&self, key: &str, length: f64) -> Result<(), ArmError> {
+    pub(crate) fn check(&self, key: impl fmt::Display, length: f64) -> Result<(), ArmError> {
         let finite = match self {
             Self::Constant(v) => v.is_finite(),
             Self::Linear { base, tip } => base.is_finite() && tip.is_finite(),
             Self::Table(_) => true,
         };
         if !finite {
-            return Err(ArmError::NotFinite { key: key.to_owned() });
+            return Err(ArmError::NotFinite { key: key.to_string() });
         }
         if let Self::Table(table) = self {
             let (from, to) = (table.s[0], table.s[table.s.len() - 1]);
             let slack = 1e-9 * length;
             if from.abs() > slack || (to - length).abs() > slack {
-                return Err(ArmError::TableDoesNotCover { key: key.to_owned(), from, to, length });
+                return Err(ArmError::TableDoesNotCover { key: key.to_string(), from, to, length });
             }
         }
         Ok(())

@@ -3,7 +3,7 @@
 use crate::cable::{Offset, pull};
 use crate::readings::Volume;
 use crate::swelling::{Swelling, swelling};
-use hydrostat_bvp::{Lanes, Real};
+use hydrostat_bvp::Real;
 
 /// A section as the law sees it, per unit beta^2.
 #[derive(Debug, Clone, Copy)]
@@ -25,16 +25,6 @@ pub(crate) struct CableAt<R> {
     pub(crate) tension: R,
     /// T', which friction makes; zero without.
     pub(crate) tension_slope: R,
-}
-
-impl CableAt<Lanes> {
-    /// Takes the offset in one of four sections.
-    #[inline(always)]
-    pub(crate) fn set_offset(&mut self, lane: usize, of: &Offset<f64>) {
-        self.offset.y.0[lane] = of.y;
-        self.offset.slope.0[lane] = of.slope;
-        self.offset.curvature.0[lane] = of.curvature;
-    }
 }
 
 /// The law and the cables together at given strains: `carried` equals (n_f.a, n_f.b, m_f) in equilibrium.

@@ -1,5 +1,7 @@
 //! Whether numbers make an arm.
 
+use std::fmt;
+
 use super::{Arm, Cable, FlowLaw, Material};
 use crate::profile::{Profile, TableError};
 
@@ -216,38 +218,42 @@ impl Arm {
     }
 
     fn check_cable(&self, index: usize, cable: &Cable, length: f64) -> Result<(), ArmError> {
-        let key = |name: &str| format!("cable[{index}].{name}");
-        cable.offset.check(&key("offset"), length)?;
-        not_negative(&key("tension"), cable.tension)?;
+        let key = |name: &'static str| CableKey { index, name };
+        cable.offset.check(key("offset"), length)?;
+        not_negative(key("tension"), cable.tension)?;
         if let Some(stroke) = cable.stroke {
-            finite(&key("stroke"), stroke)?;
+            finite(key("stroke"), stroke)?;
             if stroke.abs() >= length {
                 let expected = "shorter than the arm";
-                return Err(ArmError::OutOfRange { key: key("stroke"), value: stroke, expected });
+                return Err(ArmError::OutOfRange { key: key("stroke").to_string(), value: stroke, expected });
             }
         }
-        not_negative(&key("friction"), cable.friction)?;
+        not_negative(key("friction"), cable.friction)?;
         if cable.friction > 2.0 {
             let expected = "in [0, 2]";
-            return Err(ArmError::OutOfRange { key: key("friction"), value: cable.friction, expected });
+            return Err(ArmError::OutOfRange { key: key("friction").to_string(), value: cable.friction, expected });
         }
         if let Some(stiffness) = cable.stiffness {
-            positive(&key("stiffness"), stiffness)?;
+            positive(key("stiffness"), stiffness)?;
         }
         if let Some(max_tension) = cable.max_tension {
-            positive(&key("max_tension"), max_tension)?;
+            positive(key("max_tension"), max_tension)?;
             if cable.tension > max_tension && cable.stroke.is_none() {
-                return Err(ArmError::TensionAboveMax { key: key("tension"), tension: cable.tension, max_tension });
+                return Err(ArmError::TensionAboveMax {
+                    key: key("tension").to_string(),
+                    tension: cable.tension,
+                    max_tension,
+                });
             }
         }
-        finite(&key("end"), cable.end)?;
+        finite(key("end"), cable.end)?;
         if !(cable.end > 0.0 && cable.end <= 1.0) {
-            return Err(ArmError::OutOfRange { key: key("end"), value: cable.end, expected: "in (0, 1]" });
+            return Err(ArmError::OutOfRange { key: key("end").to_string(), value: cable.end, expected: "in (0, 1]" });
         }
         for s in self.places(&[&self.radius, &cable.offset], cable.end * length) {
             let (offset, radius) = (cable.offset.at(s, length).value, self.radius.at(s, length).value);
             if offset.abs() > radius * (1.0 + 1e-12) {
-                return Err(ArmError::OffsetOutside { key: key("offset"), s, offset, radius });
+                return Err(ArmError::OffsetOutside { key: key("offset").to_string(), s, offset, radius });
             }
         }
         Ok(())
@@ -313,20 +319,33 @@ impl Arm {
     }
 }
 
-fn finite(key: &str, value: f64) -> Result<f64, ArmError> {
-    if value.is_finite() { Ok(value) } else { Err(ArmError::NotFinite { key: key.to_owned() }) }
+/// The key of a cable's quantity, which is only written where something is wrong.
+#[derive(Clone, Copy)]
+struct CableKey {
+    index: usize,
+    name: &'static str,
 }
 
-fn positive(key: &str, value: f64) -> Result<f64, ArmError> {
-    if finite(key, value)? > 0.0 {
-        Ok(value)
-    } else {
-        Err(ArmError::NotPositive { key: key.to_owned(), value, s: None })
+impl fmt::Display for CableKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "cable[{}].{}", self.index, self.name)
     }
 }
 
-fn not_negative(key: &str, value: f64) -> Result<f64, ArmError> {
-    if finite(key, value)? >= 0.0 { Ok(value) } else { Err(ArmError::Negative { key: key.to_owned(), value }) }
+fn finite(key: impl fmt::Display, value: f64) -> Result<f64, ArmError> {
+    if value.is_finite() { Ok(value) } else { Err(ArmError::NotFinite { key: key.to_string() }) }
+}
+
+fn positive(key: impl fmt::Display, value: f64) -> Result<f64, ArmError> {
+    if finite(&key, value)? > 0.0 {
+        Ok(value)
+    } else {
+        Err(ArmError::NotPositive { key: key.to_string(), value, s: None })
+    }
+}
+
+fn not_negative(key: impl fmt::Display, value: f64) -> Result<f64, ArmError> {
+    if finite(&key, value)? >= 0.0 { Ok(value) } else { Err(ArmError::Negative { key: key.to_string(), value }) }
 }
 
 fn positive_profile(key: &str, profile: &Profile, length: f64) -> Result<(), ArmError> {
@@ -335,7 +354,7 @@ fn positive_profile(key: &str, profile: &Profile, length: f64) -> Result<(), Arm
     for s in places {
         let value = profile.at(s, length).value;
         if value <= 0.0 {
-            return Err(ArmError::NotPositive { key: key.to_owned(), value, s: Some(s) });
+            return Err(ArmError::NotPositive { key: key.to_string(), value, s: Some(s) });
         }
     }
     Ok(())

@@ -2,6 +2,7 @@
 
 use super::{Engine, M};
 use crate::arm::Arm;
+use crate::equilibrium::Unloaded;
 use crate::friction::Grip;
 
 impl Engine {
@@ -15,8 +16,7 @@ impl Engine {
         if self.system.determinant().sign <= 0.0 {
             return true;
         }
-        let base = self.equations.arm().base.angle;
-        let mut reference_angle = base;
+        let mut unloaded = Unloaded::new(&self.equations, self.equations.arm().base.angle);
         let mesh = &self.solution.mesh;
         for i in 0..mesh.elements() {
             for j in 0..M {
@@ -24,8 +24,8 @@ impl Engine {
                 let s = self.equations.stations()[k];
                 let z = self.system.state(i, j);
                 let mu = self.equations.reference_strain(k)[2];
-                reference_angle += mesh.step(i) * self.system.gauss.b[j] * mu;
-                if self.equations.adversity(k, s, z, reference_angle) > 0.3 {
+                unloaded.turn(&self.equations, mesh.step(i) * self.system.gauss.b[j] * mu);
+                if self.equations.adversity(k, s, z, &unloaded) > 0.3 {
                     return true;
                 }
             }

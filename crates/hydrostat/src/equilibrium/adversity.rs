@@ -2,38 +2,63 @@
 
 use super::{Equations, N};
 
+/// Where the unloaded arm points at a place, and the load on its tip that would turn with it.
+pub(crate) struct Unloaded {
+    angle: f64,
+    /// cos and sin of the angle.
+    direction: [f64; 2],
+    tip: [f64; 2],
+}
+
+impl Unloaded {
+    pub(crate) fn new(equations: &Equations, angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        let ([x, y, _], _) = equations.tip_load(angle);
+        Self { angle, direction: [cos, sin], tip: [x, y] }
+    }
+
+    /// Turned by `by` (rad), which is nothing where the arm is straight.
+    pub(crate) fn turn(&mut self, equations: &Equations, by: f64) {
+        if by != 0.0 {
+            *self = Self::new(equations, self.angle + by);
+        }
+    }
+}
+
 impl Equations {
     /// How hard loads push against the arm at station `k`, over what its bending stiffness there
     /// resists over the rest of its length: compression of the contact force by (1 - s)^2/EI, and
     /// stream and weight by (1 - s)^3/EI where they run against the tangent, now or in the unloaded
-    /// arm (at the angle `unloaded`). Well below one, equilibria are unique: a cantilever buckles at 2.47 under a force on its tip and at
+    /// arm. Well below one, equilibria are unique: a cantilever buckles at 2.47 under a force on its tip and at
     /// 7.84 under a load along it. The stream counts with S U^2 times [`Law::largest`](crate::flow::Law::largest). Moments and couples
     /// bend the arm and push nothing along it: they are in the compression of the shape that they lead to.
-    pub(crate) fn adversity(&self, k: usize, s: f64, z: [f64; N], unloaded: f64) -> f64 {
+    pub(crate) fn adversity(&self, k: usize, s: f64, z: [f64; N], unloaded: &Unloaded) -> f64 {
         let rest = 1.0 - s;
         let (block, lane) = self.groups.station(k);
         let place = &self.places[block];
         let beta = self.beta.value[block].0[lane];
         let [nu, eta, _] = self.strain(k);
         let stiffness = place.stiffness.value[2].0[lane] * beta * beta;
-        let alpha = eta.atan2(nu);
-        let (sin, cos) = (z[0] + alpha).sin_cos();
+        // Along the centreline: the section's directions, turned by alpha.
+        let stretch = (nu * nu + eta * eta).sqrt();
+        let (sin, cos) = z[0].sin_cos();
+        let (cos, sin) = ((nu * cos - eta * sin) / stretch, (nu * sin + eta * cos) / stretch);
         let compression = -(cos * z[1] + sin * z[2]) * rest * rest / stiffness;
         let stream = self.water.stream;
         let speed_square = stream[0] * stream[0] + stream[1] * stream[1];
-        let drag = self.water.law.largest() * place.body.wetted.0[lane] * beta * speed_square * nu.hypot(eta);
+        let drag = self.water.law.largest() * place.body.wetted.0[lane] * beta * speed_square * stretch;
         let net = self.net_weight(k);
         let cube = rest * rest * rest / stiffness;
         let mut worst = compression;
-        let (unloaded_sin, unloaded_cos) = unloaded.sin_cos();
-        for (cos, sin) in [(cos, sin), (unloaded_cos, unloaded_sin)] {
-            if cos * stream[0] + sin * stream[1] < -1e-9 * speed_square.sqrt() {
+        let slow = 1e-9 * speed_square.sqrt();
+        for [cos, sin] in [[cos, sin], unloaded.direction] {
+            if cos * stream[0] + sin * stream[1] < -slow {
                 worst = worst.max(drag * cube);
             }
             worst = worst.max(-(cos * net[0] + sin * net[1]) * cube);
         }
-        let (tip, _) = self.tip_load(unloaded);
-        worst.max(-(unloaded_cos * tip[0] + unloaded_sin * tip[1]) * rest * rest / stiffness)
+        let ([cos, sin], [x, y]) = (unloaded.direction, unloaded.tip);
+        worst.max(-(cos * x + sin * y) * rest * rest / stiffness)
     }
 
     /// Weight less buoyancy, and forces along the arm, at station `k`, per length.

@@ -4,7 +4,7 @@ use hydrostat_bvp::{LANES, Lanes, Local, Real, each};
 
 use super::few::Few;
 use super::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
-use super::places::{Place, blank_cable, set_lane, splat};
+use super::places::{Place, blank_cable};
 use super::strains::{FOLDED, solve_section};
 use super::{Equations, N, Q, SectionFailure};
 use crate::section::CableAt;
@@ -83,14 +83,12 @@ impl Equations {
     #[inline(always)]
     pub(crate) fn at_places(&self, asked: &[Asked; LANES]) -> Option<AtPlace<Lanes>> {
         let zero = Lanes::of(0.0);
-        let mut place = splat(&self.place(asked[0].s));
+        let s = Lanes(each(|lane| asked[lane].s));
+        let mut place = self.place_four(s);
         let mut cables = Few::new();
         let (mut z, mut strain, mut beta) = ([zero; N], [zero; 3], [zero; 2]);
         for lane in 0..LANES {
             let asked = &asked[lane];
-            if lane > 0 {
-                set_lane(&mut place, lane, &self.place(asked.s));
-            }
             for a in 0..N {
                 z[a].0[lane] = asked.z[a];
             }
@@ -104,16 +102,11 @@ impl Equations {
         place.body.couple = place.body.couple * Lanes::of(self.fraction[0]);
         for c in 0..self.tensions.len() {
             let mut cable = blank_cable();
-            for lane in 0..LANES {
-                let own = self.cable_at(c, &asked[lane]);
-                if self.acts_at(c, &asked[lane]) {
-                    cable.tension.0[lane] = own.tension;
-                    cable.tension_slope.0[lane] = own.tension_slope;
-                }
-                cable.set_offset(lane, &own.offset);
+            for (lane, asked) in asked.iter().enumerate().filter(|(_, asked)| self.acts_at(c, asked)) {
+                [cable.tension.0[lane], cable.tension_slope.0[lane]] = self.tension_at(c, asked);
             }
             if cable.tension != zero {
-                cables.push(cable);
+                cables.push(CableAt { offset: self.offset_four(c, s), ..cable });
             }
         }
         let (sin, cos) = sin_cos(z[0]);
@@ -123,12 +116,14 @@ impl Equations {
 
     /// Cable `c` at a place up to its end.
     fn cable_at(&self, c: usize, asked: &Asked) -> CableAt<f64> {
+        let [tension, tension_slope] = self.tension_at(c, asked);
+        CableAt { offset: self.offset(c, asked.s), tension, tension_slope }
+    }
+
+    /// The tension of cable `c` at a place up to its end, and its slope.
+    fn tension_at(&self, c: usize, asked: &Asked) -> [f64; 2] {
         let (tension, share) = (self.tension(c), self.pull_share(c, asked.s, asked.from_left));
-        CableAt {
-            offset: self.offset(c, asked.s),
-            tension: tension * share.value,
-            tension_slope: tension * share.slope,
-        }
+        [tension * share.value, tension * share.slope]
     }
 
     /// Whether cable `c` pulls at a place.

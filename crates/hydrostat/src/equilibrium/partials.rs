@@ -286,7 +286,10 @@ impl Equations {
             radius[0].by.0[*way] = change.value;
             radius[1].by.0[*way] = change.slope;
         }
-        self.place_with(&self.arm, s, radius)
+        self.place_with(&self.arm, Dual::fixed(s), radius, |profile| {
+            let own = profile.at(s * l, l);
+            [Dual::fixed(own.value), Dual::fixed(own.slope)]
+        })
     }
 
     /// The offset of cable `c` at a spot, which follows the geometry.

@@ -6,6 +6,7 @@ use super::{Equations, Memory, N};
 use crate::arm::{Arm, Cavity, Material};
 use crate::cable::Offset;
 use crate::loads::Body;
+use crate::profile::Profile;
 use crate::section::{CableAt, Stiffness};
 
 /// One place of the arm as data.
@@ -26,8 +27,11 @@ impl Equations {
     /// Data at `s` (over L) of an arm in the units of this one.
     pub(super) fn place_of(&self, arm: &Arm, s: f64) -> Place<f64> {
         let l = self.units.length;
-        let radius = arm.radius.at(s * l, l);
-        let place = self.place_with(arm, s, [radius.value, radius.slope]);
+        let at = |profile: &Profile| {
+            let own = profile.at(s * l, l);
+            [own.value, own.slope]
+        };
+        let place = self.place_with(arm, s, at(&arm.radius), at);
         #[cfg(test)]
         let place = self.manufactured.as_ref().map_or(place, |shape| {
             let [f1, f2, couple] = shape.missing(self.units, &self.water, &place.body, s);
@@ -37,14 +41,39 @@ impl Equations {
         place
     }
 
-    /// The same with a radius (m) and its slope that may carry derivatives.
+    /// Data at four places side by side, to the bit those of [`Equations::place`].
     #[inline(always)]
-    pub(super) fn place_with<R: Real>(&self, arm: &Arm, s: f64, [r, r_slope]: [R; 2]) -> Place<R> {
+    pub(super) fn place_four(&self, s: Lanes) -> Place<Lanes> {
+        #[cfg(test)]
+        if self.manufactured.is_some() {
+            let mut place = splat(&self.place(s.0[0]));
+            for lane in 1..LANES {
+                set_lane(&mut place, lane, &self.place(s.0[lane]));
+            }
+            return place;
+        }
+        let l = self.units.length;
+        let along = s * Lanes::of(l);
+        let at = |profile: &Profile| {
+            let [value, slope, _] = profile.at_four(along, l);
+            [value, slope]
+        };
+        self.place_with(&self.arm, s, at(&self.arm.radius), at)
+    }
+
+    /// The data at `s` (over L) from a radius (m) and its slope that may carry derivatives, and from what all other profiles
+    /// are there, with their slopes.
+    #[inline(always)]
+    pub(super) fn place_with<R: Real>(
+        &self,
+        arm: &Arm,
+        s: R,
+        [r, r_slope]: [R; 2],
+        at: impl Fn(&Profile) -> [R; 2],
+    ) -> Place<R> {
         let units = self.units;
         let l = units.length;
-        let at = |p: &crate::profile::Profile| p.at(s * l, l);
-        let inner = at(&arm.inner_radius);
-        let (r_in, r_in_slope) = (R::of(inner.value), R::of(inner.slope));
+        let [r_in, r_in_slope] = at(&arm.inner_radius);
         let (zero, two, four) = (R::of(0.0), R::of(2.0), R::of(4.0));
         let pi = std::f64::consts::PI;
         let area = R::of(pi) * (r * r - r_in * r_in);
@@ -60,7 +89,7 @@ impl Equations {
             }
             Material::Coefficients { c1, c2, c3 } => {
                 let c = [at(c1), at(c2), at(c3)];
-                (c.map(|c| R::of(c.value)), c.map(|c| R::of(c.slope)))
+                (c.map(|[value, _]| value), c.map(|[_, slope]| slope))
             }
         };
         // Stiffness in the units: C1 A0 / F, C2 A0 / F, C3 A0 / (F L^2).
@@ -70,8 +99,8 @@ impl Equations {
         let stiffness = Stiffness {
             value: each(|k| c[k] * area * R::of(unit[k])),
             slope: each(|k| (c_slope[k] * area + c[k] * area_slope) * R::of(unit[k]) * R::of(l)),
-            reference: each(|k| R::of(reference[k].value * per_length[k])),
-            reference_slope: each(|k| R::of(reference[k].slope * per_length[k] * l)),
+            reference: each(|k| reference[k][0] * R::of(per_length[k])),
+            reference_slope: each(|k| reference[k][1] * R::of(per_length[k]) * R::of(l)),
         };
         let load_unit = l / units.force;
         let gravity = arm.gravity.map_or([0.0; 2], |g| {
@@ -88,16 +117,24 @@ impl Equations {
             wetted: R::of(pi * arm.flow.density) * r * R::of(load_unit),
             weight: gravity.map(|g| R::of(arm.density) * area * R::of(g)),
             displaced: gravity.map(|g| R::of(arm.flow.density) * outline * R::of(g)),
-            force: each(|k| R::of(at(&arm.distributed.force[k]).value * load_unit)),
-            couple: R::of(at(&arm.distributed.couple).value / units.force),
+            force: each(|k| at(&arm.distributed.force[k])[0] * R::of(load_unit)),
+            couple: at(&arm.distributed.couple)[0] / R::of(units.force),
         };
-        Place { s: R::of(s), stiffness, body }
+        Place { s, stiffness, body }
     }
 
     pub(crate) fn offset(&self, cable: usize, s: f64) -> Offset<f64> {
         let l = self.units.length;
         let p = self.arm.cables[cable].offset.at(s * l, l);
         Offset { y: p.value / l, slope: p.slope, curvature: p.curvature * l }
+    }
+
+    /// [`Equations::offset`] at four places.
+    #[inline(always)]
+    pub(super) fn offset_four(&self, cable: usize, s: Lanes) -> Offset<Lanes> {
+        let l = self.units.length;
+        let [y, slope, curvature] = self.arm.cables[cable].offset.at_four(s * Lanes::of(l), l);
+        Offset { y: y / Lanes::of(l), slope, curvature: curvature * Lanes::of(l) }
     }
 
     /// Takes a new set of stations, those of `mesh`, with guesses of the strains and of beta'.
@@ -123,7 +160,7 @@ impl Equations {
         self.memory.clear();
         self.memory.resize(blocks, memory);
         if self.places.len() < blocks {
-            let blank = splat(&self.place(stations[0]));
+            let blank = self.place_four(Lanes::of(stations[0]));
             self.places.resize(blocks, blank);
         }
         self.places.truncate(blocks);
@@ -135,19 +172,29 @@ impl Equations {
         self.drifts.resize(blocks, [zero; N]);
         for group in 0..groups.count() {
             for lane in 0..LANES {
-                let i = groups.element(group, lane);
-                self.steps[group].0[lane] = mesh.step(i);
-                for j in 0..stages {
-                    let (block, k) = (group * stages + j, i * stages + j);
+                self.steps[group].0[lane] = mesh.step(groups.element(group, lane));
+            }
+            for j in 0..stages {
+                let block = group * stages + j;
+                let mut places = zero;
+                // Stations that stay where they were keep their data.
+                let mut stay = true;
+                for lane in 0..LANES {
+                    let i = groups.element(group, lane);
+                    let k = i * stages + j;
                     let (strain, slope, curvature) = guess(k);
                     for a in 0..3 {
                         self.memory[block].strain[a].0[lane] = strain[a];
                     }
                     self.beta.start(block, lane, slope, curvature);
-                    // A station that stays where it was keeps its data.
+                    places.0[lane] = stations[k];
                     let own = group * LANES + lane == i && i < before;
-                    if !(own && self.stations[k] == stations[k]) {
-                        self.place_station(block, lane, stations[k]);
+                    stay &= own && self.stations[k] == stations[k];
+                }
+                if !stay {
+                    self.place_section(block, places);
+                    for lane in 0..LANES {
+                        self.place_pull(block, lane, places.0[lane]);
                     }
                 }
             }
@@ -160,21 +207,12 @@ impl Equations {
         self.beta.take_jumps((0..mesh.elements()).filter(jumps));
     }
 
-    /// Takes the data at `s` into a lane of a block.
-    fn place_station(&mut self, block: usize, lane: usize, s: f64) {
-        self.place_section(block, lane, s);
-        self.place_pull(block, lane, s);
-    }
-
-    /// All but what is left of the tensions.
-    fn place_section(&mut self, block: usize, lane: usize, s: f64) {
-        let place = self.place(s);
-        set_lane(&mut self.places[block], lane, &place);
+    /// Takes the data at the four stations of a block: all but what is left of the tensions.
+    fn place_section(&mut self, block: usize, s: Lanes) {
+        self.places[block] = self.place_four(s);
         let cable_count = self.tensions.len();
         for c in 0..cable_count {
-            let offset = self.offset(c, s);
-            let at = &mut self.cables[block * cable_count + c];
-            at.set_offset(lane, &offset);
+            self.cables[block * cable_count + c].offset = self.offset_four(c, s);
         }
     }
 
@@ -193,9 +231,8 @@ impl Equations {
     /// Takes the arm's sections, and its cables' offsets, at all stations.
     pub(super) fn take_sections(&mut self) {
         for block in 0..self.places.len() {
-            for lane in 0..LANES {
-                self.place_section(block, lane, self.stations[self.groups.station_in(block, lane)]);
-            }
+            let own = each(|lane| self.stations[self.groups.station_in(block, lane)]);
+            self.place_section(block, Lanes(own));
         }
     }
 }
@@ -206,7 +243,8 @@ pub(super) fn blank_cable() -> CableAt<Lanes> {
     CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero, tension_slope: zero }
 }
 
-pub(super) fn splat(place: &Place<f64>) -> Place<Lanes> {
+#[cfg(test)]
+fn splat(place: &Place<f64>) -> Place<Lanes> {
     let l = Lanes::of;
     let (s, b) = (&place.stiffness, &place.body);
     Place {
@@ -229,7 +267,8 @@ pub(super) fn splat(place: &Place<f64>) -> Place<Lanes> {
     }
 }
 
-pub(super) fn set_lane(out: &mut Place<Lanes>, lane: usize, place: &Place<f64>) {
+#[cfg(test)]
+fn set_lane(out: &mut Place<Lanes>, lane: usize, place: &Place<f64>) {
     let (s, b) = (&place.stiffness, &place.body);
     out.s.0[lane] = place.s;
     for k in 0..3 {
