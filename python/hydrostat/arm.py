@@ -360,7 +360,7 @@ class Arm:
             ``"tensions"``, or ``"strokes"``: the lengths are then commanded that the tensions make, and stability is that with
             lengths held.
         max_tension : float, optional
-            The largest tension of every cable, N, where the cable itself has none.
+            The largest tension of every cable, N; of this and the cable's own the smaller counts.
         max_stroke : float, optional
             The largest stroke of every cable that pulls, m: how far it can be wound in.
         tol : float
@@ -403,7 +403,7 @@ class Arm:
         Parameters
         ----------
         max_tension : float, optional
-            The largest tension of every cable, N, where the cable itself has less or none.
+            The largest tension of every cable, N; of this and the cable's own the smaller counts.
         spacing : float
             Distance of points over the length, in [1e-3, 0.1].
         tol : float

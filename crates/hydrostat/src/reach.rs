@@ -57,7 +57,7 @@ impl Target {
 /// How tensions are looked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReachOptions {
-    /// The largest tension of every cable, N, where the cable itself has none.
+    /// The largest tension of every cable, N; of this and the cable's own the smaller counts.
     pub max_tension: Option<f64>,
     /// The largest stroke of every cable that pulls, m: how far it can be wound in.
     pub max_stroke: Option<f64>,
@@ -200,9 +200,22 @@ impl Arm {
     /// # Ok::<(), hydrostat::ReachError>(())
     /// ```
     pub fn reach_by_strokes(&self, targets: &[Target], options: &ReachOptions) -> Result<Reach, ReachError> {
+        self.reach_by_strokes_while(targets, options, || true)
+    }
+
+    /// [`Arm::reach_by_strokes`] while `go_on`, which is asked every round, says so; then with what was found until then.
+    ///
+    /// # Errors
+    /// [`ReachError`].
+    pub fn reach_by_strokes_while(
+        &self,
+        targets: &[Target],
+        options: &ReachOptions,
+        go_on: impl Fn() -> bool,
+    ) -> Result<Reach, ReachError> {
         let mut search = Search::new(self, Goal::Places(targets.to_vec()), options)?;
         search.hold_lengths();
-        search.run(options, &|| true)
+        search.run(options, &go_on)
     }
 
     /// Tensions of one cable, all others slack, that turn the tip section to the angle `alpha` (rad) against the centreline; distances

@@ -63,13 +63,15 @@ pub(crate) fn reach(
     let targets = targets_of(targets);
     let (max_tension, max_stroke) = most;
     let options = ReachOptions { max_tension, max_stroke, tol, all };
-    let found = if by_strokes {
-        py.detach(|| arm.given.reach_by_strokes(&targets, &options))
-    } else {
-        let search = |stop: &AtomicBool| arm.given.reach_while(&targets, &options, || !stop.load(Ordering::Relaxed));
-        interruptible(py, |_| Ok(()), search)?
+    let search = |stop: &AtomicBool| {
+        let go_on = || !stop.load(Ordering::Relaxed);
+        if by_strokes {
+            arm.given.reach_by_strokes_while(&targets, &options, go_on)
+        } else {
+            arm.given.reach_while(&targets, &options, go_on)
+        }
     };
-    let found = found.map_err(|error| reach_error(py, error, tol))?;
+    let found = interruptible(py, |_| Ok(()), search)?.map_err(|error| reach_error(py, error, tol))?;
     Ok(Reach { found, arm: arm.given.clone(), targets, tol })
 }
 

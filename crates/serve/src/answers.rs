@@ -18,7 +18,7 @@ use crate::arm_source::{Given, tension_scale};
 use crate::limits;
 use crate::problem::Problem;
 use crate::requests::{
-    AboutAnArm, CheckRequest, EquilibriaRequest, Format, PathRequest, ReachRequest, SolveRequest, count, stations,
+    AboutAnArm, By, CheckRequest, EquilibriaRequest, Format, PathRequest, ReachRequest, SolveRequest, count, stations,
     varied,
 };
 use crate::work::Deadline;
@@ -221,10 +221,14 @@ pub(crate) fn reach(request: &ReachRequest, deadline: Deadline) -> Result<Answer
     };
     let options = ReachOptions {
         max_tension: read("max_tension", &request.max_tension, Dimension::Force)?,
+        max_stroke: read("max_stroke", &request.max_stroke, Dimension::Length)?,
         tol: request.tol.unwrap_or(ReachOptions::default().tol),
         ..ReachOptions::default()
     };
-    let found = arm.reach_while(&[target], &options, || deadline.is_ahead())?;
+    let found = match request.by {
+        By::Tensions => arm.reach_while(&[target], &options, || deadline.is_ahead())?,
+        By::Strokes => arm.reach_by_strokes_while(&[target], &options, || deadline.is_ahead())?,
+    };
     if !deadline.is_ahead() {
         // What was not looked at may have been the answer.
         return Err(Problem::too_long());

@@ -19,6 +19,15 @@ pub(crate) enum Format {
     Png,
 }
 
+/// What holds the cables of what reaches a target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum By {
+    #[default]
+    Tensions,
+    Strokes,
+}
+
 /// A number, or a text with a unit.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 #[serde(untagged)]
@@ -101,7 +110,10 @@ pub(crate) struct ReachRequest {
     pub(crate) target: Option<[Amount; 2]>,
     pub(crate) angle: Option<Amount>,
     pub(crate) station: Option<Amount>,
+    #[serde(default)]
+    pub(crate) by: By,
     pub(crate) max_tension: Option<Amount>,
+    pub(crate) max_stroke: Option<Amount>,
     pub(crate) tol: Option<f64>,
     #[serde(default)]
     pub(crate) format: Format,

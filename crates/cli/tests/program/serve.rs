@@ -170,6 +170,22 @@ fn answers_are_those_of_the_commands_to_the_last_digit() {
             r#"{"arm": "silicone", "target": ["182 mm", 0.078], "max_tension": 0.6}"#,
             vec!["reach", "silicone", "--target", "0.182,0.078", "--max-tension", "0.6", "--format", "json"],
         ),
+        (
+            "reach",
+            r#"{"arm": "silicone", "target": [0.182, 0.078], "by": "strokes", "max_stroke": "12 mm"}"#,
+            vec![
+                "reach",
+                "silicone",
+                "--target",
+                "0.182,0.078",
+                "--by",
+                "strokes",
+                "--max-stroke",
+                "12 mm",
+                "--format",
+                "json",
+            ],
+        ),
     ] {
         let reply = viewer.post(&format!("/api/{path}"), body);
         assert_eq!(reply.status, 200, "{body}: {}", reply.body);
