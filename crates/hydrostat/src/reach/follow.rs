@@ -15,7 +15,8 @@ const ROUNDS: usize = 12;
 /// The share of a distance that a round may leave before the jacobian is taken anew.
 const SLOW: f64 = 0.1;
 
-/// How far (tensions over their scale) more cables than conditions go towards their least effort a target, beyond what the target takes.
+/// How far (tensions over their scale) more cables than conditions go towards their least effort a target, beyond what the target takes: in
+/// its first round, whose error the others mend.
 const SLIDE: f64 = 0.02;
 
 /// How far (over L) the arm may end from where its derivatives lead before it has jumped to another branch.
@@ -111,7 +112,7 @@ impl Follower {
         let mut damping = 1e-9;
         while self.state.distance() > self.search.tol && solves < ROUNDS {
             let before = self.state.distance();
-            let wanted = self.next(damping, careful);
+            let wanted = self.next(damping, careful, solves == 0);
             if self.search.change(&wanted, &self.state.tensions) < STILL {
                 break;
             }
@@ -169,8 +170,9 @@ impl Follower {
         Some((self.search.state(solver, tensions), another_branch))
     }
 
-    /// Tensions that meet the targets to first order: those of least effort, or, where these are far, some on the way there from the nearest.
-    fn next(&self, damping: f64, careful: bool) -> Vec<f64> {
+    /// Tensions that meet the targets to first order: those of least effort, or, where these are far, the nearest, in the `first` round a little
+    /// on the way there.
+    fn next(&self, damping: f64, careful: bool, first: bool) -> Vec<f64> {
         let (search, state) = (&self.search, &self.state);
         let nearest = || search.damped(&self.slopes, state, damping);
         if careful {
@@ -182,7 +184,11 @@ impl Follower {
         }
         let nearest = nearest();
         let far = search.change(&least, &nearest);
-        let share = if far > SLIDE { SLIDE / far } else { 1.0 };
+        let share = match far {
+            far if far <= SLIDE => 1.0,
+            far if first => SLIDE / far,
+            _ => return nearest,
+        };
         nearest.iter().zip(&least).map(|(near, least)| near + share * (least - near)).collect()
     }
 
