@@ -62,7 +62,7 @@ class NoEquilibrium(RuntimeError):
         The limit: ``"cable_fold"``, ``"section_crushed"``, ``"no_section_solution"``, ``"limit_point"``, ``"load_jump"``
         or ``"not_found"``.
     phase : str
-        What was being raised: ``"loads"`` (all but the cables), ``"tension"`` or ``"stroke"``.
+        What was being raised: ``"loads"`` (all but the cables), ``"tension"``, ``"stroke"`` or ``"friction"``.
     load_fraction : float
         The share of that phase's loads at which the limit was met, 0 to 1.
     where : float or None

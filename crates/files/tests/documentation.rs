@@ -195,7 +195,7 @@ fn its_names_are_those_of_the_results() {
     for kind in [CableFold, SectionCrushed, NoSectionSolution, LimitPoint, LoadJump, NotFound] {
         assert!(PAGE.contains(&format!("\n| `{}` | ", kind.name())), "{}", kind.name());
     }
-    for phase in [Phase::Loads, Phase::Tension, Phase::Stroke] {
+    for phase in [Phase::Loads, Phase::Tension, Phase::Stroke, Phase::Friction] {
         assert!(PAGE.contains(&format!("`{}`: ", phase.name())), "{}", phase.name());
     }
 }

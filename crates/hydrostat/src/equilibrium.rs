@@ -199,6 +199,12 @@ impl Equations {
     pub(crate) fn arm_at_fraction(&self) -> Arm {
         let mut arm = self.arm.clone();
         let [loads, tension] = self.fraction;
+        let of_friction = self.grip.as_ref().map_or(0.0, |grip| grip.of_friction);
+        if of_friction != 1.0 {
+            for cable in &mut arm.cables {
+                cable.friction *= of_friction;
+            }
+        }
         if tension != 1.0 {
             for cable in &mut arm.cables {
                 cable.tension *= tension;
@@ -263,7 +269,7 @@ impl Equations {
         self.fraction = match phase {
             Phase::Loads => [fraction, 0.0],
             Phase::Tension => [1.0, fraction],
-            Phase::Stroke => [1.0, 1.0],
+            Phase::Stroke | Phase::Friction => [1.0, 1.0],
         };
         self.set_stroke_share(phase, fraction);
     }
@@ -537,7 +543,7 @@ impl Equations {
                 let couple = self.places[block].body.couple;
                 ([zero, -(load.force[0] * per), -(load.force[1] * per), -couple], zero)
             }
-            Phase::Tension | Phase::Stroke => {
+            Phase::Tension | Phase::Stroke | Phase::Friction => {
                 let f = self.fraction[1];
                 let per = Lanes::of(if f == 0.0 { 0.0 } else { -1.0 / f });
                 let strain = apply3(&solved.inverse, each(|k| solved.balance.cables[k] * per));

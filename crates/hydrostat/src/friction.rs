@@ -14,28 +14,39 @@
 //! (section 2 of `docs/model.md`) with the local T(s). At no friction it is the law without.
 //!
 //! The tension at a place hangs on all the turns before it, so that it is found in rounds: a shape for given turns,
-//! the turns of that shape, and so on, each round a contraction by about the friction times the turn.
+//! the turns of that shape, and so on, see `rubbing`.
+
+use std::sync::Arc;
 
 use hydrostat_bvp::{Gauss, LANES};
 
-use crate::arm::Motion;
+use crate::arm::{Arm, Motion};
 use crate::engine::{Engine, M};
 use crate::equilibrium::{AtPlace, Equations, SectionFailure};
 
-/// How far each cable has turned, along an arm, with what that makes of its tension.
+/// What friction leaves of the tensions, for turns that are a mixture of those of several shapes.
 #[derive(Debug, Clone)]
 pub(crate) struct Grip {
-    gauss: Gauss<M>,
-    /// The mesh of the shape that the turns are those of.
-    nodes: Vec<f64>,
-    cables: Vec<Turns>,
+    /// The share of the friction that acts.
+    pub(crate) of_friction: f64,
+    /// What the exponent is by the turn, a cable.
+    exponents: Vec<f64>,
+    /// With weights that sum up to one.
+    shapes: Vec<(f64, Arc<Turns>)>,
 }
 
-/// The turns of one cable.
-#[derive(Debug, Clone)]
-struct Turns {
-    /// What the exponent is by the turn: minus the friction while reeling in.
-    exponent: f64,
+/// How far each cable has turned, along one shape.
+#[derive(Debug)]
+pub(crate) struct Turns {
+    gauss: Gauss<M>,
+    /// The mesh of the shape.
+    nodes: Vec<f64>,
+    cables: Vec<Turn>,
+}
+
+/// The turn of one cable.
+#[derive(Debug)]
+struct Turn {
     /// Phi at the left node of every element, its step there included.
     before: Vec<f64>,
     /// |chi'| at the stages of every element.
@@ -53,52 +64,77 @@ impl Share {
     pub(crate) const WHOLE: Self = Self { value: 1.0, slope: 0.0 };
 }
 
-impl Grip {
-    /// Of the engine's solution, whose stations are up to date, with `share` of the friction.
-    pub(crate) fn of(engine: &Engine, share: f64) -> Result<Self, SectionFailure> {
+/// What the exponent is by the turn, a cable, with a share of the friction: minus the friction while reeling in.
+pub(crate) fn exponents(arm: &Arm, of_friction: f64) -> Vec<f64> {
+    let sign = |motion| match motion {
+        Motion::In => -1.0,
+        Motion::Out => 1.0,
+    };
+    arm.cables.iter().map(|cable| sign(cable.motion) * of_friction * cable.friction).collect()
+}
+
+impl Turns {
+    /// Of the engine's solution, whose stations are up to date.
+    pub(crate) fn of(engine: &Engine) -> Result<Self, SectionFailure> {
         let equations = &engine.equations;
         let gauss = engine.system.gauss.clone();
         let mesh = &engine.solution.mesh;
-        let arm = equations.arm();
-        let mut cables = Vec::with_capacity(arm.cables.len());
-        for (c, cable) in arm.cables.iter().enumerate() {
-            let sign = match cable.motion {
-                Motion::In => -1.0,
-                Motion::Out => 1.0,
-            };
-            let mut turns = Turns { exponent: sign * share * cable.friction, before: Vec::new(), rate: Vec::new() };
+        let mut cables = Vec::with_capacity(equations.arm().cables.len());
+        for c in 0..equations.arm().cables.len() {
+            let mut turn = Turn { before: Vec::new(), rate: Vec::new() };
             let mut turned = 0.0;
             for i in 0..mesh.elements() {
                 turned += step_at(engine, c, i)?;
-                turns.before.push(turned);
+                turn.before.push(turned);
                 let rate: [f64; M] = std::array::from_fn(|j| equations.cable_turn(c, i, j).abs());
                 for j in 0..M {
                     turned += mesh.step(i) * gauss.b[j] * rate[j];
                 }
-                turns.rate.push(rate);
+                turn.rate.push(rate);
             }
-            cables.push(turns);
+            cables.push(turn);
         }
         Ok(Self { gauss, nodes: mesh.nodes().to_vec(), cables })
     }
 
-    /// The share of its tension that cable `c` has left at `s` (over L).
-    pub(crate) fn share(&self, c: usize, s: f64, from_left: bool) -> Share {
-        let turns = &self.cables[c];
+    /// Phi of cable `c` at `s` (over L), and |chi'|.
+    pub(crate) fn at(&self, c: usize, s: f64, from_left: bool) -> [f64; 2] {
+        let turn = &self.cables[c];
         let last = self.nodes.len() - 2;
         let right = self.nodes.partition_point(|node| *node <= s).saturating_sub(1).min(last);
         let i = if from_left && right > 0 && self.nodes[right] == s { right - 1 } else { right };
         let h = self.nodes[i + 1] - self.nodes[i];
         let x = (s - self.nodes[i]) / h;
         let (integrals, cardinals) = (self.gauss.integrals(x), self.gauss.cardinals(x));
-        let mut turned = turns.before[i];
+        let mut turned = turn.before[i];
         let mut rate = 0.0;
         for j in 0..M {
-            turned += h * integrals[j] * turns.rate[i][j];
-            rate += cardinals[j] * turns.rate[i][j];
+            turned += h * integrals[j] * turn.rate[i][j];
+            rate += cardinals[j] * turn.rate[i][j];
         }
-        let value = (turns.exponent * turned).exp();
-        Share { value, slope: turns.exponent * rate * value }
+        [turned, rate]
+    }
+}
+
+impl Grip {
+    pub(crate) fn new(of_friction: f64, exponents: Vec<f64>, shapes: Vec<(f64, Arc<Turns>)>) -> Self {
+        Self { of_friction, exponents, shapes }
+    }
+
+    /// The share of its tension that cable `c` has left at `s` (over L).
+    fn share(&self, c: usize, s: f64, from_left: bool) -> Share {
+        let exponent = self.exponents[c];
+        if exponent == 0.0 {
+            return Share::WHOLE;
+        }
+        let [mut turned, mut rate] = [0.0; 2];
+        for (weight, shape) in &self.shapes {
+            let own = shape.at(c, s, from_left);
+            turned += weight * own[0];
+            rate += weight * own[1];
+        }
+        let value = (exponent * turned).exp();
+        Share { value, slope: exponent * rate * value }
     }
 }
 

@@ -1,16 +1,29 @@
 //! Solves with friction of the cables: rounds of shape and turns, see [`crate::friction`].
+//!
+//! A round multiplies what the turns are off by with about the friction times the turn, and by its negative while reeling in: less
+//! tension bends less. Above one that leads nowhere by itself, so that the turns for the next round are a mixture
+//! of those before and of those that they led to, in which what is off is least (Anderson 1965, "Iterative procedures for nonlinear integral
+//! equations").
+
+use std::sync::Arc;
 
 use crate::configuration::Configuration;
-use crate::engine::{First, Trouble};
-use crate::friction::Grip;
+use crate::engine::{First, Trouble, solved};
+use crate::friction::{Grip, Turns, exponents};
 use crate::path::{Travelled, name_limit};
 use crate::solve::Solver;
 use crate::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
 /// Most rounds at one level of friction and load.
-const ROUNDS: usize = 60;
+const ROUNDS: usize = 40;
+/// Rounds that are mixed.
+const DEPTH: usize = 5;
 /// Largest turn of the tip (rad) by which one step of friction or load may change the shape.
 const LARGEST_TURN: f64 = 0.3;
+/// The least step of friction or load.
+const LEAST: f64 = 1e-6;
+/// Intervals at whose ends turns are compared.
+const INTERVALS: u32 = 32;
 
 impl Solver {
     /// From the equilibrium without friction; where there is none, along the tensions with it.
@@ -18,7 +31,7 @@ impl Solver {
         self.engine.set_grip(None);
         let commanded = self.engine.equations.arm().is_commanded();
         match self.solve_smooth() {
-            Ok(_) => self.raise_friction().map_err(|_| self.no_equilibrium(self.last_verdict(Some(1.0)))),
+            Ok(_) => self.raise_friction().map_err(|verdict| self.no_equilibrium(verdict)),
             Err(SolveError::NoEquilibrium(no)) if no.verdict.phase == Phase::Tension && !commanded => {
                 // Friction spares the tip, which may carry more with it.
                 let kept = self.engine.state();
@@ -35,19 +48,22 @@ impl Solver {
     }
 
     /// Friction from none to whole at the present loads.
-    fn raise_friction(&mut self) -> Result<Configuration, Trouble> {
+    fn raise_friction(&mut self) -> Result<Configuration, Verdict> {
         let (mut share, mut step) = (0.0, 1.0_f64);
         loop {
             let kept = self.engine.state();
             let next = (share + step).min(1.0);
             match self.rub(next) {
                 Ok(configuration) if next == 1.0 => return Ok(configuration),
-                Ok(_) => share = next,
+                Ok(_) => {
+                    share = next;
+                    step *= 1.5;
+                }
                 Err(trouble) => {
                     self.engine.restore(&kept);
-                    step *= 0.5;
-                    if step < 1e-3 {
-                        return Err(trouble);
+                    step *= 0.4;
+                    if step < LEAST {
+                        return Err(self.limit(Phase::Friction, share, &trouble));
                     }
                 }
             }
@@ -55,13 +71,13 @@ impl Solver {
     }
 
     /// Tensions from the share `from`, where there is an equilibrium without friction, to whole with friction. `None`
-    /// when there is no start either.
+    /// when there is no start.
     fn raise_tensions(&mut self, from: f64) -> Result<Configuration, Option<Verdict>> {
         self.engine.set_phase(Phase::Tension, from);
         if self.engine.settle(self.options.tol, First::Rough).is_err() {
             return Err(None);
         }
-        let mut last = self.raise_friction().map_err(|_| None)?;
+        let mut last = self.raise_friction()?;
         let (mut share, mut step) = (from, 0.1 * from);
         while share < 1.0 {
             let kept = self.engine.state();
@@ -76,15 +92,8 @@ impl Solver {
                 Err(trouble) => {
                     self.engine.restore(&kept);
                     step *= 0.4;
-                    if step < 1e-6 {
-                        let residual = self.engine.last;
-                        let spent = self.engine.spent();
-                        let (kind, s) = match spent {
-                            Some(_) => (VerdictKind::NotFound, None),
-                            None => name_limit(&mut self.engine, Some(&trouble), residual),
-                        };
-                        let phase = Phase::Tension;
-                        return Err(Some(Verdict { kind, phase, load_fraction: share, s, residual, spent }));
+                    if step < LEAST {
+                        return Err(Some(self.limit(Phase::Tension, share, &trouble)));
                     }
                 }
             }
@@ -92,15 +101,26 @@ impl Solver {
         Ok(last)
     }
 
+    /// Why it does not go on from where the engine is.
+    fn limit(&mut self, phase: Phase, load_fraction: f64, trouble: &Trouble) -> Verdict {
+        let (residual, spent) = (self.engine.last, self.engine.spent());
+        let (kind, s) = match spent {
+            Some(_) => (VerdictKind::NotFound, None),
+            None => name_limit(&mut self.engine, Some(trouble), residual),
+        };
+        Verdict { kind, phase, load_fraction, s, residual, spent }
+    }
+
     /// Rounds of turns and shape at `share` of the friction until the tip stays.
     fn rub(&mut self, share: f64) -> Result<Configuration, Trouble> {
         let tol = self.options.tol;
         let start = self.engine.tip_angle();
         let sign = self.engine.determinant().sign;
+        let mut rounds = Rounds::new(share, exponents(self.engine.equations.arm(), share));
         for _ in 0..ROUNDS {
             self.engine.refresh().map_err(Trouble::Section)?;
-            let grip = Grip::of(&self.engine, share).map_err(Trouble::Section)?;
-            self.engine.set_grip(Some(&grip));
+            let ease = rounds.go_on(Turns::of(&self.engine).map_err(Trouble::Section)?);
+            self.engine.set_grip(Some(&rounds.grip()));
             let (before, angle) = (self.engine.tip, self.engine.tip_angle());
             let estimate = self.engine.settle(tol, First::Warm)?;
             let same_branch = self.engine.determinant().sign == sign;
@@ -109,10 +129,104 @@ impl Solver {
             }
             let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
             let turned = (self.engine.tip_angle() - angle).abs();
-            if moved.max(0.1 * turned) <= 0.2 * tol {
+            if moved.max(0.1 * turned) <= 0.2 * ease * tol {
                 return self.read(estimate + moved, Travelled::default());
             }
         }
         Err(Trouble::Stalled(f64::INFINITY))
     }
+}
+
+/// Shapes and the turns that they were solved with.
+struct Rounds {
+    share: f64,
+    exponents: Vec<f64>,
+    /// Of all shapes, in order; the first is that before the first round.
+    shapes: Vec<Arc<Turns>>,
+    /// What each round's shape was solved with, as weights of the shapes before it.
+    used: Vec<Vec<f64>>,
+    /// What the turns of each round's shape differ by from those, as exponents.
+    off: Vec<Vec<f64>>,
+}
+
+impl Rounds {
+    fn new(share: f64, exponents: Vec<f64>) -> Self {
+        Self { share, exponents, shapes: Vec::new(), used: Vec::new(), off: Vec::new() }
+    }
+
+    /// What the next shape is to be solved with.
+    fn grip(&self) -> Grip {
+        let weights = self.used.last().into_iter().flatten();
+        let shapes = weights.zip(&self.shapes).filter(|(weight, _)| **weight != 0.0);
+        let shapes = shapes.map(|(weight, shape)| (*weight, Arc::clone(shape))).collect();
+        Grip::new(self.share, self.exponents.clone(), shapes)
+    }
+
+    /// Takes the turns of the last round's shape, and chooses those for the next; the share of what is off that these make up for.
+    fn go_on(&mut self, turns: Turns) -> f64 {
+        self.shapes.push(Arc::new(turns));
+        let count = self.shapes.len();
+        let Some(last) = self.used.last() else {
+            self.used.push(vec![1.0]);
+            return 1.0;
+        };
+        let own = self.exponents_of(&unit(count - 1));
+        self.off.push(own.iter().zip(self.exponents_of(last)).map(|(own, used)| own - used).collect());
+        let ease = self.ease();
+        let mut next = vec![0.0; count];
+        let first = self.off.len().saturating_sub(DEPTH);
+        for (j, alpha) in (first..).zip(least_off(&self.off[first..])) {
+            for (weight, used) in next.iter_mut().zip(&self.used[j]) {
+                *weight += alpha * (1.0 - ease) * used;
+            }
+            next[j + 1] += alpha * ease;
+        }
+        self.used.push(next);
+        ease
+    }
+
+    /// Friction times turn of a mixture of shapes, along all cables that rub.
+    fn exponents_of(&self, weights: &[f64]) -> Vec<f64> {
+        let mut out = Vec::new();
+        for (c, exponent) in self.exponents.iter().enumerate().filter(|(_, exponent)| **exponent != 0.0) {
+            for k in 0..=INTERVALS {
+                let s = f64::from(k) / f64::from(INTERVALS);
+                let turned = weights.iter().zip(&self.shapes).filter(|(weight, _)| **weight != 0.0);
+                out.push(exponent * turned.map(|(weight, shape)| weight * shape.at(c, s, true)[0]).sum::<f64>());
+            }
+        }
+        out
+    }
+
+    /// The share of what is off that a round is to make up for: where less tension bends clearly less, about as much as would be right
+    /// if all of the arm did the same.
+    fn ease(&self) -> f64 {
+        let Some(shape) = self.shapes.last() else { return 1.0 };
+        let steep = |(c, exponent): (usize, &f64)| -exponent * shape.at(c, 1.0, true)[0];
+        let steepest = self.exponents.iter().enumerate().map(steep).fold(0.0, f64::max);
+        if steepest > 0.5 { 1.0 / (1.0 + steepest) } else { 1.0 }
+    }
+}
+
+/// The weight of one alone.
+fn unit(k: usize) -> Vec<f64> {
+    (0..=k).map(|j| if j == k { 1.0 } else { 0.0 }).collect()
+}
+
+/// Weights with the sum one for which what is off is least.
+fn least_off(off: &[Vec<f64>]) -> Vec<f64> {
+    let alone = unit(off.len() - 1);
+    let Some((last, before)) = off.split_last() else { return alone };
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let from: Vec<Vec<f64>> = before.iter().map(|own| last.iter().zip(own).map(|(a, b)| a - b).collect()).collect();
+    let row = |(j, own): (usize, &Vec<f64>)| {
+        // So little that it only counts where two rounds did the same.
+        let slack = 1e-12 * dot(own, own);
+        let by = from.iter().enumerate().map(|(k, other)| dot(own, other) + if j == k { slack } else { 0.0 });
+        (by.collect(), [dot(own, last), 0.0])
+    };
+    let Some((found, _)) = solved(from.iter().enumerate().map(row).collect()) else { return alone };
+    let mut weights: Vec<f64> = found.iter().map(|[weight, _]| *weight).collect();
+    weights.push(1.0 - weights.iter().sum::<f64>());
+    if weights.iter().all(|weight| weight.is_finite()) { weights } else { alone }
 }

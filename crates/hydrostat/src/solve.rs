@@ -376,7 +376,10 @@ impl Solver {
         let mut last_good = None;
         for back in [1e-9, 1e-5, 1e-4, 1e-3, 5e-3] {
             self.engine.restore(&kept);
-            self.engine.set_phase(verdict.phase, verdict.load_fraction * (1.0 - back));
+            // Friction is that of the shape, whose turns belong to it.
+            if verdict.phase != Phase::Friction {
+                self.engine.set_phase(verdict.phase, verdict.load_fraction * (1.0 - back));
+            }
             let settled = self.engine.settle(self.options.tol.max(1e-6), First::Warm);
             let moved = (self.engine.tip[0] - kept.tip[0]).hypot(self.engine.tip[1] - kept.tip[1]);
             last_good = settled.ok().filter(|_| moved < 0.05).and_then(|e| self.read(e, Travelled::default()).ok());

@@ -47,7 +47,7 @@ impl VerdictKind {
 }
 
 /// The phases in which loads are raised from the unloaded arm: first everything but the cables, then
-/// the tensions, then the strokes of cables whose length is commanded.
+/// the tensions, then the strokes of cables whose length is commanded, then the friction of cables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Phase {
     /// Stream, weight, tip and distributed loads are multiplied by the load fraction; cables are slack.
@@ -57,15 +57,18 @@ pub enum Phase {
     /// Loads and given tensions are whole; cables with a commanded stroke are reeled from the strokes that they have
     /// when slack to those commanded, the load fraction being the share of that way.
     Stroke,
+    /// Loads, tensions and strokes are as without friction; the coefficients of friction are multiplied by the load fraction.
+    Friction,
 }
 
 impl Phase {
-    /// The name in results: `loads`, `tension` or `stroke`.
+    /// The name in results: `loads`, `tension`, `stroke` or `friction`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Loads => "loads",
             Self::Tension => "tension",
             Self::Stroke => "stroke",
+            Self::Friction => "friction",
         }
     }
 }
@@ -100,6 +103,7 @@ impl Verdict {
             Phase::Stroke => {
                 format!("{:.6} of the way from the slack cables' strokes to those commanded", self.load_fraction)
             }
+            Phase::Friction => format!("{:.6} of the friction of the cables", self.load_fraction),
         };
         if let Some(spent) = self.spent {
             return format!(

@@ -1,7 +1,7 @@
 //! Cables that rub in their channels.
 
 use hydrostat::cases::inextensible_arm;
-use hydrostat::{Arm, Cable, Configuration, Motion, Options, Profile, Solver};
+use hydrostat::{Arm, Cable, Configuration, Motion, Options, Phase, Profile, SolveError, Solver, VerdictKind};
 
 fn solve(arm: &Arm, tol: f64) -> Configuration {
     Solver::new(arm, Options { tol }).unwrap().solve().unwrap_or_else(|e| panic!("{e}"))
@@ -13,8 +13,9 @@ fn solve(arm: &Arm, tol: f64) -> Configuration {
 fn a_bent_inextensible_arm_against_the_closed_form() {
     let lever = 0.005;
     for (motion, sign) in [(Motion::In, 1.0), (Motion::Out, -1.0)] {
-        for friction in [0.05, 0.2, 0.5] {
-            for curvature in [0.5_f64, 1.5] {
+        for friction in [0.05, 0.2, 0.5, 2.0] {
+            // Paid out it curls up without end where friction times curvature comes to one.
+            for curvature in [0.5_f64, 1.5, 8.0].into_iter().filter(|k| motion == Motion::In || friction * k < 0.9) {
                 let mut arm = inextensible_arm("rubbed");
                 // EI is 1 N m2.
                 let cable = Cable::new("left", lever).pulled(curvature / lever);
@@ -92,6 +93,48 @@ fn friction_spares_the_tip() {
     arm.cables[0].friction = 0.1;
     let solved = solve(&arm, 1e-8);
     assert_eq!(solved.cables[0].tension, 1.0);
+}
+
+/// Cables that rub much: rounds of shape and turns go from side to side there by themselves, and the answer was the verdict without friction.
+#[test]
+fn strong_friction_was_called_a_fold() {
+    for tension in [0.8, 1.0, 1.5] {
+        let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+        arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(tension));
+        let mut last = f64::INFINITY;
+        for friction in [0.4, 0.8, 1.2, 1.6, 1.7, 1.8, 1.9, 2.0] {
+            arm.cables[0].friction = friction;
+            let turned = solve(&arm, 1e-8).tip().theta;
+            assert!(turned > 0.0 && turned < last, "friction {friction} at {tension} N: {turned} after {last}");
+            last = turned;
+        }
+    }
+}
+
+/// Paid out, a cable pulls the tip more and more, and folds it shut: at the same friction, however much there was to be, and what is last found
+/// to be good is in balance with the friction that it says.
+#[test]
+fn a_cable_paid_out_until_it_folds_the_tip_was_not_found() {
+    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.3).rubbing(0.0, Motion::Out));
+    let mut folds = Vec::new();
+    for friction in [0.2, 0.3, 1.0] {
+        arm.cables[0].friction = friction;
+        let Err(SolveError::NoEquilibrium(no)) = arm.solve() else { panic!("friction {friction} has an answer") };
+        assert_eq!(
+            (no.verdict.kind, no.verdict.phase),
+            (VerdictKind::CableFold, Phase::Friction),
+            "{}",
+            no.verdict.message()
+        );
+        assert!((no.verdict.s.unwrap() - arm.length).abs() < 1e-3);
+        folds.push(no.verdict.load_fraction * friction);
+        let last = no.last_good.unwrap();
+        let again = solve(&last.arm, 1e-8);
+        let off = (again.tip().x - last.tip().x).hypot(again.tip().y - last.tip().y) / arm.length;
+        assert!(off < 1e-4, "friction {} in place of {friction}: {off:e} off", last.arm.cables[0].friction);
+    }
+    assert!(folds.iter().all(|fold| (fold / folds[0] - 1.0).abs() < 1e-3), "{folds:?}");
 }
 
 #[test]

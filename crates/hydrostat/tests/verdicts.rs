@@ -45,7 +45,7 @@ impl Case {
             Phase::Tension => part.cables[0].tension / whole.cables[0].tension,
             Phase::Loads if whole.flow.speed > 0.0 => (part.flow.speed / whole.flow.speed).powi(2),
             Phase::Loads => part.tip.force[0] / whole.tip.force[0],
-            Phase::Stroke => panic!("no stroke is commanded here"),
+            Phase::Stroke | Phase::Friction => panic!("no stroke is commanded here, and no cable rubs"),
         }
     }
 

@@ -45,7 +45,7 @@ fn follow_at(engine: &mut Engine, mut pace: Pace, hurry: bool) -> Result<Travell
         let moves = match phase {
             Phase::Loads => engine.equations.has_loads(),
             Phase::Tension => engine.equations.has_tension(),
-            Phase::Stroke => false,
+            Phase::Stroke | Phase::Friction => false,
         };
         if moves {
             let stepper = Stepper::new(engine, Along::Phase(phase), [f64::NEG_INFINITY, 1.0]);
