@@ -67,16 +67,15 @@ fn code(error: &anyhow::Error) -> u8 {
         {
             return WRONG_REQUEST;
         }
-        if let Some(
-            ReachError::NoCables
-            | ReachError::Target
-            | ReachError::Option { .. }
-            | ReachError::Sensitivity(
-                SensitivityError::Rubbing | SensitivityError::Support | SensitivityError::Station { .. },
-            ),
-        ) = cause.downcast_ref()
-        {
+        if cause.downcast_ref().is_some_and(asks_for_no_derivative) {
             return WRONG_REQUEST;
+        }
+        if let Some(error) = reach_error(cause) {
+            match error {
+                ReachError::NoCables | ReachError::Target | ReachError::Option { .. } => return WRONG_REQUEST,
+                ReachError::Sensitivity(error) if asks_for_no_derivative(error) => return WRONG_REQUEST,
+                _ => {}
+            }
         }
         // Whatever a sweep cannot do is wrong with its request: keys, values, options, files.
         if matches!(cause.downcast_ref(), Some(error) if !matches!(error, SweepError::Threads(_))) {
@@ -103,6 +102,11 @@ fn code(error: &anyhow::Error) -> u8 {
     OTHER
 }
 
+/// Whether derivatives are asked for that this arm cannot have.
+fn asks_for_no_derivative(error: &SensitivityError) -> bool {
+    matches!(error, SensitivityError::Rubbing(_) | SensitivityError::Support | SensitivityError::Station { .. })
+}
+
 /// Where a search cannot start for want of an equilibrium there is none; all else is wrong with the request.
 fn code_of_fit(error: &IdentifyError) -> u8 {
     let IdentifyError::Start { source, .. } = error else { return WRONG_REQUEST };
@@ -126,10 +130,17 @@ fn advice(error: &anyhow::Error) -> Option<&'static str> {
 fn solve_error<'a>(cause: &'a (dyn std::error::Error + 'static)) -> Option<&'a SolveError> {
     match cause.downcast_ref::<StudyError>() {
         Some(StudyError::Solve { source, .. }) => Some(source),
-        _ => match cause.downcast_ref::<ReachError>() {
+        _ => match reach_error(cause) {
             Some(ReachError::Solve(source)) => Some(source),
             _ => cause.downcast_ref::<SolveError>(),
         },
+    }
+}
+
+fn reach_error<'a>(cause: &'a (dyn std::error::Error + 'static)) -> Option<&'a ReachError> {
+    match cause.downcast_ref::<StudyError>() {
+        Some(StudyError::Reach(source)) => Some(source),
+        _ => cause.downcast_ref::<ReachError>(),
     }
 }
 

@@ -123,9 +123,12 @@ pub enum SensitivityError {
         /// Of the arm, m.
         length: f64,
     },
-    /// Cables rub: which way they slide decides what a change does.
-    #[error("an arm whose cables rub has no one derivative: it depends on which way they slide")]
-    Rubbing,
+    /// A cable that rubs, by its index: which way it slides decides what a change does.
+    #[error(
+        "`cable[{0}].friction` is above 0: which way the cable slides decides what a change does, so that there is no one \
+         derivative; with 0 there is"
+    )]
+    Rubbing(usize),
     /// The support option whose arm is no equilibrium at the tip.
     #[error("sensitivities need a clamped base")]
     Support,
@@ -367,8 +370,8 @@ pub(crate) fn check(arm: &Arm, parameters: &[Parameter], stations: &[f64]) -> Re
             _ => {}
         }
     }
-    if arm.rubs() {
-        return Err(SensitivityError::Rubbing);
+    if let Some(cable) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
+        return Err(SensitivityError::Rubbing(cable));
     }
     if arm.readings.support != Support::Clamped {
         return Err(SensitivityError::Support);

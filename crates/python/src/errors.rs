@@ -55,7 +55,7 @@ pub(crate) fn sensitivity_error(py: Python<'_>, error: SensitivityError, tol: f6
         SensitivityError::Unfit(_) | SensitivityError::Commanded(_) | SensitivityError::NotCommanded(_) => {
             wrong(format!("parameters: {error}"))
         }
-        SensitivityError::Rubbing | SensitivityError::Support => wrong(format!("arm: {error}")),
+        SensitivityError::Rubbing(_) | SensitivityError::Support => wrong(format!("arm: {error}")),
         SensitivityError::Singular | SensitivityError::Unsettled(_) => {
             made(py, &NO_DERIVATIVE, "NoDerivative", (error.to_string(),))
         }

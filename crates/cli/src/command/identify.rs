@@ -1,6 +1,6 @@
 //! `hydrostat identify`: parameters from measured shapes.
 
-use hydrostat::{Arm, Parameter};
+use hydrostat::{Arm, Parameter, SensitivityError};
 use hydrostat_figures::fit_figure;
 use hydrostat_files::{
     Deviations, IdentificationDocument, arm_to_toml, fitted, measurements_template, number, read_measurements,
@@ -24,6 +24,10 @@ const MOST_NAMED: usize = 10;
 pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     let file = request::overridden(&args.arm)?;
     let arm = file.arm()?;
+    // Told before anything is measured.
+    if let Some(cable) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
+        return Err(SensitivityError::Rubbing(cable).into());
+    }
     let outputs = [("-o", args.output.as_deref()), ("--out", args.out.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&outputs)?;
     let Some(data) = args.data.as_ref().filter(|_| !args.template) else {

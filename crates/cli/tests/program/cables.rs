@@ -79,3 +79,23 @@ fn friction_takes_from_the_bend() {
     let wrong = refused(&["solve", "silicone", "--set", "cable[0].friction=-0.1"]);
     assert!(wrong.contains("cable[0].friction"), "{wrong}");
 }
+
+/// What asks for derivatives says which key keeps it from them, before anything is measured.
+#[test]
+fn friction_was_refused_without_its_key() {
+    let directory = super::directory();
+    let [file, out] = ["rubbing.toml", "out"].map(|name| directory.path().join(name));
+    let text =
+        "[arm]\nlength = 0.2\nradius = 0.01\n[material]\nyoung = 1e5\n[[cable]]\noffset = 0.005\nfriction = 0.1\n";
+    std::fs::write(&file, text).unwrap();
+    let (file, out) = (file.to_str().unwrap(), out.to_str().unwrap());
+    for arguments in [
+        &["reach", file, "--target", "0.182,0.078"][..],
+        &["identify", file, "--template"],
+        &["figures", file, "-o", out],
+        &["path", file, "--vary", "flow.speed=0:0.1"],
+    ] {
+        let wrong = refused(arguments);
+        assert!(wrong.contains("friction"), "{arguments:?}: {wrong}");
+    }
+}
