@@ -101,13 +101,18 @@ impl Solver {
         Ok(last)
     }
 
-    /// Why it does not go on from where the engine is.
+    /// Why it does not go on from where the engine is. A limit of the sections is one that this shape is at: rounds that lead nowhere can pass
+    /// any.
     fn limit(&mut self, phase: Phase, load_fraction: f64, trouble: &Trouble) -> Verdict {
         let (residual, spent) = (self.engine.last, self.engine.spent());
-        let (kind, s) = match spent {
-            Some(_) => (VerdictKind::NotFound, None),
-            None => name_limit(&mut self.engine, Some(trouble), residual),
-        };
+        let (mut kind, mut s) = (VerdictKind::NotFound, None);
+        if spent.is_none() {
+            let named = name_limit(&mut self.engine, Some(trouble), residual);
+            let of_rounds = matches!(trouble, Trouble::Section(_));
+            if !of_rounds || name_limit(&mut self.engine, None, residual).0 == named.0 {
+                (kind, s) = named;
+            }
+        }
         Verdict { kind, phase, load_fraction, s, residual, spent }
     }
 

@@ -2,6 +2,7 @@
 
 use hydrostat::cases::inextensible_arm;
 use hydrostat::{Arm, Cable, Configuration, Motion, Options, Phase, Profile, SolveError, Solver, VerdictKind};
+use hydrostat_files::{ArmFile, shipped};
 
 fn solve(arm: &Arm, tol: f64) -> Configuration {
     Solver::new(arm, Options { tol }).unwrap().solve().unwrap_or_else(|e| panic!("{e}"))
@@ -107,6 +108,20 @@ fn strong_friction_was_called_a_fold() {
             let turned = solve(&arm, 1e-8).tip().theta;
             assert!(turned > 0.0 && turned < last, "friction {friction} at {tension} N: {turned} after {last}");
             last = turned;
+        }
+    }
+}
+
+/// Rounds can lead nowhere where a cable squeezes a thin tip. What they pass then is no limit of the arm, which more friction only spares.
+#[test]
+fn rounds_that_lead_nowhere_were_called_a_limit_of_the_sections() {
+    let mut arm = ArmFile::parse(shipped::get("paper").unwrap(), "paper").unwrap().arm().unwrap();
+    arm.set_tensions(&[60.0, 0.0]).unwrap();
+    for friction in [0.94, 1.2] {
+        arm.cables[0].friction = friction;
+        if let Err(error) = arm.solve() {
+            let SolveError::NoEquilibrium(no) = error else { panic!("{error}") };
+            assert_eq!(no.verdict.kind, VerdictKind::NotFound, "friction {friction}: {}", no.verdict.message());
         }
     }
 }
