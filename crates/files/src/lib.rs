@@ -45,7 +45,7 @@ pub use followed::{FollowedDocument, followed_csv};
 pub use identification::{IdentificationDocument, residuals_csv};
 pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
 pub use measurements_template::measurements_template;
-pub use output::{WriteError, write_whole};
+pub use output::{WriteError, remove_leftovers, write_whole, write_whole_with};
 pub use paths::{PathDocument, end_message, path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
 pub use reach::{ReachDocument, reach_csv};

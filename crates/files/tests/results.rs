@@ -1,12 +1,15 @@
 //! JSON and CSV of results, and files on disk.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use hydrostat::{
     Arm, Cable, CableState, Configuration, NoEquilibrium, Phase, Profile, Stations, Statistics, Verdict, VerdictKind,
     Warning, Wrench,
 };
-use hydrostat_files::{ArmFile, Failure, Note, Others, Solution, stations_csv, write_whole};
+use hydrostat_files::{
+    ArmFile, Failure, Note, Others, Solution, remove_leftovers, stations_csv, write_whole, write_whole_with,
+};
 use serde_json::{Value, json};
 
 fn configuration() -> Configuration {
@@ -219,6 +222,32 @@ fn files_appear_whole_or_not_at_all() {
     assert!(locked.contains("that you may write to"), "{locked}");
     assert_eq!(std::fs::read(&target).unwrap(), b"two");
     assert_eq!(std::fs::read_dir(dir).unwrap().count(), 1, "nothing half-written is left");
+}
+
+#[test]
+fn what_fails_or_is_killed_half_way_does_not_stay() {
+    let scratch = Scratch::new("half");
+    let dir = &scratch.0;
+    let target = dir.join("out.csv");
+    write_whole(&target, b"one").unwrap();
+    // A writer's own error is what its caller gets.
+    let failed: Result<(), Box<dyn std::error::Error>> = write_whole_with(&target, |file| {
+        file.write_all(b"ha")?;
+        Err("given up".into())
+    });
+    assert_eq!(failed.unwrap_err().to_string(), "given up");
+    assert_eq!(std::fs::read(&target).unwrap(), b"one");
+
+    let others = [".out.csv.json.1-0.tmp", ".out.csv.tmp", "out.csv.1-0.tmp", ".out.csv.1-x.tmp"];
+    for name in [".out.csv.1-0.tmp", ".out.csv.77-12.tmp"].iter().chain(&others) {
+        std::fs::write(dir.join(name), "ha").unwrap();
+    }
+    remove_leftovers(&target);
+    let left = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let (mut left, mut want) = (left.collect::<Vec<_>>(), [&["out.csv"], &others[..]].concat());
+    left.sort_unstable();
+    want.sort_unstable();
+    assert_eq!(left, want);
 }
 
 #[cfg(unix)]
