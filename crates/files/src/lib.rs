@@ -49,7 +49,7 @@ pub use output::{WriteError, remove_leftovers, write_whole, write_whole_with};
 pub use paths::{PathDocument, end_message, path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
 pub use reach::{ReachDocument, reach_csv};
-pub use results::{Failure, Note, Solution, stations_csv};
+pub use results::{Failure, Note, Solution, json, stations_csv};
 pub use targets::{TargetsError, parse_targets, read_targets};
 pub use varied::{Varied, VariedError};
 pub use written::{Inputs, arm_to_toml};

@@ -46,7 +46,7 @@ fn configuration() -> Configuration {
 fn the_document_of_an_answer() {
     let mut answer = configuration();
     let notes = [Note::from(&Warning::SealedCavity)];
-    let text = Solution::new(&answer, 0.75, &notes).to_json().unwrap();
+    let text = Solution::new(&answer, 0.75, &notes).to_json();
     assert!(!text.contains("NaN") && !text.contains('\n'));
     assert!(text.starts_with("{\"schema\":1,\"version\":\""));
     let got: Value = serde_json::from_str(&text).unwrap();
@@ -136,7 +136,7 @@ fn the_document_of_a_verdict() {
         spent: None,
     };
     let failure = NoEquilibrium { verdict: verdict.clone(), last_good: Some(configuration()) };
-    let text = Failure::new(&failure, 0.5, &[]).to_json().unwrap();
+    let text = Failure::new(&failure, 0.5, &[]).to_json();
     let got: Value = serde_json::from_str(&text).unwrap();
     assert_eq!((&got["schema"], &got["converged"]), (&json!(1), &json!(false)));
     assert_eq!(got["verdict"]["kind"], "cable_fold");

@@ -10,7 +10,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use hydrostat::{
     Arm, Followed, Follower, NoEquilibrium, Options, ReachError, ReachOptions, SolveError, Solver, Target, Tip,
 };
-use hydrostat_files::{ArmFile, Failure, Note, Solution};
+use hydrostat_files::{ArmFile, Failure, Note, Solution, json};
 use serde::{Deserialize, Serialize};
 use tokio::time::{sleep, timeout};
 
@@ -188,7 +188,7 @@ fn refusal(id: u64, problem: Problem, dropped: u64) -> String {
         dropped,
         microseconds: 0,
     };
-    serde_json::to_string(&reply).unwrap_or_default()
+    json(&reply)
 }
 
 impl Memory {
@@ -218,9 +218,9 @@ impl Memory {
                 reply.drawing = Some(Drawing::new(&shape));
                 reply.answer = Some(Answered::Shape(Box::new(Solution::new(&shape, margin, &notes))));
                 reply.microseconds = start.elapsed().as_micros();
-                serde_json::to_string(&reply).map_err(|_| Problem::defect())
+                Ok(json(&reply))
             }
-            Err(SolveError::NoEquilibrium(failure)) => without_shape(reply, *failure, count, start),
+            Err(SolveError::NoEquilibrium(failure)) => Ok(without_shape(reply, *failure, count, start)),
             Err(error) => Err(error.into()),
         }
     }
@@ -331,12 +331,7 @@ fn apart(at: [f64; 2], tip: Tip, length: f64) -> bool {
 }
 
 /// The verdict, with the last good shape to look at.
-fn without_shape(
-    mut reply: Reply<'_>,
-    mut failure: NoEquilibrium,
-    count: usize,
-    start: Instant,
-) -> Result<String, Problem> {
+fn without_shape(mut reply: Reply<'_>, mut failure: NoEquilibrium, count: usize, start: Instant) -> String {
     let notes = failure.last_good.as_ref().map(|c| Note::all(c, f64::INFINITY)).unwrap_or_default();
     let margin = failure.last_good.as_ref().map_or(f64::NAN, |c| c.fold_margin().value);
     if let Some(shape) = &mut failure.last_good {
@@ -354,7 +349,7 @@ fn without_shape(
         dropped,
         microseconds: start.elapsed().as_micros(),
     };
-    serde_json::to_string(&reply).map_err(|_| Problem::defect())
+    json(&reply)
 }
 
 #[cfg(test)]
