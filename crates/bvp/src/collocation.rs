@@ -7,8 +7,10 @@
 //! fast decaying solutions stable, where shooting from either end overflows.
 
 use crate::block::{Block, add_scaled, apply, inverse};
-use crate::carry::{Determinant, Product, Rows, Transition, multiply_by_determinant, reduce_on, reduce_on_largest};
-use crate::condense::{Stages, eliminate_in_order, eliminate_lane};
+use crate::carry::{
+    CarriedRows, Determinant, Product, Transition, multiply_by_determinant, reduce_on, reduce_on_largest,
+};
+use crate::condense::{Stages, eliminate, eliminate_in_order, eliminate_lane};
 use crate::gauss::Gauss;
 use crate::groups::Groups;
 use crate::mesh::Mesh;
@@ -49,7 +51,7 @@ pub struct Collocation<const N: usize, const M: usize, const Q: usize> {
     transitions: Vec<Transition<N>>,
     /// Memory of the elimination.
     scratch: Box<[[Block<N, Lanes>; M]; M]>,
-    rows: Vec<Rows<N>>,
+    rows: Vec<CarriedRows<N>>,
     right_count: usize,
     determinant: Determinant,
     /// Inverse of the left conditions joined with the rows at node 0.
@@ -122,6 +124,28 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     pub fn local(&self, i: usize, j: usize) -> Local<N, Q> {
         let (block, lane) = self.groups.at(i, j);
         self.locals[block].lane(lane)
+    }
+
+    /// How element `i` follows the state at its left node and `loads` on the slopes at its stages, at the last
+    /// [`Collocation::linearise`]: the stage slopes by that state, and those by each load in place of the load. `None` where its stages
+    /// cannot be eliminated.
+    #[inline(always)]
+    pub fn eliminate(&self, i: usize, loads: &mut [[[f64; N]; M]]) -> Option<[[[f64; N]; N]; M]> {
+        let (block, lane) = self.groups.at(i, 0);
+        let locals: [Local<N, Q>; M] = std::array::from_fn(|j| self.local(i, j));
+        let mut response = [[[0.0; N]; N]; M];
+        let h = self.steps[block / M].0[lane];
+        eliminate(h, &self.gauss, &locals, &mut response, loads).then_some(response)
+    }
+
+    /// The conditions at s = 1, carried to node `i` by the last [`Collocation::linearise`].
+    pub fn rows(&self, i: usize) -> &CarriedRows<N> {
+        &self.rows[i]
+    }
+
+    /// The state at s = 0 by what its conditions ask for, those of the problem there before the carried ones.
+    pub fn start(&self) -> &[[f64; N]; N] {
+        &self.start
     }
 
     /// Determinant at the last [`Collocation::linearise`].
@@ -306,7 +330,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         let left_count = problem.left_count();
         let right_count = N - left_count;
         self.right_count = right_count;
-        let blank = Rows { rows: [[0.0; N]; N], load: [[0.0; 2]; N], pivot: [0; N], reduction: [[0.0; N]; N] };
+        let blank = CarriedRows { rows: [[0.0; N]; N], load: [[0.0; 2]; N], pivot: [0; N], reduction: [[0.0; N]; N] };
         self.rows.resize(n + 1, blank);
         let mut determinant = Product::new();
 

@@ -13,6 +13,7 @@
 use hydrostat_bvp::{Collocation, Correction, Determinant, LANES, Lanes};
 
 use super::{Engine, Guess, M, Trouble, linearise, solve};
+use crate::elimination::solved;
 use crate::equilibrium::{Column, Equations, Held, N, Q, SectionFailure};
 
 /// What strokes may be off by (over L) before the last round, which leaves the square of that.
@@ -298,37 +299,6 @@ pub(crate) fn at_stations(
         }
     }
     out
-}
-
-/// A row of the small system: coefficients, and the two right sides.
-pub(crate) type Row = (Vec<f64>, [f64; 2]);
-
-/// Solves for both right sides, by elimination with row pivoting; with the determinant.
-pub(crate) fn solved(mut rows: Vec<Row>) -> Option<(Vec<[f64; 2]>, Determinant)> {
-    let n = rows.len();
-    let mut determinant = Determinant { sign: 1.0, log: 0.0 };
-    for k in 0..n {
-        let best = (k..n).max_by(|i, j| rows[*i].0[k].abs().total_cmp(&rows[*j].0[k].abs()))?;
-        if best != k {
-            rows.swap(k, best);
-            determinant.sign = -determinant.sign;
-        }
-        let pivot = rows[k].0[k];
-        if pivot == 0.0 || !pivot.is_finite() {
-            return None;
-        }
-        determinant.sign *= pivot.signum();
-        determinant.log += pivot.abs().ln();
-        let own = rows[k].clone();
-        for (i, row) in rows.iter_mut().enumerate() {
-            if i != k {
-                let factor = row.0[k] / pivot;
-                row.0.iter_mut().zip(&own.0).for_each(|(v, o)| *v -= factor * o);
-                row.1.iter_mut().zip(&own.1).for_each(|(v, o)| *v -= factor * o);
-            }
-        }
-    }
-    Some((rows.iter().enumerate().map(|(k, (row, right))| right.map(|v| v / row[k])).collect(), determinant))
 }
 
 #[cfg(test)]
