@@ -335,7 +335,7 @@ impl Configuration {
         let mut stations = Stations::default();
         stations.reserve(n + 1 + arm.cables.len());
         let mut extremes = Extremes { fold: FoldMargin { value: 1.0, s: 0.0 }, nu: 1.0, nu_at: 0.0 };
-        let (l, f) = (arm.length, dense.equations.units.force);
+        let (length, force) = (arm.length, dense.equations.units.force);
         let mut nodes = Vec::with_capacity(n + 1 + arm.cables.len());
         for i in 0..n {
             let s = mesh.nodes()[i];
@@ -346,7 +346,7 @@ impl Configuration {
         }
         nodes.push((n - 1, true));
         for (station, place) in dense.at_nodes(&nodes)? {
-            extremes.note(station.s, [station.nu, station.mu * l], station.beta * place.radius);
+            extremes.note(station.s, [station.nu, station.mu * length], station.beta * place.radius);
             stations.push(&station);
         }
 
@@ -359,18 +359,18 @@ impl Configuration {
         let (equations, groups) = (&dense.equations, dense.equations.groups());
         for block in 0..groups.count() * M {
             let strained = equations.strain_energy(block);
-            let weight = |i: usize| l * mesh.step(i) * engine.system.gauss.b[block % M];
+            let weight = |i: usize| length * mesh.step(i) * engine.system.gauss.b[block % M];
             let own = (0..groups.filled(block / M)).map(|lane| (lane, groups.element(block / M, lane)));
             for (lane, i) in own {
                 energy += weight(i) * strained.0[lane];
                 let (s, [nu, mu], half_width) = equations.stretched(block, lane);
-                extremes.note(s * l, [nu, mu], half_width);
+                extremes.note(s * length, [nu, mu], half_width);
             }
         }
         for (c, cable) in cables.iter_mut().enumerate() {
             let [now, unloaded] = equations.cable_lengths(c, &engine.system.gauss.b);
-            cable.length = l * now;
-            cable.stroke = l * (unloaded - now);
+            cable.length = length * now;
+            cable.stroke = length * (unloaded - now);
         }
 
         let taut = |c: usize| {
@@ -389,7 +389,10 @@ impl Configuration {
         let unmet = (arm.readings.support == Support::UnstrainedBase).then(|| {
             let end = dense.solution.nodes[n];
             let (load, _) = dense.equations.tip_load(end[0]);
-            Wrench { force: [f * (end[1] - load[0]), f * (end[2] - load[1])], moment: f * l * (end[3] - load[2]) }
+            Wrench {
+                force: [force * (end[1] - load[0]), force * (end[2] - load[1])],
+                moment: force * length * (end[3] - load[2]),
+            }
         });
         Ok(Self {
             arm,
@@ -401,7 +404,7 @@ impl Configuration {
             stable: None,
             statistics,
             extremes,
-            energy: energy * f,
+            energy: energy * force,
             dense,
         })
     }

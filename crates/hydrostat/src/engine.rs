@@ -261,8 +261,8 @@ impl Engine {
         let which = if self.equations.arm().readings.flow_surface == crate::FlowSurface::Lateral { 2 } else { 0 };
         (0..self.equations.stations().len())
             .min_by(|a, b| {
-                let v = |k: usize| self.equations.switch(k / M, k % M, which).abs();
-                v(*a).total_cmp(&v(*b))
+                let distance = |k: usize| self.equations.switch(k / M, k % M, which).abs();
+                distance(*a).total_cmp(&distance(*b))
             })
             .map(|k| self.equations.stations()[k])
     }

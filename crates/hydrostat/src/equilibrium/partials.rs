@@ -9,7 +9,7 @@ use hydrostat_bvp::{LANES, Lanes, Real, each};
 
 use super::few::Few;
 use super::gradients::slopes;
-use super::places::Place;
+use super::places::{Place, converted};
 use super::strains::Solved;
 use super::{Asked, Equations, N, Q};
 use crate::arm::Material;
@@ -277,12 +277,12 @@ impl Equations {
         if geometry.iter().all(|change| change.cable.is_some()) {
             return place;
         }
-        let l = self.units.length;
+        let length = self.units.length;
         let s = place.s.value;
-        let own = self.arm.radius.at(s * l, l);
+        let own = self.arm.radius.at(s * length, length);
         let mut radius = [Dual::fixed(own.value), Dual::fixed(own.slope)];
         for Geometry { way, change, .. } in geometry.iter().filter(|change| change.cable.is_none()) {
-            let change = change.at(s * l, l);
+            let change = change.at(s * length, length);
             radius[0].by.0[*way] = change.value;
             radius[1].by.0[*way] = change.slope;
         }
@@ -295,12 +295,12 @@ impl Equations {
         let own = &spot.cables[c].offset;
         let [y, slope, curvature] = [own.y, own.slope, own.curvature].map(Dual::fixed);
         let mut offset = Offset { y, slope, curvature };
-        let l = self.units.length;
+        let length = self.units.length;
         for Geometry { way, change, .. } in geometry.iter().filter(|change| change.cable == Some(c)) {
-            let change = change.at(spot.place.s * l, l);
-            offset.y.by.0[*way] = change.value / l;
+            let change = change.at(spot.place.s * length, length);
+            offset.y.by.0[*way] = change.value / length;
             offset.slope.by.0[*way] = change.slope;
-            offset.curvature.by.0[*way] = change.curvature * l;
+            offset.curvature.by.0[*way] = change.curvature * length;
         }
         offset
     }
@@ -452,29 +452,6 @@ impl Raw {
 #[inline(always)]
 fn fixed(place: &Place<f64>) -> Place<Dual> {
     converted(place, Dual::fixed)
-}
-
-#[inline(always)]
-fn converted<A: Copy, B>(place: &Place<A>, f: impl Fn(A) -> B) -> Place<B> {
-    let (s, b) = (&place.stiffness, &place.body);
-    Place {
-        s: f(place.s),
-        stiffness: Stiffness {
-            value: s.value.map(&f),
-            slope: s.slope.map(&f),
-            reference: s.reference.map(&f),
-            reference_slope: s.reference_slope.map(&f),
-        },
-        body: Body {
-            radius: f(b.radius),
-            radius_slope: f(b.radius_slope),
-            wetted: f(b.wetted),
-            weight: b.weight.map(&f),
-            displaced: b.displaced.map(&f),
-            force: b.force.map(&f),
-            couple: f(b.couple),
-        },
-    }
 }
 
 fn lane_of_cable(cable: &CableAt<Lanes>, lane: usize) -> CableAt<f64> {
