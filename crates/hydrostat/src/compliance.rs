@@ -73,44 +73,10 @@ impl Compliance {
     ) -> Option<Self> {
         let n = mesh.elements();
         let columns = FIELDS * functions;
-        let mut basis = vec![[[0.0; M]; 2]; n * functions];
-        let mut elements = Vec::with_capacity(n);
-        for i in 0..n {
-            let (start, h) = (mesh.nodes()[i], mesh.step(i));
-            for j in 0..M {
-                let own = &mut basis[i * functions..(i + 1) * functions];
-                polynomials(
-                    start + h * system.gauss.c[j],
-                    |k, value, rest| {
-                        own[k][0][j] = value;
-                        own[k][1][j] = rest;
-                    },
-                    functions,
-                );
-            }
-            elements.push(Element::new(system, i, h, cables)?);
-        }
+        let basis = basis(&system.gauss, mesh, functions);
         let basis_of = |i: usize| &basis[i * functions..(i + 1) * functions];
-
-        // From the tip, which has no loads of its own: those of the rows that every state meets.
-        let mut loads = vec![0.0; (n + 1) * RIGHT * columns];
-        let mut carried = vec![0.0; RIGHT * columns];
-        for i in (0..n).rev() {
-            let (own, next) = loads[i * RIGHT * columns..(i + 2) * RIGHT * columns].split_at_mut(RIGHT * columns);
-            carried.copy_from_slice(next);
-            for (row, carried) in system.rows(i + 1).rows[..RIGHT].iter().zip(carried.chunks_exact_mut(columns)) {
-                let mut by = [0.0; GIVEN];
-                for (factor, end) in row.iter().zip(&elements[i].end) {
-                    for (by, end) in by.iter_mut().zip(end) {
-                        *by += factor * end;
-                    }
-                }
-                add_loads(&by, -1.0, basis_of(i), carried);
-            }
-            for (own, by) in own.chunks_exact_mut(columns).zip(&system.rows(i).reduction) {
-                add_rows(&by[..RIGHT], &carried, own);
-            }
-        }
+        let elements = (0..n).map(|i| Element::new(system, i, mesh.step(i), cables)).collect::<Option<Vec<_>>>()?;
+        let loads = row_loads(system, &elements, &basis, functions);
 
         // From the base: theta(0) = 0 and the rows there.
         let mut state = vec![0.0; N * columns];
@@ -206,6 +172,57 @@ pub(crate) fn project(
         }
     }
     out
+}
+
+/// The polynomials and their integrals to the tip at the stages of every element, element by element.
+#[inline(always)]
+fn basis(gauss: &Gauss<M>, mesh: &Mesh, functions: usize) -> Vec<[[f64; M]; 2]> {
+    let mut out = vec![[[0.0; M]; 2]; mesh.elements() * functions];
+    for (i, own) in out.chunks_exact_mut(functions).enumerate() {
+        for j in 0..M {
+            polynomials(
+                mesh.nodes()[i] + mesh.step(i) * gauss.c[j],
+                |k, value, rest| {
+                    own[k][0][j] = value;
+                    own[k][1][j] = rest;
+                },
+                functions,
+            );
+        }
+    }
+    out
+}
+
+/// What the rows at every node, which every state meets, ask for under each polynomial: carried from the tip, which has no
+/// loads of its own.
+#[inline(always)]
+fn row_loads(
+    system: &Collocation<N, M, Q>,
+    elements: &[Element],
+    basis: &[[[f64; M]; 2]],
+    functions: usize,
+) -> Vec<f64> {
+    let (n, columns) = (elements.len(), FIELDS * functions);
+    let size = RIGHT * columns;
+    let mut loads = vec![0.0; (n + 1) * size];
+    let mut carried = vec![0.0; size];
+    for i in (0..n).rev() {
+        let (own, next) = loads[i * size..(i + 2) * size].split_at_mut(size);
+        carried.copy_from_slice(next);
+        for (row, carried) in system.rows(i + 1).rows[..RIGHT].iter().zip(carried.chunks_exact_mut(columns)) {
+            let mut by = [0.0; GIVEN];
+            for (factor, end) in row.iter().zip(&elements[i].end) {
+                for (by, end) in by.iter_mut().zip(end) {
+                    *by += factor * end;
+                }
+            }
+            add_loads(&by, -1.0, &basis[i * functions..(i + 1) * functions], carried);
+        }
+        for (own, by) in own.chunks_exact_mut(columns).zip(&system.rows(i).reduction) {
+            add_rows(&by[..RIGHT], &carried, own);
+        }
+    }
+    loads
 }
 
 /// `out += by rows`, the rows being as long as `out`.
