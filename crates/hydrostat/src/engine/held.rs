@@ -12,6 +12,7 @@
 
 use hydrostat_bvp::{Collocation, Correction, Determinant, LANES, Lanes};
 
+use super::newton::add_to_spans;
 use super::{Engine, Guess, M, Trouble, linearise, solve};
 use crate::elimination::solved;
 use crate::equilibrium::{Column, Equations, Held, N, Q, SectionFailure};
@@ -186,11 +187,7 @@ impl Engine {
             }
             if done || last || (count >= MORE && size > 3.0) {
                 self.system.quadratures(&mut self.spans);
-                for (span, change) in self.spans.iter_mut().zip(&round.rest.by_element) {
-                    for q in 0..Q {
-                        span[q] += change[q];
-                    }
-                }
+                add_to_spans(&mut self.spans, &round.rest.by_element);
                 return if done { Ok(()) } else { Err(Trouble::Stalled(size.max(round.off))) };
             }
         }

@@ -76,16 +76,7 @@ struct Ramp<'e> {
 
 impl Ramp<'_> {
     fn follow(&mut self, pace: Pace, travelled: &mut Travelled) -> Result<(), Verdict> {
-        let kept = (self.phase == Phase::Stroke).then(|| self.stepper.engine.state());
-        let Ok(mut here) = self.start() else {
-            if let Some(kept) = kept {
-                self.stepper.engine.restore(&kept);
-                if self.stepper.nothing_reels_in() {
-                    return Err(self.end(VerdictKind::LimitPoint, 0.0, None));
-                }
-            }
-            return Err(self.never_started());
-        };
+        let mut here = self.start_or_verdict()?;
         // Which side of zero the determinant is on is a matter of the branch, which way is up is not.
         if here.rise < 0.0 {
             self.stepper.orientation = -self.stepper.orientation;
@@ -109,22 +100,7 @@ impl Ramp<'_> {
                     step = SHARP_STEP;
                     continue;
                 }
-                let residual = self.stepper.engine.last;
-                self.stepper.engine.restore(&here.state);
-                // Two branches of opposite orientation end where they meet: the path turns back in a corner
-                // that the load's kinks make.
-                if self.stepper.opposite.is_some_and(|f| (f - here.fraction).abs() < MEET) {
-                    return Err(self.end(VerdictKind::LimitPoint, here.fraction, None));
-                }
-                let (kind, s) = self.stepper.name_limit(here.fraction, residual);
-                let end = self.end(kind, here.fraction, s);
-                // Towards a fold the square of the climb falls to zero linearly in the load.
-                let fall = steeper.1.powi(2) - here.rise.powi(2);
-                let ahead = (here.fraction - steeper.0) * here.rise.powi(2) / fall;
-                if kind == VerdictKind::NotFound && here.rise < 0.1 && fall > 0.0 && ahead < 1e-3 {
-                    return Err(self.end(VerdictKind::LimitPoint, here.fraction + ahead, None));
-                }
-                return Err(end);
+                return Err(self.stuck(&here, steeper));
             }
             match self.stepper.advance_to_contact(&here, step, pace) {
                 Ok((mut next, turn, contact)) => {
@@ -170,6 +146,40 @@ impl Ramp<'_> {
             }
         }
         unreachable!("the loop returns when its attempts are used up")
+    }
+
+    /// [`Ramp::start`], or why there is no such point.
+    fn start_or_verdict(&mut self) -> Result<Point, Verdict> {
+        let kept = (self.phase == Phase::Stroke).then(|| self.stepper.engine.state());
+        self.start().map_err(|_| {
+            if let Some(kept) = kept {
+                self.stepper.engine.restore(&kept);
+                if self.stepper.nothing_reels_in() {
+                    return self.end(VerdictKind::LimitPoint, 0.0, None);
+                }
+            }
+            self.never_started()
+        })
+    }
+
+    /// Why no step leads on from `here`, given fraction and rise of a point before it whose tangent climbed clearly more.
+    fn stuck(&mut self, here: &Point, steeper: (f64, f64)) -> Verdict {
+        let residual = self.stepper.engine.last;
+        self.stepper.engine.restore(&here.state);
+        // Two branches of opposite orientation end where they meet: the path turns back in a corner
+        // that the load's kinks make.
+        if self.stepper.opposite.is_some_and(|fraction| (fraction - here.fraction).abs() < MEET) {
+            return self.end(VerdictKind::LimitPoint, here.fraction, None);
+        }
+        let (kind, s) = self.stepper.name_limit(here.fraction, residual);
+        let end = self.end(kind, here.fraction, s);
+        // Towards a fold the square of the climb falls to zero linearly in the load.
+        let fall = steeper.1.powi(2) - here.rise.powi(2);
+        let ahead = (here.fraction - steeper.0) * here.rise.powi(2) / fall;
+        if kind == VerdictKind::NotFound && here.rise < 0.1 && fall > 0.0 && ahead < 1e-3 {
+            return self.end(VerdictKind::LimitPoint, here.fraction + ahead, None);
+        }
+        end
     }
 
     /// The point that a phase starts from. An arm that lies in the stream, or along another load, has tiny angles to it whose
