@@ -24,7 +24,7 @@ use crate::equilibrium::{Asked, AtPlace, Equations, N, Nearness, Q, SectionFailu
 use crate::verdict::Phase;
 
 pub(crate) use self::budget::WORK;
-pub(crate) use self::held::{Pulled, Round, at_stations, pull_taut};
+pub(crate) use self::held::{Round, UnitPull, at_stations, pull_taut};
 pub(crate) use self::rounds::{evaluate, linearise, solve};
 pub(crate) use self::settle::First;
 

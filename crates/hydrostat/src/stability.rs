@@ -33,7 +33,7 @@ use crate::configuration::Configuration;
 use crate::dense::Dense;
 use crate::dispatch::widest;
 use crate::elimination::solved;
-use crate::engine::{M, Pulled, at_stations, linearise, pull_taut, solve};
+use crate::engine::{M, UnitPull, at_stations, linearise, pull_taut, solve};
 use crate::equilibrium::{Equations, N, Q};
 use crate::readings::Support;
 use crate::verdict::Phase;
@@ -307,7 +307,7 @@ impl Tangent {
     }
 
     /// Projection of what a unit of tension moves.
-    fn motion(&self, pulled: &Pulled, functions: usize) -> Vec<f64> {
+    fn motion(&self, pulled: &UnitPull, functions: usize) -> Vec<f64> {
         let Self { equations, system, solution, .. } = self;
         let moved = at_stations(equations, system, solution, &pulled.response);
         project(&system.gauss, &solution.mesh, functions, |i, j| {

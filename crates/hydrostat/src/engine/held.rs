@@ -233,7 +233,7 @@ impl Engine {
 
 /// What a unit of tension of a taut cable does at a fixed tension of all others.
 #[derive(Debug)]
-pub(crate) struct Pulled {
+pub(crate) struct UnitPull {
     /// To the state.
     pub(crate) response: Correction<N, M, Q>,
     /// To the strokes of all commanded cables, over L.
@@ -248,7 +248,7 @@ pub(crate) fn pull_taut(
     system: &mut Collocation<N, M, Q>,
     solution: &Guess,
     held: &Held,
-) -> Result<Vec<Pulled>, Trouble> {
+) -> Result<Vec<UnitPull>, Trouble> {
     let mut out = Vec::new();
     for index in held.tight() {
         let cable = held.cables[index];
@@ -260,7 +260,7 @@ pub(crate) fn pull_taut(
         solve(system, solution, 1, &mut response);
         let mut strokes = stroke_changes(equations, system, solution, held, &response, true);
         strokes[index] += equations.stroke(cable, &system.gauss.b)[2];
-        out.push(Pulled { response, strokes, column: equations.column.clone() });
+        out.push(UnitPull { response, strokes, column: equations.column.clone() });
     }
     Ok(out)
 }

@@ -10,7 +10,7 @@
 use std::f64::consts::TAU;
 
 use super::Pace;
-use super::stepper::{Along, Load, Point, Stepper, Turn};
+use super::stepper::{Along, Fraction, Point, Stepper, Turn};
 use crate::arm::Arm;
 use crate::configuration::Configuration;
 use crate::engine::{Engine, First, Trouble};
@@ -176,7 +176,7 @@ fn follow(
     let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
     let mut stepper = Stepper::new(engine, Along::Range, unbounded);
     let begun =
-        stepper.keep_accuracy(None, &mut Load::Fixed(0.0), [PACE.accuracy; 2]).and_then(|()| stepper.point(0.0));
+        stepper.keep_accuracy(None, &mut Fraction::Fixed(0.0), [PACE.accuracy; 2]).and_then(|()| stepper.point(0.0));
     let Ok(mut here) = begun else { return Some(PathEnd::Limit { kind: VerdictKind::NotFound, s: None }) };
     let first = tip_angle(&here);
     if side > 0.0 {

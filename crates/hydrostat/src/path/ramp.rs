@@ -2,7 +2,7 @@
 //! `docs/model.md`).
 
 use super::contact::Contact;
-use super::stepper::{Along, Load, Point, Stepper, Turn};
+use super::stepper::{Along, Fraction, Point, Stepper, Turn};
 use super::{LOOSE, MEET, Pace, START, Travelled};
 use crate::engine::{Engine, First, Trouble, roughly};
 use crate::verdict::{Phase, Verdict, VerdictKind};
@@ -202,7 +202,7 @@ impl Ramp<'_> {
         let careful = !self.stepper.engine.in_a_hurry || self.stepper.engine.is_in_line();
         let accuracies: &[f64] = if careful { &[1e-5, 1e-6, 1e-7] } else { &[1e-5] };
         let refined = accuracies.iter().all(|accuracy| {
-            self.stepper.or_back(|this| this.keep_accuracy(None, &mut Load::Fixed(fraction), [*accuracy, LOOSE]))
+            self.stepper.or_back(|this| this.keep_accuracy(None, &mut Fraction::Fixed(fraction), [*accuracy, LOOSE]))
         });
         if refined && careful {
             self.stepper.or_back(|this| this.engine.settle(1e-8, First::Warm).map(|_| ()));

@@ -2,7 +2,7 @@
 
 use super::Pace;
 use super::contact::Contact;
-use super::stepper::{Along, Load, Point, Stepper, Turn};
+use super::stepper::{Along, Fraction, Point, Stepper, Turn};
 use crate::arm::Arm;
 use crate::configuration::Configuration;
 use crate::engine::{Engine, Trouble};
@@ -338,7 +338,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             engine.newton(1e-9, 12)?;
         }
         let tol = self.pace.accuracy;
-        self.stepper.keep_accuracy(None, &mut Load::Fixed(0.0), [tol, tol])?;
+        self.stepper.keep_accuracy(None, &mut Fraction::Fixed(0.0), [tol, tol])?;
         self.stepper.first_contacts(0.0)
     }
 
