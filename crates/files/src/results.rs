@@ -14,7 +14,7 @@ pub const SCHEMA: u32 = 1;
 
 /// The document of an equilibrium that was found.
 #[derive(Debug, Clone, Serialize)]
-pub struct Solution<'a> {
+pub struct SolutionDocument<'a> {
     schema: u32,
     version: &'static str,
     converged: bool,
@@ -34,12 +34,12 @@ pub struct Solution<'a> {
 
 /// The document of a solve without an answer.
 #[derive(Debug, Clone, Serialize)]
-pub struct Failure<'a> {
+pub struct FailureDocument<'a> {
     schema: u32,
     version: &'static str,
     converged: bool,
     verdict: VerdictOut,
-    last_good: Option<Solution<'a>>,
+    last_good: Option<SolutionDocument<'a>>,
 }
 
 /// Something that should be known about an answer.
@@ -188,7 +188,7 @@ impl From<&Verdict> for VerdictOut {
     }
 }
 
-impl<'a> Solution<'a> {
+impl<'a> SolutionDocument<'a> {
     /// Of a configuration with its `fold_margin` (the least (nu - beta R |mu|)/nu) and the notes on it.
     pub fn new(configuration: &'a Configuration, fold_margin: f64, notes: &'a [Note]) -> Self {
         let Configuration { arm, stations: s, base_reaction, unmet, error_estimate, stable, statistics, .. } =
@@ -238,7 +238,7 @@ impl<'a> Solution<'a> {
     }
 }
 
-impl<'a> Failure<'a> {
+impl<'a> FailureDocument<'a> {
     /// Of a verdict, with the fold margin of its last good configuration and the notes on it (not used
     /// if there is none).
     pub fn new(failure: &'a NoEquilibrium, fold_margin: f64, notes: &'a [Note]) -> Self {
@@ -247,7 +247,7 @@ impl<'a> Failure<'a> {
             version: env!("CARGO_PKG_VERSION"),
             converged: false,
             verdict: (&failure.verdict).into(),
-            last_good: failure.last_good.as_ref().map(|c| Solution::new(c, fold_margin, notes)),
+            last_good: failure.last_good.as_ref().map(|c| SolutionDocument::new(c, fold_margin, notes)),
         }
     }
 

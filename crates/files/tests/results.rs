@@ -8,7 +8,8 @@ use hydrostat::{
     Warning, Wrench,
 };
 use hydrostat_files::{
-    ArmFile, Failure, Note, Others, Solution, remove_leftovers, stations_csv, write_whole, write_whole_with,
+    ArmFile, FailureDocument, Note, Others, SolutionDocument, remove_leftovers, stations_csv, write_whole,
+    write_whole_with,
 };
 use serde_json::{Value, json};
 
@@ -46,7 +47,7 @@ fn configuration() -> Configuration {
 fn the_document_of_an_answer() {
     let mut answer = configuration();
     let notes = [Note::from(&Warning::SealedCavity)];
-    let text = Solution::new(&answer, 0.75, &notes).to_json();
+    let text = SolutionDocument::new(&answer, 0.75, &notes).to_json();
     assert!(!text.contains("NaN") && !text.contains('\n'));
     assert!(text.starts_with("{\"schema\":1,\"version\":\""));
     let got: Value = serde_json::from_str(&text).unwrap();
@@ -82,7 +83,7 @@ fn the_document_of_an_answer() {
     assert_eq!(got["inputs"]["arm"]["base"]["angle"], json!(30.0));
 
     answer.unmet = Some(Wrench { force: [0.0, 0.5], moment: 0.25 });
-    let got = serde_json::to_value(Solution::new(&answer, -0.1, &[])).unwrap();
+    let got = serde_json::to_value(SolutionDocument::new(&answer, -0.1, &[])).unwrap();
     assert_eq!((&got["stable"], &got["warnings"]), (&json!(true), &json!([])));
     assert_eq!(got["unmet"], json!({ "force": [0.0, 0.5], "moment": 0.25 }));
 }
@@ -91,7 +92,7 @@ fn the_document_of_an_answer() {
 fn what_is_said_of_stability() {
     let stable = |load: f64| {
         let solved = hydrostat::cases::column(1e6, 3e5, load, 0.0).solve().unwrap();
-        serde_json::to_value(Solution::new(&solved, 1.0, &[])).unwrap()["stable"].clone()
+        serde_json::to_value(SolutionDocument::new(&solved, 1.0, &[])).unwrap()["stable"].clone()
     };
     let critical = hydrostat::cases::column_buckling_load(1e6, 3e5).unwrap();
     assert_eq!([0.9, 1.0, 1.1].map(|share| stable(share * critical)), [json!(true), Value::Null, json!(false)]);
@@ -115,7 +116,7 @@ fn a_tolerance_that_was_missed_is_noted() {
 #[test]
 fn inputs_read_back_as_an_arm() {
     let answer = configuration();
-    let document = serde_json::to_value(Solution::new(&answer, 1.0, &[])).unwrap();
+    let document = serde_json::to_value(SolutionDocument::new(&answer, 1.0, &[])).unwrap();
     // The keys of the arm file are set one by one: JSON's numbers and strings are TOML's.
     let mut file = ArmFile::parse("", "x").unwrap();
     for (table, keys) in document["inputs"].as_object().unwrap() {
@@ -136,7 +137,7 @@ fn the_document_of_a_verdict() {
         spent: None,
     };
     let failure = NoEquilibrium { verdict: verdict.clone(), last_good: Some(configuration()) };
-    let text = Failure::new(&failure, 0.5, &[]).to_json();
+    let text = FailureDocument::new(&failure, 0.5, &[]).to_json();
     let got: Value = serde_json::from_str(&text).unwrap();
     assert_eq!((&got["schema"], &got["converged"]), (&json!(1), &json!(false)));
     assert_eq!(got["verdict"]["kind"], "cable_fold");
@@ -151,11 +152,11 @@ fn the_document_of_a_verdict() {
 
     assert_eq!(got["verdict"]["other_equilibria"], Value::Null);
     let others = Others { count: 9, stable: 2, complete: true };
-    let with = serde_json::to_value(Failure::new(&failure, 0.5, &[]).with_others(Some(others))).unwrap();
+    let with = serde_json::to_value(FailureDocument::new(&failure, 0.5, &[]).with_others(Some(others))).unwrap();
     assert_eq!(with["verdict"]["other_equilibria"], json!({ "count": 9, "stable": 2, "complete": true }));
 
     let nothing = NoEquilibrium { verdict, last_good: None };
-    assert_eq!(serde_json::to_value(Failure::new(&nothing, 0.0, &[])).unwrap()["last_good"], Value::Null);
+    assert_eq!(serde_json::to_value(FailureDocument::new(&nothing, 0.0, &[])).unwrap()["last_good"], Value::Null);
 }
 
 #[test]

@@ -217,7 +217,7 @@ impl Solution {
     fn to_json(&self) -> String {
         let notes = Note::all(&self.configuration, self.tol);
         let margin = self.configuration.fold_margin().value;
-        hydrostat_files::Solution::new(&self.configuration, margin, &notes).to_json()
+        hydrostat_files::SolutionDocument::new(&self.configuration, margin, &notes).to_json()
     }
 
     /// The stations as CSV.

@@ -8,8 +8,8 @@ use hydrostat_figures::{
     Abscissa, Quantity, Scene, arm_figure, equilibria_figure, last_good_note, path_figure, reach_figure,
 };
 use hydrostat_files::{
-    Dimension, EquilibriaDocument, Failure, Inputs, Note, Others, PathDocument, ReachDocument, Solution, Varied,
-    arm_to_toml, equilibria_csv, path_csv, reach_csv, shipped, stations_csv,
+    Dimension, EquilibriaDocument, FailureDocument, Inputs, Note, Others, PathDocument, ReachDocument,
+    SolutionDocument, Varied, arm_to_toml, equilibria_csv, path_csv, reach_csv, shipped, stations_csv,
 };
 use serde::Serialize;
 use serde_json::json;
@@ -111,7 +111,7 @@ pub(crate) fn solve(request: &SolveRequest, deadline: Deadline) -> Result<Answer
             }
             match request.format {
                 Format::Csv => Ok(Answer::csv(stations_csv(&configuration.stations))),
-                _ => Ok(Answer::json(&Solution::new(&configuration, margin, &notes))),
+                _ => Ok(Answer::json(&SolutionDocument::new(&configuration, margin, &notes))),
             }
         }
         Err(SolveError::NoEquilibrium(failure)) => no_shape(request, &arm, *failure, stations, deadline),
@@ -153,7 +153,7 @@ fn no_shape(
                 shape.stations = shape.resampled(stations);
             }
             let others = others(arm, failure.verdict.kind, deadline);
-            Ok(Answer::json(&Failure::new(&failure, margin, &notes).with_others(others)))
+            Ok(Answer::json(&FailureDocument::new(&failure, margin, &notes).with_others(others)))
         }
     }
 }

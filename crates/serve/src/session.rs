@@ -10,7 +10,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use hydrostat::{
     Arm, Followed, Follower, NoEquilibrium, Options, ReachError, ReachOptions, SolveError, Solver, Target, Tip,
 };
-use hydrostat_files::{ArmFile, Failure, Note, Solution, json};
+use hydrostat_files::{ArmFile, FailureDocument, Note, SolutionDocument, json};
 use serde::{Deserialize, Serialize};
 use tokio::time::{sleep, timeout};
 
@@ -56,8 +56,8 @@ struct Wish {
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Answered<'a> {
-    Shape(Box<Solution<'a>>),
-    None(Box<Failure<'a>>),
+    Shape(Box<SolutionDocument<'a>>),
+    None(Box<FailureDocument<'a>>),
 }
 
 /// Where the tip was pulled to.
@@ -216,7 +216,7 @@ impl Memory {
                 let margin = shape.fold_margin().value;
                 shape.stations = shape.resampled(count);
                 reply.drawing = Some(Drawing::new(&shape));
-                reply.answer = Some(Answered::Shape(Box::new(Solution::new(&shape, margin, &notes))));
+                reply.answer = Some(Answered::Shape(Box::new(SolutionDocument::new(&shape, margin, &notes))));
                 reply.microseconds = start.elapsed().as_micros();
                 Ok(json(&reply))
             }
@@ -341,7 +341,7 @@ fn without_shape(mut reply: Reply<'_>, mut failure: NoEquilibrium, count: usize,
     let Reply { id, drawing, ghost, pulled, dropped, .. } = reply;
     let reply = Reply {
         id,
-        answer: Some(Answered::None(Box::new(Failure::new(&failure, margin, &notes)))),
+        answer: Some(Answered::None(Box::new(FailureDocument::new(&failure, margin, &notes)))),
         drawing,
         ghost,
         pulled,
