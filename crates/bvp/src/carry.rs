@@ -10,15 +10,18 @@ pub(crate) struct Transition<const N: usize> {
     pub(crate) affine: [[f64; N]; 2],
 }
 
-/// The right conditions carried to a node, reduced: `z[pivot[r]] + sum_free rows[r][free] z[free] = load[r]`.
+/// The right conditions carried to a node, reduced: `z[pivot[r]] + sum_free rows[r][free] z[free] = load[r]`. There are as many as
+/// the problem has conditions at s = 1; what stands behind these means nothing.
 #[derive(Debug, Clone, Copy)]
 #[allow(clippy::struct_field_names, reason = "the rows are what the struct is named for")]
-pub(crate) struct Rows<const N: usize> {
-    pub(crate) rows: Block<N>,
+pub struct CarriedRows<const N: usize> {
+    /// One in the column of the pivot, zero in those of other pivots.
+    pub rows: [[f64; N]; N],
+    /// The component of the state that each decides.
+    pub pivot: [usize; N],
+    /// Reduced = `reduction` times carried: for the adjoint, and for loads that come later.
+    pub reduction: [[f64; N]; N],
     pub(crate) load: [[f64; 2]; N],
-    pub(crate) pivot: [usize; N],
-    /// Reduced = `reduction` times carried; kept for the adjoint.
-    pub(crate) reduction: Block<N>,
 }
 
 /// The sign and size of the determinant of the shooting matrix: of the conditions at s = 1 by the
@@ -74,7 +77,7 @@ impl Product {
     }
 }
 
-impl<const N: usize> Rows<N> {
+impl<const N: usize> CarriedRows<N> {
     /// Takes the first `count` rows of the `next` node through the transition that leads there.
     #[inline(always)]
     pub(crate) fn carry<const FUSED: bool>(&mut self, next: &Self, transition: &Transition<N>, count: usize) {
@@ -102,7 +105,7 @@ const LARGEST_FREE: f64 = 8.0;
 /// entry comes out large.
 #[inline(always)]
 pub(crate) fn reduce_on<const FUSED: bool, const N: usize>(
-    c: &mut Rows<N>,
+    c: &mut CarriedRows<N>,
     count: usize,
     determinant: &mut Product,
 ) -> bool {
@@ -141,7 +144,7 @@ pub(crate) fn reduce_on<const FUSED: bool, const N: usize>(
 /// Scales row `r` to one in `column` and clears that column in the other rows.
 #[inline(always)]
 fn eliminate_column<const FUSED: bool, const N: usize>(
-    c: &mut Rows<N>,
+    c: &mut CarriedRows<N>,
     count: usize,
     r: usize,
     column: usize,
@@ -174,7 +177,11 @@ fn eliminate_column<const FUSED: bool, const N: usize>(
 /// column is divided by something small; false where the rows are singular.
 #[cold]
 #[inline(never)]
-pub(crate) fn reduce_on_largest<const N: usize>(c: &mut Rows<N>, count: usize, determinant: &mut Product) -> bool {
+pub(crate) fn reduce_on_largest<const N: usize>(
+    c: &mut CarriedRows<N>,
+    count: usize,
+    determinant: &mut Product,
+) -> bool {
     for r in 0..N {
         c.reduction[r] = [0.0; N];
         c.reduction[r][r] = 1.0;

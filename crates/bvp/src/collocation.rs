@@ -7,8 +7,10 @@
 //! fast decaying solutions stable, where shooting from either end overflows.
 
 use crate::block::{Block, add_scaled, apply, inverse};
-use crate::carry::{Determinant, Product, Rows, Transition, multiply_by_determinant, reduce_on, reduce_on_largest};
-use crate::condense::{Stages, eliminate_in_order, eliminate_lane};
+use crate::carry::{
+    CarriedRows, Determinant, Product, Transition, multiply_by_determinant, reduce_on, reduce_on_largest,
+};
+use crate::condense::{Stages, eliminate, eliminate_in_order, eliminate_lane};
 use crate::gauss::Gauss;
 use crate::groups::Groups;
 use crate::mesh::Mesh;
@@ -49,7 +51,7 @@ pub struct Collocation<const N: usize, const M: usize, const Q: usize> {
     transitions: Vec<Transition<N>>,
     /// Memory of the elimination.
     scratch: Box<[[Block<N, Lanes>; M]; M]>,
-    rows: Vec<Rows<N>>,
+    rows: Vec<CarriedRows<N>>,
     right_count: usize,
     determinant: Determinant,
     /// Inverse of the left conditions joined with the rows at node 0.
@@ -122,6 +124,28 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     pub fn local(&self, i: usize, j: usize) -> Local<N, Q> {
         let (block, lane) = self.groups.at(i, j);
         self.locals[block].lane(lane)
+    }
+
+    /// How element `i` follows the state at its left node and `loads` on the slopes at its stages, at the last
+    /// [`Collocation::linearise`]: the stage slopes by that state, and those by each load in place of the load. `None` where its stages
+    /// cannot be eliminated.
+    #[inline(always)]
+    pub fn eliminate(&self, i: usize, loads: &mut [[[f64; N]; M]]) -> Option<[[[f64; N]; N]; M]> {
+        let (block, lane) = self.groups.at(i, 0);
+        let locals: [Local<N, Q>; M] = std::array::from_fn(|j| self.local(i, j));
+        let mut response = [[[0.0; N]; N]; M];
+        let h = self.steps[block / M].0[lane];
+        eliminate(h, &self.gauss, &locals, &mut response, loads).then_some(response)
+    }
+
+    /// The conditions at s = 1, carried to node `i` by the last [`Collocation::linearise`].
+    pub fn rows(&self, i: usize) -> &CarriedRows<N> {
+        &self.rows[i]
+    }
+
+    /// The state at s = 0 by what its conditions ask for, those of the problem there before the carried ones.
+    pub fn start(&self) -> &[[f64; N]; N] {
+        &self.start
     }
 
     /// Determinant at the last [`Collocation::linearise`].
@@ -306,7 +330,7 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
         let left_count = problem.left_count();
         let right_count = N - left_count;
         self.right_count = right_count;
-        let blank = Rows { rows: [[0.0; N]; N], load: [[0.0; 2]; N], pivot: [0; N], reduction: [[0.0; N]; N] };
+        let blank = CarriedRows { rows: [[0.0; N]; N], load: [[0.0; 2]; N], pivot: [0; N], reduction: [[0.0; N]; N] };
         self.rows.resize(n + 1, blank);
         let mut determinant = Product::new();
 
@@ -351,20 +375,26 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     #[inline(always)]
     pub fn solve(&self, solution: &Solution<N, M>, column: usize, out: &mut Correction<N, M, Q>) {
         let n = solution.mesh.elements();
-        let left_count = N - self.right_count;
         out.nodes.resize(n + 1, [0.0; N]);
         out.slopes.resize(n, [[0.0; N]; M]);
         out.by_element.resize(n, [0.0; Q]);
+        self.solve_nodes(column, &mut out.nodes);
+        self.solve_stages(column, out);
+    }
+
+    /// The changes of the states at the nodes, from s = 0 on.
+    #[inline(always)]
+    fn solve_nodes(&self, column: usize, nodes: &mut [[f64; N]]) {
+        let left_count = N - self.right_count;
         let mut load = [0.0; N];
         for r in 0..N {
             load[r] =
                 if r < left_count { self.left_load[r][column] } else { self.rows[0].load[r - left_count][column] };
         }
-        out.nodes[0] = apply(&self.start, &load);
-        out.total = [0.0; Q];
-        for i in 0..n {
+        nodes[0] = apply(&self.start, &load);
+        for i in 0..self.groups.elements {
             let element = &self.transitions[i];
-            let mut next = apply(&element.by_state, &out.nodes[i]);
+            let mut next = apply(&element.by_state, &nodes[i]);
             for a in 0..N {
                 next[a] += element.affine[column][a];
             }
@@ -385,9 +415,15 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
             for r in 0..self.right_count {
                 next[rows.pivot[r]] = pivots[r];
             }
-            out.nodes[i + 1] = next;
+            nodes[i + 1] = next;
         }
+    }
+
+    /// The changes of the stage slopes and of the quadratures, given those at the nodes.
+    #[inline(always)]
+    fn solve_stages(&self, column: usize, out: &mut Correction<N, M, Q>) {
         let groups = self.groups;
+        out.total = [0.0; Q];
         for g in 0..groups.count() {
             let (h, stages) = (self.steps[g], &self.stages[g]);
             let mut z = [Lanes::of(0.0); N];
@@ -477,99 +513,113 @@ impl<const N: usize, const M: usize, const Q: usize> Collocation<N, M, Q> {
     /// the change of each element's own quadratures against `before`.
     #[inline(always)]
     pub fn contributions(&mut self, before: &[[f64; Q]], out: &mut Vec<f64>) {
-        let groups = self.groups;
-        let n = groups.elements;
+        let n = self.groups.elements;
         out.clear();
         out.resize(n, 0.0);
-        let nr = self.right_count;
-        let nl = N - nr;
-        let Adjoint { by_affine, by_rows, by_node } = &mut self.adjoint;
         for q in 0..Q {
-            for (v, length) in [(&mut *by_affine, n), (&mut *by_rows, n + 1), (&mut *by_node, n + 1)] {
+            let Adjoint { by_affine, by_rows, by_node } = &mut self.adjoint;
+            for (v, length) in [(by_affine, n), (by_rows, n + 1), (by_node, n + 1)] {
                 v.clear();
                 v.resize(length, [0.0; N]);
             }
-            for g in 0..groups.count() {
-                let (stages, h) = (&self.stages[g], self.steps[g]);
-                let mut own = Lanes::of(0.0);
-                let mut by_z = [Lanes::of(0.0); N];
-                let mut by_slopes = [[Lanes::of(0.0); N]; M];
-                for j in 0..M {
-                    let weight = h * Lanes::of(self.gauss.b[j]);
-                    let local = &self.locals[g * M + j];
-                    own += weight * local.rate[q];
-                    let mut gradient = local.rate_gradient[q];
-                    for a in 0..N {
-                        gradient[a] = gradient[a] * weight;
-                        by_z[a] += gradient[a];
-                    }
-                    for l in 0..M {
-                        let w = h * Lanes::of(self.gauss.a[j][l]);
-                        for a in 0..N {
-                            by_slopes[l][a] += w * gradient[a];
-                        }
-                    }
+            self.weigh_elements(q, before, out);
+            self.weigh_nodes(out);
+        }
+    }
+
+    /// Of total `q`, the gradients by the state at each node through its own element, and what stages and quadratures contribute.
+    #[inline(always)]
+    fn weigh_elements(&mut self, q: usize, before: &[[f64; Q]], out: &mut [f64]) {
+        let groups = self.groups;
+        for g in 0..groups.count() {
+            let (stages, h) = (&self.stages[g], self.steps[g]);
+            let mut own = Lanes::of(0.0);
+            let mut by_z = [Lanes::of(0.0); N];
+            let mut by_slopes = [[Lanes::of(0.0); N]; M];
+            for j in 0..M {
+                let weight = h * Lanes::of(self.gauss.b[j]);
+                let local = &self.locals[g * M + j];
+                own += weight * local.rate[q];
+                let mut gradient = local.rate_gradient[q];
+                for a in 0..N {
+                    gradient[a] = gradient[a] * weight;
+                    by_z[a] += gradient[a];
                 }
                 for l in 0..M {
+                    let w = h * Lanes::of(self.gauss.a[j][l]);
                     for a in 0..N {
-                        own += by_slopes[l][a] * stages.load[0][l][a];
-                        for c in 0..N {
-                            by_z[c] += by_slopes[l][a] * stages.response[l][a][c];
-                        }
+                        by_slopes[l][a] += w * gradient[a];
                     }
-                }
-                for lane in 0..groups.filled(g) {
-                    let i = g * LANES + lane;
-                    by_node[i] = by_z.map(|v| v.0[lane]);
-                    out[i] += (own.0[lane] - before[i][q]).abs();
                 }
             }
-            for i in (0..n).rev() {
-                let rows = &self.rows[i + 1];
-                // What the carried rows decide does not come through the transition.
-                let given = by_node[i + 1];
-                let mut bar = given;
-                for r in 0..nr {
-                    let decided = given[rows.pivot[r]];
-                    by_rows[i + 1][r] += decided;
-                    for c in 0..N {
-                        bar[c] -= rows.rows[r][c] * decided;
-                    }
-                }
-                for r in 0..nr {
-                    bar[rows.pivot[r]] = 0.0;
-                }
+            for l in 0..M {
                 for a in 0..N {
-                    by_affine[i][a] += bar[a];
+                    own += by_slopes[l][a] * stages.load[0][l][a];
                     for c in 0..N {
-                        by_node[i][c] += self.transitions[i].by_state[a][c] * bar[a];
+                        by_z[c] += by_slopes[l][a] * stages.response[l][a][c];
                     }
                 }
             }
-            for r in 0..nr {
+            for lane in 0..groups.filled(g) {
+                let i = g * LANES + lane;
+                self.adjoint.by_node[i] = by_z.map(|v| v.0[lane]);
+                out[i] += (own.0[lane] - before[i][q]).abs();
+            }
+        }
+    }
+
+    /// Takes these gradients back to s = 0 and the loads of the rows on to s = 1: what the jump over each element contributes.
+    #[inline(always)]
+    fn weigh_nodes(&mut self, out: &mut [f64]) {
+        let n = self.groups.elements;
+        let right_count = self.right_count;
+        let left_count = N - right_count;
+        let Adjoint { by_affine, by_rows, by_node } = &mut self.adjoint;
+        for i in (0..n).rev() {
+            let rows = &self.rows[i + 1];
+            // What the carried rows decide does not come through the transition.
+            let given = by_node[i + 1];
+            let mut through = given;
+            for r in 0..right_count {
+                let decided = given[rows.pivot[r]];
+                by_rows[i + 1][r] += decided;
+                for c in 0..N {
+                    through[c] -= rows.rows[r][c] * decided;
+                }
+            }
+            for r in 0..right_count {
+                through[rows.pivot[r]] = 0.0;
+            }
+            for a in 0..N {
+                by_affine[i][a] += through[a];
+                for c in 0..N {
+                    by_node[i][c] += self.transitions[i].by_state[a][c] * through[a];
+                }
+            }
+        }
+        for r in 0..right_count {
+            for a in 0..N {
+                by_rows[0][r] += self.start[a][left_count + r] * by_node[0][a];
+            }
+        }
+        for i in 0..n {
+            let mut carried = [0.0; N];
+            for r in 0..right_count {
+                for c in 0..N {
+                    carried[c] += self.rows[i].reduction[r][c] * by_rows[i][r];
+                }
+            }
+            for r in 0..right_count {
+                by_rows[i + 1][r] += carried[r];
                 for a in 0..N {
-                    by_rows[0][r] += self.start[a][nl + r] * by_node[0][a];
+                    by_affine[i][a] -= self.rows[i + 1].rows[r][a] * carried[r];
                 }
             }
-            for i in 0..n {
-                let mut carried = [0.0; N];
-                for r in 0..nr {
-                    for c in 0..N {
-                        carried[c] += self.rows[i].reduction[r][c] * by_rows[i][r];
-                    }
-                }
-                for r in 0..nr {
-                    by_rows[i + 1][r] += carried[r];
-                    for a in 0..N {
-                        by_affine[i][a] -= self.rows[i + 1].rows[r][a] * carried[r];
-                    }
-                }
-                let mut total = 0.0;
-                for a in 0..N {
-                    total += by_affine[i][a] * self.transitions[i].affine[0][a];
-                }
-                out[i] += total.abs();
+            let mut total = 0.0;
+            for a in 0..N {
+                total += by_affine[i][a] * self.transitions[i].affine[0][a];
             }
+            out[i] += total.abs();
         }
     }
 }

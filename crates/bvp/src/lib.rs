@@ -17,6 +17,8 @@
 //! - **an error estimate**: carry the solution to one more stage ([`Solution::resample`]), and
 //!   one Newton round there says what the totals would move; [`Collocation::contributions`] says
 //!   by which elements;
+//! - **loads that come after the linearisation**, many at once: what they do to the stages ([`Collocation::eliminate`]), to the
+//!   rows of the conditions at s = 1 ([`Collocation::rows`]) and to the state at s = 0 ([`Collocation::start`]);
 //! - **a better mesh**: [`Mesh::redistributed`] from those contributions, [`Solution::onto`] to go
 //!   there, [`Mesh::pin`] for nodes that must lie on breaks of the data or kinks of the solution;
 //! - **values between the nodes**: [`Solution::state_in`], or [`step()`] to the order of the nodes.
@@ -95,7 +97,7 @@ pub mod problem;
 pub mod real;
 pub mod solution;
 pub mod step;
-pub use carry::Determinant;
+pub use carry::{CarriedRows, Determinant};
 pub use collocation::{Collocation, RoundError, Singular};
 pub use gauss::{Gauss, Hermite};
 pub use groups::Groups;

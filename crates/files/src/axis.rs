@@ -15,15 +15,15 @@ const MOST: u64 = 1_000_000_000;
 /// One key and its values: `KEY=FROM:TO:COUNT`, `KEY=V1,V2,...` or, to draw from, `KEY=FROM:TO`.
 ///
 /// ```
-/// use hydrostat_files::{Axis, Value, Values};
+/// use hydrostat_files::{Axis, AxisValue, AxisValues};
 ///
 /// let axis: Axis = "cable[0].tension=0:500 mN:3".parse().unwrap();
-/// assert_eq!(axis.value(1), Some(Value::Number(0.25)));
+/// assert_eq!(axis.value(1), Some(AxisValue::Number(0.25)));
 /// assert_eq!((axis.values.count(), axis.column().as_str()), (Some(3), "cable[0].tension_N"));
 /// let axis: Axis = "model.volume=planar,none".parse().unwrap();
-/// assert_eq!(axis.value(1), Some(Value::Word("none")));
+/// assert_eq!(axis.value(1), Some(AxisValue::Word("none")));
 /// let axis: Axis = "arm.radius.tip=1 mm:2 mm".parse().unwrap();
-/// assert_eq!(axis.values, Values::Span { from: 0.001, to: 0.002 });
+/// assert_eq!(axis.values, AxisValues::Span { from: 0.001, to: 0.002 });
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
@@ -34,12 +34,12 @@ pub struct Axis {
     /// The unit in which it is shown; empty for a plain number and for text.
     pub unit: &'static str,
     /// Its values.
-    pub values: Values,
+    pub values: AxisValues,
 }
 
 /// The values of a key, numbers in SI units (rad for angles).
 #[derive(Debug, Clone, PartialEq)]
-pub enum Values {
+pub enum AxisValues {
     /// Equally spaced, both ends included.
     Even {
         /// The first.
@@ -64,7 +64,7 @@ pub enum Values {
 
 /// One value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Value<'a> {
+pub enum AxisValue<'a> {
     /// In SI units.
     Number(f64),
     /// As it stands in the arm file.
@@ -170,19 +170,19 @@ impl FromStr for Axis {
             if given.contains(':') {
                 return Err(AxisError::Range { key, text: given.to_owned() });
             }
-            let values = Values::Words(parts().map(str::to_owned).collect());
+            let values = AxisValues::Words(parts().map(str::to_owned).collect());
             return Ok(Self { key, dimension: None, unit: "", values });
         };
         let mut reader = Reader { key: &key, dimension, unit: None };
         let values = if given.contains(':') {
             let pieces: Vec<&str> = given.split(':').collect();
             match pieces[..] {
-                [from, to] => Values::Span { from: reader.read(from)?, to: reader.read(to)? },
+                [from, to] => AxisValues::Span { from: reader.read(from)?, to: reader.read(to)? },
                 [from, to, count] => even(&mut reader, from, to, count)?,
                 _ => return Err(AxisError::Form { text: text.to_owned() }),
             }
         } else {
-            Values::List(parts().map(|part| reader.read(part)).collect::<Result<_, _>>()?)
+            AxisValues::List(parts().map(|part| reader.read(part)).collect::<Result<_, _>>()?)
         };
         let bare = if dimension == Dimension::Angle { "deg" } else { dimension.bare_unit() };
         let unit = reader.unit.unwrap_or(bare);
@@ -190,7 +190,7 @@ impl FromStr for Axis {
     }
 }
 
-fn even(reader: &mut Reader<'_>, from: &str, to: &str, count: &str) -> Result<Values, AxisError> {
+fn even(reader: &mut Reader<'_>, from: &str, to: &str, count: &str) -> Result<AxisValues, AxisError> {
     let ends = [reader.read(from)?, reader.read(to)?];
     let key = reader.key.to_owned();
     let Some(count) = count.trim().parse().ok().filter(|count| (1..=MOST).contains(count)) else {
@@ -200,10 +200,10 @@ fn even(reader: &mut Reader<'_>, from: &str, to: &str, count: &str) -> Result<Va
         let [from, to] = [from, to].map(|end| end.trim().to_owned());
         return Err(AxisError::Ends { key, from, to, count });
     }
-    Ok(Values::Even { from: ends[0], to: ends[1], count })
+    Ok(AxisValues::Even { from: ends[0], to: ends[1], count })
 }
 
-impl Values {
+impl AxisValues {
     /// How many there are; `None` of a range to draw from.
     pub fn count(&self) -> Option<u64> {
         match self {
@@ -217,24 +217,24 @@ impl Values {
 
 impl Axis {
     /// Value `index`; `None` past the last one, and of a range to draw from.
-    pub fn value(&self, index: u64) -> Option<Value<'_>> {
+    pub fn value(&self, index: u64) -> Option<AxisValue<'_>> {
         let at = usize::try_from(index).ok()?;
         match &self.values {
-            Values::Even { from, to, count } if index < *count => Some(Value::Number(match index {
+            AxisValues::Even { from, to, count } if index < *count => Some(AxisValue::Number(match index {
                 0 => *from,
                 last if last == count - 1 => *to,
                 k => rounded(from + k as f64 / (count - 1) as f64 * (to - from)),
             })),
-            Values::List(values) => values.get(at).copied().map(Value::Number),
-            Values::Words(words) => words.get(at).map(|word| Value::Word(word)),
-            Values::Even { .. } | Values::Span { .. } => None,
+            AxisValues::List(values) => values.get(at).copied().map(AxisValue::Number),
+            AxisValues::Words(words) => words.get(at).map(|word| AxisValue::Word(word)),
+            AxisValues::Even { .. } | AxisValues::Span { .. } => None,
         }
     }
 
     /// The value at `share` in [0, 1) of the range, or of the list.
-    pub fn drawn(&self, share: f64) -> Option<Value<'_>> {
+    pub fn drawn(&self, share: f64) -> Option<AxisValue<'_>> {
         match &self.values {
-            Values::Span { from, to } => Some(Value::Number(from + share * (to - from))),
+            AxisValues::Span { from, to } => Some(AxisValue::Number(from + share * (to - from))),
             values => {
                 let count = values.count()?;
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
@@ -245,11 +245,11 @@ impl Axis {
     }
 
     /// A value as the arm file's text has it.
-    pub fn text(&self, value: Value<'_>) -> String {
+    pub fn text(&self, value: AxisValue<'_>) -> String {
         match value {
-            Value::Word(word) => word.to_owned(),
-            Value::Number(number) if self.dimension == Some(Dimension::Angle) => format!("{number:?} rad"),
-            Value::Number(number) => format!("{number:?}"),
+            AxisValue::Word(word) => word.to_owned(),
+            AxisValue::Number(number) if self.dimension == Some(Dimension::Angle) => format!("{number:?} rad"),
+            AxisValue::Number(number) => format!("{number:?}"),
         }
     }
 
@@ -277,19 +277,19 @@ mod tests {
         text.parse::<Axis>().unwrap_err().to_string()
     }
 
-    fn values(text: &str) -> Values {
+    fn values(text: &str) -> AxisValues {
         text.parse::<Axis>().unwrap_or_else(|e| panic!("{text}: {e}")).values
     }
 
     #[test]
     fn grids_lists_and_ranges_take_units() {
-        assert_eq!(values("flow.speed=0:1:11"), Values::Even { from: 0.0, to: 1.0, count: 11 });
-        assert_eq!(values("flow.speed = \"0:36 km/h:3\""), Values::Even { from: 0.0, to: 10.0, count: 3 });
-        assert_eq!(values("flow.speed=0.5:0.5:1"), Values::Even { from: 0.5, to: 0.5, count: 1 });
-        assert_eq!(values("arm.length=\"20 cm\",0.3"), Values::List(vec![0.2, 0.3]));
-        assert_eq!(values("material.poisson=0.3:0.5"), Values::Span { from: 0.3, to: 0.5 });
-        assert_eq!(values("flow.law=momentum"), Values::Words(vec!["momentum".to_owned()]));
-        let Values::List(angles) = values("flow.direction=90, 1 rad") else { panic!() };
+        assert_eq!(values("flow.speed=0:1:11"), AxisValues::Even { from: 0.0, to: 1.0, count: 11 });
+        assert_eq!(values("flow.speed = \"0:36 km/h:3\""), AxisValues::Even { from: 0.0, to: 10.0, count: 3 });
+        assert_eq!(values("flow.speed=0.5:0.5:1"), AxisValues::Even { from: 0.5, to: 0.5, count: 1 });
+        assert_eq!(values("arm.length=\"20 cm\",0.3"), AxisValues::List(vec![0.2, 0.3]));
+        assert_eq!(values("material.poisson=0.3:0.5"), AxisValues::Span { from: 0.3, to: 0.5 });
+        assert_eq!(values("flow.law=momentum"), AxisValues::Words(vec!["momentum".to_owned()]));
+        let AxisValues::List(angles) = values("flow.direction=90, 1 rad") else { panic!() };
         assert_eq!(angles, [std::f64::consts::FRAC_PI_2, 1.0]);
     }
 
@@ -297,15 +297,15 @@ mod tests {
     fn grids_reach_their_ends_and_lists_are_drawn_evenly() {
         let axis: Axis = "flow.speed=0.1:0.7:7".parse().unwrap();
         let all: Vec<_> = (0..8).map(|k| axis.value(k)).collect();
-        let want = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7].map(|v| Some(Value::Number(v)));
+        let want = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7].map(|v| Some(AxisValue::Number(v)));
         assert_eq!((&all[..7], all[7]), (&want[..], None));
         let axis: Axis = "model.volume=planar,none".parse().unwrap();
         assert_eq!(
-            [0.0, 0.49, 0.5, 0.999].map(|u| axis.drawn(u).unwrap() == Value::Word("none")),
+            [0.0, 0.49, 0.5, 0.999].map(|u| axis.drawn(u).unwrap() == AxisValue::Word("none")),
             [false, false, true, true]
         );
         let axis: Axis = "flow.speed=1:3".parse().unwrap();
-        assert_eq!((axis.drawn(0.25), axis.value(0)), (Some(Value::Number(1.5)), None));
+        assert_eq!((axis.drawn(0.25), axis.value(0)), (Some(AxisValue::Number(1.5)), None));
     }
 
     #[test]

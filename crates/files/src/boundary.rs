@@ -3,7 +3,7 @@
 use hydrostat::{Arm, Boundary, BoundaryKind, BoundaryPiece, BoundaryPoint};
 use serde::Serialize;
 
-use crate::results::{SCHEMA, TipOut, cell, row};
+use crate::results::{SCHEMA, TipOut, cell, json, row};
 use crate::written::Inputs;
 
 #[derive(Debug, Clone, Serialize)]
@@ -57,11 +57,8 @@ impl<'a> BoundaryDocument<'a> {
     }
 
     /// The document, one line.
-    ///
-    /// # Errors
-    /// None in practice: the document has no maps with keys that are not strings.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string(self)
+    pub fn to_json(&self) -> String {
+        json(self)
     }
 }
 

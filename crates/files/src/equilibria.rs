@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::digits::number;
 use crate::paths::{EndOut, limit_message};
-use crate::results::{SCHEMA, cell, row};
+use crate::results::{SCHEMA, cell, json, row};
 use crate::state::State;
 use crate::varied::Varied;
 use crate::written::Inputs;
@@ -110,11 +110,8 @@ impl<'a> EquilibriaDocument<'a> {
     }
 
     /// The document, one line.
-    ///
-    /// # Errors
-    /// None in practice: the document has no maps with keys that are not strings.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string(self)
+    pub fn to_json(&self) -> String {
+        json(self)
     }
 }
 
@@ -138,11 +135,8 @@ impl<'a> OverDocument<'a> {
     }
 
     /// The document, one line.
-    ///
-    /// # Errors
-    /// None in practice: the document has no maps with keys that are not strings.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string(self)
+    pub fn to_json(&self) -> String {
+        json(self)
     }
 }
 

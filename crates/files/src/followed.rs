@@ -3,7 +3,7 @@
 use hydrostat::{Arm, Followed, Target};
 use serde::Serialize;
 
-use crate::results::{SCHEMA, TipOut, cell, row};
+use crate::results::{SCHEMA, TipOut, cell, json, row};
 use crate::written::Inputs;
 
 /// The place and the angle (rad) that a row asks for.
@@ -64,11 +64,8 @@ impl<'a> FollowedDocument<'a> {
     }
 
     /// The document, one line.
-    ///
-    /// # Errors
-    /// None in practice: the document has no maps with keys that are not strings.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string(self)
+    pub fn to_json(&self) -> String {
+        json(self)
     }
 }
 

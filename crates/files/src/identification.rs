@@ -4,7 +4,7 @@ use hydrostat::Arm;
 use hydrostat_identify::{Case, Fit, Loss};
 use serde::Serialize;
 
-use crate::results::{SCHEMA, cell, row};
+use crate::results::{SCHEMA, cell, json, row};
 use crate::written::Inputs;
 
 #[derive(Debug, Clone, Serialize)]
@@ -161,11 +161,8 @@ impl IdentificationDocument {
     }
 
     /// The document, one line.
-    ///
-    /// # Errors
-    /// None in practice: the document has no maps with keys that are not strings.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string(self)
+    pub fn to_json(&self) -> String {
+        json(self)
     }
 }
 

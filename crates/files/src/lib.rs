@@ -1,8 +1,8 @@
 //! What Hydrostat reads and writes: arm files, their schema, units, results as JSON and CSV.
 //!
 //! An [`ArmFile`] is TOML text with overrides; [`ArmFile::arm`] is the `hydrostat::Arm` that it
-//! means, and every [`FileError`] says where, what was expected and what was found. [`Solution`]
-//! and [`Failure`] are the JSON documents of a solve, [`write_whole`] puts any output on disk.
+//! means, and every [`FileError`] says where, what was expected and what was found. [`SolutionDocument`]
+//! and [`FailureDocument`] are the JSON documents of a solve, [`write_whole`] puts any output on disk.
 
 mod arm_file;
 mod axis;
@@ -34,7 +34,7 @@ mod varied;
 mod written;
 
 pub use arm_file::ArmFile;
-pub use axis::{Axis, AxisError, Value, Values};
+pub use axis::{Axis, AxisError, AxisValue, AxisValues};
 pub use boundary::{BoundaryDocument, boundary_csv};
 pub use deviations::Deviations;
 pub use digits::number;
@@ -45,11 +45,11 @@ pub use followed::{FollowedDocument, followed_csv};
 pub use identification::{IdentificationDocument, residuals_csv};
 pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
 pub use measurements_template::measurements_template;
-pub use output::{WriteError, write_whole};
+pub use output::{WriteError, remove_leftovers, write_whole, write_whole_with};
 pub use paths::{PathDocument, end_message, path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
 pub use reach::{ReachDocument, reach_csv};
-pub use results::{Failure, Note, Solution, stations_csv};
+pub use results::{FailureDocument, Note, SolutionDocument, json, stations_csv};
 pub use targets::{TargetsError, parse_targets, read_targets};
 pub use varied::{Varied, VariedError};
 pub use written::{Inputs, arm_to_toml};

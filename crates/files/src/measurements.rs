@@ -255,53 +255,52 @@ impl Table<'_> {
             );
             return Err(self.fault(row, None, why));
         }
-        let heads = self.heads.clone();
-        let cell_of = |wanted: &Column| {
-            let at = heads.iter().position(|head| head.column == *wanted)?;
-            Some((&heads[at], record.get(at).unwrap_or_default()))
-        };
-        let case = match cell_of(&Column::Case) {
+        let name = match self.cell(record, &Column::Case) {
             Some((head, "")) => {
                 return Err(self.fault(row, Some(&head.text), "expected the name of a load case, found nothing"));
             }
             Some((_, name)) => name.to_owned(),
             None => "1".to_owned(),
         };
-        let place = match cell_of(&Column::Place) {
-            Some((head, cell)) => self.number(row, head, cell, Dimension::Length)?.map(|s| (s, head.text.clone())),
-            None => None,
-        };
+        let s = self.place(row, record)?;
+        let found = self.measured(row, record, s)?;
+        let index = self.case_of(name, row)?;
+        self.keep(row, index, found)?;
+        self.take_settings(row, record, index)
+    }
+
+    /// The head of a column, if there is one, with what stands in its cell.
+    fn cell<'r>(&self, record: &'r StringRecord, wanted: &Column) -> Option<(&Head, &'r str)> {
+        let at = self.heads.iter().position(|head| head.column == *wanted)?;
+        Some((&self.heads[at], record.get(at).unwrap_or_default()))
+    }
+
+    /// Where a row was measured (m): the tip where it does not say.
+    fn place(&self, row: usize, record: &StringRecord) -> Result<f64, MeasurementsError> {
+        let Some((head, cell)) = self.cell(record, &Column::Place) else { return Ok(self.length) };
+        let Some(s) = self.number(row, head, cell, Dimension::Length)? else { return Ok(self.length) };
         let slack = SAME * self.length;
-        if let Some((s, column)) = &place
-            && !(-slack..=self.length + slack).contains(s)
-        {
-            let why =
-                format!("{} mm is beyond the arm, which goes from 0 to {} mm", rounded_mm(*s), rounded_mm(self.length));
-            return Err(self.fault(row, Some(column), why));
+        if (-slack..=self.length + slack).contains(&s) {
+            return Ok(s);
         }
-        let s = place.map_or(self.length, |(s, _)| s);
-        let mut found = Vec::new();
-        for (head, cell) in heads.iter().zip(record) {
+        let why =
+            format!("{} mm is beyond the arm, which goes from 0 to {} mm", rounded_mm(s), rounded_mm(self.length));
+        Err(self.fault(row, Some(&head.text), why))
+    }
+
+    /// What a row measures at `s`, each with the head of its column.
+    fn measured(
+        &self,
+        row: usize,
+        record: &StringRecord,
+        s: f64,
+    ) -> Result<Vec<(Measurement, String)>, MeasurementsError> {
+        let mut out = Vec::new();
+        for (head, cell) in self.heads.iter().zip(record) {
             let Column::Value(measured) = head.column else { continue };
             let Some(value) = self.number(row, head, cell, measured.dimension())? else { continue };
-            let own = cell_of(&Column::Deviation(Some(measured)));
-            let both =
-                || matches!(measured, Measured::X | Measured::Y).then(|| cell_of(&Column::Deviation(None))).flatten();
-            let sd = match own.or_else(both) {
-                Some((head, cell)) => {
-                    let sd = self.number(row, head, cell, measured.dimension())?;
-                    if sd.is_some_and(|sd| sd <= 0.0) {
-                        return Err(self.fault(
-                            row,
-                            Some(&head.text),
-                            format!("expected a standard deviation above zero, found {}", shortened(cell)),
-                        ));
-                    }
-                    sd
-                }
-                None => None,
-            };
-            let Some(sd) = sd.or(self.deviations.of(measured.dimension())) else {
+            let given = self.deviation(row, record, measured)?;
+            let Some(sd) = given.or(self.deviations.of(measured.dimension())) else {
                 let name = measured.at(s).name();
                 let why = format!(
                     "has no standard deviation: add a column \"sd {name} [{}]\", or --sd with {}",
@@ -310,28 +309,49 @@ impl Table<'_> {
                 );
                 return Err(self.fault(row, Some(&head.text), why));
             };
-            found.push((Measurement { quantity: measured.at(s), value, sd, row }, head.text.clone()));
+            out.push((Measurement { quantity: measured.at(s), value, sd, row }, head.text.clone()));
         }
-        let index = self.case_of(case, row)?;
+        Ok(out)
+    }
+
+    /// The standard deviation that a row gives, in a column for the quantity or, of positions, in one for both.
+    fn deviation(
+        &self,
+        row: usize,
+        record: &StringRecord,
+        measured: Measured,
+    ) -> Result<Option<f64>, MeasurementsError> {
+        let own = self.cell(record, &Column::Deviation(Some(measured)));
+        let both = || {
+            let position = matches!(measured, Measured::X | Measured::Y);
+            position.then(|| self.cell(record, &Column::Deviation(None))).flatten()
+        };
+        let Some((head, cell)) = own.or_else(both) else { return Ok(None) };
+        let sd = self.number(row, head, cell, measured.dimension())?;
+        if sd.is_some_and(|sd| sd <= 0.0) {
+            let why = format!("expected a standard deviation above zero, found {}", shortened(cell));
+            return Err(self.fault(row, Some(&head.text), why));
+        }
+        Ok(sd)
+    }
+
+    /// Adds what a row measures to a case, to which no quantity may belong twice.
+    fn keep(&mut self, row: usize, index: usize, found: Vec<(Measurement, String)>) -> Result<(), MeasurementsError> {
+        let slack = SAME * self.length;
         if self.cases[index].measurements.len() + found.len() > MOST_NUMBERS {
             let why = format!("expected at most {MOST_NUMBERS} measured numbers a load case, found more");
             return Err(self.fault(row, None, why));
         }
         for (measurement, column) in found {
-            if let Some(other) =
-                self.cases[index].measurements.iter().find(|own| same(own.quantity, measurement.quantity, slack))
-            {
-                let why = format!(
-                    "{} of load case {} is in row {} already",
-                    measurement.quantity,
-                    shortened(&self.cases[index].name),
-                    other.row
-                );
+            let case = &self.cases[index];
+            if let Some(other) = case.measurements.iter().find(|own| same(own.quantity, measurement.quantity, slack)) {
+                let (quantity, name) = (measurement.quantity, shortened(&case.name));
+                let why = format!("{quantity} of load case {name} is in row {} already", other.row);
                 return Err(self.fault(row, Some(&column), why));
             }
             self.cases[index].measurements.push(measurement);
         }
-        self.take_settings(row, record, index)
+        Ok(())
     }
 
     /// The index of a case, which begins in this row if there is none of that name.

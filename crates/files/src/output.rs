@@ -1,6 +1,6 @@
 //! Files that appear whole or not at all.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -39,21 +39,34 @@ fn advice(path: &Path, error: &io::Error) -> String {
 /// [`WriteError`] with the path and what to do. No half-written file is left.
 pub fn write_whole(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), WriteError> {
     let path = path.as_ref();
-    write(path, bytes).map_err(|source| WriteError { path: path.to_owned(), source })
+    write_whole_with(path, |file| file.write_all(bytes).map_err(|source| WriteError { path: path.to_owned(), source }))
 }
 
-fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // A link is followed, so that it keeps pointing where it did.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+/// [`write_whole`] of what `fill` writes, for what is not all in memory at once.
+///
+/// # Errors
+/// That of `fill`, or what `E` makes of a [`WriteError`]. No half-written file is left but by a kill: see [`remove_leftovers`].
+pub fn write_whole_with<E: From<WriteError>>(
+    path: impl AsRef<Path>,
+    fill: impl FnOnce(&mut File) -> Result<(), E>,
+) -> Result<(), E> {
+    let path = path.as_ref();
+    let failed = |source| E::from(WriteError { path: path.to_owned(), source });
+    let target = followed(path);
     let present = fs::metadata(&target).ok();
     match &present {
-        Some(meta) if meta.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-        Some(meta) if !meta.is_file() => return OpenOptions::new().write(true).open(&target)?.write_all(bytes),
+        Some(meta) if meta.is_dir() => return Err(failed(io::ErrorKind::IsADirectory.into())),
+        Some(meta) if !meta.is_file() => {
+            return fill(&mut OpenOptions::new().write(true).open(&target).map_err(failed)?);
+        }
         _ => {}
     }
-    let name = target.file_name().ok_or(io::ErrorKind::InvalidInput)?;
-    let (temporary, file) = beside(&target, name)?;
-    let written = fill(file, bytes, present.as_ref()).and_then(|()| fs::rename(&temporary, &target));
+    let (temporary, mut file) = hidden_beside(&target).map_err(failed)?;
+    let written = fill(&mut file).and_then(|()| {
+        keep(&file, present.as_ref()).map_err(failed)?;
+        drop(file);
+        fs::rename(&temporary, &target).map_err(failed)
+    });
     if written.is_err() {
         // The first error is the one to report; a leftover that cannot be removed adds nothing.
         let _ = fs::remove_file(&temporary);
@@ -61,8 +74,31 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-fn fill(mut file: File, bytes: &[u8], replaced: Option<&fs::Metadata>) -> io::Result<()> {
-    file.write_all(bytes)?;
+/// Removes what was half-written of `path` when its writers were killed. For those who know that nobody writes it now.
+pub fn remove_leftovers(path: impl AsRef<Path>) {
+    let target = followed(path.as_ref());
+    let Some(name) = target.file_name().map(OsStr::to_string_lossy) else { return };
+    let is_leftover = |found: &str| {
+        let numbers = found.strip_prefix('.').and_then(|rest| rest.strip_prefix(&*name)?.strip_prefix('.'));
+        let numbers = numbers.and_then(|rest| rest.strip_suffix(".tmp")?.split_once('-'));
+        numbers.is_some_and(|(process, count)| process.parse::<u32>().is_ok() && count.parse::<u32>().is_ok())
+    };
+    let entries = fs::read_dir(directory(&target).unwrap_or(Path::new(".")));
+    for entry in entries.into_iter().flatten().flatten() {
+        if is_leftover(&entry.file_name().to_string_lossy()) {
+            // What cannot be removed is in nobody's way.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Where a link leads, so that it keeps pointing where it did.
+fn followed(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Puts a file that is full on the disk, with the permissions of the one that it replaces.
+fn keep(file: &File, replaced: Option<&fs::Metadata>) -> io::Result<()> {
     if let Some(meta) = replaced {
         if meta.permissions().readonly() {
             return Err(io::ErrorKind::PermissionDenied.into());
@@ -73,8 +109,9 @@ fn fill(mut file: File, bytes: &[u8], replaced: Option<&fs::Metadata>) -> io::Re
 }
 
 /// A new file in the directory of `target`, under a name that nothing else has.
-fn beside(target: &Path, name: &std::ffi::OsStr) -> io::Result<(PathBuf, File)> {
+fn hidden_beside(target: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
+    let name = target.file_name().ok_or(io::ErrorKind::InvalidInput)?;
     loop {
         let mut hidden = OsString::from(".");
         hidden.push(name);

@@ -3,7 +3,7 @@
 use hydrostat::{Arm, Bound, Reach, Reached};
 use serde::Serialize;
 
-use crate::results::{SCHEMA, cell, row};
+use crate::results::{SCHEMA, cell, json, row};
 use crate::state::State;
 use crate::written::Inputs;
 
@@ -70,11 +70,8 @@ impl<'a> ReachDocument<'a> {
     }
 
     /// The document, one line.
-    ///
-    /// # Errors
-    /// None in practice: the document has no maps with keys that are not strings.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string(self)
+    pub fn to_json(&self) -> String {
+        json(self)
     }
 }
 

@@ -14,7 +14,7 @@ pub const SCHEMA: u32 = 1;
 
 /// The document of an equilibrium that was found.
 #[derive(Debug, Clone, Serialize)]
-pub struct Solution<'a> {
+pub struct SolutionDocument<'a> {
     schema: u32,
     version: &'static str,
     converged: bool,
@@ -34,12 +34,12 @@ pub struct Solution<'a> {
 
 /// The document of a solve without an answer.
 #[derive(Debug, Clone, Serialize)]
-pub struct Failure<'a> {
+pub struct FailureDocument<'a> {
     schema: u32,
     version: &'static str,
     converged: bool,
     verdict: VerdictOut,
-    last_good: Option<Solution<'a>>,
+    last_good: Option<SolutionDocument<'a>>,
 }
 
 /// Something that should be known about an answer.
@@ -188,7 +188,7 @@ impl From<&Verdict> for VerdictOut {
     }
 }
 
-impl<'a> Solution<'a> {
+impl<'a> SolutionDocument<'a> {
     /// Of a configuration with its `fold_margin` (the least (nu - beta R |mu|)/nu) and the notes on it.
     pub fn new(configuration: &'a Configuration, fold_margin: f64, notes: &'a [Note]) -> Self {
         let Configuration { arm, stations: s, base_reaction, unmet, error_estimate, stable, statistics, .. } =
@@ -233,15 +233,12 @@ impl<'a> Solution<'a> {
     }
 
     /// The document, one line.
-    ///
-    /// # Errors
-    /// None in practice: the document has no maps with keys that are not strings.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string(self)
+    pub fn to_json(&self) -> String {
+        json(self)
     }
 }
 
-impl<'a> Failure<'a> {
+impl<'a> FailureDocument<'a> {
     /// Of a verdict, with the fold margin of its last good configuration and the notes on it (not used
     /// if there is none).
     pub fn new(failure: &'a NoEquilibrium, fold_margin: f64, notes: &'a [Note]) -> Self {
@@ -250,7 +247,7 @@ impl<'a> Failure<'a> {
             version: env!("CARGO_PKG_VERSION"),
             converged: false,
             verdict: (&failure.verdict).into(),
-            last_good: failure.last_good.as_ref().map(|c| Solution::new(c, fold_margin, notes)),
+            last_good: failure.last_good.as_ref().map(|c| SolutionDocument::new(c, fold_margin, notes)),
         }
     }
 
@@ -261,12 +258,17 @@ impl<'a> Failure<'a> {
     }
 
     /// The document, one line.
-    ///
-    /// # Errors
-    /// None in practice: the document has no maps with keys that are not strings.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string(self)
+    pub fn to_json(&self) -> String {
+        json(self)
     }
+}
+
+/// A document of fields, numbers, words and lists as JSON, one line. Such a document always becomes JSON: what does not is a map whose
+/// keys are no texts, or what its own `Serialize` refuses.
+pub fn json(document: &impl Serialize) -> String {
+    let text = serde_json::to_string(document);
+    debug_assert!(text.is_ok(), "{text:?}");
+    text.unwrap_or_default()
 }
 
 /// One line of CSV.

@@ -1,12 +1,16 @@
 //! JSON and CSV of results, and files on disk.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use hydrostat::{
     Arm, Cable, CableState, Configuration, NoEquilibrium, Phase, Profile, Stations, Statistics, Verdict, VerdictKind,
     Warning, Wrench,
 };
-use hydrostat_files::{ArmFile, Failure, Note, Others, Solution, stations_csv, write_whole};
+use hydrostat_files::{
+    ArmFile, FailureDocument, Note, Others, SolutionDocument, remove_leftovers, stations_csv, write_whole,
+    write_whole_with,
+};
 use serde_json::{Value, json};
 
 fn configuration() -> Configuration {
@@ -43,7 +47,7 @@ fn configuration() -> Configuration {
 fn the_document_of_an_answer() {
     let mut answer = configuration();
     let notes = [Note::from(&Warning::SealedCavity)];
-    let text = Solution::new(&answer, 0.75, &notes).to_json().unwrap();
+    let text = SolutionDocument::new(&answer, 0.75, &notes).to_json();
     assert!(!text.contains("NaN") && !text.contains('\n'));
     assert!(text.starts_with("{\"schema\":1,\"version\":\""));
     let got: Value = serde_json::from_str(&text).unwrap();
@@ -79,7 +83,7 @@ fn the_document_of_an_answer() {
     assert_eq!(got["inputs"]["arm"]["base"]["angle"], json!(30.0));
 
     answer.unmet = Some(Wrench { force: [0.0, 0.5], moment: 0.25 });
-    let got = serde_json::to_value(Solution::new(&answer, -0.1, &[])).unwrap();
+    let got = serde_json::to_value(SolutionDocument::new(&answer, -0.1, &[])).unwrap();
     assert_eq!((&got["stable"], &got["warnings"]), (&json!(true), &json!([])));
     assert_eq!(got["unmet"], json!({ "force": [0.0, 0.5], "moment": 0.25 }));
 }
@@ -88,7 +92,7 @@ fn the_document_of_an_answer() {
 fn what_is_said_of_stability() {
     let stable = |load: f64| {
         let solved = hydrostat::cases::column(1e6, 3e5, load, 0.0).solve().unwrap();
-        serde_json::to_value(Solution::new(&solved, 1.0, &[])).unwrap()["stable"].clone()
+        serde_json::to_value(SolutionDocument::new(&solved, 1.0, &[])).unwrap()["stable"].clone()
     };
     let critical = hydrostat::cases::column_buckling_load(1e6, 3e5).unwrap();
     assert_eq!([0.9, 1.0, 1.1].map(|share| stable(share * critical)), [json!(true), Value::Null, json!(false)]);
@@ -112,7 +116,7 @@ fn a_tolerance_that_was_missed_is_noted() {
 #[test]
 fn inputs_read_back_as_an_arm() {
     let answer = configuration();
-    let document = serde_json::to_value(Solution::new(&answer, 1.0, &[])).unwrap();
+    let document = serde_json::to_value(SolutionDocument::new(&answer, 1.0, &[])).unwrap();
     // The keys of the arm file are set one by one: JSON's numbers and strings are TOML's.
     let mut file = ArmFile::parse("", "x").unwrap();
     for (table, keys) in document["inputs"].as_object().unwrap() {
@@ -133,7 +137,7 @@ fn the_document_of_a_verdict() {
         spent: None,
     };
     let failure = NoEquilibrium { verdict: verdict.clone(), last_good: Some(configuration()) };
-    let text = Failure::new(&failure, 0.5, &[]).to_json().unwrap();
+    let text = FailureDocument::new(&failure, 0.5, &[]).to_json();
     let got: Value = serde_json::from_str(&text).unwrap();
     assert_eq!((&got["schema"], &got["converged"]), (&json!(1), &json!(false)));
     assert_eq!(got["verdict"]["kind"], "cable_fold");
@@ -148,11 +152,11 @@ fn the_document_of_a_verdict() {
 
     assert_eq!(got["verdict"]["other_equilibria"], Value::Null);
     let others = Others { count: 9, stable: 2, complete: true };
-    let with = serde_json::to_value(Failure::new(&failure, 0.5, &[]).with_others(Some(others))).unwrap();
+    let with = serde_json::to_value(FailureDocument::new(&failure, 0.5, &[]).with_others(Some(others))).unwrap();
     assert_eq!(with["verdict"]["other_equilibria"], json!({ "count": 9, "stable": 2, "complete": true }));
 
     let nothing = NoEquilibrium { verdict, last_good: None };
-    assert_eq!(serde_json::to_value(Failure::new(&nothing, 0.0, &[])).unwrap()["last_good"], Value::Null);
+    assert_eq!(serde_json::to_value(FailureDocument::new(&nothing, 0.0, &[])).unwrap()["last_good"], Value::Null);
 }
 
 #[test]
@@ -219,6 +223,32 @@ fn files_appear_whole_or_not_at_all() {
     assert!(locked.contains("that you may write to"), "{locked}");
     assert_eq!(std::fs::read(&target).unwrap(), b"two");
     assert_eq!(std::fs::read_dir(dir).unwrap().count(), 1, "nothing half-written is left");
+}
+
+#[test]
+fn what_fails_or_is_killed_half_way_does_not_stay() {
+    let scratch = Scratch::new("half");
+    let dir = &scratch.0;
+    let target = dir.join("out.csv");
+    write_whole(&target, b"one").unwrap();
+    // A writer's own error is what its caller gets.
+    let failed: Result<(), Box<dyn std::error::Error>> = write_whole_with(&target, |file| {
+        file.write_all(b"ha")?;
+        Err("given up".into())
+    });
+    assert_eq!(failed.unwrap_err().to_string(), "given up");
+    assert_eq!(std::fs::read(&target).unwrap(), b"one");
+
+    let others = [".out.csv.json.1-0.tmp", ".out.csv.tmp", "out.csv.1-0.tmp", ".out.csv.1-x.tmp"];
+    for name in [".out.csv.1-0.tmp", ".out.csv.77-12.tmp"].iter().chain(&others) {
+        std::fs::write(dir.join(name), "ha").unwrap();
+    }
+    remove_leftovers(&target);
+    let left = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let (mut left, mut want) = (left.collect::<Vec<_>>(), [&["out.csv"], &others[..]].concat());
+    left.sort_unstable();
+    want.sort_unstable();
+    assert_eq!(left, want);
 }
 
 #[cfg(unix)]

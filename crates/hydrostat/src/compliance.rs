@@ -10,9 +10,8 @@
 //!
 //! The map from loads to motion is compact. It is projected onto shifted Legendre polynomials,
 //! orthonormal on [0, 1], the same for each of the three fields: a matrix, whose leading blocks are
-//! the projections onto fewer polynomials. The condensed elements of the collocation and the sweep
-//! over the nodes that carries the right conditions are those of [`hydrostat_bvp::Collocation`], with
-//! all polynomials as columns at once.
+//! the projections onto fewer polynomials. The eliminated stages and the rows that carry the right conditions from node to
+//! node are those of the last linearisation, [`hydrostat_bvp::Collocation`]; the polynomials are loads on it, all at once.
 //!
 //! Where the lengths of taut cables are held, loads change their tensions by dt so that the strokes stay: with V the
 //! strokes that loads make at fixed tensions, U the motion that tensions make, and B the strokes that they make,
@@ -23,19 +22,20 @@
 //!
 //! An elastic cable has the length that its own stretch takes in B, and acts as the spring that it is.
 
-use hydrostat_bvp::{Collocation, Condition, Gauss, Mesh};
+use hydrostat_bvp::{CarriedRows, Collocation, Gauss, Mesh};
 
-use crate::engine::{M, solved};
+use crate::elimination::solved;
+use crate::engine::M;
 use crate::equilibrium::{N, Q};
 
 /// Fields: the motion along e1, along e2, and the turn.
 pub(crate) const FIELDS: usize = 3;
 /// Conditions at the tip.
 const RIGHT: usize = N - 1;
-/// Stage slopes of an element.
-const SLOPES: usize = N * M;
+/// Loads at the stages of an element.
+const LOADS: usize = FIELDS * M;
 /// What an element depends on: the state at its left node, and the loads at its stages.
-const GIVEN: usize = N + FIELDS * M;
+const GIVEN: usize = N + LOADS;
 
 /// Projection of the compliance onto polynomials: entry `[FIELDS k + f][FIELDS l + g]` is the part of polynomial
 /// `k` in the motion of field `f` under a load of the shape of polynomial `l` in field `g`.
@@ -60,74 +60,30 @@ struct Element {
     strokes: Vec<[f64; GIVEN]>,
 }
 
-/// The right conditions carried to a node: `rows z = load`, the identity on the columns `pivot`.
-struct Rows {
-    rows: [[f64; N]; RIGHT],
-    pivot: [usize; RIGHT],
-}
-
 impl Compliance {
-    /// With `functions` polynomials a field, about the state of the last evaluation of `system` on
+    /// With `functions` polynomials a field, about the state of the last linearisation of `system` on
     /// `mesh`; `cables` are the derivatives of strokes by the state at the stages of every element, times the weights of the
     /// stages. `None` where the linear system is singular.
     #[inline(always)]
     pub(crate) fn new(
         system: &Collocation<N, M, Q>,
         mesh: &Mesh,
-        right: &[Condition<N>; N],
         functions: usize,
         cables: &[Vec<[[f64; N]; M]>],
     ) -> Option<Self> {
         let n = mesh.elements();
         let columns = FIELDS * functions;
-        let mut basis = vec![[[0.0; M]; 2]; n * functions];
-        let mut elements = Vec::with_capacity(n);
-        for i in 0..n {
-            let (start, h) = (mesh.nodes()[i], mesh.step(i));
-            for j in 0..M {
-                let own = &mut basis[i * functions..(i + 1) * functions];
-                polynomials(
-                    start + h * system.gauss.c[j],
-                    |k, value, rest| {
-                        own[k][0][j] = value;
-                        own[k][1][j] = rest;
-                    },
-                    functions,
-                );
-            }
-            elements.push(Element::new(system, i, h, cables)?);
-        }
+        let basis = basis(&system.gauss, mesh, functions);
         let basis_of = |i: usize| &basis[i * functions..(i + 1) * functions];
-
-        // From the tip: rows that every state meets.
-        let mut loads = vec![0.0; (n + 1) * RIGHT * columns];
-        let mut rows: Vec<Rows> = Vec::with_capacity(n + 1);
-        let tip = Rows { rows: [0, 1, 2].map(|r| right[r].gradient), pivot: [0; RIGHT] };
-        rows.push(tip.reduce(&mut loads[n * RIGHT * columns..], columns)?);
-        for i in (0..n).rev() {
-            let (own, next) = loads[i * RIGHT * columns..(i + 2) * RIGHT * columns].split_at_mut(RIGHT * columns);
-            let behind = rows.last()?;
-            let mut carried = Rows { rows: [[0.0; N]; RIGHT], pivot: [0; RIGHT] };
-            for r in 0..RIGHT {
-                let mut by = [0.0; GIVEN];
-                for b in 0..N {
-                    for c in 0..GIVEN {
-                        by[c] += behind.rows[r][b] * elements[i].end[b][c];
-                    }
-                }
-                carried.rows[r].copy_from_slice(&by[..N]);
-                let own = &mut own[r * columns..(r + 1) * columns];
-                own.copy_from_slice(&next[r * columns..(r + 1) * columns]);
-                add_loads(&by, -1.0, basis_of(i), own);
-            }
-            rows.push(carried.reduce(own, columns)?);
-        }
-        rows.reverse();
+        let elements = (0..n).map(|i| Element::new(system, i, mesh.step(i), cables)).collect::<Option<Vec<_>>>()?;
+        let loads = row_loads(system, &elements, &basis, functions);
 
         // From the base: theta(0) = 0 and the rows there.
         let mut state = vec![0.0; N * columns];
         let mut next = vec![0.0; N * columns];
-        base_state(&rows[0], &loads[..RIGHT * columns], columns, &mut state)?;
+        for (state, by) in state.chunks_exact_mut(columns).zip(system.start()) {
+            add_rows(&by[N - RIGHT..], &loads[..RIGHT * columns], state);
+        }
         let mut entries = vec![0.0; columns * columns];
         let mut strokes = vec![0.0; cables.len() * columns];
         let mut moved = vec![0.0; columns];
@@ -139,7 +95,7 @@ impl Compliance {
                 for f in 0..FIELDS {
                     moved.fill(0.0);
                     let by = &element.motion[j][f];
-                    add_states(by, &state, &mut moved);
+                    add_rows(&by[..N], &state, &mut moved);
                     add_loads(by, 1.0, basis, &mut moved);
                     for k in 0..functions {
                         // What x' adds at a place, x has from there to the tip.
@@ -152,16 +108,16 @@ impl Compliance {
                 }
             }
             for (by, row) in element.strokes.iter().zip(strokes.chunks_exact_mut(columns)) {
-                add_states(by, &state, row);
+                add_rows(&by[..N], &state, row);
                 add_loads(by, 1.0, basis, row);
             }
             for a in 0..N {
                 let own = &mut next[a * columns..(a + 1) * columns];
                 own.fill(0.0);
-                add_states(&element.end[a], &state, own);
+                add_rows(&element.end[a][..N], &state, own);
                 add_loads(&element.end[a], 1.0, basis, own);
             }
-            rows[i + 1].impose(&loads[(i + 1) * RIGHT * columns..][..RIGHT * columns], columns, &mut next);
+            impose(system.rows(i + 1), &loads[(i + 1) * RIGHT * columns..][..RIGHT * columns], &mut next);
             std::mem::swap(&mut state, &mut next);
         }
         Some(Self { functions, held: false, entries, strokes })
@@ -218,14 +174,63 @@ pub(crate) fn project(
     out
 }
 
-/// `out += by[..N] state`.
+/// The polynomials and their integrals to the tip at the stages of every element, element by element.
 #[inline(always)]
-fn add_states(by: &[f64; GIVEN], state: &[f64], out: &mut [f64]) {
-    let columns = out.len();
-    for b in 0..N {
-        let f = by[b];
-        for (o, z) in out.iter_mut().zip(&state[b * columns..(b + 1) * columns]) {
-            *o += f * z;
+fn basis(gauss: &Gauss<M>, mesh: &Mesh, functions: usize) -> Vec<[[f64; M]; 2]> {
+    let mut out = vec![[[0.0; M]; 2]; mesh.elements() * functions];
+    for (i, own) in out.chunks_exact_mut(functions).enumerate() {
+        for j in 0..M {
+            polynomials(
+                mesh.nodes()[i] + mesh.step(i) * gauss.c[j],
+                |k, value, rest| {
+                    own[k][0][j] = value;
+                    own[k][1][j] = rest;
+                },
+                functions,
+            );
+        }
+    }
+    out
+}
+
+/// What the rows at every node, which every state meets, ask for under each polynomial: carried from the tip, which has no
+/// loads of its own.
+#[inline(always)]
+fn row_loads(
+    system: &Collocation<N, M, Q>,
+    elements: &[Element],
+    basis: &[[[f64; M]; 2]],
+    functions: usize,
+) -> Vec<f64> {
+    let (n, columns) = (elements.len(), FIELDS * functions);
+    let size = RIGHT * columns;
+    let mut loads = vec![0.0; (n + 1) * size];
+    let mut carried = vec![0.0; size];
+    for i in (0..n).rev() {
+        let (own, next) = loads[i * size..(i + 2) * size].split_at_mut(size);
+        carried.copy_from_slice(next);
+        for (row, carried) in system.rows(i + 1).rows[..RIGHT].iter().zip(carried.chunks_exact_mut(columns)) {
+            let mut by = [0.0; GIVEN];
+            for (factor, end) in row.iter().zip(&elements[i].end) {
+                for (by, end) in by.iter_mut().zip(end) {
+                    *by += factor * end;
+                }
+            }
+            add_loads(&by, -1.0, &basis[i * functions..(i + 1) * functions], carried);
+        }
+        for (own, by) in own.chunks_exact_mut(columns).zip(&system.rows(i).reduction) {
+            add_rows(&by[..RIGHT], &carried, own);
+        }
+    }
+    loads
+}
+
+/// `out += by rows`, the rows being as long as `out`.
+#[inline(always)]
+fn add_rows(by: &[f64], rows: &[f64], out: &mut [f64]) {
+    for (factor, row) in by.iter().zip(rows.chunks_exact(out.len())) {
+        for (o, v) in out.iter_mut().zip(row) {
+            *o += factor * v;
         }
     }
 }
@@ -260,31 +265,17 @@ fn polynomials(s: f64, mut out: impl FnMut(usize, f64, f64), count: usize) {
 }
 
 impl Element {
-    /// Solves k_j = J_j (z + h sum a_jl k_l) - (0, f_x, f_y, c)_j for the stage slopes k.
+    /// From k_j = J_j (z + h sum a_jl k_l) - (0, f_x, f_y, c)_j for the stage slopes k.
     #[inline(always)]
     fn new(system: &Collocation<N, M, Q>, i: usize, h: f64, cables: &[Vec<[[f64; N]; M]>]) -> Option<Self> {
         let gauss = &system.gauss;
-        let locals: [_; M] = std::array::from_fn(|j| system.local(i, j));
-        let mut matrix = [[0.0; SLOPES]; SLOPES];
-        let mut given = [[0.0; GIVEN]; SLOPES];
+        let mut by_load = [[[0.0; N]; M]; LOADS];
         for j in 0..M {
-            for a in 0..N {
-                let row = j * N + a;
-                matrix[row][row] = 1.0;
-                for l in 0..M {
-                    for b in 0..N {
-                        matrix[row][l * N + b] -= h * gauss.a[j][l] * locals[j].jacobian[a][b];
-                    }
-                }
-                given[row][..N].copy_from_slice(&locals[j].jacobian[a]);
-                if a > 0 {
-                    given[row][N + FIELDS * j + a - 1] = -1.0;
-                }
+            for f in 0..FIELDS {
+                by_load[FIELDS * j + f][j][1 + f] = -1.0;
             }
         }
-        if !solve_in_place(&mut matrix, &mut given) {
-            return None;
-        }
+        let by_state = system.eliminate(i, &mut by_load)?;
         // The state after the weights of a quadrature.
         let state = |weights: &[f64; M]| {
             let mut z = [[0.0; GIVEN]; N];
@@ -292,8 +283,11 @@ impl Element {
                 z[a][a] = 1.0;
                 for l in 0..M {
                     let w = h * weights[l];
-                    for c in 0..GIVEN {
-                        z[a][c] += w * given[l * N + a][c];
+                    for c in 0..N {
+                        z[a][c] += w * by_state[l][a][c];
+                    }
+                    for c in 0..LOADS {
+                        z[a][N + c] += w * by_load[c][l][a];
                     }
                 }
             }
@@ -301,11 +295,12 @@ impl Element {
         };
         let motion = std::array::from_fn(|j| {
             let z = state(&gauss.a[j]);
+            let rate_gradient = system.local(i, j).rate_gradient;
             let mut out = [[0.0; GIVEN], [0.0; GIVEN], z[0]];
             for q in 0..Q {
                 for b in 0..N {
                     for c in 0..GIVEN {
-                        out[q][c] += locals[j].rate_gradient[q][b] * z[b][c];
+                        out[q][c] += rate_gradient[q][b] * z[b][c];
                     }
                 }
             }
@@ -328,125 +323,16 @@ impl Element {
     }
 }
 
-/// Solves `matrix x = right` into `right`, by elimination with row pivoting.
+/// The components of the states, column by column, that the rows decide, from the one that they leave free.
 #[inline(always)]
-pub(crate) fn solve_in_place<const S: usize, const C: usize>(
-    matrix: &mut [[f64; S]; S],
-    right: &mut [[f64; C]; S],
-) -> bool {
-    for k in 0..S {
-        let mut best = k;
-        for i in k + 1..S {
-            if matrix[i][k].abs() > matrix[best][k].abs() {
-                best = i;
-            }
-        }
-        matrix.swap(k, best);
-        right.swap(k, best);
-        let pivot = matrix[k][k];
-        if pivot == 0.0 || !pivot.is_finite() {
-            return false;
-        }
-        let (row, given) = (matrix[k], right[k]);
-        for i in k + 1..S {
-            let f = matrix[i][k] / pivot;
-            if f != 0.0 {
-                for c in 0..S {
-                    matrix[i][c] -= f * row[c];
-                }
-                for c in 0..C {
-                    right[i][c] -= f * given[c];
-                }
-            }
-        }
-    }
-    for k in (0..S).rev() {
-        let inverse = 1.0 / matrix[k][k];
-        let given = right[k].map(|v| v * inverse);
-        right[k] = given;
-        for i in 0..k {
-            let f = matrix[i][k];
-            for c in 0..C {
-                right[i][c] -= f * given[c];
-            }
-        }
-    }
-    true
-}
-
-impl Rows {
-    /// Reduced to the identity on pivot columns, each the largest entry that is left; `loads` follow.
-    #[inline(always)]
-    fn reduce(mut self, loads: &mut [f64], columns: usize) -> Option<Self> {
-        let mut done = [false; RIGHT];
-        for _ in 0..RIGHT {
-            let (mut row, mut column, mut largest) = (0, 0, 0.0);
-            for r in (0..RIGHT).filter(|r| !done[*r]) {
-                for c in 0..N {
-                    if self.rows[r][c].abs() > largest {
-                        (row, column, largest) = (r, c, self.rows[r][c].abs());
-                    }
-                }
-            }
-            if largest == 0.0 || !largest.is_finite() {
-                return None;
-            }
-            done[row] = true;
-            self.pivot[row] = column;
-            let scale = 1.0 / self.rows[row][column];
-            self.rows[row] = self.rows[row].map(|v| v * scale);
-            self.rows[row][column] = 1.0;
-            for v in &mut loads[row * columns..(row + 1) * columns] {
-                *v *= scale;
-            }
-            for r in 0..RIGHT {
-                if r != row {
-                    let f = self.rows[r][column];
-                    for c in 0..N {
-                        self.rows[r][c] -= f * self.rows[row][c];
-                    }
-                    self.rows[r][column] = 0.0;
-                    for c in 0..columns {
-                        loads[r * columns + c] -= f * loads[row * columns + c];
-                    }
-                }
-            }
-        }
-        Some(self)
-    }
-
-    /// The components of `state` that the rows pivot on, from the one that they leave free.
-    #[inline(always)]
-    fn impose(&self, loads: &[f64], columns: usize, state: &mut [f64]) {
-        let free = self.free();
-        for r in 0..RIGHT {
-            let f = self.rows[r][free];
-            for c in 0..columns {
-                state[self.pivot[r] * columns + c] = loads[r * columns + c] - f * state[free * columns + c];
-            }
-        }
-    }
-
-    /// The component that is no pivot.
-    fn free(&self) -> usize {
-        (0..N).find(|c| !self.pivot.contains(c)).unwrap_or(0)
-    }
-}
-
-/// The state at the base: theta = 0 and the rows.
-#[inline(always)]
-fn base_state(rows: &Rows, loads: &[f64], columns: usize, state: &mut [f64]) -> Option<()> {
-    let free = rows.free();
-    if let Some(r) = (0..RIGHT).find(|r| rows.pivot[*r] == 0) {
-        // theta + rows[free] z[free] = load
+fn impose(rows: &CarriedRows<N>, loads: &[f64], states: &mut [f64]) {
+    let columns = states.len() / N;
+    let pivots = &rows.pivot[..RIGHT];
+    let free = (0..N).find(|c| !pivots.contains(c)).unwrap_or(0);
+    for r in 0..RIGHT {
         let f = rows.rows[r][free];
-        if f == 0.0 {
-            return None;
-        }
         for c in 0..columns {
-            state[free * columns + c] = loads[r * columns + c] / f;
+            states[pivots[r] * columns + c] = loads[r * columns + c] - f * states[free * columns + c];
         }
     }
-    rows.impose(loads, columns, state);
-    Some(())
 }

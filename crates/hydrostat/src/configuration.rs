@@ -1,9 +1,9 @@
 //! The answer: the arm's shape and what it carries.
 
-use crate::arm::{Arm, FlowLaw};
+use crate::arm::{Arm, Cable, FlowLaw};
 use crate::dense::Dense;
 use crate::engine::{Engine, M, shift_by_tangential_load};
-use crate::equilibrium::{SectionFailure, Units};
+use crate::equilibrium::{Equations, SectionFailure, Units};
 use crate::flow::layer_profile;
 use crate::loads::stream_along;
 use crate::readings::Support;
@@ -332,64 +332,37 @@ impl Configuration {
         let arm = dense.equations.arm_at_fraction();
         let mesh = &dense.solution.mesh;
         let n = mesh.elements();
-        let mut stations = Stations::default();
-        stations.reserve(n + 1 + arm.cables.len());
         let mut extremes = Extremes { fold: FoldMargin { value: 1.0, s: 0.0 }, nu: 1.0, nu_at: 0.0 };
-        let (l, f) = (arm.length, dense.equations.units.force);
-        let mut nodes = Vec::with_capacity(n + 1 + arm.cables.len());
-        for i in 0..n {
-            let s = mesh.nodes()[i];
-            if i > 0 && (0..arm.cables.len()).any(|c| (dense.equations.cable_end(c) - s).abs() < 1e-9) {
-                nodes.push((i - 1, true));
-            }
-            nodes.push((i, false));
-        }
-        nodes.push((n - 1, true));
+        let (length, force) = (arm.length, dense.equations.units.force);
+        let nodes = sides_of_nodes(&dense);
+        let mut stations = Stations::default();
+        stations.reserve(nodes.len());
         for (station, place) in dense.at_nodes(&nodes)? {
-            extremes.note(station.s, [station.nu, station.mu * l], station.beta * place.radius);
+            extremes.note(station.s, [station.nu, station.mu * length], station.beta * place.radius);
             stations.push(&station);
         }
 
-        let mut cables: Vec<CableState> = arm
-            .cables
-            .iter()
-            .map(|c| CableState { name: c.name.clone(), tension: c.tension, length: 0.0, stroke: 0.0, command: None })
-            .collect();
         let mut energy = 0.0;
         let (equations, groups) = (&dense.equations, dense.equations.groups());
         for block in 0..groups.count() * M {
             let strained = equations.strain_energy(block);
-            let weight = |i: usize| l * mesh.step(i) * engine.system.gauss.b[block % M];
+            let weight = |i: usize| length * mesh.step(i) * engine.system.gauss.b[block % M];
             let own = (0..groups.filled(block / M)).map(|lane| (lane, groups.element(block / M, lane)));
             for (lane, i) in own {
                 energy += weight(i) * strained.0[lane];
                 let (s, [nu, mu], half_width) = equations.stretched(block, lane);
-                extremes.note(s * l, [nu, mu], half_width);
+                extremes.note(s * length, [nu, mu], half_width);
             }
         }
-        for (c, cable) in cables.iter_mut().enumerate() {
-            let [now, unloaded] = equations.cable_lengths(c, &engine.system.gauss.b);
-            cable.length = l * now;
-            cable.stroke = l * (unloaded - now);
-        }
-
-        let taut = |c: usize| {
-            let held = dense.equations.held.as_ref();
-            held.is_some_and(|held| held.cables.iter().zip(&held.taut).any(|(own, taut)| *own == c && *taut))
-        };
-        for (c, (state, cable)) in cables.iter_mut().zip(&arm.cables).enumerate() {
-            state.command = cable.stroke.map(|stroke| Command {
-                stroke,
-                length: state.length + state.stroke - stroke,
-                slack: !taut(c),
-            });
-        }
-
+        let cables = cable_states(&arm, equations, &engine.system.gauss.b);
         let base_reaction = Wrench::of_base(dense.solution.nodes[0], &dense.equations.units);
         let unmet = (arm.readings.support == Support::UnstrainedBase).then(|| {
             let end = dense.solution.nodes[n];
             let (load, _) = dense.equations.tip_load(end[0]);
-            Wrench { force: [f * (end[1] - load[0]), f * (end[2] - load[1])], moment: f * l * (end[3] - load[2]) }
+            Wrench {
+                force: [force * (end[1] - load[0]), force * (end[2] - load[1])],
+                moment: force * length * (end[3] - load[2]),
+            }
         });
         Ok(Self {
             arm,
@@ -401,7 +374,7 @@ impl Configuration {
             stable: None,
             statistics,
             extremes,
-            energy: energy * f,
+            energy: energy * force,
             dense,
         })
     }
@@ -538,6 +511,39 @@ impl Configuration {
         }
         out
     }
+}
+
+/// The nodes as the elements with their ends: the left end (false), and the right end (true) of the last and of those at which
+/// a cable ends, where the two sides differ.
+fn sides_of_nodes(dense: &Dense) -> Vec<(usize, bool)> {
+    let mesh = &dense.solution.mesh;
+    let (n, cables) = (mesh.elements(), dense.equations.arm().cables.len());
+    let mut out = Vec::with_capacity(n + 1 + cables);
+    for i in 0..n {
+        let s = mesh.nodes()[i];
+        if i > 0 && (0..cables).any(|cable| (dense.equations.cable_end(cable) - s).abs() < 1e-9) {
+            out.push((i - 1, true));
+        }
+        out.push((i, false));
+    }
+    out.push((n - 1, true));
+    out
+}
+
+/// Lengths and strokes of the cables at the last evaluation, with what is commanded of them.
+fn cable_states(arm: &Arm, equations: &Equations, weights: &[f64]) -> Vec<CableState> {
+    let taut = |cable: usize| {
+        let held = equations.held.as_ref();
+        held.is_some_and(|held| held.cables.iter().zip(&held.taut).any(|(own, taut)| *own == cable && *taut))
+    };
+    let state = |(index, cable): (usize, &Cable)| {
+        let [now, unloaded] = equations.cable_lengths(index, weights);
+        let (length, stroke) = (arm.length * now, arm.length * (unloaded - now));
+        let command =
+            cable.stroke.map(|given| Command { stroke: given, length: length + stroke - given, slack: !taut(index) });
+        CableState { name: cable.name.clone(), tension: cable.tension, length, stroke, command }
+    };
+    arm.cables.iter().enumerate().map(state).collect()
 }
 
 /// The tangential coefficient that the momentum law corresponds to along the stream, the square of the layer's mean over its outer

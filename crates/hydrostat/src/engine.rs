@@ -24,7 +24,7 @@ use crate::equilibrium::{Asked, AtPlace, Equations, N, Nearness, Q, SectionFailu
 use crate::verdict::Phase;
 
 pub(crate) use self::budget::WORK;
-pub(crate) use self::held::{Pulled, Round, at_stations, pull_taut, solved};
+pub(crate) use self::held::{Round, UnitPull, at_stations, pull_taut};
 pub(crate) use self::rounds::{evaluate, linearise, solve};
 pub(crate) use self::settle::First;
 
@@ -261,8 +261,8 @@ impl Engine {
         let which = if self.equations.arm().readings.flow_surface == crate::FlowSurface::Lateral { 2 } else { 0 };
         (0..self.equations.stations().len())
             .min_by(|a, b| {
-                let v = |k: usize| self.equations.switch(k / M, k % M, which).abs();
-                v(*a).total_cmp(&v(*b))
+                let distance = |k: usize| self.equations.switch(k / M, k % M, which).abs();
+                distance(*a).total_cmp(&distance(*b))
             })
             .map(|k| self.equations.stations()[k])
     }

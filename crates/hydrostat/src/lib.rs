@@ -138,6 +138,7 @@ mod compliance;
 pub mod configuration;
 mod dense;
 mod dispatch;
+mod elimination;
 mod engine;
 mod equilibrium;
 mod flow;

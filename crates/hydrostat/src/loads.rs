@@ -151,38 +151,64 @@ pub(crate) fn load<R: Real>(
     };
 
     if water.stream != [0.0; 2] {
-        // S = pi rho_w beta R, times |r'| when the deformed length is wet.
-        let mut s = body.wetted * swelling.beta;
-        let mut s_strain = [body.wetted * swelling.slope, zero, zero];
-        if water.wetted == WettedLength::Deformed {
-            let q = (nu * nu + eta * eta).sqrt();
-            s_strain = [s_strain[0] * q + s * nu / q, s * eta / q, zero];
-            s = s * q;
-        }
+        let wetted = wetted(water, body, strain, swelling);
         match water.surface {
             FlowSurface::Centreline => {
-                stream_load(water, &along, one, (s, s_strain), one, &mut out);
+                stream_load(water, &along, one, wetted, one, &mut out);
             }
             FlowSurface::Lateral => {
                 let radius = [body.radius, body.radius_slope];
-                let left = lateral(1.0, strain, swelling, radius, beta_slope).frame(cos, sin);
-                let right = lateral(-1.0, strain, swelling, radius, beta_slope).frame(cos, sin);
-                let stream: [R; 2] = each(|k| R::of(water.stream[k]));
-                // U . u_n with u_n = sigma k x u_t outward: the smaller is windward.
-                let (hit_left, hit_right) = (dot(stream, left.w), -dot(stream, right.w));
-                let half = R::of(0.5);
-                let left_share = hit_left.if_less(hit_right, one, hit_right.if_less(hit_left, zero, half));
-                let faces = |hit: R| hit.if_less(zero, one, zero);
-                stream_load(water, &left, faces(hit_left), (s, s_strain), left_share, &mut out);
-                stream_load(water, &right, faces(hit_right), (s, s_strain), one - left_share, &mut out);
-                let speed = R::of(1.0 / water.stream[0].hypot(water.stream[1]));
-                let windward = hit_left.min(hit_right);
-                out.switches[1] = windward * speed;
-                out.switches[2] = (hit_left - hit_right) * speed;
+                let side = |sigma| lateral(sigma, strain, swelling, radius, beta_slope).frame(cos, sin);
+                lateral_load(water, &side(1.0), &side(-1.0), wetted, &mut out);
             }
         }
     }
+    add_hydrostatics(water, body, nu, swelling, &along, &mut out);
+    out
+}
 
+/// S = pi rho_w beta R, times |r'| when the deformed length is wet, and how it follows the strains.
+#[inline(always)]
+fn wetted<R: Real>(water: &Water, body: &Body<R>, strain: [R; 3], swelling: &Swelling<R>) -> (R, [R; 3]) {
+    let zero = R::of(0.0);
+    let [nu, eta, _] = strain;
+    let (s, s_nu) = (body.wetted * swelling.beta, body.wetted * swelling.slope);
+    match water.wetted {
+        WettedLength::Reference => (s, [s_nu, zero, zero]),
+        WettedLength::Deformed => {
+            let stretch = (nu * nu + eta * eta).sqrt();
+            (s * stretch, [s_nu * stretch + s * nu / stretch, s * eta / stretch, zero])
+        }
+    }
+}
+
+/// Adds the stream's load on the windward one of the two sides, on each half where they tie.
+#[inline(always)]
+fn lateral_load<R: Real>(water: &Water, left: &Frame<R>, right: &Frame<R>, wetted: (R, [R; 3]), out: &mut Load<R>) {
+    let (zero, one, half) = (R::of(0.0), R::of(1.0), R::of(0.5));
+    let stream: [R; 2] = each(|k| R::of(water.stream[k]));
+    // U . u_n with u_n = sigma k x u_t outward: the smaller is windward.
+    let (hit_left, hit_right) = (dot(stream, left.w), -dot(stream, right.w));
+    let left_share = hit_left.if_less(hit_right, one, hit_right.if_less(hit_left, zero, half));
+    let faces = |hit: R| hit.if_less(zero, one, zero);
+    stream_load(water, left, faces(hit_left), wetted, left_share, out);
+    stream_load(water, right, faces(hit_right), wetted, one - left_share, out);
+    let speed = R::of(1.0 / water.stream[0].hypot(water.stream[1]));
+    let windward = hit_left.min(hit_right);
+    out.switches[1] = windward * speed;
+    out.switches[2] = (hit_left - hit_right) * speed;
+}
+
+/// Adds weight less buoyancy, the hydrostatic part of (9) and (10).
+#[inline(always)]
+fn add_hydrostatics<R: Real>(
+    water: &Water,
+    body: &Body<R>,
+    nu: R,
+    swelling: &Swelling<R>,
+    along: &Frame<R>,
+    out: &mut Load<R>,
+) {
     // Weight less buoyancy: f_h = (rho_arm - rho_w nu beta^2) pi (R^2 - R_in^2) g (solid or flooded).
     let volume = nu * swelling.beta * swelling.beta;
     let volume_nu = swelling.beta * (swelling.beta + R::of(2.0) * nu * swelling.slope);
@@ -208,7 +234,6 @@ pub(crate) fn load<R: Real>(
             }
         }
     }
-    out
 }
 
 /// Adds `share` of the stream's load on one surface: S (g_t u + g_n w).

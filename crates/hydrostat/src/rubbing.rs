@@ -8,7 +8,8 @@
 use std::sync::Arc;
 
 use crate::configuration::Configuration;
-use crate::engine::{First, Trouble, solved};
+use crate::elimination::solved;
+use crate::engine::{First, Trouble};
 use crate::friction::{Grip, Turns, exponents};
 use crate::path::{Travelled, name_limit};
 use crate::solve::Solver;

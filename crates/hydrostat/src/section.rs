@@ -100,16 +100,15 @@ pub(crate) fn balance<R: Real>(
 /// Inverse of a 3x3 matrix by cofactors, and its determinant.
 #[inline(always)]
 pub(crate) fn inverse3<R: Real>(m: &[[R; 3]; 3]) -> ([[R; 3]; 3], R) {
-    let c = |i: usize, j: usize| {
+    let cofactor = |i: usize, j: usize| {
         let (i1, i2, j1, j2) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
         m[i1][j1] * m[i2][j2] - m[i1][j2] * m[i2][j1]
     };
-    let (c00, c01, c02) = (c(0, 0), c(0, 1), c(0, 2));
-    let det = m[0][0] * c00 + m[0][1] * c01 + m[0][2] * c02;
-    let f = R::of(1.0) / det;
-    let inv =
-        [[c00 * f, c(1, 0) * f, c(2, 0) * f], [c01 * f, c(1, 1) * f, c(2, 1) * f], [c02 * f, c(1, 2) * f, c(2, 2) * f]];
-    (inv, det)
+    let first = [cofactor(0, 0), cofactor(0, 1), cofactor(0, 2)];
+    let determinant = m[0][0] * first[0] + m[0][1] * first[1] + m[0][2] * first[2];
+    let scale = R::of(1.0) / determinant;
+    let row = |j: usize| [first[j] * scale, cofactor(1, j) * scale, cofactor(2, j) * scale];
+    ([row(0), row(1), row(2)], determinant)
 }
 
 /// `m v`.

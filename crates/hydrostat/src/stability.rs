@@ -24,7 +24,7 @@
 //! it as it is. Flutter, which takes inertia, is out of reach: Beck's column flutters where the overdamped one
 //! still creeps back.
 
-use hydrostat_bvp::{Collocation, Condition, Correction, Mesh, Problem, Solution};
+use hydrostat_bvp::{Collocation, Correction, Mesh, Solution};
 use nalgebra::DMatrix;
 use nalgebra::linalg::Schur;
 
@@ -32,7 +32,8 @@ use crate::compliance::{Compliance, FIELDS, project};
 use crate::configuration::Configuration;
 use crate::dense::Dense;
 use crate::dispatch::widest;
-use crate::engine::{M, Pulled, at_stations, linearise, pull_taut, solve, solved};
+use crate::elimination::solved;
+use crate::engine::{M, UnitPull, at_stations, linearise, pull_taut, solve};
 use crate::equilibrium::{Equations, N, Q};
 use crate::readings::Support;
 use crate::verdict::Phase;
@@ -292,12 +293,9 @@ impl Tangent {
             let weights = self.system.gauss.b;
             gradients.extend(taut.iter().map(|i| self.equations.stroke_gradients(held.cables[*i], &weights)));
         }
-        let mesh = &self.solution.mesh;
-        let mut right = [Condition::default(); N];
-        self.equations.right(&self.solution.nodes[mesh.elements()], &mut right);
         let mut compliance = widest(
             #[inline(always)]
-            || Compliance::new(&self.system, mesh, &right, functions, &gradients),
+            || Compliance::new(&self.system, &self.solution.mesh, functions, &gradients),
         )?;
         let motions: Vec<Vec<f64>> = pulled.iter().map(|pulled| self.motion(pulled, functions)).collect();
         let strokes: Vec<Vec<f64>> =
@@ -309,7 +307,7 @@ impl Tangent {
     }
 
     /// Projection of what a unit of tension moves.
-    fn motion(&self, pulled: &Pulled, functions: usize) -> Vec<f64> {
+    fn motion(&self, pulled: &UnitPull, functions: usize) -> Vec<f64> {
         let Self { equations, system, solution, .. } = self;
         let moved = at_stations(equations, system, solution, &pulled.response);
         project(&system.gauss, &solution.mesh, functions, |i, j| {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use hydrostat::{Configuration, Parameter};
+use nalgebra::DMatrix;
 
 use crate::certainty::{Direction, correlation, covariance, directions};
 use crate::cross_validation::{LeftOut, leave_out};
@@ -206,14 +207,7 @@ pub fn fit(
     if options.rescale && measured <= fitted.len() {
         return Err(IdentifyError::Freedom { measured, parameters: fitted.len() });
     }
-    // A case without numbers would be solved for nothing.
-    let with_numbers = || cases.iter().enumerate().filter(|(_, case)| !case.measurements.is_empty());
-    let observed: Result<_, _> = with_numbers()
-        .enumerate()
-        .map(|(count, (_, case))| Observed::new(case, count < KEPT, &fitted, options.tol))
-        .collect();
-    let index: Vec<usize> = with_numbers().map(|(i, _)| i).collect();
-    let mut model = Cases { observed: observed?, fitted, answers: Vec::new() };
+    let (mut model, index) = model_of(cases, fitted, options.tol)?;
     let settings = Settings { loss: options.loss, rounds: options.rounds, ..Settings::default() };
     let mut go_on = true;
     let found = search(&mut model, &settings, |rounds, cost| {
@@ -232,17 +226,8 @@ pub fn fit(
     let spread = if options.rescale { (chi_square / (freedom.max(1)) as f64).sqrt() } else { 1.0 };
     let quantile = if options.rescale { student_95(usize::try_from(freedom).unwrap_or(1)) } else { NORMAL_95 };
     let covariance = covariance(&rows, options.loss, &free, spread);
-    let scales: Vec<Scale> = (0..count).map(|k| Scale::of(found.x[k], model.fitted[k].prior.map(|p| p.sd))).collect();
-    let sizes: Vec<f64> = scales.iter().map(|scale| scale.size).collect();
-    let estimates: Vec<Estimate> = (0..count)
-        .map(|k| {
-            let (one, value) = (model.fitted[k], found.x[k]);
-            let sd = found.held[k].is_none().then(|| covariance[(k, k)].sqrt());
-            let cut = |x: f64| x.max(one.bounds[0]).min(one.bounds[1]);
-            let interval = sd.map(|sd| [cut(value - quantile * sd), cut(value + quantile * sd)]);
-            Estimate { fitted: one, value, sd, interval, held: found.held[k], scale: scales[k] }
-        })
-        .collect();
+    let estimates = estimates(&model.fitted, &found, &covariance, quantile);
+    let sizes: Vec<f64> = estimates.iter().map(|one| one.scale.size).collect();
     let parameters = model.parameters();
     let directions = directions(&rows, &sizes);
     let correlation = correlation(&covariance);
@@ -264,18 +249,39 @@ pub fn fit(
         freedom,
         spread,
         load_cases: index.len(),
-        shapes: index
-            .iter()
-            .copied()
-            .zip(&mut model.answers)
-            .filter_map(|(i, one)| Some((i, one.shape.take()?)))
-            .collect(),
+        shapes: shapes(&mut model, &index),
         left_out,
         no_answer: no_answer(&found, &index),
         rounds: found.rounds,
         evaluations: found.evaluations,
         converged: found.converged,
     })
+}
+
+/// The load cases that have numbers, and their indices: one without would be solved for nothing.
+fn model_of(cases: &[Case], fitted: Vec<Fitted>, tol: f64) -> Result<(Cases, Vec<usize>), IdentifyError> {
+    let index: Vec<usize> = (0..cases.len()).filter(|i| !cases[*i].measurements.is_empty()).collect();
+    let observed: Result<_, _> =
+        index.iter().enumerate().map(|(count, i)| Observed::new(&cases[*i], count < KEPT, &fitted, tol)).collect();
+    Ok((Cases { observed: observed?, fitted, answers: Vec::new() }, index))
+}
+
+/// Each parameter with its standard deviation and interval, which a bound that holds it leaves without a meaning.
+fn estimates(fitted: &[Fitted], found: &Minimum<Refusal>, covariance: &DMatrix<f64>, quantile: f64) -> Vec<Estimate> {
+    let estimate = |(k, one): (usize, &Fitted)| {
+        let (value, held) = (found.x[k], found.held[k]);
+        let sd = held.is_none().then(|| covariance[(k, k)].sqrt());
+        let cut = |x: f64| x.max(one.bounds[0]).min(one.bounds[1]);
+        let interval = sd.map(|sd| [cut(value - quantile * sd), cut(value + quantile * sd)]);
+        Estimate { fitted: *one, value, sd, interval, held, scale: Scale::of(value, one.prior.map(|prior| prior.sd)) }
+    };
+    fitted.iter().enumerate().map(estimate).collect()
+}
+
+/// The shapes of the last evaluation that were kept, with the indices of their cases.
+fn shapes(model: &mut Cases, index: &[usize]) -> Vec<(usize, Configuration)> {
+    let kept = index.iter().zip(&mut model.answers).filter_map(|(i, one)| Some((*i, one.shape.take()?)));
+    kept.collect()
 }
 
 pub(crate) fn search(

@@ -105,8 +105,8 @@ fn loss_of(name: &str) -> PyResult<Loss> {
 #[pymethods]
 impl Fit {
     /// The document of `hydrostat identify --json`.
-    fn to_json(&self) -> PyResult<String> {
-        IdentificationDocument::new(&self.best, &self.cases, &self.found, self.options.loss).to_json().map_err(wrong)
+    fn to_json(&self) -> String {
+        IdentificationDocument::new(&self.best, &self.cases, &self.found, self.options.loss).to_json()
     }
 
     fn to_csv(&self) -> String {

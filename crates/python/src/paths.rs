@@ -131,8 +131,8 @@ impl Path {
         Figure::new(hydrostat_figures::path_shapes_figure(&self.found, &abscissa(self.axis()), title))
     }
 
-    fn to_json(&self) -> PyResult<Option<String>> {
-        PathDocument::new(&self.found, &self.varied).map(|document| document.to_json()).transpose().map_err(wrong)
+    fn to_json(&self) -> Option<String> {
+        PathDocument::new(&self.found, &self.varied).map(|document| document.to_json())
     }
 
     fn to_csv(&self) -> String {
@@ -200,8 +200,8 @@ impl Equilibria {
         Figure::new(hydrostat_figures::equilibria_figure(&self.all, title))
     }
 
-    fn to_json(&self) -> PyResult<String> {
-        EquilibriaDocument::new(&self.arm, &self.all).to_json().map_err(wrong)
+    fn to_json(&self) -> String {
+        EquilibriaDocument::new(&self.arm, &self.all).to_json()
     }
 
     fn to_csv(&self) -> String {

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 
 use crate::arm::Arm;
 use crate::arrays::given;
-use crate::errors::{reach_error, wrong};
+use crate::errors::reach_error;
 use crate::figure::Figure;
 use crate::interrupt::interruptible;
 use crate::solution::{Solution, words};
@@ -102,8 +102,8 @@ pub(crate) fn reachable(
 
 #[pymethods]
 impl Boundary {
-    fn to_json(&self) -> PyResult<String> {
-        BoundaryDocument::new(&self.arm, &self.found).to_json().map_err(wrong)
+    fn to_json(&self) -> String {
+        BoundaryDocument::new(&self.arm, &self.found).to_json()
     }
 
     fn to_csv(&self) -> String {
@@ -153,8 +153,8 @@ impl Reach {
         Ok(Figure::new(reach_figure(&self.one(index)?.configuration, &targets, note)))
     }
 
-    fn to_json(&self) -> PyResult<String> {
-        ReachDocument::new(&self.arm, &self.found).to_json().map_err(wrong)
+    fn to_json(&self) -> String {
+        ReachDocument::new(&self.arm, &self.found).to_json()
     }
 
     fn to_csv(&self) -> String {

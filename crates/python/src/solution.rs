@@ -214,10 +214,10 @@ impl Solution {
     }
 
     /// The document of `hydrostat solve --format json`.
-    fn to_json(&self) -> PyResult<String> {
+    fn to_json(&self) -> String {
         let notes = Note::all(&self.configuration, self.tol);
         let margin = self.configuration.fold_margin().value;
-        hydrostat_files::Solution::new(&self.configuration, margin, &notes).to_json().map_err(wrong)
+        hydrostat_files::SolutionDocument::new(&self.configuration, margin, &notes).to_json()
     }
 
     /// The stations as CSV.

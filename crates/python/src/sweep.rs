@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use hydrostat_files::{Axis, Value, Values};
+use hydrostat_files::{Axis, AxisValue, AxisValues};
 use hydrostat_sweep::{Column, Data, Output, Plan, Sample, SweepError, SweepOptions};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -84,16 +84,16 @@ impl Sweep {
     fn values<'py>(&self, py: Python<'py>, axis: usize) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(axis) = self.sweep.plan().axes().get(axis) else { return Ok(None) };
         let count = match (&axis.values, axis.values.count()) {
-            (Values::Span { .. }, _) | (_, None) => return Ok(None),
+            (AxisValues::Span { .. }, _) | (_, None) => return Ok(None),
             (_, Some(count)) => count,
         };
         let all = || (0..count).filter_map(|index| axis.value(index));
         if axis.dimension.is_some() {
-            let numbers = all().map(|value| if let Value::Number(number) = value { number } else { f64::NAN });
+            let numbers = all().map(|value| if let AxisValue::Number(number) = value { number } else { f64::NAN });
             return Ok(Some(given(py, numbers.collect()).into_any()));
         }
         let words: Vec<&str> =
-            all().filter_map(|value| if let Value::Word(word) = value { Some(word) } else { None }).collect();
+            all().filter_map(|value| if let AxisValue::Word(word) = value { Some(word) } else { None }).collect();
         Ok(Some(PyList::new(py, words)?.into_any()))
     }
 

@@ -8,8 +8,8 @@ use hydrostat_figures::{
     Abscissa, Quantity, Scene, arm_figure, equilibria_figure, last_good_note, path_figure, reach_figure,
 };
 use hydrostat_files::{
-    Dimension, EquilibriaDocument, Failure, Inputs, Note, Others, PathDocument, ReachDocument, Solution, Varied,
-    arm_to_toml, equilibria_csv, path_csv, reach_csv, shipped, stations_csv,
+    Dimension, EquilibriaDocument, FailureDocument, Inputs, Note, Others, PathDocument, ReachDocument,
+    SolutionDocument, Varied, arm_to_toml, equilibria_csv, path_csv, reach_csv, shipped, stations_csv,
 };
 use serde::Serialize;
 use serde_json::json;
@@ -36,8 +36,8 @@ pub(crate) struct Answer {
 const JSON: &str = "application/json";
 
 impl Answer {
-    pub(crate) fn json(value: &impl Serialize) -> Result<Self, Problem> {
-        serde_json::to_vec(value).map(|bytes| Self { content_type: JSON, bytes }).map_err(|_| Problem::defect())
+    pub(crate) fn json(document: &impl Serialize) -> Self {
+        Self { content_type: JSON, bytes: hydrostat_files::json(document).into_bytes() }
     }
 
     fn csv(text: String) -> Self {
@@ -61,7 +61,7 @@ struct ShippedOut {
 }
 
 /// The arms that can be chosen; first the one that the program was started with, if it is none of the shipped.
-pub(crate) fn arms(given: Option<&Given>) -> Result<Answer, Problem> {
+pub(crate) fn arms(given: Option<&Given>) -> Answer {
     let shipped = shipped::names().map(|name| ShippedOut {
         name: name.to_owned(),
         description: shipped::description(name).unwrap_or_default().to_owned(),
@@ -82,14 +82,14 @@ pub(crate) fn arms(given: Option<&Given>) -> Result<Answer, Problem> {
 /// What an arm means: every default filled in.
 pub(crate) fn check(request: &CheckRequest) -> Result<Answer, Problem> {
     let arm = request.arm()?;
-    Answer::json(&json!({
+    Ok(Answer::json(&json!({
         "schema": hydrostat_files::results::SCHEMA,
         "version": env!("CARGO_PKG_VERSION"),
         "name": arm.name,
         "inputs": Inputs::new(&arm),
         "toml": arm_to_toml(&arm),
         "tension_scale": (0..arm.cables.len()).map(|c| tension_scale(&arm, c)).collect::<Vec<_>>(),
-    }))
+    })))
 }
 
 /// The shape of an arm, or the verdict.
@@ -111,7 +111,7 @@ pub(crate) fn solve(request: &SolveRequest, deadline: Deadline) -> Result<Answer
             }
             match request.format {
                 Format::Csv => Ok(Answer::csv(stations_csv(&configuration.stations))),
-                _ => Answer::json(&Solution::new(&configuration, margin, &notes)),
+                _ => Ok(Answer::json(&SolutionDocument::new(&configuration, margin, &notes))),
             }
         }
         Err(SolveError::NoEquilibrium(failure)) => no_shape(request, &arm, *failure, stations, deadline),
@@ -153,7 +153,7 @@ fn no_shape(
                 shape.stations = shape.resampled(stations);
             }
             let others = others(arm, failure.verdict.kind, deadline);
-            Answer::json(&Failure::new(&failure, margin, &notes).with_others(others))
+            Ok(Answer::json(&FailureDocument::new(&failure, margin, &notes).with_others(others)))
         }
     }
 }
@@ -182,7 +182,7 @@ pub(crate) fn path(request: &PathRequest, deadline: Deadline) -> Result<Answer, 
     let document = PathDocument::new(&path, &varied)
         .ok_or_else(|| Problem::field("vary", "vary: no point of the path was established at its start"))?;
     match request.format {
-        Format::Json => Answer::json(&document),
+        Format::Json => Ok(Answer::json(&document)),
         Format::Csv => Ok(Answer::csv(path_csv(&path, &varied))),
         format => {
             let title = format!("{}: equilibria over {}", arm.name, varied.parameter);
@@ -200,7 +200,7 @@ pub(crate) fn equilibria(request: &EquilibriaRequest, deadline: Deadline) -> Res
     let arm = request.arm()?;
     let all = arm.equilibria_while(request.tol.unwrap_or(1e-8), |_| deadline.is_ahead())?;
     match request.format {
-        Format::Json => Answer::json(&EquilibriaDocument::new(&arm, &all)),
+        Format::Json => Ok(Answer::json(&EquilibriaDocument::new(&arm, &all))),
         Format::Csv => Ok(Answer::csv(equilibria_csv(arm.cables.len(), &all))),
         format => Answer::figure(&equilibria_figure(&all, &format!("{}: all equilibria", arm.name)), format),
     }
@@ -234,7 +234,7 @@ pub(crate) fn reach(request: &ReachRequest, deadline: Deadline) -> Result<Answer
         return Err(Problem::too_long());
     }
     match request.format {
-        Format::Json => Answer::json(&ReachDocument::new(&arm, &found)),
+        Format::Json => Ok(Answer::json(&ReachDocument::new(&arm, &found))),
         Format::Csv => Ok(Answer::csv(reach_csv(arm.cables.len(), &found))),
         format => match found.solutions.first().or(found.closest.as_ref()) {
             Some(best) => {

@@ -150,7 +150,7 @@ impl From<ReachError> for Problem {
 
 impl IntoResponse for Problem {
     fn into_response(self) -> Response<Body> {
-        let text = serde_json::to_vec(&self.body).unwrap_or_default();
+        let text = hydrostat_files::json(&self.body);
         let mut response = Response::new(Body::from(text));
         *response.status_mut() = self.status;
         let headers = response.headers_mut();

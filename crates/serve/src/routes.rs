@@ -59,7 +59,7 @@ async fn asset(uri: Uri) -> Response {
     assets::get(uri.path()).unwrap_or_else(|| Problem::not_found().into_response())
 }
 
-async fn arms(State(shared): State<Shared>) -> Result<Answer, Problem> {
+async fn arms(State(shared): State<Shared>) -> Answer {
     answers::arms(shared.given.as_deref())
 }
 

@@ -10,7 +10,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use hydrostat::{
     Arm, Followed, Follower, NoEquilibrium, Options, ReachError, ReachOptions, SolveError, Solver, Target, Tip,
 };
-use hydrostat_files::{ArmFile, Failure, Note, Solution};
+use hydrostat_files::{ArmFile, FailureDocument, Note, SolutionDocument, json};
 use serde::{Deserialize, Serialize};
 use tokio::time::{sleep, timeout};
 
@@ -56,8 +56,8 @@ struct Wish {
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Answered<'a> {
-    Shape(Box<Solution<'a>>),
-    None(Box<Failure<'a>>),
+    Shape(Box<SolutionDocument<'a>>),
+    None(Box<FailureDocument<'a>>),
 }
 
 /// Where the tip was pulled to.
@@ -188,7 +188,7 @@ fn refusal(id: u64, problem: Problem, dropped: u64) -> String {
         dropped,
         microseconds: 0,
     };
-    serde_json::to_string(&reply).unwrap_or_default()
+    json(&reply)
 }
 
 impl Memory {
@@ -216,11 +216,11 @@ impl Memory {
                 let margin = shape.fold_margin().value;
                 shape.stations = shape.resampled(count);
                 reply.drawing = Some(Drawing::new(&shape));
-                reply.answer = Some(Answered::Shape(Box::new(Solution::new(&shape, margin, &notes))));
+                reply.answer = Some(Answered::Shape(Box::new(SolutionDocument::new(&shape, margin, &notes))));
                 reply.microseconds = start.elapsed().as_micros();
-                serde_json::to_string(&reply).map_err(|_| Problem::defect())
+                Ok(json(&reply))
             }
-            Err(SolveError::NoEquilibrium(failure)) => without_shape(reply, *failure, count, start),
+            Err(SolveError::NoEquilibrium(failure)) => Ok(without_shape(reply, *failure, count, start)),
             Err(error) => Err(error.into()),
         }
     }
@@ -331,12 +331,7 @@ fn apart(at: [f64; 2], tip: Tip, length: f64) -> bool {
 }
 
 /// The verdict, with the last good shape to look at.
-fn without_shape(
-    mut reply: Reply<'_>,
-    mut failure: NoEquilibrium,
-    count: usize,
-    start: Instant,
-) -> Result<String, Problem> {
+fn without_shape(mut reply: Reply<'_>, mut failure: NoEquilibrium, count: usize, start: Instant) -> String {
     let notes = failure.last_good.as_ref().map(|c| Note::all(c, f64::INFINITY)).unwrap_or_default();
     let margin = failure.last_good.as_ref().map_or(f64::NAN, |c| c.fold_margin().value);
     if let Some(shape) = &mut failure.last_good {
@@ -346,7 +341,7 @@ fn without_shape(
     let Reply { id, drawing, ghost, pulled, dropped, .. } = reply;
     let reply = Reply {
         id,
-        answer: Some(Answered::None(Box::new(Failure::new(&failure, margin, &notes)))),
+        answer: Some(Answered::None(Box::new(FailureDocument::new(&failure, margin, &notes)))),
         drawing,
         ghost,
         pulled,
@@ -354,7 +349,7 @@ fn without_shape(
         dropped,
         microseconds: start.elapsed().as_micros(),
     };
-    serde_json::to_string(&reply).map_err(|_| Problem::defect())
+    json(&reply)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The arm of a row.
 
 use hydrostat::{Arm, ArmError, Parameter};
-use hydrostat_files::{ArmFile, Axis, FileError, Value, Values};
+use hydrostat_files::{ArmFile, Axis, AxisValue, AxisValues, FileError};
 
 /// How a key gets its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,7 +61,7 @@ impl Arms {
     }
 
     /// The arm with these values, in the order of the keys; `None` where they do not go together.
-    pub(crate) fn arm<'a>(&self, values: &[Value<'_>], last: &'a mut Last) -> Option<&'a Arm> {
+    pub(crate) fn arm<'a>(&self, values: &[AxisValue<'_>], last: &'a mut Last) -> Option<&'a Arm> {
         let texts: Vec<String> = self.by_way(values, Way::File).map(|(axis, value)| axis.text(value)).collect();
         if last.arm.is_none() || texts != last.texts {
             last.arm = if texts.is_empty() { Some(self.arm.clone()) } else { self.through_file(values).ok() };
@@ -69,7 +69,7 @@ impl Arms {
         }
         let arm = last.arm.as_mut()?;
         for (way, value) in self.ways.iter().zip(values) {
-            if let (Way::Load(parameter), Value::Number(value)) = (way, value) {
+            if let (Way::Load(parameter), AxisValue::Number(value)) = (way, value) {
                 // The parameters are those that the arm was seen to have.
                 let _ = parameter.set(arm, *value);
             }
@@ -77,12 +77,16 @@ impl Arms {
         Some(arm)
     }
 
-    fn by_way<'a>(&'a self, values: &'a [Value<'a>], wanted: Way) -> impl Iterator<Item = (&'a Axis, Value<'a>)> {
+    fn by_way<'a>(
+        &'a self,
+        values: &'a [AxisValue<'a>],
+        wanted: Way,
+    ) -> impl Iterator<Item = (&'a Axis, AxisValue<'a>)> {
         let all = self.axes.iter().zip(&self.ways).zip(values);
         all.filter(move |((_, way), _)| **way == wanted).map(|((axis, _), value)| (axis, *value))
     }
 
-    fn through_file(&self, values: &[Value<'_>]) -> Result<Arm, FileError> {
+    fn through_file(&self, values: &[AxisValue<'_>]) -> Result<Arm, FileError> {
         let mut file = self.file.clone();
         for (axis, value) in self.by_way(values, Way::File) {
             file.set_by(OPTION, &axis.key, &axis.text(value))?;
@@ -113,10 +117,12 @@ fn way(arm: &Arm, axis: &Axis) -> Way {
 
 /// Tries the values of a key one at a time, the ends of ranges.
 fn check(file: &ArmFile, axis: &Axis, alone: bool) -> Result<(), ValueError> {
-    let values: Vec<Value<'_>> = match &axis.values {
-        Values::Even { from, to, .. } | Values::Span { from, to } => [from, to].map(|v| Value::Number(*v)).into(),
-        Values::List(list) => list.iter().map(|v| Value::Number(*v)).collect(),
-        Values::Words(words) => words.iter().map(|word| Value::Word(word)).collect(),
+    let values: Vec<AxisValue<'_>> = match &axis.values {
+        AxisValues::Even { from, to, .. } | AxisValues::Span { from, to } => {
+            [from, to].map(|v| AxisValue::Number(*v)).into()
+        }
+        AxisValues::List(list) => list.iter().map(|v| AxisValue::Number(*v)).collect(),
+        AxisValues::Words(words) => words.iter().map(|word| AxisValue::Word(word)).collect(),
     };
     for value in values {
         let mut file = file.clone();

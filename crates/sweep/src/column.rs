@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use hydrostat::{Row, Stability, Verdict, Wanted};
-use hydrostat_files::{Axis, Value};
+use hydrostat_files::{Axis, AxisValue};
 
 /// Something that can be asked of every row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -187,13 +187,13 @@ impl Layout {
     }
 
     /// Adds a row to what [`Layout::columns`] has made; a row without a verdict has no arm.
-    pub(crate) fn add(&self, columns: &mut [Column], index: u64, values: &[Value<'_>], row: &Answer) {
+    pub(crate) fn add(&self, columns: &mut [Column], index: u64, values: &[AxisValue<'_>], row: &Answer) {
         let mut cells = Cells { columns: columns.iter_mut() };
         cells.whole(i64::try_from(index).ok());
         for value in values {
             match value {
-                Value::Number(number) => cells.number(*number),
-                Value::Word(word) => cells.text(Some(word)),
+                AxisValue::Number(number) => cells.number(*number),
+                AxisValue::Word(word) => cells.text(Some(word)),
             }
         }
         let found = row.as_ref().ok();

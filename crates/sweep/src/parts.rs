@@ -1,10 +1,10 @@
 //! A sweep on its way: whole parts in a directory beside the output, and the plan that they are of.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Write};
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use hydrostat_files::write_whole;
+use hydrostat_files::{remove_leftovers, write_whole};
 
 use crate::error::{SweepError, write_error};
 
@@ -68,6 +68,7 @@ impl Parts {
             return Err(SweepError::Other { path: parts.directory, what });
         }
         parts.remove_temporary();
+        remove_leftovers(output);
         Ok(parts)
     }
 
@@ -152,26 +153,10 @@ pub(crate) fn difference(found: &str, plan: &str) -> &'static str {
     named.into_iter().find(|(key, _)| differs(key)).map_or("plan", |(_, words)| words)
 }
 
-/// Writes a file by `fill` beside `path` and renames it: it appears whole or not at all.
-pub(crate) fn whole(path: &Path, fill: impl FnOnce(&mut File) -> Result<(), SweepError>) -> Result<(), SweepError> {
-    let mut name = std::ffi::OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(".tmp");
-    let temporary = path.with_file_name(name);
-    let written = File::create(&temporary).map_err(|error| write_error(path, error)).and_then(|mut file| {
-        fill(&mut file)?;
-        let done: io::Result<()> = file.sync_all().and_then(|()| fs::rename(&temporary, path));
-        done.map_err(|error| write_error(path, error))
-    });
-    if written.is_err() {
-        // The first error is the one to report.
-        let _ = fs::remove_file(&temporary);
-    }
-    written
-}
-
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
+    use std::io;
+
     use super::*;
     use crate::column::{Column, Data};
     use crate::{csv_file, parquet_file};

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
-use hydrostat_files::{Axis, Value, Values};
+use hydrostat_files::{Axis, AxisValue, AxisValues};
 
 use crate::draw::{hash, permuted, unit};
 use crate::sobol::{self, Sobol};
@@ -96,13 +96,13 @@ pub enum PlanError {
 /// The rows of a sweep.
 ///
 /// ```
-/// use hydrostat_files::Value;
+/// use hydrostat_files::AxisValue;
 /// use hydrostat_sweep::{Plan, Sample};
 ///
 /// let axes = ["flow.speed=0:1:3", "cable[0].tension=5,7"].map(|text| text.parse().unwrap());
 /// let plan = Plan::new(axes.to_vec(), Sample::Grid, 0).unwrap();
 /// assert_eq!(plan.rows(), 6);
-/// assert_eq!(plan.values(3), [Value::Number(0.5), Value::Number(7.0)]);
+/// assert_eq!(plan.values(3), [AxisValue::Number(0.5), AxisValue::Number(7.0)]);
 /// ```
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -131,7 +131,7 @@ impl Plan {
             Sample::Grid => combinations(&axes)?,
             Sample::Lhs(count) | Sample::Sobol(count) => {
                 if let Some((axis, count)) = axes.iter().find_map(|axis| match axis.values {
-                    Values::Even { count, .. } => Some((axis, count)),
+                    AxisValues::Even { count, .. } => Some((axis, count)),
                     _ => None,
                 }) {
                     return Err(PlanError::Counted { key: axis.key.clone(), count });
@@ -167,9 +167,9 @@ impl Plan {
     }
 
     /// The values of a row, in the order of the keys.
-    pub fn values(&self, row: u64) -> Vec<Value<'_>> {
+    pub fn values(&self, row: u64) -> Vec<AxisValue<'_>> {
         let mut rest = row;
-        let mut values: Vec<Value<'_>> = Vec::with_capacity(self.axes.len());
+        let mut values: Vec<AxisValue<'_>> = Vec::with_capacity(self.axes.len());
         for (k, axis) in self.axes.iter().enumerate().rev() {
             let value = match self.sample {
                 Sample::Grid => {
@@ -180,7 +180,7 @@ impl Plan {
                 }
                 _ => axis.drawn(self.share(k, row)),
             };
-            values.push(value.unwrap_or(Value::Number(f64::NAN)));
+            values.push(value.unwrap_or(AxisValue::Number(f64::NAN)));
         }
         values.reverse();
         values

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hydrostat::{NoRow, Tile};
-use hydrostat_files::{ArmFile, arm_to_toml, write_whole};
+use hydrostat_files::{ArmFile, arm_to_toml, write_whole, write_whole_with};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -13,7 +13,7 @@ use crate::arms::{Arms, Last};
 use crate::column::{Answer, Column, Data, Layout, Output};
 use crate::error::{SweepError, parquet_error};
 use crate::parquet_file::Reader;
-use crate::parts::{Part, Parts, difference, whole};
+use crate::parts::{Part, Parts, difference};
 use crate::plan::Plan;
 use crate::{csv_file, parquet_file};
 
@@ -268,7 +268,7 @@ impl Sweep {
         if format == Format::Csv {
             write_whole(csv_file::beside(output), self.note.as_bytes())?;
         }
-        whole(output, |file| match format {
+        write_whole_with(output, |file| match format {
             Format::Parquet => {
                 let notes = [
                     ("hydrostat.version", env!("CARGO_PKG_VERSION").to_owned()),

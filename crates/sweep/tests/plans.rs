@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use hydrostat_files::{ArmFile, Axis, Value, shipped};
+use hydrostat_files::{ArmFile, Axis, AxisValue, shipped};
 use hydrostat_sweep::{Plan, PlanError, Sample, Shard, Sweep, SweepOptions};
 use proptest::prelude::*;
 
@@ -10,10 +10,10 @@ fn axes(texts: &[&str]) -> Vec<Axis> {
     texts.iter().map(|text| text.parse().unwrap()).collect()
 }
 
-fn number(value: Value<'_>) -> f64 {
+fn number(value: AxisValue<'_>) -> f64 {
     match value {
-        Value::Number(number) => number,
-        Value::Word(word) => panic!("{word}"),
+        AxisValue::Number(number) => number,
+        AxisValue::Word(word) => panic!("{word}"),
     }
 }
 
@@ -49,7 +49,7 @@ fn plans_that_are_none() {
 #[test]
 fn lists_are_drawn_in_equal_parts() {
     let plan = Plan::new(axes(&["model.volume=planar,none", "flow.speed=0:1"]), Sample::Lhs(200), 3).unwrap();
-    let words = (0..200).filter(|row| plan.values(*row)[0] == Value::Word("none")).count();
+    let words = (0..200).filter(|row| plan.values(*row)[0] == AxisValue::Word("none")).count();
     assert_eq!(words, 100);
 }
 

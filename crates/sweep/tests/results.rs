@@ -232,14 +232,16 @@ fn a_stopped_sweep_goes_on_and_no_other() {
     let error = other.run(&out, true, 1, &|_| {}).unwrap_err();
     assert!(matches!(error, SweepError::Other { what: "tolerance", .. }), "{error}");
 
-    // One part is lost, another was never renamed.
+    // One part is lost, another was never renamed, and neither was the whole.
     let part = std::fs::read_dir(&parts).unwrap().flatten().find(|e| e.file_name() != "plan.json").unwrap();
     std::fs::remove_file(part.path()).unwrap();
     std::fs::write(parts.join(".000000-1.parquet.1-0.tmp"), "half").unwrap();
+    let leftover = directory.path().join(".out.parquet.1-0.tmp");
+    std::fs::write(&leftover, "half").unwrap();
     let summary = whole.run(&out, true, 2, &|_| {}).unwrap();
     assert!(summary.resumed > 0 && summary.resumed < 240, "{summary:?}");
     assert!(std::fs::read(&out).unwrap() == std::fs::read(&want).unwrap());
-    assert!(!parts.exists());
+    assert!(!parts.exists() && !leftover.exists());
 
     let again = whole.run(&out, true, 2, &|_| {}).unwrap();
     assert_eq!((again.rows, again.resumed, again.answered), (240, 240, summary.answered));

@@ -167,58 +167,10 @@ fn against_references(section: &mut Section, scope: Scope, listener: &dyn Listen
             compared
         })
         .collect();
-    let origin = "validation/reference/cases.json: an independent program, Gauss collocation of order 9 to 10, to 1e-8 or better in 158 of the 163 and to \
-                  8e-7 in the other five.";
-    let mut table = Table::new("Arms solved by an independent program, tol 1e-8", origin, &["what", "here"]);
-    let mut offs: Vec<f64> =
-        compared.iter().filter_map(|c| if let Compared::Solved { off, .. } = c { Some(*off) } else { None }).collect();
-    offs.sort_by(f64::total_cmp);
-    let explained = compared.iter().filter(|c| matches!(c, Compared::Explained(_))).count();
     let ratios = ratios(&compared);
-    let count = |n: usize| n.to_string();
-    table.push(Row::new(["arms compared".to_owned(), count(compared.len())]).checked(Check::so(all.len() == 163)));
-    table.push(Row::new(["answered".to_owned(), count(offs.len())]));
-    table.push(Row::new(["not answered, for a known reason".to_owned(), count(explained)]));
-    table.push(Row::new(["median distance of the tips / L".to_owned(), size(quantile(&offs, 0.5))]));
-    table.push(Row::new(["largest distance / L".to_owned(), size(quantile(&offs, 1.0))]));
-    let bounds = [
-        ("true error over estimate: median", quantile(&ratios, 0.5), f64::NAN),
-        ("true error over estimate: 95 % are below", quantile(&ratios, 0.95), 3.0),
-        ("true error over estimate: largest", quantile(&ratios, 1.0), 10.0),
-        ("estimate over true error: median", 1.0 / quantile(&ratios, 0.5), 30.0),
-    ];
-    for (what, value, allowed) in bounds {
-        let row = Row::new([what.to_owned(), fixed(value, 2)]);
-        table.push(if allowed.is_nan() { row } else { row.checked(Check::within(value, allowed)) });
-    }
-    section.table(table);
-
-    let mut table = Table::new(
-        "The arms that are furthest off, and all without an answer",
-        format!(
-            "{origin} An answer may be off by 3e-8 L or three estimates, along the arm by 100 times that; where the reading makes loads that jump, by 2e-4 L."
-        ),
-        &["arm", "tip off / L", "estimate / L", "shape off", "outcome"],
-    );
-    let mut order: Vec<usize> = (0..compared.len()).collect();
-    let key = |k: &usize| if let Compared::Solved { off, .. } = &compared[*k] { *off } else { f64::INFINITY };
-    order.sort_by(|a, b| key(b).total_cmp(&key(a)));
-    // Every failure is among them, however many there are.
-    let listed = order.iter().enumerate().filter(|(rank, k)| *rank < 14 || !compared[**k].holds());
-    for (_, k) in listed {
-        let name = chosen[*k].name.clone();
-        let row = match &compared[*k] {
-            Compared::Solved { off, estimate, shape, loose, .. } => {
-                let words = if *loose { "solved; its load can jump" } else { "solved" };
-                Row::new([name, size(*off), size(*estimate), size(*shape), words.to_owned()])
-            }
-            Compared::Explained(why) | Compared::Lost(why) => {
-                Row::new([name, String::new(), String::new(), String::new(), why.clone()])
-            }
-        };
-        table.push(row.checked(Check::so(compared[*k].holds())));
-    }
-    section.table(table);
+    section.table(summary(&compared, &ratios, all.len()));
+    let names: Vec<&str> = chosen.iter().map(|reference| reference.name.as_str()).collect();
+    section.table(furthest_off(&names, &compared));
 
     let shares: Vec<[f64; 2]> =
         ratios.iter().enumerate().map(|(k, r)| [*r, 100.0 * (k + 1) as f64 / ratios.len() as f64]).collect();
@@ -230,6 +182,66 @@ fn against_references(section: &mut Section, scope: Scope, listener: &dyn Listen
         "How many of the arms have a true error below so many estimates. To the left of 1 the estimate is on the safe side.",
         lines_figure("arms solved by an independent program", &across, &["arms"], &[panel]),
     );
+}
+
+/// Where the references are from.
+const ORIGIN: &str = "validation/reference/cases.json: an independent program, Gauss collocation of order 9 to 10, to 1e-8 or better in 158 of the 163 and \
+                      to 8e-7 in the other five.";
+
+/// How many arms were answered and how well, of so many references in `all`.
+fn summary(compared: &[Compared], ratios: &[f64], all: usize) -> Table {
+    let mut table = Table::new("Arms solved by an independent program, tol 1e-8", ORIGIN, &["what", "here"]);
+    let mut offs: Vec<f64> =
+        compared.iter().filter_map(|c| if let Compared::Solved { off, .. } = c { Some(*off) } else { None }).collect();
+    offs.sort_by(f64::total_cmp);
+    let explained = compared.iter().filter(|c| matches!(c, Compared::Explained(_))).count();
+    let count = |n: usize| n.to_string();
+    table.push(Row::new(["arms compared".to_owned(), count(compared.len())]).checked(Check::so(all == 163)));
+    table.push(Row::new(["answered".to_owned(), count(offs.len())]));
+    table.push(Row::new(["not answered, for a known reason".to_owned(), count(explained)]));
+    table.push(Row::new(["median distance of the tips / L".to_owned(), size(quantile(&offs, 0.5))]));
+    table.push(Row::new(["largest distance / L".to_owned(), size(quantile(&offs, 1.0))]));
+    let bounds = [
+        ("true error over estimate: median", quantile(ratios, 0.5), f64::NAN),
+        ("true error over estimate: 95 % are below", quantile(ratios, 0.95), 3.0),
+        ("true error over estimate: largest", quantile(ratios, 1.0), 10.0),
+        ("estimate over true error: median", 1.0 / quantile(ratios, 0.5), 30.0),
+    ];
+    for (what, value, allowed) in bounds {
+        let row = Row::new([what.to_owned(), fixed(value, 2)]);
+        table.push(if allowed.is_nan() { row } else { row.checked(Check::within(value, allowed)) });
+    }
+    table
+}
+
+/// The arms that are furthest off, and all without an answer.
+fn furthest_off(names: &[&str], compared: &[Compared]) -> Table {
+    let mut table = Table::new(
+        "The arms that are furthest off, and all without an answer",
+        format!(
+            "{ORIGIN} An answer may be off by 3e-8 L or three estimates, along the arm by 100 times that; where the reading makes loads that jump, by 2e-4 L."
+        ),
+        &["arm", "tip off / L", "estimate / L", "shape off", "outcome"],
+    );
+    let mut order: Vec<usize> = (0..compared.len()).collect();
+    let key = |k: &usize| if let Compared::Solved { off, .. } = &compared[*k] { *off } else { f64::INFINITY };
+    order.sort_by(|a, b| key(b).total_cmp(&key(a)));
+    // Every failure is among them, however many there are.
+    let listed = order.iter().enumerate().filter(|(rank, k)| *rank < 14 || !compared[**k].holds());
+    for (_, k) in listed {
+        let name = names[*k].to_owned();
+        let row = match &compared[*k] {
+            Compared::Solved { off, estimate, shape, loose, .. } => {
+                let words = if *loose { "solved; its load can jump" } else { "solved" };
+                Row::new([name, size(*off), size(*estimate), size(*shape), words.to_owned()])
+            }
+            Compared::Explained(why) | Compared::Lost(why) => {
+                Row::new([name, String::new(), String::new(), String::new(), why.clone()])
+            }
+        };
+        table.push(row.checked(Check::so(compared[*k].holds())));
+    }
+    table
 }
 
 /// Rounding, and the error of the answer at the tightest tolerance, over L.

@@ -21,7 +21,7 @@ pub(super) fn run(arm: &Arm, args: &ReachArgs) -> anyhow::Result<()> {
     }
     let text = match args.format {
         Format::Text => summary(arm, &found),
-        Format::Json => output::line(BoundaryDocument::new(arm, &found).to_json()?),
+        Format::Json => output::line(BoundaryDocument::new(arm, &found).to_json()),
         Format::Csv => boundary_csv(arm.cables.len(), &found),
     };
     output::put(args.output.as_deref(), &text)

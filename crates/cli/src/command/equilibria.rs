@@ -41,7 +41,7 @@ fn at_loads(args: &EquilibriaArgs, arm: &Arm) -> anyhow::Result<()> {
     }
     let text = match args.format {
         Format::Text => summary(arm, &all),
-        Format::Json => output::line(EquilibriaDocument::new(arm, &all).to_json()?),
+        Format::Json => output::line(EquilibriaDocument::new(arm, &all).to_json()),
         Format::Csv => equilibria_csv(arm.cables.len(), &all),
     };
     output::put(args.output.as_deref(), &text)?;
@@ -81,7 +81,7 @@ fn over_range(args: &EquilibriaArgs, arm: &Arm, Over { varied, count }: Over) ->
     }
     let text = match args.format {
         Format::Text => over_summary(arm, &varied, &searches),
-        Format::Json => output::line(OverDocument::new(arm, &varied, &searches).to_json()?),
+        Format::Json => output::line(OverDocument::new(arm, &varied, &searches).to_json()),
         Format::Csv => over_csv(arm.cables.len(), &varied, &searches),
     };
     output::put(args.output.as_deref(), &text)?;

@@ -24,7 +24,7 @@ pub(super) fn run(arm: &Arm, path: &Path, args: &ReachArgs) -> anyhow::Result<()
     drop(progress);
     let text = match args.format {
         Format::Text => summary(arm, &rows),
-        Format::Json => output::line(FollowedDocument::new(arm, &rows).to_json()?),
+        Format::Json => output::line(FollowedDocument::new(arm, &rows).to_json()),
         Format::Csv => followed_csv(arm.cables.len(), &rows),
     };
     output::put(args.output.as_deref(), &text)?;

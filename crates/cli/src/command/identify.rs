@@ -67,7 +67,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     let format = if args.json { Format::Json } else { args.format };
     let text = match format {
         Format::Text => report(&arm, &cases, &found),
-        Format::Json => output::line(IdentificationDocument::new(&best, &cases, &found, options.loss).to_json()?),
+        Format::Json => output::line(IdentificationDocument::new(&best, &cases, &found, options.loss).to_json()),
         Format::Csv => residuals_csv(&cases, &found),
     };
     output::put(args.output.as_deref(), &text)?;

@@ -36,7 +36,7 @@ pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
     }
     let text = match args.format {
         Format::Text => summary(&arm, &path, varied),
-        Format::Json => output::line(document.to_json()?),
+        Format::Json => output::line(document.to_json()),
         Format::Csv => path_csv(&path, varied),
     };
     output::put(args.output.as_deref(), &text)?;

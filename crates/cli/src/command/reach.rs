@@ -33,7 +33,7 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
     }
     let text = match args.format {
         Format::Text => summary(&arm, &found, args.by),
-        Format::Json => output::line(ReachDocument::new(&arm, &found).to_json()?),
+        Format::Json => output::line(ReachDocument::new(&arm, &found).to_json()),
         Format::Csv => reach_csv(arm.cables.len(), &found),
     };
     output::put(args.output.as_deref(), &text)?;

@@ -2,7 +2,7 @@
 
 use hydrostat::{Arm, Configuration, NoEquilibrium, Options, SolveError, Solver, Stability, VerdictKind};
 use hydrostat_figures::{arm_figure, last_good_note};
-use hydrostat_files::{Failure, Note, Others, Solution, stations_csv};
+use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, stations_csv};
 
 use super::summary::summary;
 use crate::args::{Format, SolveArgs};
@@ -37,7 +37,7 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
     let text = match args.format {
         Format::Text => summary(&configuration),
         Format::Csv => stations_csv(&configuration.stations),
-        Format::Json => output::line(Solution::new(&configuration, margin.value, &notes).to_json()?),
+        Format::Json => output::line(SolutionDocument::new(&configuration, margin.value, &notes).to_json()),
     };
     output::put(args.output.as_deref(), &text)?;
     for note in &notes {
@@ -65,7 +65,7 @@ fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium, others: Option<O
         if let Some(last_good) = &mut failure.last_good {
             resample(args, last_good);
         }
-        let text = output::line(Failure::new(&failure, margin, &notes).with_others(others).to_json()?);
+        let text = output::line(FailureDocument::new(&failure, margin, &notes).with_others(others).to_json());
         output::put(args.output.as_deref(), &text)?;
     }
     Ok(())

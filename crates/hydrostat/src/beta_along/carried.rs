@@ -16,7 +16,7 @@
 use hydrostat_bvp::{LANES, Lanes, Local};
 
 use super::{BetaAlong, MOST_STAGES, OWN, Weights};
-use crate::compliance::solve_in_place;
+use crate::elimination::solve_in_place;
 use crate::equilibrium::{N, Q};
 
 /// `reach` over the length of the shortest elements whose beta is carried, or fades at an end.
@@ -142,7 +142,7 @@ impl BetaAlong {
             matrix[j][j] -= reach;
             next[j][0] = self.value[b].0[lane] - reach * used(b, lane) - known;
         }
-        if !solve_in_place(&mut matrix, &mut next) {
+        if !solve_in_place(&mut matrix, &mut next, 0.0) {
             self.sides[i] = None;
             return;
         }

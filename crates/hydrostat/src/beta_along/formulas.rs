@@ -3,6 +3,7 @@
 use hydrostat_bvp::{Gauss, LANES, Lanes, Real};
 
 use super::carried::Carried;
+use crate::elimination::solve_in_place;
 
 /// No method here has more stages.
 pub(super) const MOST_STAGES: usize = 5;
@@ -99,6 +100,9 @@ impl Differentiation {
     }
 }
 
+/// The largest pivot that counts as zero.
+const SMALLEST: f64 = 1e-12;
+
 /// Solves the equations; where they are singular, `otherwise`.
 #[inline(always)]
 pub(super) fn solve_small<const M: usize>(
@@ -110,7 +114,7 @@ pub(super) fn solve_small<const M: usize>(
     let mut fine = ONE;
     for k in 0..M {
         let pivot = a[k][k].abs();
-        fine = Lanes::of(1e-12).if_less(pivot, fine, ZERO);
+        fine = Lanes::of(SMALLEST).if_less(pivot, fine, ZERO);
         for i in k + 1..M {
             fine = pivot.if_less(Lanes::of(0.1) * a[i][k].abs(), ZERO, fine);
         }
@@ -150,36 +154,11 @@ fn solve_lane<const M: usize>(
     otherwise: &[Lanes; M],
     out: &mut [Lanes; M],
 ) {
-    let mut a = matrix.map(|row| row.map(|v| v.0[lane]));
-    let mut own = right.map(|v| v.0[lane]);
+    let mut own = matrix.map(|row| row.map(|v| v.0[lane]));
+    let mut solved = right.map(|v| [v.0[lane]]);
+    let fine = solve_in_place(&mut own, &mut solved, SMALLEST);
     for j in 0..M {
-        out[j].0[lane] = otherwise[j].0[lane];
-    }
-    for k in 0..M {
-        let mut best = k;
-        for i in k + 1..M {
-            if a[i][k].abs() > a[best][k].abs() {
-                best = i;
-            }
-        }
-        if a[best][k].abs() < 1e-12 || !a[best][k].is_finite() {
-            return;
-        }
-        a.swap(k, best);
-        own.swap(k, best);
-        let inverse = 1.0 / a[k][k];
-        for i in 0..M {
-            if i != k {
-                let f = a[i][k] * inverse;
-                for c in k..M {
-                    a[i][c] -= f * a[k][c];
-                }
-                own[i] -= f * own[k];
-            }
-        }
-    }
-    for j in 0..M {
-        out[j].0[lane] = own[j] / a[j][j];
+        out[j].0[lane] = if fine { solved[j][0] } else { otherwise[j].0[lane] };
     }
 }
 

@@ -22,13 +22,13 @@ impl Engine {
         let mesh = &self.solution.mesh;
         self.system.stations(mesh, &mut self.stations);
         self.guesses.clear();
-        let mut e = 0;
+        let mut element = 0;
         for s in &self.stations {
-            while e + 1 < old.mesh.elements() && old.mesh.nodes()[e + 1] <= *s {
-                e += 1;
+            while element + 1 < old.mesh.elements() && old.mesh.nodes()[element + 1] <= *s {
+                element += 1;
             }
-            let w = gauss.cardinals((s - old.mesh.nodes()[e]) / old.mesh.step(e));
-            let (strain, [slope, curvature]) = self.equations.remembered(e, &w);
+            let weights = gauss.cardinals((s - old.mesh.nodes()[element]) / old.mesh.step(element));
+            let (strain, [slope, curvature]) = self.equations.remembered(element, &weights);
             self.guesses.push((strain, slope, curvature));
         }
         let guesses = &self.guesses;

@@ -12,7 +12,9 @@
 
 use hydrostat_bvp::{Collocation, Correction, Determinant, LANES, Lanes};
 
+use super::newton::add_to_spans;
 use super::{Engine, Guess, M, Trouble, linearise, solve};
+use crate::elimination::solved;
 use crate::equilibrium::{Column, Equations, Held, N, Q, SectionFailure};
 
 /// What strokes may be off by (over L) before the last round, which leaves the square of that.
@@ -86,24 +88,27 @@ impl Engine {
         }
         let mut slack: [Vec<f64>; 2] = std::array::from_fn(|_| Vec::with_capacity(count));
         round.off = 0.0;
-        for (i, c) in held.cables.iter().enumerate() {
-            let off = self.equations.stroke(*c, &self.system.gauss.b)[0] - self.equations.command(&held, i);
-            if held.taut[i] {
+        for (index, cable) in held.cables.iter().enumerate() {
+            let off = self.equations.stroke(*cable, &self.system.gauss.b)[0] - self.equations.command(&held, index);
+            if held.taut[index] {
                 round.off = round.off.max(off.abs());
             }
-            slack[0].push(off + after_rest[i]);
-            slack[1].push(by_parameter[i] - self.equations.command_drift(&held, i));
+            slack[0].push(off + after_rest[index]);
+            slack[1].push(by_parameter[index] - self.equations.command_drift(&held, index));
         }
-        let row = |i: &usize| (pulled.iter().map(|by| by.strokes[*i]).collect(), [-slack[0][*i], -slack[1][*i]]);
-        let (changes, determinant) = solved(taut.iter().map(row).collect()).ok_or(Trouble::Singular)?;
+        let row = |index: &usize| {
+            (pulled.iter().map(|by| by.strokes[*index]).collect(), [-slack[0][*index], -slack[1][*index]])
+        };
+        let (tensions, determinant) = solved(taut.iter().map(row).collect()).ok_or(Trouble::Singular)?;
         self.border = determinant;
-        for (k, whole) in [&mut round.rest, &mut round.response].into_iter().enumerate() {
-            round.tension[k] = vec![0.0; count];
-            for (a, i) in taut.iter().enumerate() {
-                whole.add(&pulled[a].response, changes[a][k]);
-                round.tension[k][*i] = changes[a][k];
-                for (slack, by) in slack[k].iter_mut().zip(&pulled[a].strokes) {
-                    *slack += changes[a][k] * by;
+        for (which, shape) in [&mut round.rest, &mut round.response].into_iter().enumerate() {
+            round.tension[which] = vec![0.0; count];
+            for ((index, pulled), tension) in taut.iter().zip(&pulled).zip(&tensions) {
+                let change = tension[which];
+                shape.add(&pulled.response, change);
+                round.tension[which][*index] = change;
+                for (slack, by) in slack[which].iter_mut().zip(&pulled.strokes) {
+                    *slack += change * by;
                 }
             }
         }
@@ -121,10 +126,10 @@ impl Engine {
     pub(crate) fn add_tensions(&mut self, changes: &[f64], factor: f64) {
         let Some(held) = self.equations.held.take() else { return };
         let unit = self.equations.units.force;
-        for ((c, taut), change) in held.cables.iter().zip(&held.taut).zip(changes) {
+        for ((cable, taut), change) in held.cables.iter().zip(&held.taut).zip(changes) {
             if *taut {
-                let tension = self.equations.arm().cables[*c].tension + factor * change * unit;
-                self.equations.set_tension(*c, tension);
+                let tension = self.equations.arm().cables[*cable].tension + factor * change * unit;
+                self.equations.set_tension(*cable, tension);
             }
         }
         self.equations.held = Some(held);
@@ -182,11 +187,7 @@ impl Engine {
             }
             if done || last || (count >= MORE && size > 3.0) {
                 self.system.quadratures(&mut self.spans);
-                for (span, change) in self.spans.iter_mut().zip(&round.rest.by_element) {
-                    for q in 0..Q {
-                        span[q] += change[q];
-                    }
-                }
+                add_to_spans(&mut self.spans, &round.rest.by_element);
                 return if done { Ok(()) } else { Err(Trouble::Stalled(size.max(round.off))) };
             }
         }
@@ -214,13 +215,13 @@ impl Engine {
         let Some(mut held) = self.equations.held.take() else { return false };
         let mut changed = false;
         if held.switching {
-            for (i, c) in held.cables.iter().enumerate() {
-                if held.taut[i] && self.equations.arm().cables[*c].tension < 0.0 {
-                    held.taut[i] = false;
-                    self.equations.set_tension(*c, 0.0);
+            for ((cable, taut), slack) in held.cables.iter().zip(&mut held.taut).zip(slack) {
+                if *taut && self.equations.arm().cables[*cable].tension < 0.0 {
+                    *taut = false;
+                    self.equations.set_tension(*cable, 0.0);
                     changed = true;
-                } else if !held.taut[i] && slack[i] < -SLACK {
-                    held.taut[i] = true;
+                } else if !*taut && *slack < -SLACK {
+                    *taut = true;
                     changed = true;
                 }
             }
@@ -232,7 +233,7 @@ impl Engine {
 
 /// What a unit of tension of a taut cable does at a fixed tension of all others.
 #[derive(Debug)]
-pub(crate) struct Pulled {
+pub(crate) struct UnitPull {
     /// To the state.
     pub(crate) response: Correction<N, M, Q>,
     /// To the strokes of all commanded cables, over L.
@@ -247,19 +248,19 @@ pub(crate) fn pull_taut(
     system: &mut Collocation<N, M, Q>,
     solution: &Guess,
     held: &Held,
-) -> Result<Vec<Pulled>, Trouble> {
+) -> Result<Vec<UnitPull>, Trouble> {
     let mut out = Vec::new();
-    for i in held.tight() {
-        let c = held.cables[i];
-        equations.pulled = Some(c);
+    for index in held.tight() {
+        let cable = held.cables[index];
+        equations.pulled = Some(cable);
         let linear = linearise(system, equations, solution, true);
         equations.pulled = None;
         linear?;
         let mut response = Correction::default();
         solve(system, solution, 1, &mut response);
         let mut strokes = stroke_changes(equations, system, solution, held, &response, true);
-        strokes[i] += equations.stroke(c, &system.gauss.b)[2];
-        out.push(Pulled { response, strokes, column: equations.column.clone() });
+        strokes[index] += equations.stroke(cable, &system.gauss.b)[2];
+        out.push(UnitPull { response, strokes, column: equations.column.clone() });
     }
     Ok(out)
 }
@@ -275,8 +276,9 @@ fn stroke_changes(
 ) -> Vec<f64> {
     let weights = &system.gauss.b;
     let moved = at_stations(equations, system, solution, change);
-    let one = |c: &usize| equations.stroke(*c, weights)[1] * equations.length_change(*c, weights, &moved, with_column);
-    held.cables.iter().map(one).collect()
+    let by_length = |cable: usize| equations.stroke(cable, weights)[1];
+    let lengthened = |cable: usize| equations.length_change(cable, weights, &moved, with_column);
+    held.cables.iter().map(|cable| by_length(*cable) * lengthened(*cable)).collect()
 }
 
 /// A change of the shape at the stations, in their blocks; zero in lanes without an element of their own.
@@ -298,37 +300,6 @@ pub(crate) fn at_stations(
         }
     }
     out
-}
-
-/// A row of the small system: coefficients, and the two right sides.
-pub(crate) type Row = (Vec<f64>, [f64; 2]);
-
-/// Solves for both right sides, by elimination with row pivoting; with the determinant.
-pub(crate) fn solved(mut rows: Vec<Row>) -> Option<(Vec<[f64; 2]>, Determinant)> {
-    let n = rows.len();
-    let mut determinant = Determinant { sign: 1.0, log: 0.0 };
-    for k in 0..n {
-        let best = (k..n).max_by(|i, j| rows[*i].0[k].abs().total_cmp(&rows[*j].0[k].abs()))?;
-        if best != k {
-            rows.swap(k, best);
-            determinant.sign = -determinant.sign;
-        }
-        let pivot = rows[k].0[k];
-        if pivot == 0.0 || !pivot.is_finite() {
-            return None;
-        }
-        determinant.sign *= pivot.signum();
-        determinant.log += pivot.abs().ln();
-        let own = rows[k].clone();
-        for (i, row) in rows.iter_mut().enumerate() {
-            if i != k {
-                let factor = row.0[k] / pivot;
-                row.0.iter_mut().zip(&own.0).for_each(|(v, o)| *v -= factor * o);
-                row.1.iter_mut().zip(&own.1).for_each(|(v, o)| *v -= factor * o);
-            }
-        }
-    }
-    Some((rows.iter().enumerate().map(|(k, (row, right))| right.map(|v| v / row[k])).collect(), determinant))
 }
 
 #[cfg(test)]

@@ -31,14 +31,14 @@ impl Engine {
         out.clear();
         let mesh = &self.solution.mesh;
         let samples: [[f64; M]; SAMPLES + 1] =
-            std::array::from_fn(|p| self.system.gauss.cardinals(p as f64 / SAMPLES as f64));
-        for w in 0..3 {
+            std::array::from_fn(|sample| self.system.gauss.cardinals(sample as f64 / SAMPLES as f64));
+        for switch in 0..3 {
             let first = out.len();
             let mut before = (0.0, 0.0);
             for i in 0..mesh.elements() {
                 let (start, h) = (mesh.nodes()[i], mesh.step(i));
                 let apart = resolution.max(1e-3 * h);
-                let own: [f64; M] = std::array::from_fn(|j| self.equations.switch(i, j, w));
+                let own: [f64; M] = std::array::from_fn(|j| self.equations.switch(i, j, switch));
                 let largest = own.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
                 if largest < 1e-6 {
                     before.1 = 0.0;
@@ -51,17 +51,17 @@ impl Engine {
                 }
                 let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
                 let at = |x: f64| weigh(&self.system.gauss.cardinals(x));
-                for p in 0..=SAMPLES {
-                    let x = p as f64 / SAMPLES as f64;
-                    let now = (start + h * x, weigh(&samples[p]));
+                for (sample, cardinals) in samples.iter().enumerate() {
+                    let x = sample as f64 / SAMPLES as f64;
+                    let now = (start + h * x, weigh(cardinals));
                     if before.1 * now.1 < 0.0 {
                         let (mut lo, mut hi) = (before, now);
-                        while p > 0 && hi.0 - lo.0 > 0.01 * resolution {
+                        while sample > 0 && hi.0 - lo.0 > 0.01 * resolution {
                             let mid = 0.5 * (lo.0 + hi.0);
-                            let v = at((mid - start) / h);
-                            if v * lo.1 <= 0.0 { hi = (mid, v) } else { lo = (mid, v) }
+                            let value = at((mid - start) / h);
+                            if value * lo.1 <= 0.0 { hi = (mid, value) } else { lo = (mid, value) }
                         }
-                        let place = self.sharpened(0.5 * (lo.0 + hi.0), i, w);
+                        let place = self.sharpened(0.5 * (lo.0 + hi.0), i, switch);
                         if out.len() > first && place - out[out.len() - 1] < apart {
                             out.pop();
                         } else {
@@ -82,10 +82,10 @@ impl Engine {
         }
     }
 
-    /// The place of a change of sign of switch `w`, given where the polynomial of element `i` has it: near a node, that
+    /// The place of a change of sign of `switch`, given where the polynomial of element `i` has it: near a node, that
     /// polynomial is moved to what the switch is there, because nodes are as good as the tip and the ends of
     /// polynomials are not. A kink that a node misses is invisible to the estimate.
-    fn sharpened(&self, place: f64, i: usize, w: usize) -> f64 {
+    fn sharpened(&self, place: f64, i: usize, switch: usize) -> f64 {
         const NEAR_NODE: f64 = 0.3;
         let (mesh, gauss) = (&self.solution.mesh, &self.system.gauss);
         let (start, h) = (mesh.nodes()[i], mesh.step(i));
@@ -95,9 +95,9 @@ impl Engine {
             return place;
         }
         let Ok(at_node) = self.beside_node(node, at_end) else { return place };
-        let own: [f64; M] = std::array::from_fn(|j| self.equations.switch(i, j, w));
+        let own: [f64; M] = std::array::from_fn(|j| self.equations.switch(i, j, switch));
         let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
-        let off = at_node.switches[w] - weigh(&gauss.cardinals(end));
+        let off = at_node.switches[switch] - weigh(&gauss.cardinals(end));
         let mut x = end;
         for _ in 0..4 {
             let moved = (weigh(&gauss.cardinals(x)) + off) / weigh(&gauss.slopes(x));
@@ -114,9 +114,9 @@ impl Engine {
         let mesh = &self.solution.mesh;
         let stray = kinks.iter().any(|s| {
             let i = mesh.element_of(*s);
-            let (l, r) = (s - mesh.nodes()[i], mesh.nodes()[i + 1] - s);
-            let nearest = if l < r { i } else { i + 1 };
-            !(l.min(r) < tolerance && mesh.is_pinned(nearest))
+            let (left, right) = (s - mesh.nodes()[i], mesh.nodes()[i + 1] - s);
+            let nearest = if left < right { i } else { i + 1 };
+            !(left.min(right) < tolerance && mesh.is_pinned(nearest))
         });
         if !stray {
             return false;

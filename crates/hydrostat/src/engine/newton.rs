@@ -68,15 +68,12 @@ impl Engine {
             // beta'' runs a round behind: what it still moves shows from round to round.
             let drifted = if round > 1 { (tip[0] - self.tip[0]).hypot(tip[1] - self.tip[1]) } else { 0.0 };
             self.tip = tip;
+            let moved = dx.hypot(dy).max(0.1 * size);
             let moved = if ahead {
-                // What is left falls with the square of the correction, but not below the share of beta'',
-                // which is a round behind, and no faster than it was seen to fall.
                 let seen = if round > 1 { size / before } else { 0.0 };
-                let rate =
-                    if applied < 1.0 { 1.0 } else { (10.0 * self.reached().max(size)).max(seen).clamp(0.05, 1.0) };
-                dx.hypot(dy).max(0.1 * size) * rate
+                moved * if applied < 1.0 { 1.0 } else { self.foreseen_rate(size, seen) }
             } else {
-                dx.hypot(dy).max(0.1 * size).max(0.1 * drifted)
+                moved.max(0.1 * drifted)
             };
             before = size;
             self.last = size;
@@ -84,11 +81,7 @@ impl Engine {
             let stop = round == most || (clamped && round >= 4 && size > 3.0);
             if moved <= tolerance || stop {
                 self.system.quadratures(&mut self.spans);
-                for (span, change) in self.spans.iter_mut().zip(&self.correction.by_element) {
-                    for q in 0..Q {
-                        span[q] += change[q];
-                    }
-                }
+                add_to_spans(&mut self.spans, &self.correction.by_element);
                 return if moved <= tolerance { Ok(()) } else { Err(Trouble::Stalled(size)) };
             }
             if size < SMALL
@@ -104,10 +97,25 @@ impl Engine {
         }
     }
 
+    /// The share of a correction of this size that is left to the next: it falls with the square of the correction, but not below the
+    /// share of beta'', which is a round behind, and no faster than it was `seen` to fall.
+    fn foreseen_rate(&self, size: f64, seen: f64) -> f64 {
+        (10.0 * self.reached().max(size)).max(seen).clamp(0.05, 1.0)
+    }
+
     /// The largest change of the angle within an element by the last correction.
     fn reached(&self) -> f64 {
         let mesh = &self.solution.mesh;
         let each = self.correction.slopes.iter().enumerate();
         each.fold(0.0, |m, (i, k)| k.iter().fold(m, |m, k| f64::max(m, mesh.step(i) * k[0].abs())))
+    }
+}
+
+/// Brings what each element adds to the tip's position up to a correction.
+pub(super) fn add_to_spans(spans: &mut [[f64; Q]], changes: &[[f64; Q]]) {
+    for (span, change) in spans.iter_mut().zip(changes) {
+        for q in 0..Q {
+            span[q] += change[q];
+        }
     }
 }

@@ -67,14 +67,14 @@ impl Equations {
 
     pub(super) fn load_of(&self, tip: &TipLoad, theta: f64) -> ([f64; 3], [f64; 3]) {
         let (sin, cos) = theta.sin_cos();
-        let f = self.fraction[0] / self.units.force;
-        let [fa, fb] = tip.follower;
+        let share = self.fraction[0] / self.units.force;
+        let [f_a, f_b] = tip.follower;
         let load = [
-            f * (tip.force[0] + fa * cos - fb * sin),
-            f * (tip.force[1] + fa * sin + fb * cos),
-            f * tip.moment / self.units.length,
+            share * (tip.force[0] + f_a * cos - f_b * sin),
+            share * (tip.force[1] + f_a * sin + f_b * cos),
+            share * tip.moment / self.units.length,
         ];
-        let turn = [f * (-fa * sin - fb * cos), f * (fa * cos - fb * sin), 0.0];
+        let turn = [share * (-f_a * sin - f_b * cos), share * (f_a * cos - f_b * sin), 0.0];
         (load, turn)
     }
 }

@@ -25,16 +25,16 @@ pub(super) fn slopes<R: Real>(
 ) -> Slopes<R> {
     let [nu, eta, mu] = solved.strain;
     let [n_a, n_b, _] = contact;
-    let f = load.force;
+    let force = load.force;
     let m_slope = eta * n_a - nu * n_b - couple;
     // n_f . a and n_f . b turn with the directors.
-    let f_a = cos * f[0] + sin * f[1];
-    let f_b = cos * f[1] - sin * f[0];
+    let f_a = cos * force[0] + sin * force[1];
+    let f_b = cos * force[1] - sin * force[0];
     let contact_slope = [mu * n_b - f_a, -(mu * n_a + f_b), m_slope];
     let rest = each(|k| contact_slope[k] - solved.balance.along_s[k]);
     let strain_slope = apply3(&solved.inverse, rest);
     let beta_slope = solved.balance.swelling.slope * strain_slope[0];
-    Slopes { slope: [mu, -f[0], -f[1], m_slope], beta_slope, strain_slope }
+    Slopes { slope: [mu, -force[0], -force[1], m_slope], beta_slope, strain_slope }
 }
 
 /// d(nu, eta, mu)/dz: the law depends on z through n_f.a, n_f.b and m_f alone.
@@ -45,8 +45,8 @@ pub(super) fn strain_by_state<R: Real>(
     [n_a, n_b, _]: [R; 3],
 ) -> [[R; N]; 3] {
     each(|k| {
-        let e = inverse[k];
-        [e[0] * n_b - e[1] * n_a, e[0] * cos - e[1] * sin, e[0] * sin + e[1] * cos, e[2]]
+        let [by_n_a, by_n_b, by_m] = inverse[k];
+        [by_n_a * n_b - by_n_b * n_a, by_n_a * cos - by_n_b * sin, by_n_a * sin + by_n_b * cos, by_m]
     })
 }
 

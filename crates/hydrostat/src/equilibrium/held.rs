@@ -17,7 +17,7 @@ use crate::verdict::Phase;
 /// The cables whose stroke is commanded.
 #[derive(Debug, Clone)]
 pub(crate) struct Held {
-    /// Their indices.
+    /// Their indices among the arm's.
     pub(crate) cables: Vec<usize>,
     /// Whether each is taut: then its tension is unknown and its stroke given, else its tension is zero.
     pub(crate) taut: Vec<bool>,
@@ -47,15 +47,16 @@ impl Column {
 impl Held {
     /// Which of the commanded cables are taut.
     pub(crate) fn tight(&self) -> Vec<usize> {
-        (0..self.cables.len()).filter(|i| self.taut[*i]).collect()
+        (0..self.cables.len()).filter(|index| self.taut[*index]).collect()
     }
 }
 
 impl Equations {
     /// Commands the strokes of the arm, no cable taut but those that have a tension.
     pub(crate) fn hold_strokes(&mut self) {
-        let cables: Vec<usize> = (0..self.arm.cables.len()).filter(|c| self.arm.cables[*c].stroke.is_some()).collect();
-        let taut = cables.iter().map(|c| self.tensions[*c] > 0.0).collect();
+        let commanded = |cable: &usize| self.arm.cables[*cable].stroke.is_some();
+        let cables: Vec<usize> = (0..self.arm.cables.len()).filter(commanded).collect();
+        let taut = cables.iter().map(|cable| self.tensions[*cable] > 0.0).collect();
         let from = vec![0.0; cables.len()];
         self.held = (!cables.is_empty()).then_some(Held { cables, taut, from, share: 1.0, switching: true });
     }
@@ -72,16 +73,16 @@ impl Equations {
         }
     }
 
-    /// Makes the held cable `i` slack that was taut, or the other way round: which it is, and whether it is slack now.
-    pub(crate) fn change_over(&mut self, i: usize) -> (usize, bool) {
-        let Some(mut held) = self.held.take() else { return (i, false) };
-        held.taut[i] = !held.taut[i];
-        let found = (held.cables[i], !held.taut[i]);
-        if found.1 {
-            self.set_tension(found.0, 0.0);
+    /// Makes held cable `index` slack that was taut, or the other way round: which it is of the arm's, and whether it is slack now.
+    pub(crate) fn change_over(&mut self, index: usize) -> (usize, bool) {
+        let Some(mut held) = self.held.take() else { return (index, false) };
+        held.taut[index] = !held.taut[index];
+        let (cable, slack) = (held.cables[index], !held.taut[index]);
+        if slack {
+            self.set_tension(cable, 0.0);
         }
         self.held = Some(held);
-        found
+        (cable, slack)
     }
 
     /// Whether rounds may change which cables are taut.
@@ -97,10 +98,10 @@ impl Equations {
         }
     }
 
-    /// Stroke that is commanded of the held cable `i` now, over L.
-    pub(crate) fn command(&self, held: &Held, i: usize) -> f64 {
-        let to = self.whole_command(held.cables[i]);
-        if held.share == 1.0 { to } else { held.from[i] + held.share * (to - held.from[i]) }
+    /// Stroke that is commanded of held cable `index` now, over L.
+    pub(crate) fn command(&self, held: &Held, index: usize) -> f64 {
+        let (from, to) = (held.from[index], self.whole_command(held.cables[index]));
+        if held.share == 1.0 { to } else { from + held.share * (to - from) }
     }
 
     fn whole_command(&self, cable: usize) -> f64 {
@@ -108,11 +109,12 @@ impl Equations {
     }
 
     /// The change of that stroke a unit of the parameter.
-    pub(crate) fn command_drift(&self, held: &Held, i: usize) -> f64 {
-        let c = held.cables[i];
+    pub(crate) fn command_drift(&self, held: &Held, index: usize) -> f64 {
+        let cable = held.cables[index];
         match self.varied_over() {
-            Some((Parameter::Stroke(own), change)) if own == c && self.imposed.is_none() => change / self.units.length,
-            None if self.phase == Phase::Stroke && self.imposed.is_none() => self.whole_command(c) - held.from[i],
+            _ if self.imposed.is_some() => 0.0,
+            Some((Parameter::Stroke(varied), change)) if varied == cable => change / self.units.length,
+            None if self.phase == Phase::Stroke => self.whole_command(cable) - held.from[index],
             _ => 0.0,
         }
     }
@@ -126,18 +128,18 @@ impl Equations {
         }
     }
 
-    /// Unstretched stroke of cable `c` at the last evaluation, over L, with the weights of the stages, and its derivatives by
+    /// Unstretched stroke of `cable` at the last evaluation, over L, with the weights of the stages, and its derivatives by
     /// the length of the path and by the tension (in the unit of force).
-    pub(crate) fn stroke(&self, c: usize, weights: &[f64]) -> [f64; 3] {
-        let [now, reference] = self.cable_lengths(c, weights);
-        let per_force = self.arm.cables[c].stiffness.map_or(0.0, |stiffness| self.units.force / stiffness);
-        let longer = 1.0 + self.tensions[c] * per_force;
+    pub(crate) fn stroke(&self, cable: usize, weights: &[f64]) -> [f64; 3] {
+        let [now, reference] = self.cable_lengths(cable, weights);
+        let per_force = self.arm.cables[cable].stiffness.map_or(0.0, |stiffness| self.units.force / stiffness);
+        let longer = 1.0 + self.tensions[cable] * per_force;
         [reference - now / longer, -1.0 / longer, now * per_force / (longer * longer)]
     }
 
-    /// d z' / d tension of cable `c` (in the unit of force) at the last state, which also fills the column. False where a
+    /// d z' / d tension of `cable` (in the unit of force) at the last state, which also fills the column. False where a
     /// section has no strains.
-    pub(super) fn drift_by_tension(&mut self, c: usize, out: &mut [[Lanes; N]]) -> bool {
+    pub(super) fn drift_by_tension(&mut self, cable: usize, out: &mut [[Lanes; N]]) -> bool {
         let cable_count = self.tensions.len();
         let mut pulled = Few::new();
         let mut column = std::mem::take(&mut self.column);
@@ -155,7 +157,7 @@ impl Equations {
             if !solved.fine() {
                 return false;
             }
-            let own = &self.cables[block * cable_count + c];
+            let own = &self.cables[block * cable_count + cable];
             let (by_tension, _) = pull(own.tension, &own.offset, solved.strain, &solved.balance.swelling, along);
             let strain = apply3(&solved.inverse, each(|k| -by_tension.load[k]));
             let load = self.load(place, [cos, sin], &solved, along[0]);
@@ -168,14 +170,14 @@ impl Equations {
         true
     }
 
-    /// Change of the length of cable `c` (over L) with a change of the state at the stations, and of a parameter where the
+    /// Change of the length of `cable` (over L) with a change of the state at the stations, and of a parameter where the
     /// strains and beta' follow one at a fixed state.
-    pub(crate) fn length_change(&self, c: usize, weights: &[f64], change: &[[Lanes; N]], with_column: bool) -> f64 {
+    pub(crate) fn length_change(&self, cable: usize, weights: &[f64], change: &[[Lanes; N]], with_column: bool) -> f64 {
         let groups = self.groups;
         let mut sum = 0.0;
         for (block, moved) in change.iter().enumerate() {
             let (group, stage) = (block / groups.stages, block % groups.stages);
-            let (by_strain, by_beta_slope) = self.stretch_gradient(c, block);
+            let (by_strain, by_beta_slope) = self.stretch_gradient(cable, block);
             let by_state = self.through_strains(block, &by_strain, by_beta_slope);
             let mut rate = Lanes::of(0.0);
             for a in 0..N {
@@ -187,22 +189,22 @@ impl Equations {
                 }
                 rate += by_beta_slope * self.column.beta_slope[block];
             }
-            for lane in self.along_cable(c, block) {
+            for lane in self.along_cable(cable, block) {
                 sum += self.steps[group].0[lane] * weights[stage] * rate.0[lane];
             }
         }
         sum
     }
 
-    /// d stroke / d z of cable `c` at the stages of every element, times the weight of the stage.
-    pub(crate) fn stroke_gradients<const M: usize>(&self, c: usize, weights: &[f64; M]) -> Vec<[[f64; N]; M]> {
-        let (groups, by_length) = (self.groups, self.stroke(c, weights)[1]);
+    /// d stroke / d z of `cable` at the stages of every element, times the weight of the stage.
+    pub(crate) fn stroke_gradients<const M: usize>(&self, cable: usize, weights: &[f64; M]) -> Vec<[[f64; N]; M]> {
+        let (groups, by_length) = (self.groups, self.stroke(cable, weights)[1]);
         let mut out = vec![[[0.0; N]; M]; groups.elements];
         for block in 0..groups.count() * M {
             let (group, stage) = (block / M, block % M);
-            let (by_strain, by_beta_slope) = self.stretch_gradient(c, block);
+            let (by_strain, by_beta_slope) = self.stretch_gradient(cable, block);
             let by_state = self.through_strains(block, &by_strain, by_beta_slope);
-            for lane in self.along_cable(c, block) {
+            for lane in self.along_cable(cable, block) {
                 let weight = by_length * self.steps[group].0[lane] * weights[stage];
                 out[groups.element(group, lane)][stage] = by_state.map(|v| weight * v.0[lane]);
             }
@@ -219,11 +221,11 @@ impl Equations {
         [nu * cos - eta * sin + x * beta_slope, nu * sin + eta * cos + y * beta_slope]
     }
 
-    /// The lanes of a block whose stations cable `c` runs along.
-    fn along_cable(&self, c: usize, block: usize) -> impl Iterator<Item = usize> + use<> {
+    /// The lanes of a block whose stations `cable` runs along.
+    fn along_cable(&self, cable: usize, block: usize) -> impl Iterator<Item = usize> + use<> {
         let groups: Groups = self.groups;
         let inside: [bool; LANES] =
-            std::array::from_fn(|lane| self.stations[groups.station_in(block, lane)] < self.ends[c]);
+            std::array::from_fn(|lane| self.stations[groups.station_in(block, lane)] < self.ends[cable]);
         (0..groups.filled(block / groups.stages)).filter(move |lane| inside[*lane])
     }
 
@@ -238,22 +240,22 @@ impl Equations {
         })
     }
 
-    /// d |tau| of cable `c` in a block of stations by the strains at fixed beta', and by beta' with what strains follow it.
-    fn stretch_gradient(&self, c: usize, block: usize) -> ([Lanes; 3], Lanes) {
-        let offset = &self.cables[block * self.tensions.len() + c].offset;
+    /// d |tau| of `cable` in a block of stations by the strains at fixed beta', and by beta' with what strains follow it.
+    fn stretch_gradient(&self, cable: usize, block: usize) -> ([Lanes; 3], Lanes) {
+        let offset = &self.cables[block * self.tensions.len() + cable].offset;
         let memory = &self.memory[block];
         let strain = memory.strain;
         let swelling = swelling(self.volume, strain[0]);
-        let t = tangent(offset, strain, &swelling, self.beta.slope[block]);
-        let by_nu =
-            t.a * (Lanes::of(1.0) - offset.y * swelling.slope * strain[2]) + t.b * offset.slope * swelling.slope;
-        let by_strain = [by_nu, t.b, -(t.a * offset.y * swelling.beta)];
+        let along = tangent(offset, strain, &swelling, self.beta.slope[block]);
+        let by_nu = along.a * (Lanes::of(1.0) - offset.y * swelling.slope * strain[2])
+            + along.b * offset.slope * swelling.slope;
+        let by_strain = [by_nu, along.b, -(along.a * offset.y * swelling.beta)];
         // The strains that follow beta' at a fixed state, from how theta' and the centreline do.
         let (sin, cos) = sin_cos(memory.z[0]);
         let coupling = &self.beta.coupling[block];
         let [x, y] = coupling.rate;
         let following = [x * cos + y * sin, y * cos - x * sin, coupling.slope[0]];
-        let mut by_beta_slope = t.b * offset.y;
+        let mut by_beta_slope = along.b * offset.y;
         for (by, strain) in by_strain.iter().zip(&following) {
             by_beta_slope += *by * *strain;
         }

@@ -9,7 +9,7 @@ use hydrostat_bvp::{LANES, Lanes, Real, each};
 
 use super::few::Few;
 use super::gradients::slopes;
-use super::places::Place;
+use super::places::{Place, converted};
 use super::strains::Solved;
 use super::{Asked, Equations, N, Q};
 use crate::arm::Material;
@@ -175,39 +175,14 @@ impl Equations {
                 of.by += shares[k] * Lanes::of(of.value);
             }
         }
-        let mut pulled = Few::new();
-        for (c, (cable, tension)) in spot.cables.iter().zip(tensions).enumerate() {
-            if tension.value != 0.0 || tension.by != Lanes([0.0; LANES]) {
-                pulled.push(CableAt {
-                    offset: self.offset_along(spot, c, geometry),
-                    tension: *tension * Dual::fixed(cable.tension),
-                    tension_slope: *tension * Dual::fixed(cable.tension_slope),
-                });
-            }
-        }
-        let pulled = pulled.as_slice();
         let (sin, cos) = spot.z[0].sin_cos();
         let [_, x, y, m] = spot.z;
         let values = [cos * x + sin * y, cos * y - sin * x, m];
         let contact: [Dual; 3] = each(|k| Dual::seeded(values[k], k, unit));
         let direction = [Dual::fixed(cos), Dual::fixed(sin)];
-        // A Newton step from the strains found; its matrix need not be differentiated where the rest is nothing.
-        let mut strain = spot.strain.map(Dual::fixed);
-        let mut balanced = balance(self.volume, &place.stiffness, pulled, strain, along);
-        let mut inverse = [[Dual::default(); 3]; 3];
-        for round in 0..2 {
-            inverse = inverse3(&balanced.by_strain).0;
-            if round == 0 {
-                let rest: [Dual; 3] = each(|k| contact[k] - balanced.carried[k]);
-                for k in 0..3 {
-                    for c in 0..3 {
-                        strain[k] += Dual::fixed(inverse[k][c].value) * rest[c];
-                    }
-                }
-                balanced = balance(self.volume, &place.stiffness, pulled, strain, along);
-            }
-        }
-        let solved = Solved { strain, balance: balanced, inverse, regularity: along[0], step: along[0] };
+        let pulled = self.pulled_along(spot, tensions, geometry);
+        let solved = self.strained_along(&place.stiffness, pulled.as_slice(), contact, spot.strain, along);
+        let strain = solved.strain;
         let load = self.load(&place, direction, &solved, along[0]);
         let slopes = slopes(place.body.couple, direction, contact, &solved, &load);
         let [nu, eta, _] = strain;
@@ -240,6 +215,47 @@ impl Equations {
             force_by_theta: load.by_theta.map(|v| v.value),
             beta_by_force: [0, 1].map(|k| swelling.slope.value * solved.inverse[0][k].value),
         }
+    }
+
+    /// The cables that pull at a spot, or would with other tensions.
+    #[inline(always)]
+    fn pulled_along(&self, spot: &Spot, tensions: &[Dual], geometry: &[Geometry]) -> Few<Dual> {
+        let mut out = Few::new();
+        for (c, (cable, tension)) in spot.cables.iter().zip(tensions).enumerate() {
+            if tension.value != 0.0 || tension.by != Lanes([0.0; LANES]) {
+                out.push(CableAt {
+                    offset: self.offset_along(spot, c, geometry),
+                    tension: *tension * Dual::fixed(cable.tension),
+                    tension_slope: *tension * Dual::fixed(cable.tension_slope),
+                });
+            }
+        }
+        out
+    }
+
+    /// The strains that were found, and how they follow: a Newton step from them, whose matrix need not be differentiated where the
+    /// rest is nothing.
+    #[inline(always)]
+    fn strained_along(
+        &self,
+        stiffness: &Stiffness<Dual>,
+        pulled: &[CableAt<Dual>],
+        contact: [Dual; 3],
+        found: [f64; 3],
+        along: [Dual; 2],
+    ) -> Solved<Dual> {
+        let mut strain = found.map(Dual::fixed);
+        let there = balance(self.volume, stiffness, pulled, strain, along);
+        let inverse = inverse3(&there.by_strain).0;
+        let rest: [Dual; 3] = each(|k| contact[k] - there.carried[k]);
+        for k in 0..3 {
+            for c in 0..3 {
+                strain[k] += Dual::fixed(inverse[k][c].value) * rest[c];
+            }
+        }
+        let balance = balance(self.volume, stiffness, pulled, strain, along);
+        let inverse = inverse3(&balance.by_strain).0;
+        Solved { strain, balance, inverse, regularity: along[0], step: along[0] }
     }
 
     /// Lets tensions, or stretch, shear and bending stiffness (over themselves), follow `parameter`.
@@ -277,17 +293,17 @@ impl Equations {
         if geometry.iter().all(|change| change.cable.is_some()) {
             return place;
         }
-        let l = self.units.length;
+        let length = self.units.length;
         let s = place.s.value;
-        let own = self.arm.radius.at(s * l, l);
+        let own = self.arm.radius.at(s * length, length);
         let mut radius = [Dual::fixed(own.value), Dual::fixed(own.slope)];
         for Geometry { way, change, .. } in geometry.iter().filter(|change| change.cable.is_none()) {
-            let change = change.at(s * l, l);
+            let change = change.at(s * length, length);
             radius[0].by.0[*way] = change.value;
             radius[1].by.0[*way] = change.slope;
         }
         self.place_with(&self.arm, Dual::fixed(s), radius, |profile| {
-            let own = profile.at(s * l, l);
+            let own = profile.at(s * length, length);
             [Dual::fixed(own.value), Dual::fixed(own.slope)]
         })
     }
@@ -298,12 +314,12 @@ impl Equations {
         let own = &spot.cables[c].offset;
         let [y, slope, curvature] = [own.y, own.slope, own.curvature].map(Dual::fixed);
         let mut offset = Offset { y, slope, curvature };
-        let l = self.units.length;
+        let length = self.units.length;
         for Geometry { way, change, .. } in geometry.iter().filter(|change| change.cable == Some(c)) {
-            let change = change.at(spot.place.s * l, l);
-            offset.y.by.0[*way] = change.value / l;
+            let change = change.at(spot.place.s * length, length);
+            offset.y.by.0[*way] = change.value / length;
             offset.slope.by.0[*way] = change.slope;
-            offset.curvature.by.0[*way] = change.curvature * l;
+            offset.curvature.by.0[*way] = change.curvature * length;
         }
         offset
     }
@@ -455,29 +471,6 @@ impl Raw {
 #[inline(always)]
 fn fixed(place: &Place<f64>) -> Place<Dual> {
     converted(place, Dual::fixed)
-}
-
-#[inline(always)]
-fn converted<A: Copy, B>(place: &Place<A>, f: impl Fn(A) -> B) -> Place<B> {
-    let (s, b) = (&place.stiffness, &place.body);
-    Place {
-        s: f(place.s),
-        stiffness: Stiffness {
-            value: s.value.map(&f),
-            slope: s.slope.map(&f),
-            reference: s.reference.map(&f),
-            reference_slope: s.reference_slope.map(&f),
-        },
-        body: Body {
-            radius: f(b.radius),
-            radius_slope: f(b.radius_slope),
-            wetted: f(b.wetted),
-            weight: b.weight.map(&f),
-            displaced: b.displaced.map(&f),
-            force: b.force.map(&f),
-            couple: f(b.couple),
-        },
-    }
 }
 
 fn lane_of_cable(cable: &CableAt<Lanes>, lane: usize) -> CableAt<f64> {

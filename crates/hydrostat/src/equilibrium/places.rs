@@ -26,9 +26,9 @@ impl Equations {
 
     /// Data at `s` (over L) of an arm in the units of this one.
     pub(super) fn place_of(&self, arm: &Arm, s: f64) -> Place<f64> {
-        let l = self.units.length;
+        let length = self.units.length;
         let at = |profile: &Profile| {
-            let own = profile.at(s * l, l);
+            let own = profile.at(s * length, length);
             [own.value, own.slope]
         };
         let place = self.place_with(arm, s, at(&arm.radius), at);
@@ -46,16 +46,16 @@ impl Equations {
     pub(super) fn place_four(&self, s: Lanes) -> Place<Lanes> {
         #[cfg(test)]
         if self.manufactured.is_some() {
-            let mut place = splat(&self.place(s.0[0]));
+            let mut place = converted(&self.place(s.0[0]), Lanes::of);
             for lane in 1..LANES {
                 set_lane(&mut place, lane, &self.place(s.0[lane]));
             }
             return place;
         }
-        let l = self.units.length;
-        let along = s * Lanes::of(l);
+        let length = self.units.length;
+        let along = s * Lanes::of(length);
         let at = |profile: &Profile| {
-            let [value, slope, _] = profile.at_four(along, l);
+            let [value, slope, _] = profile.at_four(along, length);
             [value, slope]
         };
         self.place_with(&self.arm, s, at(&self.arm.radius), at)
@@ -72,7 +72,7 @@ impl Equations {
         at: impl Fn(&Profile) -> [R; 2],
     ) -> Place<R> {
         let units = self.units;
-        let l = units.length;
+        let length = units.length;
         let [r_in, r_in_slope] = at(&arm.inner_radius);
         let (zero, two, four) = (R::of(0.0), R::of(2.0), R::of(4.0));
         let pi = std::f64::consts::PI;
@@ -93,16 +93,16 @@ impl Equations {
             }
         };
         // Stiffness in the units: C1 A0 / F, C2 A0 / F, C3 A0 / (F L^2).
-        let unit = [1.0 / units.force, 1.0 / units.force, 1.0 / (units.force * l * l)];
+        let unit = [1.0 / units.force, 1.0 / units.force, 1.0 / (units.force * length * length)];
         let reference = [at(&arm.reference.nu), at(&arm.reference.eta), at(&arm.reference.mu)];
-        let per_length = [1.0, 1.0, l];
+        let per_length = [1.0, 1.0, length];
         let stiffness = Stiffness {
             value: each(|k| c[k] * area * R::of(unit[k])),
-            slope: each(|k| (c_slope[k] * area + c[k] * area_slope) * R::of(unit[k]) * R::of(l)),
+            slope: each(|k| (c_slope[k] * area + c[k] * area_slope) * R::of(unit[k]) * R::of(length)),
             reference: each(|k| reference[k][0] * R::of(per_length[k])),
-            reference_slope: each(|k| reference[k][1] * R::of(per_length[k]) * R::of(l)),
+            reference_slope: each(|k| reference[k][1] * R::of(per_length[k]) * R::of(length)),
         };
-        let load_unit = l / units.force;
+        let load_unit = length / units.force;
         let gravity = arm.gravity.map_or([0.0; 2], |g| {
             let (sin, cos) = g.direction.sin_cos();
             [g.acceleration * cos * load_unit, g.acceleration * sin * load_unit]
@@ -112,7 +112,7 @@ impl Equations {
             Cavity::Sealed => R::of(pi) * r * r,
         };
         let body = Body {
-            radius: r / R::of(l),
+            radius: r / R::of(length),
             radius_slope: r_slope,
             wetted: R::of(pi * arm.flow.density) * r * R::of(load_unit),
             weight: gravity.map(|g| R::of(arm.density) * area * R::of(g)),
@@ -124,17 +124,17 @@ impl Equations {
     }
 
     pub(crate) fn offset(&self, cable: usize, s: f64) -> Offset<f64> {
-        let l = self.units.length;
-        let p = self.arm.cables[cable].offset.at(s * l, l);
-        Offset { y: p.value / l, slope: p.slope, curvature: p.curvature * l }
+        let length = self.units.length;
+        let offset = self.arm.cables[cable].offset.at(s * length, length);
+        Offset { y: offset.value / length, slope: offset.slope, curvature: offset.curvature * length }
     }
 
     /// [`Equations::offset`] at four places.
     #[inline(always)]
     pub(super) fn offset_four(&self, cable: usize, s: Lanes) -> Offset<Lanes> {
-        let l = self.units.length;
-        let [y, slope, curvature] = self.arm.cables[cable].offset.at_four(s * Lanes::of(l), l);
-        Offset { y: y / Lanes::of(l), slope, curvature: curvature * Lanes::of(l) }
+        let length = self.units.length;
+        let [y, slope, curvature] = self.arm.cables[cable].offset.at_four(s * Lanes::of(length), length);
+        Offset { y: y / Lanes::of(length), slope, curvature: curvature * Lanes::of(length) }
     }
 
     /// Takes a new set of stations, those of `mesh`, with guesses of the strains and of beta'.
@@ -243,47 +243,47 @@ pub(super) fn blank_cable() -> CableAt<Lanes> {
     CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero, tension_slope: zero }
 }
 
-#[cfg(test)]
-fn splat(place: &Place<f64>) -> Place<Lanes> {
-    let l = Lanes::of;
-    let (s, b) = (&place.stiffness, &place.body);
+/// The same data in other numbers.
+#[inline(always)]
+pub(super) fn converted<A: Copy, B>(place: &Place<A>, number: impl Fn(A) -> B) -> Place<B> {
+    let Place { s, stiffness, body } = place;
     Place {
-        s: l(place.s),
+        s: number(*s),
         stiffness: Stiffness {
-            value: s.value.map(l),
-            slope: s.slope.map(l),
-            reference: s.reference.map(l),
-            reference_slope: s.reference_slope.map(l),
+            value: stiffness.value.map(&number),
+            slope: stiffness.slope.map(&number),
+            reference: stiffness.reference.map(&number),
+            reference_slope: stiffness.reference_slope.map(&number),
         },
         body: Body {
-            radius: l(b.radius),
-            radius_slope: l(b.radius_slope),
-            wetted: l(b.wetted),
-            weight: b.weight.map(l),
-            displaced: b.displaced.map(l),
-            force: b.force.map(l),
-            couple: l(b.couple),
+            radius: number(body.radius),
+            radius_slope: number(body.radius_slope),
+            wetted: number(body.wetted),
+            weight: body.weight.map(&number),
+            displaced: body.displaced.map(&number),
+            force: body.force.map(&number),
+            couple: number(body.couple),
         },
     }
 }
 
 #[cfg(test)]
 fn set_lane(out: &mut Place<Lanes>, lane: usize, place: &Place<f64>) {
-    let (s, b) = (&place.stiffness, &place.body);
-    out.s.0[lane] = place.s;
+    let Place { s, stiffness, body } = place;
+    out.s.0[lane] = *s;
     for k in 0..3 {
-        out.stiffness.value[k].0[lane] = s.value[k];
-        out.stiffness.slope[k].0[lane] = s.slope[k];
-        out.stiffness.reference[k].0[lane] = s.reference[k];
-        out.stiffness.reference_slope[k].0[lane] = s.reference_slope[k];
+        out.stiffness.value[k].0[lane] = stiffness.value[k];
+        out.stiffness.slope[k].0[lane] = stiffness.slope[k];
+        out.stiffness.reference[k].0[lane] = stiffness.reference[k];
+        out.stiffness.reference_slope[k].0[lane] = stiffness.reference_slope[k];
     }
     for k in 0..2 {
-        out.body.weight[k].0[lane] = b.weight[k];
-        out.body.displaced[k].0[lane] = b.displaced[k];
-        out.body.force[k].0[lane] = b.force[k];
+        out.body.weight[k].0[lane] = body.weight[k];
+        out.body.displaced[k].0[lane] = body.displaced[k];
+        out.body.force[k].0[lane] = body.force[k];
     }
-    out.body.radius.0[lane] = b.radius;
-    out.body.radius_slope.0[lane] = b.radius_slope;
-    out.body.wetted.0[lane] = b.wetted;
-    out.body.couple.0[lane] = b.couple;
+    out.body.radius.0[lane] = body.radius;
+    out.body.radius_slope.0[lane] = body.radius_slope;
+    out.body.wetted.0[lane] = body.wetted;
+    out.body.couple.0[lane] = body.couple;
 }

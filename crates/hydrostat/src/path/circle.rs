@@ -10,7 +10,7 @@
 use std::f64::consts::TAU;
 
 use super::Pace;
-use super::stepper::{Along, Load, Point, Stepper, Turn};
+use super::stepper::{Along, Fraction, Point, Stepper, Turn};
 use crate::arm::Arm;
 use crate::configuration::Configuration;
 use crate::engine::{Engine, First, Trouble};
@@ -176,7 +176,7 @@ fn follow(
     let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
     let mut stepper = Stepper::new(engine, Along::Range, unbounded);
     let begun =
-        stepper.keep_accuracy(None, &mut Load::Fixed(0.0), [PACE.accuracy; 2]).and_then(|()| stepper.point(0.0));
+        stepper.keep_accuracy(None, &mut Fraction::Fixed(0.0), [PACE.accuracy; 2]).and_then(|()| stepper.point(0.0));
     let Ok(mut here) = begun else { return Some(PathEnd::Limit { kind: VerdictKind::NotFound, s: None }) };
     let first = tip_angle(&here);
     if side > 0.0 {
@@ -207,26 +207,9 @@ fn follow(
             }
         };
         out.steps += 1;
-        // Between two points the base angle rises or falls, or does both about an extreme.
-        let mut legs = vec![];
-        if next.rise * here.rise < 0.0 {
-            let (extreme, _) = stepper.limit_point(&here, &next, step, PACE);
-            legs.push((here.clone(), extreme.clone()));
-            legs.push((extreme, next.clone()));
-        } else {
-            legs.push((here.clone(), next.clone()));
-        }
         let full = side * (tip_angle(&next) - first) >= TAU;
-        for (a, b) in &legs {
-            for turns in whole_turns_between(asked, a, b) {
-                let Some(point) = between(&mut stepper, a, b, turns - asked.turned) else { continue };
-                if side * (tip_angle(&point) - first) < TAU - 1e-6
-                    && let Some(found) = at_whole_turns(&mut stepper, asked, &point, Some(turns))
-                {
-                    out.found.push(found);
-                }
-            }
-        }
+        let within = |point: &Point| side * (tip_angle(point) - first) < TAU - 1e-6;
+        find_between(&mut stepper, asked, [&here, &next], step, within, &mut out.found);
         let end = usize::from(side > 0.0);
         out.tip_angles[end] = tip_angle(&next);
         out.base_angles[end] = stepper.engine.equations.value_at(next.fraction);
@@ -243,6 +226,32 @@ fn follow(
         step = (step * 1.6).min(PACE.longest);
     }
     Some(stepper.end_at(&here))
+}
+
+/// The equilibria between two points a `step` apart: the base angle rises or falls there, or does both about an extreme.
+fn find_between(
+    stepper: &mut Stepper<'_>,
+    asked: &Asked,
+    [here, next]: [&Point; 2],
+    step: f64,
+    within: impl Fn(&Point) -> bool,
+    out: &mut Vec<Equilibrium>,
+) {
+    let extreme = (next.rise * here.rise < 0.0).then(|| stepper.limit_point(here, next, step, PACE).0);
+    let legs = match &extreme {
+        Some(extreme) => vec![[here, extreme], [extreme, next]],
+        None => vec![[here, next]],
+    };
+    for [from, to] in legs {
+        for turns in whole_turns_between(asked, from, to) {
+            let Some(point) = between(stepper, from, to, turns - asked.turned) else { continue };
+            if within(&point)
+                && let Some(found) = at_whole_turns(stepper, asked, &point, Some(turns))
+            {
+                out.push(found);
+            }
+        }
+    }
 }
 
 fn tip_angle(point: &Point) -> f64 {

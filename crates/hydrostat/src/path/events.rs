@@ -3,7 +3,7 @@
 use hydrostat_bvp::Correction;
 
 use super::Pace;
-use super::stepper::{Load, Point, Stepper, Turn};
+use super::stepper::{Fraction, Point, Stepper, Turn};
 use crate::engine::{M, Round};
 use crate::equilibrium::{N, Q};
 
@@ -166,7 +166,8 @@ impl Stepper<'_> {
             if self.correct(&from, &mut fraction).is_err() {
                 continue;
             }
-            let accurate = self.keep_accuracy(Some(&from), &mut Load::Free(fraction), [pace.accuracy, pace.accuracy]);
+            let accurate =
+                self.keep_accuracy(Some(&from), &mut Fraction::Free(fraction), [pace.accuracy, pace.accuracy]);
             if accurate.is_err() {
                 continue;
             }

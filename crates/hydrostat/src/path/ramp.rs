@@ -2,7 +2,7 @@
 //! `docs/model.md`).
 
 use super::contact::Contact;
-use super::stepper::{Along, Load, Point, Stepper, Turn};
+use super::stepper::{Along, Fraction, Point, Stepper, Turn};
 use super::{LOOSE, MEET, Pace, START, Travelled};
 use crate::engine::{Engine, First, Trouble, roughly};
 use crate::verdict::{Phase, Verdict, VerdictKind};
@@ -76,16 +76,7 @@ struct Ramp<'e> {
 
 impl Ramp<'_> {
     fn follow(&mut self, pace: Pace, travelled: &mut Travelled) -> Result<(), Verdict> {
-        let kept = (self.phase == Phase::Stroke).then(|| self.stepper.engine.state());
-        let Ok(mut here) = self.start() else {
-            if let Some(kept) = kept {
-                self.stepper.engine.restore(&kept);
-                if self.stepper.nothing_reels_in() {
-                    return Err(self.end(VerdictKind::LimitPoint, 0.0, None));
-                }
-            }
-            return Err(self.never_started());
-        };
+        let mut here = self.start_or_verdict()?;
         // Which side of zero the determinant is on is a matter of the branch, which way is up is not.
         if here.rise < 0.0 {
             self.stepper.orientation = -self.stepper.orientation;
@@ -109,22 +100,7 @@ impl Ramp<'_> {
                     step = SHARP_STEP;
                     continue;
                 }
-                let residual = self.stepper.engine.last;
-                self.stepper.engine.restore(&here.state);
-                // Two branches of opposite orientation end where they meet: the path turns back in a corner
-                // that the load's kinks make.
-                if self.stepper.opposite.is_some_and(|f| (f - here.fraction).abs() < MEET) {
-                    return Err(self.end(VerdictKind::LimitPoint, here.fraction, None));
-                }
-                let (kind, s) = self.stepper.name_limit(here.fraction, residual);
-                let end = self.end(kind, here.fraction, s);
-                // Towards a fold the square of the climb falls to zero linearly in the load.
-                let fall = steeper.1.powi(2) - here.rise.powi(2);
-                let ahead = (here.fraction - steeper.0) * here.rise.powi(2) / fall;
-                if kind == VerdictKind::NotFound && here.rise < 0.1 && fall > 0.0 && ahead < 1e-3 {
-                    return Err(self.end(VerdictKind::LimitPoint, here.fraction + ahead, None));
-                }
-                return Err(end);
+                return Err(self.stuck(&here, steeper));
             }
             match self.stepper.advance_to_contact(&here, step, pace) {
                 Ok((mut next, turn, contact)) => {
@@ -172,6 +148,40 @@ impl Ramp<'_> {
         unreachable!("the loop returns when its attempts are used up")
     }
 
+    /// [`Ramp::start`], or why there is no such point.
+    fn start_or_verdict(&mut self) -> Result<Point, Verdict> {
+        let kept = (self.phase == Phase::Stroke).then(|| self.stepper.engine.state());
+        self.start().map_err(|_| {
+            if let Some(kept) = kept {
+                self.stepper.engine.restore(&kept);
+                if self.stepper.nothing_reels_in() {
+                    return self.end(VerdictKind::LimitPoint, 0.0, None);
+                }
+            }
+            self.never_started()
+        })
+    }
+
+    /// Why no step leads on from `here`, given fraction and rise of a point before it whose tangent climbed clearly more.
+    fn stuck(&mut self, here: &Point, steeper: (f64, f64)) -> Verdict {
+        let residual = self.stepper.engine.last;
+        self.stepper.engine.restore(&here.state);
+        // Two branches of opposite orientation end where they meet: the path turns back in a corner
+        // that the load's kinks make.
+        if self.stepper.opposite.is_some_and(|fraction| (fraction - here.fraction).abs() < MEET) {
+            return self.end(VerdictKind::LimitPoint, here.fraction, None);
+        }
+        let (kind, s) = self.stepper.name_limit(here.fraction, residual);
+        let end = self.end(kind, here.fraction, s);
+        // Towards a fold the square of the climb falls to zero linearly in the load.
+        let fall = steeper.1.powi(2) - here.rise.powi(2);
+        let ahead = (here.fraction - steeper.0) * here.rise.powi(2) / fall;
+        if kind == VerdictKind::NotFound && here.rise < 0.1 && fall > 0.0 && ahead < 1e-3 {
+            return self.end(VerdictKind::LimitPoint, here.fraction + ahead, None);
+        }
+        end
+    }
+
     /// The point that a phase starts from. An arm that lies in the stream, or along another load, has tiny angles to it whose
     /// signs decide where it goes, so this point is made very accurate then, as far as that can be had.
     fn start(&mut self) -> Result<Point, Trouble> {
@@ -192,7 +202,7 @@ impl Ramp<'_> {
         let careful = !self.stepper.engine.in_a_hurry || self.stepper.engine.is_in_line();
         let accuracies: &[f64] = if careful { &[1e-5, 1e-6, 1e-7] } else { &[1e-5] };
         let refined = accuracies.iter().all(|accuracy| {
-            self.stepper.or_back(|this| this.keep_accuracy(None, &mut Load::Fixed(fraction), [*accuracy, LOOSE]))
+            self.stepper.or_back(|this| this.keep_accuracy(None, &mut Fraction::Fixed(fraction), [*accuracy, LOOSE]))
         });
         if refined && careful {
             self.stepper.or_back(|this| this.engine.settle(1e-8, First::Warm).map(|_| ()));

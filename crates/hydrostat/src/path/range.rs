@@ -1,7 +1,8 @@
 //! Paths that users ask for: equilibria over the range of one parameter, through limit points and bifurcations.
 
 use super::Pace;
-use super::stepper::{Along, Load, Point, Stepper, Turn};
+use super::contact::Contact;
+use super::stepper::{Along, Fraction, Point, Stepper, Turn};
 use crate::arm::Arm;
 use crate::configuration::Configuration;
 use crate::engine::{Engine, Trouble};
@@ -337,7 +338,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             engine.newton(1e-9, 12)?;
         }
         let tol = self.pace.accuracy;
-        self.stepper.keep_accuracy(None, &mut Load::Fixed(0.0), [tol, tol])?;
+        self.stepper.keep_accuracy(None, &mut Fraction::Fixed(0.0), [tol, tol])?;
         self.stepper.first_contacts(0.0)
     }
 
@@ -385,33 +386,14 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
                 self.stepper.engine.restore(&here.state);
                 continue;
             }
-            if let Some(event) = event {
-                let at = if event == Event::Bifurcation {
-                    self.stepper.bifurcation(&here, &next, step_taken, self.pace)
-                } else {
-                    self.stepper.limit_point(&here, &next, step_taken, self.pace).0
-                };
-                if let Some(read) = read(self.stepper.engine, &at, Some(event))
-                    && let Some(end) = self.put(read, points)
-                {
-                    return end;
-                }
-                if event == Event::Bifurcation {
-                    self.crossings.push(at);
-                    // The branch goes straight on through a bifurcation.
-                    self.stepper.orientation = -self.stepper.orientation;
-                    next.rise = -next.rise;
-                }
+            if let Some(event) = event
+                && let Some(end) = self.put_event(event, &here, &mut next, step_taken, points)
+            {
+                return end;
             }
             if let Some(contact) = contact {
-                let event = if contact.slack { Event::Slack(contact.cable) } else { Event::Taut(contact.cable) };
-                let turns_back = (contact.after.rise * next.rise < 0.0).then_some(Event::LimitPoint);
-                for event in turns_back.into_iter().chain([event]) {
-                    if let Some(read) = read(self.stepper.engine, &contact.after, Some(event))
-                        && let Some(end) = self.put(read, points)
-                    {
-                        return end;
-                    }
+                if let Some(end) = self.put_contact(&contact, &next, points) {
+                    return end;
                 }
                 here = contact.after;
                 self.stepper.engine.restore(&here.state);
@@ -434,6 +416,47 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             step = (step * 1.6).min(self.pace.longest);
         }
         self.stepper.end_at(&here)
+    }
+
+    /// Keeps the point of an event between two points, and goes straight on through a bifurcation; why none may come after it.
+    fn put_event(
+        &mut self,
+        event: Event,
+        here: &Point,
+        next: &mut Point,
+        step: f64,
+        points: &mut Vec<PathPoint>,
+    ) -> Option<PathEnd> {
+        let at = if event == Event::Bifurcation {
+            self.stepper.bifurcation(here, next, step, self.pace)
+        } else {
+            self.stepper.limit_point(here, next, step, self.pace).0
+        };
+        if let Some(read) = read(self.stepper.engine, &at, Some(event))
+            && let Some(end) = self.put(read, points)
+        {
+            return Some(end);
+        }
+        if event == Event::Bifurcation {
+            self.crossings.push(at);
+            self.stepper.orientation = -self.stepper.orientation;
+            next.rise = -next.rise;
+        }
+        None
+    }
+
+    /// Keeps the point at which a cable goes slack or taut, which may be a limit point, too; why none may come after it.
+    fn put_contact(&mut self, contact: &Contact, next: &Point, points: &mut Vec<PathPoint>) -> Option<PathEnd> {
+        let event = if contact.slack { Event::Slack(contact.cable) } else { Event::Taut(contact.cable) };
+        let turns_back = (contact.after.rise * next.rise < 0.0).then_some(Event::LimitPoint);
+        for event in turns_back.into_iter().chain([event]) {
+            if let Some(read) = read(self.stepper.engine, &contact.after, Some(event))
+                && let Some(end) = self.put(read, points)
+            {
+                return Some(end);
+            }
+        }
+        None
     }
 
     /// Keeps a point; why none may come after it.

@@ -53,15 +53,15 @@ impl Point {
     }
 }
 
-/// Whether corrections may change the load.
+/// The fraction of a path, and whether corrections may change it.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Load {
+pub(super) enum Fraction {
     Fixed(f64),
     Free(f64),
 }
 
-impl Load {
-    fn fraction(self) -> f64 {
+impl Fraction {
+    fn value(self) -> f64 {
         match self {
             Self::Fixed(fraction) | Self::Free(fraction) => fraction,
         }
@@ -216,7 +216,7 @@ impl<'e> Stepper<'e> {
         }
         let from = self.engine.solution.clone();
         self.correct(here, &mut fraction)?;
-        self.arrive(here, &from, Load::Free(fraction), step, pace)
+        self.arrive(here, &from, Fraction::Free(fraction), step, pace)
     }
 
     /// A step that ends at a given fraction; near a fold that is refused, and steps shrink.
@@ -226,7 +226,7 @@ impl<'e> Stepper<'e> {
         self.set(fraction);
         let from = self.engine.solution.clone();
         roughly(self.engine.newton(1e-6, 9))?;
-        let (end, turn) = self.arrive(here, &from, Load::Fixed(fraction), step, pace)?;
+        let (end, turn) = self.arrive(here, &from, Fraction::Fixed(fraction), step, pace)?;
         if turn == Turn::None && end.rise * here.rise < 0.0 {
             return Err(Trouble::Stalled(step));
         }
@@ -279,7 +279,7 @@ impl<'e> Stepper<'e> {
         &mut self,
         here: &Point,
         from: &Solution<N, M>,
-        mut load: Load,
+        mut fraction: Fraction,
         step: f64,
         pace: Pace,
     ) -> Result<(Point, Turn), Trouble> {
@@ -290,9 +290,10 @@ impl<'e> Stepper<'e> {
         }
         // What the mesh is off by must not be mistaken for a turn of the path.
         let accuracy = (0.02 * step.abs()).max(FINEST).min(pace.accuracy);
-        self.keep_accuracy(Some(here), &mut load, [accuracy, pace.accuracy])?;
+        self.keep_accuracy(Some(here), &mut fraction, [accuracy, pace.accuracy])?;
         self.engine.ends_fine()?;
-        let next = if self.current { self.point_of_round(load.fraction())? } else { self.point(load.fraction())? };
+        let fraction = fraction.value();
+        let next = if self.current { self.point_of_round(fraction)? } else { self.point(fraction)? };
         let cosine = self.cosine(here, &next);
         let crossing = cosine < 0.0 && -cosine >= pace.straightness;
         // Nothing turns on a symmetric branch but the load: bifurcations are passed at once, because
@@ -355,7 +356,7 @@ impl<'e> Stepper<'e> {
     pub(super) fn keep_accuracy(
         &mut self,
         here: Option<&Point>,
-        load: &mut Load,
+        fraction: &mut Fraction,
         [accuracy, enough]: [f64; 2],
     ) -> Result<(), Trouble> {
         // Nodes follow the kinks, so that corrections do not hop across them, and as closely as this
@@ -366,7 +367,7 @@ impl<'e> Stepper<'e> {
             if !self.engine.pin(&kinks, resolution) {
                 break;
             }
-            self.correct_again(here, load)?;
+            self.correct_again(here, fraction)?;
         }
         for _ in 0..4 {
             let estimate = self.engine.estimate_unless(accuracy, Some(accuracy))?;
@@ -376,17 +377,17 @@ impl<'e> Stepper<'e> {
                 return Ok(());
             }
             self.engine.refine(0.05 * accuracy, 2 * MANY);
-            self.correct_again(here, load)?;
+            self.correct_again(here, fraction)?;
         }
         Ok(())
     }
 
     /// Corrections on another mesh: near a fold there may be no solution at the load that the last mesh
     /// had one at, so the load stays free unless the path ends there.
-    fn correct_again(&mut self, here: Option<&Point>, load: &mut Load) -> Result<(), Trouble> {
+    fn correct_again(&mut self, here: Option<&Point>, fraction: &mut Fraction) -> Result<(), Trouble> {
         self.current = false;
-        match (load, here) {
-            (Load::Free(fraction), Some(here)) => self.correct(here, fraction),
+        match (fraction, here) {
+            (Fraction::Free(fraction), Some(here)) => self.correct(here, fraction),
             _ => roughly(self.engine.newton(1e-6, 12)),
         }
     }

@@ -5,7 +5,7 @@
 //! until nothing is left: the method of multipliers, whose limit is the least effort. It needs no
 //! start within the bounds, and none where the conditions leave a single point of them.
 
-use crate::engine::solved;
+use crate::elimination::solved;
 
 /// Weight of the effort, over the largest square of a column.
 const WEIGHT: f64 = 1e-9;

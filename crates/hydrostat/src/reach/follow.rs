@@ -2,7 +2,7 @@
 
 use super::effort::dot;
 use super::search::{Goal, SAME, STILL, Search, State};
-use super::strokes::Slopes;
+use super::strokes::ByTensions;
 use super::{ReachError, ReachOptions, Reached, Target};
 use crate::arm::Arm;
 use crate::configuration::Tip;
@@ -49,7 +49,7 @@ const LEAST: f64 = 1e-2;
 pub struct Follower {
     search: Search,
     state: State,
-    slopes: Slopes,
+    slopes: ByTensions,
 }
 
 /// Where a follower got to.

@@ -15,7 +15,7 @@ use nalgebra::DMatrix;
 
 use super::effort::dot;
 use super::search::{Search, State};
-use crate::engine::solved;
+use crate::elimination::solved;
 
 /// The turn of the tip, rad, that a step aims at: below what makes a warm solve start anew.
 const TURN: f64 = 0.12;

@@ -1,7 +1,7 @@
 //! Newton's method on the tensions, from several starts.
 
 use super::effort::{dot, least_effort, nearest};
-use super::strokes::{Pulled, Slopes};
+use super::strokes::{ByTensions, Pulled};
 use super::{Bound, ReachError, ReachOptions, Reached, Target};
 use crate::arm::Arm;
 use crate::configuration::Configuration;
@@ -278,11 +278,11 @@ impl Search {
     }
 
     /// [`Search::jacobian`], with the derivatives of strokes where they have a bound.
-    pub(super) fn slopes(&self, solver: &Solver) -> Option<Slopes> {
+    pub(super) fn slopes(&self, solver: &Solver) -> Option<ByTensions> {
         self.derivatives(solver, self.longest.is_some())
     }
 
-    fn derivatives(&self, solver: &Solver, of_strokes: bool) -> Option<Slopes> {
+    fn derivatives(&self, solver: &Solver, of_strokes: bool) -> Option<ByTensions> {
         let cables: Vec<Parameter> = (0..self.scale.len()).map(Parameter::Tension).collect();
         let mut quantities = Vec::new();
         let mut weights = Vec::new();
@@ -312,7 +312,7 @@ impl Search {
         let column = |c: usize| found.rows.iter().zip(&weights).map(|(row, weight)| weight * row[c]).collect();
         let mut rest: Vec<Vec<f64>> = (0..cables.len()).map(column).collect();
         let strokes = rest.iter_mut().map(|column| column.split_off(count)).collect();
-        Some(Slopes { rest, strokes })
+        Some(ByTensions { rest, strokes })
     }
 
     /// From a start to the nearest that can be had, of least effort.
@@ -368,7 +368,7 @@ impl Search {
     }
 
     /// Tensions of least effort that meet the targets to first order, or as much of the way as a step may go.
-    pub(super) fn towards_least_effort(&self, slopes: &Slopes, state: &State) -> Option<Vec<f64>> {
+    pub(super) fn towards_least_effort(&self, slopes: &ByTensions, state: &State) -> Option<Vec<f64>> {
         let distance = state.distance();
         let share = if distance > LONGEST { LONGEST / distance } else { 1.0 };
         let wanted = linear(&slopes.rest, state, share);
@@ -382,7 +382,7 @@ impl Search {
     }
 
     /// A damped least-squares step within the bounds.
-    pub(super) fn damped(&self, slopes: &Slopes, state: &State, damping: f64) -> Vec<f64> {
+    pub(super) fn damped(&self, slopes: &ByTensions, state: &State, damping: f64) -> Vec<f64> {
         let sizes = slopes.rest.iter().zip(&self.scale).map(|(column, scale)| scale * scale * dot(column, column));
         let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
         let wanted = linear(&slopes.rest, state, 1.0);
@@ -410,7 +410,7 @@ impl Search {
     }
 
     /// The arm at other tensions, changed by what strokes are too long there, if that is nearer; near enough where a distance is `allowed`.
-    pub(super) fn step(&self, state: &State, slopes: &Slopes, next: &[f64], allowed: Option<f64>) -> Option<State> {
+    pub(super) fn step(&self, state: &State, slopes: &ByTensions, next: &[f64], allowed: Option<f64>) -> Option<State> {
         let mut solver = state.solver.clone();
         let mut tensions = next.to_vec();
         self.pull(&mut solver, &mut tensions, slopes, updated)?;

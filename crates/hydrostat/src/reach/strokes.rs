@@ -30,7 +30,7 @@ const LITTLE: f64 = 1e-10;
 
 /// Derivatives by the tensions, one column a cable.
 #[derive(Debug, Clone)]
-pub(super) struct Slopes {
+pub(super) struct ByTensions {
     /// Of the distances.
     pub(super) rest: Vec<Vec<f64>>,
     /// Of the strokes over L; empty columns where they have no bound.
@@ -77,7 +77,7 @@ impl Search {
     pub(super) fn within_strokes(
         &self,
         from: Pulled<'_>,
-        slopes: &Slopes,
+        slopes: &ByTensions,
         solve: impl Fn(&[usize], &[f64]) -> Option<Vec<f64>>,
     ) -> Option<Vec<f64>> {
         let mut held: Vec<usize> = Vec::new();
@@ -121,7 +121,7 @@ impl Search {
         &self,
         (columns, wanted): (Vec<Vec<f64>>, Vec<f64>),
         from: Pulled<'_>,
-        slopes: &Slopes,
+        slopes: &ByTensions,
         (held, most): (&[usize], &[f64]),
         heavy: f64,
     ) -> Conditions {
@@ -153,7 +153,7 @@ impl Search {
         &self,
         solver: &mut Solver,
         tensions: &mut Vec<f64>,
-        slopes: &Slopes,
+        slopes: &ByTensions,
         mut solve: impl FnMut(&mut Solver, &[f64]) -> Option<()>,
     ) -> Option<()> {
         for _ in 0..=CHANGES {
@@ -168,7 +168,7 @@ impl Search {
     }
 
     /// The nearest tensions whose strokes are to first order within their bounds.
-    fn shortened(&self, from: Pulled<'_>, slopes: &Slopes) -> Option<Vec<f64>> {
+    fn shortened(&self, from: Pulled<'_>, slopes: &ByTensions) -> Option<Vec<f64>> {
         self.within_strokes(from, slopes, |held, most| {
             let none = (vec![Vec::new(); most.len()], Vec::new());
             let all = self.conditions(none, from, slopes, (held, most), 1.0);

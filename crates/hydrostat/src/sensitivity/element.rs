@@ -4,7 +4,7 @@ use hydrostat_bvp::Gauss;
 
 use super::linear::{StageWeights, dot};
 use crate::beta_along::Rule;
-use crate::compliance::solve_in_place;
+use crate::elimination::solve_in_place;
 use crate::engine::M;
 use crate::equilibrium::{BY, ByState, CLOSED, N, OUT, Q, RATE, VALUE};
 
@@ -70,7 +70,7 @@ impl Element {
                 }
             }
         }
-        if !solve_in_place(&mut matrix, &mut right) {
+        if !solve_in_place(&mut matrix, &mut right, 0.0) {
             return None;
         }
         Some(Self {
@@ -254,5 +254,5 @@ fn beta_slopes(
             right[j][SLOPES + M + l] = on_value[l];
         }
     }
-    solve_in_place(&mut matrix, &mut right).then_some(right)
+    solve_in_place(&mut matrix, &mut right, 0.0).then_some(right)
 }

@@ -3,7 +3,8 @@
 use super::dual::WAYS;
 use super::linear::{Drift, Functional, Linear};
 use super::{SensitivityError, SensitivityMethod, unsettled};
-use crate::engine::{Engine, M, Trouble, solved};
+use crate::elimination::solved;
+use crate::engine::{Engine, M, Trouble};
 use crate::equilibrium::{Asked, CLOSED, Equations, N, OUT, RATE, Spot};
 use crate::parameter::Parameter;
 
