@@ -38,6 +38,10 @@ pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
     progress.end();
     let Summary { rows, answered, .. } = summary;
     let words = format!("{}: {rows} rows of {}, {answered} with an answer", args.output.display(), sweep.name());
+    if summary.damaged > 0 {
+        let parts = if summary.damaged == 1 { "part" } else { "parts" };
+        eprintln!("note: {} {parts} of an earlier run had changed since; solved again", summary.damaged);
+    }
     if answered == 0 {
         return Err(NoAnswer(format!("{words}: the column `verdict` says why"))).context(words);
     }

@@ -155,13 +155,29 @@ fn a_disk_that_is_full_is_said_to_be() {
 /// A sweep of a second or so and of sixty parts, begun or gone on with.
 fn begin(directory: &Path, output: &str) -> Child {
     Command::new(env!("CARGO_BIN_EXE_hydrostat"))
-        .args(["sweep", "paper", "--vary", "flow.speed=0:0.5:60", "--vary", "cable[0].tension=0:60:130"])
-        .args(["--columns", "tip,fold", "--threads", "2", "--resume", "-o", output])
+        .args(begun(output))
         .current_dir(directory)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
         .unwrap()
+}
+
+fn begun(output: &str) -> [&str; 12] {
+    [
+        "sweep",
+        "paper",
+        "--vary",
+        "flow.speed=0:0.5:60",
+        "--vary",
+        "cable[0].tension=0:60:130",
+        "--columns",
+        "tip,fold",
+        "--threads=2",
+        "--resume",
+        "-o",
+        output,
+    ]
 }
 
 /// When each whole part was written.
@@ -217,6 +233,27 @@ fn kill(times: u32) {
     }
     assert!(kept > 0, "every kill came before the first part");
     assert!(files(here).iter().all(|name| name.ends_with(".parquet")));
+}
+
+/// A part that was cut was joined as it was, and its rows were missing.
+#[test]
+fn cut_parts_were_joined() {
+    let directory = directory();
+    let here = directory.path();
+    let there = here.join("out.parquet.parts");
+    let mut child = begin(here, "out.parquet");
+    while parts(&there).is_empty() {
+        assert!(child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let (part, _) = parts(&there).pop_first().unwrap();
+    std::fs::write(there.join(part), "PAR1").unwrap();
+    let run = hydrostat_in(here, &begun("out.parquet"));
+    assert!(run.err.starts_with("note: 1 part of an earlier run had changed since; solved again\n"), "{}", run.err);
+    assert!(run.err.contains("out.parquet: 7800 rows of paper"), "{}", run.err);
+    assert_eq!(run.code, 0);
 }
 
 #[test]
