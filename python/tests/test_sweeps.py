@@ -10,6 +10,14 @@ import hydrostat as hs
 from hydrostat._progress import Progress
 
 
+def test_missing_directories_were_made(tmp_path: Path, silicone: hs.Arm) -> None:
+    missing = tmp_path / "no"
+    for name in ("out.csv", "out.parquet"):
+        with pytest.raises(OSError, match="make the directory"):
+            hs.sweep(silicone, {"flow.speed": [0.0, 0.1]}, output=missing / name)
+    assert not missing.exists()
+
+
 def test_cut_parts_were_joined(tmp_path: Path, silicone: hs.Arm, monkeypatch: pytest.MonkeyPatch) -> None:
     vary = {"arm.density": "1000:1100:16", "cable[0].tension": "0:0.5:120"}
     columns = ("tip", "stability")

@@ -68,8 +68,9 @@ impl Parts {
             if !resume {
                 return Err(SweepError::Begun { directory });
             }
-        } else {
-            fs::create_dir_all(&directory).map_err(failed)?;
+        } else if !directory.is_dir() {
+            // A directory of the output that is missing was misspelt.
+            fs::create_dir(&directory).map_err(|error| write_error(output, error))?;
         }
         let mut file =
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;

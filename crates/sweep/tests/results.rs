@@ -310,6 +310,19 @@ fn parts_cut_on_the_way_are_not_joined() {
     }
 }
 
+/// The Python package made them, where the program refused the same path.
+#[test]
+fn missing_directories_were_made() {
+    let directory = tempfile::tempdir().unwrap();
+    let missing = directory.path().join("no");
+    for name in ["out.csv", "out.parquet"] {
+        let whole = sweep("paper", &["flow.speed=0:0.1:2"], &SweepOptions::default());
+        let error = whole.run(&missing.join(name), false, 1, &|_| {}).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains("make the directory"), "{error}");
+    }
+    assert!(!missing.exists());
+}
+
 #[test]
 fn what_is_no_sweep_is_refused() {
     let directory = tempfile::tempdir().unwrap();
