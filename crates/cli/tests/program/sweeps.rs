@@ -236,6 +236,28 @@ fn kill(times: u32) {
 }
 
 /// A part that was cut was joined as it was, and its rows were missing.
+/// It ended without a word of how to go on.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_said_nothing() {
+    let directory = directory();
+    let child = Command::new(env!("CARGO_BIN_EXE_hydrostat"))
+        .args(["sweep", "paper", "--vary", "flow.speed=0:0.5:6000", "--vary", "cable[0].tension=0:60:130"])
+        .args(["--threads", "1", "-o", "out.parquet"])
+        .current_dir(directory.path())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while parts(&directory.path().join("out.parquet.parts")).is_empty() {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    let ended = child.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!((ended.status.code(), said.trim()), (Some(130), "stopped: the same command with --resume goes on"));
+}
+
 #[test]
 fn cut_parts_were_joined() {
     let directory = directory();
