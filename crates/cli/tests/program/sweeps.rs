@@ -27,7 +27,8 @@ fn a_sweep_is_a_table_and_its_pictures() {
     let run = hydrostat_in(directory.path(), &sweep(&["-o", "out.parquet"]));
     assert_eq!(run.code, 0, "{}", run.err);
     let run = hydrostat_in(directory.path(), &["plot", "out.parquet"]);
-    assert_eq!((run.code, run.out.as_str(), run.err.as_str()), (0, "", ""));
+    let written = "out.map.svg\nout.map.png\nout.workspace.svg\nout.workspace.png\n";
+    assert_eq!((run.code, run.out.as_str(), run.err.as_str()), (0, written, ""));
     let pictures = ["out.map.png", "out.map.svg", "out.parquet", "out.workspace.png", "out.workspace.svg"];
     assert_eq!(files(directory.path()), [&["out.csv", "out.csv.json"][..], &pictures].concat());
     let read = |name: &str| std::fs::read(directory.path().join(name)).unwrap();
@@ -235,7 +236,6 @@ fn kill(times: u32) {
     assert!(files(here).iter().all(|name| name.ends_with(".parquet")));
 }
 
-/// A part that was cut was joined as it was, and its rows were missing.
 /// It ended without a word of how to go on.
 #[cfg(unix)]
 #[test]
@@ -258,6 +258,7 @@ fn ctrl_c_said_nothing() {
     assert_eq!((ended.status.code(), said.trim()), (Some(130), "stopped: the same command with --resume goes on"));
 }
 
+/// A part that was cut was joined as it was, and its rows were missing.
 #[test]
 fn cut_parts_were_joined() {
     let directory = directory();
