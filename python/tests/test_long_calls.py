@@ -54,6 +54,7 @@ LONG = {
     "path": "arm.path('flow.speed', 0, 0.5, longest=0.001, tol=1e-7, most=10**9)",
     "equilibria": "[arm.replace(flow_speed=0.2, flow_direction=180).equilibria() for _ in range(10**6)]",
     "reach": "[arm.reach((0.182, 0.07 + 1e-9 * k)) for k in range(10**6)]",
+    "reachable": "[arm.reachable(max_tension=1.5, spacing=0.001) for _ in range(10**6)]",
     # Every load case would be left out once.
     "identify": "arm.identify({'case': range(200), 'cable[0].tension [N]': np.linspace(0.01, 0.5, 200), "
     "'x [m]': np.linspace(0.101, 0.15, 200), 'y [m]': np.linspace(0.001, 0.05, 200)}, "
@@ -67,15 +68,20 @@ LONG = {
 @pytest.mark.parametrize("call", LONG.values(), ids=LONG.keys())
 def test_interrupts(tmp_path: Path, call: str) -> None:
     script = f"""
-        import os, signal, threading
+        import os, signal, sys, threading, time
         import numpy as np
         import hydrostat as hs
         arm = hs.Arm.load("silicone")
-        threading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        def interrupt():
+            global sent
+            sent = time.monotonic()
+            os.kill(os.getpid(), signal.SIGINT)
+        threading.Timer(0.7, interrupt).start()
         try:
             {call}
         except KeyboardInterrupt:
             print("interrupted")
+        print(f"\\n{{time.monotonic() - sent}}", file=sys.stderr)
     """
     # Each would take from minutes to days.
     done = subprocess.run(
@@ -87,3 +93,5 @@ def test_interrupts(tmp_path: Path, call: str) -> None:
         cwd=tmp_path,
     )
     assert (done.stdout.strip(), done.returncode) == ("interrupted", 0), done.stderr
+    # About a second on a machine that does nothing else.
+    assert float(done.stderr.splitlines()[-1]) < 5.0, done.stderr

@@ -19,6 +19,8 @@ const WRONG_REQUEST: u8 = 2;
 const NO_EQUILIBRIUM: u8 = 3;
 /// Anything else.
 const OTHER: u8 = 1;
+/// Ended by Ctrl-C: what shells make of a program that its signal ended.
+const INTERRUPTED: i32 = 130;
 
 /// Of a command's outcome; says on standard error what went wrong.
 pub(crate) fn of(result: anyhow::Result<()>) -> ExitCode {
@@ -33,6 +35,19 @@ pub(crate) fn of(result: anyhow::Result<()>) -> ExitCode {
         eprintln!("try: {advice}");
     }
     ExitCode::from(code(&error))
+}
+
+/// From now on Ctrl-C ends the program at once, after these words.
+pub(crate) fn at_ctrl_c(words: &'static str) {
+    std::thread::spawn(move || {
+        // Without it Ctrl-C ends the program as ever.
+        let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };
+        if runtime.block_on(tokio::signal::ctrl_c()).is_ok() {
+            // The terminal shows ^C, and a bar may stand there.
+            eprintln!("\n{words}");
+            std::process::exit(INTERRUPTED);
+        }
+    });
 }
 
 /// Of arguments that the parser refused, or of a request for help.

@@ -34,6 +34,8 @@ pub(crate) enum WrongRequest {
     Words(String),
     /// Numbers of other programs that cannot be read.
     Peers(PathBuf, String),
+    /// A cable without a largest tension, where one is needed.
+    Unbounded(String),
     /// A cable whose stroke was asked for.
     NoCable { asked: usize, cables: usize },
 }
@@ -70,6 +72,12 @@ impl std::fmt::Display for WrongRequest {
             }
             Self::Words(key) => write!(f, "--over: {key} has words for values, which a map has no axis for"),
             Self::Peers(path, why) => write!(f, "--peers {}: {why}", path.display()),
+            Self::Unbounded(cable) => {
+                write!(
+                    f,
+                    "--boundary: cable {cable} has no largest tension; give --max-tension, or `max_tension` in its table of the file"
+                )
+            }
             Self::NoCable { asked, cables } => {
                 write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")
             }

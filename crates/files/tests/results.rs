@@ -208,6 +208,11 @@ fn files_appear_whole_or_not_at_all() {
 
     let missing = write_whole(dir.join("no/out.json"), b"x").unwrap_err().to_string();
     assert!(missing.contains("no/out.json") && missing.contains("make the directory"), "{missing}");
+    // A directory that was there was to be made.
+    if cfg!(target_os = "linux") {
+        let there = write_whole("/proc/out.json", b"{}").unwrap_err().to_string();
+        assert!(there.ends_with("; choose another path"), "{there}");
+    }
     let directory = write_whole(dir, b"x").unwrap_err().to_string();
     assert!(directory.contains("name a file in that directory"), "{directory}");
     assert!(write_whole("", b"x").is_err());

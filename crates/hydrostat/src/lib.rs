@@ -172,8 +172,8 @@ pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub use profile::{Point, Profile, Sample};
 pub use reach::{
-    Bound, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, Followed, Follower, Reach,
-    ReachError, ReachOptions, Reached, Target,
+    Bound, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, BoundaryProgress, Followed, Follower,
+    Reach, ReachError, ReachOptions, Reached, Target,
 };
 pub use readings::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength};
 pub use sensitivity::{

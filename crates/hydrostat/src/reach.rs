@@ -22,7 +22,7 @@ use crate::sensitivity::{SensitivityError, check};
 use crate::stability::Stability;
 use crate::verdict::SolveError;
 
-pub use self::boundary::{Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint};
+pub use self::boundary::{Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, BoundaryProgress};
 pub use self::follow::{Followed, Follower};
 
 /// Most steps along lines, and misses that lines are followed from.

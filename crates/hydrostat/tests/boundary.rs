@@ -1,6 +1,12 @@
 //! The boundary of what a tip reaches, against scans of the tensions.
 
-use hydrostat::{Arm, Boundary, BoundaryKind, BoundaryOptions, Cable, Options, Parameter, Profile, ReachError, Solver};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use hydrostat::{
+    Arm, Boundary, BoundaryKind, BoundaryOptions, BoundaryProgress, Cable, Options, Parameter, Profile, ReachError,
+    Solver,
+};
 
 fn cone() -> Arm {
     let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
@@ -116,6 +122,34 @@ fn limits_of_the_tensions_are_part_of_the_boundary() {
         beyond.set_tensions(&more).unwrap();
         assert!(beyond.solve().is_err(), "{point:?}");
     }
+}
+
+/// Nobody was asked while a boundary was traced: Ctrl-C was heard at its end.
+#[test]
+fn boundaries_were_traced_to_their_end() {
+    let arm = cone();
+    let asked = AtomicUsize::new(0);
+    let last = Mutex::new(None);
+    let count = |progress: BoundaryProgress| {
+        asked.fetch_add(1, Ordering::Relaxed);
+        *last.lock().unwrap() = Some(progress);
+        true
+    };
+    let whole = arm.reachable_while(&options(0.2), count).unwrap();
+    assert_eq!(whole, arm.reachable(&options(0.2)).unwrap());
+    let all = asked.load(Ordering::Relaxed);
+    let points: usize = whole.pieces.iter().map(|piece| piece.points.len()).sum();
+    assert!(all > points, "asked {all} times for {points} points");
+    let last = last.lock().unwrap().unwrap();
+    // Four edges, a face, a plane.
+    assert!(last.of == 6 && last.done < 6 && last.shapes < all, "{last:?} of {all}");
+
+    asked.store(0, Ordering::Relaxed);
+    let part = arm.reachable_while(&options(0.2), |_| asked.fetch_add(1, Ordering::Relaxed) < 20).unwrap();
+    let found: usize = part.pieces.iter().map(|piece| piece.points.len()).sum();
+    // Whoever has said no is not asked again, but by threads that were asking.
+    assert!(asked.load(Ordering::Relaxed) < 20 + 64, "{asked:?}");
+    assert!(found <= 20 && found < points, "{found} of {points} points");
 }
 
 #[test]

@@ -99,7 +99,7 @@ pub(crate) fn identify_error(py: Python<'_>, error: IdentifyError, tol: f64) -> 
 pub(crate) fn sweep_error(error: SweepError) -> PyErr {
     match error {
         SweepError::Exists { .. } | SweepError::Begun { .. } => PyFileExistsError::new_err(error.to_string()),
-        SweepError::Locked { .. } | SweepError::Write(_) | SweepError::Read { .. } => {
+        SweepError::Locked { .. } | SweepError::Write(_) | SweepError::Read { .. } | SweepError::Damaged { .. } => {
             PyOSError::new_err(error.to_string())
         }
         SweepError::Threads(_) => PyRuntimeError::new_err(error.to_string()),

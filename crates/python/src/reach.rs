@@ -94,8 +94,11 @@ pub(crate) fn reachable(
     tol: f64,
 ) -> PyResult<Boundary> {
     let options = BoundaryOptions { max_tension, spacing, tol };
-    let trace = || -> Result<_, ReachError> { Ok((arm.given.reachable(&options)?, arm.given.slackened().solve()?)) };
-    let found = py.detach(trace);
+    let trace = |stop: &AtomicBool| -> Result<_, ReachError> {
+        let go_on = |_| !stop.load(Ordering::Relaxed);
+        Ok((arm.given.reachable_while(&options, go_on)?, arm.given.slackened().solve()?))
+    };
+    let found = interruptible(py, |_| Ok(()), trace)?;
     let (found, slack) = found.map_err(|error| reach_error(py, error, tol))?;
     Ok(Boundary { found, arm: arm.given.clone(), slack })
 }

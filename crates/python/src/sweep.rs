@@ -134,7 +134,8 @@ impl Sweep {
         while_asked(py, threads, progress, |go_on| self.sweep.write_tiles(&(tiles.0..tiles.1), &output, go_on))
     }
 
-    /// The program's own sweep into a Parquet or CSV file: rows, those with an answer, those that were there before.
+    /// The program's own sweep into a Parquet or CSV file: rows, those with an answer, those that were there before, and parts that had
+    /// changed since and were solved again.
     fn run(
         &self,
         py: Python<'_>,
@@ -142,7 +143,7 @@ impl Sweep {
         resume: bool,
         threads: usize,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(u64, u64, u64)> {
+    ) -> PyResult<(u64, u64, u64, u64)> {
         let done = AtomicU64::new(0);
         let summary = interruptible(
             py,
@@ -156,7 +157,7 @@ impl Sweep {
         )?
         .map_err(sweep_error)?;
         say(py, progress.as_ref(), summary.rows)?;
-        Ok((summary.rows, summary.answered, summary.resumed))
+        Ok((summary.rows, summary.answered, summary.resumed, summary.damaged))
     }
 }
 

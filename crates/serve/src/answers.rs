@@ -95,7 +95,7 @@ pub(crate) fn check(request: &CheckRequest) -> Result<Answer, Problem> {
 /// The shape of an arm, or the verdict.
 pub(crate) fn solve(request: &SolveRequest, deadline: Deadline) -> Result<Answer, Problem> {
     let arm = request.arm()?;
-    let stations = stations(request.stations)?;
+    let stations = stations(request.stations.clone())?;
     let tol = request.tol.unwrap_or(Options::default().tol);
     let mut solver = Solver::new(&arm, Options { tol })?;
     match solver.solve() {
@@ -175,7 +175,7 @@ pub(crate) fn path(request: &PathRequest, deadline: Deadline) -> Result<Answer, 
     let options = PathOptions {
         tol: request.tol.unwrap_or(default.tol),
         longest: request.max_step.unwrap_or(default.longest),
-        most: count("max_points", request.max_points, limits::POINTS)?.unwrap_or(default.most),
+        most: count("max_points", request.max_points.clone(), limits::POINTS)?.unwrap_or(default.most),
         branches: request.branches,
     };
     let path = arm.path_with(varied.parameter, varied.range, &options, |_| deadline.is_ahead())?;

@@ -34,7 +34,7 @@ pub(crate) enum ArmSource {
 
 /// A value of an override.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a number or a text, found neither")]
 pub(crate) enum Setting {
     Number(f64),
     Text(String),

@@ -3,6 +3,7 @@
 use hydrostat_files::{Dimension, Varied};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::Number;
 
 use crate::arm_source::{ArmSource, Settings, arm, overridden};
 use crate::limits;
@@ -30,7 +31,7 @@ pub(crate) enum By {
 
 /// A number, or a text with a unit.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a number, or a text with a number and its unit, found neither")]
 pub(crate) enum Amount {
     Number(f64),
     Text(String),
@@ -69,7 +70,7 @@ pub(crate) struct SolveRequest {
     #[serde(default)]
     set: Settings,
     pub(crate) tol: Option<f64>,
-    pub(crate) stations: Option<usize>,
+    pub(crate) stations: Option<Number>,
     #[serde(default)]
     pub(crate) format: Format,
 }
@@ -82,7 +83,7 @@ pub(crate) struct PathRequest {
     set: Settings,
     pub(crate) vary: Option<String>,
     pub(crate) tol: Option<f64>,
-    pub(crate) max_points: Option<usize>,
+    pub(crate) max_points: Option<Number>,
     pub(crate) max_step: Option<f64>,
     #[serde(default)]
     pub(crate) branches: bool,
@@ -163,17 +164,16 @@ pub(crate) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Problem> {
 }
 
 /// A number of stations.
-pub(crate) fn stations(asked: Option<usize>) -> Result<Option<usize>, Problem> {
+pub(crate) fn stations(asked: Option<Number>) -> Result<Option<usize>, Problem> {
     count("stations", asked, limits::STATIONS)
 }
 
 /// A whole number from 2 to `most`.
-pub(crate) fn count(field: &str, asked: Option<usize>, most: usize) -> Result<Option<usize>, Problem> {
-    match asked {
-        Some(found) if !(2..=most).contains(&found) => {
-            Err(Problem::field(field, format!("{field}: expected a whole number from 2 to {most}, found {found}")))
-        }
-        asked => Ok(asked),
+pub(crate) fn count(field: &str, asked: Option<Number>, most: usize) -> Result<Option<usize>, Problem> {
+    let Some(found) = asked else { return Ok(None) };
+    match found.as_u64().and_then(|count| usize::try_from(count).ok()) {
+        Some(count) if (2..=most).contains(&count) => Ok(Some(count)),
+        _ => Err(Problem::field(field, format!("{field}: expected a whole number from 2 to {most}, found {found}"))),
     }
 }
 
@@ -203,7 +203,7 @@ mod tests {
             (r#"{"arm": 3}"#, "arm"),
             (r#"{"arm": {"toml": 3}}"#, "arm"),
             (r#"{"arm": "paper", "tol": "x"}"#, "tol"),
-            (r#"{"arm": "paper", "stations": -1}"#, "stations"),
+            (r#"{"arm": "paper", "stations": "many"}"#, "stations"),
             (r#"{"arm": "paper", "statons": 3}"#, "statons"),
             (r#"{"arm": "paper", "format": "pdf"}"#, "format"),
             (r#"{"arm": "paper", "set": {"flow.speed": true}}"#, "set.flow.speed"),
@@ -212,6 +212,26 @@ mod tests {
             let (found, message) = problem(text);
             assert_eq!(found.as_deref(), Some(field), "{text}: {message}");
             assert!(!message.is_empty());
+        }
+    }
+
+    /// They said names of types: "data did not match any variant of untagged enum Setting", "expected usize".
+    #[test]
+    fn messages_named_types() {
+        let (field, message) = problem(r#"{"arm": "paper", "set": {"cable[0].tension": null}}"#);
+        assert_eq!(field.as_deref(), Some("set.cable[0].tension"));
+        assert!(message.starts_with("set.cable[0].tension: expected a number or a text, found neither"), "{message}");
+        let reach = read::<ReachRequest>(br#"{"arm": "paper", "target": [null, 1]}"#).unwrap_err().body.error.message;
+        let expected = "target[0]: expected a number, or a text with a number and its unit, found neither";
+        assert!(reach.starts_with(expected), "{reach}");
+        for number in ["-3", "2.5", "1", "1e300"] {
+            let asked: SolveRequest = read(format!(r#"{{"arm": "paper", "stations": {number}}}"#).as_bytes()).unwrap();
+            let message = stations(asked.stations).unwrap_err().body.error.message;
+            let most = limits::STATIONS;
+            assert!(
+                message.starts_with(&format!("stations: expected a whole number from 2 to {most}, found ")),
+                "{message}"
+            );
         }
     }
 

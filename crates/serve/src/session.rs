@@ -46,7 +46,7 @@ struct Wish {
     arm: Option<ArmSource>,
     #[serde(default)]
     set: Settings,
-    stations: Option<usize>,
+    stations: Option<serde_json::Number>,
     /// Where the tip is to go, m: then tensions are found, beginning with those of the arm.
     target: Option<[f64; 2]>,
     /// The largest tension (N) of every cable while the tip is pulled; of this and the cable's own the smaller counts.

@@ -69,6 +69,12 @@ pub enum SweepError {
         /// What is wrong with it.
         message: String,
     },
+    /// A part whose bytes changed after it was written.
+    #[error("{} is not as it was written; --resume solves its rows again", .path.display())]
+    Damaged {
+        /// The part.
+        path: PathBuf,
+    },
     /// Whoever watched it ended it. Whole parts stay where they are, to go on from.
     #[error("the sweep was stopped before its end")]
     Stopped,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use hydrostat_files::{remove_leftovers, write_whole};
 
-use crate::error::{SweepError, write_error};
+use crate::error::{SweepError, read_error, write_error};
 
 const PLAN: &str = "plan.json";
 
@@ -25,6 +25,27 @@ pub(crate) struct Part {
     pub(crate) path: PathBuf,
     /// Its rows that have an answer.
     pub(crate) answered: u64,
+    /// CRC-32 of its bytes.
+    sum: u32,
+}
+
+impl Part {
+    /// Whether its bytes are those that were written: a full disk, a copy that was broken off or a repaired file system may have changed them since.
+    ///
+    /// # Errors
+    /// [`SweepError::Read`].
+    pub(crate) fn is_intact(&self) -> Result<bool, SweepError> {
+        let failed = |error| read_error(&self.path, error);
+        let mut file = File::open(&self.path).map_err(failed)?;
+        let mut hasher = crc32fast::Hasher::new();
+        let mut block = vec![0; 1 << 16];
+        loop {
+            match file.read(&mut block).map_err(failed)? {
+                0 => return Ok(hasher.finalize() == self.sum),
+                count => hasher.update(&block[..count]),
+            }
+        }
+    }
 }
 
 /// Where the parts of a sweep into `output` are.
@@ -47,8 +68,9 @@ impl Parts {
             if !resume {
                 return Err(SweepError::Begun { directory });
             }
-        } else {
-            fs::create_dir_all(&directory).map_err(failed)?;
+        } else if !directory.is_dir() {
+            // A directory of the output that is missing was misspelt.
+            fs::create_dir(&directory).map_err(|error| write_error(output, error))?;
         }
         let mut file =
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
@@ -100,28 +122,37 @@ impl Parts {
         }
     }
 
-    /// The parts that are there, by their number.
-    pub(crate) fn present(&self, count: usize) -> Result<Vec<Option<Part>>, SweepError> {
-        let mut out = vec![None; count];
+    /// The parts that are there, by their number, and how many were damaged, which are removed.
+    pub(crate) fn present(&self, count: usize) -> Result<(Vec<Option<Part>>, u64), SweepError> {
+        let (mut out, mut damaged) = (vec![None; count], 0);
         for (path, name) in self.entries()? {
-            let numbers = || -> Option<(usize, u64)> {
-                let (index, answered) = name.strip_suffix(self.ending)?.strip_suffix('.')?.split_once('-')?;
-                Some((index.parse().ok()?, answered.parse().ok()?))
-            };
-            if let Some((index, answered)) = numbers()
-                && let Some(place) = out.get_mut(index)
-            {
-                *place = Some(Part { path, answered });
+            let Some((index, answered, sum)) = self.said(&name) else { continue };
+            let Some(place) = out.get_mut(index) else { continue };
+            let part = Part { path, answered, sum };
+            if part.is_intact()? {
+                *place = Some(part);
+            } else {
+                fs::remove_file(&part.path).map_err(|error| write_error(&part.path, error))?;
+                damaged += 1;
             }
         }
-        Ok(out)
+        Ok((out, damaged))
     }
 
-    /// Writes a part, whole or not at all. Its name says how many of its rows have an answer.
+    /// Number, rows with an answer and sum, from the name of a part.
+    fn said(&self, name: &str) -> Option<(usize, u64, u32)> {
+        let mut numbers = name.strip_suffix(self.ending)?.strip_suffix('.')?.split('-');
+        let said = (numbers.next()?.parse().ok()?, numbers.next()?.parse().ok()?);
+        let sum = u32::from_str_radix(numbers.next()?, 16).ok()?;
+        numbers.next().is_none().then_some((said.0, said.1, sum))
+    }
+
+    /// Writes a part, whole or not at all. Its name says how many of its rows have an answer, and the sum of its bytes.
     pub(crate) fn write(&self, index: usize, answered: u64, bytes: &[u8]) -> Result<Part, SweepError> {
-        let path = self.directory.join(format!("{index:06}-{answered}.{}", self.ending));
+        let sum = crc32fast::hash(bytes);
+        let path = self.directory.join(format!("{index:06}-{answered}-{sum:08x}.{}", self.ending));
         write_whole(&path, bytes)?;
-        Ok(Part { path, answered })
+        Ok(Part { path, answered, sum })
     }
 
     /// Removes the directory, whose parts are joined.

@@ -91,6 +91,8 @@ pub struct Summary {
     pub answered: u64,
     /// Rows that an earlier run had left in whole parts.
     pub resumed: u64,
+    /// Parts of an earlier run whose bytes were not those written, and that were solved again.
+    pub damaged: u64,
 }
 
 /// A sweep that can be run.
@@ -231,14 +233,14 @@ impl Sweep {
         if output.exists() {
             self.is_ended(output, resume, format)?;
             let count = rows.end - rows.start;
-            return Ok(Summary { rows: count, answered: answered(output)?, resumed: count });
+            return Ok(Summary { rows: count, answered: answered(output)?, resumed: count, damaged: 0 });
         }
         if format == Format::Csv && csv_file::note(output)?.is_some_and(|note| note != self.note) {
             return Err(SweepError::Exists { path: csv_file::beside(output) });
         }
         let parts = Parts::open(output, &self.note, resume, format.ending())?;
         let tiles = self.parts();
-        let present = parts.present(tiles.len())?;
+        let (present, damaged) = parts.present(tiles.len())?;
         let resumed = present.iter().zip(&tiles).filter(|(part, _)| part.is_some()).map(|(_, tiles)| {
             let rows = rows_of(&self.plan, tiles);
             rows.end - rows.start
@@ -263,6 +265,11 @@ impl Sweep {
         let written: Vec<Part> = pool.install(|| {
             present.into_par_iter().zip(&tiles).enumerate().with_max_len(1).map(solve).collect::<Result<_, _>>()
         })?;
+        for part in &written {
+            if !part.is_intact()? {
+                return Err(SweepError::Damaged { path: part.path.clone() });
+            }
+        }
         let paths: Vec<PathBuf> = written.iter().map(|part| part.path.clone()).collect();
         let columns = self.layout.columns(self.plan.axes());
         if format == Format::Csv {
@@ -281,7 +288,7 @@ impl Sweep {
         })?;
         parts.remove()?;
         let answered = written.iter().map(|part| part.answered).sum();
-        Ok(Summary { rows: rows.end - rows.start, answered, resumed })
+        Ok(Summary { rows: rows.end - rows.start, answered, resumed, damaged })
     }
 
     /// An output that is there is the end of this sweep, or in the way.

@@ -249,6 +249,82 @@ fn a_stopped_sweep_goes_on_and_no_other() {
     assert!(matches!(other.run(&out, true, 2, &|_| {}), Err(SweepError::Other { .. })));
 }
 
+/// The parts of a sweep, in their order.
+fn parts_of(out: &Path) -> Vec<std::path::PathBuf> {
+    let directory = out.with_file_name(format!("{}.parts", out.file_name().unwrap().display()));
+    let entries = std::fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path());
+    let mut parts: Vec<_> = entries.filter(|path| path.extension() == out.extension()).collect();
+    parts.sort();
+    parts
+}
+
+/// Of CSV the rows beyond the cut were missing, with a line that was half a row; of Parquet changed values were joined as they stood, and a cut was an
+/// error without advice.
+#[test]
+fn cut_parts_were_joined() {
+    let directory = tempfile::tempdir().unwrap();
+    let keys = ["arm.density=1000:1100:8", "cable[0].tension=0:0.5:120"];
+    let whole = sweep("silicone", &keys, &SweepOptions::default());
+    for ending in ["csv", "parquet"] {
+        let [out, want] = ["out", "want"].map(|name| directory.path().join(format!("{name}.{ending}")));
+        whole.run(&want, false, 2, &|_| {}).unwrap();
+        let stopped = whole.run_while(&out, false, 1, &|rows| rows < 480);
+        assert!(matches!(stopped, Err(SweepError::Stopped)), "{stopped:?}");
+        let parts = parts_of(&out);
+        assert!(parts.len() > 3, "{parts:?}");
+        let bytes = std::fs::read(&parts[0]).unwrap();
+        std::fs::write(&parts[0], &bytes[..bytes.len() / 2]).unwrap();
+        std::fs::write(&parts[1], "").unwrap();
+        let mut bytes = std::fs::read(&parts[2]).unwrap();
+        // A digit of a CSV, a byte of a page.
+        let place = bytes.iter().skip(5).position(u8::is_ascii_digit).unwrap() + 5;
+        bytes[place] ^= 1;
+        std::fs::write(&parts[2], bytes).unwrap();
+
+        let summary = whole.run(&out, true, 2, &|_| {}).unwrap();
+        assert_eq!((summary.rows, summary.damaged), (960, 3), "{summary:?}");
+        assert!(summary.resumed > 0, "{summary:?}");
+        assert!(std::fs::read(&out).unwrap() == std::fs::read(&want).unwrap(), "{ending}");
+    }
+}
+
+/// A part that was written by the same run can be cut before it is joined, too.
+#[test]
+fn parts_cut_on_the_way_are_not_joined() {
+    let directory = tempfile::tempdir().unwrap();
+    let keys = ["arm.density=1000:1100:8", "cable[0].tension=0:0.5:120"];
+    let whole = sweep("silicone", &keys, &SweepOptions::default());
+    for ending in ["csv", "parquet"] {
+        let [out, want] = ["out", "want"].map(|name| directory.path().join(format!("{name}.{ending}")));
+        whole.run(&want, false, 2, &|_| {}).unwrap();
+        let cut = |done| {
+            if done == 960 {
+                let first = &parts_of(&out)[0];
+                let bytes = std::fs::read(first).unwrap();
+                std::fs::write(first, &bytes[..bytes.len() - 9]).unwrap();
+            }
+        };
+        let error = whole.run(&out, false, 1, &cut).unwrap_err();
+        assert!(matches!(error, SweepError::Damaged { .. }) && error.to_string().contains("--resume"), "{error}");
+        assert!(!out.exists());
+        assert_eq!(whole.run(&out, true, 1, &|_| {}).unwrap().damaged, 1);
+        assert!(std::fs::read(&out).unwrap() == std::fs::read(&want).unwrap(), "{ending}");
+    }
+}
+
+/// The Python package made them, where the program refused the same path.
+#[test]
+fn missing_directories_were_made() {
+    let directory = tempfile::tempdir().unwrap();
+    let missing = directory.path().join("no");
+    for name in ["out.csv", "out.parquet"] {
+        let whole = sweep("paper", &["flow.speed=0:0.1:2"], &SweepOptions::default());
+        let error = whole.run(&missing.join(name), false, 1, &|_| {}).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains("make the directory"), "{error}");
+    }
+    assert!(!missing.exists());
+}
+
 #[test]
 fn what_is_no_sweep_is_refused() {
     let directory = tempfile::tempdir().unwrap();

@@ -15,7 +15,7 @@ Exit status:
 
 /// Draws the result of a sweep: a column over two of the keys that were varied, and the places of the tip, coloured by that column.
 ///
-/// Without --map and --workspace, writes both, as SVG and PNG, beside the sweep's file.
+/// Without --map and --workspace, writes both, as SVG and PNG, beside the sweep's file, and says their names.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\
 Examples:

@@ -14,7 +14,8 @@ Exit status:
   0  all rows are written, and at least one has an answer
   2  the request is wrong: arguments, arm file, an output that is there or cannot be written
   3  all rows are written, and none has an answer
-  1  anything else";
+  1  anything else
+  130  ended by Ctrl-C; --resume goes on";
 
 /// Solves an arm for every combination of values of some keys of its file, or for a sample of them, and writes a row each.
 ///

@@ -1,21 +1,37 @@
 //! `hydrostat reach --boundary`: what bounds the places that the tip reaches.
 
-use hydrostat::{Arm, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece};
+use std::sync::Mutex;
+
+use hydrostat::{Arm, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryProgress};
 use hydrostat_figures::boundary_figure;
 use hydrostat_files::{BoundaryDocument, boundary_csv};
 
 use super::table::table;
 use crate::args::{Format, ReachArgs};
 use crate::output;
+use crate::progress::Progress;
+use crate::request::WrongRequest;
 
 pub(super) fn run(arm: &Arm, args: &ReachArgs) -> anyhow::Result<()> {
+    let bounded = |own: Option<f64>| own.or(args.max_tension).is_some();
+    if let Some(cable) = arm.cables.iter().find(|cable| !bounded(cable.max_tension)) {
+        return Err(WrongRequest::Unbounded(cable.name.clone()).into());
+    }
     let usual = BoundaryOptions::default();
     let options = BoundaryOptions {
         max_tension: args.max_tension,
         spacing: args.spacing.unwrap_or(usual.spacing),
         tol: args.tol.unwrap_or(usual.tol),
     };
-    let found = arm.reachable(&options)?;
+    let progress = Mutex::new(Progress::new());
+    let say = |BoundaryProgress { done, of, shapes }| {
+        if let Ok(mut progress) = progress.lock() {
+            progress.say(|| format!("{done} of {of} edges, faces and planes of tensions, {shapes} shapes"));
+        }
+        true
+    };
+    let found = arm.reachable_while(&options, say)?;
+    drop(progress);
     if let Some(file) = &args.plot {
         output::draw(&boundary_figure(&found, &arm.slackened().solve()?), file)?;
     }

@@ -27,6 +27,7 @@ pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
     let table = Table::read(&args.sweep, &wanted)?;
     let column = coloured(&table, &args.quantity).ok_or_else(|| WrongRequest::NoColumn(args.quantity.clone(), all))?;
     let name = args.sweep.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut written = String::new();
     for (option, file, kind) in pictures {
         let scene = match kind {
             Kind::Map => map(&table, &keys, &over, &column, &name)?,
@@ -40,6 +41,11 @@ pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
             }
         };
         output::draw(&scene, &file)?;
+        written.extend([&*file.to_string_lossy(), "\n"]);
+    }
+    // Names that were asked for are known.
+    if args.map.is_none() && args.workspace.is_none() {
+        output::print(&written)?;
     }
     Ok(())
 }

@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::NoAnswer;
 use crate::args::SweepArgs;
-use crate::{output, request};
+use crate::{exit, output, request};
 
 pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let file = request::overridden(&args.arm)?;
@@ -31,12 +31,17 @@ pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
     })?;
     output::check_writable(&args.output)?;
     let rows = sweep.rows();
+    exit::at_ctrl_c("stopped: the same command with --resume goes on");
     let progress = Rate::new(rows.end - rows.start);
     let summary = sweep
         .run(&args.output, args.resume, args.threads.unwrap_or(0), &|done| progress.say(done))
         .map_err(anyhow::Error::new)?;
     progress.end();
     let Summary { rows, answered, .. } = summary;
+    if summary.damaged > 0 {
+        let parts = if summary.damaged == 1 { "part" } else { "parts" };
+        eprintln!("note: {} {parts} of an earlier run had changed since; solved again", summary.damaged);
+    }
     let words = format!("{}: {rows} rows of {}, {answered} with an answer", args.output.display(), sweep.name());
     if answered == 0 {
         return Err(NoAnswer(format!("{words}: the column `verdict` says why"))).context(words);

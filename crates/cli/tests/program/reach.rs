@@ -176,6 +176,17 @@ fn a_cable_is_wound_in_no_further_than_it_may_be() {
     assert!(refused(&reach(target, &["--max-stroke", "10 N"])).contains("expected a length"));
 }
 
+/// The message was "expected a number finite, for every cable, found inf".
+#[test]
+fn a_boundary_without_largest_tensions_named_no_option() {
+    let here = directory();
+    let arm = "[arm]\nlength = 0.2\nradius = 0.01\n[material]\nyoung = 1e5\n[[cable]]\noffset = 0.004\n";
+    std::fs::write(here.path().join("my.toml"), arm).unwrap();
+    let run = hydrostat_in(here.path(), &["reach", "my.toml", "--boundary"]);
+    assert!(run.err.contains("has no largest tension; give --max-tension"), "{}", run.err);
+    assert_eq!(run.code, 2);
+}
+
 #[test]
 fn the_boundary_is_written_and_drawn() {
     let here = directory();

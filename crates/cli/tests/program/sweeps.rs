@@ -27,7 +27,8 @@ fn a_sweep_is_a_table_and_its_pictures() {
     let run = hydrostat_in(directory.path(), &sweep(&["-o", "out.parquet"]));
     assert_eq!(run.code, 0, "{}", run.err);
     let run = hydrostat_in(directory.path(), &["plot", "out.parquet"]);
-    assert_eq!((run.code, run.out.as_str(), run.err.as_str()), (0, "", ""));
+    let written = "out.map.svg\nout.map.png\nout.workspace.svg\nout.workspace.png\n";
+    assert_eq!((run.code, run.out.as_str(), run.err.as_str()), (0, written, ""));
     let pictures = ["out.map.png", "out.map.svg", "out.parquet", "out.workspace.png", "out.workspace.svg"];
     assert_eq!(files(directory.path()), [&["out.csv", "out.csv.json"][..], &pictures].concat());
     let read = |name: &str| std::fs::read(directory.path().join(name)).unwrap();
@@ -155,13 +156,29 @@ fn a_disk_that_is_full_is_said_to_be() {
 /// A sweep of a second or so and of sixty parts, begun or gone on with.
 fn begin(directory: &Path, output: &str) -> Child {
     Command::new(env!("CARGO_BIN_EXE_hydrostat"))
-        .args(["sweep", "paper", "--vary", "flow.speed=0:0.5:60", "--vary", "cable[0].tension=0:60:130"])
-        .args(["--columns", "tip,fold", "--threads", "2", "--resume", "-o", output])
+        .args(begun(output))
         .current_dir(directory)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
         .unwrap()
+}
+
+fn begun(output: &str) -> [&str; 12] {
+    [
+        "sweep",
+        "paper",
+        "--vary",
+        "flow.speed=0:0.5:60",
+        "--vary",
+        "cable[0].tension=0:60:130",
+        "--columns",
+        "tip,fold",
+        "--threads=2",
+        "--resume",
+        "-o",
+        output,
+    ]
 }
 
 /// When each whole part was written.
@@ -222,6 +239,49 @@ fn kill(times: u32) {
     }
     assert!(kept > 0, "every kill came before the first part");
     assert!(files(here).iter().all(|name| name.ends_with(".parquet")));
+}
+
+/// It ended without a word of how to go on.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_said_nothing() {
+    let directory = directory();
+    let child = Command::new(env!("CARGO_BIN_EXE_hydrostat"))
+        .args(["sweep", "paper", "--vary", "flow.speed=0:0.5:6000", "--vary", "cable[0].tension=0:60:130"])
+        .args(["--threads", "1", "-o", "out.parquet"])
+        .current_dir(directory.path())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while parts(&directory.path().join("out.parquet.parts")).is_empty() {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    let ended = child.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!((ended.status.code(), said.trim()), (Some(130), "stopped: the same command with --resume goes on"));
+}
+
+/// A part that was cut was joined as it was, and its rows were missing.
+#[test]
+fn cut_parts_were_joined() {
+    let directory = directory();
+    let here = directory.path();
+    let there = here.join("out.parquet.parts");
+    let mut child = begin(here, "out.parquet");
+    while parts(&there).is_empty() {
+        assert!(child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let (part, _) = parts(&there).pop_first().unwrap();
+    std::fs::write(there.join(part), "PAR1").unwrap();
+    let run = hydrostat_in(here, &begun("out.parquet"));
+    assert!(run.err.starts_with("note: 1 part of an earlier run had changed since; solved again\n"), "{}", run.err);
+    assert!(run.err.contains("out.parquet: 7800 rows of paper"), "{}", run.err);
+    assert_eq!(run.code, 0);
 }
 
 #[test]

@@ -13,6 +13,8 @@
 //! these push to both sides of the line, and left out. Tensions without an equilibrium end the image, too: where all others are slack their border
 //! is followed ray by ray, since solves raise all tensions in proportion.
 
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
 use rayon::prelude::*;
 
 use super::search::{Goal, Search, State};
@@ -79,6 +81,17 @@ pub struct BoundaryPiece {
     pub points: Vec<BoundaryPoint>,
 }
 
+/// How far a boundary is traced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BoundaryProgress {
+    /// Edges, faces and planes of the box of tensions that are done.
+    pub done: usize,
+    /// How many there are.
+    pub of: usize,
+    /// Shapes that were asked for.
+    pub shapes: usize,
+}
+
 /// All that bounds what the tip can reach, and pieces inside where the image lies over itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boundary {
@@ -106,6 +119,18 @@ impl Arm {
     /// # Ok::<(), hydrostat::ReachError>(())
     /// ```
     pub fn reachable(&self, options: &BoundaryOptions) -> Result<Boundary, ReachError> {
+        self.reachable_while(options, |_| true)
+    }
+
+    /// [`Arm::reachable`] while `go_on`, which is asked before every shape, from several threads, says so; then with what was found until then.
+    ///
+    /// # Errors
+    /// [`ReachError`].
+    pub fn reachable_while(
+        &self,
+        options: &BoundaryOptions,
+        go_on: impl Fn(BoundaryProgress) -> bool + Sync,
+    ) -> Result<Boundary, ReachError> {
         for (option, value, [from, to], expected) in [
             ("spacing", options.spacing, [1e-3, 0.1], "in [1e-3, 0.1]"),
             ("tol", options.tol, [1e-9, 1e-3], "in [1e-9, 1e-3]"),
@@ -118,24 +143,43 @@ impl Arm {
         let reach = ReachOptions { max_tension: options.max_tension, tol: options.tol, ..ReachOptions::default() };
         let search = Search::new(self, Goal::Places(vec![Target::tip(self.base.x, self.base.y)]), &reach)?;
         if let Some(value) = search.most.iter().copied().find(|most| !most.is_finite()) {
-            return Err(ReachError::Option { option: "max_tension", value, expected: "finite, for every cable" });
+            return Err(ReachError::Option {
+                option: "max_tension",
+                value,
+                expected: "that is finite, for every cable",
+            });
         }
         let cables = search.most.len();
         let lattice = LATTICE[usize::from(cables > FEW)];
-        let tracer = Tracer { search, spacing: options.spacing, lattice };
         // Nothing pulls: the one shape that has to be there.
-        tracer.search.at(&vec![0.0; cables])?;
+        search.at(&vec![0.0; cables])?;
 
         let mut jobs = Vec::new();
         for f in 0..cables {
-            jobs.extend(tracer.corners(&[f]).into_iter().map(|corner| Job::Edge(f, corner)));
+            jobs.extend(search.corners(&[f]).into_iter().map(|corner| Job::Edge(f, corner)));
         }
         let pairs = || (0..cables).flat_map(|f| (f + 1..cables).map(move |g| [f, g]));
         for pair in pairs() {
-            jobs.extend(tracer.corners(&pair).into_iter().map(|corner| Job::Fold(pair, corner)));
+            jobs.extend(search.corners(&pair).into_iter().map(|corner| Job::Fold(pair, corner)));
         }
         jobs.extend(pairs().map(Job::Limit));
-        let pieces: Vec<Vec<BoundaryPiece>> = jobs.par_iter().map(|job| tracer.run(job)).collect();
+        let (of, done, shapes) = (jobs.len(), AtomicUsize::new(0), AtomicUsize::new(0));
+        let stopped = AtomicBool::new(false);
+        let ask = || {
+            let shapes = shapes.fetch_add(1, Ordering::Relaxed);
+            let on = || go_on(BoundaryProgress { done: done.load(Ordering::Relaxed), of, shapes });
+            if !stopped.load(Ordering::Relaxed) && !on() {
+                stopped.store(true, Ordering::Relaxed);
+            }
+            !stopped.load(Ordering::Relaxed)
+        };
+        let tracer = Tracer { search, spacing: options.spacing, lattice, go_on: &ask };
+        let run = |job| {
+            let pieces = tracer.run(job);
+            done.fetch_add(1, Ordering::Relaxed);
+            pieces
+        };
+        let pieces: Vec<Vec<BoundaryPiece>> = jobs.par_iter().map(run).collect();
         Ok(Boundary { pieces: pieces.into_iter().flatten().collect() })
     }
 }
@@ -147,10 +191,12 @@ enum Job {
     Limit([usize; 2]),
 }
 
-pub(super) struct Tracer {
+pub(super) struct Tracer<'a> {
     pub(super) search: Search,
     pub(super) spacing: f64,
     pub(super) lattice: usize,
+    /// Asked before every shape; when it says no there are no more shapes, which ends every line.
+    go_on: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// A shape with the tip's derivatives by the tensions, over L.
@@ -167,22 +213,11 @@ impl Here {
     }
 }
 
-impl Tracer {
-    fn run(&self, job: &Job) -> Vec<BoundaryPiece> {
-        match job {
-            Job::Edge(f, corner) => outer(BoundaryKind::Edge(*f), self.edge(*f, corner), &[*f]),
-            Job::Fold(pair, corner) => outer(BoundaryKind::Fold(*pair), self.folds(*pair, corner), pair),
-            Job::Limit(pair) => {
-                let kind = BoundaryKind::Limit(*pair);
-                self.limits(*pair).into_iter().map(|points| BoundaryPiece { kind, points }).collect()
-            }
-        }
-    }
-
+impl Search {
     /// All choices of bounds for the cables but `free`, which are 0.
     fn corners(&self, free: &[usize]) -> Vec<Vec<f64>> {
-        let mut all = vec![vec![0.0; self.search.most.len()]];
-        for (c, most) in self.search.most.iter().enumerate().filter(|(c, _)| !free.contains(c)) {
+        let mut all = vec![vec![0.0; self.most.len()]];
+        for (c, most) in self.most.iter().enumerate().filter(|(c, _)| !free.contains(c)) {
             let pulled: Vec<Vec<f64>> = all
                 .iter()
                 .map(|corner| {
@@ -195,13 +230,32 @@ impl Tracer {
         }
         all
     }
+}
+
+impl Tracer<'_> {
+    fn run(&self, job: &Job) -> Vec<BoundaryPiece> {
+        match job {
+            Job::Edge(f, corner) => outer(BoundaryKind::Edge(*f), self.edge(*f, corner), &[*f]),
+            Job::Fold(pair, corner) => outer(BoundaryKind::Fold(*pair), self.folds(*pair, corner), pair),
+            Job::Limit(pair) => {
+                let kind = BoundaryKind::Limit(*pair);
+                self.limits(*pair).into_iter().map(|points| BoundaryPiece { kind, points }).collect()
+            }
+        }
+    }
 
     pub(super) fn at(&self, tensions: &[f64]) -> Option<Here> {
+        if !(self.go_on)() {
+            return None;
+        }
         self.here(self.search.at(tensions).ok()?)
     }
 
     /// From another shape.
     pub(super) fn to(&self, from: &Here, tensions: &[f64]) -> Option<Here> {
+        if !(self.go_on)() {
+            return None;
+        }
         let mut solver = from.state.solver.clone();
         solver.set_tensions(tensions).ok()?;
         solver.update().ok()?;
@@ -307,6 +361,9 @@ impl Tracer {
 
     /// The last shape on the way to these shares of the largest tensions; `None` where there is no end on it.
     fn limit_on(&self, pair: [usize; 2], share: [f64; 2]) -> Option<BoundaryPoint> {
+        if !(self.go_on)() {
+            return None;
+        }
         let slack = vec![0.0; self.search.most.len()];
         match self.search.at(&self.in_face(pair, &slack, share)) {
             Err(ReachError::Solve(SolveError::NoEquilibrium(no))) => {

@@ -7,7 +7,7 @@ const APART: f64 = 1e-4;
 /// Most points of a fold, each way.
 const MOST_POINTS: usize = 2000;
 
-impl Tracer {
+impl Tracer<'_> {
     /// det(J_f, J_g), each by its tension over the largest.
     fn fold_of(&self, here: &Here, [f, g]: [usize; 2]) -> f64 {
         self.search.most[f] * self.search.most[g] * cross(&here.columns[f], &here.columns[g])
