@@ -56,6 +56,46 @@ fn what_is_out_of_reach_ends_with_status_3_and_the_closest() {
     assert_eq!(document["closest"]["bounds"][0]["kind"], "slack");
 }
 
+/// Table, JSON and CSV gave the tip alone, which read as a place 20 mm off its target.
+#[test]
+fn the_place_asked_for_was_not_said() {
+    let solve =
+        ["solve", "silicone", "--tension", "0.3,0.1", "--flow-speed", "0.05", "--stations", "50", "--format", "json"];
+    let middle = json(&solved(&solve).out)["stations"].clone();
+    let [s, wanted_x, wanted_y] = ["s", "x", "y"].map(|key| middle[key][30].as_f64().unwrap());
+    assert!((s - 0.15).abs() < 1e-12);
+    let target = format!("{wanted_x:?},{wanted_y:?}");
+    let args = reach(&target, &["--station", "150 mm"]);
+    let document = json(&solved(&[&args[..], &["--format", "json"]].concat()).out);
+    let best = &document["solutions"][0];
+    let place = |key: &str| best["places"][0][key].as_f64().unwrap();
+    assert_eq!(place("s"), 0.15);
+    assert!((place("x") - wanted_x).hypot(place("y") - wanted_y) < 1e-8 * 0.245, "{best}");
+    // The tip is where a solve at these tensions has it, and further than the place.
+    let tension = |c: usize| best["cables"][c]["tension"].as_f64().unwrap();
+    let [x, y] = tip(&format!("{:?},{:?}", tension(0), tension(1)));
+    assert!((best["tip"]["x"].as_f64().unwrap() - x).hypot(best["tip"]["y"].as_f64().unwrap() - y) < 1e-7, "{best}");
+    assert!((x - wanted_x).hypot(y - wanted_y) > 0.02, "{x}, {y}");
+
+    let text = solved(&[&args[..], &["--format", "csv"]].concat()).out;
+    let (names, rows) = columns(&text);
+    assert_eq!(names[4..9], ["s_m", "x_m", "y_m", "theta_rad", "alpha_rad"].map(|name| format!("place[0]_{name}")));
+    assert_eq!((rows[0].len(), rows[0][4], names[9]), (names.len(), "0.15", "tip_x_m"));
+    assert!((rows[0][5].parse::<f64>().unwrap() - wanted_x).abs() < 1e-8, "{text}");
+
+    let run = solved(&args);
+    assert!(run.out.starts_with("silicone: 1 solution for the place at s = 150 mm\n"), "{}", run.out);
+    let head = run.out.lines().nth(2).unwrap();
+    for name in ["place x (mm)", "place alpha (deg)", "tip x (mm)", "tip turned (deg)"] {
+        assert!(head.contains(name), "{head}");
+    }
+    assert!(
+        run.out.lines().nth(3).unwrap().contains(&format!("{:.3}  {:.3}", 1e3 * wanted_x, 1e3 * wanted_y)),
+        "{}",
+        run.out
+    );
+}
+
 #[test]
 fn the_arm_is_drawn_with_the_target() {
     let here = directory();
