@@ -117,6 +117,12 @@ fn code_of_fit(error: &IdentifyError) -> u8 {
 }
 
 fn advice(error: &anyhow::Error) -> Option<&'static str> {
+    if let Some(StudyError::NoTension { .. }) = error.chain().find_map(|cause| cause.downcast_ref()) {
+        return Some(
+            "this figure needs an arm whose tip section turns that far, such as `paper` and `paper-statements`; \
+             `hydrostat path ARM --vary cable[0].tension=FROM:TO --plot-shapes FILE` draws any arm under a rising tension",
+        );
+    }
     error.chain().find_map(solve_error).and_then(|solve| match solve {
         SolveError::NoEquilibrium(failure) => Some(failure.verdict.advice()),
         _ => None,
