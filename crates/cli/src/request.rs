@@ -36,6 +36,8 @@ pub(crate) enum WrongRequest {
     Peers(PathBuf, String),
     /// A cable whose stroke was asked for.
     NoCable { asked: usize, cables: usize },
+    /// A table of measurements without any.
+    NothingMeasured(PathBuf),
 }
 
 impl std::fmt::Display for WrongRequest {
@@ -72,6 +74,10 @@ impl std::fmt::Display for WrongRequest {
             Self::Peers(path, why) => write!(f, "--peers {}: {why}", path.display()),
             Self::NoCable { asked, cables } => {
                 write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")
+            }
+            Self::NothingMeasured(path) => {
+                let path = path.display();
+                write!(f, "{path}: there is no measured number; fill in x and y, or another quantity that was measured")
             }
         }
     }

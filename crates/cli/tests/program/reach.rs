@@ -117,6 +117,22 @@ fn wrong_requests_say_what_is_wrong() {
     assert!(refused(&["reach", "silicone"]).contains("--target"));
 }
 
+/// Four of them ended with status 3, and nothing said so.
+#[test]
+fn examples_of_the_help_were_not_reached() {
+    let here = directory();
+    let help = solved(&["reach", "--help"]).out;
+    let examples: Vec<&str> =
+        help.lines().filter(|line| line.starts_with("  hydrostat reach") && line.contains("--target")).collect();
+    assert_eq!(examples.len(), 6, "{help}");
+    for line in examples {
+        let (line, said) = line.trim().split_once("    not reached").map_or((line.trim(), 0), |(line, _)| (line, 3));
+        let words = super::guide::words(line);
+        let run = hydrostat_in(here.path(), &words[1..].iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(run.code, said, "{line}: {}", run.err);
+    }
+}
+
 /// A loop of tips that tensions on a circle lead to, as CSV in mm.
 fn path_of_targets(count: u32) -> String {
     let row = |k: u32| {
