@@ -4,8 +4,8 @@ use hydrostat::{Arm, Bound, CableState, Reach, ReachOptions, Reached, Station, T
 use hydrostat_figures::reach_figure;
 use hydrostat_files::{ReachDocument, number, reach_csv};
 
-use super::NoAnswer;
 use super::table::{TIP, place_cells, stability_words, table, tip_cells};
+use super::{Advised, NoAnswer};
 use super::{boundary, follow};
 use crate::args::{By, Format, Point, ReachArgs};
 use crate::output;
@@ -41,7 +41,8 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
         Some(closest) => {
             let bounds: Vec<String> = closest.bounds.iter().map(|bound| bound_words(&arm, *bound)).collect();
             let why = if bounds.is_empty() { String::new() } else { format!("; {}", bounds.join(", ")) };
-            Err(NoAnswer(format!("the target is not reached: {}{why}", miss(&arm, closest))).into())
+            let error = NoAnswer(format!("the target is not reached: {}{why}", miss(&arm, closest)));
+            Err(Advised::with(error, far_off(&arm, &target)))
         }
         None => Ok(()),
     }
@@ -59,6 +60,21 @@ pub(super) fn options(args: &ReachArgs) -> ReachOptions {
 /// By how much the closest misses.
 fn miss(arm: &Arm, closest: &Reached) -> String {
     format!("the closest that was found is off by {} mm", number(1e3 * closest.distance * arm.length))
+}
+
+/// Targets that are further from the base than this, over L, were hardly meant in m: an arm stretches, but not that far.
+const FAR: f64 = 3.0;
+
+/// What to try where a target is further away than any arm stretches.
+pub(super) fn far_off(arm: &Arm, target: &Target) -> Option<String> {
+    let lengths = (target.x - arm.base.x).hypot(target.y - arm.base.y) / arm.length;
+    (lengths > FAR).then(|| {
+        let [far, x, y] = [lengths, target.x, target.y].map(number);
+        format!(
+            "\"{x} mm,{y} mm\", or in a file the columns x_mm,y_mm, if millimetres are meant: ({x}, {y}) m is {far} lengths of the arm \
+             from its base"
+        )
+    })
 }
 
 /// The stroke to command, m.

@@ -117,6 +117,23 @@ fn wrong_requests_say_what_is_wrong() {
     assert!(refused(&["reach", "silicone"]).contains("--target"));
 }
 
+/// A target of 182 m for an arm of 245 mm was "off by 197779 mm", and nothing more was said.
+#[test]
+fn what_to_try_was_not_said() {
+    let advice = |args: &[&str]| {
+        let run = hydrostat(args);
+        assert_eq!(run.code, 3, "{}", run.err);
+        run.err.lines().find_map(|line| line.strip_prefix("try: ")).unwrap_or_default().to_owned()
+    };
+    let far = advice(&reach("182,78", &[]));
+    assert!(far.starts_with("\"182 mm,78 mm\"") && far.contains("(182, 78) m is 808."), "{far}");
+    assert_eq!(advice(&reach("0.3,0", &[])), "", "a little too far is no slip of units");
+    let here = directory();
+    std::fs::write(here.path().join("far.csv"), "x_m,y_m\n0.24,0.01\n182,78\n").unwrap();
+    let run = hydrostat_in(here.path(), &along("far.csv", &[]));
+    assert!(run.err.contains("\ntry: \"182 mm,78 mm\", or in a file the columns x_mm,y_mm"), "{}", run.err);
+}
+
 /// Four of them ended with status 3, and nothing said so.
 #[test]
 fn examples_of_the_help_were_not_reached() {
