@@ -130,7 +130,7 @@ pub(crate) fn overridden(args: &ArmArgs) -> anyhow::Result<ArmFile> {
         file.set(key.trim(), value.trim())?;
     }
     if let Some(speed) = &args.flow_speed {
-        file.set("flow.speed", speed)?;
+        file.set_by(&format!("--flow-speed {speed}:"), "flow.speed", speed)?;
     }
     if let Some(tensions) = &args.tension {
         let cables = cables(&file);
@@ -140,8 +140,9 @@ pub(crate) fn overridden(args: &ArmArgs) -> anyhow::Result<ArmFile> {
             let error = ArmError::TensionCount { cables, given: tensions.len() };
             return Err(WrongRequest::Tensions(error).into());
         }
+        let typed = format!("--tension {}:", tensions.join(","));
         for (i, tension) in tensions.iter().enumerate() {
-            file.set(&format!("cable[{i}].tension"), tension.trim())?;
+            file.set_by(&typed, &format!("cable[{i}].tension"), tension.trim())?;
         }
     }
     Ok(file)

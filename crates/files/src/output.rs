@@ -20,8 +20,10 @@ pub struct WriteError {
 fn advice(path: &Path, error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => match directory(path) {
-            Some(parent) => format!("make the directory {} first, or choose another path", parent.display()),
-            None => "choose another path".to_owned(),
+            Some(parent) if !parent.is_dir() => {
+                format!("make the directory {} first, or choose another path", parent.display())
+            }
+            _ => "choose another path".to_owned(),
         },
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "choose a path that you may write to".to_owned()

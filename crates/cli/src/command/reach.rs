@@ -41,8 +41,9 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
         Some(closest) => {
             let bounds: Vec<String> = closest.bounds.iter().map(|bound| bound_words(&arm, *bound)).collect();
             let why = if bounds.is_empty() { String::new() } else { format!("; {}", bounds.join(", ")) };
-            let error = NoAnswer(format!("the target is not reached: {}{why}", miss(&arm, closest)));
-            Err(Advised::with(error, far_off(&arm, &target)))
+            let fixed = if args.station.is_some_and(|s| s <= 0.0) { "; the base does not move" } else { "" };
+            let error = NoAnswer(format!("the target is not reached: {}{why}{fixed}", miss(&arm, closest)));
+            Err(Advised::with(error, far_off(&arm, &target).or_else(|| just_missed(closest))))
         }
         None => Ok(()),
     }
@@ -73,6 +74,20 @@ pub(super) fn far_off(arm: &Arm, target: &Target) -> Option<String> {
         format!(
             "\"{x} mm,{y} mm\", or in a file the columns x_mm,y_mm, if millimetres are meant: ({x}, {y}) m is {far} lengths of the arm \
              from its base"
+        )
+    })
+}
+
+/// Misses up to this, over L, are those of a target that was rounded.
+const ROUNDED: f64 = 1e-4;
+
+/// What to try where a target is missed by little.
+fn just_missed(closest: &Reached) -> Option<String> {
+    let missed = closest.distance;
+    (missed <= ROUNDED).then(|| {
+        format!(
+            "--tol 1e{:.0}: the target is missed by {missed:.1e} of the length (where an angle was asked for, a radian counts as one length)",
+            missed.log10().ceil()
         )
     })
 }

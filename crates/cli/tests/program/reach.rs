@@ -117,7 +117,7 @@ fn wrong_requests_say_what_is_wrong() {
     assert!(refused(&["reach", "silicone"]).contains("--target"));
 }
 
-/// A target of 182 m for an arm of 245 mm was "off by 197779 mm", and nothing more was said.
+/// A target of 182 m for an arm of 245 mm was "off by 197779 mm", and the angle that the table prints was "not reached".
 #[test]
 fn what_to_try_was_not_said() {
     let advice = |args: &[&str]| {
@@ -128,6 +128,14 @@ fn what_to_try_was_not_said() {
     let far = advice(&reach("182,78", &[]));
     assert!(far.starts_with("\"182 mm,78 mm\"") && far.contains("(182, 78) m is 808."), "{far}");
     assert_eq!(advice(&reach("0.3,0", &[])), "", "a little too far is no slip of units");
+    let rounded = ["reach", "silicone", "--target", "0.182,0.078", "--angle", "161.665", "--max-tension", "0.6"];
+    let near = advice(&rounded);
+    assert!(near.starts_with("--tol 1e-") && near.contains("a radian counts as one length"), "{near}");
+    let tol = near.split(':').next().unwrap().strip_prefix("--tol ").unwrap();
+    solved(&[&rounded[..], &["--tol", tol]].concat());
+    let base = hydrostat(&reach("0.1,0", &["--station", "0"]));
+    assert!(base.err.trim_end().ends_with("; the base does not move"), "{}", base.err);
+
     let here = directory();
     std::fs::write(here.path().join("far.csv"), "x_m,y_m\n0.24,0.01\n182,78\n").unwrap();
     let run = hydrostat_in(here.path(), &along("far.csv", &[]));
