@@ -11,7 +11,7 @@ import numpy as np
 
 from hydrostat import _inputs, _native
 from hydrostat.figures import Figure
-from hydrostat.solution import Solution, Tip
+from hydrostat.solution import Solution, Stations, Tip
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -77,9 +77,10 @@ class Reached:
 
     tensions: NDArray[np.float64]
 
-    def __init__(self, native: _native.Reach, index: int) -> None:
+    def __init__(self, native: _native.Reach, index: int, targets: tuple[Target, ...]) -> None:
         self._native = native
         self._index = index
+        self._targets = targets
         self.tensions, self.effort, self.distance, bounds, self.on_the_path, state = native.fields(index)
         self.bounds = tuple(Bound(*bound) for bound in bounds)
         self.stability, self.unstable_directions = state
@@ -88,6 +89,11 @@ class Reached:
     def solution(self) -> Solution:
         """The shape."""
         return Solution(self._native.solution(self._index))
+
+    @cached_property
+    def places(self) -> Stations:
+        """The arm at the places of targets that have an `s`, in the order of the targets."""
+        return self.solution.at([target.s for target in self._targets if target.s is not None])
 
     def figure(self, note: str | None = None) -> Figure:
         """The shape to scale with the targets, as ``hydrostat reach --plot`` draws it; `note` stands below."""
@@ -183,9 +189,9 @@ class Reach(Sequence[Reached]):
     def __init__(self, native: _native.Reach, targets: tuple[Target, ...]) -> None:
         self._inner = native
         count, closest = native.counts
-        self._all = tuple(Reached(native, index) for index in range(count))
+        self._all = tuple(Reached(native, index, targets) for index in range(count))
         self.targets = targets
-        self.closest = Reached(native, count) if closest else None
+        self.closest = Reached(native, count, targets) if closest else None
 
     @property
     def solutions(self) -> tuple[Reached, ...]:

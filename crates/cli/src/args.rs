@@ -153,7 +153,8 @@ pub(crate) enum Format {
 ///
 /// Of the figure's parameters only the speed of the stream, 0.5 m/s, and alpha(L) = 72.25 deg at
 /// the highest tension are published; the rest was found by trial. Tensions below the highest are
-/// sixteenths, eighths, quarters and halves of it, to one digit.
+/// sixteenths, eighths, quarters and halves of it, to one digit. The arm has to turn its tip section by that
+/// angle: of the shipped arms `paper` and `paper-statements` do.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "\
 Examples:

@@ -30,3 +30,37 @@ impl std::fmt::Display for NoAnswer {
 }
 
 impl std::error::Error for NoAnswer {}
+
+/// An error with what to try, where that hangs on the request.
+#[derive(Debug)]
+pub(crate) struct Advised {
+    error: anyhow::Error,
+    advice: String,
+}
+
+impl Advised {
+    /// `error`, with its advice if there is any.
+    fn with(error: impl Into<anyhow::Error>, advice: Option<String>) -> anyhow::Error {
+        let error = error.into();
+        match advice {
+            Some(advice) => Self { error, advice }.into(),
+            None => error,
+        }
+    }
+
+    pub(crate) fn advice(&self) -> &str {
+        &self.advice
+    }
+}
+
+impl std::fmt::Display for Advised {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl std::error::Error for Advised {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(self.error.as_ref())
+    }
+}

@@ -10,7 +10,7 @@ use hydrostat_identify::{IdentifyError, Trial};
 use hydrostat_serve::ServeError;
 use hydrostat_sweep::SweepError;
 
-use crate::command::NoAnswer;
+use crate::command::{Advised, NoAnswer};
 use crate::request::WrongRequest;
 
 /// Arguments, arm file or output path are wrong.
@@ -135,7 +135,16 @@ fn code_of_fit(error: &IdentifyError) -> u8 {
     }
 }
 
-fn advice(error: &anyhow::Error) -> Option<&'static str> {
+fn advice(error: &anyhow::Error) -> Option<&str> {
+    if let Some(advised) = error.chain().find_map(|cause| cause.downcast_ref::<Advised>()) {
+        return Some(advised.advice());
+    }
+    if let Some(StudyError::NoTension { .. }) = error.chain().find_map(|cause| cause.downcast_ref()) {
+        return Some(
+            "this figure needs an arm whose tip section turns that far, such as `paper` and `paper-statements`; \
+             `hydrostat path ARM --vary cable[0].tension=FROM:TO --plot-shapes FILE` draws any arm under a rising tension",
+        );
+    }
     error.chain().find_map(solve_error).and_then(|solve| match solve {
         SolveError::NoEquilibrium(failure) => Some(failure.verdict.advice()),
         _ => None,

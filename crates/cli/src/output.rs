@@ -65,12 +65,38 @@ fn probe(path: &Path) -> io::Result<()> {
     fs::remove_file(&probe)
 }
 
+/// Directories that were made for files to come, and go again, unless they are kept or hold something by then.
+#[derive(Debug)]
+pub(crate) struct MadeDirectory {
+    /// The innermost first.
+    made: Vec<PathBuf>,
+}
+
+impl MadeDirectory {
+    /// What they were made for is done.
+    pub(crate) fn keep(mut self) {
+        self.made.clear();
+    }
+}
+
+impl Drop for MadeDirectory {
+    fn drop(&mut self) {
+        for path in &self.made {
+            // Fails where something is in it, which then stays.
+            let _ = fs::remove_dir(path);
+        }
+    }
+}
+
 /// Makes the directory `path` if it is not there and says whether files can be made in it.
 ///
 /// # Errors
 /// [`WriteError`] with the directory.
-pub(crate) fn make_directory(path: &Path) -> Result<(), WriteError> {
+pub(crate) fn make_directory(path: &Path) -> Result<MadeDirectory, WriteError> {
+    let missing = path.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists());
+    let made = MadeDirectory { made: missing.map(Path::to_owned).collect() };
     fs::create_dir_all(path)
         .and_then(|()| probe(&path.join("fig1a.svg")))
-        .map_err(|source| WriteError { path: path.to_owned(), source })
+        .map_err(|source| WriteError { path: path.to_owned(), source })?;
+    Ok(made)
 }

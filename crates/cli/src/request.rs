@@ -38,6 +38,8 @@ pub(crate) enum WrongRequest {
     Unbounded(String),
     /// A cable whose stroke was asked for.
     NoCable { asked: usize, cables: usize },
+    /// A table of measurements without any.
+    NothingMeasured(PathBuf),
 }
 
 impl std::fmt::Display for WrongRequest {
@@ -80,6 +82,10 @@ impl std::fmt::Display for WrongRequest {
             }
             Self::NoCable { asked, cables } => {
                 write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")
+            }
+            Self::NothingMeasured(path) => {
+                let path = path.display();
+                write!(f, "{path}: there is no measured number; fill in x and y, or another quantity that was measured")
             }
         }
     }
@@ -132,7 +138,7 @@ pub(crate) fn overridden(args: &ArmArgs) -> anyhow::Result<ArmFile> {
         file.set(key.trim(), value.trim())?;
     }
     if let Some(speed) = &args.flow_speed {
-        file.set("flow.speed", speed)?;
+        file.set_by(&format!("--flow-speed {speed}:"), "flow.speed", speed)?;
     }
     if let Some(tensions) = &args.tension {
         let cables = cables(&file);
@@ -142,8 +148,9 @@ pub(crate) fn overridden(args: &ArmArgs) -> anyhow::Result<ArmFile> {
             let error = ArmError::TensionCount { cables, given: tensions.len() };
             return Err(WrongRequest::Tensions(error).into());
         }
+        let typed = format!("--tension {}:", tensions.join(","));
         for (i, tension) in tensions.iter().enumerate() {
-            file.set(&format!("cable[{i}].tension"), tension.trim())?;
+            file.set_by(&typed, &format!("cable[{i}].tension"), tension.trim())?;
         }
     }
     Ok(file)

@@ -10,10 +10,14 @@ use hydrostat_identify::{Case, Measurement, Quantity};
 
 use crate::arm_file::ArmFile;
 use crate::deviations::Deviations;
+use crate::digits::number;
 use crate::error::shortened;
 use crate::measured_columns::{Column, Head, Measured, head};
 use crate::quantity::Dimension;
 
+/// A position further from the base than this, over the unloaded arm's length, is in another unit than its column says: an arm stretches, but
+/// not that far.
+const FURTHEST: f64 = 3.0;
 /// The largest file that is read.
 const MOST_BYTES: u64 = 64 << 20;
 /// Places (over L) that are this near are the same.
@@ -410,9 +414,36 @@ impl Table<'_> {
             let arm = arm_of(&file).map_err(|why| {
                 self.fault(case.row, None, format!("load case {}: {}", shortened(&case.name), reason(&why)))
             })?;
+            self.check_positions(case, &arm)?;
             out.push(Case { name: case.name.clone(), arm, measurements: case.measurements.clone() });
         }
         Ok(out)
+    }
+}
+
+impl Table<'_> {
+    /// Refuses positions that no arm of that size has.
+    fn check_positions(&self, case: &Building, arm: &Arm) -> Result<(), MeasurementsError> {
+        let longest = arm.length * arm.reference.nu.range(arm.length, arm.length).1.max(1.0);
+        for measurement in &case.measurements {
+            let (measured, base) = match measurement.quantity {
+                Quantity::X(_) => (Measured::X, arm.base.x),
+                Quantity::Y(_) => (Measured::Y, arm.base.y),
+                _ => continue,
+            };
+            let off = (measurement.value - base).abs();
+            if off <= FURTHEST * longest {
+                continue;
+            }
+            let head = self.heads.iter().find(|head| head.column == Column::Value(measured));
+            let why = format!(
+                "{} mm from the base is {} lengths of the arm; see the unit of the column, and arm.base",
+                number(1e3 * off),
+                number(off / longest)
+            );
+            return Err(self.fault(measurement.row, head.map(|head| head.text.as_str()), why));
+        }
+        Ok(())
     }
 }
 

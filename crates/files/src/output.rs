@@ -21,7 +21,7 @@ fn advice(path: &Path, error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => match directory(path) {
             // Some directories take no new files whatever one does.
-            Some(parent) if !parent.exists() => {
+            Some(parent) if !parent.is_dir() => {
                 format!("make the directory {} first, or choose another path", parent.display())
             }
             _ => "choose another path".to_owned(),

@@ -225,7 +225,8 @@ impl Dimension {
             let other = Self::ALL.into_iter().find(|d| d.scale(unit).is_some());
             match other {
                 Some(found) => QuantityError::OtherDimension { unit: unit.to_owned(), found },
-                None => QuantityError::UnknownUnit { unit: unit.to_owned() },
+                None if unit.starts_with(',') => QuantityError::Comma,
+                None => QuantityError::UnknownUnit { unit: unit.to_owned(), near: self.near(unit) },
             }
         })?;
         number.in_si(scale).ok_or(QuantityError::TooLarge)
@@ -268,6 +269,15 @@ impl Dimension {
             Ratio(times, over) => over / times,
             Degrees => 1.0_f64.to_degrees(),
         })
+    }
+
+    /// The unit that may be meant: the same letters, or those that a written-out name begins with.
+    fn near(self, unit: &str) -> Option<&'static str> {
+        let begins = |known: &&str| {
+            known.len() > 1 && unit.get(..known.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(known))
+        };
+        let longest = self.spellings().filter(begins).max_by_key(|known| known.len());
+        self.spellings().find(|known| known.eq_ignore_ascii_case(unit)).or(longest)
     }
 
     fn scale(self, unit: &str) -> Option<Scale> {
@@ -314,11 +324,16 @@ pub enum QuantityError {
     #[error("it has no unit")]
     NoUnit,
     /// A unit that nothing has.
-    #[error("the unit `{}` is not known", crate::error::shortened(.unit))]
+    #[error("the unit `{}` is not known{}", crate::error::shortened(.unit), .near.map_or_else(String::new, |near| format!("; did you mean `{near}`?")))]
     UnknownUnit {
         /// The unit.
         unit: String,
+        /// One that is known and may be meant.
+        near: Option<&'static str>,
     },
+    /// A comma in a number.
+    #[error("a comma stands in the number; decimals follow a point, and nothing parts thousands")]
+    Comma,
     /// A unit of another dimension.
     #[error("`{unit}` is the unit of {found}")]
     OtherDimension {
@@ -433,13 +448,25 @@ mod tests {
         assert_eq!(length("."), E::NoNumber);
         assert_eq!(length("inf m"), E::NoNumber);
         assert_eq!(length("8"), E::NoUnit);
-        assert_eq!(length("8 MM"), E::UnknownUnit { unit: "MM".to_owned() });
-        assert_eq!(length("8 e"), E::UnknownUnit { unit: "e".to_owned() });
+        assert_eq!(length("8 MM"), E::UnknownUnit { unit: "MM".to_owned(), near: Some("mm") });
+        assert_eq!(length("8 e"), E::UnknownUnit { unit: "e".to_owned(), near: None });
+        assert_eq!(length("245,5 mm"), E::Comma);
+        assert_eq!(length("1,000"), E::Comma);
         assert_eq!(length("8 kPa"), E::OtherDimension { unit: "kPa".to_owned(), found: Dimension::Pressure });
         assert_eq!(length("1e999 m"), E::TooLarge);
         assert_eq!(length("1e99999999999999999999 m"), E::TooLarge);
         assert_eq!(Dimension::Length.parse("1e-99999999999999999999 m"), Ok(0.0));
         assert!(matches!(Dimension::Number.parse("0.5 m"), Err(E::OtherDimension { .. })));
+    }
+
+    #[test]
+    fn units_that_may_be_meant_are_named() {
+        let said = |dimension: Dimension, text: &str| dimension.parse(text).unwrap_err().to_string();
+        assert_eq!(said(Dimension::Pressure, "150 kpa"), "the unit `kpa` is not known; did you mean `kPa`?");
+        assert_eq!(said(Dimension::Speed, "2 knots"), "the unit `knots` is not known; did you mean `kn`?");
+        assert_eq!(said(Dimension::Angle, "30 degrees"), "the unit `degrees` is not known; did you mean `deg`?");
+        assert_eq!(said(Dimension::Speed, "2 mph"), "the unit `mph` is not known");
+        assert_eq!(said(Dimension::Length, "2 \u{fc}mm"), "the unit `\u{fc}mm` is not known");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What inverse kinetics found, as JSON and CSV.
 
-use hydrostat::{Arm, Bound, Reach, Reached};
+use hydrostat::{Arm, Bound, Reach, Reached, Station};
 use serde::Serialize;
 
 use crate::results::{SCHEMA, cell, json, row};
@@ -23,12 +23,31 @@ impl From<&Bound> for BoundOut {
     }
 }
 
+/// A place that a target is for, where that is not the tip.
+#[derive(Debug, Clone, Serialize)]
+struct PlaceOut {
+    s: f64,
+    x: f64,
+    y: f64,
+    theta: f64,
+    alpha: f64,
+}
+
+impl From<&Station> for PlaceOut {
+    fn from(station: &Station) -> Self {
+        let Station { s, x, y, theta, alpha, .. } = *station;
+        Self { s, x, y, theta, alpha }
+    }
+}
+
 #[derive(Debug, Clone, Serialize)]
 struct ReachedOut<'a> {
     effort: f64,
     distance: f64,
     bounds: Vec<BoundOut>,
     on_the_path: bool,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    places: Vec<PlaceOut>,
     #[serde(flatten)]
     state: State<'a>,
 }
@@ -40,6 +59,7 @@ impl<'a> From<&'a Reached> for ReachedOut<'a> {
             distance: one.distance,
             bounds: one.bounds.iter().map(BoundOut::from).collect(),
             on_the_path: one.on_the_path,
+            places: one.places.iter().map(PlaceOut::from).collect(),
             state: State::new(&one.configuration, one.stability),
         }
     }
@@ -75,14 +95,22 @@ impl<'a> ReachDocument<'a> {
     }
 }
 
-/// Solutions of an arm with `cables` cables, one row each, or the closest that was found.
+/// Solutions of an arm with `cables` cables, one row each, or the closest that was found. Before the tip come the places that
+/// targets are for, where these are others.
 pub fn reach_csv(cables: usize, found: &Reach) -> String {
+    let all: Vec<&Reached> = found.solutions.iter().chain(&found.closest).collect();
     let mut names = ["number", "reached", "effort_N2", "distance"].map(str::to_owned).to_vec();
+    for k in 0..all.first().map_or(0, |one| one.places.len()) {
+        names.extend(["s_m", "x_m", "y_m", "theta_rad", "alpha_rad"].map(|name| format!("place[{k}]_{name}")));
+    }
     names.extend(State::columns(cables, &["on_the_path"]));
     let mut out = row(&names);
-    for (index, one) in found.solutions.iter().chain(&found.closest).enumerate() {
+    for (index, one) in all.iter().enumerate() {
         let reached = found.closest.is_none();
         let mut cells = vec![(index + 1).to_string(), reached.to_string(), cell(one.effort), cell(one.distance)];
+        for place in &one.places {
+            cells.extend([place.s, place.x, place.y, place.theta, place.alpha].map(cell));
+        }
         cells.extend(State::new(&one.configuration, one.stability).cells(&[&one.on_the_path.to_string()]));
         out.push_str(&row(&cells));
     }

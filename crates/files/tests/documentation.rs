@@ -150,7 +150,8 @@ fn its_keys_are_those_of_the_documents() {
     let all = arm.equilibria(1e-6).unwrap();
     let searches = [(0.0, Ok(all.clone())), (0.01, Err("none".to_owned()))];
     let far = Target::tip(0.3, 0.0);
-    let found = arm.reach(&[far], &ReachOptions { max_tension: Some(0.1), ..ReachOptions::default() }).unwrap();
+    let middle = Target { s: Some(0.1), ..far };
+    let found = arm.reach(&[middle], &ReachOptions { max_tension: Some(0.1), ..ReachOptions::default() }).unwrap();
     let mut follower = Follower::new(&arm, &[far], &ReachOptions::default()).unwrap();
     let rows = [(far, follower.follow(&[far]).unwrap())];
     let options = BoundaryOptions { max_tension: Some(0.1), spacing: 0.1, ..BoundaryOptions::default() };
@@ -166,7 +167,8 @@ fn its_keys_are_those_of_the_documents() {
     let here = PAGE.split_once("## `--format json`").unwrap().1;
     let mut inner = vec![&documents[0]["branches"][0], &documents[0]["branches"][0]["points"][0]];
     inner.extend([&documents[1]["equilibria"][0]["stability"], &documents[2]["values"][0]]);
-    inner.extend([&documents[3]["closest"], &documents[3]["closest"]["bounds"][0]]);
+    let closest = &documents[3]["closest"];
+    inner.extend([closest, &closest["bounds"][0], &closest["places"][0]]);
     inner.extend([&documents[4]["points"][0], &documents[4]["points"][0]["target"]]);
     inner.extend([&documents[5]["pieces"][0], &documents[5]["pieces"][0]["points"][0]]);
     for document in documents.iter().chain(inner) {
@@ -183,6 +185,12 @@ fn its_names_are_those_of_the_results() {
     let reached = [reach_header(), followed_csv(1, &[]), boundary_csv(1, &Boundary { pieces: Vec::new() })];
     assert_eq!(blocks("csv")[..3], [header, path_header(), over_header()]);
     assert_eq!(blocks("csv")[3..], reached);
+    let (arm, _) = pulled();
+    let middle = Target { s: Some(0.1), ..Target::tip(0.09, 0.0) };
+    let columns = reach_csv(1, &arm.reach(&[middle], &ReachOptions::default()).unwrap());
+    for name in columns.lines().next().unwrap().split(',').filter(|name| name.starts_with("place")) {
+        assert!(PAGE.contains(&format!("`{name}`")), "{name}");
+    }
     for name in names() {
         assert!(PAGE.contains(&format!("`{name}`")), "{name}");
     }

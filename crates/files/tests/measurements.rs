@@ -52,6 +52,19 @@ fn a_table_gives_cases_with_their_loads() {
     );
 }
 
+/// With `x [m]` over millimetres a fit went on for 100 steps and found a stiffness of 42 GPa.
+#[test]
+fn positions_of_a_thousand_lengths_were_fitted() {
+    assert_eq!(
+        refused("case,s [mm],x [m],y [mm]\na,122.5,110,3\na,245,230.5,40\n"),
+        "data.csv, row 2, column \"x [m]\": 110000 mm from the base is 448.98 lengths of the arm; see the unit of the column, and arm.base"
+    );
+    assert!(refused("s [mm],y [m]\n245,-40\n").contains("row 2, column \"y [m]\": 40000 mm from the base"));
+    // A badly stretched arm, and one whose base stands elsewhere.
+    assert!(read("s [mm],x [mm],y [mm]\n245,500,500\n").is_ok());
+    assert!(read("arm.base.x [m],s [mm],x [m]\n7,245,7.2\n").is_ok());
+}
+
 #[test]
 fn spreadsheets_with_semicolons_and_decimal_commas_are_read() {
     let cases = read("case;s [mm];x [mm];y [mm]\na;122,5;110,25;-3,5e0\n").unwrap();

@@ -16,7 +16,7 @@ mod strokes;
 
 use self::search::{Goal, Search, State};
 use crate::arm::Arm;
-use crate::configuration::Configuration;
+use crate::configuration::{Configuration, Station};
 use crate::parameter::Parameter;
 use crate::sensitivity::{SensitivityError, check};
 use crate::stability::Stability;
@@ -99,6 +99,8 @@ pub struct Reached {
     pub on_the_path: bool,
     /// `None` where it is not established.
     pub stability: Option<Stability>,
+    /// The arm at the places of targets that are not for the tip, in the order of the targets.
+    pub places: Vec<Station>,
     /// The shape; with strokes commanded where they hold it and a solve leads here.
     pub configuration: Configuration,
 }

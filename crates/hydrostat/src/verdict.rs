@@ -132,6 +132,12 @@ impl Verdict {
             return "look at what `check` says of the file: sizes, units, or loads that are far beyond what the arm carries";
         }
         match self.kind {
+            VerdictKind::CableFold if self.phase == Phase::Stroke => {
+                "wind in less, move the cable towards the centreline near that place, or stiffen the section there"
+            }
+            VerdictKind::SectionCrushed if self.phase == Phase::Stroke => {
+                "wind in less or stiffen the section; `none` keeps no volume"
+            }
             VerdictKind::CableFold => {
                 "lower the tension, move the cable towards the centreline near that place, or stiffen the section there"
             }

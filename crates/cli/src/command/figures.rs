@@ -12,9 +12,10 @@ use crate::{output, request};
 pub(crate) fn run(args: &FiguresArgs) -> anyhow::Result<()> {
     let shown = Shown { at_highest: args.at_highest, faster: args.faster.clone() };
     let arm = request::arm_file(&args.arm)?.arm()?;
-    output::make_directory(&args.output)?;
+    let directory = output::make_directory(&args.output)?;
     let study = Study::of(&arm, &shown)?;
     let files = write(&study, &args.output)?;
+    directory.keep();
     let out = format!("{}\n{}\n", table(&study.claims), files.join("\n"));
     Ok(output::print(&out)?)
 }

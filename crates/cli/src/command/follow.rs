@@ -5,9 +5,9 @@ use std::path::Path;
 use hydrostat::{Arm, Followed, Follower, Target};
 use hydrostat_files::{FollowedDocument, followed_csv, number, read_targets};
 
-use super::NoAnswer;
-use super::reach::options;
+use super::reach::{far_off, options};
 use super::table::table;
+use super::{Advised, NoAnswer};
 use crate::args::{Format, ReachArgs};
 use crate::output;
 use crate::progress::Progress;
@@ -37,7 +37,9 @@ pub(super) fn run(arm: &Arm, path: &Path, args: &ReachArgs) -> anyhow::Result<()
             let farthest = rows.iter().map(|(_, found)| found.distance).fold(0.0, f64::max);
             let off = number(1e3 * farthest * arm.length);
             let count = format!("{} of {} targets are not reached", missed.len(), rows.len());
-            Err(NoAnswer(format!("{count}, the first is target {}; the farthest is off by {off} mm", first + 1)).into())
+            let error =
+                NoAnswer(format!("{count}, the first is target {}; the farthest is off by {off} mm", first + 1));
+            Err(Advised::with(error, far_off(arm, &rows[*first].0)))
         }
         None => Ok(()),
     }

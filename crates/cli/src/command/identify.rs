@@ -14,7 +14,7 @@ use super::table::table;
 use crate::args::{Format, IdentifyArgs};
 use crate::output;
 use crate::progress::Progress;
-use crate::request;
+use crate::request::{self, WrongRequest};
 
 /// Residuals from which a number is named, in standard deviations.
 const FAR: f64 = 4.0;
@@ -40,6 +40,9 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     let wanted = fitted(&arm, &args.fit, &args.prior)?;
     let parameters: Vec<Parameter> = wanted.iter().map(|one| one.parameter).collect();
     let cases = read_measurements(data, &file, &deviations, &parameters)?;
+    if cases.iter().all(|case| case.measurements.is_empty()) {
+        return Err(WrongRequest::NothingMeasured(data.clone()).into());
+    }
     let options = FitOptions {
         loss: args.loss.into(),
         rescale: args.rescale,

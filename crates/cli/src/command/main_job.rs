@@ -10,9 +10,10 @@ use crate::{output, request};
 
 pub(crate) fn run() -> anyhow::Result<()> {
     let directory = Path::new("figures");
-    output::make_directory(directory)?;
+    let made = output::make_directory(directory)?;
     let study = Study::of(&request::shipped_arm("paper")?, &Shown::default())?;
     let files = figures::write(&study, directory)?;
+    made.keep();
     let mut out = figures::table(&study.claims);
     let _ = writeln!(
         out,

@@ -1,11 +1,11 @@
 //! `hydrostat reach`: the tensions that bring the arm to a place.
 
-use hydrostat::{Arm, Bound, CableState, Reach, ReachOptions, Reached, Target};
+use hydrostat::{Arm, Bound, CableState, Reach, ReachOptions, Reached, Station, Target, Tip};
 use hydrostat_figures::reach_figure;
 use hydrostat_files::{ReachDocument, number, reach_csv};
 
-use super::NoAnswer;
-use super::table::{TIP, stability_words, table, tip_cells};
+use super::table::{TIP, place_cells, stability_words, table, tip_cells};
+use super::{Advised, NoAnswer};
 use super::{boundary, follow};
 use crate::args::{By, Format, Point, ReachArgs};
 use crate::output;
@@ -32,7 +32,7 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
         output::draw(&reach_figure(&best.configuration, &[[x, y]], note.as_deref()), file)?;
     }
     let text = match args.format {
-        Format::Text => summary(&arm, &found, args.by),
+        Format::Text => summary(&arm, &found, args.station, args.by),
         Format::Json => output::line(ReachDocument::new(&arm, &found).to_json()),
         Format::Csv => reach_csv(arm.cables.len(), &found),
     };
@@ -41,7 +41,9 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
         Some(closest) => {
             let bounds: Vec<String> = closest.bounds.iter().map(|bound| bound_words(&arm, *bound)).collect();
             let why = if bounds.is_empty() { String::new() } else { format!("; {}", bounds.join(", ")) };
-            Err(NoAnswer(format!("the target is not reached: {}{why}", miss(&arm, closest))).into())
+            let fixed = if args.station.is_some_and(|s| s <= 0.0) { "; the base does not move" } else { "" };
+            let error = NoAnswer(format!("the target is not reached: {}{why}{fixed}", miss(&arm, closest)));
+            Err(Advised::with(error, far_off(&arm, &target).or_else(|| just_missed(closest))))
         }
         None => Ok(()),
     }
@@ -61,6 +63,35 @@ fn miss(arm: &Arm, closest: &Reached) -> String {
     format!("the closest that was found is off by {} mm", number(1e3 * closest.distance * arm.length))
 }
 
+/// Targets that are further from the base than this, over L, were hardly meant in m: an arm stretches, but not that far.
+const FAR: f64 = 3.0;
+
+/// What to try where a target is further away than any arm stretches.
+pub(super) fn far_off(arm: &Arm, target: &Target) -> Option<String> {
+    let lengths = (target.x - arm.base.x).hypot(target.y - arm.base.y) / arm.length;
+    (lengths > FAR).then(|| {
+        let [far, x, y] = [lengths, target.x, target.y].map(number);
+        format!(
+            "\"{x} mm,{y} mm\", or in a file the columns x_mm,y_mm, if millimetres are meant: ({x}, {y}) m is {far} lengths of the arm \
+             from its base"
+        )
+    })
+}
+
+/// Misses up to this, over L, are those of a target that was rounded.
+const ROUNDED: f64 = 1e-4;
+
+/// What to try where a target is missed by little.
+fn just_missed(closest: &Reached) -> Option<String> {
+    let missed = closest.distance;
+    (missed <= ROUNDED).then(|| {
+        format!(
+            "--tol 1e{:.0}: the target is missed by {missed:.1e} of the length (where an angle was asked for, a radian counts as one length)",
+            missed.log10().ceil()
+        )
+    })
+}
+
 /// The stroke to command, m.
 fn stroke(cable: &CableState) -> f64 {
     cable.command.map_or(cable.stroke, |command| command.stroke)
@@ -74,18 +105,22 @@ fn bound_words(arm: &Arm, bound: Bound) -> String {
     }
 }
 
-fn summary(arm: &Arm, found: &Reach, by: By) -> String {
+fn summary(arm: &Arm, found: &Reach, station: Option<f64>, by: By) -> String {
+    let place = station.map_or_else(String::new, |s| format!(" for the place at s = {} mm", number(1e3 * s)));
     let mut out = match found.solutions.len() {
-        0 => format!("{}: not reached, the closest is\n\n", arm.name),
-        1 => format!("{}: 1 solution\n\n", arm.name),
-        count => format!("{}: {count} solutions, least effort first\n\n", arm.name),
+        0 => format!("{}: not reached{place}, the closest is\n\n", arm.name),
+        1 => format!("{}: 1 solution{place}\n\n", arm.name),
+        count => format!("{}: {count} solutions{place}, least effort first\n\n", arm.name),
     };
     let mut head: Vec<String> = arm.cables.iter().map(|cable| format!("{} (N)", cable.name)).collect();
     if by == By::Strokes {
         head.extend(arm.cables.iter().map(|cable| format!("{} (mm)", cable.name)));
     }
     head.push("effort (N2)".to_owned());
-    head.extend(TIP.map(str::to_owned));
+    match station {
+        None => head.extend(TIP.map(str::to_owned)),
+        Some(_) => head.extend(["place ", "tip "].iter().flat_map(|of| TIP.map(|name| format!("{of}{name}")))),
+    }
     head.push("off (mm)".to_owned());
     head.extend(["stability", "solve leads here"].map(str::to_owned));
     let mut rows = vec![head];
@@ -95,6 +130,9 @@ fn summary(arm: &Arm, found: &Reach, by: By) -> String {
             row.extend(one.configuration.cables.iter().map(|cable| number(1e3 * stroke(cable))));
         }
         row.push(number(one.effort));
+        for Station { x, y, theta, alpha, .. } in &one.places {
+            row.extend(place_cells(Tip { x: *x, y: *y, theta: *theta, alpha: *alpha }));
+        }
         row.extend(tip_cells(&one.configuration));
         row.push(format!("{:.1e}", 1e3 * one.distance * arm.length));
         row.push(stability_words(one.stability));

@@ -52,7 +52,9 @@ pub(super) fn summary(c: &Configuration) -> String {
         row("unmet at tip", &wrench(unmet));
     }
     let fold = c.fold_margin();
-    row("fold margin", &format!("{:.3}, least at s = {:.1} mm (the surface folds at 0)", fold.value, 1e3 * fold.s));
+    // Of a flat minimum three digits can be told.
+    let place = format!("{:.2e}", 1e3 * fold.s).parse().unwrap_or(1e3 * fold.s);
+    row("fold margin", &format!("{:.3}, least at s = {place} mm (the surface folds at 0)", fold.value));
     row("tip error", &format!("about {:.1e} mm", 1e3 * c.error_estimate));
     let s = &c.statistics;
     row(

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{Configuration, Stability};
+use hydrostat::{Configuration, Stability, Tip};
 
 /// Rows of cells in columns as wide as they need to be, numbers to the right and `words` last columns to the left.
 pub(super) fn table(rows: &[Vec<String>], words: usize) -> String {
@@ -28,7 +28,11 @@ pub(super) const TIP: [&str; 4] = ["x (mm)", "y (mm)", "turned (deg)", "alpha (d
 
 /// Where the tip is, by how much it is turned, and alpha there.
 pub(super) fn tip_cells(c: &Configuration) -> [String; 4] {
-    let tip = c.tip();
+    place_cells(c.tip())
+}
+
+/// The same of any place.
+pub(super) fn place_cells(place: Tip) -> [String; 4] {
     let decimals = |value: f64, count: usize| {
         let text = format!("{value:.count$}");
         if text.trim_start_matches('-').bytes().all(|b| matches!(b, b'0' | b'.')) {
@@ -38,10 +42,10 @@ pub(super) fn tip_cells(c: &Configuration) -> [String; 4] {
         }
     };
     [
-        decimals(1e3 * tip.x, 3),
-        decimals(1e3 * tip.y, 3),
-        decimals(tip.theta.to_degrees(), 3),
-        decimals(tip.alpha.to_degrees(), 3),
+        decimals(1e3 * place.x, 3),
+        decimals(1e3 * place.y, 3),
+        decimals(place.theta.to_degrees(), 3),
+        decimals(place.alpha.to_degrees(), 3),
     ]
 }
 

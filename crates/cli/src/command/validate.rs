@@ -17,8 +17,8 @@ pub(crate) fn run(args: &ValidateArgs) -> anyhow::Result<()> {
         Some(path) => read_peers(path)?,
         None => PeersFile::committed()?,
     };
-    output::make_directory(&args.output)?;
-    output::make_directory(&args.output.join("figures"))?;
+    output::make_directory(&args.output)?.keep();
+    output::make_directory(&args.output.join("figures"))?.keep();
     let scope = if args.quick { Scope::Quick } else { Scope::Whole };
     let watch = Watch { state: Mutex::new((Progress::new(), String::new())) };
     let report = validate(scope, &peers, &watch);

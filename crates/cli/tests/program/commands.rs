@@ -81,7 +81,22 @@ fn every_statement_about_the_figure_holds_on_one_shipped_arm() {
     assert_eq!(files(&directory.path().join("figures")), NINE);
     let message = refused(&["figures", "--faster", "0.2"]);
     assert!(message.contains("expected rising speeds above 0.5 m/s"), "{message}");
-    assert!(refused(&["figures", "octopus"]).contains("turns the tip section by 72.25 deg"));
+}
+
+/// The angle had 17 digits, nothing was advised, and an empty directory stayed.
+#[test]
+fn an_arm_that_does_not_turn_its_tip_so_far_left_an_empty_directory() {
+    let directory = directory();
+    let run = hydrostat_in(directory.path(), &["figures", "octopus", "-o", "deep/er"]);
+    assert_eq!((run.code, run.out.as_str()), (2, ""), "{}", run.err);
+    let words = "error: no tension up to 0.02 N turns the tip section by 72.25 deg; the nearest that was found is 2.43 deg, at 0.0";
+    assert!(run.err.starts_with(words), "{}", run.err);
+    assert!(run.err.contains("\ntry: ") && run.err.contains("`paper` and `paper-statements`"), "{}", run.err);
+    assert!(files(directory.path()).is_empty());
+    // What was there before stays, empty or not.
+    std::fs::create_dir(directory.path().join("mine")).unwrap();
+    assert_eq!(hydrostat_in(directory.path(), &["figures", "octopus", "-o", "mine"]).code, 2);
+    assert_eq!(files(directory.path()), ["mine"]);
 }
 
 #[test]

@@ -21,7 +21,7 @@ fn chapters() -> Vec<PathBuf> {
 }
 
 /// Words of a command as a shell would split them.
-fn words(command: &str) -> Vec<String> {
+pub(super) fn words(command: &str) -> Vec<String> {
     let (mut out, mut word, mut quote, mut begun) = (Vec::new(), String::new(), None, false);
     for c in command.chars() {
         match (quote, c) {

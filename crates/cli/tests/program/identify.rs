@@ -99,7 +99,9 @@ fn a_template_can_be_filled_in() {
     let run = hydrostat_in(here.path(), &["identify", "silicone", "--template", "-o", "data.csv"]);
     assert_eq!((run.code, run.out.as_str()), (0, ""), "{}", run.err);
     let run = hydrostat_in(here.path(), &["identify", "silicone", "data.csv", "--fit", "young"]);
-    assert_eq!((run.code, run.err.as_str()), (2, "error: there is no measured number\n"));
+    let words =
+        "error: data.csv: there is no measured number; fill in x and y, or another quantity that was measured\n";
+    assert_eq!((run.code, run.err.as_str()), (2, words));
     let template = std::fs::read_to_string(here.path().join("data.csv")).unwrap();
     let filled = template.replacen("a,0,0,0,61.25,,,,", "a,0.1,0,0,61.25,61,2,,", 1);
     assert_ne!(filled, template);

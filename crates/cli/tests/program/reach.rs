@@ -56,6 +56,43 @@ fn what_is_out_of_reach_ends_with_status_3_and_the_closest() {
     assert_eq!(document["closest"]["bounds"][0]["kind"], "slack");
 }
 
+/// Table, JSON and CSV gave the tip alone, which read as a place 20 mm off its target.
+#[test]
+fn the_place_asked_for_was_not_said() {
+    let solve =
+        ["solve", "silicone", "--tension", "0.3,0.1", "--flow-speed", "0.05", "--stations", "50", "--format", "json"];
+    let middle = json(&solved(&solve).out)["stations"].clone();
+    let [s, wanted_x, wanted_y] = ["s", "x", "y"].map(|key| middle[key][30].as_f64().unwrap());
+    assert!((s - 0.15).abs() < 1e-12);
+    let target = format!("{wanted_x:?},{wanted_y:?}");
+    let args = reach(&target, &["--station", "150 mm"]);
+    let document = json(&solved(&[&args[..], &["--format", "json"]].concat()).out);
+    let best = &document["solutions"][0];
+    let place = |key: &str| best["places"][0][key].as_f64().unwrap();
+    assert_eq!(place("s"), 0.15);
+    assert!((place("x") - wanted_x).hypot(place("y") - wanted_y) < 1e-8 * 0.245, "{best}");
+    // The tip is where a solve at these tensions has it, and further than the place.
+    let tension = |c: usize| best["cables"][c]["tension"].as_f64().unwrap();
+    let [x, y] = tip(&format!("{:?},{:?}", tension(0), tension(1)));
+    assert!((best["tip"]["x"].as_f64().unwrap() - x).hypot(best["tip"]["y"].as_f64().unwrap() - y) < 1e-7, "{best}");
+    assert!((x - wanted_x).hypot(y - wanted_y) > 0.02, "{x}, {y}");
+
+    let text = solved(&[&args[..], &["--format", "csv"]].concat()).out;
+    let (names, rows) = columns(&text);
+    assert_eq!(names[4..9], ["s_m", "x_m", "y_m", "theta_rad", "alpha_rad"].map(|name| format!("place[0]_{name}")));
+    assert_eq!((rows[0].len(), rows[0][4], names[9]), (names.len(), "0.15", "tip_x_m"));
+    assert!((rows[0][5].parse::<f64>().unwrap() - wanted_x).abs() < 1e-8, "{text}");
+
+    let run = solved(&args);
+    assert!(run.out.starts_with("silicone: 1 solution for the place at s = 150 mm\n"), "{}", run.out);
+    let head = run.out.lines().nth(2).unwrap();
+    for name in ["place x (mm)", "place alpha (deg)", "tip x (mm)", "tip turned (deg)"] {
+        assert!(head.contains(name), "{head}");
+    }
+    let cells: Vec<&str> = run.out.lines().nth(3).unwrap().split_whitespace().collect();
+    assert_eq!(cells[3..5], [1e3 * wanted_x, 1e3 * wanted_y].map(|mm| format!("{mm:.3}")), "{}", run.out);
+}
+
 #[test]
 fn the_arm_is_drawn_with_the_target() {
     let here = directory();
@@ -75,6 +112,47 @@ fn wrong_requests_say_what_is_wrong() {
     assert!(refused(&reach("0.2,0", &["--tol", "1"])).contains("tol: expected a number in [1e-10, 1e-2], found 1"));
     assert!(refused(&reach("0.2,0", &["--angle", "3 mm"])).contains("3 mm"));
     assert!(refused(&["reach", "silicone"]).contains("--target"));
+}
+
+/// A target of 182 m for an arm of 245 mm was "off by 197779 mm", and the angle that the table prints was "not reached".
+#[test]
+fn what_to_try_was_not_said() {
+    let advice = |args: &[&str]| {
+        let run = hydrostat(args);
+        assert_eq!(run.code, 3, "{}", run.err);
+        run.err.lines().find_map(|line| line.strip_prefix("try: ")).unwrap_or_default().to_owned()
+    };
+    let far = advice(&reach("182,78", &[]));
+    assert!(far.starts_with("\"182 mm,78 mm\"") && far.contains("(182, 78) m is 808."), "{far}");
+    assert_eq!(advice(&reach("0.3,0", &[])), "", "a little too far is no slip of units");
+    let rounded = ["reach", "silicone", "--target", "0.182,0.078", "--angle", "161.665", "--max-tension", "0.6"];
+    let near = advice(&rounded);
+    assert!(near.starts_with("--tol 1e-") && near.contains("a radian counts as one length"), "{near}");
+    let tol = near.split(':').next().unwrap().strip_prefix("--tol ").unwrap();
+    solved(&[&rounded[..], &["--tol", tol]].concat());
+    let base = hydrostat(&reach("0.1,0", &["--station", "0"]));
+    assert!(base.err.trim_end().ends_with("; the base does not move"), "{}", base.err);
+
+    let here = directory();
+    std::fs::write(here.path().join("far.csv"), "x_m,y_m\n0.24,0.01\n182,78\n").unwrap();
+    let run = hydrostat_in(here.path(), &along("far.csv", &[]));
+    assert!(run.err.contains("\ntry: \"182 mm,78 mm\", or in a file the columns x_mm,y_mm"), "{}", run.err);
+}
+
+/// Four of them ended with status 3, and nothing said so.
+#[test]
+fn examples_of_the_help_were_not_reached() {
+    let here = directory();
+    let help = solved(&["reach", "--help"]).out;
+    let examples: Vec<&str> =
+        help.lines().filter(|line| line.starts_with("  hydrostat reach") && line.contains("--target")).collect();
+    assert_eq!(examples.len(), 6, "{help}");
+    for line in examples {
+        let (line, said) = line.trim().split_once("    not reached").map_or((line.trim(), 0), |(line, _)| (line, 3));
+        let words = super::guide::words(line);
+        let run = hydrostat_in(here.path(), &words[1..].iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(run.code, said, "{line}: {}", run.err);
+    }
 }
 
 /// A loop of tips that tensions on a circle lead to, as CSV in mm.

@@ -1,5 +1,7 @@
 //! Requests that are wrong: status 2, a reason, and no output.
 
+use std::path::Path;
+
 use super::{directory, files, hydrostat, hydrostat_in, refused};
 
 #[test]
@@ -41,6 +43,11 @@ fn tensions_must_fit_the_cables() {
     assert!(refused(&["solve", "paper", "--tension", "101,0"]).contains("max_tension"));
     assert!(refused(&["solve", "paper", "--tension", "2 mm,0"]).contains("a force"));
     refused(&["solve", "paper", "--tension", ""]);
+    // It is named as it was typed.
+    let message = refused(&["solve", "paper", "--tension", "-1,0"]);
+    assert!(message.starts_with("error: --tension -1,0: cable[0].tension="), "{message}");
+    let message = refused(&["solve", "paper", "--flow-speed", "-1"]);
+    assert!(message.starts_with("error: --flow-speed -1: flow.speed="), "{message}");
 }
 
 #[test]
@@ -90,6 +97,10 @@ fn outputs_that_cannot_be_written() {
         let run = hydrostat_in(here, &["solve", "paper", "-o", path]);
         assert_eq!((run.code, run.out.as_str()), (2, ""), "{path}: {}", run.err);
         assert!(run.err.contains(&format!("cannot write {path}")), "{}", run.err);
+    }
+    if Path::new("/proc").is_dir() {
+        // The directory is there; files cannot be made in it.
+        assert!(!refused(&["solve", "paper", "-o", "/proc/arm.csv"]).contains("make the directory"));
     }
     let run = hydrostat_in(here, &["solve", "paper", "--plot", "nowhere/arm.svg"]);
     assert_eq!((run.code, run.out.as_str()), (2, ""), "{}", run.err);

@@ -172,6 +172,11 @@ fn answers_are_those_of_the_commands_to_the_last_digit() {
         ),
         (
             "reach",
+            r#"{"arm": "silicone", "target": [0.14, 0.015], "station": "150 mm"}"#,
+            vec!["reach", "silicone", "--target", "0.14,0.015", "--station", "0.15", "--format", "json"],
+        ),
+        (
+            "reach",
             r#"{"arm": "silicone", "target": [0.182, 0.078], "by": "strokes", "max_stroke": "12 mm"}"#,
             vec![
                 "reach",

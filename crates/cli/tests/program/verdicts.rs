@@ -23,6 +23,14 @@ fn text_and_csv_have_nothing_to_say() {
     }
 }
 
+/// A cable that is wound in has no tension to lower.
+#[test]
+fn advice_for_a_stroke_was_that_for_a_tension() {
+    let run = hydrostat(&["solve", "silicone", "--set", "cable[0].stroke=\"100 mm\""]);
+    assert_eq!(run.code, 3, "{}", run.err);
+    assert!(run.err.contains("\ntry: wind in less") && !run.err.contains("lower the tension"), "{}", run.err);
+}
+
 #[test]
 fn json_holds_the_verdict_and_the_last_good_shape() {
     let run = hydrostat(&crushed(&["--format", "json", "--stations", "3"]));

@@ -59,13 +59,24 @@ pub enum StudyError {
     #[error(transparent)]
     Reach(Box<ReachError>),
     /// No tension gives the published tip angle.
-    #[error("no tension up to {largest} N turns the tip section by {TIP_ANGLE} deg; {angle} deg is reached")]
+    #[error("no tension up to {largest} N turns the tip section by {TIP_ANGLE} deg; {}", nearest_words(*.nearest))]
     NoTension {
-        /// N.
+        /// The largest that was looked at, N.
         largest: f64,
-        /// alpha(L) there, deg.
-        angle: f64,
+        /// The tension (N) that comes nearest and alpha(L) there (deg); none where shapes with that angle exist but no solve leads to them.
+        nearest: Option<[f64; 2]>,
     },
+}
+
+fn nearest_words(nearest: Option<[f64; 2]>) -> String {
+    match nearest {
+        // A reader wants a few digits, and 0.02 N not as 0.020.
+        Some([tension, angle]) => {
+            let tension = format!("{tension:.2e}").parse().unwrap_or(tension);
+            format!("the nearest that was found is {angle:.2} deg, at {tension} N")
+        }
+        None => "no solve leads to the shapes that have this angle".to_owned(),
+    }
 }
 
 /// What the source leaves open of its figure besides the arm.

@@ -20,8 +20,8 @@ pub(super) fn configuration(arm: &Arm) -> Result<Configuration, StudyError> {
             other => StudyError::Reach(Box::new(other)),
         })?;
     let Some(found) = solutions.into_iter().find(|one| one.on_the_path) else {
-        let angle = closest.map_or(f64::NAN, |closest| closest.configuration.tip().alpha.to_degrees());
-        return Err(StudyError::NoTension { largest, angle });
+        let nearest = closest.map(|closest| [closest.tensions[0], closest.configuration.tip().alpha.to_degrees()]);
+        return Err(StudyError::NoTension { largest, nearest });
     };
     Ok(found.configuration)
 }

@@ -444,6 +444,7 @@ impl Search {
             bounds,
             on_the_path,
             stability: configuration.stability(),
+            places: self.goal.stations().map(|s| configuration.at(s)).collect(),
             tensions: state.tensions,
             configuration,
         })
