@@ -139,8 +139,8 @@ def sweep(
     shapes : int
         So many equally spaced stations of every row; none below 2.
     output : path, optional
-        Without a client, a file ``.parquet`` or ``.csv``, written by parts, from which `resume` goes on; a part that was cut or changed since is solved again, with a warning. With a client, a new directory
-        that all workers see, which becomes a Parquet dataset.
+        Without a client, a file ``.parquet`` or ``.csv``, written by parts, from which `resume` goes on; a part that was cut
+        or changed since is solved again, with a warning. With a client, a new directory that all workers see, which becomes a Parquet dataset.
     resume : bool
         Whether to go on with an output that was begun; not with a client.
     threads : int
@@ -195,8 +195,8 @@ def sweep(
         if output is not None:
             *_, damaged = native.run(output, resume, threads, bar)
             if damaged:
-                changed = f"{damaged} parts of an earlier run had changed since" if damaged > 1 else "a part of an earlier run had changed since"
-                warnings.warn(f"{output}: {changed}; solved again", stacklevel=2)
+                parts = "a part" if damaged == 1 else f"{damaged} parts"
+                warnings.warn(f"{output}: {parts} of an earlier run had changed since; solved again", stacklevel=2)
             return FilePath(output)
         found = native.columns((0, native.tiles), threads, bar)
     values = {variable: assembled(found, variable) for variable in variables(found)}
