@@ -43,7 +43,7 @@ pub struct Target {
     pub y: f64,
     /// Angle of the section from e1, rad, if it matters: in a distance, a radian counts as one arm's length.
     pub angle: Option<f64>,
-    /// Weight of its distance among those of several targets.
+    /// Weight of its distance among those of several targets, from 1e-9 to 1e9.
     pub weight: f64,
 }
 
@@ -51,6 +51,14 @@ impl Target {
     /// The tip at (x, y), m.
     pub fn tip(x: f64, y: f64) -> Self {
         Self { s: None, x, y, angle: None, weight: 1.0 }
+    }
+
+    /// Whether squares of its distances are numbers.
+    fn is_for(&self, arm: &Arm) -> bool {
+        /// Lengths of the arm.
+        const FURTHEST: f64 = 1e6;
+        let near = [self.x - arm.base.x, self.y - arm.base.y].iter().all(|far| far.abs() <= FURTHEST * arm.length);
+        near && self.angle.is_none_or(f64::is_finite) && (1e-9..=1e9).contains(&self.weight)
     }
 }
 
@@ -126,8 +134,8 @@ pub enum ReachError {
     /// An arm without cables reaches nothing.
     #[error("the arm has no cable that could be pulled")]
     NoCables,
-    /// No targets, or one that is no number.
-    #[error("expected targets that are finite, with weights above 0")]
+    /// No targets, or one that is no number, or out of all bounds.
+    #[error("expected targets within a million lengths of the arm, with weights from 1e-9 to 1e9")]
     Target,
     /// A bound or a tolerance that is none.
     #[error("{option}: expected a number {expected}, found {value}")]

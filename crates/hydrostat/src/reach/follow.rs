@@ -95,11 +95,13 @@ impl Follower {
     /// from there.
     ///
     /// # Errors
-    /// [`ReachError::Target`] for other places.
+    /// [`ReachError::Target`] for other places, and for targets that are none.
     pub fn follow(&mut self, targets: &[Target]) -> Result<Followed, ReachError> {
         let places = |targets: &[Target]| targets.iter().map(|t| (t.s, t.angle.is_some())).collect::<Vec<_>>();
         match &mut self.search.goal {
-            Goal::Places(own) if places(own) == places(targets) && targets.iter().all(|t| (t.x + t.y).is_finite()) => {
+            Goal::Places(own)
+                if places(own) == places(targets) && targets.iter().all(|target| target.is_for(&self.search.arm)) =>
+            {
                 own.clear();
                 own.extend_from_slice(targets);
             }

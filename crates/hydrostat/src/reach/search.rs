@@ -95,15 +95,8 @@ impl Search {
         }
         let arm = arm.slackened();
         arm.check().map_err(SolveError::from)?;
-        let fine = |t: &Target| {
-            t.x.is_finite()
-                && t.y.is_finite()
-                && t.angle.is_none_or(f64::is_finite)
-                && t.weight > 0.0
-                && t.weight.is_finite()
-        };
         let fine = match &goal {
-            Goal::Places(targets) => !targets.is_empty() && targets.iter().all(fine),
+            Goal::Places(targets) => !targets.is_empty() && targets.iter().all(|target| target.is_for(&arm)),
             Goal::TipAngle(angle) => angle.is_finite(),
         };
         if !fine {
