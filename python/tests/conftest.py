@@ -9,10 +9,15 @@ from pathlib import Path
 
 import matplotlib
 import pytest
+from hypothesis import settings
 
 import hydrostat as hs
 
 matplotlib.use("Agg")
+
+# The same examples in every run: what fails once fails again.
+settings.register_profile("same", derandomize=True)
+settings.load_profile("same")
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -38,8 +38,11 @@ def test_solves(program: Program, name: str, pull: float, speed: float, cable: i
         mine = (no.kind, no.phase, no.load_fraction, no.where, no.residual, no.message, no.advice)
         keys = ("kind", "phase", "load_fraction", "s", "residual", "message", "advice")
         assert mine == tuple(verdict[key] for key in keys)
-        assert no.last_good is not None
-        assert no.last_good.x.tolist() == json.loads(text)["last_good"]["stations"]["x"]
+        last = json.loads(text)["last_good"]
+        # Right at a limit of the sections there can be none that is told to the end.
+        assert (no.last_good is None) == (last is None)
+        if no.last_good is not None:
+            assert no.last_good.x.tolist() == last["stations"]["x"]
     else:
         assert status == 0
         assert solution.to_json() == text.strip()

@@ -181,6 +181,7 @@ pub struct NoEquilibrium {
     /// Why.
     pub verdict: Verdict,
     /// The last good solution on the way, its `arm` carrying the loads that it balances.
-    /// `None` only when not even the first step off the unloaded arm could be solved.
+    /// `None` only when not even the first step off the unloaded arm could be solved, or where a section at its limit, at an end of the arm, lets no
+    /// shape be read out.
     pub last_good: Option<Configuration>,
 }

@@ -8,6 +8,7 @@ use hydrostat::cases::{column_buckling_load, inextensible_arm};
 use hydrostat::{
     Arm, Cable, Configuration, NoEquilibrium, Options, Phase, Profile, Readings, SolveError, Solver, Volume,
 };
+use hydrostat_files::{ArmFile, shipped};
 
 /// An arm and the verdict that it must get.
 struct Case {
@@ -201,4 +202,15 @@ fn a_load_jumps_on_the_tie_of_both_sides() {
         let arm = literal(in_a_stream(silicone(0.3), speed, 0.0));
         Case::new(format!("{speed} m/s"), arm, LoadJump, Phase::Tension).verdict(1e-6);
     }
+}
+
+/// Where the stream alone takes the sections of the base near their limit, tensions may not start; what carries the stream was lost then.
+#[test]
+fn nothing_was_last_good_where_tensions_do_not_start() {
+    let mut arm = ArmFile::parse(shipped::get("octopus").unwrap(), "octopus").unwrap().arm().unwrap();
+    arm.set_tensions(&[0.003_406_966_685_885_696_3, 0.0]).unwrap();
+    arm.flow.speed = 0.841_468_984_200_415_4;
+    let Err(SolveError::NoEquilibrium(no)) = arm.solve() else { return };
+    let last = no.last_good.unwrap();
+    assert_eq!((last.arm.flow.speed, last.arm.cables[0].tension), (arm.flow.speed, 0.0), "{}", no.verdict.message());
 }

@@ -150,13 +150,14 @@ impl Ramp<'_> {
 
     /// [`Ramp::start`], or why there is no such point.
     fn start_or_verdict(&mut self) -> Result<Point, Verdict> {
-        let kept = (self.phase == Phase::Stroke).then(|| self.stepper.engine.state());
+        // What the phase before it ended with is what is last good.
+        let kept = (self.phase != Phase::Loads).then(|| self.stepper.engine.state());
         self.start().map_err(|_| {
             if let Some(kept) = kept {
                 self.stepper.engine.restore(&kept);
-                if self.stepper.nothing_reels_in() {
-                    return self.end(VerdictKind::LimitPoint, 0.0, None);
-                }
+            }
+            if self.phase == Phase::Stroke && self.stepper.nothing_reels_in() {
+                return self.end(VerdictKind::LimitPoint, 0.0, None);
             }
             self.never_started()
         })
