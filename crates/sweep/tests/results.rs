@@ -258,16 +258,22 @@ fn parts_of(out: &Path) -> Vec<std::path::PathBuf> {
     parts
 }
 
+/// A sweep of 960 rows, where it is to go, and where it is, whole.
+fn of_many_parts(directory: &Path, ending: &str) -> (Sweep, [std::path::PathBuf; 2]) {
+    let keys = ["arm.density=1000:1100:8", "cable[0].tension=0:0.5:120"];
+    let whole = sweep("silicone", &keys, &SweepOptions::default());
+    let [out, want] = ["out", "want"].map(|name| directory.join(format!("{name}.{ending}")));
+    whole.run(&want, false, 2, &|_| {}).unwrap();
+    (whole, [out, want])
+}
+
 /// Of CSV the rows beyond the cut were missing, with a line that was half a row; of Parquet changed values were joined as they stood, and a cut was an
 /// error without advice.
 #[test]
 fn cut_parts_were_joined() {
     let directory = tempfile::tempdir().unwrap();
-    let keys = ["arm.density=1000:1100:8", "cable[0].tension=0:0.5:120"];
-    let whole = sweep("silicone", &keys, &SweepOptions::default());
     for ending in ["csv", "parquet"] {
-        let [out, want] = ["out", "want"].map(|name| directory.path().join(format!("{name}.{ending}")));
-        whole.run(&want, false, 2, &|_| {}).unwrap();
+        let (whole, [out, want]) = of_many_parts(directory.path(), ending);
         let stopped = whole.run_while(&out, false, 1, &|rows| rows < 480);
         assert!(matches!(stopped, Err(SweepError::Stopped)), "{stopped:?}");
         let parts = parts_of(&out);
@@ -292,11 +298,8 @@ fn cut_parts_were_joined() {
 #[test]
 fn parts_cut_on_the_way_are_not_joined() {
     let directory = tempfile::tempdir().unwrap();
-    let keys = ["arm.density=1000:1100:8", "cable[0].tension=0:0.5:120"];
-    let whole = sweep("silicone", &keys, &SweepOptions::default());
     for ending in ["csv", "parquet"] {
-        let [out, want] = ["out", "want"].map(|name| directory.path().join(format!("{name}.{ending}")));
-        whole.run(&want, false, 2, &|_| {}).unwrap();
+        let (whole, [out, want]) = of_many_parts(directory.path(), ending);
         let cut = |done| {
             if done == 960 {
                 let first = &parts_of(&out)[0];
