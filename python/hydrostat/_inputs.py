@@ -4,24 +4,37 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+T = TypeVar("T")
+K = TypeVar("K")
+V = TypeVar("V")
+
 _ESCAPES = {ord('"'): '\\"', ord("\\"): "\\\\", **{code: f"\\u{code:04x}" for code in [*range(32), 127]}}
 
 
-def numbers(name: str, value: ArrayLike, dimensions: int | None = None) -> NDArray[np.float64]:
-    """Real numbers, contiguous, with so many dimensions."""
+def numbers(name: str, value: ArrayLike, dimensions: int | None = None, *, missing: bool = False) -> NDArray[np.float64]:
+    """Real numbers, contiguous, with so many dimensions. What is masked, or NA in pandas, is NaN where `missing` allows it."""
+    if _is_nullable(value):
+        value = value.to_numpy(dtype=np.float64, na_value=np.nan)  # type: ignore[union-attr]
+    elif isinstance(value, np.ma.MaskedArray) and value.dtype.kind in "iuf":
+        if value.mask.any() and not missing:
+            index = tuple(int(i) for i in np.argwhere(np.ma.getmaskarray(value))[0])
+            raise ValueError(f"{name}: expected numbers, found a masked one at index {index}")
+        value = np.ma.filled(value.astype(np.float64), np.nan)
     try:
         array = np.asarray(value)
     except ValueError as error:
         raise ValueError(f"{name}: expected an array of numbers, found one that is not regular") from error
     if array.dtype.kind not in "iuf":
+        if array.size == 0 and array.dtype.kind == "O":
+            return np.empty(array.shape)
         raise ValueError(f"{name}: expected real numbers, found an array of dtype {array.dtype}")
     if dimensions is not None and array.ndim != dimensions:
         raise ValueError(f"{name}: expected an array of {dimensions} dimension(s), found shape {array.shape}")
@@ -31,10 +44,20 @@ def numbers(name: str, value: ArrayLike, dimensions: int | None = None) -> NDArr
     return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
 
 
-def finite(name: str, value: ArrayLike, *, negative: bool = True) -> NDArray[np.float64]:
-    """Finite real numbers of any shape, none below zero unless `negative`."""
-    array = numbers(name, value)
+def _is_nullable(value: object) -> bool:
+    """Whether these are numbers of pandas, some of which may be NA."""
+    if isinstance(value, np.ndarray) or not hasattr(value, "to_numpy"):
+        return False
+    kinds = getattr(value, "dtypes", None) if getattr(value, "ndim", 1) == 2 else [getattr(value, "dtype", None)]
+    return all(not isinstance(kind, np.dtype) and getattr(kind, "kind", "O") in "iuf" for kind in kinds or [None])
+
+
+def finite(name: str, value: ArrayLike, *, negative: bool = True, missing: bool = False) -> NDArray[np.float64]:
+    """Finite real numbers of any shape, none below zero unless `negative`; NaN among them where `missing` allows it."""
+    array = numbers(name, value, missing=missing)
     wrong = ~np.isfinite(array) if negative else ~(np.isfinite(array) & (array >= 0.0))
+    if missing:
+        wrong &= ~np.isnan(array)
     if wrong.any():
         index = tuple(int(i) for i in np.argwhere(wrong)[0])
         expected = "finite numbers" if negative else "finite numbers that are not negative"
@@ -64,6 +87,27 @@ def count(name: str, value: int) -> int:
     if not 0 <= out < 1 << 63:
         raise ValueError(f"{name}: expected a whole number that is not negative, found {out}")
     return out
+
+
+def items(name: str, value: Iterable[T], what: str) -> list[T]:
+    """The items of a list or array; `what` they are, for the message."""
+    if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable) or getattr(value, "ndim", 1) == 0:
+        raise TypeError(f"{name}: expected a list of {what}, found {value!r}")
+    return list(value)
+
+
+def text(name: str, value: str, such_as: str) -> str:
+    """Text."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: expected text such as {such_as!r}, found {value!r}")
+    return value
+
+
+def mapping(name: str, value: Mapping[K, V], such_as: str) -> dict[K, V]:
+    """A mapping."""
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{name}: expected a mapping such as {such_as}, found {value!r}")
+    return dict(value)
 
 
 def toml(name: str, value: object) -> str:

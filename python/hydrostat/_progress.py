@@ -15,7 +15,7 @@ class Progress:
 
     def __init__(self, rows: int, shown: bool | None) -> None:
         self._rows = rows
-        self._shown = sys.stderr.isatty() if shown is None else shown
+        self.shown = sys.stderr.isatty() if shown is None else shown
         self._start = time.monotonic()
         self._said = 0.0
         self.done = 0
@@ -24,7 +24,7 @@ class Progress:
         """So many rows are done."""
         self.done = done
         now = time.monotonic()
-        if self._shown and (now - self._said > _PAUSE or done >= self._rows):
+        if self.shown and (now - self._said > _PAUSE or done >= self._rows):
             self._said = now
             self._draw(now)
 
@@ -43,7 +43,7 @@ class Progress:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._shown:
+        if self.shown:
             sys.stderr.write("\n")
 
 

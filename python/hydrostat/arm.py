@@ -211,7 +211,8 @@ class Arm:
         Parameters
         ----------
         changes : mapping, optional
-            Values by the dotted keys of the arm file, such as ``{"cable[0].friction": 0.1, "model.volume": "none"}``.
+            Values by the dotted keys of the arm file, such as ``{"cable[0].friction": 0.1, "model.volume": "none"}``. A table's
+            other keys stay as they are: ``{"flow": {"speed": 0.1}}`` is ``{"flow.speed": 0.1}``.
         tensions : sequence of float, optional
             One a cable, N; strokes are not commanded any more.
         strokes : sequence of float or None, optional
@@ -226,13 +227,16 @@ class Arm:
         ArmError
             A key that the arm file does not have, or a value that makes no arm.
         """
-        given: dict[str, object] = dict(changes or {})
+        given: dict[str, object] = {}
+        for key, value in _inputs.mapping("changes", changes or {}, '{"flow.speed": 0.1}').items():
+            given |= _dotted(str(key), value)
         for name, values, key in (("tensions", tensions, "tension"), ("strokes", strokes, "stroke")):
             if values is None:
                 continue
-            if len(values) != len(self.cables):
-                raise ValueError(f"{name}: the arm has {len(self.cables)} cables, {len(values)} were given")
-            given |= {f"cable[{i}].{key}": value for i, value in enumerate(values) if value is not None}
+            each = _inputs.items(name, values, "numbers, one a cable")
+            if len(each) != len(self.cables):
+                raise ValueError(f"{name}: the arm has {len(self.cables)} cables, {len(each)} were given")
+            given |= {f"cable[{i}].{key}": value for i, value in enumerate(each) if value is not None}
         if flow_speed is not None:
             given["flow.speed"] = flow_speed
         if flow_direction is not None:
@@ -525,8 +529,29 @@ def _from_parts(text: str, path: str, settings: list[tuple[str, str, str]]) -> A
     return Arm._of(_native.Arm(text, path, settings))
 
 
+def arm_of(arm: Arm | str | PathLike[str]) -> Arm:
+    """An arm, or what `Arm.load` makes of its name or file."""
+    if isinstance(arm, Arm):
+        return arm
+    if isinstance(arm, (str, PathLike)):
+        return Arm.load(arm)
+    raise TypeError(f"arm: expected an Arm, or the name or file of one, found {arm!r}")
+
+
+def _dotted(key: str, value: object) -> dict[str, object]:
+    """A table's own keys, so that others stay; what is a value in itself, such as the ends of a radius, is one."""
+    is_table = key in _TABLES or key == "arm.base" or (key.startswith("cable[") and key.endswith("]"))
+    if not is_table or not isinstance(value, Mapping):
+        return {key: value}
+    out: dict[str, object] = {}
+    for name, item in value.items():
+        out |= _dotted(f"{key}.{name}", item)
+    return out
+
+
 def _strokes(strokes: Sequence[float | None]) -> list[float | None]:
-    return [None if stroke is None else _inputs.number(f"strokes[{i}]", stroke) for i, stroke in enumerate(strokes)]
+    each = _inputs.items("strokes", strokes, "numbers, one a cable")
+    return [None if stroke is None else _inputs.number(f"strokes[{i}]", stroke) for i, stroke in enumerate(each)]
 
 
 def _end(name: str, value: float | str) -> str:

@@ -14,6 +14,7 @@ from dask.delayed import delayed
 from distributed import as_completed
 from distributed.scheduler import KilledWorker
 
+from hydrostat import _inputs
 from hydrostat._progress import Progress
 from hydrostat.sweep import Columns, Plan, Values, Variable, assembled, dataset, variables
 
@@ -54,7 +55,7 @@ class Run:
     how often, changes nothing in its rows."""
 
     def __init__(self, client: Client, plan: Plan, seconds: float, retries: int, progress: bool | None) -> None:
-        if not seconds > 0.0:
+        if not _inputs.number("chunk_seconds", seconds) > 0.0:
             raise ValueError(f"chunk_seconds: expected a number above zero, found {seconds}")
         if retries < 0:
             raise ValueError(f"retries: expected a number that is not negative, found {retries}")

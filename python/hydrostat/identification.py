@@ -225,7 +225,7 @@ def identify(
             text,
             _keys(fit),
             _priors(prior),
-            [sd] if isinstance(sd, str) else list(sd),
+            [sd] if isinstance(sd, str) else [_inputs.text("sd", one, "0.5 mm") for one in _inputs.items("sd", sd, "texts")],
             loss,
             rescale,
             cross_validate,
@@ -263,6 +263,10 @@ def _table(data: Measured) -> tuple[str | None, str]:
             raise FileNotFoundError(f"data: there is no file {str(path)!r}")
         return str(path), ""
     columns: dict[str, list[object]] = {}
+    named = [name for name in getattr(getattr(data, "index", None), "names", ()) if name is not None]
+    if named and hasattr(data, "reset_index"):
+        # An index with a name is a column like the others.
+        data = data.reset_index(level=named)
     for head, column in data.items():
         if isinstance(column, str) or not isinstance(column, Iterable):
             raise ValueError(f"data[{head!r}]: expected a column of values, found {column!r}")
@@ -282,7 +286,7 @@ def _table(data: Measured) -> tuple[str | None, str]:
 
 def _cell(value: object) -> str:
     """As it stands in a table; nothing for what was not measured."""
-    if value is None or value != value:
+    if value is None or value is np.ma.masked or type(value).__name__ == "NAType" or value != value:
         return ""
     return repr(float(value)) if isinstance(value, (int, float, np.integer, np.floating)) else str(value)
 
@@ -295,7 +299,7 @@ def _keys(fit: Keys) -> list[str]:
     if isinstance(fit, str):
         return [key.strip() for key in fit.split(",")]
     if not isinstance(fit, Mapping):
-        return [str(key) for key in fit]
+        return [str(key) for key in _inputs.items("fit", fit, "keys")]
     out = []
     for key, start in fit.items():
         if start is None:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from os import PathLike
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hydrostat import _inputs, _native
+from hydrostat import _inputs, _memory, _native
+from hydrostat._progress import Progress
+from hydrostat.arm import Arm, arm_of
 
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
-
-    from hydrostat.arm import Arm
 
 _UNITS = {
     "tip_x": "m",
@@ -30,8 +32,13 @@ _UNITS = {
     "y": "m",
     "theta": "rad",
 }
-_OF_CABLES = ("tension", "stroke")
-_OF_STATIONS = ("x", "y", "theta")
+#: Dimensions beyond those of the rows.
+_DIMS: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("tension", "stroke"), ("cable",)),
+    **dict.fromkeys(("x", "y", "theta"), ("station",)),
+    **dict.fromkeys(("d_tip_x", "d_tip_y", "d_tip_theta", "d_tip_alpha"), ("parameter",)),
+    "d_stroke": ("cable", "parameter"),
+}
 
 
 class Many(Mapping[str, "NDArray[np.generic]"]):
@@ -40,12 +47,23 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
     ``tip_x``, ``tip_y`` (m), ``tip_theta``, ``tip_alpha`` (rad), ``base_force_x``, ``base_force_y`` (N), ``base_moment`` (N m),
     ``error_estimate`` (m) and ``load_fraction`` have this shape; ``tension`` (N) and ``stroke`` (m) one more dimension, a cable each;
     ``x``, ``y``, ``theta`` one more, a station each. Rows without an equilibrium have NaN, and the verdict's kind in ``verdict``, which is
-    the empty string elsewhere.
+    the empty string elsewhere (``no_arm`` where the row's numbers make none, ``not_a_number`` where one is NaN); ``reason`` says it in a
+    sentence.
+
+    With `gradients`, ``d_tip_x``, ``d_tip_y``, ``d_tip_theta`` and ``d_tip_alpha`` have one more dimension, and ``d_stroke`` two, a cable
+    and a parameter: derivatives by `parameters`, a unit of each (SI, angles in radians); NaN at a limit point.
     """
 
-    def __init__(self, shape: tuple[int, ...], cables: tuple[str, ...], columns: dict[str, NDArray[np.generic]]) -> None:
+    def __init__(
+        self,
+        shape: tuple[int, ...],
+        cables: tuple[str, ...],
+        columns: dict[str, NDArray[np.generic]],
+        parameters: tuple[str, ...] = (),
+    ) -> None:
         self.shape = shape
         self.cables = cables
+        self.parameters = parameters
         self._columns = columns
 
     def __getitem__(self, name: str) -> NDArray[np.generic]:
@@ -95,6 +113,11 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         """Why there is no equilibrium; empty where there is one; of `shape`."""
         return self._columns["verdict"].astype(np.str_)
 
+    @property
+    def reason(self) -> NDArray[np.str_]:
+        """Why there is no equilibrium, in a sentence; of `shape`."""
+        return self._columns["reason"].astype(np.str_)
+
     def _number(self, name: str) -> NDArray[np.float64]:
         return self._columns[name].astype(np.float64, copy=False)
 
@@ -107,14 +130,16 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
             raise ValueError(f"dims: expected {len(self.shape)} names, found {len(own)}")
         variables = {}
         for name, column in self._columns.items():
-            last = ("cable",) if name in _OF_CABLES else ("station",) if name in _OF_STATIONS else ()
             attributes = {"units": _UNITS[name]} if name in _UNITS else {}
-            variables[name] = ((*own, *last), column, attributes)
-        return xr.Dataset(variables, coords={"cable": ("cable", list(self.cables))})
+            variables[name] = ((*own, *_DIMS.get(name, ())), column, attributes)
+        coordinates = {"cable": ("cable", list(self.cables))}
+        if self.parameters:
+            coordinates["parameter"] = ("parameter", list(self.parameters))
+        return xr.Dataset(variables, coords=coordinates)
 
 
 def solve_many(
-    arm: Arm,
+    arm: Arm | str | PathLike[str],
     *,
     tensions: ArrayLike | None = None,
     flow_speed: ArrayLike | None = None,
@@ -124,15 +149,20 @@ def solve_many(
     fold_margin: bool = False,
     stability: bool = False,
     stations: int = 0,
+    gradients: bool | Sequence[str] = False,
+    nan: str = "row",
+    threads: int = 0,
+    progress: bool | None = False,
 ) -> Many:
     """Solve an arm at many values at once, on all processors.
 
-    Inputs broadcast together as NumPy's do. Ctrl-C interrupts it.
+    Inputs broadcast together as NumPy's do. Rows are solved in an order in which each is near the one before, and rows that are alike
+    once; they come in the order asked for. Ctrl-C interrupts it.
 
     Parameters
     ----------
-    arm : Arm
-        The arm.
+    arm : Arm, str or path
+        The arm, or the name or file of one.
     tensions : array_like, shape (..., cables), optional
         N; the last dimension is the cables'.
     flow_speed : array_like, optional
@@ -148,7 +178,16 @@ def solve_many(
     fold_margin, stability : bool
         Whether these are answered, too.
     stations : int
-        So many equally spaced stations of each row, none below 2.
+        So many equally spaced stations of each row, none below 2, at most 10000.
+    gradients : bool or sequence of str
+        Derivatives of tip and strokes by these parameters (see `Solver.sensitivities`); by the tensions (strokes, where they are
+        commanded) and by what `vary` varies, if true.
+    nan : str
+        What a row with NaN, or a number that is masked or NA, is: ``"row"``, one without an answer, or ``"refuse"``, a `ValueError`.
+    threads : int
+        0 for as many as the machine has.
+    progress : bool, optional
+        Whether a bar is drawn on standard error; None for on a terminal.
 
     Returns
     -------
@@ -157,8 +196,10 @@ def solve_many(
 
     Raises
     ------
+    MemoryError
+        The rows do not fit in memory; nothing was solved.
     ValueError
-        Shapes that do not broadcast, dtypes that are no numbers, NaN, negative tensions or speeds; the argument is named.
+        Shapes that do not broadcast, dtypes that are no numbers, negative tensions or speeds; the argument is named.
 
     Examples
     --------
@@ -169,50 +210,90 @@ def solve_many(
     ((2, 3), (2, 3, 2))
     >>> many.verdict[0].tolist()
     ['', '', 'cable_fold']
+    >>> rows = hs.solve_many(arm, tensions=[[0.1, 0.0], [np.nan, 0.0]], gradients=True)
+    >>> rows.parameters
+    ('cable[0].tension', 'cable[1].tension')
+    >>> rows["d_tip_x"].shape, str(rows["reason"][1])
+    ((2, 2), '`cable[0].tension` is not a number')
     """
+    arm = arm_of(arm)
+    if nan not in ("row", "refuse"):
+        raise ValueError(f"nan: expected row or refuse, found {nan!r}")
     cables = arm.cables
-    given: dict[str, NDArray[np.float64]] = {}
-    names: dict[str, str] = {}
-    if tensions is not None:
-        pulled = _inputs.finite("tensions", tensions, negative=False)
-        if pulled.ndim == 0 or pulled.shape[-1] != len(cables):
-            raise ValueError(f"tensions: expected the shape (..., {len(cables)}), one a cable, found {pulled.shape}")
-        for index in range(len(cables)):
-            given[f"cable[{index}].tension"] = pulled[..., index]
-            names[f"cable[{index}].tension"] = "tensions"
-    if flow_speed is not None:
-        given["flow.speed"] = _inputs.finite("flow_speed", flow_speed, negative=False)
-        names["flow.speed"] = "flow_speed"
-    for key, values in (vary or {}).items():
-        name = f"vary[{key!r}]"
-        if key in given:
-            raise ValueError(f"{name}: is given a second time, by {names[key]}")
-        given[key] = _inputs.finite(name, values, negative=not key.endswith(("tension", ".speed", ".density")))
-        names[key] = name
+    given, names = _given(arm, tensions, flow_speed, vary, missing=nan == "row")
     try:
         shape = np.broadcast_shapes(*(values.shape for values in given.values()))
     except ValueError as error:
         shapes = ", ".join(f"{name} {given[key].shape}" for key, name in names.items())
         raise ValueError(f"shapes do not broadcast: {shapes} (tensions without their last dimension)") from error
+    rows = math.prod(shape)
+    places = _memory.stations("stations", _inputs.count("stations", stations))
+    by = _parameters(arm, list(given), gradients)
+    # Columns, answers and what becomes of them: of a row the library holds all twelve fields of its stations.
+    numbers = 2 * len(given) + 48 + 4 * len(cables) + 15 * places + 2 * len(by) * (4 + len(cables))
+    _memory.require(8 * numbers * rows, f"{rows} rows", "take fewer, or write them to a file with `hydrostat.sweep(..., output=...)`")
     columns = [np.ascontiguousarray(np.broadcast_to(values, shape)).ravel() for values in given.values()]
-    rows = int(np.prod(shape, dtype=np.int64))
-    found = _native.solve_many(
-        arm._inner,
-        list(given),
-        columns,
-        rows,
-        _inputs.number("tol", tol),
-        _inputs.count("tile", tile),
-        True,
-        fold_margin,
-        stability,
-        _inputs.count("stations", stations),
-    )
+    with Progress(rows, progress) as bar:
+        found = _native.solve_many(
+            arm._inner,
+            list(given),
+            columns,
+            rows,
+            _inputs.number("tol", tol),
+            _inputs.count("tile", tile),
+            True,
+            fold_margin,
+            stability,
+            places,
+            by,
+            _inputs.count("threads", threads),
+            bar if bar.shown else None,
+        )
     out: dict[str, NDArray[np.generic]] = {}
+    sizes = {"cable": len(cables), "station": places, "parameter": len(by)}
     for name, column in found.items():
         if isinstance(column, list):
             out[name] = np.array(column, dtype=np.str_).reshape(shape)
         else:
-            last = (len(cables),) if name in _OF_CABLES else (stations,) if name in _OF_STATIONS else ()
-            out[name] = column.reshape(shape + last)
-    return Many(shape, cables, out)
+            out[name] = column.reshape(shape + tuple(sizes[dim] for dim in _DIMS.get(name, ())))
+    return Many(shape, cables, out, tuple(by))
+
+
+def _given(
+    arm: Arm, tensions: ArrayLike | None, flow_speed: ArrayLike | None, vary: Mapping[str, ArrayLike] | None, *, missing: bool
+) -> tuple[dict[str, NDArray[np.float64]], dict[str, str]]:
+    """Values by keys, and the arguments that they come from."""
+    count = len(arm.cables)
+    given: dict[str, NDArray[np.float64]] = {}
+    names: dict[str, str] = {}
+    if tensions is not None:
+        pulled = _inputs.finite("tensions", tensions, negative=False, missing=missing)
+        if pulled.ndim == 0 or pulled.shape[-1] != count:
+            raise ValueError(f"tensions: expected the shape (..., {count}), one a cable, found {pulled.shape}")
+        for index in range(count):
+            given[f"cable[{index}].tension"] = pulled[..., index]
+            names[f"cable[{index}].tension"] = "tensions"
+    if flow_speed is not None:
+        given["flow.speed"] = _inputs.finite("flow_speed", flow_speed, negative=False, missing=missing)
+        names["flow.speed"] = "flow_speed"
+    for key, values in _inputs.mapping("vary", vary or {}, '{"flow.direction": [0, 90]}').items():
+        name = f"vary[{key!r}]"
+        if key in given:
+            raise ValueError(f"{name}: is given a second time, by {names[key]}")
+        positive = key.endswith(("tension", ".speed", ".density"))
+        given[key] = _inputs.finite(name, values, negative=not positive, missing=missing)
+        names[key] = name
+    return given, names
+
+
+def _parameters(arm: Arm, varied: list[str], gradients: bool | Sequence[str]) -> list[str]:
+    """What derivatives are by."""
+    if isinstance(gradients, (bool, np.bool_)):
+        if not gradients:
+            return []
+        commanded = [f"cable[{index}].stroke" in varied or stroke for index, stroke in enumerate(arm._inner.commanded)]
+        pulls = [f"cable[{index}].{'stroke' if held else 'tension'}" for index, held in enumerate(commanded)]
+        return list(dict.fromkeys([*pulls, *varied]))
+    if isinstance(gradients, str):
+        raise TypeError(f"gradients: expected true, false or a list of keys, found {gradients!r}")
+    return [_inputs.text("gradients", name, "flow.speed") for name in _inputs.items("gradients", gradients, "keys")]

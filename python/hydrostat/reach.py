@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from functools import cached_property
+from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple, Union, overload
 
 import numpy as np
 
 from hydrostat import _inputs, _native
+from hydrostat.arm import Arm, arm_of
 from hydrostat.figures import Figure
 from hydrostat.solution import Solution, Stations, Tip
 
@@ -17,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from hydrostat.arm import Arm
 
 
 class Target(NamedTuple):
@@ -258,12 +259,13 @@ class Followed(NamedTuple):
 class Follower:
     """Follows a path of targets, each from the tensions of the last, for control loops.
 
-    It starts from the tensions of the arm, or, where they do not reach the first targets, from the least effort that does.
+    It starts from the tensions of the arm, or, where they do not reach the first targets, from the least effort that does. A copy goes on
+    from the same shape, by itself.
 
     Parameters
     ----------
-    arm : Arm
-        The arm.
+    arm : Arm, str or path
+        The arm, or the name or file of one.
     targets : Target, sequence of Target, or (x, y)
         The first targets, m and rad.
     max_tension : float, optional
@@ -295,7 +297,7 @@ class Follower:
 
     def __init__(
         self,
-        arm: Arm,
+        arm: Arm | str | PathLike[str],
         targets: Targets,
         *,
         max_tension: float | None = None,
@@ -303,7 +305,16 @@ class Follower:
         tol: float = 1e-8,
     ) -> None:
         most = most_of(max_tension, max_stroke)
-        self._inner = _native.Follower(arm._inner, targets_of(targets), most, _inputs.number("tol", tol), True)
+        goals, within = targets_of(targets), _inputs.number("tol", tol)
+        self._inner = _native.Follower(arm_of(arm)._inner, goals, most, within, True)
+
+    def __copy__(self) -> Follower:
+        out = Follower.__new__(Follower)
+        out._inner = self._inner.copy()
+        return out
+
+    def __deepcopy__(self, memo: object) -> Follower:
+        return self.__copy__()
 
     def follow(self, targets: Targets) -> Followed:
         """Go to the next targets, which have to be for the same places as the first.

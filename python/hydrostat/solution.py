@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from hydrostat import _inputs, _native
+from hydrostat import _inputs, _memory, _native
 from hydrostat.figures import Figure, arm_figure
 
 if TYPE_CHECKING:
@@ -88,7 +88,8 @@ class Note(NamedTuple):
 class Stations:
     """States along an arm, base to tip: twelve read-only arrays of shape (n,), which share memory with what solved them.
 
-    They stay valid when this object is gone.
+    They stay valid when this object is gone, and keep what solved them in memory (45 kB or so for an arm of two cables);
+    `copy_arrays` gives arrays of their own.
     """
 
     __slots__ = ("_inner",)
@@ -160,6 +161,10 @@ class Stations:
 
     def __len__(self) -> int:
         return len(self.s)
+
+    def copy_arrays(self) -> dict[str, NDArray[np.float64]]:
+        """The twelve fields by name, as arrays of their own that can be changed and keep nothing else in memory."""
+        return {name: self._inner.field(name).copy() for name in FIELDS}
 
     def to_pandas(self) -> pd.DataFrame:
         """The stations as a table with `s` (m) as its index. Needs pandas."""
@@ -305,7 +310,9 @@ class Solution(Stations):
 
     def resampled(self, count: int) -> Stations:
         """`count` (at least two) equally spaced stations from base to tip."""
-        return Stations(self._inner.resampled(_inputs.count("count", count)))
+        wanted = _inputs.count("count", count)
+        _memory.require(2 * 8 * len(FIELDS) * wanted, f"{wanted} stations", "ask for fewer")
+        return Stations(self._inner.resampled(wanted))
 
     def surfaces(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The deformed surface on the left and on the right, m, each of shape (n, 2), at lengths `s` (m) of shape (n,)."""

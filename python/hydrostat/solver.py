@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from os import PathLike
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from hydrostat import _inputs, _native
+from hydrostat.arm import Arm, arm_of
 from hydrostat.solution import Solution, Tip
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from hydrostat.arm import Arm
     from hydrostat.sensitivity import Sensitivities
 
 
@@ -29,10 +30,12 @@ class Solver:
 
     Parameters
     ----------
-    arm : Arm
-        The arm.
+    arm : Arm, str or path
+        The arm, or the name or file of one.
     tol : float
         Error of the tip position over the length, in [1e-12, 1e-2].
+
+    A copy goes on from the same shape, by itself.
 
     Examples
     --------
@@ -47,8 +50,16 @@ class Solver:
 
     __slots__ = ("_inner",)
 
-    def __init__(self, arm: Arm, tol: float = 1e-8) -> None:
-        self._inner = _native.Solver(arm._inner, _inputs.number("tol", tol))
+    def __init__(self, arm: Arm | str | PathLike[str], tol: float = 1e-8) -> None:
+        self._inner = _native.Solver(arm_of(arm)._inner, _inputs.number("tol", tol))
+
+    def __copy__(self) -> Solver:
+        out = Solver.__new__(Solver)
+        out._inner = self._inner.copy()
+        return out
+
+    def __deepcopy__(self, memo: object) -> Solver:
+        return self.__copy__()
 
     def set_tensions(self, tensions: ArrayLike) -> None:
         """Set all tensions, N, shape (cables,)."""
@@ -185,6 +196,6 @@ class Solver:
 
 
 def _names(parameters: Sequence[str]) -> list[str]:
-    if isinstance(parameters, str):
+    if isinstance(parameters, str) or not isinstance(parameters, Iterable):
         raise ValueError(f"parameters: expected a sequence of keys, found {parameters!r}")
-    return list(parameters)
+    return [_inputs.text("parameters", name, "flow.speed") for name in parameters]

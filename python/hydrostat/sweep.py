@@ -12,21 +12,23 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union, overload
 
 import numpy as np
 
-from hydrostat import _inputs, _native
+from hydrostat import _inputs, _memory, _native
 from hydrostat._progress import Progress
+from hydrostat.arm import Arm, arm_of
 
 if TYPE_CHECKING:
     import xarray as xr
     from distributed import Client
     from numpy.typing import NDArray
 
-    from hydrostat.arm import Arm
-
 #: Values of a key: a grid ``"0:1:26"``, a range to draw from ``"0:1"``, a list with commas, an array, or one value.
 Values = Union[str, float, Sequence[float], Sequence[str], "NDArray[np.generic]"]
 
 _COLUMN = re.compile(r"(?P<name>.+?)(\[(?P<index>\d+)\])?(_(?P<unit>m|rad|N|Nm))?$")
 _UNITS = {"Nm": "N m"}
+#: Numbers of a row that are not of cables or stations, all columns together.
+_NUMBERS = 17
+_ENDINGS = (".parquet", ".csv")
 
 
 class Plan(NamedTuple):
@@ -64,7 +66,7 @@ class Variable(NamedTuple):
 
 @overload
 def sweep(
-    arm: Arm,
+    arm: Arm | str | PathLike[str],
     vary: Mapping[str, Values],
     *,
     sample: str | None = ...,
@@ -82,7 +84,7 @@ def sweep(
 ) -> xr.Dataset: ...
 @overload
 def sweep(
-    arm: Arm,
+    arm: Arm | str | PathLike[str],
     vary: Mapping[str, Values],
     *,
     sample: str | None = ...,
@@ -99,7 +101,7 @@ def sweep(
     progress: bool | None = ...,
 ) -> FilePath: ...
 def sweep(
-    arm: Arm,
+    arm: Arm | str | PathLike[str],
     vary: Mapping[str, Values],
     *,
     sample: str | None = None,
@@ -122,8 +124,8 @@ def sweep(
 
     Parameters
     ----------
-    arm : Arm
-        The arm.
+    arm : Arm, str or path
+        The arm, or the name or file of one.
     vary : mapping
         Keys of the arm file with their values: an array or list of numbers (SI units, degrees) or of strings,
         ``"from:to:count"`` for a grid with both ends, ``"from:to"`` with `sample`.
@@ -162,6 +164,13 @@ def sweep(
     pathlib.Path
         `output`, where that is given.
 
+    Raises
+    ------
+    MemoryError
+        Without `output` and client, rows that do not fit in memory; nothing was solved.
+    ValueError, TypeError
+        An argument that cannot be meant, named.
+
     Examples
     --------
     >>> import hydrostat as hs
@@ -171,25 +180,36 @@ def sweep(
     >>> ds.verdict.values[0].tolist()
     ['', '', 'cable_fold', 'cable_fold']
     """
-    texts = tuple(f"{key}={_values(key, values)}" for key, values in vary.items())
-    names = None if columns is None else tuple(columns)
+    given = _inputs.mapping("vary", vary, '{"flow.speed": "0:1:26"}')
+    texts = tuple(f"{key}={_values(key, values)}" for key, values in given.items())
+    asked = None if columns is None else _inputs.items("columns", columns, "names, such as ['tip', 'strokes']")
+    names = None if asked is None else tuple(_inputs.text("columns", name, "tip") for name in asked)
     plan = Plan(
-        arm,
+        arm_of(arm),
         texts,
-        sample,
+        None if sample is None else _inputs.text("sample", sample, "lhs:50"),
         _inputs.count("seed", seed),
         _inputs.number("tol", tol),
         names,
-        _inputs.count("shapes", shapes),
+        _memory.stations("shapes", _inputs.count("shapes", shapes)),
     )
     native = plan.native()
+    if output is not None and client is None and FilePath(output).suffix.lower() not in _ENDINGS:
+        remedy = "; `sweep(...).to_netcdf(...)` writes netCDF" if FilePath(output).suffix == ".nc" else ""
+        raise ValueError(f"output: expected a name that ends in {' or '.join(_ENDINGS)}, found {str(output)!r}{remedy}")
+    if output is None and client is None:
+        # Row, keys, what is answered, and what is put together of several columns.
+        cables = len(plan.arm.cables)
+        numbers = 1 + len(native.axes) + _NUMBERS + 4 * cables + 6 * plan.shapes
+        remedy = "write them to a file with output=, or take fewer"
+        _memory.require(8 * numbers * native.rows, f"{native.rows} rows", remedy)
     if client is not None:
         from hydrostat import cluster
 
         if resume or threads:
             raise ValueError(f"{'resume' if resume else 'threads'}: is of sweeps without a client")
         run = cluster.Run(client, plan, chunk_seconds, retries, progress)
-        return run.dataset(dict(vary)) if output is None else run.parquet(FilePath(output))
+        return run.dataset(given) if output is None else run.parquet(FilePath(output))
     threads = _inputs.count("threads", threads)
     with Progress(native.rows, progress) as bar:
         if output is not None:
@@ -200,7 +220,7 @@ def sweep(
             return FilePath(output)
         found = native.columns((0, native.tiles), threads, bar)
     values = {variable: assembled(found, variable) for variable in variables(found)}
-    return dataset(plan, vary, values, {axis[1]: assembled(found, _key(axis[1], found)) for axis in native.axes})
+    return dataset(plan, given, values, {axis[1]: assembled(found, _key(axis[1], found)) for axis in native.axes})
 
 
 def _values(key: str, values: Values) -> str:

@@ -55,6 +55,16 @@ def test_replacing_leaves_the_arm_alone(silicone: hs.Arm) -> None:
     assert other.replace(strokes=[None, -0.01]).to_dict()["cable"][1]["stroke"] == -0.01
 
 
+def test_a_table_kept_none_of_its_other_keys(silicone: hs.Arm) -> None:
+    arm = silicone.replace({"flow.direction": 30, "flow.density": 998.0, "cable[0].friction": 0.1}, tensions=[0.1, 0.0])
+    other = arm.replace({"flow": {"speed": 0.1}, "cable[0]": {"tension": "0.2 N"}, "arm": {"base": {"angle": 10}}})
+    assert other == arm.replace({"flow.speed": 0.1, "cable[0].tension": 0.2, "arm.base.angle": 10})
+    assert other.to_dict()["flow"]["direction"] == 30 and other.to_dict()["cable"][0]["friction"] == 0.1
+    # What stands for one number or profile is taken whole.
+    ends = {"base": 0.009, "tip": 0.002}
+    assert arm.replace({"arm": {"radius": ends}}) == arm.replace({"arm.radius": ends})
+
+
 @given(
     points=st.lists(st.floats(0.002, 0.02), min_size=2, max_size=8),
     name=st.text(st.characters(exclude_categories=["Cs"]), max_size=20),

@@ -109,6 +109,22 @@ def test_missing_values_are_left_out(silicone: hs.Arm) -> None:
     assert fit.values == pytest.approx([110e3], rel=1e-6)
 
 
+def test_an_index_with_a_name_was_no_column(silicone: hs.Arm) -> None:
+    s = np.array([0.1, 0.2])
+    shape = silicone.solve(tensions=[0.2, 0.0]).at(s)
+    pull = pd.array([0.2, None], dtype="Float64")
+    table = pd.DataFrame({"case": "a", "cable[0].tension [N]": pull, "x [m]": shape.x, "y [m]": shape.y}, index=pd.Index(s, name="s [m]"))
+    fit = silicone.identify(table, "young=90 kPa", sd="1 mm")
+    assert fit.residuals["s"].tolist() == [0.1, 0.1, 0.2, 0.2]
+    assert fit.values == pytest.approx([110e3], rel=1e-6)
+
+
+def test_residuals_that_are_nothing_were_as_large_as_stated(silicone: hs.Arm) -> None:
+    fit = silicone.identify(tips(silicone), "young=90 kPa", sd="1 mm")
+    assert fit.chi_square < 1e-6 and fit.freedom == 5
+    assert fit.misfit is not None and "far smaller than their standard deviations say" in fit.misfit
+
+
 def test_pictures(silicone: hs.Arm, tmp_path: Path) -> None:
     fit = silicone.identify(tips(silicone), "young=90 kPa", sd="1 mm")
     axis = fit.plot()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -52,7 +54,7 @@ def test_numbers_of_any_kind_and_layout(silicone: hs.Arm, kind: type) -> None:
 def test_no_speed_that_is_none(silicone: hs.Arm, number: float) -> None:
     for call in (
         lambda: silicone.solve(flow_speed=number),
-        lambda: hs.solve_many(silicone, flow_speed=[0.1, number]),
+        lambda: hs.solve_many(silicone, flow_speed=[0.1, number], nan="refuse"),
     ):
         with pytest.raises(ValueError, match="^flow_speed"):
             call()
@@ -75,7 +77,7 @@ CALLS: list[tuple[Callable[[hs.Arm], object], str]] = [
     (lambda arm: hs.Solver(arm).set_stroke(2, 0.01), "`cable`"),
     (lambda arm: hs.solve_many(arm, tensions=[0.1, 0.2, 0.3]), r"^tensions: expected the shape \(..., 2\)"),
     (lambda arm: hs.solve_many(arm, tensions=[[0.1, -0.2]]), r"^tensions: .*\(0, 1\)"),
-    (lambda arm: hs.solve_many(arm, vary={"tip.moment": [np.nan]}), r"^vary\['tip.moment'\]"),
+    (lambda arm: hs.solve_many(arm, vary={"tip.moment": [np.nan]}, nan="refuse"), r"^vary\['tip.moment'\]"),
     (lambda arm: hs.solve_many(arm, vary={"tip.momint": [0.0]}), "tip.momint"),
     (lambda arm: hs.solve_many(arm, vary={"cable[4].tension": [0.0]}), r"cable\[4\].tension"),
     (lambda arm: hs.solve_many(arm, flow_speed=0.1, vary={"flow.speed": 0.2}), "second time, by flow_speed"),
@@ -129,14 +131,73 @@ CALLS: list[tuple[Callable[[hs.Arm], object], str]] = [
     (lambda arm: hs.sweep(arm, {"flow.speed": "0:1"}, sample="lhs"), "^sample"),
     (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, columns=["tips"]), "^columns"),
     (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, tol=1.0), "tol"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, output="q.nc"), "^output: .* ends in .parquet or .csv.*to_netcdf"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, output="q"), "^output: .* ends in .parquet or .csv"),
     (lambda arm: arm.solve().figure().save("shape.pdf"), "^path: .*svg or .png"),
 ]
+
+
+#: Of another type than what is meant.
+TYPES: list[tuple[Callable[[hs.Arm], object], str]] = [
+    (lambda arm: arm.solve(strokes=0.01), "^strokes: expected a list of numbers, one a cable, found 0.01"),  # type: ignore[arg-type]
+    (lambda arm: arm.replace(tensions=0.2), "^tensions: expected a list"),  # type: ignore[arg-type]
+    (lambda arm: arm.replace(0.2), "^changes: expected a mapping"),  # type: ignore[arg-type]
+    (lambda arm: hs.sweep(arm, {"flow.speed": "0:1"}, sample=50), "^sample: expected text such as 'lhs:50', found 50"),  # type: ignore[call-overload]
+    (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, columns="tip"), "^columns: expected a list of names"),
+    (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, columns=[1]), "^columns: expected text"),  # type: ignore[list-item]
+    (lambda arm: hs.sweep(arm, ["flow.speed"]), "^vary: expected a mapping"),  # type: ignore[call-overload]
+    (lambda arm: hs.solve_many(arm, vary=[1.0]), "^vary: expected a mapping"),  # type: ignore[arg-type]
+    (lambda _: hs.solve_many(3.0), "^arm: expected an Arm, or the name or file of one, found 3.0"),  # type: ignore[arg-type]
+    (lambda _: hs.sweep(None, {"flow.speed": [0.1]}), "^arm: expected an Arm"),  # type: ignore[call-overload]
+    (lambda arm: hs.Solver(arm._inner), "^arm: expected an Arm"),  # type: ignore[arg-type]
+    (lambda arm: arm.sensitivities([1]), "^parameters: expected text"),  # type: ignore[list-item]
+]
+
+
+@pytest.mark.parametrize(("call", "words"), TYPES)
+def test_types(silicone: hs.Arm, call: Callable[[hs.Arm], object], words: str) -> None:
+    with pytest.raises(TypeError, match=words):
+        call(silicone)
 
 
 @pytest.mark.parametrize(("call", "words"), CALLS)
 def test_calls(silicone: hs.Arm, call: Callable[[hs.Arm], object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         call(silicone)
+
+
+def test_an_arms_name_is_an_arm(silicone: hs.Arm, tmp_path: Path) -> None:
+    file = tmp_path / "own.toml"
+    file.write_text(silicone.to_toml(), encoding="utf-8")
+    tip = silicone.solve(tensions=[0.2, 0.0]).tip
+    for arm in ("silicone", file, str(file)):
+        solver = hs.Solver(arm)
+        solver.set_tensions([0.2, 0.0])
+        assert solver.update().tip == pytest.approx(tip)
+        assert hs.solve_many(arm, tensions=[0.2, 0.0]).tip_x == pytest.approx(tip.x)
+        assert hs.sweep(arm, {"cable[0].tension": [0.2]}).tip_x.item() == pytest.approx(tip.x)
+        assert hs.Follower(arm, (tip.x, tip.y), max_tension=0.6).follow((tip.x, tip.y)).reached
+    with pytest.raises(FileNotFoundError, match="^arm: "):
+        hs.solve_many("silicon")
+
+
+def test_copies_went_on_together(silicone: hs.Arm) -> None:
+    """They shared the solver: what one was told, the other solved."""
+    solver = hs.Solver(silicone)
+    solver.set_tensions([0.2, 0.0])
+    before = solver.update().tip
+    follower = hs.Follower(silicone.replace(tensions=[0.2, 0.0]), (before.x, before.y))
+    for copied in (copy.copy, copy.deepcopy):
+        other = copied(solver)
+        other.set_tensions([0.3, 0.0])
+        assert other.update().tip.theta > before.theta
+        assert solver.update().tip == pytest.approx(before, abs=1e-9)
+        ahead = copied(follower)
+        moved = ahead.follow((before.x, before.y - 2e-3))
+        still = follower.follow((before.x, before.y))
+        assert (still.tip.x, still.tip.y) == pytest.approx((before.x, before.y), abs=1e-7)
+        assert moved.tip.y == pytest.approx(before.y - 2e-3, abs=1e-7)
+        assert ahead.follow((before.x, before.y - 2e-3)).solves <= 2
 
 
 def test_nothing_to_vary_is_one_row(silicone: hs.Arm) -> None:

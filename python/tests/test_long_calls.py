@@ -51,6 +51,9 @@ def test_memory_stays_flat() -> None:
 
 LONG = {
     "solve_many": "hs.solve_many(arm, flow_speed=np.linspace(0, 0.5, 3_000_000))",
+    # Rows that each take as long as a verdict.
+    "solve_many of failing rows": "hs.solve_many(arm, tensions=np.linspace([1.2, 0], [1.5, 0], 1_000_000))",
+    "stations": "[arm.solve().resampled(10**6) for _ in range(10**6)]",
     "path": "arm.path('flow.speed', 0, 0.5, longest=0.001, tol=1e-7, most=10**9)",
     "equilibria": "[arm.replace(flow_speed=0.2, flow_direction=180).equilibria() for _ in range(10**6)]",
     "reach": "[arm.reach((0.182, 0.07 + 1e-9 * k)) for k in range(10**6)]",
@@ -59,7 +62,7 @@ LONG = {
     "identify": "arm.identify({'case': range(200), 'cable[0].tension [N]': np.linspace(0.01, 0.5, 200), "
     "'x [m]': np.linspace(0.101, 0.15, 200), 'y [m]': np.linspace(0.001, 0.05, 200)}, "
     "'young,arm.density,poisson', sd='0.01 mm', progress=True)",
-    "sweep": "hs.sweep(arm, {'flow.speed': '0:0.5:100000', 'cable[0].tension': '0:0.8:1000'})",
+    "sweep": "hs.sweep(arm, {'flow.speed': '0:0.5:10000', 'cable[0].tension': '0:0.8:1000'})",
     "sweep into a file": "hs.sweep(arm, {'flow.speed': '0:0.5:100000', 'cable[0].tension': '0:0.8:1000'}, output='x.parquet')",
 }
 

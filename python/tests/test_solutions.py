@@ -34,6 +34,13 @@ def test_arrays_are_read_only_and_share_memory(bent: hs.Solution) -> None:
             first.flags.writeable = True
 
 
+def test_copied_arrays_keep_nothing(bent: hs.Solution) -> None:
+    copied = bent.copy_arrays()
+    assert list(copied) == list(FIELDS)
+    for name, array in copied.items():
+        assert array.base is None and array.flags.writeable and array.tobytes() == getattr(bent, name).tobytes()
+
+
 def test_arrays_outlive_their_solution(silicone: hs.Arm) -> None:
     def arrays() -> list[np.ndarray[tuple[int], np.dtype[np.float64]]]:
         solution = silicone.solve(tensions=[0.3, 0.1])

@@ -6,6 +6,7 @@ use hydrostat::{Configuration, Parameter};
 use nalgebra::DMatrix;
 
 use crate::certainty::{Direction, correlation, covariance, directions};
+use crate::chi_square::below;
 use crate::cross_validation::{LeftOut, leave_out};
 use crate::data::{Case, Fitted, Measurement, natural_bounds};
 use crate::error::{IdentifyError, Trial};
@@ -14,6 +15,11 @@ use crate::loss::Loss;
 use crate::model::{Cases, KEPT, Observed, Refusal, residuals};
 use crate::student::{NORMAL_95, student_95};
 use crate::verdict::{Finding, Scale, findings, verdict};
+
+/// Sums of squares that are this rare, on both sides together, are none that standard deviations say.
+const RARE: f64 = 3e-3;
+/// Residuals that are so much smaller than standard deviations are none of measured numbers.
+const FAR: f64 = 0.1;
 
 /// How parameters are fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -148,19 +154,22 @@ impl Fit {
         verdict(&self.findings, |parameter| self.scale(parameter))
     }
 
-    /// Whether residuals are as large as standard deviations say, in a sentence; `None` where there are too few numbers to tell.
+    /// Whether residuals are as large as standard deviations say, in a sentence: by the chi-square distribution, on both sides, three in a
+    /// thousand being too few. `None` where there are too few numbers to tell.
     pub fn misfit(&self) -> Option<String> {
-        let freedom = self.freedom as f64;
-        if freedom < 1.0 {
-            return None;
-        }
-        let (ratio, sure) = ((self.chi_square / freedom).sqrt(), 3.0 * (2.0 / freedom).sqrt());
-        let square = self.chi_square / freedom;
-        Some(if square > 1.0 + sure {
+        let freedom = usize::try_from(self.freedom).ok().filter(|freedom| *freedom > 0)?;
+        let ratio = (self.chi_square / freedom as f64).sqrt();
+        let below = below(self.chi_square, freedom);
+        Some(if below > 1.0 - 0.5 * RARE {
             format!(
                 "residuals are {ratio:.2} times as large as their standard deviations say: these are too small, or the model misses something"
             )
-        } else if square < 1.0 - sure {
+        } else if below < 0.5 * RARE && ratio < FAR {
+            format!(
+                "residuals are far smaller than their standard deviations say ({ratio:.1e} times as large): these are too large, or the numbers \
+                 were not measured"
+            )
+        } else if below < 0.5 * RARE {
             format!("residuals are {ratio:.2} times as large as their standard deviations say: these are too large")
         } else {
             "residuals are as large as their standard deviations say".to_owned()

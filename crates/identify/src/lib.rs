@@ -9,6 +9,7 @@
 //! by itself, for any model.
 
 mod certainty;
+mod chi_square;
 mod cross_validation;
 mod data;
 mod error;

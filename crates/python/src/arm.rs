@@ -68,6 +68,12 @@ impl Arm {
         self.given.cables.iter().map(|cable| cable.name.as_str()).collect()
     }
 
+    /// Whether the stroke of each cable is commanded.
+    #[getter]
+    fn commanded(&self) -> Vec<bool> {
+        self.given.cables.iter().map(|cable| cable.stroke.is_some()).collect()
+    }
+
     /// The arm and this one are the same.
     fn same(&self, other: &Self) -> bool {
         self.given == other.given

@@ -10,6 +10,7 @@ mod figure;
 mod identification;
 mod interrupt;
 mod many;
+mod order;
 mod paths;
 mod reach;
 mod sensitivity;
@@ -43,10 +44,13 @@ mod _native {
     #[pymodule_export]
     use super::sweep::Sweep;
 
+    use numpy::{PyArray1, PyArrayMethods};
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // NumPy's interface is looked up at its first use: Ctrl-C in the midst of that would be a panic.
+        let _ = PyArray1::<f64>::zeros(module.py(), 0, false).readonly();
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -176,6 +176,11 @@ impl Follower {
         Ok(Self { follower: follower.map_err(|error| reach_error(py, error, tol))?, tol })
     }
 
+    /// A follower of its own that goes on from the same shape.
+    fn copy(&self) -> Self {
+        Self { follower: self.follower.clone(), tol: self.tol }
+    }
+
     fn follow<'py>(&mut self, py: Python<'py>, targets: Vec<Goal>) -> PyResult<FollowedFields<'py>> {
         let targets = targets_of(targets);
         let (follower, tol) = (&mut self.follower, self.tol);

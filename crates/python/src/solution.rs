@@ -1,5 +1,7 @@
 //! Configurations and their stations.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use hydrostat::{Configuration, Stability, Wrench};
 use hydrostat_files::{Note, stations_csv};
 use numpy::{PyArray1, PyReadonlyArray1};
@@ -10,6 +12,10 @@ use crate::arm::Arm;
 use crate::arrays::{field, given, shared};
 use crate::errors::wrong;
 use crate::figure::Figure;
+use crate::interrupt::interruptible;
+
+/// From so many places on Ctrl-C is listened for.
+const MANY: usize = 10_000;
 
 /// A point, or NaN where there is none.
 type Point = [f64; 2];
@@ -143,41 +149,17 @@ impl Solution {
 
     /// Stations at these places.
     fn at(&self, py: Python<'_>, s: PyReadonlyArray1<'_, f64>) -> PyResult<Stations> {
-        let places = self.places(&s)?;
-        let configuration = &self.configuration;
-        let stations = py.detach(|| {
-            let mut out = hydrostat::Stations::default();
-            for place in places {
-                let at = configuration.at(place);
-                let fields = [
-                    (&mut out.s, at.s),
-                    (&mut out.x, at.x),
-                    (&mut out.y, at.y),
-                    (&mut out.theta, at.theta),
-                    (&mut out.nu, at.nu),
-                    (&mut out.eta, at.eta),
-                    (&mut out.mu, at.mu),
-                    (&mut out.beta, at.beta),
-                    (&mut out.alpha, at.alpha),
-                    (&mut out.n_a, at.n_a),
-                    (&mut out.n_b, at.n_b),
-                    (&mut out.m, at.m),
-                ];
-                for (field, value) in fields {
-                    field.push(value);
-                }
-            }
-            out
-        });
-        Ok(Stations { stations })
+        self.stations(py, &self.places(&s)?)
     }
 
     /// So many equally spaced stations.
-    fn resampled(&self, count: usize) -> PyResult<Stations> {
+    fn resampled(&self, py: Python<'_>, count: usize) -> PyResult<Stations> {
         if count < 2 {
             return Err(wrong(format!("count: expected at least 2, found {count}")));
         }
-        Ok(Stations { stations: self.configuration.resampled(count) })
+        let length = self.configuration.arm.length;
+        let places: Vec<f64> = (0..count).map(|k| length * k as f64 / (count - 1) as f64).collect();
+        self.stations(py, &places)
     }
 
     /// The surface on the left and on the right: x and y of both, one after the other.
@@ -187,7 +169,7 @@ impl Solution {
         s: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<[Bound<'py, PyArray1<f64>>; 4]> {
         let places = self.places(&s)?;
-        let points: Vec<[Point; 2]> = places.into_iter().map(|s| self.configuration.surfaces(s)).collect();
+        let points: Vec<[Point; 2]> = each(py, &places, |s| self.configuration.surfaces(s))?;
         let column = |side: usize, k: usize| given(py, points.iter().map(|p| p[side][k]).collect());
         Ok([column(0, 0), column(0, 1), column(1, 0), column(1, 1)])
     }
@@ -204,7 +186,7 @@ impl Solution {
             return Err(PyIndexError::new_err(format!("cable: the arm has {cables} cables, counted from 0")));
         }
         let point = |s: f64| self.configuration.cable_point(cable, s).unwrap_or([f64::NAN; 2]);
-        let points: Vec<Point> = self.places(&s)?.into_iter().map(point).collect();
+        let points: Vec<Point> = each(py, &self.places(&s)?, point)?;
         Ok([0, 1].map(|k| given(py, points.iter().map(|p| p[k]).collect())))
     }
 
@@ -231,7 +213,41 @@ impl Solution {
     }
 }
 
+/// What is at each of many places, without the interpreter; Ctrl-C ends it.
+fn each<T: Send>(py: Python<'_>, places: &[f64], of: impl Fn(f64) -> T + Sync + Send) -> PyResult<Vec<T>> {
+    if places.len() < MANY {
+        return Ok(py.detach(|| places.iter().map(|s| of(*s)).collect()));
+    }
+    let work =
+        |stop: &AtomicBool| places.iter().take_while(|_| !stop.load(Ordering::Relaxed)).map(|s| of(*s)).collect();
+    interruptible(py, |_| Ok(()), work)
+}
+
 impl Solution {
+    fn stations(&self, py: Python<'_>, places: &[f64]) -> PyResult<Stations> {
+        let mut out = hydrostat::Stations::default();
+        for at in each(py, places, |s| self.configuration.at(s))? {
+            let fields = [
+                (&mut out.s, at.s),
+                (&mut out.x, at.x),
+                (&mut out.y, at.y),
+                (&mut out.theta, at.theta),
+                (&mut out.nu, at.nu),
+                (&mut out.eta, at.eta),
+                (&mut out.mu, at.mu),
+                (&mut out.beta, at.beta),
+                (&mut out.alpha, at.alpha),
+                (&mut out.n_a, at.n_a),
+                (&mut out.n_b, at.n_b),
+                (&mut out.m, at.m),
+            ];
+            for (field, value) in fields {
+                field.push(value);
+            }
+        }
+        Ok(Stations { stations: out })
+    }
+
     /// Places along the arm.
     fn places(&self, s: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
         let places: Vec<f64> = s.as_array().iter().copied().collect();

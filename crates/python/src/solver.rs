@@ -25,6 +25,17 @@ impl Solver {
         Ok(Self { solver: solver.map_err(|error| solve_error(py, error, tol))?, tol })
     }
 
+    /// A solver of its own that goes on from the same shape.
+    fn copy(&self) -> Self {
+        Self { solver: self.solver.clone(), tol: self.tol }
+    }
+
+    /// Tensions that were set last, N; those of commanded cables are what the last solve began with.
+    #[getter]
+    fn tensions(&self) -> Vec<f64> {
+        self.solver.arm().cables.iter().map(|cable| cable.tension).collect()
+    }
+
     fn set_tensions(&mut self, tensions: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         let tensions = finite("tensions", &tensions, false)?;
         self.solver.set_tensions(&tensions).map_err(|error| wrong(format!("tensions: {error}")))

@@ -197,7 +197,7 @@ fn while_asked<T: Send>(
 }
 
 /// Tells `progress` how many rows are done.
-fn say(py: Python<'_>, progress: Option<&Py<PyAny>>, rows: u64) -> PyResult<()> {
+pub(crate) fn say(py: Python<'_>, progress: Option<&Py<PyAny>>, rows: u64) -> PyResult<()> {
     if let Some(progress) = progress {
         progress.call1(py, (rows,))?;
     }

@@ -1,0 +1,128 @@
+"""Many rows at once: their order, what is no number, threads, derivatives."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import hydrostat as hs
+
+TIGHT = 1e-10
+
+
+@pytest.fixture(scope="module")
+def loads() -> tuple[Any, Any]:
+    random = np.random.default_rng(5)
+    return random.uniform(0.0, 0.4, (60, 2)), random.uniform(0.0, 0.1, 60)
+
+
+def test_rows_come_in_the_order_asked_for(silicone: hs.Arm, loads: tuple[Any, Any]) -> None:
+    tensions, speed = loads
+    many = hs.solve_many(silicone, tensions=tensions, flow_speed=speed, tol=TIGHT)
+    for k in range(0, 60, 7):
+        alone = silicone.solve(tensions=tensions[k], flow_speed=speed[k], tol=TIGHT)
+        assert (many.tip_x[k], many.tip_y[k]) == pytest.approx((alone.tip.x, alone.tip.y), abs=1e-9 * silicone.length)
+        assert many.stroke[k] == pytest.approx([cable.stroke for cable in alone.cables], abs=1e-8)
+    # Material starts a row anew; it comes out in its place all the same.
+    stiff = hs.solve_many(silicone, vary={"material.young": [2e5, 1e5, 2e5, 1e5]}, tensions=[0.1, 0.0])
+    assert stiff.tip_y[0] == stiff.tip_y[2] < stiff.tip_y[1] == stiff.tip_y[3]
+
+
+def test_rows_do_not_depend_on_the_number_of_threads(silicone: hs.Arm, loads: tuple[Any, Any]) -> None:
+    tensions, speed = loads
+    one, two = (
+        hs.solve_many(silicone, tensions=tensions, flow_speed=speed, threads=threads, tile=16) for threads in (1, 2)
+    )
+    assert all(one[name].tobytes() == two[name].tobytes() for name in one)
+
+
+def test_rows_with_nan_are_rows_without_an_answer(silicone: hs.Arm) -> None:
+    nan = np.nan
+    many = hs.solve_many(silicone, tensions=[[0.1, 0.0], [nan, 0.0], [0.2, 0.0]], flow_speed=[[0.0], [nan]])
+    assert many.verdict.tolist() == [["", "not_a_number", ""], ["not_a_number"] * 3]
+    assert many.reason[0, 1] == "`cable[0].tension` is not a number"
+    assert many.reason[1, 0] == "`flow.speed` is not a number"
+    assert np.isnan(many.tip_x[1]).all() and np.isnan(many.stroke[0, 1]).all() and not np.isnan(many.tip_x[0, [0, 2]]).any()
+    masked = np.ma.masked_invalid([0.0, nan])
+    nullable = pd.Series([0.0, None], dtype="Float64")
+    missing: list[Any] = [masked, nullable, nullable.array]
+    for speed in missing:
+        assert hs.solve_many(silicone, flow_speed=speed).verdict.tolist() == ["", "not_a_number"]
+        with pytest.raises(ValueError, match=r"^flow_speed: expected .*(1,)"):
+            hs.solve_many(silicone, flow_speed=speed, nan="refuse")
+    with pytest.raises(ValueError, match="^nan: expected row or refuse"):
+        hs.solve_many(silicone, nan="drop")
+    with pytest.raises(ValueError, match=r"^tensions: .*masked one at index \(1,\)"):
+        silicone.solve(tensions=np.ma.masked_invalid([0.0, nan]))
+
+
+def test_failing_rows_that_are_alike_are_solved_once(silicone: hs.Arm) -> None:
+    pulls = np.zeros((2000, 2))
+    pulls[:, 0] = 1.4
+    start = time.perf_counter()
+    one = hs.solve_many(silicone, tensions=pulls[:1])
+    alone = time.perf_counter() - start
+    start = time.perf_counter()
+    many = hs.solve_many(silicone, tensions=pulls)
+    assert time.perf_counter() - start < 20.0 * alone + 1.0
+    assert set(many.reason.tolist()) == set(one.reason.tolist()) and "folds" in one.reason[0]
+    assert (many["load_fraction"] == one["load_fraction"][0]).all()
+
+
+def test_one_mistake_has_its_reason_in_a_row(silicone: hs.Arm) -> None:
+    weak = silicone.replace({"cable[0].max_tension": 0.3})
+    with pytest.raises(ValueError, match="above its max_tension of 0.3 N"):
+        weak.solve(tensions=[0.5, 0.0])
+    many = hs.solve_many(weak, tensions=[[0.2, 0.0], [0.5, 0.0]])
+    assert many.verdict.tolist() == ["", "no_arm"]
+    assert "`cable[0].tension` is 0.5 N, above its max_tension of 0.3 N" in many.reason[1]
+
+
+def test_gradients_are_those_of_the_solver(silicone: hs.Arm) -> None:
+    names = ["cable[0].tension", "cable[1].tension", "material.young", "flow.direction"]
+    tensions = np.array([[0.1, 0.02], [0.3, 0.0], [1.4, 0.0], [0.2, 0.1]])
+    arm = silicone.replace(flow_speed=0.05)
+    many = hs.solve_many(arm, tensions=tensions, gradients=names, tol=TIGHT)
+    assert many.parameters == tuple(names)
+    assert many["d_stroke"].shape == (4, 2, 4)
+    for k in (0, 1, 3):
+        found = arm.replace(tensions=tensions[k]).sensitivities(names, tol=TIGHT)
+        size = np.abs(found.jacobian()).max(axis=0)
+        for name in ("x", "y", "theta", "alpha"):
+            assert (np.abs(many[f"d_tip_{name}"][k] - getattr(found.tip, name)) <= 1e-6 * size).all(), name
+        assert (np.abs(many["d_stroke"][k] - found.strokes) <= 1e-6 * size).all()
+    assert np.isnan(many["d_tip_x"][2]).all()
+    own = hs.solve_many(arm, vary={"tip.moment": [0.0, 1e-4]}, gradients=True)
+    assert own.parameters == ("cable[0].tension", "cable[1].tension", "tip.moment")
+    dataset = own.to_xarray("moment")
+    assert dataset.d_stroke.dims == ("moment", "cable", "parameter")
+    assert hs.solve_many(arm, vary={"cable[0].stroke": [0.01]}, gradients=True).parameters[0] == "cable[0].stroke"
+    with pytest.raises(ValueError, match="^gradients: .*flow.sped"):
+        hs.solve_many(arm, gradients=["flow.sped"])
+    with pytest.raises(TypeError, match="^gradients: expected true, false or a list"):
+        hs.solve_many(arm, gradients="flow.speed")
+
+
+def test_a_bar_is_drawn_where_it_is_asked_for(silicone: hs.Arm, capsys: pytest.CaptureFixture[str]) -> None:
+    hs.solve_many(silicone, flow_speed=np.linspace(0.0, 0.1, 30), progress=True)
+    assert "30 of 30 rows" in capsys.readouterr().err
+    hs.solve_many(silicone, flow_speed=[0.1])
+    assert not capsys.readouterr().err
+
+
+def test_what_does_not_fit_in_memory_is_refused_first(silicone: hs.Arm) -> None:
+    one = np.linspace(0.0, 0.1, 1_000_000)
+    with pytest.raises(MemoryError, match=r"^1000000000000 rows take about .* TB, .*output="):
+        hs.solve_many(silicone, flow_speed=one[:, None], vary={"tip.moment": one})
+    with pytest.raises(MemoryError, match=r"^1000000000000 rows take about .* TB, .*output="):
+        hs.sweep(silicone, {"flow.speed": "0:0.1:1000000", "cable[0].tension": "0:0.1:1000000"})
+    with pytest.raises(MemoryError, match="^1000000000000 stations"):
+        silicone.solve().resampled(10**12)
+    with pytest.raises(ValueError, match="^stations: expected at most 10000"):
+        hs.solve_many(silicone, stations=10**7)
+    with pytest.raises(ValueError, match="^shapes: expected at most 10000"):
+        hs.sweep(silicone, {"flow.speed": [0.1]}, shapes=10**7)
