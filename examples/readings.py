@@ -17,11 +17,16 @@
 # source's figure?
 
 # %%
+import warnings
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
 import hydrostat as hs
+
+# How much hangs on the tangential load, of which each of these solves warns, is what this notebook is about.
+warnings.filterwarnings("ignore", category=hs.ModelWarning)
 
 arm = hs.Arm.load("paper").replace(tensions=[40, 0], flow_speed=0.5)
 base = arm.solve()

@@ -24,6 +24,7 @@ from hydrostat._errors import (
     LimitPoint,
     LoadJump,
     MeasurementsError,
+    ModelWarning,
     NoDerivative,
     NoEquilibrium,
     NoSectionSolution,
@@ -31,6 +32,7 @@ from hydrostat._errors import (
     SectionCrushed,
 )
 from hydrostat._native import __version__
+from hydrostat._netcdf import load
 from hydrostat.arm import Arm, arms
 from hydrostat.figures import (
     Figure,
@@ -78,6 +80,7 @@ __all__ = [
     "LoadJump",
     "Many",
     "MeasurementsError",
+    "ModelWarning",
     "NoDerivative",
     "NoEquilibrium",
     "NoSectionSolution",
@@ -100,6 +103,7 @@ __all__ = [
     "arms",
     "curve_figure",
     "equilibria_figure",
+    "load",
     "map_figure",
     "over_figure",
     "path_figure",

@@ -9,6 +9,29 @@ if TYPE_CHECKING:
     from hydrostat.solution import Solution
 
 
+class ModelWarning(UserWarning):
+    """Something that should be known about an answer: its shape folds over itself, hangs on a load that is in doubt, and so on.
+
+    Raised by `Arm.solve` and `Solver.solve`, once a place of the program and kind with Python's usual filters;
+    ``warnings.filterwarnings("ignore", category=hydrostat.ModelWarning)`` ends that. `Solution.warnings` has them with their numbers.
+
+    Attributes
+    ----------
+    kind : str
+        ``"surface_fold"``, ``"strain_range"``, ``"tension_above_max"``, ``"sealed_cavity"``, ``"tangential_load"`` or
+        ``"tolerance_missed"``.
+    """
+
+    kind: str
+
+    def __init__(self, message: str, kind: str = "") -> None:
+        super().__init__(message)
+        self.kind = kind
+
+    def __reduce__(self) -> tuple[type[ModelWarning], tuple[str, str]]:
+        return type(self), (str(self), self.kind)
+
+
 class ArmError(ValueError):
     """What is given makes no arm.
 
@@ -72,7 +95,7 @@ class NoEquilibrium(RuntimeError):
     message, advice : str
         The verdict in a sentence, and what to try.
     last_good : Solution or None
-        The last good shape on the way, with the loads that it balances. A pickle leaves it out.
+        The last good shape on the way, with the loads that it balances.
     """
 
     kind: str
@@ -107,7 +130,7 @@ class NoEquilibrium(RuntimeError):
 
     def __reduce__(self) -> tuple[type[NoEquilibrium], tuple[object, ...]]:
         fields = (self.kind, self.phase, self.load_fraction, self.where, self.residual, self.message, self.advice)
-        return type(self), fields
+        return type(self), (*fields, self.last_good)
 
 
 class CableFold(NoEquilibrium):

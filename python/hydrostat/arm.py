@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hydrostat import _inputs, _native
-from hydrostat.solution import Solution
+from hydrostat._saved import Origin
+from hydrostat.solution import Solution, warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -197,6 +198,9 @@ class Arm:
     def __reduce__(self) -> tuple[Any, ...]:
         return _from_parts, self._inner.parts()
 
+    def _origin(self, maker: str, arguments: tuple[Any, ...]) -> Origin:
+        return Origin(maker, (self._inner.parts(), *arguments))
+
     def replace(
         self,
         changes: Mapping[str, object] | None = None,
@@ -277,7 +281,12 @@ class Arm:
         pulled = None if tensions is None else _inputs.numbers("tensions", tensions, 1)
         speed = None if flow_speed is None else _inputs.number("flow_speed", flow_speed, negative=False)
         reeled = None if strokes is None else _strokes(strokes)
-        return Solution(self._inner.solve(pulled, reeled, speed, _inputs.number("tol", tol)))
+        within = _inputs.number("tol", tol)
+
+        def origin() -> Origin:
+            return Origin("solve", (self._inner.parts(), None if pulled is None else pulled.tolist(), reeled, speed, within))
+
+        return warn(Solution(self._inner.solve(pulled, reeled, speed, within), origin), 2)
 
     def path(
         self,
@@ -319,7 +328,8 @@ class Arm:
         vary = f"{parameter}={_end('start', start)}:{_end('stop', stop)}"
         step = _inputs.number("longest", longest)
         points = _inputs.count("most", most)
-        return Path(_native.path(self._inner, vary, _inputs.number("tol", tol), step, points, branches))
+        asked = (vary, _inputs.number("tol", tol), step, points, branches)
+        return Path(_native.path(self._inner, *asked), self._origin("path", asked))
 
     def equilibria(self, *, tol: float = 1e-8, time_limit: float | None = None) -> Equilibria:
         """All equilibria under the arm's loads, each with its stability, whether `solve` leads to them or not.
@@ -340,7 +350,9 @@ class Arm:
         """
         from hydrostat.paths import Equilibria
 
-        return Equilibria(_native.equilibria(self._inner, _inputs.number("tol", tol), time_limit))
+        within = _inputs.number("tol", tol)
+        limit = None if time_limit is None else _inputs.number("time_limit", time_limit)
+        return Equilibria(_native.equilibria(self._inner, within, limit), self._origin("equilibria", (within, None)))
 
     def reach(
         self,
@@ -398,8 +410,8 @@ class Arm:
         most = most_of(max_tension, max_stroke)
         if by not in ("tensions", "strokes"):
             raise ValueError(f"by: expected tensions or strokes, found {by!r}")
-        found = _native.reach(self._inner, goals, most, _inputs.number("tol", tol), all, by == "strokes")
-        return Reach(found, tuple(goals))
+        asked = (goals, most, _inputs.number("tol", tol), all, by == "strokes")
+        return Reach(_native.reach(self._inner, *asked), tuple(goals), self._origin("reach", asked))
 
     def reachable(self, *, max_tension: float | None = None, spacing: float = 0.01, tol: float = 1e-7) -> Boundary:
         """What bounds the places that the tip reaches with tensions from 0 to their largest.
@@ -423,8 +435,8 @@ class Arm:
         from hydrostat.reach import Boundary
 
         most = None if max_tension is None else _inputs.number("max_tension", max_tension)
-        found = _native.reachable(self._inner, most, _inputs.number("spacing", spacing), _inputs.number("tol", tol))
-        return Boundary(found)
+        asked = (most, _inputs.number("spacing", spacing), _inputs.number("tol", tol))
+        return Boundary(_native.reachable(self._inner, *asked), self._origin("reachable", asked))
 
     def sensitivities(
         self,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hydrostat import _native
+from hydrostat import _native, _saved
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -101,7 +101,7 @@ def over_figure(
     quantity : str
         As in `path_figure`.
     """
-    found = [(float(value), all_of._inner) for value, all_of in searches.items()]
+    found = [(float(value), _saved.live(all_of._inner)) for value, all_of in searches.items()]
     return Figure(_native.over_figure(found, (name, unit, 1.0), quantity, title))
 
 

@@ -10,15 +10,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from os import PathLike, fspath
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Union, cast
 
 import numpy as np
 
-from hydrostat import _inputs, _native
+from hydrostat import _inputs, _native, _saved
 from hydrostat._progress import Line
+from hydrostat._saved import Origin
 from hydrostat.arm import Arm
 from hydrostat.figures import Figure
-from hydrostat.solution import Solution
+from hydrostat.solution import Result, Solution
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -95,7 +96,7 @@ class LeftOut(NamedTuple):
     message: str | None
 
 
-class Fit:
+class Fit(Result):
     """What measured numbers say about p parameters; see `Arm.identify`.
 
     Attributes
@@ -126,8 +127,9 @@ class Fit:
         Whether the search came to its end, in `rounds` steps and `evaluations` solves of all load cases.
     """
 
-    def __init__(self, native: _native.Fit) -> None:
+    def __init__(self, native: _native.Fit, origin: Origin) -> None:
         self._inner = native
+        self._origin = origin
         found = self._found = json.loads(native.to_json())
         self.estimates = tuple(_estimate(one) for one in found["parameters"])
         self.values = _array([one.value for one in self.estimates])
@@ -156,7 +158,17 @@ class Fit:
     @cached_property
     def solutions(self) -> dict[str, Solution]:
         """The fitted arm in the load cases, by the names of these; of many cases in the first 200."""
-        return {name: Solution(shape) for name, shape in self._inner.shapes()}
+        shapes = enumerate(self._inner.shapes())
+        return {name: Solution(shape, Origin("fitted", (self._origin, k))) for k, (name, shape) in shapes}
+
+    def __eq__(self, other: object) -> bool:
+        return self.to_json() == other.to_json() if isinstance(other, Fit) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.to_json())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _fit, (_saved.FORMAT, _native.__version__, _saved.fit_state(self._inner, self._origin))
 
     @cached_property
     def residuals(self) -> dict[str, NDArray[Any]]:
@@ -218,21 +230,20 @@ def identify(
 ) -> Fit:
     """See `Arm.identify`."""
     path, text = _table(data)
+    deviations = [sd] if isinstance(sd, str) else [_inputs.text("sd", one, "0.5 mm") for one in _inputs.items("sd", sd, "texts")]
+    asked = (_keys(fit), _priors(prior), deviations, loss, rescale, cross_validate, _inputs.number("tol", tol))
     with Line(progress) as line:
-        native = _native.identify(
-            arm._inner,
-            path,
-            text,
-            _keys(fit),
-            _priors(prior),
-            [sd] if isinstance(sd, str) else [_inputs.text("sd", one, "0.5 mm") for one in _inputs.items("sd", sd, "texts")],
-            loss,
-            rescale,
-            cross_validate,
-            _inputs.number("tol", tol),
-            line if line.shown else None,
-        )
-    return Fit(native)
+        native = _native.identify(arm._inner, path, text, *asked, line if line.shown else None)
+    if path is not None:
+        # The file may go.
+        text = FilePath(path).read_text(encoding="utf-8-sig", errors="replace")
+    return Fit(native, Origin("identify", (arm._inner.parts(), None, text, *asked, None)))
+
+
+def _fit(version: int, writer: str, state: dict[str, Any]) -> Fit:
+    _saved.check("Fit", version, writer)
+    origin = Origin(*state["origin"])
+    return Fit(cast("_native.Fit", _saved.SavedFit(state, origin)), origin)
 
 
 def _array(values: object) -> NDArray[np.float64]:

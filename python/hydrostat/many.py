@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+import sys
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from hydrostat import _inputs, _memory, _native
+from hydrostat import _inputs, _memory, _native, _saved
 from hydrostat._progress import Progress
 from hydrostat.arm import Arm, arm_of
 
@@ -75,6 +76,19 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
     def __len__(self) -> int:
         return len(self._columns)
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Many):
+            return NotImplemented
+        mine, theirs = ((one.shape, one.cables, one.parameters, one._columns) for one in (self, other))
+        return _saved.same(mine, theirs)
+
+    def __hash__(self) -> int:
+        return hash((self.shape, self.cables, self.parameters))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        state = (self.shape, self.cables, self._columns, self.parameters)
+        return _many, (_saved.FORMAT, _native.__version__, state)
+
     def __repr__(self) -> str:
         return f"<Many of shape {self.shape}: {int(self.answered.sum())} with an answer; {', '.join(self)}>"
 
@@ -121,7 +135,7 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
     def _number(self, name: str) -> NDArray[np.float64]:
         return self._columns[name].astype(np.float64, copy=False)
 
-    def to_xarray(self, *dims: str) -> xr.Dataset:
+    def to_xarray(self, *dims: Hashable) -> xr.Dataset:
         """The answers as a dataset over `dims` (``dim_0`` and so on without them), ``cable`` and ``station``. Needs xarray."""
         import xarray as xr
 
@@ -138,12 +152,68 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         return xr.Dataset(variables, coords=coordinates)
 
 
+def _many(version: int, writer: str, state: tuple[Any, ...]) -> Many:
+    _saved.check("Many", version, writer)
+    return Many(*state)
+
+
+@overload
 def solve_many(
     arm: Arm | str | PathLike[str],
     *,
-    tensions: ArrayLike | None = None,
-    flow_speed: ArrayLike | None = None,
-    vary: Mapping[str, ArrayLike] | None = None,
+    tensions: xr.DataArray,
+    flow_speed: xr.DataArray | float | None = ...,
+    vary: Mapping[str, xr.DataArray | float] | None = ...,
+    tol: float = ...,
+    tile: int = ...,
+    fold_margin: bool = ...,
+    stability: bool = ...,
+    stations: int = ...,
+    gradients: bool | Sequence[str] = ...,
+    nan: str = ...,
+    threads: int = ...,
+    progress: bool | None = ...,
+) -> xr.Dataset: ...
+@overload
+def solve_many(
+    arm: Arm | str | PathLike[str],
+    *,
+    tensions: None = ...,
+    flow_speed: xr.DataArray,
+    vary: Mapping[str, xr.DataArray | float] | None = ...,
+    tol: float = ...,
+    tile: int = ...,
+    fold_margin: bool = ...,
+    stability: bool = ...,
+    stations: int = ...,
+    gradients: bool | Sequence[str] = ...,
+    nan: str = ...,
+    threads: int = ...,
+    progress: bool | None = ...,
+) -> xr.Dataset: ...
+@overload
+def solve_many(
+    arm: Arm | str | PathLike[str],
+    *,
+    tensions: ArrayLike | None = ...,
+    flow_speed: ArrayLike | None = ...,
+    vary: Mapping[str, ArrayLike] | None = ...,
+    tol: float = ...,
+    tile: int = ...,
+    fold_margin: bool = ...,
+    stability: bool = ...,
+    stations: int = ...,
+    gradients: bool | Sequence[str] = ...,
+    nan: str = ...,
+    threads: int = ...,
+    progress: bool | None = ...,
+) -> Many: ...
+def solve_many(
+    arm: Arm | str | PathLike[str],
+    *,
+    tensions: ArrayLike | xr.DataArray | None = None,
+    flow_speed: ArrayLike | xr.DataArray | None = None,
+    vary: Mapping[str, ArrayLike] | Mapping[str, xr.DataArray | float] | None = None,
     tol: float = 1e-6,
     tile: int = 256,
     fold_margin: bool = False,
@@ -153,10 +223,10 @@ def solve_many(
     nan: str = "row",
     threads: int = 0,
     progress: bool | None = False,
-) -> Many:
+) -> Many | xr.Dataset:
     """Solve an arm at many values at once, on all processors.
 
-    Inputs broadcast together as NumPy's do. Rows are solved in an order in which each is near the one before, and rows that are alike
+    Inputs broadcast together as NumPy's do; xarray's DataArrays by their dimensions, with single numbers beside them. Rows are solved in an order in which each is near the one before, and rows that are alike
     once; they come in the order asked for. Ctrl-C interrupts it.
 
     Parameters
@@ -164,7 +234,7 @@ def solve_many(
     arm : Arm, str or path
         The arm, or the name or file of one.
     tensions : array_like, shape (..., cables), optional
-        N; the last dimension is the cables'.
+        N; the last dimension is the cables' (of a DataArray the one that is called ``cable``, where there is one).
     flow_speed : array_like, optional
         m/s.
     vary : mapping of str to array_like, optional
@@ -193,6 +263,8 @@ def solve_many(
     -------
     Many
         Arrays by name.
+    xarray.Dataset
+        The same over the inputs' dimensions, with their coordinates, where one of them is a DataArray.
 
     Raises
     ------
@@ -219,6 +291,13 @@ def solve_many(
     arm = arm_of(arm)
     if nan not in ("row", "refuse"):
         raise ValueError(f"nan: expected row or refuse, found {nan!r}")
+    labelled = _labelled(tensions, flow_speed, vary)
+    if labelled is not None:
+        tensions, flow_speed, vary, like = labelled
+        options: dict[str, Any] = {"tol": tol, "tile": tile, "fold_margin": fold_margin, "stability": stability, "stations": stations}
+        options |= {"gradients": gradients, "nan": nan, "threads": threads, "progress": progress}
+        many = solve_many(arm, tensions=tensions, flow_speed=flow_speed, vary=vary, **options)
+        return many.to_xarray(*like.dims).assign_coords(like.coords)
     cables = arm.cables
     given, names = _given(arm, tensions, flow_speed, vary, missing=nan == "row")
     try:
@@ -257,6 +336,50 @@ def solve_many(
         else:
             out[name] = column.reshape(shape + tuple(sizes[dim] for dim in _DIMS.get(name, ())))
     return Many(shape, cables, out, tuple(by))
+
+
+def _labelled(tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, Any, xr.DataArray] | None:
+    """Inputs as arrays of one shape, and one with all dimensions and coordinates, where some are DataArrays."""
+    named = {"tensions": tensions, "flow_speed": flow_speed}
+    others = {f"vary[{key!r}]": values for key, values in vary.items()} if isinstance(vary, Mapping) else {}
+    given = {name: values for name, values in {**named, **others}.items() if values is not None}
+    # Nothing is one whose class was never imported.
+    xarray = sys.modules.get("xarray")
+    if xarray is None or not any(isinstance(values, xarray.DataArray) for values in given.values()):
+        return None
+    arrays: dict[str, xr.DataArray] = {}
+    for name, values in given.items():
+        if isinstance(values, xarray.DataArray):
+            arrays[name] = values
+        elif name == "tensions" and np.ndim(values) == 1:
+            arrays[name] = xarray.DataArray(np.asarray(values), dims="cable")
+        elif np.ndim(values) == 0:
+            arrays[name] = xarray.DataArray(values)
+        else:
+            raise ValueError(f"{name}: expected a DataArray, as the others, or one number, found an array of shape {np.shape(values)}")
+    cables = None
+    if "tensions" in arrays:
+        pulled = arrays["tensions"]
+        if not pulled.dims:
+            raise ValueError("tensions: expected a dimension of the cables, found one number")
+        cables = "cable" if "cable" in pulled.dims else pulled.dims[-1]
+        arrays["tensions"] = pulled.transpose(..., cables)
+    rows = [array.isel({cables: 0}, drop=True) if name == "tensions" else array for name, array in arrays.items()]
+    like = xarray.broadcast(*rows)[0]
+    taken = {"cable", "station", "parameter"} & set(like.dims)
+    if taken:
+        raise ValueError(f"dims: {taken.pop()!r} is a dimension of the answers; rename that of the inputs")
+
+    def spread(name: str) -> Any:
+        array = arrays.get(name)
+        if array is None:
+            return None
+        if name != "tensions":
+            return array.broadcast_like(like).transpose(*like.dims).values
+        return array.broadcast_like(like, exclude=[cables]).transpose(*like.dims, cables).values
+
+    keys = {f"vary[{key!r}]": key for key in vary} if isinstance(vary, Mapping) else {}
+    return spread("tensions"), spread("flow_speed"), {key: spread(name) for name, key in keys.items()}, like
 
 
 def _given(

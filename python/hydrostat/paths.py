@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, cast, overload
 
 import numpy as np
 
-from hydrostat import _native
+from hydrostat import _native, _saved
+from hydrostat._saved import Origin
 from hydrostat.figures import Figure, equilibria_figure, path_figure, path_shapes_figure
-from hydrostat.solution import Solution
+from hydrostat.solution import Result, Solution
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,7 +28,7 @@ class Event(NamedTuple):
     cable: int | None
 
 
-class Branch(Sequence[Solution]):
+class Branch(Result, Sequence[Solution]):
     """Equilibria in the order in which a path meets them, as a sequence of solutions.
 
     Attributes
@@ -59,8 +60,9 @@ class Branch(Sequence[Solution]):
     unstable_directions: tuple[int | None, ...]
     events: tuple[Event, ...]
 
-    def __init__(self, path: _native.Path, index: int) -> None:
+    def __init__(self, path: _native.Path, index: int, origin: Origin) -> None:
         self._path = path
+        self._origin = origin
         self._index = index
         self._count, self.end, self.message, self.switched_at = path.branches[index]
         self.values = path.values(index)
@@ -87,10 +89,32 @@ class Branch(Sequence[Solution]):
         at = point + self._count if point < 0 else point
         if not 0 <= at < self._count:
             raise IndexError(f"point {point} of a branch of {self._count}")
-        return Solution(self._path.solution(self._index, at))
+        return Solution(self._path.solution(self._index, at), Origin("point", (self._origin, self._index, at)))
+
+    def __repr__(self) -> str:
+        return f"<Branch: {len(self)} points, {self.end}>"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Branch):
+            return NotImplemented
+        return self._index == other._index and _of(self) == _of(other)
+
+    def __hash__(self) -> int:
+        return hash((self._index, len(self)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _branch, (_of(self), self._index)
 
 
-class Path:
+def _of(branch: Branch) -> Path:
+    return Path(branch._path, branch._origin)
+
+
+def _branch(path: Path, index: int) -> Branch:
+    return path.branches[index]
+
+
+class Path(Result):
     """Equilibria over the range of one number of the arm; see `Arm.path`.
 
     Attributes
@@ -105,15 +129,27 @@ class Path:
         The branch that the solve at the start is on, then those switched to.
     """
 
-    def __init__(self, native: _native.Path) -> None:
+    def __init__(self, native: _native.Path, origin: Origin) -> None:
         self._inner = native
+        self._origin = origin
         self.parameter, self.unit, _ = native.axis
         self.range = tuple(native.range)
-        self.branches = tuple(Branch(native, index) for index in range(len(native.branches)))
+        self.branches = tuple(Branch(native, index, origin) for index in range(len(native.branches)))
 
     def __repr__(self) -> str:
         points = sum(len(branch) for branch in self.branches)
         return f"<Path over {self.parameter}: {points} points on {len(self.branches)} branch(es)>"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Path):
+            return NotImplemented
+        return _saved.same(_saved.path_state(self._inner, self._origin), _saved.path_state(other._inner, other._origin))
+
+    def __hash__(self) -> int:
+        return hash((self.parameter, self.range, len(self.branches)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _path, (_saved.FORMAT, _native.__version__, _saved.path_state(self._inner, self._origin))
 
     def to_pandas(self) -> pd.DataFrame:
         """All points, one row each: branch, parameter, tip, stability, event. Needs pandas."""
@@ -158,7 +194,7 @@ class Path:
         return plot_path(self, quantity, ax)
 
 
-class Equilibria(Sequence[Solution]):
+class Equilibria(Result, Sequence[Solution]):
     """All equilibria of an arm under its loads, in the order of the tip's angle; see `Arm.equilibria`.
 
     Attributes
@@ -173,8 +209,9 @@ class Equilibria(Sequence[Solution]):
         Of each equilibrium.
     """
 
-    def __init__(self, native: _native.Equilibria) -> None:
+    def __init__(self, native: _native.Equilibria, origin: Origin) -> None:
         self._inner = native
+        self._origin = origin
         self.complete = native.complete
         tip, base = native.angles
         self.tip_angles = (tip[0], tip[1])
@@ -196,7 +233,19 @@ class Equilibria(Sequence[Solution]):
         at = index + len(self) if index < 0 else index
         if not 0 <= at < len(self):
             raise IndexError(f"equilibrium {index} of {len(self)}")
-        return Solution(self._inner.solution(at))
+        return Solution(self._inner.solution(at), Origin("equilibrium", (self._origin, at)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Equilibria):
+            return NotImplemented
+        states = (_saved.equilibria_state(one._inner, one._origin) for one in (self, other))
+        return _saved.same(*states)
+
+    def __hash__(self) -> int:
+        return hash((len(self), self.complete))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _equilibria, (_saved.FORMAT, _native.__version__, _saved.equilibria_state(self._inner, self._origin))
 
     def __repr__(self) -> str:
         stable = sum(state == "stable" for state in self.stability)
@@ -219,3 +268,15 @@ class Equilibria(Sequence[Solution]):
         from hydrostat.plotting import plot_equilibria
 
         return plot_equilibria(self, ax)
+
+
+def _path(version: int, writer: str, state: dict[str, Any]) -> Path:
+    _saved.check("Path", version, writer)
+    origin = Origin(*state["origin"])
+    return Path(cast("_native.Path", _saved.SavedPath(state, origin)), origin)
+
+
+def _equilibria(version: int, writer: str, state: dict[str, Any]) -> Equilibria:
+    _saved.check("Equilibria", version, writer)
+    origin = Origin(*state["origin"])
+    return Equilibria(cast("_native.Equilibria", _saved.SavedEquilibria(state, origin)), origin)

@@ -6,14 +6,15 @@ import json
 from collections.abc import Sequence
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any, NamedTuple, Union, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, Union, cast, overload
 
 import numpy as np
 
-from hydrostat import _inputs, _native
+from hydrostat import _inputs, _native, _saved
+from hydrostat._saved import Origin
 from hydrostat.arm import Arm, arm_of
 from hydrostat.figures import Figure
-from hydrostat.solution import Solution, Stations, Tip
+from hydrostat.solution import Result, Solution, Stations, Tip
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,7 +56,7 @@ class Bound(NamedTuple):
     cable: int
 
 
-class Reached:
+class Reached(Result):
     """Tensions, and the shape that they lead to.
 
     Attributes
@@ -78,8 +79,9 @@ class Reached:
 
     tensions: NDArray[np.float64]
 
-    def __init__(self, native: _native.Reach, index: int, targets: tuple[Target, ...]) -> None:
+    def __init__(self, native: _native.Reach, index: int, targets: tuple[Target, ...], origin: Origin) -> None:
         self._native = native
+        self._origin = origin
         self._index = index
         self._targets = targets
         self.tensions, self.effort, self.distance, bounds, self.on_the_path, state = native.fields(index)
@@ -89,7 +91,19 @@ class Reached:
     @cached_property
     def solution(self) -> Solution:
         """The shape."""
-        return Solution(self._native.solution(self._index))
+        return Solution(self._native.solution(self._index), Origin("reached", (self._origin, self._index)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Reached):
+            return NotImplemented
+        mine, theirs = ((one._native.fields(one._index), one._targets) for one in (self, other))
+        return _saved.same(mine, theirs) and self.solution == other.solution
+
+    def __hash__(self) -> int:
+        return hash((self.tensions.tobytes(), self._targets))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _reached, (Reach(self._native, self._targets, self._origin), self._index)
 
     @cached_property
     def places(self) -> Stations:
@@ -132,12 +146,13 @@ class BoundaryPiece(NamedTuple):
     alpha: NDArray[np.float64]
 
 
-class Boundary(Sequence[BoundaryPiece]):
+class Boundary(Result, Sequence[BoundaryPiece]):
     """All that bounds what a tip reaches, and pieces inside where the image lies over itself; see `Arm.reachable`. A sequence of
     `BoundaryPiece`: edges first, then folds, then limits."""
 
-    def __init__(self, native: _native.Boundary) -> None:
+    def __init__(self, native: _native.Boundary, origin: Origin) -> None:
         self._inner = native
+        self._origin = origin
         self._pieces = tuple(_piece(one) for one in json.loads(native.to_json())["pieces"])
 
     def __len__(self) -> int:
@@ -149,6 +164,15 @@ class Boundary(Sequence[BoundaryPiece]):
     def __getitem__(self, index: slice) -> Sequence[BoundaryPiece]: ...
     def __getitem__(self, index: int | slice) -> BoundaryPiece | Sequence[BoundaryPiece]:
         return self._pieces[index]
+
+    def __eq__(self, other: object) -> bool:
+        return self.to_json() == other.to_json() if isinstance(other, Boundary) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.to_json())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _boundary, (_saved.FORMAT, _native.__version__, _saved.boundary_state(self._inner, self._origin))
 
     def __repr__(self) -> str:
         return f"<Boundary: {len(self)} piece(s)>"
@@ -176,7 +200,7 @@ def _piece(one: dict[str, Any]) -> BoundaryPiece:
     )
 
 
-class Reach(Sequence[Reached]):
+class Reach(Result, Sequence[Reached]):
     """Different tensions that reach the targets, least effort first, as a sequence; see `Arm.reach`.
 
     Attributes
@@ -187,12 +211,25 @@ class Reach(Sequence[Reached]):
         Where nothing reaches them, the nearest that was found.
     """
 
-    def __init__(self, native: _native.Reach, targets: tuple[Target, ...]) -> None:
+    def __init__(self, native: _native.Reach, targets: tuple[Target, ...], origin: Origin) -> None:
         self._inner = native
+        self._origin = origin
         count, closest = native.counts
-        self._all = tuple(Reached(native, index, targets) for index in range(count))
+        self._all = tuple(Reached(native, index, targets, origin) for index in range(count))
         self.targets = targets
-        self.closest = Reached(native, count, targets) if closest else None
+        self.closest = Reached(native, count, targets, origin) if closest else None
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Reach):
+            return NotImplemented
+        states = ((_saved.reach_state(one._inner, one._origin), one.targets) for one in (self, other))
+        return _saved.same(*states)
+
+    def __hash__(self) -> int:
+        return hash((len(self), self.targets))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _reach, (_saved.FORMAT, _native.__version__, self.targets, _saved.reach_state(self._inner, self._origin))
 
     @property
     def solutions(self) -> tuple[Reached, ...]:
@@ -227,6 +264,23 @@ class Reach(Sequence[Reached]):
         from hydrostat.plotting import plot_reach
 
         return plot_reach(self, ax)
+
+
+def _reached(reach: Reach, index: int) -> Reached:
+    found = reach.solutions if reach.closest is None else (*reach.solutions, reach.closest)
+    return found[index]
+
+
+def _reach(version: int, writer: str, targets: tuple[Target, ...], state: dict[str, Any]) -> Reach:
+    _saved.check("Reach", version, writer)
+    origin = Origin(*state["origin"])
+    return Reach(cast("_native.Reach", _saved.SavedReach(state, origin)), targets, origin)
+
+
+def _boundary(version: int, writer: str, state: dict[str, Any]) -> Boundary:
+    _saved.check("Boundary", version, writer)
+    origin = Origin(*state["origin"])
+    return Boundary(cast("_native.Boundary", _saved.SavedBoundary(state, origin)), origin)
 
 
 class Followed(NamedTuple):
@@ -328,6 +382,41 @@ class Follower:
         """
         tensions, tip, distance, reached, jumped, solves = self._inner.follow(targets_of(targets))
         return Followed(tensions, Tip(*tip), distance, reached, jumped, solves)
+
+
+    @property
+    def tensions(self) -> NDArray[np.float64]:
+        """The tensions that it is at, N, shape (cables,)."""
+        return self._inner.tensions
+
+    @property
+    def strokes(self) -> NDArray[np.float64]:
+        """How far each cable is reeled in there, m, shape (cables,)."""
+        return np.array([cable.stroke for cable in self.solution().cables])
+
+    def solution(self) -> Solution:
+        """The whole shape that it is at.
+
+        Raises
+        ------
+        RuntimeError
+            It went to a branch that no solve leads to.
+        """
+        return Solution(self._inner.solution())
+
+    def set_flow_speed(self, flow_speed: float) -> None:
+        """Another speed of the stream, m/s: the tensions stay, and the arm gives way; the next targets are followed from there.
+
+        Raises
+        ------
+        NoEquilibrium
+            The arm has none in that stream; it stays as it was.
+        """
+        self._inner.set_flow_speed(_inputs.number("flow_speed", flow_speed, negative=False))
+
+    def set_bounds(self, *, max_tension: float | None = None, max_stroke: float | None = None) -> None:
+        """Other bounds, N and m, from where it is; None for the cables' own alone."""
+        self._inner.set_bounds(most_of(max_tension, max_stroke))
 
 
 def most_of(max_tension: float | None, max_stroke: float | None) -> tuple[float | None, float | None]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
-from hydrostat import _inputs, _native
-from hydrostat.solution import Solution
+from hydrostat import _inputs, _native, _saved
+from hydrostat._saved import Origin
+from hydrostat.solution import Result, Solution
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,7 +59,7 @@ class Ellipse(NamedTuple):
         return np.stack([cos * along - sin * across, sin * along + cos * across], axis=1)
 
 
-class Sensitivities:
+class Sensitivities(Result):
     """Derivatives of a shape by parameters, in SI units and radians a unit of each parameter.
 
     They come from the converged equations (implicit function theorem), not from differences; see `Solver.sensitivities`.
@@ -98,6 +99,19 @@ class Sensitivities:
         self.tensions = native.tensions().reshape(-1, count)
         self.stations = stations
         self.poses = PoseChange(*(array.reshape(-1, count) for array in native.stations()))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Sensitivities):
+            return NotImplemented
+        states = ((_saved.sensitivities_state(one._inner), one.stations) for one in (self, other))
+        return _saved.same(*states) and self.solution == other.solution
+
+    def __hash__(self) -> int:
+        return hash((self.parameters, self.solution))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        state = _saved.sensitivities_state(self._inner)
+        return _sensitivities, (_saved.FORMAT, _native.__version__, state, self.solution, self.stations)
 
     def __repr__(self) -> str:
         return f"<Sensitivities by {', '.join(self.parameters)}>"
@@ -205,3 +219,11 @@ class Sensitivities:
         from hydrostat.plotting import plot_manipulability
 
         return plot_manipulability(self, ax, effort)
+
+
+def _sensitivities(
+    version: int, writer: str, state: dict[str, Any], solution: Solution, stations: NDArray[np.float64]
+) -> Sensitivities:
+    _saved.check("Sensitivities", version, writer)
+    saved = _saved.SavedSensitivities(state, Origin("none", ()))
+    return Sensitivities(cast("_native.Sensitivities", saved), solution, stations)

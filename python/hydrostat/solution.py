@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import html
+import warnings
+from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from os import PathLike
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
-from hydrostat import _inputs, _memory, _native
+from hydrostat import _inputs, _memory, _native, _saved
+from hydrostat._errors import ModelWarning
+from hydrostat._saved import Origin
 from hydrostat.figures import Figure, arm_figure
 
 if TYPE_CHECKING:
@@ -85,7 +92,19 @@ class Note(NamedTuple):
     message: str
 
 
-class Stations:
+class Result:
+    """What does not change: a copy is the same, and equal is what has the same bits."""
+
+    __slots__ = ()
+
+    def __copy__(self) -> Any:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Any:
+        return self
+
+
+class Stations(Result):
     """States along an arm, base to tip: twelve read-only arrays of shape (n,), which share memory with what solved them.
 
     They stay valid when this object is gone, and keep what solved them in memory (45 kB or so for an arm of two cables);
@@ -162,6 +181,20 @@ class Stations:
     def __len__(self) -> int:
         return len(self.s)
 
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not Stations:
+            return NotImplemented
+        return all(_saved.same(self._inner.field(name), other._inner.field(name)) for name in FIELDS)
+
+    def __hash__(self) -> int:
+        return hash((len(self), float(self.x[-1]), float(self.y[-1])) if len(self) else 0)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _stations, (_saved.FORMAT, _native.__version__, self.copy_arrays())
+
+    def __repr__(self) -> str:
+        return f"<Stations: {len(self)}, from {self.s[0]:g} to {self.s[-1]:g} m>" if len(self) else "<Stations: none>"
+
     def copy_arrays(self) -> dict[str, NDArray[np.float64]]:
         """The twelve fields by name, as arrays of their own that can be changed and keep nothing else in memory."""
         return {name: self._inner.field(name).copy() for name in FIELDS}
@@ -206,13 +239,64 @@ class Solution(Stations):
 
     _inner: _native.Solution
 
-    def __init__(self, native: _native.Solution) -> None:
+    def __init__(self, native: _native.Solution, origin: Origin | Callable[[], Origin] | None = None) -> None:
         self._inner = native
+        self._origin = origin
 
     def __repr__(self) -> str:
         tip = self.tip
         turned = np.degrees(tip.theta)
-        return f"<Solution of {self.arm.name!r}: tip at ({tip.x:.6g}, {tip.y:.6g}) m, turned by {turned:.4g} deg>"
+        kinds = ", ".join(note.kind for note in self.warnings)
+        notes = f"; warnings: {kinds}" if kinds else ""
+        return f"<Solution of {self.arm.name!r}: tip at ({tip.x:.6g}, {tip.y:.6g}) m, turned by {turned:.4g} deg{notes}>"
+
+    def _repr_html_(self) -> str:
+        """A small picture with the tip, the tensions and the warnings, for notebooks."""
+        tip = self.tip
+        pulls = ", ".join(f"{html.escape(cable.name)} {cable.tension:.4g} N" for cable in self.cables)
+        lines = [
+            f"<b>{html.escape(self.arm.name)}</b>",
+            f"tip at ({1e3 * tip.x:.2f}, {1e3 * tip.y:.2f}) mm, turned by {np.degrees(tip.theta):.2f}&deg;",
+            *([pulls] if pulls else []),
+            *(f"&#9888; {html.escape(note.message)}" for note in self.warnings),
+        ]
+        words = "<br>".join(lines)
+        return f'<div style="display:flex;gap:1em;align-items:center">{_picture(self)}<div>{words}</div></div>'
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Solution):
+            return NotImplemented
+        return _saved.same(_numbers(self), _numbers(other)) and self.arm.to_toml() == other.arm.to_toml()
+
+    def __hash__(self) -> int:
+        return hash((self.tip, len(self)))
+
+    def _state(self) -> dict[str, Any]:
+        origin = self._origin() if callable(self._origin) else self._origin
+        origin = origin or _saved.own_origin(self._inner, self._inner.tol)
+        return _saved.solution_state(self._inner, origin, self.__dict__.get("_stability"))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (_saved.FORMAT, _native.__version__, self._state())
+
+    def save(self, path: str | PathLike[str]) -> FilePath:
+        """Write this to a netCDF file, `path`, whose name ends in ``.nc``, from which `hydrostat.load` gives it back bit by bit.
+
+        The file is that of `to_xarray`, and can be opened as such; what else there is stands in one attribute. Needs xarray and one of
+        h5netcdf, netCDF4 and SciPy.
+
+        Examples
+        --------
+        >>> import hydrostat as hs, tempfile, pathlib
+        >>> sol = hs.Arm.load("silicone").solve(tensions=[0.2, 0])
+        >>> with tempfile.TemporaryDirectory() as directory:
+        ...     again = hs.load(sol.save(pathlib.Path(directory) / "sol.nc"))
+        >>> again == sol
+        True
+        """
+        from hydrostat._netcdf import write
+
+        return write(self, FilePath(path))
 
     @cached_property
     def arm(self) -> Arm:
@@ -341,7 +425,8 @@ class Solution(Stations):
         Returns
         -------
         xarray.Dataset
-            The fields over ``s``; ``tension``, ``cable_length`` and ``stroke`` over ``cable``; the rest as attributes.
+            The fields over ``s``; ``tension``, ``cable_length`` and ``stroke`` over ``cable``; ``warnings`` over their kinds,
+            ``warning``; the rest as attributes.
         """
         out = super().to_xarray()
         cables = self.cables
@@ -349,6 +434,9 @@ class Solution(Stations):
         out["tension"] = ("cable", np.array([c.tension for c in cables]), {"units": "N"})
         out["cable_length"] = ("cable", np.array([c.length for c in cables]), {"units": "m"})
         out["stroke"] = ("cable", np.array([c.stroke for c in cables]), {"units": "m", "long_name": "reeled in"})
+        out = out.assign_coords(warning=("warning", np.array([note.kind for note in self.warnings], dtype=np.str_)))
+        messages = np.array([note.message for note in self.warnings], dtype=np.str_)
+        out["warnings"] = ("warning", messages, {"long_name": "what should be known about this answer"})
         base = self.base_reaction
         out.attrs = {
             "arm": self.arm.name,
@@ -411,6 +499,63 @@ class Solution(Stations):
         from hydrostat.plotting import plot_strains
 
         return plot_strains(self, label=label, figure=figure)
+
+
+#: What a Python warning says of each kind; the same each time, so that Python's filters show it once.
+_WARNINGS = {
+    "surface_fold": "the surface folds over itself",
+    "strain_range": "the stretch is beyond what a linear law can mean",
+    "tension_above_max": "a commanded stroke takes more tension than the cable's max_tension",
+    "sealed_cavity": "the cavity is sealed, and the outside pressure on its wall is left out",
+    "tangential_load": "the shape hangs on the tangential load of the momentum law",
+    "tolerance_missed": "the estimated error is above the tolerance",
+}
+
+
+def warn(solution: Solution, depth: int) -> Solution:
+    """Raise a Python warning for each kind of note on an answer, of the caller `depth` calls up."""
+    for note in solution.warnings:
+        words = _WARNINGS.get(note.kind, "see its message")
+        text = f"{note.kind}: {words}; `Solution.warnings` has the numbers"
+        warnings.warn(ModelWarning(text, note.kind), stacklevel=depth + 1)
+    return solution
+
+
+def _numbers(solution: Solution) -> tuple[Any, ...]:
+    inner = solution._inner
+    fields = [inner.field(name) for name in FIELDS]
+    return inner.tol, inner.cables, inner.base_reaction, inner.error_estimate, fields
+
+
+def _stations(version: int, writer: str, fields: Mapping[str, NDArray[np.float64]]) -> Stations:
+    _saved.check("Stations", version, writer)
+    for array in fields.values():
+        array.flags.writeable = False
+    return Stations(cast("_native.Stations", _saved.SavedStations({"fields": fields}, Origin("none", ()))))
+
+
+def _restored(version: int, writer: str, state: dict[str, Any]) -> Solution:
+    _saved.check("Solution", version, writer)
+    return Solution(cast("_native.Solution", _saved.solution_of(state)), Origin(*state["origin"]))
+
+
+def _picture(solution: Solution) -> str:
+    """The outline to scale, as a small SVG: of the stations, which are at hand."""
+    x, y = solution.x, solution.y
+    try:
+        left, right = solution.surfaces(solution.s)
+    except RuntimeError:
+        # A shape that was saved and cannot be made again has its centreline.
+        left = right = np.stack([x, y], axis=1)
+    outline = 1e3 * np.concatenate([left, right[::-1]])
+    (x0, y0), (x1, y1) = outline.min(axis=0), outline.max(axis=0)
+    margin = 0.04 * max(x1 - x0, y1 - y0, 1e-9)
+    points = " ".join(f"{px:.2f},{-py:.2f}" for px, py in outline)
+    box = f"{x0 - margin:.2f} {-y1 - margin:.2f} {x1 - x0 + 2 * margin:.2f} {y1 - y0 + 2 * margin:.2f}"
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" width="180" height="120" role="img" aria-label="shape to scale">'
+        f'<polygon points="{points}" fill="#d9734e" fill-opacity="0.6" stroke="#28323c" stroke-width="{margin / 12:.3f}"/></svg>'
+    )
 
 
 def _wrench(force: list[float], moment: float) -> Wrench:

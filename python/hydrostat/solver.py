@@ -10,7 +10,7 @@ import numpy as np
 
 from hydrostat import _inputs, _native
 from hydrostat.arm import Arm, arm_of
-from hydrostat.solution import Solution, Tip
+from hydrostat.solution import Solution, Tip, warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -61,6 +61,11 @@ class Solver:
     def __deepcopy__(self, memo: object) -> Solver:
         return self.__copy__()
 
+    @property
+    def tensions(self) -> NDArray[np.float64]:
+        """The tensions that were set last, N, shape (cables,); those of cables whose strokes are commanded are in `solution`."""
+        return np.array(self._inner.tensions)
+
     def set_tensions(self, tensions: ArrayLike) -> None:
         """Set all tensions, N, shape (cables,)."""
         self._inner.set_tensions(_inputs.numbers("tensions", tensions, 1))
@@ -75,7 +80,7 @@ class Solver:
 
     def solve(self) -> Solution:
         """Solve from the unloaded arm."""
-        return Solution(self._inner.solve())
+        return warn(Solution(self._inner.solve()), 2)
 
     def resolve(self) -> Solution:
         """Solve from the last shape, or from the unloaded arm where the arm moved too far."""

@@ -146,8 +146,8 @@ TYPES: list[tuple[Callable[[hs.Arm], object], str]] = [
     (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, columns="tip"), "^columns: expected a list of names"),
     (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, columns=[1]), "^columns: expected text"),  # type: ignore[list-item]
     (lambda arm: hs.sweep(arm, ["flow.speed"]), "^vary: expected a mapping"),  # type: ignore[call-overload]
-    (lambda arm: hs.solve_many(arm, vary=[1.0]), "^vary: expected a mapping"),  # type: ignore[arg-type]
-    (lambda _: hs.solve_many(3.0), "^arm: expected an Arm, or the name or file of one, found 3.0"),  # type: ignore[arg-type]
+    (lambda arm: hs.solve_many(arm, vary=[1.0]), "^vary: expected a mapping"),  # type: ignore[call-overload]
+    (lambda _: hs.solve_many(3.0), "^arm: expected an Arm, or the name or file of one, found 3.0"),  # type: ignore[call-overload]
     (lambda _: hs.sweep(None, {"flow.speed": [0.1]}), "^arm: expected an Arm"),  # type: ignore[call-overload]
     (lambda arm: hs.Solver(arm._inner), "^arm: expected an Arm"),  # type: ignore[arg-type]
     (lambda arm: arm.sensitivities([1]), "^parameters: expected text"),  # type: ignore[list-item]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 import hydrostat as hs
 
@@ -126,3 +127,22 @@ def test_what_does_not_fit_in_memory_is_refused_first(silicone: hs.Arm) -> None:
         hs.solve_many(silicone, stations=10**7)
     with pytest.raises(ValueError, match="^shapes: expected at most 10000"):
         hs.sweep(silicone, {"flow.speed": [0.1]}, shapes=10**7)
+
+
+def test_data_arrays_give_a_dataset_with_their_dimensions(silicone: hs.Arm) -> None:
+    pulls = xr.DataArray([0.0, 0.1, 0.2], dims="pull", coords={"pull": [0.0, 0.1, 0.2]})
+    speed = xr.DataArray([0.0, 0.05], dims="speed", coords={"speed": [0.0, 0.05]}, attrs={"units": "m/s"})
+    tensions = xr.concat([pulls, 0.0 * pulls], dim="cable")
+    found = hs.solve_many(silicone, tensions=tensions, flow_speed=speed, vary={"tip.moment": 1e-5})
+    assert dict(found.sizes) == {"pull": 3, "speed": 2, "cable": 2}
+    plain = hs.solve_many(
+        silicone, tensions=np.stack([pulls, 0.0 * pulls], -1)[:, None], flow_speed=[0.0, 0.05], vary={"tip.moment": 1e-5}
+    )
+    assert found.tip_y.transpose("pull", "speed").values.tobytes() == plain.tip_y.tobytes()
+    assert found.tip_y.sel(pull=0.2, speed=0.05).item() == plain.tip_y[2, 1]
+    assert found.stroke.sel(cable="left").dims == ("pull", "speed")
+    assert hs.solve_many(silicone, flow_speed=speed).tip_x.dims == ("speed",)
+    with pytest.raises(ValueError, match="^flow_speed: expected a DataArray"):
+        hs.solve_many(silicone, tensions=tensions, flow_speed=[0.0, 0.1])
+    with pytest.raises(ValueError, match="^dims: 'station' is a dimension of the answers"):
+        hs.solve_many(silicone, flow_speed=speed.rename(speed="station"))

@@ -92,6 +92,33 @@ def test_a_follower_in_a_loop(silicone: hs.Arm) -> None:
     assert not far.reached and far.distance > 0.5
 
 
+def test_a_follower_says_where_it_is_and_takes_another_stream(silicone: hs.Arm) -> None:
+    arm = silicone.replace(tensions=[0.3, 0.1])
+    tip = arm.solve().tip
+    follower = hs.Follower(arm, (tip.x, tip.y), max_tension=0.9)
+    assert np.allclose(follower.tensions, [0.3, 0.1])
+    step = follower.follow((tip.x, tip.y - 1e-3))
+    shape = follower.solution()
+    assert (shape.tip.x, shape.tip.y) == pytest.approx((step.tip.x, step.tip.y), abs=1e-7)
+    assert follower.tensions.tolist() == step.tensions.tolist()
+    assert follower.strokes == pytest.approx([cable.stroke for cable in silicone.solve(tensions=step.tensions).cables], abs=1e-7)
+    # In another stream the tensions stay, and the next step goes back to the target.
+    follower.set_flow_speed(0.005)
+    moved = silicone.solve(tensions=step.tensions, flow_speed=0.005).tip
+    assert follower.tensions == pytest.approx(step.tensions, abs=1e-9)
+    assert (follower.solution().tip.x, follower.solution().tip.y) == pytest.approx((moved.x, moved.y), abs=1e-7)
+    back = follower.follow((tip.x, tip.y - 1e-3))
+    assert back.reached and not back.jumped
+    assert abs(back.tensions - step.tensions).max() > 1e-6
+    follower.set_bounds(max_tension=0.31)
+    far = follower.follow((tip.x - 0.03, tip.y))
+    assert not far.reached and far.tensions.max() == pytest.approx(0.31)
+    with pytest.raises(ValueError, match="^flow_speed"):
+        follower.set_flow_speed(-1.0)
+    with pytest.raises(ValueError, match="max_tension"):
+        follower.set_bounds(max_tension=-1.0)
+
+
 def test_boundaries_are_the_programs(program: Program, silicone: hs.Arm) -> None:
     words = ["reach", "silicone", "--boundary", "--max-tension", "0.2"]
     boundary = silicone.reachable(max_tension=0.2)

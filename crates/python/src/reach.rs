@@ -2,16 +2,19 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hydrostat::{Bound as TensionBound, BoundaryOptions, Configuration, ReachError, ReachOptions, Reached, Target};
+use hydrostat::{
+    Bound as TensionBound, BoundaryOptions, Configuration, Followed, Options, ReachError, ReachOptions, Reached,
+    Solver, Target,
+};
 use hydrostat_figures::{boundary_figure, reach_figure};
 use hydrostat_files::{BoundaryDocument, ReachDocument, boundary_csv, reach_csv};
 use numpy::PyArray1;
-use pyo3::exceptions::PyIndexError;
+use pyo3::exceptions::{PyIndexError, PyRuntimeError};
 use pyo3::prelude::*;
 
 use crate::arm::Arm;
 use crate::arrays::given;
-use crate::errors::reach_error;
+use crate::errors::{reach_error, solve_error, wrong};
 use crate::figure::Figure;
 use crate::interrupt::interruptible;
 use crate::solution::{Solution, words};
@@ -36,10 +39,18 @@ pub(crate) struct Reach {
 }
 
 /// What follows a path of targets.
+#[derive(Clone)]
 #[pyclass(module = "hydrostat._native")]
 pub(crate) struct Follower {
-    follower: hydrostat::Follower,
-    tol: f64,
+    inner: hydrostat::Follower,
+    arm: hydrostat::Arm,
+    options: ReachOptions,
+    /// Those of the last call.
+    targets: Vec<Target>,
+    /// Where it is, once that was asked.
+    last: Option<Followed>,
+    /// What reads whole shapes out.
+    solver: Option<Solver>,
 }
 
 fn targets_of(goals: Vec<Goal>) -> Vec<Target> {
@@ -171,22 +182,121 @@ impl Follower {
     fn new(py: Python<'_>, arm: &Arm, targets: Vec<Goal>, most: Most, tol: f64, all: bool) -> PyResult<Self> {
         let targets = targets_of(targets);
         let (max_tension, max_stroke) = most;
-        let options = ReachOptions { max_tension, max_stroke, tol, all };
-        let follower = py.detach(|| hydrostat::Follower::new(&arm.given, &targets, &options));
-        Ok(Self { follower: follower.map_err(|error| reach_error(py, error, tol))?, tol })
+        Self::start(py, arm.given.clone(), targets, ReachOptions { max_tension, max_stroke, tol, all })
     }
 
     /// A follower of its own that goes on from the same shape.
     fn copy(&self) -> Self {
-        Self { follower: self.follower.clone(), tol: self.tol }
+        self.clone()
     }
 
     fn follow<'py>(&mut self, py: Python<'py>, targets: Vec<Goal>) -> PyResult<FollowedFields<'py>> {
-        let targets = targets_of(targets);
-        let (follower, tol) = (&mut self.follower, self.tol);
-        let found = py.detach(|| follower.follow(&targets)).map_err(|error| reach_error(py, error, tol))?;
+        let found = self.go(py, targets_of(targets))?;
         let tip = found.tip;
         let tip = (tip.x, tip.y, tip.theta, tip.alpha);
         Ok((given(py, found.tensions), tip, found.distance, found.reached, found.jumped, found.solves))
+    }
+
+    /// The tensions that it is at, N.
+    #[getter]
+    fn tensions<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(given(py, self.now(py)?.tensions))
+    }
+
+    /// The whole shape.
+    fn solution(&mut self, py: Python<'_>) -> PyResult<Solution> {
+        self.shape(py).map(|found| Solution::new(found, SHAPE))
+    }
+
+    /// Another speed of the stream (m/s): the tensions stay, and the arm gives way.
+    fn set_flow_speed(&mut self, py: Python<'_>, speed: f64) -> PyResult<()> {
+        self.shape(py)?;
+        let mut arm = self.arm.clone();
+        arm.flow.speed = speed;
+        arm.check().map_err(|error| wrong(format!("flow_speed: {error}")))?;
+        let options = self.options.clone();
+        self.begin_again(py, arm, options)
+    }
+
+    /// Other bounds of all tensions and strokes.
+    fn set_bounds(&mut self, py: Python<'_>, most: Most) -> PyResult<()> {
+        self.shape(py)?;
+        let (max_tension, max_stroke) = most;
+        let options = ReachOptions { max_tension, max_stroke, ..self.options.clone() };
+        self.begin_again(py, self.arm.clone(), options)
+    }
+}
+
+/// The tolerance of shapes that are read out, over the length.
+const SHAPE: f64 = 1e-8;
+
+impl Follower {
+    fn start(py: Python<'_>, arm: hydrostat::Arm, targets: Vec<Target>, options: ReachOptions) -> PyResult<Self> {
+        let inner = py.detach(|| hydrostat::Follower::new(&arm, &targets, &options));
+        let inner = inner.map_err(|error| reach_error(py, error, options.tol))?;
+        Ok(Self { inner, arm, options, targets, last: None, solver: None })
+    }
+
+    fn go(&mut self, py: Python<'_>, targets: Vec<Target>) -> PyResult<Followed> {
+        let (inner, tol) = (&mut self.inner, self.options.tol);
+        let found = py.detach(|| inner.follow(&targets)).map_err(|error| reach_error(py, error, tol))?;
+        self.targets = targets;
+        self.last = Some(found.clone());
+        Ok(found)
+    }
+
+    fn now(&mut self, py: Python<'_>) -> PyResult<Followed> {
+        match &self.last {
+            Some(last) => Ok(last.clone()),
+            None => self.go(py, self.targets.clone()),
+        }
+    }
+
+    /// The shape that it is at: from the one read out last, or by a solve.
+    fn shape(&mut self, py: Python<'_>) -> PyResult<Configuration> {
+        let now = self.now(py)?;
+        self.arm.set_tensions(&now.tensions).map_err(wrong)?;
+        let (arm, kept) = (&self.arm, &mut self.solver);
+        let within = (1e-6 + 10.0 * self.options.tol) * arm.length;
+        let is_it = |found: &Configuration| {
+            let tip = found.tip();
+            (tip.x - now.tip.x).hypot(tip.y - now.tip.y) <= within
+        };
+        let solved = py.detach(|| {
+            let warm = kept.as_mut().and_then(|solver| {
+                solver.set_arm(arm).ok()?;
+                solver.resolve().ok().filter(is_it)
+            });
+            if let Some(found) = warm {
+                return Ok(Some(found));
+            }
+            let mut solver = Solver::new(arm, Options { tol: SHAPE })?;
+            let found = solver.solve()?;
+            *kept = Some(solver);
+            Ok(is_it(&found).then_some(found))
+        });
+        let found = solved.map_err(|error| solve_error(py, error, SHAPE))?;
+        found.ok_or_else(|| {
+            PyRuntimeError::new_err("the follower is at a shape that no solve from the unloaded arm leads to")
+        })
+    }
+
+    /// From the shape that the present tensions lead to with another arm or other bounds, the targets being where its places are.
+    fn begin_again(&mut self, py: Python<'_>, arm: hydrostat::Arm, options: ReachOptions) -> PyResult<()> {
+        let Some(solver) = &mut self.solver else { return Ok(()) };
+        let mut moved = solver.clone();
+        let found = py.detach(|| {
+            moved.set_arm(&arm)?;
+            moved.resolve()
+        });
+        let found = found.map_err(|error| solve_error(py, error, SHAPE))?;
+        let length = arm.length;
+        let target = |old: &Target| {
+            let at = found.at(old.s.unwrap_or(length));
+            Target { x: at.x, y: at.y, angle: old.angle.map(|_| at.theta), ..*old }
+        };
+        let targets = self.targets.iter().map(target).collect();
+        *self = Self { solver: Some(moved), ..Self::start(py, arm, targets, options)? };
+        Ok(())
     }
 }

@@ -68,6 +68,12 @@ impl Solution {
         Ok(shared(slf.clone().into_any(), field(stations, name)?))
     }
 
+    /// The tolerance that was asked for.
+    #[getter]
+    fn tol(&self) -> f64 {
+        self.tol
+    }
+
     /// The arm with the loads that are balanced.
     #[getter]
     fn arm(&self, py: Python<'_>) -> PyResult<Arm> {

@@ -1,0 +1,42 @@
+"""What should be known about an answer reaches whoever asked."""
+
+from __future__ import annotations
+
+import pickle
+import warnings
+
+import pytest
+
+import hydrostat as hs
+
+
+def test_a_warning_once_a_kind(silicone: hs.Arm) -> None:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("default")
+        for speed in (0.1, 0.11, 0.12):
+            silicone.solve(tensions=[0.2, 0.0], flow_speed=speed)
+    assert [warning.category for warning in caught] == [hs.ModelWarning]
+    only = caught[0].message
+    assert isinstance(only, hs.ModelWarning) and only.kind == "tangential_load"
+    assert caught[0].filename == __file__
+    again = pickle.loads(pickle.dumps(only))
+    assert (str(again), again.kind) == (str(only), only.kind)
+
+
+def test_warnings_can_be_errors_and_can_be_let_be(silicone: hs.Arm) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert silicone.solve(tensions=[0.2, 0.0]).warnings == ()
+        with pytest.raises(hs.ModelWarning, match=r"^tangential_load: .*`Solution.warnings`"):
+            silicone.solve(flow_speed=0.1, tensions=[0.2, 0.0])
+        solver = hs.Solver(silicone.replace(flow_speed=0.1, tensions=[0.2, 0.0]))
+        with pytest.raises(hs.ModelWarning):
+            solver.solve()
+        warnings.filterwarnings("ignore", category=hs.ModelWarning)
+        bent = silicone.solve(flow_speed=0.1, tensions=[0.2, 0.0])
+    assert "warnings: tangential_load" in repr(bent)
+    page = bent._repr_html_()
+    assert "momentum law" in page and page.count("<svg") == 1 and len(page) < 6000
+    dataset = bent.to_xarray()
+    assert dataset.warnings.dims == ("warning",) and dataset.warning.values.tolist() == ["tangential_load"]
+    assert "warnings" not in repr(silicone.solve())
