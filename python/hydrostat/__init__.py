@@ -13,7 +13,7 @@ as the file reads them: bare angles in degrees, strings with units.
 (0.181, 0.075)
 >>> try:
 ...     arm.solve(tensions=[1.5, 0])
-... except hs.NoEquilibrium as no:
+... except hs.NoEquilibriumError as no:
 ...     print(no.kind, round(no.load_fraction, 4), no.where)
 cable_fold 0.6288 0.245
 """
@@ -21,15 +21,23 @@ cable_fold 0.6288 0.245
 from hydrostat._errors import (
     ArmError,
     CableFold,
+    CableFoldError,
     LimitPoint,
+    LimitPointError,
     LoadJump,
+    LoadJumpError,
     MeasurementsError,
     ModelWarning,
     NoDerivative,
+    NoDerivativeError,
     NoEquilibrium,
+    NoEquilibriumError,
     NoSectionSolution,
+    NoSectionSolutionError,
     NotFound,
+    NotFoundError,
     SectionCrushed,
+    SectionCrushedError,
 )
 from hydrostat._native import __version__
 from hydrostat._netcdf import load
@@ -48,10 +56,10 @@ from hydrostat.figures import (
 )
 from hydrostat.identification import Estimate, Fit, LeftOut
 from hydrostat.many import Many, solve_many
-from hydrostat.paths import Branch, Equilibria, Event, Path
+from hydrostat.paths import Branch, Equilibria, EquilibriumPath, Event, Path
 from hydrostat.reach import Bound, Boundary, BoundaryPiece, Followed, Follower, Reach, Reached, Target
 from hydrostat.sensitivity import Ellipse, PoseChange, Sensitivities
-from hydrostat.solution import CableState, Command, FoldMargin, Note, Solution, Stations, Tip, Wrench
+from hydrostat.solution import CableState, Command, FoldMargin, Note, Solution, Stations, Tip, Wrench, animate
 from hydrostat.solver import Answer, Solver
 from hydrostat.sweep import sweep
 
@@ -64,10 +72,12 @@ __all__ = [
     "BoundaryPiece",
     "Branch",
     "CableFold",
+    "CableFoldError",
     "CableState",
     "Command",
     "Ellipse",
     "Equilibria",
+    "EquilibriumPath",
     "Estimate",
     "Event",
     "Figure",
@@ -77,20 +87,27 @@ __all__ = [
     "Follower",
     "LeftOut",
     "LimitPoint",
+    "LimitPointError",
     "LoadJump",
+    "LoadJumpError",
     "Many",
     "MeasurementsError",
     "ModelWarning",
     "NoDerivative",
+    "NoDerivativeError",
     "NoEquilibrium",
+    "NoEquilibriumError",
     "NoSectionSolution",
+    "NoSectionSolutionError",
     "NotFound",
+    "NotFoundError",
     "Note",
     "Path",
     "PoseChange",
     "Reach",
     "Reached",
     "SectionCrushed",
+    "SectionCrushedError",
     "Sensitivities",
     "Solution",
     "Solver",
@@ -99,6 +116,7 @@ __all__ = [
     "Tip",
     "Wrench",
     "__version__",
+    "animate",
     "arm_figure",
     "arms",
     "curve_figure",

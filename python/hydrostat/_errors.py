@@ -1,4 +1,4 @@
-"""Exceptions: a wrong request is a `ValueError`, no equilibrium is a `NoEquilibrium` with the verdict's fields."""
+"""Exceptions: a wrong request is a `ValueError`, no equilibrium is a `NoEquilibriumError` with the verdict's fields."""
 
 from __future__ import annotations
 
@@ -74,10 +74,10 @@ class MeasurementsError(ValueError):
         return type(self), (str(self), self.row, self.column)
 
 
-class NoEquilibrium(RuntimeError):
+class NoEquilibriumError(RuntimeError):
     """The arm has no such equilibrium, or none was found.
 
-    The subclasses say which limit was met: `CableFold`, `SectionCrushed`, `NoSectionSolution`, `LimitPoint`, `LoadJump`, `NotFound`.
+    The subclasses say which limit was met: `CableFoldError`, `SectionCrushedError`, `NoSectionSolutionError`, `LimitPointError`, `LoadJumpError`, `NotFoundError`.
 
     Attributes
     ----------
@@ -128,46 +128,46 @@ class NoEquilibrium(RuntimeError):
         self.advice = advice
         self.last_good = last_good
 
-    def __reduce__(self) -> tuple[type[NoEquilibrium], tuple[object, ...]]:
+    def __reduce__(self) -> tuple[type[NoEquilibriumError], tuple[object, ...]]:
         fields = (self.kind, self.phase, self.load_fraction, self.where, self.residual, self.message, self.advice)
         return type(self), (*fields, self.last_good)
 
 
-class CableFold(NoEquilibrium):
+class CableFoldError(NoEquilibriumError):
     """A cable folds its side of the arm shut."""
 
 
-class SectionCrushed(NoEquilibrium):
+class SectionCrushedError(NoEquilibriumError):
     """Net compression crushes the section."""
 
 
-class NoSectionSolution(NoEquilibrium):
+class NoSectionSolutionError(NoEquilibriumError):
     """No section strains carry the contact force."""
 
 
-class LimitPoint(NoEquilibrium):
+class LimitPointError(NoEquilibriumError):
     """The equilibrium path turns back: past this load the arm would snap to another shape."""
 
 
-class LoadJump(NoEquilibrium):
+class LoadJumpError(NoEquilibriumError):
     """The load of the stream jumps against the motion, so that no shape balances it."""
 
 
-class NotFound(NoEquilibrium):
+class NotFoundError(NoEquilibriumError):
     """No limit was established: the solver gave up."""
 
 
-class NoDerivative(ArithmeticError):
+class NoDerivativeError(ArithmeticError):
     """The equilibrium has no derivative: it is at a limit point or a bifurcation, or could not be settled closely enough."""
 
 
-_KINDS: dict[str, type[NoEquilibrium]] = {
-    "cable_fold": CableFold,
-    "section_crushed": SectionCrushed,
-    "no_section_solution": NoSectionSolution,
-    "limit_point": LimitPoint,
-    "load_jump": LoadJump,
-    "not_found": NotFound,
+_KINDS: dict[str, type[NoEquilibriumError]] = {
+    "cable_fold": CableFoldError,
+    "section_crushed": SectionCrushedError,
+    "no_section_solution": NoSectionSolutionError,
+    "limit_point": LimitPointError,
+    "load_jump": LoadJumpError,
+    "not_found": NotFoundError,
 }
 
 
@@ -180,9 +180,20 @@ def no_equilibrium(
     message: str,
     advice: str,
     last_good: _native.Solution | None,
-) -> NoEquilibrium:
+) -> NoEquilibriumError:
     """The exception of a verdict; called by the extension module."""
     from hydrostat.solution import Solution
 
     shape = None if last_good is None else Solution(last_good)
-    return _KINDS.get(kind, NoEquilibrium)(kind, phase, load_fraction, where, residual, message, advice, shape)
+    return _KINDS.get(kind, NoEquilibriumError)(kind, phase, load_fraction, where, residual, message, advice, shape)
+
+
+# The names of version 0.1, kept for a version.
+NoEquilibrium = NoEquilibriumError
+CableFold = CableFoldError
+SectionCrushed = SectionCrushedError
+NoSectionSolution = NoSectionSolutionError
+LimitPoint = LimitPointError
+LoadJump = LoadJumpError
+NotFound = NotFoundError
+NoDerivative = NoDerivativeError

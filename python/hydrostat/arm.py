@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from hydrostat.identification import Fit, Keys, Measured, Priors
-    from hydrostat.paths import Equilibria, Path
+    from hydrostat.paths import Equilibria, EquilibriumPath
     from hydrostat.reach import Boundary, Reach, Targets
     from hydrostat.sensitivity import Sensitivities
 
@@ -273,7 +273,7 @@ class Arm:
 
         Raises
         ------
-        NoEquilibrium
+        NoEquilibriumError
             With the verdict's fields.
         ValueError
             An argument that cannot be meant, named.
@@ -298,7 +298,7 @@ class Arm:
         longest: float = 0.2,
         most: int = 1000,
         branches: bool = False,
-    ) -> Path:
+    ) -> EquilibriumPath:
         """The equilibria while one number of the arm runs from `start` towards `stop`, through limit points and bifurcations.
 
         Ctrl-C interrupts it.
@@ -320,16 +320,16 @@ class Arm:
 
         Raises
         ------
-        NoEquilibrium
+        NoEquilibriumError
             There is none to start from.
         """
-        from hydrostat.paths import Path
+        from hydrostat.paths import EquilibriumPath
 
         vary = f"{parameter}={_end('start', start)}:{_end('stop', stop)}"
         step = _inputs.number("longest", longest)
         points = _inputs.count("most", most)
         asked = (vary, _inputs.number("tol", tol), step, points, branches)
-        return Path(_native.path(self._inner, *asked), self._origin("path", asked))
+        return EquilibriumPath(_native.path(self._inner, *asked), self._origin("path", asked))
 
     def equilibria(self, *, tol: float = 1e-8, time_limit: float | None = None) -> Equilibria:
         """All equilibria under the arm's loads, each with its stability, whether `solve` leads to them or not.
@@ -510,7 +510,7 @@ class Arm:
         ------
         MeasurementsError
             A `ValueError` that names file, row and column.
-        NoEquilibrium
+        NoEquilibriumError
             A load case has none where the search starts; a note names it.
         ValueError
             An argument that cannot be meant, named.

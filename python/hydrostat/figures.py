@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from hydrostat.arm import Arm
-    from hydrostat.paths import Equilibria, Path
+    from hydrostat.paths import Equilibria, EquilibriumPath
     from hydrostat.solution import Solution
 
 
@@ -66,7 +66,7 @@ def arm_figure(solution: Solution, note: str | None = None) -> Figure:
     return Figure(solution._inner.figure(note))
 
 
-def path_figure(path: Path, quantity: str = "tip.y", title: str | None = None) -> Figure:
+def path_figure(path: EquilibriumPath, quantity: str = "tip.y", title: str | None = None) -> Figure:
     """A quantity along a path: stable pieces solid, unstable ones dashed, events marked.
 
     Parameters
@@ -77,7 +77,7 @@ def path_figure(path: Path, quantity: str = "tip.y", title: str | None = None) -
     return Figure(path._inner.figure(quantity, title or f"equilibria over {path.parameter}"))
 
 
-def path_shapes_figure(path: Path, title: str | None = None) -> Figure:
+def path_shapes_figure(path: EquilibriumPath, title: str | None = None) -> Figure:
     """Shapes along a path, to scale."""
     return Figure(path._inner.shapes_figure(title or f"equilibria over {path.parameter}"))
 

@@ -106,15 +106,15 @@ class Branch(Result, Sequence[Solution]):
         return _branch, (_of(self), self._index)
 
 
-def _of(branch: Branch) -> Path:
-    return Path(branch._path, branch._origin)
+def _of(branch: Branch) -> EquilibriumPath:
+    return EquilibriumPath(branch._path, branch._origin)
 
 
-def _branch(path: Path, index: int) -> Branch:
+def _branch(path: EquilibriumPath, index: int) -> Branch:
     return path.branches[index]
 
 
-class Path(Result):
+class EquilibriumPath(Result):
     """Equilibria over the range of one number of the arm; see `Arm.path`.
 
     Attributes
@@ -138,10 +138,10 @@ class Path(Result):
 
     def __repr__(self) -> str:
         points = sum(len(branch) for branch in self.branches)
-        return f"<Path over {self.parameter}: {points} points on {len(self.branches)} branch(es)>"
+        return f"<EquilibriumPath over {self.parameter}: {points} points on {len(self.branches)} branch(es)>"
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Path):
+        if not isinstance(other, EquilibriumPath):
             return NotImplemented
         return _saved.same(_saved.path_state(self._inner, self._origin), _saved.path_state(other._inner, other._origin))
 
@@ -270,13 +270,17 @@ class Equilibria(Result, Sequence[Solution]):
         return plot_equilibria(self, ax)
 
 
-def _path(version: int, writer: str, state: dict[str, Any]) -> Path:
+def _path(version: int, writer: str, state: dict[str, Any]) -> EquilibriumPath:
     _saved.check("Path", version, writer)
     origin = Origin(*state["origin"])
-    return Path(cast("_native.Path", _saved.SavedPath(state, origin)), origin)
+    return EquilibriumPath(cast("_native.Path", _saved.SavedPath(state, origin)), origin)
 
 
 def _equilibria(version: int, writer: str, state: dict[str, Any]) -> Equilibria:
     _saved.check("Equilibria", version, writer)
     origin = Origin(*state["origin"])
     return Equilibria(cast("_native.Equilibria", _saved.SavedEquilibria(state, origin)), origin)
+
+
+# The name of version 0.1, kept for a version.
+Path = EquilibriumPath

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from os import PathLike
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.typing import ColorType
     from numpy.typing import NDArray
 
     from hydrostat.identification import Fit
-    from hydrostat.paths import Equilibria, Path
+    from hydrostat.paths import Equilibria, EquilibriumPath
     from hydrostat.reach import Reach
     from hydrostat.sensitivity import Sensitivities
     from hydrostat.solution import Solution
@@ -36,35 +42,62 @@ def _new_axes(ax: Axes | None) -> Axes:
     return plt.subplots(figsize=(6.4, 4.2), layout="constrained")[1]
 
 
+#: How many of a unit of length a metre is.
+UNITS = {"mm": 1e3, "cm": 1e2, "m": 1.0}
+#: The units of axes on which shapes were drawn.
+_DRAWN: WeakKeyDictionary[Axes, str] = WeakKeyDictionary()
+
+
+def _unit_of(ax: Axes, unit: str | None) -> str:
+    """The unit of an axis: what was drawn there before decides."""
+    if unit is not None and unit not in UNITS:
+        raise ValueError(f"unit: expected one of {', '.join(UNITS)}, found {unit!r}")
+    drawn = _DRAWN.get(ax)
+    if drawn is not None and unit not in (None, drawn):
+        raise ValueError(f"unit: these axes are in {drawn}; expected that or none, found {unit!r}")
+    _DRAWN[ax] = drawn or unit or "mm"
+    return _DRAWN[ax]
+
+
 def plot_shape(
-    solution: Solution, ax: Axes | None, *, color: ColorType, sections: int, cables: bool, flow: bool, label: str | None
+    solution: Solution,
+    ax: Axes | None,
+    *,
+    color: ColorType,
+    sections: int,
+    cables: bool,
+    flow: bool,
+    label: str | None,
+    unit: str | None = None,
 ) -> Axes:
     """See `Solution.plot`."""
     ax = _new_axes(ax)
+    name = _unit_of(ax, unit)
+    per_m = UNITS[name]
     arm = solution.arm
     s = np.linspace(0.0, arm.length, _POINTS)
-    left, right = (_MM * side for side in solution.surfaces(s))
+    left, right = (per_m * side for side in solution.surfaces(s))
     outline = np.concatenate([left, right[::-1]])
     ax.fill(outline[:, 0], outline[:, 1], facecolor=color, edgecolor=_INK, linewidth=0.8, alpha=0.55, label=label, zorder=2)
     if sections > 0:
         at = np.linspace(0.0, arm.length, sections)
         for one, other in zip(*solution.surfaces(at), strict=True):
-            ax.plot(*(_MM * np.stack([one, other])).T, color=_INK, linewidth=0.4, alpha=0.6, zorder=3)
+            ax.plot(*(per_m * np.stack([one, other])).T, color=_INK, linewidth=0.4, alpha=0.6, zorder=3)
     line = solution.at(s)
-    ax.plot(_MM * line.x, _MM * line.y, color=_INK, linewidth=0.7, linestyle=(0, (6, 3)), zorder=3)
+    ax.plot(per_m * line.x, per_m * line.y, color=_INK, linewidth=0.7, linestyle=(0, (6, 3)), zorder=3)
     if cables:
         for index, cable in enumerate(solution.cables):
             taut = cable.tension > 0.0
-            points = _MM * solution.cable_path(index, s)
+            points = per_m * solution.cable_path(index, s)
             style = {"color": _TAUT, "linewidth": 1.8} if taut else {"color": _SLACK, "linewidth": 0.9}
             ax.plot(points[:, 0], points[:, 1], zorder=4, **style)  # type: ignore[arg-type]
-    base = _MM * np.stack([left[0], right[0]]) / _MM
+    base = per_m * np.stack([left[0], right[0]]) / per_m
     ax.plot(base[:, 0], base[:, 1], color=_INK, linewidth=3.0, solid_capstyle="butt", zorder=5)
     # Axes that share their limits can only change their boxes.
     shared = any(len(group.get_siblings(ax)) > 1 for group in (ax.get_shared_x_axes(), ax.get_shared_y_axes()))
     ax.set_aspect("equal", adjustable="box" if shared else "datalim")
-    ax.set_xlabel("x (mm)")
-    ax.set_ylabel("y (mm)")
+    ax.set_xlabel(f"x ({name})")
+    ax.set_ylabel(f"y ({name})")
     if flow:
         _stream(solution, ax)
     return ax
@@ -145,7 +178,7 @@ _QUANTITIES = {
 }
 
 
-def plot_path(path: Path, quantity: str, ax: Axes | None) -> Axes:
+def plot_path(path: EquilibriumPath, quantity: str, ax: Axes | None) -> Axes:
     """See `Path.plot`."""
     if quantity not in _QUANTITIES:
         raise ValueError(f"quantity: expected one of {', '.join(_QUANTITIES)}, found {quantity!r}")
@@ -173,6 +206,7 @@ def plot_path(path: Path, quantity: str, ax: Axes | None) -> Axes:
 def plot_equilibria(equilibria: Equilibria, ax: Axes | None) -> Axes:
     """See `Equilibria.plot`."""
     ax = _new_axes(ax)
+    per_m = UNITS[_unit_of(ax, None)]
     for index, (solution, state) in enumerate(zip(equilibria, equilibria.stability, strict=True)):
         color = _BODY if state == "stable" else "#d8d2c4"
         name = f"{index + 1}: {state or 'not established'}"
@@ -180,7 +214,7 @@ def plot_equilibria(equilibria: Equilibria, ax: Axes | None) -> Axes:
         tip = solution.tip
         away = (9.0 * np.cos(tip.theta), 9.0 * np.sin(tip.theta))
         ax.annotate(
-            str(index + 1), (_MM * tip.x, _MM * tip.y), away, textcoords="offset points", ha="center", va="center", size=9
+            str(index + 1), (per_m * tip.x, per_m * tip.y), away, textcoords="offset points", ha="center", va="center", size=9
         )
     ax.legend(frameon=False, fontsize=9)
     return ax
@@ -191,6 +225,7 @@ def plot_reach(reach: Reach, ax: Axes | None) -> Axes:
     import matplotlib.pyplot as plt
 
     ax = _new_axes(ax)
+    per_m = UNITS[_unit_of(ax, None)]
     shown = [*reach] or [one for one in (reach.closest,) if one is not None]
     colors = plt.colormaps["viridis"](np.linspace(0.15, 0.85, max(len(shown), 2)))
     for index, (one, color) in enumerate(zip(shown, colors, strict=False)):
@@ -198,12 +233,12 @@ def plot_reach(reach: Reach, ax: Axes | None) -> Axes:
         label = f"{pulls} N" if reach.closest is None else f"closest: {pulls} N"
         plot_shape(one.solution, ax, color=color, sections=0, cables=len(shown) == 1, flow=index == 0, label=label)
     for target in reach.targets:
-        ax.plot(_MM * target.x, _MM * target.y, "+", color=_MARK, markersize=12, markeredgewidth=1.8, zorder=6)
+        ax.plot(per_m * target.x, per_m * target.y, "+", color=_MARK, markersize=12, markeredgewidth=1.8, zorder=6)
         if target.angle is not None:
             # Across the section that is asked for.
-            reached = 0.04 * _MM * (shown[0].solution.arm.length if shown else 0.0)
+            reached = 0.04 * per_m * (shown[0].solution.arm.length if shown else 0.0)
             step = reached * np.array([np.cos(target.angle), np.sin(target.angle)])
-            ends = _MM * np.array([target.x, target.y]) + np.stack([0.0 * step, step])
+            ends = per_m * np.array([target.x, target.y]) + np.stack([0.0 * step, step])
             ax.plot(ends[:, 0], ends[:, 1], color=_MARK, linewidth=1.8, zorder=6)
     ax.legend(frameon=False, fontsize=9)
     return ax
@@ -214,12 +249,13 @@ def plot_fit(fit: Fit, ax: Axes | None) -> Axes:
     import matplotlib.pyplot as plt
 
     ax = _new_axes(ax)
+    per_m = UNITS[_unit_of(ax, None)]
     cases = fit.residuals["case"]
     colors = plt.colormaps["viridis"](np.linspace(0.15, 0.85, max(len(fit.solutions), 2)))
     for (name, solution), color in zip(fit.solutions.items(), colors, strict=False):
         plot_shape(solution, ax, color=color, sections=0, cables=False, flow=False, label=name)
         places = _measured_places(fit, cases == name)
-        ax.plot(_MM * places[:, 0], _MM * places[:, 1], "+", color=color, markersize=9, markeredgewidth=1.5, zorder=6)
+        ax.plot(per_m * places[:, 0], per_m * places[:, 1], "+", color=color, markersize=9, markeredgewidth=1.5, zorder=6)
     ax.legend(frameon=False, fontsize=9)
     return ax
 
@@ -244,16 +280,61 @@ def plot_manipulability(found: Sensitivities, ax: Axes | None, effort: float | N
     ax = plot_shape(
         found.solution, _new_axes(ax), color=_BODY, sections=0, cables=True, flow=True, label=None
     )
+    per_m = UNITS[_unit_of(ax, None)]
     longest = ellipse.half_axes[0]
     if effort is None:
         # A round number near a fifth of the length.
         effort = float(f"{0.2 * found.solution.arm.length / longest:.0e}") if longest > 0.0 else 1.0
     tip = found.solution.tip
-    points = _MM * (np.array([tip.x, tip.y]) + effort * ellipse.points())
+    points = per_m * (np.array([tip.x, tip.y]) + effort * ellipse.points())
     unit = "m" if any(name.endswith("stroke") for name in found.parameters) else "N"
     label = f"the tip, to first order, by {effort:g} {unit}"
     ax.fill(points[:, 0], points[:, 1], facecolor=_MARK, edgecolor=_MARK, alpha=0.18, zorder=1)
     ax.plot(points[:, 0], points[:, 1], color=_MARK, linewidth=1.4, zorder=6, label=label)
-    ax.plot(_MM * tip.x, _MM * tip.y, "o", color=_MARK, markersize=4, zorder=7)
+    ax.plot(per_m * tip.x, per_m * tip.y, "o", color=_MARK, markersize=4, zorder=7)
     ax.legend(frameon=False, fontsize=9)
     return ax
+
+
+def animate(
+    solutions: Iterable[Solution], output: str | PathLike[str] | None, *, fps: float, unit: str, sections: int
+) -> FuncAnimation | FilePath:
+    """See `hydrostat.animate`."""
+    import matplotlib.pyplot as plt
+    from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+
+    shapes = list(solutions)
+    if not shapes or not all(hasattr(shape, "surfaces") for shape in shapes):
+        raise ValueError("solutions: expected at least one solution, and nothing else")
+    target = None if output is None else FilePath(output)
+    if target is not None and target.suffix not in (".gif", ".mp4", ".html"):
+        raise ValueError(f"output: expected a name that ends in .gif, .mp4 or .html, found {target.name!r}")
+    if not fps > 0.0:
+        raise ValueError(f"fps: expected a number above zero, found {fps}")
+    figure, ax = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+    per_m = UNITS[_unit_of(ax, unit)]
+    ends = np.concatenate([per_m * side for shape in shapes for side in shape.surfaces(shape.s)])
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    margin = 0.05 * float((high - low).max())
+
+    def draw(index: int) -> list[Artist]:
+        ax.clear()
+        shape = shapes[index]
+        plot_shape(shape, ax, color=_BODY, sections=sections, cables=True, flow=False, label=None, unit=unit)
+        ax.set_aspect("equal", adjustable="box")
+        ax.set_xlim(low[0] - margin, high[0] + margin)
+        ax.set_ylim(low[1] - margin, high[1] + margin)
+        return [*ax.lines, *ax.patches]
+
+    moving = FuncAnimation(figure, draw, frames=len(shapes), interval=1e3 / fps)
+    if target is None:
+        return moving
+    try:
+        if target.suffix == ".html":
+            target.write_text(moving.to_jshtml(fps=max(round(fps), 1)), encoding="utf-8")
+        else:
+            writer = PillowWriter if target.suffix == ".gif" else FFMpegWriter
+            moving.save(target, writer=writer(fps=max(round(fps), 1)))
+    finally:
+        plt.close(figure)
+    return target

@@ -331,7 +331,7 @@ class Follower:
 
     Raises
     ------
-    NoEquilibrium
+    NoEquilibriumError
         The arm has no equilibrium to start from.
     ValueError
         An argument that cannot be meant, named.
@@ -409,7 +409,7 @@ class Follower:
 
         Raises
         ------
-        NoEquilibrium
+        NoEquilibriumError
             The arm has none in that stream; it stays as it was.
         """
         self._inner.set_flow_speed(_inputs.number("flow_speed", flow_speed, negative=False))

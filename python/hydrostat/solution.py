@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from os import PathLike
 from pathlib import Path as FilePath
@@ -20,6 +20,7 @@ from hydrostat.figures import Figure, arm_figure
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as MatplotlibFigure
     from matplotlib.typing import ColorType
@@ -461,6 +462,7 @@ class Solution(Stations):
         cables: bool = True,
         flow: bool = True,
         label: str | None = None,
+        unit: str | None = None,
     ) -> Axes:
         """Draw the shape to scale on a matplotlib axis: outline, sections, cables and stream. Needs matplotlib.
 
@@ -476,15 +478,22 @@ class Solution(Stations):
             Whether cables and the stream are drawn.
         label : str, optional
             For the legend.
+        unit : str, optional
+            ``"mm"``, ``"cm"`` or ``"m"``; without it that of what was drawn on these axes before, or mm.
 
         Returns
         -------
         matplotlib.axes.Axes
-            In mm, with equal scales.
+            In that unit, with equal scales.
+
+        Raises
+        ------
+        ValueError
+            Another unit than that of what was drawn on these axes before.
         """
         from hydrostat.plotting import plot_shape
 
-        return plot_shape(self, ax, color=color, sections=sections, cables=cables, flow=flow, label=label)
+        return plot_shape(self, ax, color=color, sections=sections, cables=cables, flow=flow, label=label, unit=unit)
 
     def plot_strains(self, *, label: str | None = None, figure: MatplotlibFigure | None = None) -> MatplotlibFigure:
         """Stretch, shear, bending and the angle alpha along the arm, in four panels. Needs matplotlib.
@@ -499,6 +508,41 @@ class Solution(Stations):
         from hydrostat.plotting import plot_strains
 
         return plot_strains(self, label=label, figure=figure)
+
+
+def animate(
+    solutions: Iterable[Solution],
+    output: str | PathLike[str] | None = None,
+    *,
+    fps: float = 20.0,
+    unit: str = "mm",
+    sections: int = 25,
+) -> FuncAnimation | FilePath:
+    """Show shapes one after the other, to scale. Needs matplotlib.
+
+    Parameters
+    ----------
+    solutions : iterable of Solution
+        A picture each: a list, a branch of a path and so on.
+    output : path, optional
+        A file ``.gif``, ``.mp4`` (needs ffmpeg) or ``.html``.
+    fps : float
+        Pictures a second.
+    unit : str
+        ``"mm"``, ``"cm"`` or ``"m"``.
+    sections : int
+        How many sections are drawn; 0 for none.
+
+    Returns
+    -------
+    pathlib.Path
+        `output`, where that is given.
+    matplotlib.animation.FuncAnimation
+        What a notebook shows with ``IPython.display.HTML(animation.to_jshtml())``.
+    """
+    from hydrostat.plotting import animate as moving
+
+    return moving(solutions, output, fps=fps, unit=unit, sections=sections)
 
 
 #: What a Python warning says of each kind; the same each time, so that Python's filters show it once.

@@ -122,9 +122,9 @@ class Solver:
 
         Raises
         ------
-        NoDerivative
+        NoDerivativeError
             At a limit point or a bifurcation.
-        NoEquilibrium
+        NoEquilibriumError
             There is no shape.
         ValueError
             An argument that cannot be meant, named.
@@ -168,9 +168,9 @@ class Solver:
 
         Raises
         ------
-        NoDerivative
+        NoDerivativeError
             At a limit point or a bifurcation.
-        NoEquilibrium
+        NoEquilibriumError
             There is no shape.
         ValueError
             An argument that cannot be meant, named.

@@ -18,7 +18,7 @@ ELSEWHERE = ("SLURMCluster", "KubeCluster")
 GUIDE = [str(page.relative_to(ROOT)) for page in sorted((ROOT / "guide/src").glob("*.md")) if "```python" in page.read_text(encoding="utf-8")]
 
 
-@pytest.mark.parametrize("name", ["docs/python.md", "README.md", *GUIDE])
+@pytest.mark.parametrize("name", ["docs/python.md", "README.md", "python/README.md", *GUIDE])
 def test_blocks(tmp_path: Path, name: str) -> None:
     blocks = BLOCK.findall((ROOT / name).read_text(encoding="utf-8"))
     assert blocks

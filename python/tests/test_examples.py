@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import jupytext
 import nbclient
 import pytest
@@ -23,3 +28,11 @@ def test_example(name: str) -> None:
     assert not [output for output in outputs if output.output_type == "error"]
     kinds = [set(output.get("data", {})) for output in outputs]
     assert sum(bool(kind & {"image/png", "image/svg+xml"}) for kind in kinds) == PICTURES[name]
+
+
+@pytest.mark.parametrize("name", sorted(PICTURES))
+def test_an_example_says_which_warnings_it_lets_be(tmp_path: Path, name: str) -> None:
+    command = [sys.executable, "-W", "error", str(ROOT / "examples" / f"{name}.py")]
+    own = {**os.environ, "MPLBACKEND": "Agg"}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300, cwd=tmp_path, env=own)
+    assert done.returncode == 0, done.stderr

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
+from PIL import Image
 
 import hydrostat as hs
 
@@ -33,6 +36,37 @@ def test_shape(silicone: hs.Arm) -> None:
     bare = silicone.solve().plot(plt.subplots()[1], sections=0, cables=False)
     assert len(lines(bare)) == 2 and not bare.texts
     plt.close("all")
+
+
+def test_units_of_axes(silicone: hs.Arm) -> None:
+    solution = silicone.solve(tensions=[0.2, 0.0])
+    ax = solution.plot(unit="m", sections=0, cables=False)
+    assert ax.get_xlabel() == "x (m)"
+    solution.plot(ax, sections=0, cables=False)
+    first, second = (np.asarray(patch.get_xy()) for patch in ax.patches if isinstance(patch, Polygon))
+    assert np.allclose(first, second) and np.abs(first).max() < silicone.length * 1.1
+    with pytest.raises(ValueError, match="^unit: these axes are in m"):
+        solution.plot(ax, unit="mm")
+    with pytest.raises(ValueError, match="^unit: expected one of mm, cm, m"):
+        solution.plot(unit="inch")
+    reach = silicone.reach((0.182, 0.078), max_tension=0.6)
+    mark = next(line for line in reach.plot(ax).get_lines() if line.get_marker() == "+")
+    assert tuple(np.asarray(mark.get_xydata())[0]) == pytest.approx((0.182, 0.078))
+    plt.close("all")
+
+
+def test_animations(silicone: hs.Arm, tmp_path: Path) -> None:
+    shapes = [silicone.solve(tensions=[pull, 0.0]) for pull in (0.0, 0.1, 0.2)]
+    film = hs.animate(shapes, tmp_path / "bend.gif", sections=0)
+    with Image.open(film) as image:  # type: ignore[arg-type]
+        assert getattr(image, "n_frames", 1) == 3
+    page = hs.animate(shapes[:2], tmp_path / "bend.html", sections=0)
+    assert "<script" in Path(str(page)).read_text(encoding="utf-8")
+    with pytest.raises(ValueError, match="^output: "):
+        hs.animate(shapes, tmp_path / "bend.avi")
+    with pytest.raises(ValueError, match="^solutions: "):
+        hs.animate([])
+    assert not plt.get_fignums()
 
 
 def test_strains(silicone: hs.Arm) -> None:
