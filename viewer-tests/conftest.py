@@ -38,6 +38,10 @@ class Viewer:
         assert self.process.stdout is not None
         self.url = self.process.stdout.readline().strip()
 
+    def get(self, path: str) -> Any:
+        with urllib.request.urlopen(f"{self.url}api/{path}", timeout=60) as response:
+            return json.load(response)
+
     def post(self, path: str, body: dict[str, Any]) -> Any:
         headers = {"Content-Type": "application/json"}
         request = urllib.request.Request(f"{self.url}api/{path}", json.dumps(body).encode(), headers)

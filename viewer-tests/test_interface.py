@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
-import urllib.request
 from pathlib import Path
 
 import pytest
@@ -29,7 +28,7 @@ def test_nothing_that_its_description_allows_breaks_it(viewer: Viewer, tmp_path:
 
 
 def node_modules() -> Path:
-    """The compiler and the chart library's types, installed once."""
+    """The compiler, installed once."""
     npm = shutil.which("npm")
     if npm is None:
         pytest.skip("there is no npm: the types of the page are not checked")
@@ -47,9 +46,3 @@ def test_the_types_of_the_page_hold() -> None:
     assert node is not None
     run = subprocess.run([node, compiler, "--project", HERE], capture_output=True, text=True, timeout=120)
     assert run.returncode == 0, run.stdout
-
-
-def test_the_chart_library_is_the_published_one(viewer: Viewer) -> None:
-    published = (node_modules() / "chart.js" / "dist" / "chart.umd.js").read_bytes()
-    with urllib.request.urlopen(f"{viewer.url}chart.js", timeout=20) as response:
-        assert response.read() == published

@@ -1,4 +1,4 @@
-"""Figures as the library draws them: to scale, as SVG and PNG, without matplotlib."""
+"""Figures as the library draws them: to scale, as SVG, PDF and PNG, without matplotlib."""
 
 from __future__ import annotations
 
@@ -28,9 +28,19 @@ class Figure:
     def __init__(self, native: _native.Figure) -> None:
         self._inner = native
 
-    def svg(self) -> str:
-        """The drawing as an SVG document; text is outlines, so that no font is needed."""
-        return self._inner.svg()
+    def svg(self, *, text: bool = False) -> str:
+        """The drawing as an SVG document.
+
+        Parameters
+        ----------
+        text : bool
+            Write text as text, to edit it; otherwise text is outlines, so that no font is needed.
+        """
+        return self._inner.svg(text)
+
+    def pdf(self) -> bytes:
+        """The drawing as a PDF file's bytes, one page of vectors."""
+        return self._inner.pdf()
 
     def png(self) -> bytes:
         """The drawing as a PNG file's bytes."""
@@ -41,7 +51,7 @@ class Figure:
         return self._inner.texts()
 
     def save(self, path: str | PathLike[str]) -> FilePath:
-        """Write the drawing to `path`, whose name ends in ``.svg`` or ``.png``.
+        """Write the drawing to `path`, whose name ends in ``.svg``, ``.pdf`` or ``.png``.
 
         Raises
         ------
@@ -51,10 +61,12 @@ class Figure:
         target = FilePath(path)
         if target.suffix == ".svg":
             target.write_text(self.svg(), encoding="utf-8")
+        elif target.suffix == ".pdf":
+            target.write_bytes(self.pdf())
         elif target.suffix == ".png":
             target.write_bytes(self.png())
         else:
-            raise ValueError(f"path: expected a name that ends in .svg or .png, found {target.name!r}")
+            raise ValueError(f"path: expected a name that ends in .svg, .pdf or .png, found {target.name!r}")
         return target
 
     def _repr_svg_(self) -> str:

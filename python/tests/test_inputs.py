@@ -133,7 +133,7 @@ CALLS: list[tuple[Callable[[hs.Arm], object], str]] = [
     (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, tol=1.0), "tol"),
     (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, output="q.nc"), "^output: .* ends in .parquet or .csv.*to_netcdf"),
     (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, output="q"), "^output: .* ends in .parquet or .csv"),
-    (lambda arm: arm.solve().figure().save("shape.pdf"), "^path: .*svg or .png"),
+    (lambda arm: arm.solve().figure().save("shape.jpg"), "^path: .*svg, .pdf or .png"),
 ]
 
 

@@ -17,7 +17,7 @@ use std::time::Instant;
 use arms::pulled;
 use clock::timed;
 use hydrostat::{Arm, Options, SolveError, Solver, Statistics};
-use hydrostat_figures::{Measure, Panel, Scale, lines_figure};
+use hydrostat_figures::{Measure, Page, Panel, Scale, lines_figure};
 use hydrostat_files::{ArmFile, shipped, write_whole};
 use hydrostat_sweep::{Plan, Sample, Sweep, SweepOptions};
 
@@ -220,7 +220,7 @@ fn write(
     panels: &[Panel],
 ) -> Result<(), Failure> {
     let known: Vec<&str> = names.iter().map(String::as_str).collect();
-    let figure = lines_figure(title, across, &known, panels);
+    let figure = lines_figure(title, across, &known, panels, &Page::default());
     write_whole(directory.join(format!("{file}.png")), &figure.png()?)?;
     let mut text = format!("{file},what,quantity,value\n");
     for panel in panels {

@@ -3,6 +3,7 @@
 mod equilibria;
 mod identify;
 mod path;
+mod picture;
 mod plot;
 mod reach;
 mod serve;
@@ -16,6 +17,7 @@ use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 pub(crate) use equilibria::{EquilibriaArgs, Over};
 pub(crate) use identify::IdentifyArgs;
 pub(crate) use path::PathArgs;
+pub(crate) use picture::{Form, PageArgs, PictureArgs, form, picture};
 pub(crate) use plot::PlotArgs;
 pub(crate) use reach::{By, Point, ReachArgs};
 pub(crate) use serve::ServeArgs;
@@ -80,7 +82,7 @@ pub(crate) enum Command {
     Plot(PlotArgs),
     /// Show an arm in the browser, to pull on
     Serve(ServeArgs),
-    /// Remake the source's Fig. 1a, 1b and 1c as SVG, PNG and CSV
+    /// Remake the source's Fig. 1a, 1b and 1c as SVG, PDF, PNG and CSV
     Figures(FiguresArgs),
     /// List the arms that ship with the program, or print one as TOML
     Arms(ArmsArgs),
@@ -118,9 +120,11 @@ pub(crate) struct SolveArgs {
     /// Write the result to FILE in place of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw the arm to scale; FILE ends in .svg or .png
+    /// Draw the arm to scale; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }
 
 // An arm and what is to be different from its file. As a doc comment this would replace the help of each command.
@@ -148,7 +152,7 @@ pub(crate) enum Format {
     Csv,
 }
 
-/// Remakes the source's Fig. 1a, 1b and 1c: nine files, each part as SVG, PNG and CSV. Prints what the
+/// Remakes the source's Fig. 1a, 1b and 1c: twelve files, each part as SVG, PDF, PNG and CSV. Prints what the
 /// source says about them beside the numbers.
 ///
 /// Of the figure's parameters only the speed of the stream, 0.5 m/s, and alpha(L) = 72.25 deg at
@@ -173,6 +177,8 @@ pub(crate) struct FiguresArgs {
     /// The directory, made if it is not there
     #[arg(short, long, value_name = "DIR", default_value = "figures")]
     pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) page: PageArgs,
 }
 
 /// Lists the arms that ship with the program. With a name, prints that arm as TOML, to start from.
@@ -201,23 +207,4 @@ fn count(text: &str, most: usize) -> Result<usize, String> {
         Ok(n) if (2..=most).contains(&n) => Ok(n),
         _ => Err(format!("expected a whole number from 2 to {most}")),
     }
-}
-
-/// A path whose ending says what to draw.
-fn picture(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    if is_png(&path) || has_ending(&path, "svg") {
-        Ok(path)
-    } else {
-        Err("expected a file name that ends in .svg or .png".to_owned())
-    }
-}
-
-/// Whether `path` asks for a PNG.
-pub(crate) fn is_png(path: &std::path::Path) -> bool {
-    has_ending(path, "png")
-}
-
-fn has_ending(path: &std::path::Path, ending: &str) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending))
 }

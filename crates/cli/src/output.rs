@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use hydrostat_figures::Scene;
 use hydrostat_files::{WriteError, write_whole};
 
-use crate::args::is_png;
+use crate::args::{Form, PageArgs, form};
 
 /// Writes a result to standard output or to the file asked for instead.
 pub(crate) fn put(file: Option<&Path>, text: &str) -> anyhow::Result<()> {
@@ -19,9 +19,18 @@ pub(crate) fn put(file: Option<&Path>, text: &str) -> anyhow::Result<()> {
 }
 
 /// Draws a figure into a file, whose ending says how.
-pub(crate) fn draw(figure: &Scene, path: &Path) -> anyhow::Result<()> {
-    let bytes = if is_png(path) { figure.png()? } else { figure.svg().into_bytes() };
+pub(crate) fn draw(figure: &Scene, path: &Path, page: &PageArgs) -> anyhow::Result<()> {
+    let bytes = match form(path) {
+        Some(Form::Png) => figure.png()?,
+        Some(Form::Pdf) => figure.pdf(),
+        Some(Form::Svg) | None => svg(figure, page).into_bytes(),
+    };
     Ok(write_whole(path, &bytes)?)
+}
+
+/// A figure as SVG, with its text as it is asked for.
+pub(crate) fn svg(figure: &Scene, page: &PageArgs) -> String {
+    if page.svg_text { figure.svg_with_text() } else { figure.svg() }
 }
 
 /// A text as a line of its own.

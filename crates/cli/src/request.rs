@@ -6,7 +6,7 @@ use hydrostat::parameter::Unfit;
 use hydrostat::{Arm, ArmError};
 use hydrostat_files::{ArmFile, shipped};
 
-use crate::args::ArmArgs;
+use crate::args::{ArmArgs, PictureArgs};
 use crate::output;
 
 /// A request that cannot be meant.
@@ -40,6 +40,8 @@ pub(crate) enum WrongRequest {
     NoCable { asked: usize, cables: usize },
     /// A table of measurements without any.
     NothingMeasured(PathBuf),
+    /// An option of pictures without one, and the options that ask for one.
+    NothingDrawn(&'static str, String),
 }
 
 impl std::fmt::Display for WrongRequest {
@@ -83,6 +85,7 @@ impl std::fmt::Display for WrongRequest {
             Self::NoCable { asked, cables } => {
                 write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")
             }
+            Self::NothingDrawn(option, pictures) => write!(f, "{option}: nothing is drawn; give {pictures}"),
             Self::NothingMeasured(path) => {
                 let path = path.display();
                 write!(f, "{path}: there is no measured number; fill in x and y, or another quantity that was measured")
@@ -168,6 +171,20 @@ pub(crate) fn check_outputs(outputs: &[(&'static str, Option<&Path>)]) -> anyhow
         output::check_writable(file)?;
     }
     Ok(())
+}
+
+/// Refuses options of pictures where none is drawn: `pictures` are the options that ask for one, with their files.
+pub(crate) fn check_picture(
+    args: &PictureArgs,
+    pictures: &[(&'static str, Option<&Path>)],
+) -> Result<(), WrongRequest> {
+    match args.given() {
+        Some(option) if pictures.iter().all(|(_, file)| file.is_none()) => {
+            let names: Vec<&str> = pictures.iter().map(|(name, _)| *name).collect();
+            Err(WrongRequest::NothingDrawn(option, names.join(" or ")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// How many cables the file has, even while their present tensions are refused.

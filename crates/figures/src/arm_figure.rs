@@ -4,13 +4,15 @@ use hydrostat::{Configuration, Verdict};
 
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, DESCENT, Label};
-use crate::legend::{LINE, Legend, MARGIN, Sample, WIDTH, clipped};
+use crate::legend::{Legend, Sample, clipped};
+use crate::numbers::{degrees, short};
 use crate::outline::{Outline, Style};
+use crate::page::{MARGIN, Page};
 use crate::palette::{BODY, Color, GREY, INK, series};
 use crate::placement::Occupied;
 use crate::scene::{Anchor, Point, Scene, Stroke};
+use crate::surroundings::Surroundings;
 
-const TITLE_SIZE: f64 = 10.0;
 const SECTIONS: usize = 41;
 const MAX_HEIGHT: f64 = 400.0;
 /// Length of the arrows at the tip, points.
@@ -25,47 +27,35 @@ const CROSS: f64 = 4.0;
 ///
 /// ```
 /// let configuration = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
-/// let figure = hydrostat_figures::arm_figure(&configuration, None);
+/// let figure = hydrostat_figures::arm_figure(&configuration, None, &hydrostat_figures::Page::default());
 /// assert!(figure.svg().starts_with("<svg"));
 /// assert_eq!(&figure.png().unwrap()[1..4], b"PNG");
 /// ```
-pub fn arm_figure(configuration: &Configuration, note: Option<&str>) -> Scene {
-    reach_figure(configuration, &[], note)
+pub fn arm_figure(configuration: &Configuration, note: Option<&str>, page: &Page) -> Scene {
+    reach_figure(configuration, &[], note, page)
 }
 
 /// [`arm_figure`] with a cross at every target (m).
 ///
 /// ```
 /// let configuration = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
-/// let plain = hydrostat_figures::arm_figure(&configuration, None).svg();
-/// assert!(hydrostat_figures::reach_figure(&configuration, &[[0.1, 0.05]], None).svg().len() > plain.len());
+/// let page = hydrostat_figures::Page::default();
+/// let plain = hydrostat_figures::arm_figure(&configuration, None, &page).svg();
+/// assert!(hydrostat_figures::reach_figure(&configuration, &[[0.1, 0.05]], None, &page).svg().len() > plain.len());
 /// ```
-pub fn reach_figure(configuration: &Configuration, targets: &[[f64; 2]], note: Option<&str>) -> Scene {
+pub fn reach_figure(configuration: &Configuration, targets: &[[f64; 2]], note: Option<&str>, page: &Page) -> Scene {
     let arm = &configuration.arm;
     let outline = Outline::new(configuration, SECTIONS);
     let strokes = cable_strokes(configuration);
+    let heading = page.heading(&arm.name, note);
+    let legend = legend(configuration, &strokes, page);
+    let frame_top = heading.bottom + legend.height() + 6.0;
+    let axes = axes_around(&outline, targets, configuration.tip().theta, frame_top, page);
 
-    let mut top = MARGIN + CAP_HEIGHT * TITLE_SIZE;
-    let title_at = [LEFT, top];
-    let note_at = note.map(|_| {
-        top += LINE;
-        [LEFT, top]
-    });
-    top += 8.0;
-    let legend = legend(configuration, &strokes);
-    let frame_top = top + legend.height() + 6.0;
-
-    let axes = axes_around(&outline, targets, configuration.tip().theta, frame_top);
-
-    let title = format!("{}: static shape", arm.name);
-    let mut scene = Scene::new(WIDTH, axes.frame.bottom + BELOW + MARGIN, title);
-    let title = Label::plain(&arm.name);
-    scene.text(&title, title_at, Anchor::Start, fitting(&title, TITLE_SIZE));
-    if let (Some(note), Some(at)) = (note, note_at) {
-        let note = Label::plain(note);
-        scene.text_in(&note, at, Anchor::Start, fitting(&note, TEXT_SIZE), series(0), false);
-    }
-    legend.draw(&mut scene, top);
+    let title = format!("{}: static shape", page.title_or(&arm.name));
+    let mut scene = Scene::new(page.width(), axes.frame.bottom + BELOW + MARGIN, title);
+    heading.draw(&mut scene);
+    legend.draw(&mut scene, heading.bottom);
     axes.draw(&mut scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
     let style = Style {
         fill: BODY.with_opacity(0.6),
@@ -76,17 +66,20 @@ pub fn reach_figure(configuration: &Configuration, targets: &[[f64; 2]], note: O
     };
     outline.draw(&mut scene, &axes, &style);
 
-    let mut page = Occupied::new(axes.frame.grown(-3.0));
-    outline.occupy(&mut page, &axes);
+    let mut taken = Occupied::new(axes.frame.grown(-3.0));
+    outline.occupy(&mut taken, &axes);
     for target in targets {
         let [x, y] = axes.at(target.map(|v| 1e3 * v));
         for [dx, dy] in [[CROSS, CROSS], [CROSS, -CROSS]] {
             let stroke = [[x - dx, y - dy], [x + dx, y + dy]];
             scene.line(&stroke, Stroke::solid(series(0), 1.2));
-            page.add_line(&stroke);
+            taken.add_line(&stroke);
         }
     }
-    draw_tip(&mut scene, configuration, axes.at(outline.tip()), &mut page);
+    let tip = axes.at(outline.tip());
+    keep_free(&mut taken, tip, configuration.tip().theta);
+    Surroundings::of(arm, None).draw(&mut scene, &mut taken, axes.frame);
+    draw_tip(&mut scene, configuration, tip, &mut taken);
     scene
 }
 
@@ -109,14 +102,9 @@ pub fn last_good_note(verdict: &Verdict) -> String {
     )
 }
 
-/// `size`, or what makes the text fit the page.
-pub(crate) fn fitting(label: &Label, size: f64) -> f64 {
-    size.min(size * (WIDTH - LEFT - MARGIN) / label.width(size).max(1.0))
-}
-
 /// Axes that show the arm and the arrows at its tip.
-fn axes_around(outline: &Outline, targets: &[[f64; 2]], theta: f64, top: f64) -> Axes {
-    let width = WIDTH - LEFT - MARGIN;
+fn axes_around(outline: &Outline, targets: &[[f64; 2]], theta: f64, top: f64, page: &Page) -> Axes {
+    let width = page.across();
     let [x, y] = outline.bounds();
     let extent = (x[1] - x[0]).max(y[1] - y[0]);
     // The arrows are sized on the page; on a scale that is a little too coarse they need no less.
@@ -145,6 +133,13 @@ fn cable_strokes(configuration: &Configuration) -> Vec<Stroke> {
         }
     };
     configuration.cables.iter().map(|c| c.tension).enumerate().map(stroke).collect()
+}
+
+/// Keeps what has no place of its own off the arrows at the tip.
+fn keep_free(taken: &mut Occupied, tip: Point, theta: f64) {
+    for angle in [theta, theta + std::f64::consts::FRAC_PI_2] {
+        taken.add_line(&[tip, [tip[0] + ARROW * angle.cos(), tip[1] - ARROW * angle.sin()]]);
+    }
 }
 
 /// Directors a and b and the tangent t at the tip, with the angle from a to t.
@@ -194,30 +189,12 @@ pub(crate) fn place_label(
     scene.text_in(label, [rect.left, rect.bottom - DESCENT * TEXT_SIZE], Anchor::Start, TEXT_SIZE, color, false);
 }
 
-/// An angle (rad) as people read it.
-pub(crate) fn degrees(angle: f64) -> String {
-    let value = format!("{:.2}°", angle.to_degrees());
-    if value == "-0.00°" { "0.00°".to_owned() } else { value.replace('-', "\u{2212}") }
-}
-
-/// What the lines and arrows mean, above the frame where no data are.
-fn legend(configuration: &Configuration, strokes: &[Stroke]) -> Legend {
-    let mut legend = Legend::default();
+/// The cables, above the frame where no data are.
+fn legend(configuration: &Configuration, strokes: &[Stroke], page: &Page) -> Legend {
+    let mut legend = Legend::new(page);
     for (cable, stroke) in configuration.cables.iter().zip(strokes) {
         let state = if cable.tension > 0.0 { format!("{} N", short(cable.tension)) } else { "slack".to_owned() };
         legend.add(Sample::Line(*stroke), Label::plain(format!("{}: {state}", clipped(&cable.name))));
     }
-    legend.add_surroundings(&configuration.arm, None);
     legend
-}
-
-/// A number with at most four digits that matter.
-pub(crate) fn short(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 12")]
-    let decimals = (3.0 - value.abs().log10().floor()).clamp(0.0, 12.0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

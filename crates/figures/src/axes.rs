@@ -1,7 +1,7 @@
 //! Axes: from data to the page, with ticks and titles.
 
-use crate::arm_figure::short;
 use crate::font::{CAP_HEIGHT, Label};
+use crate::numbers::short;
 use crate::palette::INK;
 use crate::placement::Rect;
 use crate::scene::{Anchor, Point, Scene, Stroke};

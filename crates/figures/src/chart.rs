@@ -2,17 +2,18 @@
 
 use hydrostat::{Equilibria, Event, Path, PathEnd, PathPoint, Stability};
 
-use crate::arm_figure::{fitting, place_label, short};
+use crate::arm_figure::place_label;
 use crate::axes::{Axes, BELOW, LEFT};
-use crate::font::{CAP_HEIGHT, Label};
-use crate::legend::{Legend, MARGIN, Mark, Sample, WIDTH};
+use crate::font::Label;
+use crate::legend::{Legend, Mark, Sample};
+use crate::numbers::short;
+use crate::page::{MARGIN, Page};
 use crate::palette::{Color, GREY, INK, series};
 use crate::placement::{Occupied, Rect};
 use crate::quantity::Quantity;
-use crate::scene::{Anchor, Point, Scene, Stroke};
+use crate::scene::{Point, Scene, Stroke};
 
 const HEIGHT: f64 = 230.0;
-const TITLE_SIZE: f64 = 10.0;
 /// More labels than this would hide what they mean.
 const MOST_LABELS: usize = 12;
 
@@ -116,15 +117,15 @@ const END: Mark = Mark::Cross(INK);
 ///
 /// ```
 /// use hydrostat::{Arm, Parameter, PathOptions};
-/// use hydrostat_figures::{Abscissa, Quantity, path_figure};
+/// use hydrostat_figures::{Abscissa, Page, Quantity, path_figure};
 ///
 /// let arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
 /// let path = arm.path(Parameter::TipForce(1), [0.0, 0.02], &PathOptions::default()).unwrap();
 /// let over = Abscissa { name: "force".to_owned(), unit: "mN".to_owned(), per_si: 1e3 };
-/// let figure = path_figure(&path, &over, Quantity::TipY, "a cone");
+/// let figure = path_figure(&path, &over, Quantity::TipY, "a cone", &Page::default());
 /// assert!(figure.texts().any(|text| text == "force (mN)"));
 /// ```
-pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str) -> Scene {
+pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str, page: &Page) -> Scene {
     let at = |p: &PathPoint| [over.per_si * p.value, quantity.of(&p.configuration)];
     let all: Vec<[f64; 2]> = path.branches.iter().flat_map(|b| b.points.iter().map(at)).collect();
     let events: Vec<&PathPoint> = path.branches.iter().flat_map(|b| &b.points).filter(|p| p.event.is_some()).collect();
@@ -135,7 +136,7 @@ pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str
         .filter_map(|b| b.points.last())
         .collect();
 
-    let mut legend = Legend::default();
+    let mut legend = Legend::new(page);
     let regular = || path.branches.iter().flat_map(|b| &b.points).filter_map(look);
     for look in LOOKS.into_iter().filter(|wanted| regular().any(|look| look == *wanted)) {
         legend.add(Sample::Line(look.stroke()), Label::plain(look.words()));
@@ -150,7 +151,7 @@ pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str
         legend.add(Sample::Mark(END), Label::plain("no equilibrium found beyond"));
     }
 
-    let (mut scene, axes) = page(title, &legend, &all, over, quantity);
+    let (mut scene, axes) = frame(title, &legend, &all, over, quantity, page);
     let pieces: Vec<Vec<(Look, Vec<Point>)>> = path
         .branches
         .iter()
@@ -179,8 +180,8 @@ pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str
         }
     }
     for point in events.into_iter().chain(stopped).filter(|_| labelled) {
-        let page = axes.at(at(point));
-        place_label(&mut scene, &mut occupied, &Label::plain(over.text(point.value)), INK, page, 0.0);
+        let place = axes.at(at(point));
+        place_label(&mut scene, &mut occupied, &Label::plain(over.text(point.value)), INK, place, 0.0);
     }
     scene
 }
@@ -189,16 +190,22 @@ pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str
 ///
 /// ```
 /// use hydrostat::{Arm, Parameter};
-/// use hydrostat_figures::{Abscissa, Quantity, over_figure};
+/// use hydrostat_figures::{Abscissa, Page, Quantity, over_figure};
 ///
 /// let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
 /// arm.tip.force = [-0.2, 0.0];
 /// let all = arm.equilibria(1e-6).unwrap();
 /// let over = Abscissa { name: "force".to_owned(), unit: "N".to_owned(), per_si: 1.0 };
-/// let figure = over_figure(&[(-0.2, &all)], &over, Quantity::TipY, "a column");
+/// let figure = over_figure(&[(-0.2, &all)], &over, Quantity::TipY, "a column", &Page::default());
 /// assert!(figure.texts().any(|text| text == "unstable"));
 /// ```
-pub fn over_figure(searches: &[(f64, &Equilibria)], over: &Abscissa, quantity: Quantity, title: &str) -> Scene {
+pub fn over_figure(
+    searches: &[(f64, &Equilibria)],
+    over: &Abscissa,
+    quantity: Quantity,
+    title: &str,
+    page: &Page,
+) -> Scene {
     let points: Vec<([f64; 2], Look)> = searches
         .iter()
         .flat_map(|(value, all)| {
@@ -206,7 +213,7 @@ pub fn over_figure(searches: &[(f64, &Equilibria)], over: &Abscissa, quantity: Q
             all.found.iter().map(move |one| (at(one), Look::of(one.stability)))
         })
         .collect();
-    let mut legend = Legend::default();
+    let mut legend = Legend::new(page);
     for look in LOOKS.into_iter().filter(|look| points.iter().any(|(_, l)| l == look)) {
         legend.add(Sample::Mark(look.mark()), Label::plain(look.words()));
     }
@@ -215,7 +222,7 @@ pub fn over_figure(searches: &[(f64, &Equilibria)], over: &Abscissa, quantity: Q
     if let (Some(first), Some(any)) = (searches.first().zip(searches.last()), all.first().copied()) {
         all.extend([first.0.0, first.1.0].map(|value| [over.per_si * value, any[1]]));
     }
-    let (mut scene, axes) = page(title, &legend, &all, over, quantity);
+    let (mut scene, axes) = frame(title, &legend, &all, over, quantity, page);
     for (point, look) in points {
         look.mark().draw(&mut scene, axes.at(point));
     }
@@ -223,17 +230,24 @@ pub fn over_figure(searches: &[(f64, &Equilibria)], over: &Abscissa, quantity: Q
 }
 
 /// Title, legend, and axes round all points.
-fn page(title: &str, legend: &Legend, points: &[[f64; 2]], over: &Abscissa, quantity: Quantity) -> (Scene, Axes) {
-    let baseline = MARGIN + CAP_HEIGHT * TITLE_SIZE;
-    let top = baseline + 8.0 + legend.height() + 6.0;
-    let frame = Rect { left: LEFT, top, right: WIDTH - MARGIN, bottom: top + HEIGHT };
+fn frame(
+    title: &str,
+    legend: &Legend,
+    points: &[[f64; 2]],
+    over: &Abscissa,
+    quantity: Quantity,
+    page: &Page,
+) -> (Scene, Axes) {
+    let heading = page.heading(title, None);
+    let top = heading.bottom + legend.height() + 6.0;
+    let frame = Rect { left: LEFT, top, right: page.right(), bottom: top + HEIGHT };
     let [x, y] = crate::outline::bounds(points);
     let axes = Axes::new(frame, padded(x, 0.03), padded(y, 0.06));
     let y_title = quantity.title();
-    let mut scene = Scene::new(WIDTH, frame.bottom + BELOW + MARGIN, format!("{title}: {y_title} over {}", over.name));
-    let label = Label::plain(title);
-    scene.text(&label, [LEFT, baseline], Anchor::Start, fitting(&label, TITLE_SIZE));
-    legend.draw(&mut scene, baseline + 8.0);
+    let says = format!("{}: {y_title} over {}", page.title_or(title), over.name);
+    let mut scene = Scene::new(page.width(), frame.bottom + BELOW + MARGIN, says);
+    heading.draw(&mut scene);
+    legend.draw(&mut scene, heading.bottom);
     axes.draw(&mut scene, &over.title(), &y_title);
     (scene, axes)
 }

@@ -3,17 +3,17 @@
 use hydrostat::Configuration;
 use hydrostat_identify::{Case, Fit, Quantity, Residual};
 
-use crate::arm_figure::fitting;
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE, TICK_SIZE};
 use crate::chart::padded;
 use crate::font::{CAP_HEIGHT, Label};
-use crate::legend::{Legend, MARGIN, Mark, Sample, WIDTH, clipped};
+use crate::legend::{Legend, Mark, Sample, clipped};
 use crate::outline::{Outline, Style, bounds};
+use crate::page::{MARGIN, Page};
 use crate::palette::{Color, GREY, INK, series};
-use crate::placement::Rect;
+use crate::placement::{Occupied, Rect};
 use crate::scene::{Anchor, Scene, Stroke};
+use crate::surroundings::Surroundings;
 
-const TITLE_SIZE: f64 = 10.0;
 const MAX_HEIGHT: f64 = 320.0;
 const RESIDUALS: f64 = 110.0;
 const GAP: f64 = 16.0;
@@ -57,7 +57,7 @@ impl<'a> FittedCase<'a> {
 ///
 /// ```
 /// use hydrostat::{Arm, Gravity, Parameter};
-/// use hydrostat_figures::fit_figure;
+/// use hydrostat_figures::{Page, fit_figure};
 /// use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, Quantity, fit};
 ///
 /// let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
@@ -67,10 +67,10 @@ impl<'a> FittedCase<'a> {
 /// let cases = [Case { name: "at rest".to_owned(), arm: arm.clone(), measurements }];
 /// let wanted = [Fitted::new(Parameter::Young, &arm).unwrap()];
 /// let found = fit(&cases, &wanted, &FitOptions::default(), |_| true).unwrap();
-/// let figure = fit_figure("a cone", &cases, &found);
+/// let figure = fit_figure("a cone", &cases, &found, &Page::default());
 /// assert!(figure.texts().any(|text| text == "at rest"));
 /// ```
-pub fn fit_figure(name: &str, cases: &[Case], fit: &Fit) -> Scene {
+pub fn fit_figure(name: &str, cases: &[Case], fit: &Fit, page: &Page) -> Scene {
     let shown: Vec<FittedCase<'_>> = fit
         .residuals
         .chunk_by(|one, next| one.case == next.case)
@@ -82,35 +82,37 @@ pub fn fit_figure(name: &str, cases: &[Case], fit: &Fit) -> Scene {
         .collect();
     let names: Vec<String> = fit.estimates.iter().map(|one| one.fitted.parameter.to_string()).collect();
     let title = format!("{name}: fitted to {} load cases", fit.load_cases);
-    drawn(&title, &shown, &names, &fit.correlation)
+    drawn(&title, &shown, &names, &fit.correlation, page)
 }
 
-fn drawn(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &[Vec<f64>]) -> Scene {
+fn drawn(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &[Vec<f64>], page: &Page) -> Scene {
     let outlines: Vec<Outline> = cases.iter().filter_map(|case| Some(Outline::new(case.shape?, 0))).collect();
     let markers = || cases.iter().flat_map(|case| &case.markers).map(|[x, y]| [1e3 * x, 1e3 * y]);
     let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).chain(markers()).collect();
-    let mut legend = Legend::default();
+    let mut legend = Legend::new(page);
     for (index, case) in cases.iter().enumerate().take(MOST_NAMES) {
         legend.add(Sample::Mark(Mark::Filled(series(index))), Label::plain(clipped(case.name)));
     }
-    legend.add(Sample::Mark(Mark::Cross(INK)), Label::plain("measured"));
-    let below = MARGIN + CAP_HEIGHT * TITLE_SIZE + 8.0;
+    if markers().next().is_some() {
+        legend.add(Sample::Mark(Mark::Cross(INK)), Label::plain("measured"));
+    }
+    let heading = page.heading(title, None);
     let [x, y] = bounds(&all);
     let pad = 0.05 * (x[1] - x[0]).max(y[1] - y[0]);
     let grown = |range: [f64; 2]| [range[0] - pad, range[1] + pad];
-    let top = below + legend.height() + 6.0;
-    let shapes = Axes::equal(LEFT, top, WIDTH - LEFT - MARGIN, [120.0, MAX_HEIGHT], grown(x), grown(y));
+    let top = heading.bottom + legend.height() + 6.0;
+    let shapes = Axes::equal(LEFT, top, page.across(), [120.0, MAX_HEIGHT], grown(x), grown(y));
     let second = shapes.frame.bottom + BELOW + GAP;
     let third = second + RESIDUALS + BELOW + GAP;
-    let cell = correlation_cell(names.len());
+    let cell = correlation_cell(names.len(), page);
     let height = if names.len() < 2 { third - GAP } else { third + cell * names.len() as f64 + TEXT_SIZE + 8.0 };
 
-    let mut scene = Scene::new(WIDTH, height + MARGIN, format!("{title}: fitted shapes, residuals and correlations"));
-    let label = Label::plain(title);
-    scene.text(&label, [LEFT, MARGIN + CAP_HEIGHT * TITLE_SIZE], Anchor::Start, fitting(&label, TITLE_SIZE));
-    legend.draw(&mut scene, below);
+    let says = format!("{}: fitted shapes, residuals and correlations", page.title_or(title));
+    let mut scene = Scene::new(page.width(), height + MARGIN, says);
+    heading.draw(&mut scene);
+    legend.draw(&mut scene, heading.bottom);
     draw_shapes(&mut scene, &shapes, cases, &outlines);
-    draw_residuals(&mut scene, second, cases);
+    draw_residuals(&mut scene, second, cases, page);
     if names.len() > 1 {
         draw_correlation(&mut scene, third, cell, names, correlation);
     }
@@ -135,12 +137,18 @@ fn draw_shapes(scene: &mut Scene, axes: &Axes, cases: &[FittedCase<'_>], outline
             Mark::Cross(series(index).towards(INK, 0.4)).draw(scene, axes.at([1e3 * x, 1e3 * y]));
         }
     }
+    let mut taken = Occupied::new(axes.frame.grown(-3.0));
+    for outline in outlines {
+        outline.occupy(&mut taken, axes);
+    }
+    let arms = cases.iter().filter_map(|case| Some(&case.shape?.arm));
+    Surroundings::shared(arms).draw(scene, &mut taken, axes.frame);
 }
 
 /// Every residual in a row, case by case, with lines at two standard deviations.
-fn draw_residuals(scene: &mut Scene, top: f64, cases: &[FittedCase<'_>]) {
+fn draw_residuals(scene: &mut Scene, top: f64, cases: &[FittedCase<'_>], page: &Page) {
     const TWO: f64 = 2.0;
-    let frame = Rect { left: LEFT, top, right: WIDTH - MARGIN, bottom: top + RESIDUALS };
+    let frame = Rect { left: LEFT, top, right: page.right(), bottom: top + RESIDUALS };
     let count: usize = cases.iter().map(|case| case.residuals.len()).sum();
     let most = cases.iter().flat_map(|case| &case.residuals).fold(TWO, |m, r| m.max(r.abs()));
     let across = [0.0, count as f64 + 1.0];
@@ -160,8 +168,8 @@ fn draw_residuals(scene: &mut Scene, top: f64, cases: &[FittedCase<'_>]) {
 }
 
 /// What room there is for each square beside the names.
-fn correlation_cell(count: usize) -> f64 {
-    (0.5 * (WIDTH - LEFT - MARGIN) / count.max(1) as f64).min(CELL)
+fn correlation_cell(count: usize, page: &Page) -> f64 {
+    (0.5 * page.across() / count.max(1) as f64).min(CELL)
 }
 
 fn draw_correlation(scene: &mut Scene, top: f64, cell: f64, names: &[String], correlation: &[Vec<f64>]) {
@@ -204,12 +212,12 @@ mod tests {
         let case = |name| FittedCase { name, shape: Some(&shape), markers: Vec::new(), residuals: vec![9.0] };
         let cases: Vec<_> = named.iter().map(|name| case(name)).collect();
         let names = ["a", "b"].map(str::to_owned);
-        let figure = drawn("t", &cases, &names, &[vec![1.0, f64::NAN], vec![f64::NAN, 1.0]]);
+        let figure = drawn("t", &cases, &names, &[vec![1.0, f64::NAN], vec![f64::NAN, 1.0]], &Page::default());
         assert!(figure.texts().any(|text| text == "?"));
         assert!(!figure.texts().any(|text| text == "case 20"));
         let svg = figure.svg();
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
-        let one = drawn("t", &cases[..1], &names[..1], &[vec![1.0]]);
+        let one = drawn("t", &cases[..1], &names[..1], &[vec![1.0]], &Page::default());
         assert!(one.size()[1] < figure.size()[1]);
     }
 }

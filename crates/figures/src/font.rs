@@ -3,7 +3,11 @@
 use std::fmt;
 use std::sync::OnceLock;
 
-use ttf_parser::{Face, OutlineBuilder};
+use skrifa::charmap::Charmap;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::metrics::GlyphMetrics;
+use skrifa::outline::{DrawSettings, OutlineGlyphCollection, OutlinePen};
+use skrifa::{FontRef, GlyphId, MetadataProvider};
 
 use crate::scene::{Point, Segment};
 
@@ -13,16 +17,17 @@ pub(crate) struct Label {
     runs: Vec<Run>,
 }
 
+/// A part of a text that is set in one way.
 #[derive(Debug, Clone)]
-struct Run {
-    text: String,
-    italic: bool,
-    sub: bool,
+pub(crate) struct Run {
+    pub(crate) text: String,
+    pub(crate) italic: bool,
+    pub(crate) sub: bool,
 }
 
 /// Size of a subscript and how far it sits below the baseline, both over the size of the text.
-const SUB_SIZE: f64 = 0.7;
-const SUB_DROP: f64 = 0.18;
+pub(crate) const SUB_SIZE: f64 = 0.7;
+pub(crate) const SUB_DROP: f64 = 0.18;
 
 impl Label {
     /// Text as it is: for names that people have given.
@@ -69,6 +74,11 @@ impl Label {
         self.runs.iter().map(|run| run.width(size)).sum()
     }
 
+    /// The parts of the text that are set in one way each.
+    pub(crate) fn runs(&self) -> &[Run] {
+        &self.runs
+    }
+
     /// The glyphs at `size` points, from the origin along x, y down.
     pub(crate) fn outline(&self, size: f64) -> Vec<Segment> {
         let mut out = Vec::new();
@@ -78,11 +88,13 @@ impl Label {
             let scale = run.scale(size, face);
             let drop = if run.sub { SUB_DROP * size } else { 0.0 };
             for c in run.text.chars() {
-                let (glyph, advance) = glyph(face, c);
+                let glyph = face.glyph(c);
                 let mut pen = Pen { out: &mut out, origin: [x, drop], scale };
-                // A glyph without outline is a space.
-                let _ = face.outline_glyph(glyph, &mut pen);
-                x += scale * advance;
+                if let Some(outline) = face.outlines.get(glyph) {
+                    // What the font says of its own glyphs was read when the font was made; a glyph without outline is a space.
+                    let _ = outline.draw(DrawSettings::unhinted(Size::unscaled(), LocationRef::default()), &mut pen);
+                }
+                x += scale * face.advance(glyph);
             }
         }
         out
@@ -90,13 +102,13 @@ impl Label {
 }
 
 impl Run {
-    fn scale(&self, size: f64, face: &Face<'_>) -> f64 {
-        size * if self.sub { SUB_SIZE } else { 1.0 } / f64::from(face.units_per_em())
+    fn scale(&self, size: f64, face: &Face) -> f64 {
+        size * if self.sub { SUB_SIZE } else { 1.0 } / face.units_per_em
     }
 
     fn width(&self, size: f64) -> f64 {
         let face = face(self.italic);
-        self.scale(size, face) * self.text.chars().map(|c| glyph(face, c).1).sum::<f64>()
+        self.scale(size, face) * self.text.chars().map(|c| face.advance(face.glyph(c))).sum::<f64>()
     }
 }
 
@@ -111,19 +123,41 @@ pub(crate) const CAP_HEIGHT: f64 = 0.714;
 /// How far letters reach below the baseline, over the size.
 pub(crate) const DESCENT: f64 = 0.24;
 
-fn face(italic: bool) -> &'static Face<'static> {
-    static FACES: OnceLock<[Face<'static>; 2]> = OnceLock::new();
-    let faces = FACES.get_or_init(|| {
-        [notosans::REGULAR_TTF, notosans::ITALIC_TTF]
-            .map(|data| Face::parse(data, 0).expect("the font is part of the program"))
-    });
-    &faces[usize::from(italic)]
+/// What is asked of a font.
+struct Face {
+    letters: Charmap<'static>,
+    metrics: GlyphMetrics<'static>,
+    outlines: OutlineGlyphCollection<'static>,
+    units_per_em: f64,
 }
 
-/// The glyph of `c` (the font's box if it has none) and its advance in the font's units.
-fn glyph(face: &Face<'_>, c: char) -> (ttf_parser::GlyphId, f64) {
-    let glyph = face.glyph_index(c).unwrap_or_default();
-    (glyph, face.glyph_hor_advance(glyph).map_or(0.0, f64::from))
+impl Face {
+    fn new(data: &'static [u8]) -> Self {
+        let font = FontRef::new(data).expect("the font is part of the program");
+        let (size, place) = (Size::unscaled(), LocationRef::default());
+        Self {
+            letters: font.charmap(),
+            metrics: font.glyph_metrics(size, place),
+            outlines: font.outline_glyphs(),
+            units_per_em: f64::from(font.metrics(size, place).units_per_em),
+        }
+    }
+
+    /// The glyph of `c`; the font's box if it has none.
+    fn glyph(&self, c: char) -> GlyphId {
+        self.letters.map(c).unwrap_or_default()
+    }
+
+    /// In the font's units.
+    fn advance(&self, glyph: GlyphId) -> f64 {
+        self.metrics.advance_width(glyph).map_or(0.0, f64::from)
+    }
+}
+
+fn face(italic: bool) -> &'static Face {
+    static FACES: OnceLock<[Face; 2]> = OnceLock::new();
+    let faces = FACES.get_or_init(|| [notosans::REGULAR_TTF, notosans::ITALIC_TTF].map(Face::new));
+    &faces[usize::from(italic)]
 }
 
 struct Pen<'a> {
@@ -138,7 +172,7 @@ impl Pen<'_> {
     }
 }
 
-impl OutlineBuilder for Pen<'_> {
+impl OutlinePen for Pen<'_> {
     fn move_to(&mut self, x: f32, y: f32) {
         self.out.push(Segment::Move(self.place(x, y)));
     }
@@ -147,14 +181,14 @@ impl OutlineBuilder for Pen<'_> {
         self.out.push(Segment::Line(self.place(x, y)));
     }
 
-    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
-        self.out.push(Segment::Quad(self.place(x1, y1), self.place(x, y)));
+    fn quad_to(&mut self, cx0: f32, cy0: f32, x: f32, y: f32) {
+        self.out.push(Segment::Quad(self.place(cx0, cy0), self.place(x, y)));
     }
 
-    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+    fn curve_to(&mut self, cx0: f32, cy0: f32, cx1: f32, cy1: f32, x: f32, y: f32) {
         // TrueType outlines are quadratic; a cubic one becomes the quadratic through its middle.
         let control = |a: f32, b: f32| 0.5 * (a + b);
-        self.quad_to(control(x1, x2), control(y1, y2), x, y);
+        self.quad_to(control(cx0, cx1), control(cy0, cy1), x, y);
     }
 
     fn close(&mut self) {
@@ -170,7 +204,7 @@ mod tests {
     fn the_font_has_what_figures_say() {
         for c in "αβνημθκ°·−×–∞₁abcXYZ0123456789.,;:()=/%µ²³→".chars() {
             for italic in [false, true] {
-                assert!(face(italic).glyph_index(c).is_some() || c == '→' || c == '₁', "{c} italic {italic}");
+                assert!(face(italic).letters.map(c).is_some() || c == '→' || c == '₁', "{c} italic {italic}");
             }
         }
     }

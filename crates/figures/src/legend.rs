@@ -1,26 +1,18 @@
 //! Samples and their meaning, in rows above the frame where no data are.
 
-use hydrostat::{Arm, Parameter};
-
-use crate::arm_figure::short;
 use crate::axes::{LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, Label};
-use crate::palette::{Color, GREY, WATER};
+use crate::page::{LINE, Page};
+use crate::palette::Color;
 use crate::scene::{Anchor, Point, Scene, Stroke};
-
-/// The width of every page and what stays free at its edges, points.
-pub(crate) const WIDTH: f64 = 450.0;
-pub(crate) const MARGIN: f64 = 10.0;
-/// Between two lines of text.
-pub(crate) const LINE: f64 = 14.0;
 
 /// What a legend shows.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Sample {
     Line(Stroke),
-    /// A direction in the plane, rad.
-    Arrow(f64, Color),
     Mark(Mark),
+    /// An area.
+    Fill(Color),
 }
 
 /// A point of a chart.
@@ -59,10 +51,12 @@ impl Mark {
     }
 }
 
-/// Entries in the order in which they are read.
-#[derive(Debug, Default)]
+/// Entries in the order in which they are read: of what is drawn, and of nothing else.
+#[derive(Debug)]
 pub(crate) struct Legend {
     entries: Vec<(Sample, Label)>,
+    /// The right edge.
+    right: f64,
 }
 
 const SAMPLE: f64 = 18.0;
@@ -70,23 +64,12 @@ const SAMPLE: f64 = 18.0;
 const GAPS: [f64; 2] = [4.0, 16.0];
 
 impl Legend {
-    pub(crate) fn add(&mut self, sample: Sample, label: Label) {
-        self.entries.push((sample, label));
+    pub(crate) fn new(page: &Page) -> Self {
+        Self { entries: Vec::new(), right: page.right() }
     }
 
-    /// Stream and gravity, but for what varies from one shape to the other.
-    pub(crate) fn add_surroundings(&mut self, arm: &Arm, varied: Option<Parameter>) {
-        let flows = arm.flow.speed > 0.0 || varied == Some(Parameter::FlowSpeed);
-        if flows && arm.flow.density > 0.0 && varied != Some(Parameter::FlowDirection) {
-            let speed = format!("stream {} m/s", short(arm.flow.speed));
-            let text = if varied == Some(Parameter::FlowSpeed) { "stream".to_owned() } else { speed };
-            self.add(Sample::Arrow(arm.flow.direction, WATER), Label::plain(text));
-        }
-        if let Some(gravity) = &arm.gravity
-            && varied != Some(Parameter::GravityDirection)
-        {
-            self.add(Sample::Arrow(gravity.direction, GREY), Label::plain("gravity"));
-        }
+    pub(crate) fn add(&mut self, sample: Sample, label: Label) {
+        self.entries.push((sample, label));
     }
 
     /// Where each entry goes, from the upper left corner, and the height of all.
@@ -95,7 +78,7 @@ impl Legend {
         let mut out = Vec::new();
         for (_, label) in &self.entries {
             let width = SAMPLE + GAPS[0] + label.width(TEXT_SIZE);
-            if x > LEFT && x + width > WIDTH - MARGIN {
+            if x > LEFT && x + width > self.right {
                 x = LEFT;
                 y += LINE;
             }
@@ -117,12 +100,13 @@ impl Legend {
             let middle = baseline - 0.5 * CAP_HEIGHT * TEXT_SIZE;
             match *sample {
                 Sample::Line(stroke) => scene.line(&[[x, middle], [x + SAMPLE, middle]], stroke),
-                Sample::Arrow(angle, color) => {
-                    let (dx, dy) = (0.36 * SAMPLE * angle.cos(), -0.36 * SAMPLE * angle.sin());
-                    let centre = x + 0.5 * SAMPLE;
-                    scene.arrow([centre - dx, middle - dy], [centre + dx, middle + dy], color, 1.2);
-                }
                 Sample::Mark(mark) => mark.draw(scene, [x + 0.5 * SAMPLE, middle]),
+                Sample::Fill(color) => {
+                    let half = 0.5 * CAP_HEIGHT * TEXT_SIZE;
+                    let corner = |across: f64, down: f64| [x + across * SAMPLE, middle + down * half];
+                    let corners = [corner(0.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(0.0, 1.0)];
+                    scene.area(&corners, Some(color), None);
+                }
             }
             scene.text(label, [x + SAMPLE + GAPS[0], baseline], Anchor::Start, TEXT_SIZE);
         }

@@ -1,12 +1,14 @@
-//! Drawings of soft arms, as SVG and PNG from one description.
+//! Drawings of soft arms, as SVG, PDF and PNG from one description.
 //!
 //! A [`Scene`] is what a figure shows: lines, areas and text on a page measured in points. Its
-//! [`svg`](Scene::svg) and [`png`](Scene::png) cannot disagree, because text becomes glyph
-//! outlines before either is made; that also needs no font on the machine that shows the figure.
+//! [`svg`](Scene::svg), [`pdf`](Scene::pdf) and [`png`](Scene::png) cannot disagree, because text becomes glyph
+//! outlines before any of them is made; that also needs no font on the machine that shows the figure.
+//! [`svg_with_text`](Scene::svg_with_text) keeps text as text. A [`Page`] says how wide a figure is and what its title is.
 //!
 //! [`arm_figure`] draws one configuration to scale, [`path_shapes_figure`] and [`equilibria_figure`]
-//! several, [`boundary_figure`] what bounds the places of a tip; [`path_figure`] and [`over_figure`] draw a [`Quantity`] over a parameter; [`map_figure`], [`workspace_figure`] and
-//! [`curve_figure`] draw a sweep, [`fit_figure`] a fit beside its data, and [`lines_figure`] whatever numbers are compared. [`source`] solves what the source's Fig. 1
+//! several, [`boundary_figure`] the places that a tip reaches; [`path_figure`] and [`over_figure`] draw a [`Quantity`]
+//! over a parameter; [`map_figure`], [`workspace_figure`] and [`curve_figure`] draw a sweep, [`fit_figure`] a fit beside
+//! its data, and [`lines_figure`] whatever numbers are compared. [`source`] solves what the source's Fig. 1
 //! shows, judges what its text says about it, and draws the three parts.
 
 mod arm_figure;
@@ -17,15 +19,21 @@ mod fit;
 mod font;
 mod legend;
 mod lines;
+mod numbers;
 mod outline;
+mod page;
 mod palette;
+mod pdf;
+mod picked;
 mod placement;
 mod png;
 mod quantity;
+mod region;
 mod scene;
 mod shaded;
 mod shapes;
 pub mod source;
+mod surroundings;
 mod svg;
 mod sweep;
 mod tip_labels;
@@ -36,6 +44,8 @@ pub use boundary::boundary_figure;
 pub use chart::{Abscissa, over_figure, path_figure};
 pub use fit::fit_figure;
 pub use lines::{Measure, Panel, lines_figure};
+pub use page::Page;
+pub use palette::{Palette, palette};
 pub use png::PngError;
 pub use quantity::{Quantity, UnknownQuantity};
 pub use scene::Scene;

@@ -1,16 +1,15 @@
 //! Several quantities over one, for several things that are compared: frames one above the other.
 
-use crate::arm_figure::fitting;
 use crate::axes::{Axes, BELOW, LEFT, Scale};
 use crate::chart::padded;
-use crate::font::{CAP_HEIGHT, Label};
-use crate::legend::{Legend, MARGIN, Mark, Sample, WIDTH};
+use crate::font::Label;
+use crate::legend::{Legend, Mark, Sample};
 use crate::outline::bounds;
+use crate::page::{MARGIN, Page};
 use crate::palette::series;
 use crate::placement::Rect;
-use crate::scene::{Anchor, Scene, Stroke};
+use crate::scene::{Scene, Stroke};
 
-const TITLE_SIZE: f64 = 10.0;
 const HEIGHT: f64 = 120.0;
 /// Between two frames.
 const GAP: f64 = 14.0;
@@ -39,32 +38,38 @@ pub struct Panel {
 /// Lines over `across`, a line and a colour for each of `names`, in a frame for each panel.
 ///
 /// ```
-/// use hydrostat_figures::{Measure, Panel, Scale, lines_figure};
+/// use hydrostat_figures::{Measure, Page, Panel, Scale, lines_figure};
 ///
 /// let measure = |title: &str| Measure { title: title.to_owned(), scale: Scale::Logarithmic };
 /// let lines = vec![vec![[1e-8, 120.0], [1e-4, 60.0]], vec![[1e-8, 55.0], [1e-4, 30.0]]];
 /// let panel = Panel { up: measure("time (µs)"), lines };
-/// let figure = lines_figure("a solve", &measure("tol"), &["cold", "warm"], &[panel]);
+/// let figure = lines_figure("a solve", &measure("tol"), &["cold", "warm"], &[panel], &Page::default());
 /// assert!(figure.texts().any(|text| text == "warm") && figure.texts().any(|text| text == "time (µs)"));
 /// ```
-pub fn lines_figure(title: &str, across: &Measure, names: &[&str], panels: &[Panel]) -> Scene {
-    let mut legend = Legend::default();
-    for (index, name) in names.iter().enumerate() {
+pub fn lines_figure(title: &str, across: &Measure, names: &[&str], panels: &[Panel], page: &Page) -> Scene {
+    let mut legend = Legend::new(page);
+    let is_drawn = |index: usize| {
+        let of = |panel: &Panel| {
+            panel.lines.get(index).is_some_and(|l| l.iter().any(|p| length(*p, across.scale, panel).is_some()))
+        };
+        panels.iter().any(of)
+    };
+    for (index, name) in names.iter().enumerate().filter(|(index, _)| is_drawn(*index)) {
         legend.add(Sample::Line(stroke(index)), Label::plain(*name));
     }
-    let below = MARGIN + CAP_HEIGHT * TITLE_SIZE + 8.0;
-    let first = below + legend.height() + 6.0;
+    let heading = page.heading(title, None);
+    let first = heading.bottom + legend.height() + 6.0;
     let top = |index: usize| first + index as f64 * (HEIGHT + GAP);
     let bottom = top(panels.len()) - GAP;
-    let mut scene = Scene::new(WIDTH, bottom + BELOW + MARGIN, format!("{title}, over {}", across.title));
-    let label = Label::plain(title);
-    scene.text(&label, [LEFT, MARGIN + CAP_HEIGHT * TITLE_SIZE], Anchor::Start, fitting(&label, TITLE_SIZE));
-    legend.draw(&mut scene, below);
+    let says = format!("{}, over {}", page.title_or(title), across.title);
+    let mut scene = Scene::new(page.width(), bottom + BELOW + MARGIN, says);
+    heading.draw(&mut scene);
+    legend.draw(&mut scene, heading.bottom);
 
     let all: Vec<[f64; 2]> = panels.iter().flat_map(|panel| lengths(panel, across.scale)).collect();
     let x = padded(bounds(&all)[0], 0.03);
     for (index, panel) in panels.iter().enumerate() {
-        let frame = Rect { left: LEFT, top: top(index), right: WIDTH - MARGIN, bottom: top(index) + HEIGHT };
+        let frame = Rect { left: LEFT, top: top(index), right: page.right(), bottom: top(index) + HEIGHT };
         let y = padded(bounds(&lengths(panel, across.scale))[1], 0.08);
         let axes = Axes::scaled(frame, [x, y], [across.scale, panel.up.scale]);
         for (index, line) in panel.lines.iter().enumerate() {
@@ -114,10 +119,12 @@ mod tests {
         let lines = vec![vec![[0.0, 10.0], [1.0, 0.0], [2.0, 100.0], [3.0, f64::NAN]], Vec::new()];
         let panel = Panel { up: measure("us", Scale::Logarithmic), lines };
         assert_eq!(lengths(&panel, Scale::Even), [[0.0, 1.0], [2.0, 2.0]]);
-        let figure = lines_figure("t", &measure("v", Scale::Even), &["one", "none"], &[panel.clone(), panel]);
+        let figure =
+            lines_figure("t", &measure("v", Scale::Even), &["one", "none"], &[panel.clone(), panel], &Page::default());
         let svg = figure.svg();
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
         let texts: Vec<&str> = figure.texts().collect();
+        assert!(texts.contains(&"one") && !texts.contains(&"none"), "what has no line has no entry: {texts:?}");
         assert_eq!(texts.iter().filter(|text| **text == "v").count(), 1, "{texts:?}");
         assert_eq!(texts.iter().filter(|text| **text == "us").count(), 2, "{texts:?}");
     }

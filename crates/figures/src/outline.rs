@@ -37,23 +37,44 @@ impl Outline {
     pub(crate) fn new(configuration: &Configuration, sections: usize) -> Self {
         let length = configuration.arm.length;
         let places = places(configuration);
-        let mm = |[x, y]: [f64; 2]| [MM * x, MM * y];
+        let mut outline = Self::along(configuration, &places);
+        outline.sections = (0..sections)
+            .map(|k| configuration.surfaces(length * k as f64 / (sections.max(2) - 1) as f64).map(millimetres))
+            .collect();
+        outline.cables = (0..configuration.arm.cables.len())
+            .map(|c| places.iter().map_while(|s| configuration.cable_point(c, *s)).map(millimetres).collect())
+            .collect();
+        outline
+    }
+
+    /// Surface and centreline at these places along the arm, m.
+    fn along(configuration: &Configuration, places: &[f64]) -> Self {
         let (mut left, mut right, mut centreline) = (Vec::new(), Vec::new(), Vec::new());
-        for s in &places {
-            let [l, r] = configuration.surfaces(*s).map(mm);
+        for s in places {
+            let [l, r] = configuration.surfaces(*s).map(millimetres);
             left.push(l);
             right.push(r);
             // The two surfaces are mirror images in the centreline.
             centreline.push([0.5 * (l[0] + r[0]), 0.5 * (l[1] + r[1])]);
         }
         left.extend(right.into_iter().rev());
-        let sections = (0..sections)
-            .map(|k| configuration.surfaces(length * k as f64 / (sections.max(2) - 1) as f64).map(mm))
-            .collect();
-        let cables = (0..configuration.arm.cables.len())
-            .map(|c| places.iter().map_while(|s| configuration.cable_point(c, *s)).map(mm).collect())
-            .collect();
-        Self { surface: left, centreline, sections, cables }
+        Self { surface: left, centreline, sections: Vec::new(), cables: Vec::new() }
+    }
+
+    /// Surface and centreline of a weighted mean of shapes; the weights add up to 1.
+    pub(crate) fn mean(shapes: &[(&Configuration, f64)]) -> Self {
+        let mut places: Vec<f64> = shapes.iter().flat_map(|(shape, _)| places(shape)).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup_by(|b, a| *b - *a < 1e-9);
+        let outlines: Vec<(Self, f64)> = shapes.iter().map(|(shape, w)| (Self::along(shape, &places), *w)).collect();
+        let mean = |line: fn(&Self) -> &Vec<[f64; 2]>| {
+            let count = outlines.first().map_or(0, |(outline, _)| line(outline).len());
+            let of =
+                |k: usize, axis: usize| outlines.iter().map(|(outline, w)| w * line(outline)[k][axis]).sum::<f64>();
+            (0..count).map(|k| [of(k, 0), of(k, 1)]).collect()
+        };
+        let (surface, centreline) = (mean(|o| &o.surface), mean(|o| &o.centreline));
+        Self { surface, centreline, sections: Vec::new(), cables: Vec::new() }
     }
 
     /// Where the tip is, mm.
@@ -99,6 +120,10 @@ pub(crate) fn bounds(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
         }
         b
     })
+}
+
+fn millimetres([x, y]: [f64; 2]) -> [f64; 2] {
+    [MM * x, MM * y]
 }
 
 /// Evenly spaced places, the nodes of the mesh (dense where the arm curls) and the cables' ends.

@@ -61,10 +61,33 @@ pub(crate) fn ordered(index: usize, count: usize) -> Color {
     shade(if count < 2 { 1.0 } else { index as f64 / (count - 1) as f64 })
 }
 
+/// Colours of shares from 0 to 1 at equal distances.
+const STOPS: [Color; 5] = [rgb(232, 158, 60), rgb(214, 96, 77), rgb(172, 52, 104), rgb(104, 32, 112), rgb(34, 20, 74)];
+
+/// The colours of all figures, red, green and blue, for whoever draws beside them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Palette {
+    /// Of cables and of whatever else is told apart.
+    pub series: [[u8; 3]; 7],
+    /// Of shares from 0 to 1 at equal distances; what is between is mixed.
+    pub shades: [[u8; 3]; 5],
+    /// The body of an arm.
+    pub body: [u8; 3],
+    /// The stream.
+    pub water: [u8; 3],
+}
+
+/// The colours of all figures.
+///
+/// ```
+/// assert_eq!(hydrostat_figures::palette().series[0], [213, 94, 0]);
+/// ```
+pub fn palette() -> Palette {
+    Palette { series: SERIES.map(|c| c.rgb), shades: STOPS.map(|c| c.rgb), body: BODY.rgb, water: WATER.rgb }
+}
+
 /// The colour of a share from 0 to 1.
 pub(crate) fn shade(share: f64) -> Color {
-    const STOPS: [Color; 5] =
-        [rgb(232, 158, 60), rgb(214, 96, 77), rgb(172, 52, 104), rgb(104, 32, 112), rgb(34, 20, 74)];
     let place = share.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the stops")]
     let at = (place.floor() as usize).min(STOPS.len() - 2);

@@ -81,6 +81,11 @@ impl Occupied {
         self.lines.extend(points.windows(2).map(|w| [w[0], w[1]]));
     }
 
+    /// A rectangle that no label may cover.
+    pub(crate) fn add_box(&mut self, rect: Rect) {
+        self.boxes.push(rect);
+    }
+
     /// The free place for a label of `width` by `height` that is nearest to `anchor`, with a
     /// preference for the direction `towards` (rad, y up). It is taken from then on.
     pub(crate) fn place(&mut self, anchor: Point, width: f64, height: f64, towards: f64) -> Rect {
@@ -137,7 +142,8 @@ impl Occupied {
         self.conflicts(rect) == 0.0
     }
 
-    fn conflicts(&self, rect: &Rect) -> f64 {
+    /// How much a rectangle would cover; 0 where it may go.
+    pub(crate) fn conflicts(&self, rect: &Rect) -> f64 {
         let lines = self.lines.iter().filter(|[a, b]| rect.meets(*a, *b)).count();
         let boxes = self.boxes.iter().filter(|b| b.overlaps(rect)).count();
         lines as f64 + 10.0 * boxes as f64 + if self.bounds.holds(rect) { 0.0 } else { 100.0 }

@@ -1,4 +1,4 @@
-//! What a figure shows, before it is SVG or PNG.
+//! What a figure shows, before it is SVG, PDF or PNG.
 
 use crate::font::Label;
 use crate::palette::{Color, INK};
@@ -54,8 +54,8 @@ pub(crate) struct Item {
     pub(crate) path: Vec<Segment>,
     pub(crate) fill: Option<Color>,
     pub(crate) stroke: Option<Stroke>,
-    /// What the glyphs of this item say; `None` for everything but text.
-    pub(crate) says: Option<String>,
+    /// `None` for everything but text, whose glyphs are the path.
+    pub(crate) text: Option<Text>,
     /// Cells that fill a rectangle of the page.
     pub(crate) picture: Option<(Rect, Picture)>,
 }
@@ -66,6 +66,21 @@ pub(crate) enum Anchor {
     Start,
     Middle,
     End,
+}
+
+/// A text, for readers and for those who write it as text.
+#[derive(Debug, Clone)]
+pub(crate) struct Text {
+    /// Without its marks.
+    pub(crate) says: String,
+    pub(crate) label: Label,
+    /// On the baseline.
+    pub(crate) at: Point,
+    pub(crate) anchor: Anchor,
+    /// Points.
+    pub(crate) size: f64,
+    /// Whether it runs from bottom to top.
+    pub(crate) upright: bool,
 }
 
 /// A figure: lines, areas and text on a white page.
@@ -92,12 +107,12 @@ impl Scene {
 
     /// The texts on the page, in the order in which they were drawn.
     pub fn texts(&self) -> impl Iterator<Item = &str> {
-        self.items.iter().filter_map(|item| item.says.as_deref())
+        self.items.iter().filter_map(|item| Some(item.text.as_ref()?.says.as_str()))
     }
 
     fn push(&mut self, path: Vec<Segment>, fill: Option<Color>, stroke: Option<Stroke>) {
         if path.len() > 1 {
-            self.items.push(Item { path, fill, stroke, says: None, picture: None });
+            self.items.push(Item { path, fill, stroke, text: None, picture: None });
         }
     }
 
@@ -142,7 +157,7 @@ impl Scene {
     /// Cells that fill `place`.
     pub(crate) fn picture(&mut self, place: Rect, picture: Picture) {
         let picture = Some((place, picture));
-        self.items.push(Item { path: Vec::new(), fill: None, stroke: None, says: None, picture });
+        self.items.push(Item { path: Vec::new(), fill: None, stroke: None, text: None, picture });
     }
 
     /// Text whose baseline starts, is centred or ends at `at`.
@@ -167,8 +182,9 @@ impl Scene {
             Segment::Quad(c, p) => Segment::Quad(place(c), place(p)),
             Segment::Close => Segment::Close,
         });
-        let says = Some(label.to_string());
-        self.items.push(Item { path: path.collect(), fill: Some(color), stroke: None, says, picture: None });
+        let path = path.collect();
+        let text = Some(Text { says: label.to_string(), label: label.clone(), at, anchor, size, upright });
+        self.items.push(Item { path, fill: Some(color), stroke: None, text, picture: None });
     }
 }
 

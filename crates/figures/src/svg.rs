@@ -2,14 +2,38 @@
 
 use std::fmt::Write as _;
 
+use crate::font::{SUB_DROP, SUB_SIZE};
 use crate::palette::Color;
 use crate::placement::Rect;
-use crate::scene::{Item, Picture, Scene, Segment};
+use crate::scene::{Anchor, Item, Picture, Scene, Segment, Text};
+
+/// How text is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Letters {
+    Outlines,
+    Text,
+}
 
 impl Scene {
     /// The figure as an SVG document. Text is drawn as outlines and named in `aria-label`, so that
     /// it looks the same everywhere and can still be read and searched.
     pub fn svg(&self) -> String {
+        self.written(Letters::Outlines)
+    }
+
+    /// [`Scene::svg`] with text as text, for whoever wants to change words or fonts. It is shown in Noto Sans where that is
+    /// installed and in another font without serifs elsewhere, whose letters may be wider than the place that was kept for them.
+    ///
+    /// ```
+    /// let configuration = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
+    /// let figure = hydrostat_figures::arm_figure(&configuration, None, &hydrostat_figures::Page::default());
+    /// assert!(figure.svg_with_text().contains(" (mm)</text>") && !figure.svg().contains("<text"));
+    /// ```
+    pub fn svg_with_text(&self) -> String {
+        self.written(Letters::Text)
+    }
+
+    fn written(&self, letters: Letters) -> String {
         let [w, h] = [number(self.width), number(self.height)];
         let mut out = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}pt\" height=\"{h}pt\" viewBox=\"0 0 {w} {h}\" \
@@ -17,7 +41,10 @@ impl Scene {
             escaped(&self.title)
         );
         for item in &self.items {
-            write_item(&mut out, item);
+            match &item.text {
+                Some(text) if letters == Letters::Text => write_text(&mut out, text, item.fill),
+                _ => write_item(&mut out, item),
+            }
         }
         out.push_str("</svg>\n");
         out
@@ -30,8 +57,8 @@ fn write_item(out: &mut String, item: &Item) {
         return;
     }
     out.push_str("<path");
-    if let Some(text) = &item.says {
-        let _ = write!(out, " role=\"text\" aria-label=\"{}\"", escaped(text));
+    if let Some(text) = &item.text {
+        let _ = write!(out, " role=\"text\" aria-label=\"{}\"", escaped(&text.says));
     }
     match item.fill {
         Some(color) => paint(out, "fill", color),
@@ -63,6 +90,47 @@ fn write_item(out: &mut String, item: &Item) {
         }
     }
     out.push_str("\"/>\n");
+}
+
+/// Text as text, with italics and subscripts.
+fn write_text(out: &mut String, text: &Text, fill: Option<Color>) {
+    let [x, y] = text.at.map(number);
+    let _ = write!(
+        out,
+        "<text x=\"{x}\" y=\"{y}\" font-family=\"'Noto Sans', sans-serif\" font-size=\"{}\"",
+        number(text.size)
+    );
+    match text.anchor {
+        Anchor::Start => {}
+        Anchor::Middle => out.push_str(" text-anchor=\"middle\""),
+        Anchor::End => out.push_str(" text-anchor=\"end\""),
+    }
+    if let Some(color) = fill {
+        paint(out, "fill", color);
+    }
+    if text.upright {
+        let _ = write!(out, " transform=\"rotate(-90 {x} {y})\"");
+    }
+    out.push_str(" xml:space=\"preserve\">");
+    // What `dy` moves down stays down.
+    let mut down = 0.0;
+    for run in text.label.runs() {
+        let wanted = if run.sub { SUB_DROP * text.size } else { 0.0 };
+        let mut how = String::new();
+        if run.italic {
+            how.push_str(" font-style=\"italic\"");
+        }
+        if run.sub {
+            let _ = write!(how, " font-size=\"{}\"", number(SUB_SIZE * text.size));
+        }
+        if wanted != down {
+            let _ = write!(how, " dy=\"{}\"", number(wanted - down));
+            down = wanted;
+        }
+        let letters = escaped(&run.text);
+        let _ = if how.is_empty() { write!(out, "{letters}") } else { write!(out, "<tspan{how}>{letters}</tspan>") };
+    }
+    out.push_str("</text>\n");
 }
 
 /// Cells as a PNG inside the document.

@@ -1,17 +1,17 @@
 //! Many rows of a sweep: a quantity as colours over two keys, or where the tip is.
 
-use crate::arm_figure::{fitting, short};
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE, TICK_SIZE, tick_label, ticks};
 use crate::chart::{Abscissa, padded};
 use crate::font::{CAP_HEIGHT, Label};
-use crate::legend::{Legend, MARGIN, Mark, Sample, WIDTH};
+use crate::legend::{Legend, Mark, Sample};
+use crate::numbers::short;
 use crate::outline::bounds;
+use crate::page::{Heading, MARGIN, Page};
 use crate::palette::{Color, INK, series, shade};
 use crate::placement::Rect;
 use crate::scene::{Anchor, Picture, Scene, Stroke};
 use crate::shaded::{Shades, Shading};
 
-const TITLE_SIZE: f64 = 10.0;
 const HEIGHT: f64 = 250.0;
 /// Width of the bar of colours, its gap to the frame, and the room for its labels and title.
 const BAR: [f64; 3] = [10.0, 9.0, 46.0];
@@ -64,7 +64,7 @@ pub struct KeyValues {
 /// A column as colours over two keys: cells where these are a grid, dots where they are not.
 ///
 /// ```
-/// use hydrostat_figures::{Abscissa, Coloured, ColouredColumn, KeyValues, map_figure};
+/// use hydrostat_figures::{Abscissa, Coloured, ColouredColumn, KeyValues, Page, map_figure};
 ///
 /// let key = |name: &str, values: [f64; 4]| KeyValues {
 ///     axis: Abscissa { name: name.to_owned(), unit: "m/s".to_owned(), per_si: 1.0 },
@@ -72,21 +72,23 @@ pub struct KeyValues {
 /// };
 /// let keys = [key("across", [0.0, 0.0, 1.0, 1.0]), key("up", [0.0, 1.0, 0.0, 1.0])];
 /// let values = Coloured::Numbers(vec![0.0, 0.1, 0.2, f64::NAN]);
-/// let figure = map_figure(&keys, &ColouredColumn { name: "tip_alpha_rad".to_owned(), values }, "a sweep");
+/// let column = ColouredColumn { name: "tip_alpha_rad".to_owned(), values };
+/// let figure = map_figure(&keys, &column, "a sweep", &Page::default());
 /// assert!(figure.texts().any(|text| text == "no equilibrium"));
 /// ```
-pub fn map_figure([x, y]: &[KeyValues; 2], column: &ColouredColumn, title: &str) -> Scene {
+pub fn map_figure([x, y]: &[KeyValues; 2], column: &ColouredColumn, title: &str, page: &Page) -> Scene {
     let shading = Shading::new(column);
     let shown = |key: &KeyValues| -> Vec<f64> { key.values.iter().map(|v| v * key.axis.per_si).collect() };
     let places: Vec<[f64; 2]> = shown(x).into_iter().zip(shown(y)).map(|(x, y)| [x, y]).collect();
-    let says = format!("{title}: {} over {} and {}", shading.title(), x.axis.name, y.axis.name);
+    let says = format!("{}: {} over {} and {}", page.title_or(title), shading.title(), x.axis.name, y.axis.name);
     let cells = Cells::of(&places);
     let [across, up] = match &cells {
         Some(cells) => cells.ranges(),
         None => bounds(&places).map(|range| padded(range, 0.03)),
     };
-    let (mut scene, top) = page(title, &shading, says, HEIGHT);
-    let axes = Axes::new(frame(&shading, top, HEIGHT), across, up);
+    let above = Above::new(title, &shading, page);
+    let mut scene = above.begin(says, HEIGHT, page);
+    let axes = Axes::new(frame(&shading, above.bottom(), HEIGHT, page), across, up);
     match cells {
         Some(cells) => scene.picture(axes.frame, cells.picture(&shading)),
         None => dots(&mut scene, &axes, &places, &shading),
@@ -98,24 +100,25 @@ pub fn map_figure([x, y]: &[KeyValues; 2], column: &ColouredColumn, title: &str)
 /// The places of the tip, in m, to scale, coloured by a column.
 ///
 /// ```
-/// use hydrostat_figures::{Coloured, ColouredColumn, workspace_figure};
+/// use hydrostat_figures::{Coloured, ColouredColumn, Page, workspace_figure};
 ///
 /// let tips = [[0.1, 0.0], [0.09, 0.03], [f64::NAN; 2]];
 /// let values = Coloured::Numbers(vec![0.0, 0.2, f64::NAN]);
-/// let figure = workspace_figure(&tips, &ColouredColumn { name: "tip_theta_rad".to_owned(), values }, "a sweep");
+/// let column = ColouredColumn { name: "tip_theta_rad".to_owned(), values };
+/// let figure = workspace_figure(&tips, &column, "a sweep", &Page::default());
 /// assert!(figure.texts().any(|text| text == "x (mm)"));
 /// ```
-pub fn workspace_figure(tips: &[[f64; 2]], column: &ColouredColumn, title: &str) -> Scene {
+pub fn workspace_figure(tips: &[[f64; 2]], column: &ColouredColumn, title: &str, page: &Page) -> Scene {
     // Without an answer there is no place.
     let rows: Vec<usize> = (0..tips.len()).filter(|row| tips[*row].iter().all(|v| v.is_finite())).collect();
     let shading = Shading::new(&column.of(&rows));
     let places: Vec<[f64; 2]> = rows.iter().map(|row| tips[*row].map(|v| 1e3 * v)).collect();
     let [x, y] = bounds(&places).map(|range| padded(range, 0.05));
-    let says = format!("{title}: places of the tip, coloured by {}", shading.title());
-    let (_, top) = page(title, &shading, says.clone(), HEIGHT);
-    let width = frame(&shading, top, HEIGHT).width();
-    let axes = Axes::equal(LEFT, top, width, [120.0, 1.4 * HEIGHT], x, y);
-    let (mut scene, _) = page(title, &shading, says, axes.frame.height());
+    let says = format!("{}: places of the tip, coloured by {}", page.title_or(title), shading.title());
+    let above = Above::new(title, &shading, page);
+    let width = frame(&shading, above.bottom(), HEIGHT, page).width();
+    let axes = Axes::equal(LEFT, above.bottom(), width, [120.0, 1.4 * HEIGHT], x, y);
+    let mut scene = above.begin(says, axes.frame.height(), page);
     dots(&mut scene, &axes, &places, &shading);
     finish(&mut scene, &axes, &shading, [&Label::math("$x$ (mm)"), &Label::math("$y$ (mm)")]);
     scene
@@ -124,13 +127,14 @@ pub fn workspace_figure(tips: &[[f64; 2]], column: &ColouredColumn, title: &str)
 /// A column over one key.
 ///
 /// ```
-/// use hydrostat_figures::{Abscissa, KeyValues, curve_figure};
+/// use hydrostat_figures::{Abscissa, KeyValues, Page, curve_figure};
 ///
 /// let axis = Abscissa { name: "flow.speed".to_owned(), unit: "m/s".to_owned(), per_si: 1.0 };
-/// let figure = curve_figure(&KeyValues { axis, values: vec![0.0, 1.0] }, "tip_x_m", &[0.2, 0.19], "a sweep");
+/// let key = KeyValues { axis, values: vec![0.0, 1.0] };
+/// let figure = curve_figure(&key, "tip_x_m", &[0.2, 0.19], "a sweep", &Page::default());
 /// assert!(figure.texts().any(|text| text == "x(L) (mm)"));
 /// ```
-pub fn curve_figure(key: &KeyValues, column: &str, values: &[f64], title: &str) -> Scene {
+pub fn curve_figure(key: &KeyValues, column: &str, values: &[f64], title: &str, page: &Page) -> Scene {
     let numbers = ColouredColumn { name: column.to_owned(), values: Coloured::Numbers(values.to_vec()) };
     let shading = Shading::new(&numbers);
     let shown = key.values.iter().map(|v| v * key.axis.per_si).zip(values.iter().map(|v| v * shading.per_si()));
@@ -138,11 +142,12 @@ pub fn curve_figure(key: &KeyValues, column: &str, values: &[f64], title: &str) 
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let found: Vec<[f64; 2]> = points.iter().copied().filter(|p| p[1].is_finite()).collect();
     let [x, y] = [bounds(&points)[0], bounds(&found)[1]];
-    let says = format!("{title}: {} over {}", shading.title(), key.axis.name);
-    let top = MARGIN + CAP_HEIGHT * TITLE_SIZE + 12.0;
-    let frame = Rect { left: LEFT, top, right: WIDTH - MARGIN, bottom: top + HEIGHT };
-    let mut scene = Scene::new(WIDTH, frame.bottom + BELOW + MARGIN, says);
-    heading(&mut scene, title);
+    let says = format!("{}: {} over {}", page.title_or(title), shading.title(), key.axis.name);
+    let heading = page.heading(title, None);
+    let top = heading.bottom + 4.0;
+    let frame = Rect { left: LEFT, top, right: page.right(), bottom: top + HEIGHT };
+    let mut scene = Scene::new(page.width(), frame.bottom + BELOW + MARGIN, says);
+    heading.draw(&mut scene);
     let axes = Axes::new(frame, padded(x, 0.0), padded(y, 0.06));
     for piece in points.split(|p| !p[1].is_finite()) {
         let line = axes.all(piece);
@@ -155,28 +160,38 @@ pub fn curve_figure(key: &KeyValues, column: &str, values: &[f64], title: &str) 
     scene
 }
 
-fn heading(scene: &mut Scene, title: &str) {
-    let label = Label::plain(title);
-    scene.text(&label, [LEFT, MARGIN + CAP_HEIGHT * TITLE_SIZE], Anchor::Start, fitting(&label, TITLE_SIZE));
+/// What stands above a frame.
+struct Above {
+    heading: Heading,
+    legend: Legend,
 }
 
-/// A page with its title and legend, and where its frame begins.
-fn page(title: &str, shading: &Shading, says: String, height: f64) -> (Scene, f64) {
-    let mut legend = Legend::default();
-    for (color, words) in shading.legend() {
-        legend.add(Sample::Mark(Mark::Square(color)), Label::plain(words));
+impl Above {
+    fn new(title: &str, shading: &Shading, page: &Page) -> Self {
+        let mut legend = Legend::new(page);
+        for (color, words) in shading.legend() {
+            legend.add(Sample::Mark(Mark::Square(color)), Label::plain(words));
+        }
+        Self { heading: page.heading(title, None), legend }
     }
-    let below = MARGIN + CAP_HEIGHT * TITLE_SIZE + 8.0;
-    let top = below + legend.height() + 6.0;
-    let mut scene = Scene::new(WIDTH, top + height + BELOW + MARGIN, says);
-    heading(&mut scene, title);
-    legend.draw(&mut scene, below);
-    (scene, top)
+
+    /// Where the frame begins.
+    fn bottom(&self) -> f64 {
+        self.heading.bottom + self.legend.height() + 6.0
+    }
+
+    /// A page for a frame of this height, with what stands above it.
+    fn begin(&self, says: String, height: f64, page: &Page) -> Scene {
+        let mut scene = Scene::new(page.width(), self.bottom() + height + BELOW + MARGIN, says);
+        self.heading.draw(&mut scene);
+        self.legend.draw(&mut scene, self.heading.bottom);
+        scene
+    }
 }
 
-fn frame(shading: &Shading, top: f64, height: f64) -> Rect {
+fn frame(shading: &Shading, top: f64, height: f64, page: &Page) -> Rect {
     let beside = if matches!(shading.shades(), Shades::Range(_)) { BAR.iter().sum() } else { 0.0 };
-    Rect { left: LEFT, top, right: WIDTH - MARGIN - beside, bottom: top + height }
+    Rect { left: LEFT, top, right: page.right() - beside, bottom: top + height }
 }
 
 /// Axes and the bar of colours, over what they measure.

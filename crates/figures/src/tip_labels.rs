@@ -47,7 +47,7 @@ fn crowded(labels: &[TipLabel]) -> bool {
 
 /// Labels one below the other in the upper right corner, joined to their tips by lines that do not
 /// cross. Draws nothing and says so if that corner is not free.
-fn in_column(scene: &mut Scene, page: &Occupied, frame: Rect, labels: &[TipLabel]) -> bool {
+fn in_column(scene: &mut Scene, page: &mut Occupied, frame: Rect, labels: &[TipLabel]) -> bool {
     const INSET: f64 = 6.0;
     let widest = labels.iter().map(|l| l.label.width(TEXT_SIZE)).fold(0.0, f64::max);
     let height = LINE * labels.len() as f64;
@@ -61,9 +61,12 @@ fn in_column(scene: &mut Scene, page: &Occupied, frame: Rect, labels: &[TipLabel
     order.sort_by(|a, b| a.tip[1].total_cmp(&b.tip[1]));
     for (row, TipLabel { tip, color, label, .. }) in order.into_iter().enumerate() {
         let middle = column.top + LINE * (row as f64 + 0.5);
-        scene.line(&[*tip, [column.left - 3.0, middle]], Stroke::solid(*color, 0.4));
+        let leader = [*tip, [column.left - 3.0, middle]];
+        scene.line(&leader, Stroke::solid(*color, 0.4));
+        page.add_line(&leader);
         let baseline = middle + 0.5 * CAP_HEIGHT * TEXT_SIZE;
         scene.text_in(label, [column.left, baseline], Anchor::Start, TEXT_SIZE, color.towards(INK, 0.25), false);
     }
+    page.add_box(column);
     true
 }

@@ -1,11 +1,15 @@
-//! What the drawings hold, and that their two forms are pictures.
+//! What the drawings hold, and that all their forms are pictures.
 
 use hydrostat::{Arm, Cable, Gravity, Material, Parameter, PathOptions, Profile};
 use hydrostat_figures::source::Finding::{Holds, InPart, Open};
 use hydrostat_figures::source::{Finding, Shown, Study, StudyError, TIP_ANGLE};
 use hydrostat_figures::{
-    Abscissa, Quantity, arm_figure, equilibria_figure, over_figure, path_figure, path_shapes_figure,
+    Abscissa, Page, Quantity, arm_figure, equilibria_figure, over_figure, path_figure, path_shapes_figure, reach_figure,
 };
+
+fn page() -> Page {
+    Page::default()
+}
 
 fn arm() -> Arm {
     let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
@@ -27,7 +31,12 @@ fn source_arm() -> Arm {
 
 #[test]
 fn an_arm_is_drawn_with_what_acts_on_it() {
-    let figure = arm_figure(&arm().solve().unwrap(), Some("a note"));
+    let still = arm_figure(&Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5).solve().unwrap(), None, &page());
+    assert!(
+        !still.texts().any(|text| text.contains("stream") || text.contains("gravity")),
+        "nothing acts, nothing is said"
+    );
+    let figure = arm_figure(&arm().solve().unwrap(), Some("a note"), &page());
     let texts: Vec<&str> = figure.texts().collect();
     for text in ["two <cables> & more", "a note", "left: 0.3 N", "right: slack", "stream 0.1 m/s", "gravity", "x (mm)"]
     {
@@ -38,7 +47,7 @@ fn an_arm_is_drawn_with_what_acts_on_it() {
 
 #[test]
 fn svg_is_escaped_and_of_the_page_size() {
-    let figure = arm_figure(&arm().solve().unwrap(), None);
+    let figure = arm_figure(&arm().solve().unwrap(), None, &page());
     let svg = figure.svg();
     assert!(svg.contains("aria-label=\"two &lt;cables&gt; &amp; more\""));
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
@@ -49,7 +58,7 @@ fn svg_is_escaped_and_of_the_page_size() {
 
 #[test]
 fn png_has_300_dots_an_inch() {
-    let figure = arm_figure(&arm().solve().unwrap(), None);
+    let figure = arm_figure(&arm().solve().unwrap(), None, &page());
     let bytes = figure.png().unwrap();
     let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
@@ -62,18 +71,46 @@ fn png_has_300_dots_an_inch() {
 }
 
 #[test]
+fn a_narrow_page_keeps_the_size_of_its_text_and_takes_a_title() {
+    let shape = arm().solve().unwrap();
+    let heights = |svg: &str| -> Vec<String> {
+        let sizes = svg.split("font-size=\"").skip(1).filter_map(|rest| rest.split('"').next());
+        let mut sizes: Vec<String> = sizes.map(str::to_owned).collect();
+        sizes.sort();
+        sizes.dedup();
+        sizes
+    };
+    let wide = arm_figure(&shape, None, &page());
+    let column = Page { title: Some("A title".to_owned()), ..Page::of_width(0.085).unwrap() };
+    let narrow = arm_figure(&shape, None, &column);
+    assert!((narrow.size()[0] - 85.0 / 25.4 * 72.0).abs() < 1e-9);
+    assert!(narrow.texts().any(|text| text == "A title") && !narrow.texts().any(|text| text == arm().name));
+    assert_eq!(heights(&narrow.svg_with_text()), heights(&wide.svg_with_text()));
+    let bare = reach_figure(&shape, &[], None, &Page { title: Some(String::new()), ..page() });
+    assert!(!bare.texts().any(|text| text == arm().name) && bare.size()[1] < wide.size()[1]);
+}
+
+#[test]
+fn text_is_written_as_text_on_request() {
+    let svg = arm_figure(&arm().solve().unwrap(), None, &page()).svg_with_text();
+    assert!(svg.contains(">two &lt;cables&gt; &amp; more</text>"), "{svg}");
+    assert!(svg.contains("<tspan font-style=\"italic\">x</tspan> (mm)</text>"), "{svg}");
+    assert!(svg.contains("transform=\"rotate(-90 ") && !svg.contains("aria-label"));
+}
+
+#[test]
 fn arms_of_every_kind_can_be_drawn() {
     let mut bare = Arm::cone(0.1, 0.01, 0.01, 1e5, 0.5);
-    arm_figure(&bare.solve().unwrap(), None).png().unwrap();
+    arm_figure(&bare.solve().unwrap(), None, &page()).png().unwrap();
     bare.base.angle = 2.0;
-    arm_figure(&bare.solve().unwrap(), None).png().unwrap();
+    arm_figure(&bare.solve().unwrap(), None, &page()).png().unwrap();
     let mut many = bare.clone();
     for i in 0..12 {
         let name = format!("a cable with a rather long name, {i}");
         let cable = Cable::new(name, 0.0008 * f64::from(i - 6)).ending_at(0.5 + 0.04 * f64::from(i));
         many.cables.push(cable.pulled(0.1 * f64::from(i)));
     }
-    let figure = arm_figure(&many.solve().unwrap(), None);
+    let figure = arm_figure(&many.solve().unwrap(), None, &page());
     assert_eq!(figure.texts().filter(|t| t.contains("long name")).count(), 12);
     figure.png().unwrap();
 }
@@ -93,7 +130,7 @@ fn a_path_is_drawn_with_its_events_branches_and_end() {
     let options = PathOptions { branches: true, ..PathOptions::default() };
     let path = arm.path(Parameter::TipForce(0), [0.0, -0.01], &options).unwrap();
     for quantity in [Quantity::TipX, Quantity::TipY, Quantity::TipTheta, Quantity::TipAlpha] {
-        let figure = path_figure(&path, &over, quantity, "a column");
+        let figure = path_figure(&path, &over, quantity, "a column", &page());
         let texts: Vec<&str> = figure.texts().collect();
         for text in ["a column", "stable", "unstable", "bifurcation", "force (mN)"] {
             assert!(texts.contains(&text), "{text}: {texts:?}");
@@ -101,7 +138,7 @@ fn a_path_is_drawn_with_its_events_branches_and_end() {
         assert!(!texts.contains(&"limit point") && !figure.svg().contains("NaN"));
         figure.png().unwrap();
     }
-    let shapes = path_shapes_figure(&path, &over, "a column");
+    let shapes = path_shapes_figure(&path, &over, "a column", &page());
     // Bent to either side at the largest force, and straight.
     assert!(shapes.texts().filter(|text| *text == "\u{2212}10 mN").count() >= 2);
     shapes.png().unwrap();
@@ -113,14 +150,16 @@ fn limits_are_marked_and_a_path_of_a_point_can_be_drawn() {
     let mut arm = arm();
     arm.cables[0].tension = 0.0;
     let path = arm.path(Parameter::Tension(0), [0.0, 2.0], &PathOptions::default()).unwrap();
-    let figure = path_figure(&path, &over, Quantity::Stroke(0), "pulled");
+    let figure = path_figure(&path, &over, Quantity::Stroke(0), "pulled", &page());
     assert!(
         figure.texts().any(|t| t == "no equilibrium found beyond") && figure.texts().any(|t| t.contains("cable 0"))
     );
     let options = PathOptions { most: 1, ..PathOptions::default() };
     let short = arm.path(Parameter::Tension(0), [0.0, 2.0], &options).unwrap();
     assert_eq!(short.branches[0].points.len(), 1);
-    for figure in [path_figure(&short, &over, Quantity::TipY, ""), path_shapes_figure(&short, &over, "")] {
+    for figure in
+        [path_figure(&short, &over, Quantity::TipY, "", &page()), path_shapes_figure(&short, &over, "", &page())]
+    {
         assert!(!figure.svg().contains("NaN") && !figure.svg().contains("inf"));
         figure.png().unwrap();
     }
@@ -129,7 +168,7 @@ fn limits_are_marked_and_a_path_of_a_point_can_be_drawn() {
 #[test]
 fn all_equilibria_are_drawn_and_numbered() {
     let all = facing().equilibria(1e-6).unwrap();
-    let figure = equilibria_figure(&all, "facing");
+    let figure = equilibria_figure(&all, "facing", &page());
     let texts: Vec<&str> = figure.texts().collect();
     for text in ["facing", "1", "5", "stable", "unstable", "stream 0.2 m/s", "x (mm)"] {
         assert!(texts.contains(&text), "{text}: {texts:?}");
@@ -138,7 +177,7 @@ fn all_equilibria_are_drawn_and_numbered() {
     let over = Abscissa { name: "speed".to_owned(), unit: "m/s".to_owned(), per_si: 1.0 };
     let none: [(f64, &hydrostat::Equilibria); 0] = [];
     for searches in [&[(0.2, &all)][..], &[(0.1, &all), (0.2, &all)], &none] {
-        let figure = over_figure(searches, &over, Quantity::TipTheta, "facing");
+        let figure = over_figure(searches, &over, Quantity::TipTheta, "facing", &page());
         assert!(!figure.svg().contains("NaN") && figure.texts().any(|t| t == "speed (m/s)"));
         figure.png().unwrap();
     }
@@ -156,7 +195,7 @@ fn the_study_finds_the_published_angle_and_judges_the_claims() {
     let found: Vec<Finding> = study.claims.iter().map(|c| c.finding).collect();
     assert_eq!(found, [Holds, Holds, Holds, Holds, Holds, InPart, InPart, InPart, InPart, Open]);
     assert!(study.claims.iter().all(|c| !c.evidence.contains("NaN")));
-    let figures = study.figures();
+    let figures = study.figures(&page());
     assert_eq!(figures.each_ref().map(|f| f.name), ["fig1a", "fig1b", "fig1c"]);
     assert!(figures[0].scene.texts().any(|t| t.ends_with("α(L) = 72.25°")));
     for figure in &figures {

@@ -1,7 +1,7 @@
 //! Drawings of `hydrostat-figures`.
 
 use hydrostat_figures::source::{Shown, Study};
-use hydrostat_figures::{Abscissa, Coloured, ColouredColumn, KeyValues, Quantity, Scene};
+use hydrostat_figures::{Abscissa, Coloured, ColouredColumn, KeyValues, Page, Quantity, Scene};
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -12,7 +12,7 @@ use crate::errors::wrong;
 use crate::interrupt::interruptible;
 use crate::paths::Equilibria;
 
-/// A drawing, as SVG and as PNG.
+/// A drawing, as SVG, PDF and PNG.
 #[pyclass(frozen, module = "hydrostat._native")]
 pub(crate) struct Figure {
     scene: Scene,
@@ -26,8 +26,12 @@ impl Figure {
 
 #[pymethods]
 impl Figure {
-    fn svg(&self) -> String {
-        self.scene.svg()
+    fn svg(&self, text: bool) -> String {
+        if text { self.scene.svg_with_text() } else { self.scene.svg() }
+    }
+
+    fn pdf<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &py.detach(|| self.scene.pdf()))
     }
 
     fn png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
@@ -80,7 +84,7 @@ pub(crate) fn map_figure(
         values: values.as_array().to_vec(),
     };
     let keys = [key(axes.0, &keys.0), key(axes.1, &keys.1)];
-    Figure::new(hydrostat_figures::map_figure(&keys, &column(name, values), title))
+    Figure::new(hydrostat_figures::map_figure(&keys, &column(name, values), title, &Page::default()))
 }
 
 /// Places of the tip.
@@ -93,7 +97,7 @@ pub(crate) fn workspace_figure(
     title: &str,
 ) -> Figure {
     let tips: Vec<[f64; 2]> = x.as_array().iter().zip(y.as_array()).map(|(x, y)| [*x, *y]).collect();
-    Figure::new(hydrostat_figures::workspace_figure(&tips, &column(name, values), title))
+    Figure::new(hydrostat_figures::workspace_figure(&tips, &column(name, values), title, &Page::default()))
 }
 
 /// A column over one key.
@@ -106,7 +110,8 @@ pub(crate) fn curve_figure(
     title: &str,
 ) -> Figure {
     let key = KeyValues { axis: abscissa(axis), values: key.as_array().to_vec() };
-    Figure::new(hydrostat_figures::curve_figure(&key, name, &values.as_array().to_vec(), title))
+    let values = values.as_array().to_vec();
+    Figure::new(hydrostat_figures::curve_figure(&key, name, &values, title, &Page::default()))
 }
 
 /// All equilibria at each of several values (SI).
@@ -119,7 +124,8 @@ pub(crate) fn over_figure(
 ) -> PyResult<Figure> {
     let searches: Vec<(f64, &hydrostat::Equilibria)> =
         searches.iter().map(|(value, all)| (*value, &all.get().all)).collect();
-    Ok(Figure::new(hydrostat_figures::over_figure(&searches, &abscissa(axis), quantity(asked)?, title)))
+    let page = Page::default();
+    Ok(Figure::new(hydrostat_figures::over_figure(&searches, &abscissa(axis), quantity(asked)?, title, &page)))
 }
 
 /// Name, drawing and CSV of each part of the source's figure; statement, finding and evidence of each claim.
@@ -130,7 +136,7 @@ type Parts = (Vec<(&'static str, Figure, String)>, Vec<(&'static str, &'static s
 pub(crate) fn source_figures(py: Python<'_>, arm: &Arm, at_highest: bool, faster: Vec<f64>) -> PyResult<Parts> {
     let shown = Shown { at_highest, faster };
     let study = interruptible(py, |_| Ok(()), |_| Study::of(&arm.given, &shown))?.map_err(wrong)?;
-    let figures = study.figures().map(|figure| (figure.name, Figure::new(figure.scene), figure.csv));
+    let figures = study.figures(&Page::default()).map(|figure| (figure.name, Figure::new(figure.scene), figure.csv));
     let claims = study.claims.iter().map(|claim| (claim.statement, claim.finding.words(), claim.evidence.clone()));
     Ok((figures.into(), claims.collect()))
 }

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 
 use hydrostat::Parameter;
-use hydrostat_figures::fit_figure;
+use hydrostat_figures::{Page, fit_figure};
 use hydrostat_files::{
     Deviations, FitKey, FitKeyError, IdentificationDocument, PriorKey, arm_to_toml, fitted, parse_measurements,
     read_measurements, residuals_csv,
@@ -127,6 +127,6 @@ impl Fit {
 
     /// Shapes with markers, residuals and correlations.
     fn figure(&self) -> Figure {
-        Figure::new(fit_figure(&self.best.name, &self.cases, &self.found))
+        Figure::new(fit_figure(&self.best.name, &self.cases, &self.found, &Page::default()))
     }
 }

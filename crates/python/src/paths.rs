@@ -4,6 +4,7 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use hydrostat::{Configuration, Event, PathOptions, Stability};
+use hydrostat_figures::Page;
 use hydrostat_files::{EquilibriaDocument, PathDocument, Varied, end_message, equilibria_csv, path_csv};
 use numpy::PyArray1;
 use pyo3::exceptions::PyIndexError;
@@ -123,12 +124,19 @@ impl Path {
     }
 
     fn figure(&self, asked: &str, title: &str) -> PyResult<Figure> {
-        let scene = hydrostat_figures::path_figure(&self.found, &abscissa(self.axis()), quantity(asked)?, title);
+        let scene = hydrostat_figures::path_figure(
+            &self.found,
+            &abscissa(self.axis()),
+            quantity(asked)?,
+            title,
+            &Page::default(),
+        );
         Ok(Figure::new(scene))
     }
 
     fn shapes_figure(&self, title: &str) -> Figure {
-        Figure::new(hydrostat_figures::path_shapes_figure(&self.found, &abscissa(self.axis()), title))
+        let page = Page::default();
+        Figure::new(hydrostat_figures::path_shapes_figure(&self.found, &abscissa(self.axis()), title, &page))
     }
 
     fn to_json(&self) -> Option<String> {
@@ -197,7 +205,7 @@ impl Equilibria {
     }
 
     fn figure(&self, title: &str) -> Figure {
-        Figure::new(hydrostat_figures::equilibria_figure(&self.all, title))
+        Figure::new(hydrostat_figures::equilibria_figure(&self.all, title, &Page::default()))
     }
 
     fn to_json(&self) -> String {

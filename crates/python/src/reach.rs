@@ -6,7 +6,7 @@ use hydrostat::{
     Bound as TensionBound, BoundaryOptions, Configuration, Followed, Options, ReachError, ReachOptions, Reached,
     Solver, Target,
 };
-use hydrostat_figures::{boundary_figure, reach_figure};
+use hydrostat_figures::{Page, boundary_figure, reach_figure};
 use hydrostat_files::{BoundaryDocument, ReachDocument, boundary_csv, reach_csv};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};
@@ -125,7 +125,7 @@ impl Boundary {
     }
 
     fn figure(&self) -> Figure {
-        Figure::new(boundary_figure(&self.found, &self.slack))
+        Figure::new(boundary_figure(&self.found, &self.slack, &Page::default()))
     }
 }
 
@@ -164,7 +164,7 @@ impl Reach {
     /// The shape with the targets.
     fn figure(&self, index: usize, note: Option<&str>) -> PyResult<Figure> {
         let targets: Vec<[f64; 2]> = self.targets.iter().map(|target| [target.x, target.y]).collect();
-        Ok(Figure::new(reach_figure(&self.one(index)?.configuration, &targets, note)))
+        Ok(Figure::new(reach_figure(&self.one(index)?.configuration, &targets, note, &Page::default())))
     }
 
     fn to_json(&self) -> String {

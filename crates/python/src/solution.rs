@@ -215,7 +215,7 @@ impl Solution {
 
     /// The arm to scale.
     fn figure(&self, note: Option<&str>) -> Figure {
-        Figure::new(hydrostat_figures::arm_figure(&self.configuration, note))
+        Figure::new(hydrostat_figures::arm_figure(&self.configuration, note, &hydrostat_figures::Page::default()))
     }
 }
 

@@ -4,8 +4,8 @@
 /** @import { Scene, View } from "./paint.js" */
 
 import { boundsOf, nearest } from "./geometry.js";
-import { byId } from "./page.js";
-import { captionLines, Painter, colours } from "./paint.js";
+import { byId, kept } from "./page.js";
+import { Painter, colours } from "./paint.js";
 
 /** Most points of the tip's trail. */
 const TRAIL = 400;
@@ -19,6 +19,9 @@ export class ArmView {
   constructor(onPull, onRelease, onHover) {
     this.canvas = byId("drawing", HTMLCanvasElement);
     this.handle = byId("tip", HTMLButtonElement);
+    /** What to do first, until it was done once. */
+    this.hint = byId("hint", HTMLElement);
+    this.isNew = kept.get("tip") === null;
     const ctx = this.canvas.getContext("2d");
     if (!ctx) throw new Error("the browser has no canvas");
     this.ctx = ctx;
@@ -28,8 +31,8 @@ export class ArmView {
     /** @type {Scene} */
     this.scene = {
       shown: undefined, ghost: undefined, pins: [], extra: undefined, trail: [], way: [], target: undefined, hover: undefined,
-      caption: [], tints: "plain",
-      layers: { sections: true, stream: true, layer: true, ghost: true, trail: true, directors: true, contact: false },
+      tints: "plain",
+      layers: { sections: true, stream: true, gravity: true, layer: true, ghost: true, trail: true, directors: true, contact: false },
     };
     /** @type {View} */
     this.view = { k: 1000, ox: 0, oy: 0, width: 1, height: 1 };
@@ -69,7 +72,7 @@ export class ArmView {
       this.scene.trail.push(tip);
       if (this.scene.trail.length > TRAIL) this.scene.trail.shift();
     }
-    if (first || (this.fitted && !this.scene.target && (this.isOut(tip) || this.isUnderWords()))) this.fit();
+    if (first || (this.fitted && !this.scene.target && this.isOut(tip))) this.fit();
     else this.paint();
   }
 
@@ -77,15 +80,6 @@ export class ArmView {
   isOut(point) {
     const [x, y] = this.toPage(point);
     return x < 20 || y < 20 || x > this.view.width - 20 || y > this.view.height - 20;
-  }
-
-  /** Whether words may cover the arm. */
-  isUnderWords() {
-    const words = captionLines(this.ctx, this.scene, this.view);
-    const outline = this.scene.shown?.outline;
-    if (words.length === 0 || !outline) return false;
-    const { y } = boundsOf([outline.left, outline.right]);
-    return this.toPage([0, y[1]])[1] < words[words.length - 1].y + 8;
   }
 
   /** Forgets what belongs to the arm before. */
@@ -104,8 +98,8 @@ export class ArmView {
       const { x, y } = boundsOf(lines);
       const { width, height } = this.view;
       const [w, h] = [Math.max(x[1] - x[0], 1e-9), Math.max(y[1] - y[0], 1e-9)];
-      // Room for the directors at the tip, and for what stands above and below.
-      const [top, bottom] = [this.topRoom(), 60];
+      // Room for the directors at the tip, for gravity above and the scale below.
+      const [top, bottom] = [62, 52];
       const k = Math.min((width - Math.min(150, 0.3 * width)) / w, (height - top - bottom) / h);
       this.view.k = Math.max(k, 1e-3);
       this.view.ox = 0.5 * width - 0.5 * this.view.k * (x[0] + x[1]);
@@ -114,11 +108,26 @@ export class ArmView {
     this.paint();
   }
 
-  /** What the tools, the words and the directors at the tip take above the arm; words at most half of the picture. */
-  topRoom() {
-    const words = captionLines(this.ctx, this.scene, this.view);
-    const last = words.length > 0 ? words[words.length - 1].y + 30 : 0;
-    return Math.max(words.length > 0 || this.view.width < 640 ? 110 : 70, Math.min(last, 0.5 * this.view.height));
+  /**
+   * The picture with a line of words below it, to take away.
+   * @param {string} words
+   */
+  image(words) {
+    const { canvas, colour } = this;
+    const ratio = canvas.width / Math.max(this.view.width, 1);
+    const below = 30 * ratio;
+    const image = document.createElement("canvas");
+    [image.width, image.height] = [canvas.width, canvas.height + below];
+    const ctx = image.getContext("2d");
+    if (!ctx) return canvas;
+    ctx.fillStyle = colour("card");
+    ctx.fillRect(0, 0, image.width, image.height);
+    ctx.drawImage(canvas, 0, 0);
+    ctx.fillStyle = colour("ink");
+    ctx.font = `${13 * ratio}px system-ui, "Noto Sans", sans-serif`;
+    ctx.textBaseline = "middle";
+    ctx.fillText(words, 12 * ratio, canvas.height + 0.5 * below, image.width - 24 * ratio);
+    return image;
   }
 
   paint() {
@@ -128,7 +137,18 @@ export class ArmView {
     if (centre) {
       const [x, y] = this.toPage(centre[centre.length - 1]);
       this.handle.style.transform = `translate(${x}px, ${y}px)`;
+      this.hint.hidden = !this.isNew || this.handle.hidden;
+      if (!this.hint.hidden) this.placeHint([x, y]);
     }
+  }
+
+  /** Beside the tip, between the director a and the label of the angle, and inside of the picture. @param {Point} tip */
+  placeHint([x, y]) {
+    const { offsetWidth: width, offsetHeight: height } = this.hint;
+    const angle = (this.scene.shown?.shape.tip.theta ?? 0) - Math.PI / 4;
+    const middle = [x + (0.5 * width + 18) * Math.cos(angle), y - (0.5 * height + 20) * Math.sin(angle)];
+    const inside = (/** @type {number} */ v, /** @type {number} */ size, /** @type {number} */ most) => Math.min(Math.max(v - 0.5 * size, 4), most - size - 4);
+    this.hint.style.transform = `translate(${inside(middle[0], width, this.view.width)}px, ${inside(middle[1], height, this.view.height)}px)`;
   }
 
   /** @param {Point} point @returns {Point} */
@@ -282,6 +302,10 @@ export class ArmView {
   /** @param {Point} target @param {number} asked */
   pull(target, asked) {
     this.scene.target = target;
+    if (this.isNew) {
+      this.isNew = false;
+      kept.set("tip", "pulled");
+    }
     handleHeld(this.handle, true);
     this.onPull(target, asked);
   }

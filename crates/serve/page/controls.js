@@ -1,21 +1,10 @@
 // The panel of loads, material and readings, made from what the arm has.
 
-/** @import { Inputs, Profile, Setting } from "./types" */
+/** @import { Choice, Inputs, Options, Profile } from "./types" */
 /** @import { State } from "./state.js" */
 
 import { number, roundUp } from "./numbers.js";
 import { element } from "./page.js";
-
-/** The options of the model with their default first, and what they decide. */
-export const READINGS = /** @type {const} */ ([
-  { key: "volume", label: "Volume", words: ["planar", "circular", "none"] },
-  { key: "flow_surface", label: "Surface of the flow", words: ["centreline", "lateral"] },
-  { key: "entering_speed", label: "Entering speed", words: ["tangential", "resultant"] },
-  { key: "layer_mean", label: "Mean over the layer", words: ["speed", "momentum"] },
-  { key: "wetted_length", label: "Wetted length", words: ["reference", "deformed"] },
-  { key: "hydrostatics", label: "Hydrostatics", words: ["archimedes", "normal-only"] },
-  { key: "support", label: "Support", words: ["clamped", "unstrained-base"] },
-]);
 
 /** Materials to try, for arms that have a Young's modulus. */
 const MATERIALS = [
@@ -25,8 +14,8 @@ const MATERIALS = [
 ];
 
 /**
- * A number that can be moved. Values are in the units of the arm file; `per` of the unit shown are one of those.
- * @typedef {{ key: string, label: string, unit: string, per: number, min: number, max: number, value: number, colour?: number }} Range
+ * A number that can be moved; its value is undefined where the file has none. Values are in the units of the arm file; `per` of the unit shown are one of those.
+ * @typedef {{ key: string, label: string, unit: string, per: number, min: number, max: number, value: number | undefined, colour?: number }} Range
  */
 
 export class Controls {
@@ -41,8 +30,10 @@ export class Controls {
     this.onRamp = onRamp;
     /** @type {Map<string, { range: Range, slider: HTMLInputElement, box: HTMLInputElement, row: HTMLElement }>} */
     this.ranges = new Map();
-    /** @type {Map<string, { select: HTMLSelectElement, own: string, row: HTMLElement }>} */
+    /** @type {Map<string, { choice: Choice, select: HTMLSelectElement, label: HTMLElement, own: string, row: HTMLElement }>} */
     this.choices = new Map();
+    /** What can be chosen, as the server says. @type {Options} */
+    this.options = { readings: [], flow_law: { key: "flow.law", label: "", meaning: "", words: [] } };
     /** @type {Inputs | undefined} */
     this.inputs = undefined;
     /** The largest tension of each cable's slider, N. @type {number[]} */
@@ -78,7 +69,8 @@ export class Controls {
       this.group("Stream", [
         this.range({ key: "flow.speed", label: "Speed", unit: "m/s", per: 1, min: 0, max: Math.max(1, roundUp(1.5 * inputs.flow.speed)), value: inputs.flow.speed }),
         this.range({ key: "flow.direction", label: "Direction", unit: "\u00b0", per: 1, min: -180, max: 180, value: inputs.flow.direction }),
-        this.choice("flow.law", "Law", ["momentum", "quadratic-drag"], inputs.flow.law, () => this.drag(inputs)),
+        this.choice(this.options.flow_law, inputs.flow.law),
+        ...this.drag(inputs),
         this.range({ key: "flow.layer_thickness", label: "Layer", unit: "mm", per: 1e3, min: 0.001, max: 0.02, value: inputs.flow.layer_thickness }),
       ]),
       this.group("Gravity", [
@@ -90,7 +82,7 @@ export class Controls {
       this.group("Base", [
         this.range({ key: "arm.base.angle", label: "Angle", unit: "\u00b0", per: 1, min: -180, max: 180, value: inputs.arm.base.angle }),
       ]),
-      this.group("Readings of the source", READINGS.map(({ key, label, words }) => this.choice(`model.${key}`, label, [...words], inputs.model[key]))),
+      this.group("Readings of the source", this.options.readings.map((choice) => this.choice(choice, inputs.model[choice.key.replace("model.", "")]))),
       element("p", {}, [this.button("Take everything back", () => this.state.choose(this.state.arm))]),
     );
     this.refresh();
@@ -193,12 +185,21 @@ export class Controls {
   }
 
   /**
-   * Quadratic drag needs coefficients: the file's, or those published for silicone.
+   * The coefficients of quadratic drag, shown with that law. They have no default, here as on the command line.
    * @param {Inputs} inputs
-   * @returns {Record<string, Setting>}
    */
   drag(inputs) {
-    return inputs.flow.cn === undefined ? { "flow.cn": 2.5, "flow.ct": 0.005 } : {};
+    const { cn, ct } = inputs.flow;
+    const rows = [
+      this.range({ key: "flow.cn", label: "Normal drag C\u2099", unit: "", per: 1, min: 0, max: Math.max(5, roundUp(2 * (cn ?? 0))), value: cn }),
+      this.range({ key: "flow.ct", label: "Tangential drag C\u209c", unit: "", per: 1, min: 0, max: Math.max(0.05, roundUp(2 * (ct ?? 0))), value: ct }),
+    ];
+    const show = () => {
+      const law = this.state.set.get("flow.law") ?? inputs.flow.law;
+      for (const row of rows) row.hidden = law !== "quadratic-drag";
+    };
+    this.modes.push(show);
+    return rows;
   }
 
   /**
@@ -234,21 +235,20 @@ export class Controls {
   }
 
   /**
-   * @param {string} key
-   * @param {string} label
-   * @param {string[]} words
-   * @param {string} own
-   * @param {(word: string) => Record<string, Setting>} [more] what has to be said with a choice
+   * @param {Choice} choice
+   * @param {string} own the word of the file
    */
-  choice(key, label, words, own, more = () => ({})) {
+  choice(choice, own) {
+    const { key, meaning, words } = choice;
     const id = `control-${key.replaceAll(/[^a-z0-9]/g, "-")}`;
-    const select = element("select", { id, "data-key": key }, words.map((word) => element("option", { value: word, text: word })));
+    const select = element("select", { id, "data-key": key }, words.map(({ word, meaning: title }) => element("option", { value: word, text: word, title })));
     select.addEventListener("change", (event) => {
       this.moved = event.timeStamp;
-      this.state.change({ ...(select.value === own ? {} : more(select.value)), [key]: select.value === own ? undefined : select.value });
+      this.state.change({ [key]: select.value === own ? undefined : select.value });
     });
-    const row = element("div", { class: "control choice" }, [element("label", { for: id, text: label }), select]);
-    this.choices.set(key, { select, own, row });
+    const label = element("label", { for: id, text: choice.label, title: meaning });
+    const row = element("div", { class: "control choice" }, [label, select]);
+    this.choices.set(key, { choice, select, label, own, row });
     return row;
   }
 
@@ -258,6 +258,11 @@ export class Controls {
     for (const [key, { range, slider, box, row }] of this.ranges) {
       const set = this.state.set.get(key);
       const value = typeof set === "number" ? set : range.value;
+      if (value === undefined) {
+        [slider.value, box.value, box.placeholder] = [String(range.min), "", "needed"];
+        slider.setAttribute("aria-valuetext", "not given");
+        continue;
+      }
       if (Number(slider.value) !== value) slider.value = String(value);
       const shown = String(Number((value * range.per).toPrecision(6)));
       // What stays costs no time.
@@ -266,9 +271,15 @@ export class Controls {
       if (slider.getAttribute("aria-valuetext") !== spoken) slider.setAttribute("aria-valuetext", spoken);
       row.classList.toggle("moved", set !== undefined);
     }
-    for (const [key, { select, own, row }] of this.choices) {
+    for (const [key, { choice, select, label, own, row }] of this.choices) {
       const chosen = String(this.state.set.get(key) ?? own);
       if (select.value !== chosen) select.value = chosen;
+      const word = choice.words.find((one) => one.word === chosen);
+      const says = `${choice.meaning}. ${chosen}: ${word?.meaning ?? ""}`;
+      if (label.title !== says) {
+        label.title = select.title = says;
+        select.setAttribute("aria-description", says);
+      }
       row.classList.toggle("moved", this.state.set.has(key));
     }
     if (this.preset) {
@@ -282,11 +293,25 @@ export class Controls {
    * @param {string | null} key
    */
   blame(key) {
-    for (const [own, { row }] of this.ranges) row.classList.toggle("wrong", own === key);
+    const mark = (/** @type {HTMLElement} */ row, /** @type {HTMLElement[]} */ fields, /** @type {boolean} */ wrong) => {
+      if (row.classList.contains("wrong") === wrong) return;
+      row.classList.toggle("wrong", wrong);
+      for (const field of fields) {
+        if (wrong) {
+          field.setAttribute("aria-invalid", "true");
+          field.setAttribute("aria-errormessage", "verdict-lines");
+        } else {
+          field.removeAttribute("aria-invalid");
+          field.removeAttribute("aria-errormessage");
+        }
+      }
+    };
+    for (const [own, { row, slider, box }] of this.ranges) mark(row, [slider, box], own === key);
+    for (const [own, { row, select }] of this.choices) mark(row, [select], own === key);
   }
 
   /** What can be traced: loads and material, with the range of their sliders. */
   tracks() {
-    return [...this.ranges.values()].map(({ range }) => range).filter(({ key }) => !/layer_thickness|material\.c\d/.test(key));
+    return [...this.ranges.values()].map(({ range }) => range).filter(({ key }) => !/layer_thickness|material\.c\d|flow\.c/.test(key));
   }
 }

@@ -1,6 +1,6 @@
 // The shape of an arm as lines, m, from the stations of an answer.
 
-/** @import { Drawing, Ghost, Outline, Point, Solution, Stations } from "./types" */
+/** @import { Drawing, Outline, Point, Silhouette, Stations } from "./types" */
 
 /**
  * Surface r +- beta R b, centreline and cables r + y beta b.
@@ -19,15 +19,15 @@ export function outlineOf(st, drawing) {
 }
 
 /**
- * @param {Ghost} ghost
+ * @param {Silhouette} shape
  * @returns {Outline}
  */
-export function outlineOfGhost(ghost) {
+export function outlineOfSilhouette(shape) {
   const place = (/** @type {number} */ i, /** @type {number} */ side) => {
-    const distance = side * ghost.half_width[i];
-    return /** @type {Point} */ ([ghost.x[i] - distance * Math.sin(ghost.theta[i]), ghost.y[i] + distance * Math.cos(ghost.theta[i])]);
+    const distance = side * shape.half_width[i];
+    return /** @type {Point} */ ([shape.x[i] - distance * Math.sin(shape.theta[i]), shape.y[i] + distance * Math.cos(shape.theta[i])]);
   };
-  const all = (/** @type {number} */ side) => ghost.x.map((_, i) => place(i, side));
+  const all = (/** @type {number} */ side) => shape.x.map((_, i) => place(i, side));
   return { left: all(1), right: all(-1), centre: all(0), cables: [] };
 }
 
@@ -44,30 +44,6 @@ export function boundsOf(lines) {
     b.y = [Math.min(b.y[0], y), Math.max(b.y[1], y)];
   }
   return b;
-}
-
-/**
- * The stream along and across the centreline at a station: its tangential part, and the side that it meets (1 left, -1 right).
- * @param {Solution} shape
- * @param {number} i
- */
-export function streamAt(shape, i) {
-  const { speed, direction } = shape.inputs.flow;
-  const phi = shape.stations.theta[i] + shape.stations.alpha[i];
-  const psi = (direction * Math.PI) / 180;
-  const across = speed * Math.sin(psi - phi);
-  return { along: speed * Math.cos(psi - phi), windward: across > 0 ? -1 : 1, phi };
-}
-
-/**
- * Speed in the layer over the windward surface, equation (7), at a distance y from it.
- * @param {number} outside
- * @param {number} y
- * @param {number} thickness
- */
-export function layerSpeed(outside, y, thickness) {
-  const share = Math.min(Math.max(y / thickness, 0), 1);
-  return outside * (2 * share - share * share);
 }
 
 /**

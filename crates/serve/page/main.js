@@ -1,15 +1,16 @@
 // Puts the page together: what is wished goes to the server, what comes back to drawing, words, numbers and charts.
 
-/** @import { Drawing, Point, Reply, Setting, Solution, Wish } from "./types" */
+/** @import { Drawing, Options, Point, Reply, Setting, Solution, Wish } from "./types" */
 /** @import { Range } from "./controls.js" */
 
 import { ArmView } from "./arm_view.js";
 import { AlongCharts } from "./charts.js";
 import { Connection, armOf, ask } from "./connection.js";
 import { Controls } from "./controls.js";
-import { outlineOf, outlineOfGhost, stationAt } from "./geometry.js";
+import { outlineOf, outlineOfSilhouette, stationAt } from "./geometry.js";
+import { listenToHelp } from "./help.js";
 import { force } from "./numbers.js";
-import { byId, element, settled, tidyMenus, toast } from "./page.js";
+import { byId, element, kept, settled, tidyMenus, toast } from "./page.js";
 import { listenToFiles, listenToShare } from "./share.js";
 import { State } from "./state.js";
 import { Studies } from "./studies.js";
@@ -40,6 +41,7 @@ const along = new AlongCharts(byId("along", HTMLElement), hover);
 const controls = new Controls(byId("controls", HTMLElement), state, ramp);
 const connection = new Connection(receive, (open) => {
   byId("link", HTMLElement).textContent = open ? "" : "not connected";
+  byId("took", HTMLElement).hidden = !open;
   if (!open) say({ level: "bad", title: "Not connected", lines: ["The server does not answer: is `hydrostat serve` still running? The page looks for it again by itself."] });
 });
 const studies = new Studies(state, view, controls, () => (present?.asked ? present : undefined));
@@ -169,13 +171,13 @@ function sayTook(text, title) {
   const now = performance.now();
   if (now - tookSaid < READABLE) return;
   tookSaid = now;
-  const link = byId("link", HTMLElement);
-  [link.textContent, link.title] = [text, title];
+  const took = byId("took", HTMLElement);
+  [took.textContent, took.title] = [text, title];
 }
 
 /** @param {Reply} reply @param {number} asked */
 function receive(reply, asked) {
-  if (reply.ghost) view.scene.ghost = outlineOfGhost(reply.ghost);
+  if (reply.ghost) view.scene.ghost = outlineOfSilhouette(reply.ghost);
   if (reply.error) {
     refused(reply.error);
   } else if (reply.answer) {
@@ -206,7 +208,7 @@ function takeTensions(tensions) {
 function answered(reply) {
   const { answer, drawing, pulled } = reply;
   if (!answer) return;
-  const words = wordsOf(answer);
+  const words = wordsOf(answer, drawing);
   const shape = answer.converged ? answer : answer.last_good;
   if (pulled && shape) {
     const lines = wordsOfPull(pulled, shape.cables);
@@ -215,12 +217,10 @@ function answered(reply) {
       if (words.level === "good") words.level = "warn";
     }
   }
-  // The picture says it, too: all but a plain stable shape.
-  view.scene.caption = words.level === "good" ? [] : [words.title, ...words.lines].map((text) => ({ text, level: words.level }));
   say(words);
   if (!shape || !drawing) return;
   present = { shape, drawing, asked: answer.converged };
-  view.show({ shape, outline: outlineOf(shape.stations, drawing), asked: answer.converged });
+  view.show({ shape, drawing, outline: outlineOf(shape.stations, drawing), asked: answer.converged });
   tabulate(shape);
   along.show(shape, pins);
   legend(shape);
@@ -229,8 +229,6 @@ function answered(reply) {
 /** @param {import("./types").Problem} problem */
 function refused(problem) {
   say({ level: "bad", title: "The request is refused", lines: [problem.message] });
-  view.scene.caption = [{ text: problem.message, level: "bad" }];
-  view.paint();
   controls.blame(problem.key);
   stopRamp?.();
 }
@@ -239,13 +237,19 @@ function refused(problem) {
 function say(words) {
   const box = byId("verdict", HTMLElement);
   const key = JSON.stringify(words);
-  // A screen reader reads what changes: what stays is not written again.
   if (box.dataset.key === key) return;
   box.dataset.key = key;
   box.dataset.level = words.level;
   byId("verdict-title", HTMLElement).textContent = words.title;
   byId("verdict-lines", HTMLElement).replaceChildren(...words.lines.map((text) => element("li", { text })));
+  sayAloud();
 }
+
+/** A screen reader reads what the verdict comes to, not all that it is while something moves. */
+const sayAloud = settled(700, () => {
+  const lines = [...byId("verdict", HTMLElement).querySelectorAll("strong, li")].map((line) => line.textContent);
+  byId("said", HTMLElement).textContent = lines.join(" ");
+});
 
 /** @param {Solution} shape */
 function tabulate(shape) {
@@ -265,7 +269,9 @@ function legend(shape) {
   const { speed, direction } = shape.inputs.flow;
   /** @type {[string, string][]} */
   const items = shape.cables.map((cable, c) => [`swatch c${c % 7}${cable.tension > 0 ? "" : " slack"}`, `${cable.name}: ${cable.tension > 0 ? force(cable.tension) : "slack"}`]);
-  items.push(["swatch cflow", speed > 0 ? `stream ${Number(speed.toPrecision(4))} m/s at ${Number(direction.toPrecision(4))}\u00b0` : "still water"]);
+  // What is not drawn has no sample.
+  const flows = speed > 0 && (view.scene.layers.stream || view.scene.layers.layer);
+  if (flows) items.push(["swatch cflow", `stream ${Number(speed.toPrecision(4))} m/s at ${Number(direction.toPrecision(4))}\u00b0`]);
   if (view.scene.layers.ghost) items.push(["swatch cghost slack", "unloaded"]);
   const key = JSON.stringify(items);
   if (place.dataset.key === key) return;
@@ -304,7 +310,7 @@ function showPins() {
 
 /** @type {[string, string][]} */
 const LAYERS = [
-  ["sections", "Section lines"], ["directors", "Directors at the tip"], ["stream", "Stream"], ["layer", "Layer of the stream"],
+  ["sections", "Section lines"], ["directors", "Directors at the tip"], ["stream", "Stream"], ["gravity", "Gravity"], ["layer", "Layer of the stream"],
   ["ghost", "Unloaded arm"], ["trail", "Trail of the tip"], ["contact", "Contact forces"],
 ];
 const tints = element("select", { "aria-label": "Colour of the body" }, [
@@ -348,32 +354,34 @@ for (const [i, tab] of tabs.entries()) {
   });
 }
 
-/** @param {string} name */
-function theme(name) {
-  document.documentElement.dataset.theme = name;
-  byId("theme", HTMLButtonElement).textContent = name === "dark" ? "\u2600" : "\u263e";
+const dark = matchMedia("(prefers-color-scheme: dark)");
+/** Whether the page is dark: as the user chose, else as the system is. */
+const isDark = () => (document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light")) === "dark";
+function recolour() {
+  byId("theme", HTMLButtonElement).textContent = isDark() ? "\u2600" : "\u263e";
   view.recolour();
   along.recolour();
+  studies.paths.recolour();
 }
-const dark = matchMedia("(prefers-color-scheme: dark)");
-/** What the user chose, if anything. */
-let chosenTheme = localStorage.getItem("theme");
-dark.addEventListener("change", () => chosenTheme ?? theme(dark.matches ? "dark" : "light"));
+dark.addEventListener("change", recolour);
 byId("theme", HTMLButtonElement).addEventListener("click", () => {
-  chosenTheme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
-  localStorage.setItem("theme", chosenTheme);
-  theme(chosenTheme);
+  const chosen = isDark() ? "light" : "dark";
+  document.documentElement.dataset.theme = chosen;
+  kept.set("theme", chosen);
+  recolour();
 });
 
 // --- The beginning ---------------------------------------------------------------------------------------------------
 
 /** Takes what the address says, or what the program was started with. */
 async function begin() {
-  theme(chosenTheme ?? (dark.matches ? "dark" : "light"));
+  recolour();
   tidyMenus();
-  listenToShare(state, view.canvas);
+  listenToHelp();
+  listenToShare(state, () => view.image(`${state.arm.name}: ${byId("verdict-title", HTMLElement).textContent}`));
   listenToFiles(state);
-  const { arms, start, given } = await (await ask("/api/arms")).json();
+  const [{ arms, start, given }, options] = await Promise.all(["/api/arms", "/api/options"].map(async (path) => (await ask(path)).json()));
+  controls.options = studies.options = /** @type {Options} */ (options);
   byId("arm", HTMLSelectElement).replaceChildren(...arms.map((/** @type {{ name: string, description: string }} */ { name, description }) =>
     element("option", { value: name, text: name, title: description })));
   if (given) own.set(given.name, given.toml);

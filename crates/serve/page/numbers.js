@@ -56,3 +56,26 @@ export function roundUp(value) {
   const step = [1, 1.5, 2, 3, 5, 7.5, 10].find((s) => s * power >= value * (1 - 1e-9)) ?? 10;
   return Number((step * power).toPrecision(3));
 }
+
+/** A number that needs no more digits than a reader does. @param {number} value */
+export const plain = (value) => number(Number(value.toPrecision(4)), 4);
+
+/**
+ * Round values in a range, about `count` of them, with their labels.
+ * @param {number} from
+ * @param {number} to
+ * @param {number} count
+ */
+export function ticks(from, to, count) {
+  const size = 10 ** Math.floor(Math.log10((to - from) / count));
+  const off = (/** @type {number} */ factor) => Math.abs((to - from) / (factor * size) - count);
+  const step = size * [1, 2, 5, 10].reduce((best, factor) => (off(factor) < off(best) ? factor : best));
+  const decimals = Math.min(Math.max(0, -Math.floor(Math.log10(step * 1.000001))), 12);
+  const found = [];
+  for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step && found.length < 50; k += 1) {
+    const value = k * step;
+    const large = Math.abs(value) >= 1e5 || decimals > 5;
+    found.push({ value, label: value === 0 ? "0" : large ? number(value, 3) : fixed(value, decimals) });
+  }
+  return found;
+}

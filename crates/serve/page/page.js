@@ -80,3 +80,23 @@ export function tidyMenus() {
     }
   });
 }
+
+/** What is kept from visit to visit; nothing where the browser keeps nothing. */
+export const kept = {
+  /** @param {string} name @returns {string | null} */
+  get(name) {
+    try {
+      return localStorage.getItem(name);
+    } catch {
+      return null;
+    }
+  },
+  /** @param {string} name @param {string} value */
+  set(name, value) {
+    try {
+      localStorage.setItem(name, value);
+    } catch {
+      // It holds until the page is left.
+    }
+  },
+};

@@ -2,7 +2,6 @@
 
 /** @import { Outline, Point, Shown, Solution } from "./types" */
 
-import { layerSpeed, streamAt } from "./geometry.js";
 import { degrees, fixed, force } from "./numbers.js";
 
 /**
@@ -16,7 +15,6 @@ import { degrees, fixed, force } from "./numbers.js";
  *   way: { place: Point, stable: boolean, event: string | null }[],
  *   target: Point | undefined,
  *   hover: number | undefined,
- *   caption: { text: string, level: string }[],
  *   layers: Record<string, boolean>,
  *   tints: "plain" | "alpha" | "eta" | "nu",
  * }} Scene
@@ -27,8 +25,10 @@ import { degrees, fixed, force } from "./numbers.js";
  * @typedef {{ k: number, ox: number, oy: number, width: number, height: number }} View
  */
 
-/** The stops of the program's drawings for shares from 0 to 1. */
-const SHADES = [[232, 158, 60], [214, 96, 77], [172, 52, 104], [104, 32, 112], [34, 20, 74]];
+/** How many colours the palette has for shares from 0 to 1. */
+const SHADES = 5;
+/** The edge of the picture that gravity's arrow keeps to, px. */
+const CORNER = 34;
 
 const FONT = '12px system-ui, "Noto Sans", "Liberation Sans", sans-serif';
 
@@ -83,9 +83,10 @@ export class Painter {
     }
     if (scene.extra) this.outline(scene.extra, this.colour("series-3"), 1.6, [7, 3]);
     if (scene.shown && scene.hover !== undefined) this.hovered(scene.shown, scene.hover);
+    if (scene.shown?.drawing.crossing) this.crossing(scene.shown.drawing.crossing);
     if (scene.target) this.target(scene.target);
     this.scale();
-    this.caption();
+    if (shape && scene.layers.gravity) this.gravity(shape);
   }
 
   /** @param {Point} point @returns {Point} */
@@ -179,21 +180,23 @@ export class Painter {
    * The layer of equation (7) over the windward surface: its thickness as a band, its speeds as profiles.
    * @param {Shown} shown
    */
-  layer({ shape, outline }) {
+  layer({ shape, drawing, outline }) {
     const { ctx, view } = this;
+    const { layer } = drawing;
     const { speed, layer_thickness: thickness } = shape.inputs.flow;
-    if (!(speed > 0)) return;
+    if (!layer) return;
     const colour = this.colour("layer");
     const count = shape.stations.s.length;
+    const along = (/** @type {number} */ i) => shape.stations.theta[i] + shape.stations.alpha[i];
     const normal = (/** @type {number} */ i) => {
-      const { phi, windward } = streamAt(shape, i);
-      return /** @type {Point} */ ([-windward * Math.sin(phi), windward * Math.cos(phi)]);
+      const side = layer.windward[i];
+      return /** @type {Point} */ ([-side * Math.sin(along(i)), side * Math.cos(along(i))]);
     };
-    const surface = (/** @type {number} */ i) => (streamAt(shape, i).windward > 0 ? outline.left[i] : outline.right[i]);
+    const surface = (/** @type {number} */ i) => (layer.windward[i] > 0 ? outline.left[i] : outline.right[i]);
     ctx.fillStyle = colour;
     for (let i = 0; i + 1 < count; i += 1) {
-      if (streamAt(shape, i).windward !== streamAt(shape, i + 1).windward) continue;
-      const share = Math.abs(streamAt(shape, i).along) / speed;
+      if (layer.windward[i] !== layer.windward[i + 1]) continue;
+      const share = Math.abs(layer.speed[i]) / speed;
       const far = (/** @type {number} */ j) => {
         const [[x, y], [nx, ny]] = [surface(j), normal(j)];
         return /** @type {Point} */ ([x + thickness * nx, y + thickness * ny]);
@@ -208,18 +211,19 @@ export class Painter {
     const profiles = 13;
     for (let k = 0; k < profiles; k += 1) {
       const i = Math.round(((k + 0.5) / profiles) * (count - 1));
-      const { along, phi } = streamAt(shape, i);
+      const phi = along(i);
       const [[x, y], [nx, ny]] = [surface(i), normal(i)];
       /** @type {Point[]} */
       const curve = [];
-      for (let j = 0; j <= 8; j += 1) {
-        const height = (j / 8) * thickness;
-        const reach = (longest * layerSpeed(along, height, thickness)) / speed;
+      const last = layer.profile.length - 1;
+      layer.profile.forEach((share, j) => {
+        const height = (j / last) * thickness;
+        const reach = (longest * share * layer.speed[i]) / speed;
         curve.push([x + height * nx + reach * Math.cos(phi), y + height * ny + reach * Math.sin(phi)]);
-      }
+      });
       this.line(curve, colour, 0.9);
       this.line([[x, y], [x + thickness * nx, y + thickness * ny]], colour, 0.5);
-      this.arrow(this.at([x + thickness * nx, y + thickness * ny]), this.at(curve[8]), colour, 1);
+      this.arrow(this.at([x + thickness * nx, y + thickness * ny]), this.at(curve[last]), colour, 1);
     }
   }
 
@@ -303,7 +307,7 @@ export class Painter {
     const values = scene.tints === "nu" ? shape.stations.nu.map((nu) => nu - 1) : shape.stations[scene.tints === "eta" ? "eta" : "alpha"];
     const most = Math.max(...values.map(Math.abs), 1e-12);
     for (let i = 0; i + 1 < left.length; i += 1) {
-      ctx.fillStyle = shade(Math.abs(0.5 * (values[i] + values[i + 1])) / most);
+      ctx.fillStyle = this.shade(Math.abs(0.5 * (values[i] + values[i + 1])) / most);
       this.trace([left[i], left[i + 1], right[i + 1], right[i]]);
       ctx.fill();
     }
@@ -494,62 +498,35 @@ export class Painter {
     this.text(text, [0.5 * (x0 + x1), y - 12], this.colour("quiet"), "center");
   }
 
-  /** What the solver says, in the picture itself. */
-  caption() {
-    for (const { line, level, y } of captionLines(this.ctx, this.scene, this.view)) {
-      this.text(line, [16, y], this.colour(level), "left", "600 ");
-    }
+  /** The direction of gravity, in a corner that is not its own. @param {Solution} shape */
+  gravity(shape) {
+    const { gravity } = shape.inputs;
+    if (!gravity || !(gravity.acceleration > 0)) return;
+    const psi = (gravity.direction * Math.PI) / 180;
+    const [x, y] = [CORNER, CORNER];
+    const [dx, dy] = [17 * Math.cos(psi), -17 * Math.sin(psi)];
+    this.arrow([x - dx, y - dy], [x + dx, y + dy], this.colour("quiet"), 1.8);
+    this.text("gravity", [x + 24, y], this.colour("quiet"), "left");
+  }
+
+  /** Where the arm passes through itself. @param {Point} place */
+  crossing(place) {
+    const { ctx } = this;
+    ctx.strokeStyle = this.colour("bad");
+    ctx.lineWidth = 2;
+    ctx.beginPath();
+    ctx.arc(...this.at(place), 11, 0, 2 * Math.PI);
+    ctx.stroke();
+  }
+
+  /** The colour of a share from 0 to 1. @param {number} share */
+  shade(share) {
+    const place = Math.min(Math.max(share, 0), 1) * (SHADES - 1);
+    const at = Math.min(Math.floor(place), SHADES - 2);
+    const [low, high] = [at, at + 1].map((k) => bytes(this.colour(`shade-${k}`)));
+    return `rgb(${low.map((v, c) => Math.round(v + (place - at) * (high[c] - v))).join(" ")})`;
   }
 }
 
-/**
- * What the solver says, line by line as it stands in the picture.
- * @param {CanvasRenderingContext2D} ctx
- * @param {Scene} scene
- * @param {View} view
- */
-export function captionLines(ctx, scene, view) {
-  ctx.font = `600 ${FONT}`;
-  // On a phone the tools take the first line, and only the title finds room; the rest stands right below the picture.
-  const narrow = view.width < 640;
-  const width = narrow ? view.width - 32 : Math.min(560, view.width - 330);
-  const lines = (narrow ? scene.caption.slice(0, 1) : scene.caption)
-    .flatMap(({ text, level }) => wrapped(ctx, text, width).map((line) => ({ line, level })));
-  return lines.map((line, i) => ({ ...line, y: (narrow ? 68 : 24) + 17 * i }));
-}
-
-/** What texts were wrapped to: the same words stand in the picture again and again, and to measure them takes long. */
-const known = { width: 0, lines: /** @type {Map<string, string[]>} */ (new Map()) };
-/** Texts that are known at most. */
-const MOST_KNOWN = 50;
-
-/**
- * The text in lines that are no wider than `width`.
- * @param {CanvasRenderingContext2D} ctx
- * @param {string} text
- * @param {number} width
- */
-function wrapped(ctx, text, width) {
-  if (known.width !== width || known.lines.size > MOST_KNOWN) {
-    known.width = width;
-    known.lines.clear();
-  }
-  const before = known.lines.get(text);
-  if (before) return before;
-  const lines = [""];
-  for (const word of text.split(" ")) {
-    const longer = `${lines[lines.length - 1]} ${word}`.trimStart();
-    if (ctx.measureText(longer).width > width && lines[lines.length - 1] !== "") lines.push(word);
-    else lines[lines.length - 1] = longer;
-  }
-  known.lines.set(text, lines);
-  return lines;
-}
-
-/** @param {number} share */
-function shade(share) {
-  const place = Math.min(Math.max(share, 0), 1) * (SHADES.length - 1);
-  const at = Math.min(Math.floor(place), SHADES.length - 2);
-  const mixed = SHADES[at].map((v, c) => Math.round(v + (place - at) * (SHADES[at + 1][c] - v)));
-  return `rgb(${mixed.join(" ")})`;
-}
+/** Red, green and blue of #rrggbb. @param {string} hex */
+const bytes = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16));

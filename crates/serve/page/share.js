@@ -64,17 +64,24 @@ function save(blob, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
   link.download = name;
+  // Some browsers keep the name of a link only while it is on the page, and read what it leads to later.
+  link.hidden = true;
+  document.body.append(link);
   link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  setTimeout(() => {
+    URL.revokeObjectURL(link.href);
+    link.remove();
+  }, 60_000);
 }
 
 /**
  * What the items of the menu do.
  * @param {State} state
- * @param {HTMLCanvasElement} canvas
+ * @param {() => HTMLCanvasElement} view the picture as it is
  */
-export function listenToShare(state, canvas) {
-  const stem = () => fileName(state).replace(/\.toml$/, "");
+export function listenToShare(state, view) {
+  // What a name of a file cannot have, it has not.
+  const stem = () => fileName(state).replace(/\.toml$/, "").replaceAll(/[/\\:*?"<>|]/g, "-");
   const body = (/** @type {Record<string, unknown>} */ more) => ({ arm: armOf(state.arm), set: state.settings(), ...more });
   const download = async (/** @type {string} */ format) => {
     const response = await ask("/api/solve", body({ format }));
@@ -92,8 +99,9 @@ export function listenToShare(state, canvas) {
     csv: () => download("csv"),
     json: () => download("json"),
     svg: () => download("svg"),
+    pdf: () => download("pdf"),
     png: () => download("png"),
-    view: () => canvas.toBlob((blob) => blob && save(blob, `${stem()}-view.png`)),
+    view: () => view().toBlob((blob) => blob && save(blob, `${stem()}-view.png`)),
   };
   byId("share", HTMLDetailsElement).addEventListener("click", async (event) => {
     const item = event.target instanceof HTMLElement ? event.target.dataset.share : undefined;

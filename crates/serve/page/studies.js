@@ -1,14 +1,13 @@
 // What takes longer than a solve: paths, readings side by side, all equilibria. They come over the HTTP interface.
 
-/** @import { Answer, Drawing, EquilibriaDocument, Outline, PathDocument, Solution } from "./types" */
+/** @import { Answer, Drawing, EquilibriaDocument, Options, Outline, PathDocument, Solution } from "./types" */
 /** @import { ArmView } from "./arm_view.js" */
 /** @import { Controls, Range } from "./controls.js" */
 /** @import { State } from "./state.js" */
 
 import { PathCharts } from "./charts.js";
 import { armOf, ask } from "./connection.js";
-import { READINGS } from "./controls.js";
-import { outlineOf } from "./geometry.js";
+import { outlineOf, outlineOfSilhouette } from "./geometry.js";
 import { degrees, fixed } from "./numbers.js";
 import { byId, element, toast } from "./page.js";
 
@@ -39,6 +38,8 @@ export class Studies {
     this.present = present;
     /** @type {Range | undefined} */
     this.track = undefined;
+    /** What can be chosen, as the server says. @type {Options} */
+    this.options = { readings: [], flow_law: { key: "flow.law", label: "", meaning: "", words: [] } };
     /** Counts states: what was asked of an earlier one comes too late. */
     this.epoch = 0;
     /** What the path that is shown is of. */
@@ -138,53 +139,90 @@ export class Studies {
     const own = this.state.settings();
     const base = present.shape;
     const chosen = base.inputs.model;
-    /** @type {{ label: string, word: string, key: string | null }[]} */
-    const cases = [{ label: "As chosen", word: "", key: null }];
-    for (const { key, label, words } of READINGS) {
-      for (const word of words) if (word !== chosen[key]) cases.push({ label, word, key: `model.${key}` });
+    /** @type {{ label: string, word: string, meaning: string, key: string | null }[]} */
+    const cases = [{ label: "As chosen", word: "", meaning: "", key: null }];
+    for (const { key, label, words } of this.options.readings) {
+      const others = words.filter(({ word }) => word !== chosen[key.replace("model.", "")]);
+      cases.push(...others.map(({ word, meaning }) => ({ label, word, meaning, key })));
     }
     /** @type {(string | Node)[][]} */
     const rows = [];
-    for (const { label, word, key } of cases) {
+    for (const { label, word, meaning, key } of cases) {
       const set = key === null ? own : { ...own, [key]: word };
       const name = key === null ? label : `${label}: ${word}`;
       try {
         const response = await ask("/api/solve", { arm: armOf(this.state.arm), set, stations: STATIONS });
         if (epoch !== this.epoch) return;
-        rows.push(this.reading(name, await response.json(), present));
+        rows.push(this.reading(name, meaning, await response.json(), present));
       } catch (error) {
         rows.push([name, "", "", "", "", said(error)]);
       }
       place.replaceChildren(table(["Reading", "Tip x (mm)", "Tip y (mm)", "\u03b1(L) (\u00b0)", "Tip moves (mm)", "What the solver says"], rows));
+      this.choosableRows("readings-table");
     }
   }
 
   /**
    * @param {string} name
+   * @param {string} meaning
    * @param {Answer} answer
    * @param {{ shape: Solution, drawing: Drawing }} present
    * @returns {(string | Node)[]}
    */
-  reading(name, answer, present) {
+  reading(name, meaning, answer, present) {
     if (!answer.converged) return [name, "", "", "", "", answer.verdict.message];
     const { tip } = answer;
     const moved = 1e3 * Math.hypot(tip.x - present.shape.tip.x, tip.y - present.shape.tip.y);
-    const button = element("button", { type: "button", text: name, "aria-pressed": "false" });
-    button.addEventListener("click", () => {
-      const on = button.getAttribute("aria-pressed") !== "true";
-      for (const other of byId("readings-table", HTMLElement).querySelectorAll("button")) other.setAttribute("aria-pressed", "false");
-      button.setAttribute("aria-pressed", String(on));
-      this.overlay(on ? outlineOf(answer.stations, present.drawing) : undefined);
-    });
+    const button = this.chooser("readings-table", name, outlineOf(answer.stations, present.drawing));
+    button.title = meaning;
+    if (meaning !== "") button.setAttribute("aria-description", meaning);
     const stable = answer.stable === true ? "stable" : answer.stable === false ? "unstable" : "stability not established";
     const words = [stable, ...answer.warnings.map((w) => w.kind.replaceAll("_", " "))].join(", ");
     return [button, fixed(1e3 * tip.x, 3), fixed(1e3 * tip.y, 3), fixed(degrees(tip.alpha), 3), fixed(moved, 3), words];
+  }
+
+  /**
+   * A button that shows a shape in the picture, or takes it away again.
+   * @param {string} table the table that it is in, whose others are then not chosen
+   * @param {string} text
+   * @param {Outline} outline
+   */
+  chooser(table, text, outline) {
+    const button = element("button", { type: "button", text, "aria-pressed": "false" });
+    button.addEventListener("click", () => {
+      const on = button.getAttribute("aria-pressed") !== "true";
+      for (const other of byId(table, HTMLElement).querySelectorAll("button")) other.setAttribute("aria-pressed", "false");
+      button.setAttribute("aria-pressed", String(on));
+      this.overlay(on ? outline : undefined);
+      if (on) this.view.canvas.scrollIntoView({ block: "nearest" });
+    });
+    return button;
   }
 
   /** @param {Outline | undefined} outline */
   overlay(outline) {
     this.view.scene.extra = outline;
     this.view.paint();
+  }
+
+  /** The button of one of all equilibria. @param {EquilibriaDocument} all @param {number} i */
+  numbered({ shapes }, i) {
+    if (!shapes?.[i]) return String(i + 1);
+    const button = this.chooser("all-table", String(i + 1), outlineOfSilhouette(shapes[i]));
+    button.setAttribute("aria-label", `Show equilibrium ${i + 1} in the picture`);
+    return button;
+  }
+
+  /** A click anywhere on a row is one on its button. @param {string} table */
+  choosableRows(table) {
+    for (const row of byId(table, HTMLElement).querySelectorAll("tbody tr")) {
+      const button = row.querySelector("button");
+      if (!button) continue;
+      row.classList.add("choosable");
+      row.addEventListener("click", (event) => {
+        if (event.target instanceof Node && !button.contains(event.target)) button.click();
+      });
+    }
   }
 
   /** All equilibria under the present loads. */
@@ -194,17 +232,18 @@ export class Studies {
     words.textContent = "Searching\u2026";
     try {
       /** @type {EquilibriaDocument} */
-      const all = await (await ask("/api/equilibria", this.body())).json();
+      const all = await (await ask("/api/equilibria", { ...this.body(), stations: STATIONS })).json();
       const picture = await (await ask("/api/equilibria", { ...this.body(), format: "svg" })).blob();
       if (epoch !== this.epoch) return;
       const stable = all.equilibria.filter((one) => one.stability.state === "stable").length;
       const whole = all.complete ? "These are all." : `The search is not complete: ${all.ends.flatMap((end) => end?.message ?? []).join("; and ")}.`;
       words.textContent = `${all.equilibria.length} found, ${stable} of them stable. ${whole}`;
       const row = (/** @type {EquilibriaDocument["equilibria"][number]} */ { tip, stability }, /** @type {number} */ i) => [
-        String(i + 1), fixed(1e3 * tip.x, 3), fixed(1e3 * tip.y, 3), fixed(degrees(tip.theta), 3), fixed(degrees(tip.alpha), 3),
+        this.numbered(all, i), fixed(1e3 * tip.x, 3), fixed(1e3 * tip.y, 3), fixed(degrees(tip.theta), 3), fixed(degrees(tip.alpha), 3),
         stability.state === "unstable" ? `unstable (${stability.directions})` : stability.state ?? "not established",
       ];
       byId("all-table", HTMLElement).replaceChildren(table(["Number", "Tip x (mm)", "Tip y (mm)", "Turned (\u00b0)", "\u03b1(L) (\u00b0)", "Stability"], all.equilibria.map(row)));
+      this.choosableRows("all-table");
       const image = byId("all-picture", HTMLImageElement);
       URL.revokeObjectURL(image.src);
       image.src = URL.createObjectURL(picture);

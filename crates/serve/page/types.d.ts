@@ -42,8 +42,15 @@ export interface Verdict {
 export interface Failure { converged: false; verdict: Verdict; last_good: Solution | null }
 export type Answer = Solution | Failure;
 
-export interface Drawing { radius: number[]; offsets: number[][]; tension_scale: number[] }
-export interface Ghost { x: number[]; y: number[]; theta: number[]; half_width: number[] }
+/** The layer of the stream at the stations: speed along the surface outside of it (m/s), the side that the stream meets, and the share of that
+ * speed at equal distances from the surface. */
+export interface Layer { speed: number[]; windward: (1 | -1)[]; profile: number[] }
+export interface Drawing { radius: number[]; offsets: number[][]; tension_scale: number[]; layer?: Layer; crossing?: Point }
+export interface Silhouette { x: number[]; y: number[]; theta: number[]; half_width: number[] }
+
+/** A choice among words, of which the first is the default. */
+export interface Choice { key: string; label: string; meaning: string; words: { word: string; meaning: string }[] }
+export interface Options { readings: Choice[]; flow_law: Choice }
 
 export interface Pulled {
   tensions: number[]; reached: boolean; distance: number; bounds: { cable: number; kind: "slack" | "most" }[];
@@ -53,7 +60,7 @@ export interface Pulled {
 export interface Problem { kind: string; field: string | null; key: string | null; line: number | null; message: string }
 
 export interface Reply {
-  id: number; answer?: Answer; drawing?: Drawing; ghost?: Ghost; pulled?: Pulled; error?: Problem; dropped: number;
+  id: number; answer?: Answer; drawing?: Drawing; ghost?: Silhouette; pulled?: Pulled; error?: Problem; dropped: number;
   microseconds: number;
 }
 
@@ -73,8 +80,8 @@ export interface Outline {
   left: Point[]; right: Point[]; centre: Point[]; cables: Point[][];
 }
 
-/** An answer that can be looked at: its shape, and whether it is the one asked for. */
-export interface Shown { shape: Solution; outline: Outline; asked: boolean }
+/** An answer that can be looked at: its shape, what draws it, and whether it is the one asked for. */
+export interface Shown { shape: Solution; drawing: Drawing; outline: Outline; asked: boolean }
 
 export interface State {
   value: number; tip: Tip; event: string | null; cable: number | null;
@@ -86,4 +93,4 @@ export interface PathDocument {
   branches: { end: { kind: string; message: string }; points: State[] }[];
 }
 
-export interface EquilibriaDocument { complete: boolean; equilibria: State[]; ends: ({ message: string } | null)[] }
+export interface EquilibriaDocument { complete: boolean; equilibria: State[]; shapes?: Silhouette[]; ends: ({ message: string } | null)[] }

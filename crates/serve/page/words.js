@@ -1,6 +1,6 @@
 // What the solver says about a state, in words.
 
-/** @import { Answer, CableState, Pulled, Solution } from "./types" */
+/** @import { Answer, CableState, Drawing, Pulled, Solution } from "./types" */
 
 import { fixed, force, forceUnit, number } from "./numbers.js";
 
@@ -11,9 +11,10 @@ import { fixed, force, forceUnit, number } from "./numbers.js";
 /**
  * Of an answer.
  * @param {Answer} answer
+ * @param {Drawing} [drawing]
  * @returns {Words}
  */
-export function wordsOf(answer) {
+export function wordsOf(answer, drawing) {
   if (!answer.converged) {
     const { verdict, last_good: shape } = answer;
     const lines = [sentence(verdict.message), `Try: ${verdict.advice}.`];
@@ -28,6 +29,10 @@ export function wordsOf(answer) {
     lines.push(`The tip's balance is not met: a force of (${answer.unmet.force.map((f) => number(f, 4)).join(", ")}) N and a moment of ${number(answer.unmet.moment, 4)} N m are left.`);
   }
   const { title, level } = stabilityOf(answer);
+  if (drawing?.crossing) {
+    lines.unshift(`The arm passes through itself near x = ${fixed(1e3 * drawing.crossing[0], 0)} mm, y = ${fixed(1e3 * drawing.crossing[1], 0)} mm. The model knows no contact: a real arm does not take this shape.`);
+    return { level: "warn", title: `${title}, but the arm passes through itself`, lines };
+  }
   if (lines.length > 0) return { level: level === "good" ? "warn" : level, title: `${title}, with ${kindsOf(answer)}`, lines };
   return { level, title, lines };
 }

@@ -5,7 +5,7 @@ use hydrostat::{
     VerdictKind,
 };
 use hydrostat_figures::{
-    Abscissa, Quantity, Scene, arm_figure, equilibria_figure, last_good_note, path_figure, reach_figure,
+    Abscissa, Page, Quantity, Scene, arm_figure, equilibria_figure, last_good_note, path_figure, reach_figure,
 };
 use hydrostat_files::{
     Dimension, EquilibriaDocument, FailureDocument, Inputs, Note, Others, PathDocument, ReachDocument,
@@ -15,6 +15,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use crate::arm_source::{Given, tension_scale};
+use crate::drawing::Silhouette;
 use crate::limits;
 use crate::problem::Problem;
 use crate::requests::{
@@ -45,11 +46,12 @@ impl Answer {
     }
 
     fn figure(scene: &Scene, format: Format) -> Result<Self, Problem> {
-        if format == Format::Svg {
-            return Ok(Self { content_type: "image/svg+xml", bytes: scene.svg().into_bytes() });
-        }
-        let bytes = scene.png().map_err(|_| Problem::defect())?;
-        Ok(Self { content_type: "image/png", bytes })
+        let (content_type, bytes) = match format {
+            Format::Svg => ("image/svg+xml", scene.svg().into_bytes()),
+            Format::Pdf => ("application/pdf", scene.pdf()),
+            Format::Png | Format::Json | Format::Csv => ("image/png", scene.png().map_err(|_| Problem::defect())?),
+        };
+        Ok(Self { content_type, bytes })
     }
 }
 
@@ -102,9 +104,9 @@ pub(crate) fn solve(request: &SolveRequest, deadline: Deadline) -> Result<Answer
         Ok(mut configuration) => {
             let notes = Note::all(&configuration, tol);
             let margin = configuration.fold_margin().value;
-            if let (Format::Svg | Format::Png, format) = (request.format, request.format) {
+            if let (Format::Svg | Format::Pdf | Format::Png, format) = (request.format, request.format) {
                 let note = said(&configuration, &notes);
-                return Answer::figure(&arm_figure(&configuration, note.as_deref()), format);
+                return Answer::figure(&arm_figure(&configuration, note.as_deref(), &Page::default()), format);
             }
             if let Some(stations) = stations {
                 configuration.stations = configuration.resampled(stations);
@@ -141,8 +143,11 @@ fn no_shape(
     let refused = |failure| Problem::from(SolveError::NoEquilibrium(Box::new(failure)));
     match request.format {
         Format::Csv => Err(refused(failure)),
-        Format::Svg | Format::Png => match &failure.last_good {
-            Some(shape) => Answer::figure(&arm_figure(shape, Some(&last_good_note(&failure.verdict))), request.format),
+        Format::Svg | Format::Pdf | Format::Png => match &failure.last_good {
+            Some(shape) => {
+                let note = last_good_note(&failure.verdict);
+                Answer::figure(&arm_figure(shape, Some(&note), &Page::default()), request.format)
+            }
             None => Err(refused(failure)),
         },
         Format::Json => {
@@ -186,7 +191,8 @@ pub(crate) fn path(request: &PathRequest, deadline: Deadline) -> Result<Answer, 
         Format::Csv => Ok(Answer::csv(path_csv(&path, &varied))),
         format => {
             let title = format!("{}: equilibria over {}", arm.name, varied.parameter);
-            Answer::figure(&path_figure(&path, &abscissa(&varied), Quantity::TipY, &title), format)
+            let page = Page::default();
+            Answer::figure(&path_figure(&path, &abscissa(&varied), Quantity::TipY, &title, &page), format)
         }
     }
 }
@@ -195,14 +201,32 @@ fn abscissa(varied: &Varied) -> Abscissa {
     Abscissa { name: varied.parameter.to_string(), unit: varied.unit.to_owned(), per_si: varied.per_si }
 }
 
+/// The document of all equilibria with what draws them.
+#[derive(Serialize)]
+struct WithShapes<'a> {
+    #[serde(flatten)]
+    document: EquilibriaDocument<'a>,
+    /// In the order of the equilibria.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shapes: Option<Vec<Silhouette>>,
+}
+
 /// All equilibria, as far as the time goes.
 pub(crate) fn equilibria(request: &EquilibriaRequest, deadline: Deadline) -> Result<Answer, Problem> {
     let arm = request.arm()?;
+    let stations = stations(request.stations.clone())?;
     let all = arm.equilibria_while(request.tol.unwrap_or(1e-8), |_| deadline.is_ahead())?;
     match request.format {
-        Format::Json => Ok(Answer::json(&EquilibriaDocument::new(&arm, &all))),
+        Format::Json => {
+            let document = EquilibriaDocument::new(&arm, &all);
+            let shape = |count| all.found.iter().map(|one| Silhouette::new(&one.configuration, count)).collect();
+            Ok(Answer::json(&WithShapes { document, shapes: stations.map(shape) }))
+        }
         Format::Csv => Ok(Answer::csv(equilibria_csv(arm.cables.len(), &all))),
-        format => Answer::figure(&equilibria_figure(&all, &format!("{}: all equilibria", arm.name)), format),
+        format => {
+            let title = format!("{}: all equilibria", arm.name);
+            Answer::figure(&equilibria_figure(&all, &title, &Page::default()), format)
+        }
     }
 }
 
@@ -239,7 +263,7 @@ pub(crate) fn reach(request: &ReachRequest, deadline: Deadline) -> Result<Answer
         format => match found.solutions.first().or(found.closest.as_ref()) {
             Some(best) => {
                 let note = found.closest.is_some().then_some("Not reached: the closest that was found");
-                Answer::figure(&reach_figure(&best.configuration, &[[x, y]], note), format)
+                Answer::figure(&reach_figure(&best.configuration, &[[x, y]], note, &Page::default()), format)
             }
             None => Err(Problem::field("target", "target: nothing was found")),
         },

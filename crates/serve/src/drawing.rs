@@ -13,6 +13,52 @@ pub(crate) struct Drawing {
     offsets: Vec<Vec<f64>>,
     /// C1 A of the unloaded section at each cable's anchor, N.
     tension_scale: Vec<f64>,
+    /// Where there is a stream.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    layer: Option<Layer>,
+    /// Where the arm passes through itself, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crossing: Option<[f64; 2]>,
+}
+
+/// The layer of the stream over the windward surface, (7), at the stations.
+#[derive(Debug, Clone, Serialize)]
+struct Layer {
+    /// Speed along the surface outside of the layer, m/s: positive towards the tip.
+    speed: Vec<f64>,
+    /// The side that the stream meets: 1 left, -1 right.
+    windward: Vec<i8>,
+    /// From the surface outwards, at equal distances: the share of the speed outside.
+    profile: Vec<f64>,
+}
+
+impl Layer {
+    /// Heights at which the profile is given.
+    const HEIGHTS: u32 = 8;
+
+    fn new(configuration: &Configuration) -> Option<Self> {
+        let (arm, stations) = (&configuration.arm, &configuration.stations);
+        let (speed, direction, thickness) = (arm.flow.speed, arm.flow.direction, arm.flow.layer_thickness);
+        if speed <= 0.0 {
+            return None;
+        }
+        let windward = |(theta, alpha): (&f64, &f64)| if (direction - theta - alpha).sin() > 0.0 { -1 } else { 1 };
+        let outside: Vec<f64> = stations.s.iter().map(|s| configuration.layer_speed(*s, thickness)).collect();
+        let fastest = (0..outside.len()).max_by(|a, b| outside[*a].abs().total_cmp(&outside[*b].abs()))?;
+        let share = |k: u32| {
+            let height = thickness * f64::from(k) / f64::from(Self::HEIGHTS);
+            // Where nothing flows along the arm the profile is that of still water.
+            if outside[fastest] == 0.0 {
+                return 0.0;
+            }
+            configuration.layer_speed(stations.s[fastest], height) / outside[fastest]
+        };
+        Some(Self {
+            windward: stations.theta.iter().zip(&stations.alpha).map(windward).collect(),
+            profile: (0..=Self::HEIGHTS).map(share).collect(),
+            speed: outside,
+        })
+    }
 }
 
 impl Drawing {
@@ -24,13 +70,55 @@ impl Drawing {
             stations.s.iter().take_while(|s| **s <= anchor).map(|s| cable.offset.at(*s, arm.length).value).collect()
         });
         let tension_scale = (0..arm.cables.len()).map(|c| crate::arm_source::tension_scale(arm, c)).collect();
-        Self { radius, offsets: offsets.collect(), tension_scale }
+        let (layer, crossing) = (Layer::new(configuration), crossing(configuration));
+        Self { radius, offsets: offsets.collect(), tension_scale, layer, crossing }
     }
 }
 
-/// The unloaded arm.
+/// The first place where the surface meets another part of itself. Parts that are no further apart along the arm than it is wide do not
+/// count: there the surface folds, which is a warning of the solver's own.
+fn crossing(configuration: &Configuration) -> Option<[f64; 2]> {
+    let (arm, stations) = (&configuration.arm, &configuration.stations);
+    let width = |i: usize| 2.0 * stations.beta[i] * arm.radius.at(stations.s[i], arm.length).value;
+    let sides: Vec<[[f64; 2]; 2]> = stations.s.iter().map(|s| configuration.surfaces(*s)).collect();
+    let count = sides.len().saturating_sub(1);
+    for i in 0..count {
+        for j in i + 1..count {
+            let far = stations.s[j] - stations.s[i + 1] > width(i).max(width(j));
+            let apart = (stations.x[j] - stations.x[i]).hypot(stations.y[j] - stations.y[i]);
+            // Steps are short beside widths: what is further apart cannot meet.
+            let step = stations.s[i + 1] - stations.s[i] + stations.s[j + 1] - stations.s[j];
+            if !far || apart > 0.5 * (width(i) + width(j)) + 2.0 * step {
+                continue;
+            }
+            for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let met = meeting([sides[i][a], sides[i + 1][a]], [sides[j][b], sides[j + 1][b]]);
+                if met.is_some() {
+                    return met;
+                }
+            }
+        }
+    }
+    None
+}
+
+/// Where two lines cross.
+fn meeting([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+    let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
+    let to = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
+    let (along, other, between) = (to(a, b), to(c, d), to(a, c));
+    let whole = cross(along, other);
+    if whole == 0.0 {
+        return None;
+    }
+    let (t, u) = (cross(between, other) / whole, cross(between, along) / whole);
+    let inside = (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u);
+    inside.then(|| [a[0] + t * along[0], a[1] + t * along[1]])
+}
+
+/// A shape without its cables: enough to draw its surface.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct Ghost {
+pub(crate) struct Silhouette {
     x: Vec<f64>,
     y: Vec<f64>,
     theta: Vec<f64>,
@@ -38,15 +126,20 @@ pub(crate) struct Ghost {
     half_width: Vec<f64>,
 }
 
-impl Ghost {
+impl Silhouette {
+    /// At so many equally spaced stations.
+    pub(crate) fn new(shape: &Configuration, count: usize) -> Self {
+        let stations = shape.resampled(count);
+        let radius = |s: &f64| shape.arm.radius.at(*s, shape.arm.length).value;
+        let half_width = stations.s.iter().zip(&stations.beta).map(|(s, beta)| beta * radius(s)).collect();
+        Self { x: stations.x, y: stations.y, theta: stations.theta, half_width }
+    }
+
     /// Of the arm without its loads; `None` where even that has no shape.
-    pub(crate) fn new(arm: &Arm, count: usize) -> Option<Self> {
+    pub(crate) fn unloaded(arm: &Arm, count: usize) -> Option<Self> {
         let bare = arm.unloaded();
         let shape = Solver::new(&bare, Options { tol: 1e-6 }).and_then(|mut solver| solver.solve()).ok()?;
-        let stations = shape.resampled(count);
-        let radius = |s: &f64| bare.radius.at(*s, bare.length).value;
-        let half_width = stations.s.iter().zip(&stations.beta).map(|(s, beta)| beta * radius(s)).collect();
-        Some(Self { x: stations.x, y: stations.y, theta: stations.theta, half_width })
+        Some(Self::new(&shape, count))
     }
 }
 
@@ -83,9 +176,50 @@ mod tests {
     }
 
     #[test]
+    fn the_layer_is_that_of_the_solution() {
+        let mut arm = ArmFile::parse(shipped::get("silicone").unwrap(), "silicone").unwrap().arm().unwrap();
+        assert!(Layer::new(&arm.solve().unwrap()).is_none(), "still water has no layer");
+        (arm.flow.speed, arm.flow.direction) = (0.2, 1.2);
+        let mut shape = arm.solve().unwrap();
+        shape.stations = shape.resampled(21);
+        let layer = Layer::new(&shape).unwrap();
+        // (7): 2 y - y^2 over the thickness.
+        for (k, share) in layer.profile.iter().enumerate() {
+            let y = k as f64 / 8.0;
+            assert!((share - (2.0 * y - y * y)).abs() < 1e-12, "{share} at {y}");
+        }
+        for (i, speed) in layer.speed.iter().enumerate() {
+            let phi = shape.stations.theta[i] + shape.stations.alpha[i];
+            assert!((speed - 0.2 * (1.2 - phi).cos()).abs() < 1e-12);
+        }
+        // The water comes from below on the right.
+        assert!(layer.windward.iter().all(|side| *side == -1), "{:?}", layer.windward);
+    }
+
+    /// A cable of constant offset curls the arm to a circle that the pull can close.
+    #[test]
+    fn an_arm_that_passes_through_itself_was_not_told_from_others() {
+        let mut arm = Arm::cone(0.3, 0.006, 0.006, 110e3, 0.5);
+        arm.cables.push(hydrostat::Cable::new("left", hydrostat::Profile::from(0.005)));
+        let mut turned: Vec<(f64, bool)> = Vec::new();
+        for k in 1..=40 {
+            arm.cables[0].tension = 0.1 * f64::from(k);
+            let Ok(mut shape) = arm.solve() else { break };
+            shape.stations = shape.resampled(121);
+            turned.push((shape.tip().theta, Drawing::new(&shape).crossing.is_some()));
+        }
+        let (most, last) = *turned.last().unwrap();
+        assert!(most > 7.0 && last, "the arm goes round more than once: {turned:?}");
+        assert!(
+            turned.iter().all(|(theta, crosses)| *theta > 5.0 || !crosses),
+            "an open arm does not cross: {turned:?}"
+        );
+    }
+
+    #[test]
     fn the_ghost_of_a_straight_arm_is_straight() {
         let arm = ArmFile::parse(shipped::get("paper").unwrap(), "paper").unwrap().arm().unwrap();
-        let ghost = Ghost::new(&arm, 11).unwrap();
+        let ghost = Silhouette::unloaded(&arm, 11).unwrap();
         assert!(ghost.y.iter().all(|y| y.abs() < 1e-12));
         assert!((ghost.x[10] - 0.2).abs() < 1e-12 && (ghost.half_width[0] - 0.010).abs() < 1e-12);
     }

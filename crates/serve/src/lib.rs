@@ -23,6 +23,7 @@ mod drawing;
 mod guard;
 mod limits;
 mod openapi;
+mod options;
 mod problem;
 mod requests;
 mod routes;

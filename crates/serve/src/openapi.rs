@@ -1,4 +1,4 @@
-//! The description of the HTTP interface: `openapi.json`, with the arm file's schema put in.
+//! The description of the HTTP interface, `openapi.json`, with the arm file's schema put in; and of the session, `session.schema.json`.
 
 use serde_json::{Value, json};
 
@@ -23,6 +23,14 @@ pub(crate) fn document() -> Value {
     schemas["Points"]["maximum"] = json!(limits::POINTS);
     schemas["Settings"]["maxProperties"] = json!(limits::SETTINGS);
     document
+}
+
+/// The JSON Schema of the session's messages: `$defs/Wish` and `$defs/Reply`, with the documents that they hold.
+pub(crate) fn session_schema() -> Value {
+    let mut schema: Value = serde_json::from_str(include_str!("session.schema.json")).unwrap_or_default();
+    let mut documents = document();
+    schema["components"] = json!({ "schemas": documents["components"]["schemas"].take() });
+    schema
 }
 
 /// With references to where OpenAPI keeps its schemas.
@@ -56,13 +64,14 @@ mod tests {
 
     #[test]
     fn every_reference_leads_somewhere() {
-        let document = document();
-        let mut found = Vec::new();
-        references(&document, &mut found);
-        assert!(found.len() > 50, "{}", found.len());
-        for reference in found {
-            let pointer = reference.strip_prefix('#').unwrap();
-            assert!(document.pointer(pointer).is_some(), "{reference}");
+        for document in [document(), session_schema()] {
+            let mut found = Vec::new();
+            references(&document, &mut found);
+            assert!(found.len() > 50, "{}", found.len());
+            for reference in found {
+                let pointer = reference.strip_prefix('#').unwrap();
+                assert!(document.pointer(pointer).is_some(), "{reference}");
+            }
         }
     }
 }

@@ -17,6 +17,7 @@ pub(crate) enum Format {
     Json,
     Csv,
     Svg,
+    Pdf,
     Png,
 }
 
@@ -98,6 +99,7 @@ pub(crate) struct EquilibriaRequest {
     #[serde(default)]
     set: Settings,
     pub(crate) tol: Option<f64>,
+    pub(crate) stations: Option<Number>,
     #[serde(default)]
     pub(crate) format: Format,
 }

@@ -18,6 +18,7 @@ use crate::answers::{self, Answer};
 use crate::arm_source::Given;
 use crate::guard::{Names, guard};
 use crate::openapi;
+use crate::options::OptionsDocument;
 use crate::problem::Problem;
 use crate::requests::read;
 use crate::work::{Deadline, Weight, Work};
@@ -35,6 +36,8 @@ pub(crate) fn router(shared: Shared, names: Names) -> Router {
     Router::new()
         .route("/api/openapi.json", get(async || Answer::json(&openapi::document())))
         .route("/api/arm.schema.json", get(async || Answer::json(&hydrostat_files::schema::arm_schema())))
+        .route("/api/session.schema.json", get(async || Answer::json(&openapi::session_schema())))
+        .route("/api/options", get(async || Answer::json(&OptionsDocument::new())))
         .route("/api/arms", get(arms))
         .route("/api/check", post(check))
         .route("/api/solve", post(solve))

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use tokio::time::{sleep, timeout};
 
 use crate::arm_source::{ArmSource, Settings, arm, overridden};
-use crate::drawing::{Drawing, Ghost};
+use crate::drawing::{Drawing, Silhouette};
 use crate::limits;
 use crate::problem::{Details, Problem};
 use crate::requests::{read, stations};
@@ -91,7 +91,7 @@ struct Reply<'a> {
     drawing: Option<Drawing>,
     /// Only where it is not that of the answer before.
     #[serde(skip_serializing_if = "Option::is_none")]
-    ghost: Option<Ghost>,
+    ghost: Option<Silhouette>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pulled: Option<Pulled>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -240,12 +240,12 @@ impl Memory {
     }
 
     /// The unloaded arm, where it is not the one that the page has.
-    fn ghost(&mut self, arm: &Arm, count: usize) -> Option<Ghost> {
+    fn ghost(&mut self, arm: &Arm, count: usize) -> Option<Silhouette> {
         let bare = arm.unloaded();
         if self.ghost_of.as_ref() == Some(&bare) {
             return None;
         }
-        let ghost = Ghost::new(&bare, count);
+        let ghost = Silhouette::unloaded(&bare, count);
         self.ghost_of = Some(bare);
         ghost
     }

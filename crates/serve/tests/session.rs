@@ -1,11 +1,13 @@
-//! The WebSocket from outside: what is dropped, what is refused, and who has to wait for whom.
+//! The WebSocket from outside: what is dropped, what is refused, who has to wait for whom, and that all messages are as described.
 
 use std::net::SocketAddr;
 use std::time::Duration;
 
 use futures_util::{SinkExt, StreamExt};
 use hydrostat_serve::{Options, Server};
+use jsonschema::Validator;
 use serde_json::{Value, json};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::{Error, Message};
@@ -34,6 +36,34 @@ async fn reply(socket: &mut Socket) -> Value {
         if let Message::Text(text) = message {
             return serde_json::from_str(&text).unwrap();
         }
+    }
+}
+
+/// What is wrong with a message as the server describes wishes and replies.
+struct Described {
+    wish: Validator,
+    reply: Validator,
+}
+
+impl Described {
+    async fn by(address: SocketAddr) -> Self {
+        let mut stream = TcpStream::connect(address).await.unwrap();
+        let request = format!("GET /api/session.schema.json HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n");
+        stream.write_all(request.as_bytes()).await.unwrap();
+        let mut text = String::new();
+        stream.read_to_string(&mut text).await.unwrap();
+        let schema: Value = serde_json::from_str(text.split_once("\r\n\r\n").unwrap().1).unwrap();
+        let of = |kind: &str| {
+            let mut schema = schema.clone();
+            schema["oneOf"] = json!([{ "$ref": format!("#/$defs/{kind}") }]);
+            jsonschema::validator_for(&schema).unwrap()
+        };
+        Self { wish: of("Wish"), reply: of("Reply") }
+    }
+
+    fn check(validator: &Validator, message: &Value) {
+        let errors: Vec<String> = validator.iter_errors(message).map(|error| error.to_string()).collect();
+        assert!(errors.is_empty(), "{errors:?}: {message}");
     }
 }
 
@@ -86,6 +116,48 @@ async fn what_is_no_wish_is_refused_and_the_session_goes_on() {
     }
     ask(&mut socket, &pulled(2)).await;
     assert_eq!(reply(&mut socket).await["answer"]["converged"], true);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn messages_are_as_their_schema_says() {
+    let address = server().await;
+    let described = Described::by(address).await;
+    let mut socket = session(address).await;
+    let stream = json!({ "flow.speed": 0.2, "flow.direction": 90, "cable[0].tension": 0.3 });
+    for (wish, holds) in [
+        (json!({ "id": 1, "arm": "silicone", "set": stream, "stations": 21 }), &["answer", "drawing", "ghost"][..]),
+        (
+            json!({ "id": 2, "set": { "cable[0].tension": 0.2 }, "target": [0.2, 0.05], "max_tension": 0.6 }),
+            &["pulled"],
+        ),
+        (
+            json!({ "id": 3, "arm": "silicone", "set": { "cable[0].max_tension": 3, "cable[0].tension": 1.5 } }),
+            &["answer"],
+        ),
+        (json!({ "id": 4, "arm": "nobody" }), &["error"]),
+        (json!({ "id": 5, "arm": "silicone", "set": { "flow.speed": "a lot" } }), &["error"]),
+    ] {
+        if wish["arm"] != "nobody" {
+            Described::check(&described.wish, &wish);
+        }
+        ask(&mut socket, &wish).await;
+        let reply = reply(&mut socket).await;
+        Described::check(&described.reply, &reply);
+        assert!(holds.iter().all(|key| reply[key].is_object()), "{reply}");
+    }
+    for wrong in [json!({ "id": -1 }), json!({ "arm": "paper" }), json!({ "id": 1, "more": 1 }), json!([])] {
+        assert!(!described.wish.is_valid(&wrong), "{wrong}");
+        ask(&mut socket, &wrong).await;
+        let refusal = reply(&mut socket).await;
+        Described::check(&described.reply, &refusal);
+        assert!(refusal["error"].is_object(), "{refusal}");
+    }
+    for wrong in [
+        json!({ "id": 1, "dropped": 0, "microseconds": 0 }),
+        json!({ "id": 1, "error": {}, "dropped": 0, "microseconds": 0 }),
+    ] {
+        assert!(!described.reply.is_valid(&wrong), "{wrong}");
+    }
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -1,5 +1,6 @@
 //! What the source says about its figure, held against solved shapes.
 
+use hydrostat_figures::Page;
 use hydrostat_figures::source::{Claim, Finding, SPEED, Shown, Study, TIP_ANGLE};
 
 use crate::numbers::fixed;
@@ -109,7 +110,7 @@ pub(crate) fn section() -> Section {
         }
     }
     section.table(table);
-    for figure in study.figures() {
+    for figure in study.figures(&Page::default()) {
         let caption = match figure.name {
             "fig1a" => "The source's Fig. 1a: tension raised in 0.5 m/s.",
             "fig1b" => "Its Fig. 1b: one tension in ever faster streams.",

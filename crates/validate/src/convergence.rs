@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use hydrostat::{Arm, Cable, Configuration, Gravity, Options, Profile, Solver, cases};
 use hydrostat_bvp::{Collocation, Condition, Correction, Local, Mesh, OneByOne, Plain, Solution};
-use hydrostat_figures::{Measure, Panel, Scale, lines_figure};
+use hydrostat_figures::{Measure, Page, Panel, Scale, lines_figure};
 use rayon::prelude::*;
 
 use crate::numbers::{fixed, larger, size};
@@ -187,7 +187,13 @@ pub(crate) fn section() -> Section {
     section.figure(
         "orders",
         "Errors on equal elements, down to rounding; a design order 2 M is a slope of -2 M.",
-        lines_figure("a rod of known shape", &logarithmic("elements"), &["M = 1", "2", "3", "4", "5"], &panels),
+        lines_figure(
+            "a rod of known shape",
+            &logarithmic("elements"),
+            &["M = 1", "2", "3", "4", "5"],
+            &panels,
+            &Page::default(),
+        ),
     );
     meshes(&mut section);
     section
@@ -239,6 +245,6 @@ fn meshes(section: &mut Section) {
     section.figure(
         "meshes",
         "Error of the tip against elements of the final mesh, for tolerances from 1e-3 to 1e-11; the solve at 1e-12 stands for the exact one.",
-        lines_figure("whole solves", &logarithmic("elements"), &names, &[panel]),
+        lines_figure("whole solves", &logarithmic("elements"), &names, &[panel], &Page::default()),
     );
 }

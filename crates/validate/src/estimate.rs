@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hydrostat::{Arm, Configuration, EnteringSpeed, FlowSurface, Options, SolveError, Solver, Support, VerdictKind};
-use hydrostat_figures::{Measure, Panel, Scale, lines_figure};
+use hydrostat_figures::{Measure, Page, Panel, Scale, lines_figure};
 use hydrostat_files::ArmFile;
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -180,7 +180,7 @@ fn against_references(section: &mut Section, scope: Scope, listener: &dyn Listen
     section.figure(
         "estimates",
         "How many of the arms have a true error below so many estimates. To the left of 1 the estimate is on the safe side.",
-        lines_figure("arms solved by an independent program", &across, &["arms"], &[panel]),
+        lines_figure("arms solved by an independent program", &across, &["arms"], &[panel], &Page::default()),
     );
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hydrostat::{Arm, Gravity, Options, SolveError, Solver, VerdictKind};
-use hydrostat_figures::{Abscissa, Coloured, ColouredColumn, KeyValues, Scene, map_figure};
+use hydrostat_figures::{Abscissa, Coloured, ColouredColumn, KeyValues, Page, Scene, map_figure};
 use rayon::prelude::*;
 
 use crate::numbers::fixed;
@@ -190,5 +190,6 @@ fn map(arm: &Arm, scope: Scope) -> Scene {
         values: places.iter().map(|p| p[k]).collect(),
     };
     let keys = [key(0, "T1", "N"), key(1, "direction of the stream", "deg")];
-    map_figure(&keys, &ColouredColumn { name: "verdict".to_owned(), values: Coloured::Words(words) }, &arm.name)
+    let column = ColouredColumn { name: "verdict".to_owned(), values: Coloured::Words(words) };
+    map_figure(&keys, &column, &arm.name, &Page::default())
 }

@@ -4,7 +4,7 @@ use hydrostat::{
     Arm, EnteringSpeed, FlowSurface, Gravity, Hydrostatics, LayerMean, Options, Readings, SolveError, Solver, Support,
     VerdictKind, Volume, WettedLength,
 };
-use hydrostat_figures::{Measure, Panel, Scale, Scene, lines_figure};
+use hydrostat_figures::{Measure, Page, Panel, Scale, Scene, lines_figure};
 use rayon::prelude::*;
 
 use crate::numbers::{fixed, larger};
@@ -202,6 +202,7 @@ fn figures(study: &Study, scope: Scope) -> Vec<(&'static str, Scene)> {
                 &Measure { title: across.to_owned(), scale: Scale::Even },
                 &names,
                 &[panel("alpha(L) (°)", angles), panel("from the default (mm)", away)],
+                &Page::default(),
             );
             (name, scene)
         })

@@ -1,7 +1,7 @@
 //! A flexible blade in ever faster streams: it bends out of the way, and its drag grows with the power 4/3 of the speed, not 2.
 
 use hydrostat::{Arm, Configuration, Options, Solver, cases};
-use hydrostat_figures::{Measure, Panel, Scale, lines_figure};
+use hydrostat_figures::{Measure, Page, Panel, Scale, lines_figure};
 use rayon::prelude::*;
 
 use crate::Scope;
@@ -91,7 +91,7 @@ pub(crate) fn section(scope: Scope) -> Section {
     section.figure(
         "reconfiguration",
         "Drag of the blade, of a rigid one, and the large-flow limit Ca^(2/3), that is U^(4/3); below the exponent of the speed, from 2 to 4/3.",
-        lines_figure("a blade across a stream", &logarithmic("Cauchy number"), &["Hydrostat", "rigid", "limit"], &panels),
+        lines_figure("a blade across a stream", &logarithmic("Cauchy number"), &["Hydrostat", "rigid", "limit"], &panels, &Page::default()),
     );
     section
 }

@@ -8,7 +8,7 @@ use clap::Args as ClapArgs;
 use hydrostat_figures::Quantity;
 use hydrostat_files::Varied;
 
-use super::{ArmArgs, Format, STABLE, picture};
+use super::{ArmArgs, Format, PictureArgs, STABLE, picture};
 
 const EXIT: &str = "\
 Exit status:
@@ -45,18 +45,20 @@ pub(crate) struct EquilibriaArgs {
     /// Write the result to FILE in place of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw all shapes to scale; FILE ends in .svg or .png
+    /// Draw all shapes to scale; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "over")]
     pub(crate) plot: Option<PathBuf>,
     /// Search at COUNT equally spaced values of a parameter, as in `flow.speed=0:0.5:26`
     #[arg(long, value_name = "KEY=FROM:TO:COUNT", allow_hyphen_values = true)]
     pub(crate) over: Option<Over>,
-    /// Draw a quantity of all equilibria over that parameter; FILE ends in .svg or .png
+    /// Draw a quantity of all equilibria over that parameter; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture, requires = "over")]
     pub(crate) plot_over: Option<PathBuf>,
     /// What --plot-over shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, `stroke[0]`
     #[arg(long, value_name = "NAME", default_value = "tip.y")]
     pub(crate) quantity: Quantity,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {

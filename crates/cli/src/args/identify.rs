@@ -6,7 +6,7 @@ use clap::{Args as ClapArgs, ValueEnum};
 use hydrostat_files::{Deviations, FitKey, PriorKey};
 use hydrostat_identify::Loss;
 
-use super::{ArmArgs, Format, picture};
+use super::{ArmArgs, Format, PictureArgs, picture};
 
 const EXIT: &str = "\
 Exit status:
@@ -78,9 +78,11 @@ pub(crate) struct IdentifyArgs {
     /// Write the fitted arm as an arm file
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
-    /// Draw fitted shapes with the data, residuals and correlations; FILE ends in .svg or .png
+    /// Draw fitted shapes with the data, residuals and correlations; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]

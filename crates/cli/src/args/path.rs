@@ -6,7 +6,7 @@ use clap::Args as ClapArgs;
 use hydrostat_figures::Quantity;
 use hydrostat_files::Varied;
 
-use super::{ArmArgs, Format, STABLE, count, picture};
+use super::{ArmArgs, Format, PictureArgs, STABLE, count, picture};
 
 const EXIT: &str = "\
 Exit status:
@@ -56,15 +56,17 @@ pub(crate) struct PathArgs {
     /// Write the result to FILE in place of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw a quantity over the parameter; FILE ends in .svg or .png
+    /// Draw a quantity over the parameter; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot: Option<PathBuf>,
-    /// Draw shapes along the path to scale; FILE ends in .svg or .png
+    /// Draw shapes along the path to scale; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot_shapes: Option<PathBuf>,
     /// What --plot shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, `stroke[0]`
     #[arg(long, value_name = "NAME", default_value = "tip.y")]
     pub(crate) quantity: Quantity,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }
 
 /// A number of points.

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
-use super::picture;
 use super::sweep::table;
+use super::{PictureArgs, picture};
 
 const EXIT: &str = "\
 Exit status:
@@ -34,10 +34,12 @@ pub(crate) struct PlotArgs {
     /// The two keys of the map, across and up; needed where more than two were varied
     #[arg(long, value_name = "KEY,KEY", value_delimiter = ',')]
     pub(crate) over: Vec<String>,
-    /// Draw the column over two keys; FILE ends in .svg or .png
+    /// Draw the column over two keys; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) map: Option<PathBuf>,
-    /// Draw the places of the tip to scale; FILE ends in .svg or .png
+    /// Draw the places of the tip to scale; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) workspace: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }

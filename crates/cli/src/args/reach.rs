@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::{Args as ClapArgs, ValueEnum};
 use hydrostat_files::Dimension;
 
-use super::{ArmArgs, Format, STABLE, picture};
+use super::{ArmArgs, Format, PictureArgs, STABLE, picture};
 
 const EXIT: &str = "\
 Exit status:
@@ -75,9 +75,11 @@ pub(crate) struct ReachArgs {
     /// Write the result to FILE in place of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw the arm at the first solution, or at the closest, with the target; or the boundary. FILE ends in .svg or .png
+    /// Draw the arm at the first solution, or at the closest, with the target; or the boundary. FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "path")]
     pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }
 
 /// What holds cables.

@@ -33,7 +33,8 @@ pub(super) fn run(arm: &Arm, args: &ReachArgs) -> anyhow::Result<()> {
     let found = arm.reachable_while(&options, say)?;
     drop(progress);
     if let Some(file) = &args.plot {
-        output::draw(&boundary_figure(&found, &arm.slackened().solve()?), file)?;
+        let figure = boundary_figure(&found, &arm.slackened().solve()?, &args.picture.page());
+        output::draw(&figure, file, &args.picture.page)?;
     }
     let text = match args.format {
         Format::Text => summary(arm, &found),

@@ -23,11 +23,9 @@ pub(crate) fn run(args: &EquilibriaArgs) -> anyhow::Result<()> {
     if let Some(Over { varied, .. }) = &args.over {
         varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--over", e))?;
     }
-    request::check_outputs(&[
-        ("-o", args.output.as_deref()),
-        ("--plot", args.plot.as_deref()),
-        ("--plot-over", args.plot_over.as_deref()),
-    ])?;
+    let pictures = [("--plot", args.plot.as_deref()), ("--plot-over", args.plot_over.as_deref())];
+    request::check_outputs(&[("-o", args.output.as_deref()), pictures[0], pictures[1]])?;
+    request::check_picture(&args.picture, &pictures)?;
     match &args.over {
         Some(over) => over_range(args, &arm, *over),
         None => at_loads(args, &arm),
@@ -37,7 +35,8 @@ pub(crate) fn run(args: &EquilibriaArgs) -> anyhow::Result<()> {
 fn at_loads(args: &EquilibriaArgs, arm: &Arm) -> anyhow::Result<()> {
     let all = search(arm, args)?;
     if let Some(file) = args.plot.as_ref().filter(|_| !all.found.is_empty()) {
-        output::draw(&equilibria_figure(&all, &format!("{}: all equilibria", arm.name)), file)?;
+        let title = format!("{}: all equilibria", arm.name);
+        output::draw(&equilibria_figure(&all, &title, &args.picture.page()), file, &args.picture.page)?;
     }
     let text = match args.format {
         Format::Text => summary(arm, &all),
@@ -77,7 +76,9 @@ fn over_range(args: &EquilibriaArgs, arm: &Arm, Over { varied, count }: Over) ->
     if let Some(file) = &args.plot_over {
         let found: Vec<(f64, &Equilibria)> =
             searches.iter().filter_map(|(value, all)| Some((*value, all.as_ref().ok()?))).collect();
-        output::draw(&over_figure(&found, &abscissa(&varied), args.quantity, &title(arm, &varied)), file)?;
+        let (title, page) = (title(arm, &varied), args.picture.page());
+        let figure = over_figure(&found, &abscissa(&varied), args.quantity, &title, &page);
+        output::draw(&figure, file, &args.picture.page)?;
     }
     let text = match args.format {
         Format::Text => over_summary(arm, &varied, &searches),

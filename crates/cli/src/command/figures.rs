@@ -1,4 +1,4 @@
-//! `hydrostat figures`: the source's Fig. 1 as SVG, PNG and CSV, and what its text says about it.
+//! `hydrostat figures`: the source's Fig. 1 as SVG, PDF, PNG and CSV, and what its text says about it.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use hydrostat_figures::source::{Claim, Finding, Shown, Study};
 use hydrostat_files::write_whole;
 
-use crate::args::FiguresArgs;
+use crate::args::{FiguresArgs, PageArgs};
 use crate::{output, request};
 
 pub(crate) fn run(args: &FiguresArgs) -> anyhow::Result<()> {
@@ -14,18 +14,19 @@ pub(crate) fn run(args: &FiguresArgs) -> anyhow::Result<()> {
     let arm = request::arm_file(&args.arm)?.arm()?;
     let directory = output::make_directory(&args.output)?;
     let study = Study::of(&arm, &shown)?;
-    let files = write(&study, &args.output)?;
+    let files = write(&study, &args.output, &args.page)?;
     directory.keep();
     let out = format!("{}\n{}\n", table(&study.claims), files.join("\n"));
     Ok(output::print(&out)?)
 }
 
-/// Writes nine files and says which.
-pub(super) fn write(study: &Study, directory: &Path) -> anyhow::Result<Vec<String>> {
+/// Writes twelve files and says which.
+pub(super) fn write(study: &Study, directory: &Path, page: &PageArgs) -> anyhow::Result<Vec<String>> {
     let mut files = Vec::new();
-    for figure in study.figures() {
-        let outputs =
-            [("svg", figure.scene.svg().into_bytes()), ("png", figure.scene.png()?), ("csv", figure.csv.into_bytes())];
+    for figure in study.figures(&page.page()) {
+        let scene = &figure.scene;
+        let svg = output::svg(scene, page).into_bytes();
+        let outputs = [("svg", svg), ("pdf", scene.pdf()), ("png", scene.png()?), ("csv", figure.csv.into_bytes())];
         for (ending, bytes) in outputs {
             let path = directory.join(format!("{}.{ending}", figure.name));
             write_whole(&path, &bytes)?;

@@ -30,6 +30,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     }
     let outputs = [("-o", args.output.as_deref()), ("--out", args.out.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&outputs)?;
+    request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
     let Some(data) = args.data.as_ref().filter(|_| !args.template) else {
         return output::put(args.output.as_deref(), &measurements_template(&arm));
     };
@@ -65,7 +66,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         output::put(Some(path), &arm_to_toml(&best))?;
     }
     if let Some(path) = &args.plot {
-        output::draw(&fit_figure(&arm.name, &cases, &found), path)?;
+        let figure = fit_figure(&arm.name, &cases, &found, &args.picture.page());
+        output::draw(&figure, path, &args.picture.page)?;
     }
     let format = if args.json { Format::Json } else { args.format };
     let text = match format {

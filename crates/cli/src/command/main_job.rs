@@ -6,13 +6,14 @@ use std::path::Path;
 use hydrostat_figures::source::{SPEED, Shown, Study, TIP_ANGLE};
 
 use super::figures;
+use crate::args::PageArgs;
 use crate::{output, request};
 
 pub(crate) fn run() -> anyhow::Result<()> {
     let directory = Path::new("figures");
     let made = output::make_directory(directory)?;
     let study = Study::of(&request::shipped_arm("paper")?, &Shown::default())?;
-    let files = figures::write(&study, directory)?;
+    let files = figures::write(&study, directory, &PageArgs::default())?;
     made.keep();
     let mut out = figures::table(&study.claims);
     let _ = writeln!(

@@ -18,21 +18,21 @@ pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
     let varied = &args.vary;
     varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--vary", e))?;
     check_quantity(&arm, args.quantity)?;
-    request::check_outputs(&[
-        ("-o", args.output.as_deref()),
-        ("--plot", args.plot.as_deref()),
-        ("--plot-shapes", args.plot_shapes.as_deref()),
-    ])?;
+    let pictures = [("--plot", args.plot.as_deref()), ("--plot-shapes", args.plot_shapes.as_deref())];
+    request::check_outputs(&[("-o", args.output.as_deref()), pictures[0], pictures[1]])?;
+    request::check_picture(&args.picture, &pictures)?;
     let path = follow(&arm, args)?;
     let Some(document) = PathDocument::new(&path, varied) else {
         let start = varied.with_unit(varied.range[0]);
         return Err(NoAnswer(format!("no point of the path was established at its start, {start}")).into());
     };
+    let (title, page) = (title(&arm, varied), args.picture.page());
     if let Some(file) = &args.plot {
-        output::draw(&path_figure(&path, &abscissa(varied), args.quantity, &title(&arm, varied)), file)?;
+        let figure = path_figure(&path, &abscissa(varied), args.quantity, &title, &page);
+        output::draw(&figure, file, &args.picture.page)?;
     }
     if let Some(file) = &args.plot_shapes {
-        output::draw(&path_shapes_figure(&path, &abscissa(varied), &title(&arm, varied)), file)?;
+        output::draw(&path_shapes_figure(&path, &abscissa(varied), &title, &page), file, &args.picture.page)?;
     }
     let text = match args.format {
         Format::Text => summary(&arm, &path, varied),

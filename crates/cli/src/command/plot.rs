@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use hydrostat_figures::{
-    Abscissa, Coloured, ColouredColumn, KeyValues, Scene, curve_figure, map_figure, value_text, workspace_figure,
+    Abscissa, Coloured, ColouredColumn, KeyValues, Page, Scene, curve_figure, map_figure, value_text, workspace_figure,
 };
 use hydrostat_sweep::{Table, VariedKey, names, varied_keys};
 
@@ -27,20 +27,21 @@ pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
     let table = Table::read(&args.sweep, &wanted)?;
     let column = coloured(&table, &args.quantity).ok_or_else(|| WrongRequest::NoColumn(args.quantity.clone(), all))?;
     let name = args.sweep.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let page = args.picture.page();
     let mut written = String::new();
     for (option, file, kind) in pictures {
         let scene = match kind {
-            Kind::Map => map(&table, &keys, &over, &column, &name)?,
+            Kind::Map => map(&table, [&keys, &over], &column, &name, &page)?,
             Kind::Workspace => {
                 let [x, y] = TIP.map(|name| table.numbers(name));
                 let (Some(x), Some(y)) = (x, y) else {
                     return Err(WrongRequest::NotInSweep(option, "the columns tip_x_m and tip_y_m").into());
                 };
                 let tips: Vec<[f64; 2]> = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
-                workspace_figure(&tips, &column, &name)
+                workspace_figure(&tips, &column, &name, &page)
             }
         };
-        output::draw(&scene, &file)?;
+        output::draw(&scene, &file, &args.picture.page)?;
         written.extend([&*file.to_string_lossy(), "\n"]);
     }
     // Names that were asked for are known.
@@ -99,10 +100,10 @@ fn coloured(table: &Table, name: &str) -> Option<ColouredColumn> {
 /// A column over one key or two; where others vary, at their first value.
 fn map(
     table: &Table,
-    keys: &[VariedKey],
-    over: &[VariedKey],
+    [keys, over]: [&[VariedKey]; 2],
     column: &ColouredColumn,
     name: &str,
+    page: &Page,
 ) -> anyhow::Result<Scene> {
     let mut title = name.to_owned();
     let mut rows: Vec<usize> = (0..count(column)).collect();
@@ -131,8 +132,8 @@ fn map(
     };
     let column = column.of(&rows);
     match (over, &column.values) {
-        ([x, y], _) => Ok(map_figure(&[values(x)?, values(y)?], &column, &title)),
-        ([key], Coloured::Numbers(numbers)) => Ok(curve_figure(&values(key)?, &column.name, numbers, &title)),
+        ([x, y], _) => Ok(map_figure(&[values(x)?, values(y)?], &column, &title, page)),
+        ([key], Coloured::Numbers(numbers)) => Ok(curve_figure(&values(key)?, &column.name, numbers, &title, page)),
         _ => Err(WrongRequest::NotInSweep("--map", "a column of numbers, or two keys").into()),
     }
 }

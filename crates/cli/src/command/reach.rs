@@ -14,6 +14,7 @@ use crate::request;
 pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
     let arm = request::arm(&args.arm)?;
     request::check_outputs(&[("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())])?;
+    request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
     let Some(Point([x, y])) = args.target else {
         return match &args.path {
             Some(path) => follow::run(&arm, path, args),
@@ -29,7 +30,8 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
     let best = found.solutions.first().or(found.closest.as_ref());
     if let (Some(file), Some(best)) = (&args.plot, best) {
         let note = found.closest.as_ref().map(|closest| miss(&arm, closest));
-        output::draw(&reach_figure(&best.configuration, &[[x, y]], note.as_deref()), file)?;
+        let figure = reach_figure(&best.configuration, &[[x, y]], note.as_deref(), &args.picture.page());
+        output::draw(&figure, file, &args.picture.page)?;
     }
     let text = match args.format {
         Format::Text => summary(&arm, &found, args.station, args.by),

@@ -13,6 +13,7 @@ pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
     let arm = request::arm(&args.arm)?;
     let mut solver = Solver::new(&arm, Options { tol: args.tol })?;
     request::check_outputs(&[("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())])?;
+    request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
     match solver.solve() {
         Ok(configuration) => report(args, configuration),
         Err(SolveError::NoEquilibrium(failure)) => {
@@ -29,7 +30,7 @@ pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
 
 fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<()> {
     if let Some(plot) = &args.plot {
-        output::draw(&arm_figure(&configuration, None), plot)?;
+        output::draw(&arm_figure(&configuration, None, &args.picture.page()), plot, &args.picture.page)?;
     }
     let notes = Note::all(&configuration, args.tol);
     let margin = configuration.fold_margin();
@@ -53,7 +54,8 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
 fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium, others: Option<Others>) -> anyhow::Result<()> {
     match (&args.plot, &failure.last_good) {
         (Some(plot), Some(last_good)) => {
-            output::draw(&arm_figure(last_good, Some(&last_good_note(&failure.verdict))), plot)?;
+            let note = last_good_note(&failure.verdict);
+            output::draw(&arm_figure(last_good, Some(&note), &args.picture.page()), plot, &args.picture.page)?;
         }
         (Some(plot), None) => eprintln!("warning: no good shape on the way, {} is not drawn", plot.display()),
         (None, _) => {}

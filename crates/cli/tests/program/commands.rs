@@ -6,24 +6,28 @@ use std::process::{Command, Stdio};
 
 use super::{directory, files, hydrostat, hydrostat_in, picture, refused, solved};
 
-const NINE: [&str; 9] = [
+const TWELVE: [&str; 12] = [
     "fig1a.csv",
+    "fig1a.pdf",
     "fig1a.png",
     "fig1a.svg",
     "fig1b.csv",
+    "fig1b.pdf",
     "fig1b.png",
     "fig1b.svg",
     "fig1c.csv",
+    "fig1c.pdf",
     "fig1c.png",
     "fig1c.svg",
 ];
 
 fn check_figures(directory: &Path) {
-    assert_eq!(files(directory), NINE);
-    for name in NINE {
+    assert_eq!(files(directory), TWELVE);
+    for name in TWELVE {
         let bytes = std::fs::read(directory.join(name)).unwrap();
         match name.rsplit('.').next() {
             Some("png") => assert!(picture(&bytes).0 > 1000),
+            Some("pdf") => assert!(bytes.starts_with(b"%PDF-1.7") && bytes.ends_with(b"%%EOF")),
             Some("svg") => assert!(bytes.starts_with(b"<svg") && bytes.ends_with(b"</svg>\n")),
             _ => {
                 let text = String::from_utf8(bytes).unwrap();
@@ -56,7 +60,7 @@ fn figures_go_where_they_are_asked_to() {
     let directory = directory();
     let run = hydrostat_in(directory.path(), &["figures", "-o", "deep/er"]);
     assert_eq!(run.code, 0, "{}", run.err);
-    assert_eq!(run.out.lines().filter(|line| line.starts_with("deep/er/fig1")).count(), 9);
+    assert_eq!(run.out.lines().filter(|line| line.starts_with("deep/er/fig1")).count(), 12);
     assert!(run.out.contains("holds in part"), "{}", run.out);
     check_figures(&directory.path().join("deep/er"));
     let svg = std::fs::read_to_string(directory.path().join("deep/er/fig1a.svg")).unwrap();
@@ -78,7 +82,7 @@ fn every_statement_about_the_figure_holds_on_one_shipped_arm() {
     let findings: Vec<&str> = findings.into_iter().filter(|word| !word.is_empty()).take(10).collect();
     assert_eq!(findings[..8], ["holds"; 8], "{}", run.out);
     assert_eq!(findings[8..], ["holds in part", "cannot be decided"], "{}", run.out);
-    assert_eq!(files(&directory.path().join("figures")), NINE);
+    assert_eq!(files(&directory.path().join("figures")), TWELVE);
     let message = refused(&["figures", "--faster", "0.2"]);
     assert!(message.contains("expected rising speeds above 0.5 m/s"), "{message}");
 }

@@ -117,9 +117,9 @@ fn a_file_gets_what_standard_output_would() {
 }
 
 #[test]
-fn plots_are_svg_or_png() {
+fn plots_are_svg_pdf_or_png() {
     let directory = directory();
-    for name in ["arm.svg", "arm.PNG"] {
+    for name in ["arm.svg", "arm.pdf", "arm.PNG"] {
         let run = hydrostat_in(directory.path(), &["solve", "silicone", "--tension", "0.3,0", "--plot", name]);
         assert_eq!(run.code, 0, "{}", run.err);
         // The drawing does not replace the result.
@@ -129,6 +129,28 @@ fn plots_are_svg_or_png() {
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && svg.contains("left: 0.3 N"));
     let (width, height) = picture(&std::fs::read(directory.path().join("arm.PNG")).unwrap());
     assert!(width > 1000 && height > 400, "{width} x {height}");
+    let pdf = std::fs::read(directory.path().join("arm.pdf")).unwrap();
+    assert!(pdf.starts_with(b"%PDF-1.7") && pdf.ends_with(b"%%EOF"));
+}
+
+#[test]
+fn a_picture_has_the_width_and_the_title_that_are_asked_for() {
+    let directory = directory();
+    let with = |more: &[&str]| hydrostat_in(directory.path(), &[&["solve", "paper"], more].concat());
+    let run = with(&["--plot", "arm.svg", "--width", "90 mm", "--title", "In the stream", "--svg-text"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let svg = std::fs::read_to_string(directory.path().join("arm.svg")).unwrap();
+    assert!(svg.contains("width=\"255.12pt\"") && svg.contains(">In the stream</text>") && !svg.contains("aria-label"));
+    for wrong in ["90", "20 mm", "wide", "3 m"] {
+        let run = with(&["--plot", "arm.svg", "--width", wrong]);
+        assert!(run.code == 2 && run.err.contains("such as \"85 mm\""), "{wrong}: {}", run.err);
+    }
+    for (option, args) in
+        [("--title", &["--title", "T"][..]), ("--width", &["--width", "9 cm"]), ("--svg-text", &["--svg-text"])]
+    {
+        let run = with(args);
+        assert!(run.code == 2 && run.err.contains(&format!("{option}: nothing is drawn; give --plot")), "{}", run.err);
+    }
 }
 
 #[test]

@@ -197,7 +197,7 @@ fn options_out_of_range_are_refused() {
     assert!(with(&["--max-points", "1"]).contains("a whole number from 2"));
     assert!(with(&["--quantity", "tip.z"]).contains("tip.x, tip.y, tip.theta, tip.alpha"));
     assert!(with(&["--quantity", "stroke[2]"]).contains("the arm has 2 cables"));
-    assert!(with(&["--plot", "a.jpg"]).contains(".svg or .png"));
+    assert!(with(&["--plot", "a.jpg"]).contains(".svg, .pdf or .png"));
     assert!(with(&["--plot", "a.svg", "--plot-shapes", "a.svg"]).contains("--plot and --plot-shapes both name a.svg"));
     assert!(with(&["-o", "nowhere/a.csv"]).contains("cannot write nowhere/a.csv"));
     let literal = ["--set", "model.support=unstrained-base"];

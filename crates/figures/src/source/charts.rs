@@ -1,20 +1,26 @@
 //! Drawings of Fig. 1a, 1b and 1c.
 
-use hydrostat::Configuration;
+use hydrostat::{Configuration, Parameter};
 
 use super::{SPEED, Study, TIP_ANGLE, speed, tension};
-use crate::arm_figure::{degrees, short};
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, Label};
+use crate::legend::{Legend, Sample};
+use crate::numbers::{degrees, short};
 use crate::outline::{Outline, Style, bounds};
-use crate::palette::{Color, GREY, INK, WATER, ordered, series};
+use crate::page::{MARGIN, Page};
+use crate::palette::{Color, GREY, INK, ordered, series};
 use crate::placement::{Occupied, Rect};
 use crate::scene::{Anchor, Scene, Stroke};
+use crate::surroundings::Surroundings;
 use crate::tip_labels::{TipLabel, draw_tip_labels};
 
-const WIDTH: f64 = 450.0;
-const MARGIN: f64 = 10.0;
 const LINE: f64 = 13.0;
+/// Baseline of the heading, and where what is below it begins.
+const HEADING: [f64; 2] = [MARGIN + CAP_HEIGHT * 9.5, MARGIN + LINE];
+/// In the key of Fig. 1c: room for a tension, and for each speed.
+const COLUMNS: [f64; 2] = [68.0, 76.0];
+
 /// Said on every part: the numbers are not the source's.
 fn note(study: &Study) -> String {
     let arm = study.raised.first().map_or("", |c| c.arm.name.as_str());
@@ -22,7 +28,7 @@ fn note(study: &Study) -> String {
 }
 
 /// Fig. 1a: tension raised in one stream.
-pub(super) fn raised(study: &Study) -> Scene {
+pub(super) fn raised(study: &Study, page: &Page) -> Scene {
     let heading = Label::math(&format!("Tension $T_1$ raised in a stream of {SPEED} m/s"));
     let count = study.raised.len();
     let shapes: Vec<_> = study
@@ -35,11 +41,11 @@ pub(super) fn raised(study: &Study) -> Scene {
             Member { configuration: c, color: ordered(i, count), label }
         })
         .collect();
-    arms("Fig. 1a", &heading, &shapes, &note(study))
+    arms(["Fig. 1a", &note(study)], &heading, &shapes, None, page)
 }
 
 /// Fig. 1b: one tension in ever faster streams.
-pub(super) fn faster(study: &Study) -> Scene {
+pub(super) fn faster(study: &Study, page: &Page) -> Scene {
     let value = study.faster.first().map_or(0.0, tension);
     let heading = Label::math(&format!("Streams of several speeds, tension $T_1$ = {} N", short(value)));
     let shapes: Vec<_> = study
@@ -53,7 +59,7 @@ pub(super) fn faster(study: &Study) -> Scene {
             Member { configuration: c, color: speed_color(i), label }
         })
         .collect();
-    arms("Fig. 1b", &heading, &shapes, &note(study))
+    arms(["Fig. 1b", &note(study)], &heading, &shapes, Some(Parameter::FlowSpeed), page)
 }
 
 /// The colour of the speed `index`; 0.5 m/s is the blue one, as in the source.
@@ -68,21 +74,29 @@ struct Member<'a> {
     label: Label,
 }
 
-/// Several arms on equal axes, each with a label at its tip.
-fn arms(part: &str, heading: &Label, shapes: &[Member<'_>], note: &str) -> Scene {
+/// Several arms on equal axes, each with a label at its tip; `varied` is what differs from one to the other of what acts on all of the arm.
+fn arms(
+    [part, note]: [&str; 2],
+    heading: &Label,
+    shapes: &[Member<'_>],
+    varied: Option<Parameter>,
+    page: &Page,
+) -> Scene {
     let outlines: Vec<Outline> = shapes.iter().map(|m| Outline::new(m.configuration, 26)).collect();
     let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).collect();
     let [x, y] = bounds(&all);
     let pad = 0.05 * (x[1] - x[0]).max(y[1] - y[0]);
-    let top = MARGIN + 2.0 * LINE + 6.0;
+    let key = cable_key(shapes, page);
+    let top = HEADING[1] + key.height() + 6.0;
     let room = [[x[0] - pad, x[1] + 3.0 * pad], [y[0] - pad, y[1] + 3.5 * pad]];
-    let axes = Axes::equal(LEFT, top, WIDTH - LEFT - MARGIN, [150.0, 400.0], room[0], room[1]);
-    let mut scene = Scene::new(WIDTH, axes.frame.bottom + BELOW + LINE + MARGIN, format!("{part}: {heading}"));
-    header(&mut scene, part, heading);
-    cable_key(&mut scene, MARGIN + LINE + 2.0 + CAP_HEIGHT * TEXT_SIZE);
-    footer(&mut scene, note);
+    let axes = Axes::equal(LEFT, top, page.across(), [150.0, 400.0], room[0], room[1]);
+    let height = axes.frame.bottom + BELOW + LINE + MARGIN;
+    let mut scene = Scene::new(page.width(), height, format!("{part}: {heading}"));
+    header(&mut scene, part, heading, page);
+    key.draw(&mut scene, HEADING[1]);
+    footer(&mut scene, note, page);
     axes.draw(&mut scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
-    let mut page = Occupied::new(axes.frame.grown(-3.0));
+    let mut taken = Occupied::new(axes.frame.grown(-3.0));
     for (outline, Member { configuration, color, .. }) in outlines.iter().zip(shapes) {
         let style = Style {
             fill: color.with_opacity(0.07),
@@ -97,7 +111,7 @@ fn arms(part: &str, heading: &Label, shapes: &[Member<'_>], note: &str) -> Scene
                 .collect(),
         };
         outline.draw(&mut scene, &axes, &style);
-        outline.occupy(&mut page, &axes);
+        outline.occupy(&mut taken, &axes);
     }
     let labels: Vec<TipLabel> = outlines
         .iter()
@@ -109,46 +123,49 @@ fn arms(part: &str, heading: &Label, shapes: &[Member<'_>], note: &str) -> Scene
             label: label.clone(),
         })
         .collect();
-    draw_tip_labels(&mut scene, &mut page, axes.frame, &labels);
+    // Labels want the upper right corner; what holds for all shapes takes what is left.
+    draw_tip_labels(&mut scene, &mut taken, axes.frame, &labels);
+    if let Some(first) = shapes.first() {
+        Surroundings::of(&first.configuration.arm, varied).draw(&mut scene, &mut taken, axes.frame);
+    }
     scene
 }
 
 const CABLE_DASH: [f64; 2] = [2.5, 1.8];
 
-fn header(scene: &mut Scene, part: &str, heading: &Label) {
+fn header(scene: &mut Scene, part: &str, heading: &Label, page: &Page) {
     let label = Label::plain(format!("{part}   ")).and(heading.clone());
-    scene.text(&label, [LEFT, MARGIN + CAP_HEIGHT * 9.5], Anchor::Start, 9.5);
+    scene.text(&label, [LEFT, HEADING[0]], Anchor::Start, page.fitting(&label, 9.5));
 }
 
-fn footer(scene: &mut Scene, note: &str) {
+fn footer(scene: &mut Scene, note: &str, page: &Page) {
     let at = [LEFT, scene.height - MARGIN];
-    scene.text_in(&Label::plain(note), at, Anchor::Start, 7.0, GREY, false);
+    let note = Label::plain(note);
+    scene.text_in(&note, at, Anchor::Start, page.fitting(&note, 7.0), GREY, false);
 }
 
-fn cable_key(scene: &mut Scene, baseline: f64) {
-    let middle = baseline - 0.5 * CAP_HEIGHT * TEXT_SIZE;
-    let mut x = LEFT;
-    for (text, stroke) in [
-        ("pulled cable", Stroke::solid(INK, 0.6)),
-        ("slack cable", Stroke::dashed(INK, 0.5, CABLE_DASH)),
-        ("section", Stroke::solid(INK.with_opacity(0.45), 0.35)),
-    ] {
-        scene.line(&[[x, middle], [x + 18.0, middle]], stroke);
-        let label = Label::plain(text);
-        scene.text(&label, [x + 22.0, baseline], Anchor::Start, TEXT_SIZE);
-        x += 22.0 + label.width(TEXT_SIZE) + 16.0;
+/// What lines mean that are drawn of some shape.
+fn cable_key(shapes: &[Member<'_>], page: &Page) -> Legend {
+    let mut key = Legend::new(page);
+    let cables = shapes.iter().map(|shape| shape.configuration.cables.len()).max().unwrap_or(0);
+    if cables > 0 {
+        key.add(Sample::Line(Stroke::solid(INK, 0.6)), Label::plain("pulled cable"));
     }
-    scene.arrow([x, middle], [x + 18.0, middle], WATER, 1.2);
-    scene.text(&Label::plain("stream"), [x + 22.0, baseline], Anchor::Start, TEXT_SIZE);
+    if cables > 1 {
+        key.add(Sample::Line(Stroke::dashed(INK, 0.5, CABLE_DASH)), Label::plain("slack cable"));
+    }
+    key.add(Sample::Line(Stroke::solid(INK.with_opacity(0.45), 0.35)), Label::plain("section"));
+    key
 }
 
 /// Fig. 1c: alpha(s), whole on the left, enlarged where the speeds part on the right.
-pub(super) fn angles(study: &Study) -> Scene {
+pub(super) fn angles(study: &Study, page: &Page) -> Scene {
     let rows = study.rows();
-    let top = MARGIN + (1.0 + rows.len() as f64) * LINE + 8.0;
+    let (per_line, lines) = key_lines(&rows, page);
+    let top = MARGIN + (1.0 + (lines * rows.len()) as f64) * LINE + 8.0;
     let height = 190.0;
     let gap = 46.0;
-    let width = 0.5 * (WIDTH - LEFT - MARGIN - gap);
+    let width = 0.5 * (page.across() - gap);
     let frame = |left: f64| Rect { left, top, right: left + width, bottom: top + height };
     let length = 1e3 * study.faster.first().map_or(1.0, |c| c.arm.length);
     let curves: Vec<(usize, usize, Vec<[f64; 2]>)> = rows
@@ -166,10 +183,10 @@ pub(super) fn angles(study: &Study) -> Scene {
     let enlarged = Axes::new(frame(LEFT + width + gap), [0.0, length], low);
 
     let heading = Label::math("Section rotation $α$($s$) along the arm");
-    let mut scene = Scene::new(WIDTH, top + height + BELOW + LINE + MARGIN, format!("Fig. 1c: {heading}"));
-    header(&mut scene, "Fig. 1c", &heading);
-    footer(&mut scene, &note(study));
-    angle_key(&mut scene, &rows);
+    let mut scene = Scene::new(page.width(), top + height + BELOW + LINE + MARGIN, format!("Fig. 1c: {heading}"));
+    header(&mut scene, "Fig. 1c", &heading, page);
+    footer(&mut scene, &note(study), page);
+    angle_key(&mut scene, &rows, per_line, lines);
     for (axes, title) in [(&whole, "$α$ (°)"), (&enlarged, "$α$ (°), enlarged")] {
         axes.draw(&mut scene, &Label::math("$s$ (mm)"), &Label::math(title));
         for (row, i, points) in &curves {
@@ -197,19 +214,28 @@ fn curve(c: &Configuration) -> Vec<[f64; 2]> {
     places.iter().map(|s| [1e3 * s, c.at(*s).alpha.to_degrees()]).collect()
 }
 
-fn angle_key(scene: &mut Scene, rows: &[&[Configuration]]) {
-    for (line, row) in rows.iter().rev().enumerate() {
-        let baseline = MARGIN + 2.0 + (line as f64 + 1.0) * LINE + CAP_HEIGHT * TEXT_SIZE;
-        let middle = baseline - 0.5 * CAP_HEIGHT * TEXT_SIZE;
+/// How many speeds go on a line of the key, and how many lines each tension takes.
+fn key_lines(rows: &[&[Configuration]], page: &Page) -> (usize, usize) {
+    let most = rows.iter().map(|row| row.len()).max().unwrap_or(0);
+    let fits = |count: &usize| COLUMNS[0] + COLUMNS[1] * *count as f64 <= page.across() + 20.0;
+    let per_line = (1..=most).rev().find(fits).unwrap_or(1);
+    (per_line, most.div_ceil(per_line).max(1))
+}
+
+fn angle_key(scene: &mut Scene, rows: &[&[Configuration]], per_line: usize, lines: usize) {
+    for (number, row) in rows.iter().rev().enumerate() {
+        let baseline =
+            |line: usize| MARGIN + 2.0 + ((number * lines + line) as f64 + 1.0) * LINE + CAP_HEIGHT * TEXT_SIZE;
         let value = row.first().map_or(0.0, tension);
         let name = Label::math(&format!("$T_1$ = {} N:", short(value)));
-        scene.text(&name, [LEFT, baseline], Anchor::Start, TEXT_SIZE);
-        let mut x = LEFT + 68.0;
+        scene.text(&name, [LEFT, baseline(0)], Anchor::Start, TEXT_SIZE);
         for (i, c) in row.iter().enumerate() {
-            scene.line(&[[x, middle], [x + 18.0, middle]], angle_stroke(line == 0, i));
+            let baseline = baseline(i / per_line);
+            let middle = baseline - 0.5 * CAP_HEIGHT * TEXT_SIZE;
+            let x = LEFT + COLUMNS[0] + COLUMNS[1] * (i % per_line) as f64;
+            scene.line(&[[x, middle], [x + 18.0, middle]], angle_stroke(number == 0, i));
             let label = Label::plain(format!("{} m/s", speed(c)));
             scene.text(&label, [x + 22.0, baseline], Anchor::Start, TEXT_SIZE);
-            x += 76.0;
         }
     }
 }

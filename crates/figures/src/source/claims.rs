@@ -3,7 +3,7 @@
 use hydrostat::{Arm, Configuration, Volume};
 
 use super::{RESOLUTION, SPEED, Study, TIP_ANGLE, loaded, solved, speed, tension, tip_angle};
-use crate::arm_figure::short;
+use crate::numbers::short;
 
 /// What became of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -13,6 +13,7 @@ mod target;
 
 use hydrostat::{Arm, Configuration, Options, ReachError, SolveError, Solver};
 
+use crate::page::Page;
 use crate::scene::Scene;
 
 pub use claims::{Claim, Finding};
@@ -150,11 +151,12 @@ impl Study {
     }
 
     /// Fig. 1a, 1b and 1c.
-    pub fn figures(&self) -> [Figure; 3] {
+    pub fn figures(&self, page: &Page) -> [Figure; 3] {
+        let angles = tables::angles(&self.angle_configurations());
         [
-            Figure { name: "fig1a", scene: charts::raised(self), csv: tables::shapes(&self.raised) },
-            Figure { name: "fig1b", scene: charts::faster(self), csv: tables::shapes(&self.faster) },
-            Figure { name: "fig1c", scene: charts::angles(self), csv: tables::angles(&self.angle_configurations()) },
+            Figure { name: "fig1a", scene: charts::raised(self, page), csv: tables::shapes(&self.raised) },
+            Figure { name: "fig1b", scene: charts::faster(self, page), csv: tables::shapes(&self.faster) },
+            Figure { name: "fig1c", scene: charts::angles(self, page), csv: angles },
         ]
     }
 
