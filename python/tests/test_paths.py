@@ -88,6 +88,8 @@ def test_figures_of_the_library(tmp_path: Path, facing: hs.Arm, snapping: hs.Pat
         assert text in figure.texts(), (name, figure.texts())
         assert figure.save(tmp_path / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
         assert figure.save(tmp_path / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
+        assert figure.save(tmp_path / f"{name}.pdf").read_bytes().startswith(b"%PDF-")
+        assert "<text" in figure.svg(text=True) and "<text" not in figure.svg()
     with pytest.raises(ValueError, match="quantity"):
         hs.path_figure(snapping, "tip.z")
     with pytest.raises(ValueError, match="quantity"):
