@@ -53,10 +53,7 @@ pub fn boundary_figure(found: &Boundary, slack: &Configuration, page: &Page) -> 
         .map(|piece| piece.points.iter().map(|p| millimetres([p.tip.x, p.tip.y])).collect())
         .collect();
     let all: Vec<[f64; 2]> = outline.surface.iter().chain(pieces.iter().flatten()).copied().collect();
-    let [x, y] = bounds(&all);
-    let pad = 0.04 * (x[1] - x[0]).max(y[1] - y[0]);
-    let grown = |range: [f64; 2]| [range[0] - pad, range[1] + pad];
-    let axes_below = |top: f64| Axes::equal(LEFT, top, page.across(), [110.0, MAX_HEIGHT], grown(x), grown(y));
+    let axes_below = |top: f64| axes_around(&all, top, page);
 
     let words = format!("{}: what the tip can reach", slack.arm.name);
     let heading = page.heading(&words, None);
@@ -106,6 +103,14 @@ pub fn boundary_figure(found: &Boundary, slack: &Configuration, page: &Page) -> 
     }
     Surroundings::of(&slack.arm, None).draw(&mut scene, &mut taken, axes.frame);
     scene
+}
+
+/// Axes that show all of `points`, mm.
+fn axes_around(points: &[[f64; 2]], top: f64, page: &Page) -> Axes {
+    let [x, y] = bounds(points);
+    let pad = 0.04 * (x[1] - x[0]).max(y[1] - y[0]);
+    let grown = |range: [f64; 2]| [range[0] - pad, range[1] + pad];
+    Axes::equal(LEFT, top, page.across(), [110.0, MAX_HEIGHT], grown(x), grown(y))
 }
 
 /// Tips (m) that are reached: anywhere, and beside the lines.
@@ -175,20 +180,15 @@ mod tests {
         let (place, picture) = figure.items.iter().find_map(|item| item.picture.clone()).unwrap();
         let outline = Outline::new(&slack, SECTIONS);
         let pieces = found.pieces.iter().flat_map(|p| &p.points).map(|p| [1e3 * p.tip.x, 1e3 * p.tip.y]);
-        let [x, y] = bounds(&outline.surface.iter().copied().chain(pieces).collect::<Vec<_>>());
-        let pad = 0.04 * (x[1] - x[0]).max(y[1] - y[0]);
-        let axes = Axes::equal(
-            LEFT,
-            place.top,
-            Page::default().across(),
-            [110.0, MAX_HEIGHT],
-            x.map(|v| v + if v == x[0] { -pad } else { pad }),
-            y.map(|v| v + if v == y[0] { -pad } else { pad }),
-        );
+        let all: Vec<[f64; 2]> = outline.surface.iter().copied().chain(pieces).collect();
+        let axes = axes_around(&all, place.top, &Page::default());
         assert!((axes.frame.bottom - place.bottom).abs() < 1e-9);
+        let cell = |share: f64, count: usize| {
+            (0..count).position(|k| share * (count as f64) < k as f64 + 1.0).unwrap_or(count - 1)
+        };
         let filled = |[x, y]: Point| {
-            let column = ((x - place.left) / place.width() * picture.width as f64) as usize;
-            let line = ((y - place.top) / place.height() * picture.height as f64) as usize;
+            let column = cell((x - place.left) / place.width(), picture.width);
+            let line = cell((y - place.top) / place.height(), picture.height);
             picture.rgba[4 * (line * picture.width + column) + 3] > 0
         };
         for left in [0.01, 0.1, 0.2, 0.29] {
@@ -200,6 +200,7 @@ mod tests {
             }
         }
         // The base, and places further out than the arm is long.
-        assert!(!filled(axes.at([10.0, 0.0])) && !filled(axes.at([x[1] + 0.9 * pad, y[1] + 0.9 * pad])));
+        let [x, y] = bounds(&all);
+        assert!(!filled(axes.at([10.0, 0.0])) && !filled(axes.at([x[1] + 3.0, y[1] + 3.0])));
     }
 }

@@ -223,7 +223,7 @@ mod tests {
         assert!(text.starts_with("%PDF-1.7") && text.trim_end().ends_with("%%EOF"));
         let streams = file.windows(8).enumerate().filter(|(_, w)| *w == b"\nstream\n").map(|(at, _)| at + 8);
         // The page's own is the last.
-        let start = streams.last().unwrap();
+        let start = streams.max().unwrap();
         String::from_utf8(miniz_oxide::inflate::decompress_to_vec_zlib(&file[start..]).unwrap()).unwrap()
     }
 

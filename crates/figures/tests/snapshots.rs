@@ -72,11 +72,11 @@ fn shown(svg: &str) -> String {
         if let Some((head, path)) = line.split_once(" d=\"") {
             let places = nine_places(path.trim_end_matches("\"/>"));
             let places: Vec<String> = places.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
-            out.push_str(&format!("{} {}\n", head.trim_start_matches('<'), places.join(" ")));
+            out.extend([head.trim_start_matches('<'), " ", &places.join(" "), "\n"]);
         } else if let Some((head, _)) = line.split_once(" href=\"") {
-            out.push_str(&format!("{}\n", head.trim_start_matches('<')));
+            out.extend([head.trim_start_matches('<'), "\n"]);
         } else {
-            out.push_str(&format!("{line}\n"));
+            out.extend([line, "\n"]);
         }
     }
     out
@@ -85,7 +85,7 @@ fn shown(svg: &str) -> String {
 /// Places at even distances along straight lines and chords.
 fn nine_places(path: &str) -> Vec<[f64; 2]> {
     let mut points: Vec<[f64; 2]> = Vec::new();
-    for piece in path.replace('Z', "").split_inclusive(|_| false).flat_map(|all| all.split(['M', 'L', 'Q'])) {
+    for piece in path.replace('Z', "").split(['M', 'L', 'Q']) {
         let numbers: Vec<f64> = piece.split_whitespace().filter_map(|number| number.parse().ok()).collect();
         points.extend(numbers.last_chunk().copied());
     }
