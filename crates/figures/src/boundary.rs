@@ -186,10 +186,15 @@ mod tests {
         let cell = |share: f64, count: usize| {
             (0..count).position(|k| share * (count as f64) < k as f64 + 1.0).unwrap_or(count - 1)
         };
-        let filled = |[x, y]: Point| {
+        let there = |[x, y]: Point| {
             let column = cell((x - place.left) / place.width(), picture.width);
             let line = cell((y - place.top) / place.height(), picture.height);
             picture.rgba[4 * (line * picture.width + column) + 3] > 0
+        };
+        // Nearer to a line than half its width, what is drawn is the line.
+        let filled = |[x, y]: Point| {
+            let around = [-0.6, 0.0, 0.6];
+            around.iter().any(|dx| around.iter().any(|dy| there([x + dx, y + dy])))
         };
         for left in [0.01, 0.1, 0.2, 0.29] {
             for right in [0.013, 0.11, 0.21, 0.28] {
