@@ -207,7 +207,7 @@ mod tests {
             (r#"{"arm": "paper", "tol": "x"}"#, "tol"),
             (r#"{"arm": "paper", "stations": "many"}"#, "stations"),
             (r#"{"arm": "paper", "statons": 3}"#, "statons"),
-            (r#"{"arm": "paper", "format": "pdf"}"#, "format"),
+            (r#"{"arm": "paper", "format": "gif"}"#, "format"),
             (r#"{"arm": "paper", "set": {"flow.speed": true}}"#, "set.flow.speed"),
             (r#"{"arm": "paper", "set": {"flow.speed": -1}}"#, "set"),
         ] {
