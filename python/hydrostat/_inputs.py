@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from hydrostat import _native
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
@@ -108,6 +110,16 @@ def mapping(name: str, value: Mapping[K, V], such_as: str) -> dict[K, V]:
     if not isinstance(value, Mapping):
         raise TypeError(f"{name}: expected a mapping such as {such_as}, found {value!r}")
     return dict(value)
+
+
+def texts(name: str, key: str, values: Sequence[float | str]) -> list[str]:
+    """Numbers of a key that stand together, as the command line takes them.
+
+    There a unit behind the last number holds for all; here a number that is no string keeps its own, of SI or degrees.
+    """
+    strings = any(isinstance(value, str) for value in values)
+    unit = (_native.bare_unit(key) or "") if strings else ""
+    return [value if isinstance(value, str) else f"{number(name, value)!r} {unit}".strip() for value in values]
 
 
 def toml(name: str, value: object) -> str:

@@ -308,7 +308,8 @@ class Arm:
         parameter : str
             A key of the arm file, such as ``"arm.base.angle"``, ``"flow.speed"`` or ``"cable[0].tension"``.
         start, stop : float or str
-            The range, in SI units and degrees, or strings with units.
+            The range: numbers in SI units and degrees, or strings with units. Of two strings the second's unit holds for both
+            where the first has none.
         tol : float
             Error of the tip position over the length at every point, in [1e-7, 1e-3].
         longest : float
@@ -325,7 +326,7 @@ class Arm:
         """
         from hydrostat.paths import EquilibriumPath
 
-        vary = f"{parameter}={_end('start', start)}:{_end('stop', stop)}"
+        vary = f"{parameter}={':'.join(_inputs.texts('start, stop', parameter, [start, stop]))}"
         step = _inputs.number("longest", longest)
         points = _inputs.count("most", most)
         asked = (vary, _inputs.number("tol", tol), step, points, branches)
@@ -564,7 +565,3 @@ def _dotted(key: str, value: object) -> dict[str, object]:
 def _strokes(strokes: Sequence[float | None]) -> list[float | None]:
     each = _inputs.items("strokes", strokes, "numbers, one a cable")
     return [None if stroke is None else _inputs.number(f"strokes[{i}]", stroke) for i, stroke in enumerate(each)]
-
-
-def _end(name: str, value: float | str) -> str:
-    return value if isinstance(value, str) else repr(_inputs.number(name, np.float64(value)))

@@ -318,7 +318,7 @@ def _keys(fit: Keys) -> list[str]:
         elif isinstance(start, tuple):
             if len(start) != 3:
                 raise ValueError(f"fit[{key!r}]: expected a start, or (start, lower, upper), found {start!r}")
-            given = [_text(f"fit[{key!r}]", value) for value in start if value is not None]
+            given = _inputs.texts(f"fit[{key!r}]", key, [value for value in start if value is not None])
             out.append(key + ("=" if start[0] is not None else ":") + ":".join(given))
         else:
             out.append(f"{key}={_text(f'fit[{key!r}]', start)}")
@@ -332,6 +332,6 @@ def _priors(prior: Priors) -> list[str]:
     for key, pair in prior.items():
         if not isinstance(pair, tuple) or len(pair) != 2:
             raise ValueError(f"prior[{key!r}]: expected (mean, standard deviation), found {pair!r}")
-        mean, sd = (_text(f"prior[{key!r}]", value) for value in pair)
+        mean, sd = _inputs.texts(f"prior[{key!r}]", key, pair)
         out.append(f"{key}={mean}±{sd}")
     return out

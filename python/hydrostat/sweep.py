@@ -128,7 +128,8 @@ def sweep(
         The arm, or the name or file of one.
     vary : mapping
         Keys of the arm file with their values: an array or list of numbers (SI units, degrees) or of strings,
-        ``"from:to:count"`` for a grid with both ends, ``"from:to"`` with `sample`.
+        ``"from:to:count"`` for a grid with both ends, ``"from:to"`` with `sample`. A unit behind the last number of a string
+        or of a list of strings holds for all without one: ``"5:20 cm/s:4"``.
     sample : str, optional
         ``"lhs:N"`` or ``"sobol:N"``: N rows in place of all combinations.
     seed : int
@@ -227,6 +228,9 @@ def _values(key: str, values: Values) -> str:
     """The values of a key as the command line takes them."""
     if isinstance(values, str):
         return values
+    if isinstance(values, Sequence) and any(isinstance(value, str) for value in values):
+        # An array would make texts of the numbers beside texts.
+        values = _inputs.texts(f"vary[{key!r}]", key, values)
     array = np.atleast_1d(np.asarray(values))
     if array.dtype.kind in "US" and array.ndim == 1:
         return ",".join(str(word) for word in array)

@@ -204,3 +204,19 @@ def test_nothing_to_vary_is_one_row(silicone: hs.Arm) -> None:
     many = hs.solve_many(silicone, tensions=[0.1, 0.0])
     assert many.shape == () and many.tip_y.shape == () and many.stroke.shape == (2,)
     assert hs.solve_many(silicone, flow_speed=[]).tip_x.shape == (0,)
+
+
+def test_a_unit_behind_a_range_was_that_of_its_end_alone(silicone: hs.Arm) -> None:
+    pytest.importorskip("xarray")
+    for values in ("5:20 cm/s:2", "5,20 cm/s", ["5", "20 cm/s"], ["5 cm/s", "20 cm/s"], [0.05, "20 cm/s"]):
+        found = hs.sweep(silicone, {"flow.speed": values}, columns=["tip"])
+        assert found["flow.speed"].values.tolist() == pytest.approx([5.0, 20.0], rel=1e-12) or values == [0.05, "20 cm/s"]
+        alone = hs.sweep(silicone, {"flow.speed": [0.05, 0.2]}, columns=["tip"])
+        assert found.tip_y.values.tolist() == alone.tip_y.values.tolist()
+    assert silicone.path("flow.speed", "5", "20 cm/s").range == (5.0, 20.0)
+    # A number that is no string is in SI units, as ever.
+    assert silicone.path("flow.speed", 0.05, "20 cm/s").branches[0].values[[0, -1]].tolist() == [0.05, 0.2]
+    with pytest.raises(ValueError, match=r"\"5:20 cm/s\".*\"5 cm/s:20 m/s\""):
+        silicone.path("flow.speed", "5 cm/s", "20")
+    with pytest.raises(ValueError, match=r"\"5:20 cm/s\""):
+        hs.sweep(silicone, {"flow.speed": "5 cm/s:20:2"})

@@ -4,7 +4,7 @@ use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 use hydrostat::parameter::Unfit;
 use hydrostat::{Arm, ArmError};
-use hydrostat_files::{ArmFile, shipped};
+use hydrostat_files::{ArmFile, Dimension, PartialUnit, shared_unit, shipped};
 
 use crate::args::{ArmArgs, PictureArgs};
 use crate::output;
@@ -18,6 +18,8 @@ pub(crate) enum WrongRequest {
     Setting(String),
     /// Tensions that do not fit the cables.
     Tensions(ArmError),
+    /// A unit behind some of the tensions.
+    Unit(PartialUnit),
     /// Two outputs in one file.
     SamePath([&'static str; 2], PathBuf),
     /// A quantity that the arm at hand does not have.
@@ -62,6 +64,7 @@ impl std::fmt::Display for WrongRequest {
                 write!(f, "--set {text}: expected KEY=VALUE, such as flow.speed=0.5 or cable[0].tension=\"20 N\"")
             }
             Self::Tensions(error) => write!(f, "--tension: {error}"),
+            Self::Unit(error) => write!(f, "{error}"),
             Self::SamePath([a, b], path) => {
                 write!(f, "{a} and {b} both name {}; give them different files", path.display())
             }
@@ -152,8 +155,10 @@ pub(crate) fn overridden(args: &ArmArgs) -> anyhow::Result<ArmFile> {
             return Err(WrongRequest::Tensions(error).into());
         }
         let typed = format!("--tension {}:", tensions.join(","));
-        for (i, tension) in tensions.iter().enumerate() {
-            file.set_by(&typed, &format!("cable[{i}].tension"), tension.trim())?;
+        let texts: Vec<&str> = tensions.iter().map(String::as_str).collect();
+        let texts = shared_unit(Dimension::Force, "--tension", &texts, ",").map_err(WrongRequest::Unit)?;
+        for (i, tension) in texts.iter().enumerate() {
+            file.set_by(&typed, &format!("cable[{i}].tension"), tension)?;
         }
     }
     Ok(file)

@@ -7,6 +7,7 @@ use hydrostat::parameter::names;
 use crate::error::shortened;
 use crate::format::{dimension_at, home_of, is_key, nearest};
 use crate::quantity::{Dimension, WrongValue};
+use crate::shared_unit::{PartialUnit, bare, shared_unit};
 use crate::varied::{hint, rounded};
 
 /// The most values of one key.
@@ -131,21 +132,25 @@ pub enum AxisError {
     /// A value of another kind.
     #[error(transparent)]
     Value(#[from] WrongValue),
+    /// A unit behind some of the numbers.
+    #[error(transparent)]
+    Unit(#[from] PartialUnit),
 }
 
 /// Numbers of one dimension, and the first unit that they were written with.
-struct Reader<'a> {
-    key: &'a str,
+fn numbers(
     dimension: Dimension,
-    unit: Option<&'static str>,
-}
-
-impl Reader<'_> {
-    fn read(&mut self, text: &str) -> Result<f64, AxisError> {
-        let (value, unit) = self.dimension.value_of(self.key, text)?;
-        self.unit = self.unit.or(unit);
-        Ok(value)
+    key: &str,
+    parts: &[&str],
+    join: &str,
+) -> Result<(Vec<f64>, Option<&'static str>), AxisError> {
+    let (mut values, mut shown) = (Vec::with_capacity(parts.len()), None);
+    for text in shared_unit(dimension, key, parts, join)? {
+        let (value, unit) = dimension.value_of(key, &text)?;
+        values.push(value);
+        shown = shown.or(unit);
     }
+    Ok((values, shown))
 }
 
 impl FromStr for Axis {
@@ -173,31 +178,34 @@ impl FromStr for Axis {
             let values = AxisValues::Words(parts().map(str::to_owned).collect());
             return Ok(Self { key, dimension: None, unit: "", values });
         };
-        let mut reader = Reader { key: &key, dimension, unit: None };
-        let values = if given.contains(':') {
+        let (values, unit) = if given.contains(':') {
             let pieces: Vec<&str> = given.split(':').collect();
             match pieces[..] {
-                [from, to] => AxisValues::Span { from: reader.read(from)?, to: reader.read(to)? },
-                [from, to, count] => even(&mut reader, from, to, count)?,
+                [from, to] => {
+                    let (ends, unit) = numbers(dimension, &key, &[from, to], ":")?;
+                    (AxisValues::Span { from: ends[0], to: ends[1] }, unit)
+                }
+                [from, to, count] => {
+                    let (ends, unit) = numbers(dimension, &key, &[from, to], ":")?;
+                    (even(&key, &ends, [from, to], count)?, unit)
+                }
                 _ => return Err(AxisError::Form { text: text.to_owned() }),
             }
         } else {
-            AxisValues::List(parts().map(|part| reader.read(part)).collect::<Result<_, _>>()?)
+            let (values, unit) = numbers(dimension, &key, &parts().collect::<Vec<_>>(), ",")?;
+            (AxisValues::List(values), unit)
         };
-        let bare = if dimension == Dimension::Angle { "deg" } else { dimension.bare_unit() };
-        let unit = reader.unit.unwrap_or(bare);
-        Ok(Self { key, dimension: Some(dimension), unit, values })
+        Ok(Self { key, dimension: Some(dimension), unit: unit.unwrap_or(bare(dimension)), values })
     }
 }
 
-fn even(reader: &mut Reader<'_>, from: &str, to: &str, count: &str) -> Result<AxisValues, AxisError> {
-    let ends = [reader.read(from)?, reader.read(to)?];
-    let key = reader.key.to_owned();
+fn even(key: &str, ends: &[f64], texts: [&str; 2], count: &str) -> Result<AxisValues, AxisError> {
+    let key = key.to_owned();
     let Some(count) = count.trim().parse().ok().filter(|count| (1..=MOST).contains(count)) else {
         return Err(AxisError::Count { key, text: count.trim().to_owned() });
     };
     if (ends[0] == ends[1]) != (count == 1) {
-        let [from, to] = [from, to].map(|end| end.trim().to_owned());
+        let [from, to] = texts.map(|end| end.trim().to_owned());
         return Err(AxisError::Ends { key, from, to, count });
     }
     Ok(AxisValues::Even { from: ends[0], to: ends[1], count })
@@ -286,11 +294,29 @@ mod tests {
         assert_eq!(values("flow.speed=0:1:11"), AxisValues::Even { from: 0.0, to: 1.0, count: 11 });
         assert_eq!(values("flow.speed = \"0:36 km/h:3\""), AxisValues::Even { from: 0.0, to: 10.0, count: 3 });
         assert_eq!(values("flow.speed=0.5:0.5:1"), AxisValues::Even { from: 0.5, to: 0.5, count: 1 });
-        assert_eq!(values("arm.length=\"20 cm\",0.3"), AxisValues::List(vec![0.2, 0.3]));
+        assert_eq!(values("arm.length=\"20 cm\",0.3 m"), AxisValues::List(vec![0.2, 0.3]));
         assert_eq!(values("material.poisson=0.3:0.5"), AxisValues::Span { from: 0.3, to: 0.5 });
         assert_eq!(values("flow.law=momentum"), AxisValues::Words(vec!["momentum".to_owned()]));
-        let AxisValues::List(angles) = values("flow.direction=90, 1 rad") else { panic!() };
+        let AxisValues::List(angles) = values("flow.direction=90 deg, 1 rad") else { panic!() };
         assert_eq!(angles, [std::f64::consts::FRAC_PI_2, 1.0]);
+    }
+
+    /// From 5 m/s to 20 cm/s it went, in silence.
+    #[test]
+    fn a_unit_behind_a_range_was_that_of_its_end_alone() {
+        assert_eq!(values("flow.speed=5:20 cm/s:4"), AxisValues::Even { from: 0.05, to: 0.2, count: 4 });
+        assert_eq!(values("material.young=50:100 kPa:3"), AxisValues::Even { from: 50e3, to: 100e3, count: 3 });
+        assert_eq!(values("material.young=50:100 kPa"), AxisValues::Span { from: 50e3, to: 100e3 });
+        assert_eq!(values("arm.length=20,\"30 cm\""), AxisValues::List(vec![0.2, 0.3]));
+        assert_eq!(values("flow.speed=5 mm/s:20 cm/s:4"), AxisValues::Even { from: 0.005, to: 0.2, count: 4 });
+        for (text, spelled) in [
+            ("flow.speed=5 cm/s:20:4", ["5:20 cm/s", "5 cm/s:20 m/s"]),
+            ("flow.speed=5 cm/s:20", ["5:20 cm/s", "5 cm/s:20 m/s"]),
+            ("flow.speed=5 cm/s,20", ["5,20 cm/s", "5 cm/s,20 m/s"]),
+        ] {
+            let said = error(text);
+            assert!(spelled.iter().all(|words| said.contains(&format!("\"{words}\""))), "{said}");
+        }
     }
 
     #[test]

@@ -9,6 +9,7 @@ use hydrostat_identify::{Fitted, Prior};
 use crate::error::shortened;
 use crate::format::{dimension_at, is_key, nearest};
 use crate::quantity::{Dimension, WrongValue};
+use crate::shared_unit::{PartialUnit, shared_unit};
 use crate::varied::hint;
 
 /// A parameter to be fitted, as a user gives it: values in SI units (rad for angles).
@@ -76,6 +77,9 @@ pub enum FitKeyError {
     /// A value that is none of this quantity.
     #[error(transparent)]
     Value(#[from] WrongValue),
+    /// A unit behind some of the numbers.
+    #[error(transparent)]
+    Unit(#[from] PartialUnit),
     /// The arm does not have it.
     #[error(transparent)]
     Unfit(#[from] Unfit),
@@ -85,7 +89,7 @@ pub enum FitKeyError {
 }
 
 /// The parameter of a key, or of its last part where that says enough: `c1` for `material.c1`.
-fn parameter(key: &str) -> Result<Parameter, FitKeyError> {
+pub(crate) fn parameter(key: &str) -> Result<Parameter, FitKeyError> {
     if let Ok(parameter) = key.parse() {
         return Ok(parameter);
     }
@@ -104,10 +108,15 @@ fn parameter(key: &str) -> Result<Parameter, FitKeyError> {
     Err(FitKeyError::Unknown { key: key.to_owned(), suggestion })
 }
 
-fn value(parameter: Parameter, text: &str) -> Result<f64, WrongValue> {
+/// Numbers that stand together, `None` for an empty text. A unit behind the last holds for all without one.
+fn values(parameter: Parameter, texts: &[&str], join: &str) -> Result<Vec<Option<f64>>, FitKeyError> {
     let key = parameter.to_string();
     let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
-    dimension.value_of(&key, text).map(|(value, _)| value)
+    let read = |text: &String| -> Result<Option<f64>, FitKeyError> {
+        let given = !text.is_empty();
+        Ok(given.then(|| dimension.value_of(&key, text)).transpose()?.map(|(value, _)| value))
+    };
+    shared_unit(dimension, &key, texts, join)?.iter().map(read).collect()
 }
 
 impl FromStr for FitKey {
@@ -124,15 +133,16 @@ impl FromStr for FitKey {
             None => (head, None),
         };
         let parameter = parameter(key.trim())?;
-        let start = start.map(|start| value(parameter, start)).transpose()?;
+        if start.is_some_and(|start| start.trim().is_empty()) {
+            return Err(form());
+        }
         let bounds: Vec<&str> = parts.collect();
-        let bound = |text: &str| {
-            let given = !text.trim().is_empty();
-            given.then(|| value(parameter, text)).transpose()
-        };
-        let bounds = match bounds.as_slice() {
+        let texts: Vec<&str> = start.iter().chain(&bounds).copied().collect();
+        let mut read = values(parameter, &texts, ":")?.into_iter();
+        let start = start.and_then(|_| read.next().flatten());
+        let bounds = match read.collect::<Vec<_>>()[..] {
             [] => [None, None],
-            [lower, upper] => [bound(lower)?, bound(upper)?],
+            [lower, upper] => [lower, upper],
             _ => return Err(form()),
         };
         Ok(Self { parameter, start, bounds })
@@ -149,11 +159,10 @@ impl FromStr for PriorKey {
         let parameter = parameter(key.trim())?;
         let ends = ["±", "+/-", "+-"].iter().find_map(|sign| rest.split_once(sign));
         let (mean, sd) = ends.ok_or_else(form)?;
-        // "110±5 kPa": the unit is that of both.
-        let (mean, sd) = (mean.trim().trim_matches('"'), sd.trim().trim_matches('"'));
-        let unit = sd.trim_start_matches(|c: char| c.is_ascii_digit() || ".eE+-".contains(c)).trim();
-        let with_unit = if mean.parse::<f64>().is_ok() { format!("{mean} {unit}") } else { mean.to_owned() };
-        Ok(Self { parameter, prior: Prior { mean: value(parameter, with_unit.trim())?, sd: value(parameter, sd)? } })
+        match values(parameter, &[mean, sd], "±")?[..] {
+            [Some(mean), Some(sd)] => Ok(Self { parameter, prior: Prior { mean, sd } }),
+            _ => Err(form()),
+        }
     }
 }
 
@@ -201,6 +210,18 @@ mod tests {
         ] {
             assert_eq!(read(text), want, "{text}");
         }
+    }
+
+    #[test]
+    fn a_unit_behind_the_last_number_holds_for_all() {
+        let key: FitKey = "young=100:50:200 kPa".parse().unwrap();
+        assert_eq!((key.start, key.bounds), (Some(100e3), [Some(50e3), Some(200e3)]));
+        let key: FitKey = "young=100::200 kPa".parse().unwrap();
+        assert_eq!((key.start, key.bounds), (Some(100e3), [None, Some(200e3)]));
+        let said = error("young=100 kPa:50:200");
+        assert!(said.contains("\"100:50:200 kPa\"") && said.contains("\"100 kPa:50 Pa:200 Pa\""), "{said}");
+        let said = "young=110 kPa±5".parse::<PriorKey>().unwrap_err().to_string();
+        assert!(said.contains("\"110±5 kPa\"") && said.contains("\"110 kPa±5 Pa\""), "{said}");
     }
 
     #[test]

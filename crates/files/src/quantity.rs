@@ -368,6 +368,11 @@ impl DecimalText<'_> {
     }
 }
 
+/// The number at the start of `text`, `None` where it is too large, and what stands behind it.
+pub(crate) fn parted(text: &str) -> Option<(Option<f64>, &str)> {
+    split(text.trim()).map(|(number, unit)| (number.in_si(Decimal(0)), unit))
+}
+
 /// The number at the start of `text`, and the rest without the space between.
 fn split(text: &str) -> Option<(DecimalText<'_>, &str)> {
     let bytes = text.as_bytes();

@@ -9,6 +9,7 @@ use crate::digits::number;
 use crate::error::shortened;
 use crate::format::{dimension_at, home_of, nearest};
 use crate::quantity::{Dimension, WrongValue};
+use crate::shared_unit::{PartialUnit, bare, shared_unit};
 
 /// One quantity of an arm and the range over which it is to vary.
 ///
@@ -54,6 +55,9 @@ pub enum VariedError {
     /// An end of the range that is no value of this quantity.
     #[error(transparent)]
     Value(#[from] WrongValue),
+    /// A unit behind one end.
+    #[error(transparent)]
+    Unit(#[from] PartialUnit),
     /// A range without length.
     #[error("{}: expected a range with two different ends, found \"{}\" twice", shortened(.key), shortened(.text))]
     Empty {
@@ -78,13 +82,13 @@ impl FromStr for Varied {
         let (from, to) = range.split_once(':').ok_or_else(form)?;
         let key = parameter.to_string();
         let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
-        let ends = [dimension.value_of(&key, from)?, dimension.value_of(&key, to)?];
+        let texts = shared_unit(dimension, &key, &[from, to], ":")?;
+        let ends = [dimension.value_of(&key, &texts[0])?, dimension.value_of(&key, &texts[1])?];
         let range = ends.map(|(value, _)| value);
         if range[0] == range[1] {
             return Err(VariedError::Empty { key, text: to.trim().to_owned() });
         }
-        let bare = if dimension == Dimension::Angle { "deg" } else { dimension.bare_unit() };
-        let unit = ends.iter().find_map(|(_, unit)| *unit).unwrap_or(bare);
+        let unit = ends.iter().find_map(|(_, unit)| *unit).unwrap_or(bare(dimension));
         Ok(Self { parameter, range, unit, per_si: dimension.per_si(unit).unwrap_or(1.0) })
     }
 }
@@ -153,6 +157,8 @@ mod tests {
             ("cable[1].tension = 0 N : 1 kN", [0.0, 1000.0], "N"),
             ("cable[0].tension=\"0:200 mN\"", [0.0, 0.2], "mN"),
             ("flow.speed=0:36 km/h", [0.0, 10.0], "km/h"),
+            ("flow.speed=5:20 cm/s", [0.05, 0.2], "cm/s"),
+            ("flow.speed=50 mm/s:20 cm/s", [0.05, 0.2], "mm/s"),
             ("flow.direction=-90:90 deg", [-half, half], "deg"),
             ("arm.base.angle=1.5 rad:0", [1.5, 0.0], "rad"),
             ("tip.force[1]=0:-3", [0.0, -3.0], "N"),
@@ -199,7 +205,9 @@ mod tests {
         assert!(error("flow.speed=nan:1").contains("does not start with a number"));
         assert!(error("flow.speed=0:1e999").contains("too large"));
         assert!(error("material.poisson=0:0.5 m").contains("a number without unit"));
-        assert!(error("flow.speed=1:100 cm/s").contains("two different ends"));
+        assert!(error("flow.speed=1 m/s:100 cm/s").contains("two different ends"));
+        let said = error("flow.speed=5 cm/s:20");
+        assert!(said.contains("\"5:20 cm/s\"") && said.contains("\"5 cm/s:20 m/s\""), "{said}");
     }
 
     #[test]

@@ -128,6 +128,12 @@ fn is_other_pull(new: &str, old: &str) -> bool {
     pairs.iter().any(|(one, other)| of(new, one).is_some_and(|cable| of(old, other) == Some(cable)))
 }
 
+/// The unit of a bare number at a key.
+#[pyfunction]
+pub(crate) fn bare_unit(key: &str) -> Option<&'static str> {
+    hydrostat_files::bare_unit(key)
+}
+
 /// The text of an arm that ships with the program.
 #[pyfunction]
 pub(crate) fn shipped(name: &str) -> Option<&'static str> {

@@ -24,7 +24,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::arm::{Arm, shipped, shipped_names};
+    use super::arm::{Arm, bare_unit, shipped, shipped_names};
     #[pymodule_export]
     use super::figure::{Figure, curve_figure, map_figure, over_figure, source_figures, workspace_figure};
     #[pymodule_export]

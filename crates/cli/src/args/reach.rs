@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use hydrostat_files::Dimension;
+use hydrostat_files::{Dimension, shared_unit};
 
 use super::{ArmArgs, Format, PictureArgs, STABLE, picture};
 
@@ -39,7 +39,7 @@ Examples:
 pub(crate) struct ReachArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
-    /// Where the place of the arm is to be, m; as in 0.12,0.05 or "12 cm,50 mm"
+    /// Where the place of the arm is to be, m; as in 0.12,0.05 or "120,50 mm"
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, group = "what", required_unless_present_any = ["path", "boundary"])]
     pub(crate) target: Option<Point>,
     /// Follow targets one after the other: a CSV file with columns x_m,y_m (or x_mm,y_mm) and, if it matters, angle_deg
@@ -99,7 +99,8 @@ impl FromStr for Point {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (x, y) = text.split_once(',').ok_or_else(|| format!("expected X,Y, as in 0.12,0.05; found \"{text}\""))?;
-        Ok(Self([length(x)?, length(y)?]))
+        let texts = shared_unit(Dimension::Length, "X,Y", &[x, y], ",").map_err(|error| error.to_string())?;
+        Ok(Self([length(&texts[0])?, length(&texts[1])?]))
     }
 }
 

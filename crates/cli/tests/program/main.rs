@@ -12,6 +12,7 @@ mod reach;
 mod refusals;
 mod serve;
 mod sweeps;
+mod units;
 mod validate;
 mod verdicts;
 

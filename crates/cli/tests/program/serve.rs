@@ -157,8 +157,8 @@ fn answers_are_those_of_the_commands_to_the_last_digit() {
         ),
         (
             "path",
-            r#"{"arm": "silicone", "vary": "cable[0].tension=0:0.5"}"#,
-            vec!["path", "silicone", "--vary", "cable[0].tension=0:0.5", "--format", "json"],
+            r#"{"arm": "silicone", "vary": "cable[0].tension=100:500 mN"}"#,
+            vec!["path", "silicone", "--vary", "cable[0].tension=100:500 mN", "--format", "json"],
         ),
         (
             "equilibria",
