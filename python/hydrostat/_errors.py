@@ -91,7 +91,7 @@ class NoEquilibriumError(RuntimeError):
     where : float or None
         Where along the arm, m, if the limit is local.
     residual : float
-        What was left unbalanced when the solver stopped: its largest correction, rad.
+        The last Newton correction when the solver stopped, the largest change of an angle, rad; no residual of the equations.
     message, advice : str
         The verdict in a sentence, and what to try.
     last_good : Solution or None

@@ -4,7 +4,7 @@ use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 use hydrostat::parameter::Unfit;
 use hydrostat::{Arm, ArmError};
-use hydrostat_files::{ArmFile, Dimension, PartialUnit, shared_unit, shipped};
+use hydrostat_files::{ArmFile, Dimension, PartialUnit, is_same_file, shared_unit, shipped};
 
 use crate::args::{ArmArgs, PictureArgs};
 use crate::output;
@@ -22,6 +22,10 @@ pub(crate) enum WrongRequest {
     Unit(PartialUnit),
     /// Two outputs in one file.
     SamePath([&'static str; 2], PathBuf),
+    /// An output in a file that is read.
+    Overwrites { option: &'static str, path: PathBuf, input: &'static str },
+    /// Tensions for a search that finds them.
+    TensionsAreFound,
     /// A quantity that the arm at hand does not have.
     Unfit(&'static str, Unfit),
     /// A value, said where, that makes no arm.
@@ -68,6 +72,15 @@ impl std::fmt::Display for WrongRequest {
             Self::SamePath([a, b], path) => {
                 write!(f, "{a} and {b} both name {}; give them different files", path.display())
             }
+            Self::Overwrites { option, path, input } => write!(
+                f,
+                "{option} {}: the same file is read as {input}, and nothing that is read is written over; give the output another name",
+                path.display()
+            ),
+            Self::TensionsAreFound => f.write_str(
+                "--tension: reach finds the tensions itself, so that those given would not count; --max-tension bounds them, and with \
+                 --path --tension says from which the first target is looked for",
+            ),
             Self::Unfit(option, error) => write!(f, "{option} {error}"),
             Self::Value(at, error) => write!(f, "{at}: {error}"),
             Self::NoColumn(name, columns) => {
@@ -108,13 +121,15 @@ fn nearest(name: &str) -> Option<&'static str> {
 /// that ships with the program. A file of the name of a shipped arm wins, as a file's contents are
 /// the user's.
 pub(crate) fn arm_file(arm: &str) -> anyhow::Result<ArmFile> {
+    if is_file(arm) { Ok(ArmFile::read(Path::new(arm))?) } else { shipped_file(arm) }
+}
+
+/// Whether an arm is meant as a file.
+fn is_file(arm: &str) -> bool {
     let path = Path::new(arm);
     let looks_like_path =
         arm.contains('/') || arm.contains(MAIN_SEPARATOR) || path.extension().is_some_and(|e| e == "toml");
-    if looks_like_path || path.is_file() {
-        return Ok(ArmFile::read(path)?);
-    }
-    shipped_file(arm)
+    looks_like_path || path.is_file()
 }
 
 fn shipped_file(name: &str) -> anyhow::Result<ArmFile> {
@@ -164,13 +179,27 @@ pub(crate) fn overridden(args: &ArmArgs) -> anyhow::Result<ArmFile> {
     Ok(file)
 }
 
-/// Refuses outputs that could not be written, before the work: each option that names one, with its file.
-pub(crate) fn check_outputs(outputs: &[(&'static str, Option<&Path>)]) -> anyhow::Result<()> {
-    let given: Vec<(&str, &Path)> = outputs.iter().filter_map(|(option, file)| Some((*option, (*file)?))).collect();
+/// A file that is read, and as what.
+pub(crate) type Input<'a> = (&'static str, &'a Path);
+
+/// The file of an arm, if it is read from one.
+pub(crate) fn arm_input(arm: &str) -> Option<Input<'_>> {
+    is_file(arm).then_some(("ARM", Path::new(arm)))
+}
+
+/// Refuses outputs that could not be written, and those that are files that are read, before the work: each option that names one, with
+/// its file.
+pub(crate) fn check_outputs(
+    inputs: &[Option<Input<'_>>],
+    outputs: &[(&'static str, Option<&Path>)],
+) -> anyhow::Result<()> {
+    let given: Vec<(&'static str, &Path)> =
+        outputs.iter().filter_map(|(option, file)| Some((*option, (*file)?))).collect();
     for (i, (option, file)) in given.iter().enumerate() {
-        if let Some((earlier, _)) = given[..i].iter().find(|(_, other)| other == file) {
+        if let Some((earlier, _)) = given[..i].iter().find(|(_, other)| is_same_file(other, file)) {
             return Err(WrongRequest::SamePath([earlier, option], (*file).to_owned()).into());
         }
+        check_not_read(inputs, option, file)?;
     }
     for (_, file) in given {
         output::check_writable(file)?;
@@ -189,6 +218,18 @@ pub(crate) fn check_picture(
             Err(WrongRequest::NothingDrawn(option, names.join(" or ")))
         }
         _ => Ok(()),
+    }
+}
+
+/// Refuses an output that is a file that is read.
+pub(crate) fn check_not_read(
+    inputs: &[Option<Input<'_>>],
+    option: &'static str,
+    file: &Path,
+) -> Result<(), WrongRequest> {
+    match inputs.iter().flatten().find(|(_, read)| is_same_file(read, file)) {
+        Some((input, _)) => Err(WrongRequest::Overwrites { option, path: file.to_owned(), input }),
+        None => Ok(()),
     }
 }
 

@@ -46,7 +46,7 @@ pub use followed::{FollowedDocument, followed_csv};
 pub use identification::{IdentificationDocument, residuals_csv};
 pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
 pub use measurements_template::measurements_template;
-pub use output::{WriteError, remove_leftovers, write_whole, write_whole_with};
+pub use output::{WriteError, is_same_file, remove_leftovers, write_whole, write_whole_with};
 pub use paths::{PathDocument, end_message, path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
 pub use reach::{ReachDocument, reach_csv};

@@ -95,6 +95,46 @@ pub fn remove_leftovers(path: impl AsRef<Path>) {
     }
 }
 
+/// Whether two paths lead to the same file, by whatever names and links, symbolic or hard. Of files that are not there yet the places are
+/// compared that they would have.
+///
+/// ```
+/// use hydrostat_files::is_same_file;
+///
+/// let directory = tempfile::tempdir().unwrap();
+/// let at = |name: &str| directory.path().join(name);
+/// std::fs::write(at("a"), "").unwrap();
+/// std::fs::hard_link(at("a"), at("b")).unwrap();
+/// assert!(is_same_file(&at("a"), &at("b")) && is_same_file(&at("new"), &at("./new")));
+/// assert!(!is_same_file(&at("a"), &at("new")));
+/// ```
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    match [a, b].map(fs::metadata) {
+        // Terminals, devices and pipes may be read and written.
+        [Ok(own), Ok(other)] => own.is_file() && other.is_file() && is_one([a, b], [&own, &other]),
+        _ => place(a) == place(b),
+    }
+}
+
+/// Whether two files that are there are one.
+#[cfg(unix)]
+fn is_one(_: [&Path; 2], [a, b]: [&fs::Metadata; 2]) -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+/// Whether two files that are there are one.
+#[cfg(not(unix))]
+fn is_one([a, b]: [&Path; 2], _: [&fs::Metadata; 2]) -> bool {
+    same_file::is_same_file(a, b).unwrap_or(false)
+}
+
+/// The directory of a path without links, and the name in it.
+fn place(path: &Path) -> (PathBuf, Option<&OsStr>) {
+    let parent = directory(path).unwrap_or(Path::new("."));
+    (fs::canonicalize(parent).unwrap_or_else(|_| parent.to_owned()), path.file_name())
+}
+
 /// Where a link leads, so that it keeps pointing where it did.
 fn followed(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())

@@ -84,7 +84,8 @@ pub struct Verdict {
     pub load_fraction: f64,
     /// Where along the arm (m), if the limit is local.
     pub s: Option<f64>,
-    /// What was left unbalanced when the solver stopped: the largest Newton correction, in rad.
+    /// The last Newton correction when the solver stopped: the largest change of an angle, in rad. It is no residual of the equations,
+    /// which no verdict has; its name in results is older than what it is.
     pub residual: f64,
     /// The evaluations of the section law that were made (those of arms with many cables count for more), where the solver stopped because
     /// a solve may take no more.

@@ -55,8 +55,8 @@ pub(crate) fn join(parts: &[PathBuf], columns: &[Column], path: &Path, out: impl
     out.flush().map_err(failed)
 }
 
-/// Where stands what `path` is of: readers of CSV know no other place for it.
-pub(crate) fn beside(path: &Path) -> PathBuf {
+/// Where stands what the CSV file `path` is of: readers of CSV know no other place for it.
+pub fn beside(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".json");
     path.with_file_name(name)

@@ -53,7 +53,7 @@ pub enum SweepError {
         what: &'static str,
     },
     /// A second sweep into the same output.
-    #[error("another process is writing {}", .path.display())]
+    #[error("another sweep is at work on {}; wait until it has ended, or choose another name", .path.display())]
     Locked {
         /// The output.
         path: PathBuf,

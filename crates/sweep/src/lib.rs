@@ -19,6 +19,7 @@ mod table;
 
 pub use arms::ValueError;
 pub use column::{Column, Data, NO_ARM, Output};
+pub use csv_file::beside as note_beside;
 pub use error::SweepError;
 pub use plan::{Plan, PlanError, Sample};
 pub use run::{Format, NOTE, Shard, Summary, Sweep, SweepOptions};

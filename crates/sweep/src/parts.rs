@@ -66,7 +66,11 @@ impl Parts {
         let path = directory.join(PLAN);
         if path.exists() {
             if !resume {
-                return Err(SweepError::Begun { directory });
+                return Err(if is_held(&path) {
+                    SweepError::Locked { path: output.to_owned() }
+                } else {
+                    SweepError::Begun { directory }
+                });
             }
         } else if !directory.is_dir() {
             // A directory of the output that is missing was misspelt.
@@ -164,6 +168,12 @@ impl Parts {
         let removed = fs::remove_file(plan).and_then(|()| fs::remove_dir(&directory));
         removed.map_err(|error| write_error(&directory, error))
     }
+}
+
+/// Whether another process has the plan locked.
+fn is_held(plan: &Path) -> bool {
+    let file = OpenOptions::new().read(true).write(true).open(plan);
+    file.is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
 }
 
 /// What two plans do not share, for a message.

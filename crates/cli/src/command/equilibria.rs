@@ -24,7 +24,8 @@ pub(crate) fn run(args: &EquilibriaArgs) -> anyhow::Result<()> {
         varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--over", e))?;
     }
     let pictures = [("--plot", args.plot.as_deref()), ("--plot-over", args.plot_over.as_deref())];
-    request::check_outputs(&[("-o", args.output.as_deref()), pictures[0], pictures[1]])?;
+    let outputs = [("-o", args.output.as_deref()), pictures[0], pictures[1]];
+    request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &pictures)?;
     match &args.over {
         Some(over) => over_range(args, &arm, *over),

@@ -12,6 +12,12 @@ use crate::{output, request};
 pub(crate) fn run(args: &FiguresArgs) -> anyhow::Result<()> {
     let shown = Shown { at_highest: args.at_highest, faster: args.faster.clone() };
     let arm = request::arm_file(&args.arm)?.arm()?;
+    let read = [request::arm_input(&args.arm)];
+    for name in ["fig1a", "fig1b", "fig1c"] {
+        for ending in ["svg", "png", "csv"] {
+            request::check_not_read(&read, "-o", &args.output.join(format!("{name}.{ending}")))?;
+        }
+    }
     let directory = output::make_directory(&args.output)?;
     let study = Study::of(&arm, &shown)?;
     let files = write(&study, &args.output, &args.page)?;

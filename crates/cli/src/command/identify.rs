@@ -29,7 +29,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         return Err(SensitivityError::Rubbing(cable).into());
     }
     let outputs = [("-o", args.output.as_deref()), ("--out", args.out.as_deref()), ("--plot", args.plot.as_deref())];
-    request::check_outputs(&outputs)?;
+    let inputs = [request::arm_input(&args.arm.file), args.data.as_deref().map(|data| ("DATA", data))];
+    request::check_outputs(&inputs, &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
     let Some(data) = args.data.as_ref().filter(|_| !args.template) else {
         return output::put(args.output.as_deref(), &measurements_template(&arm));

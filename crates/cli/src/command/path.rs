@@ -19,7 +19,8 @@ pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
     varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--vary", e))?;
     check_quantity(&arm, args.quantity)?;
     let pictures = [("--plot", args.plot.as_deref()), ("--plot-shapes", args.plot_shapes.as_deref())];
-    request::check_outputs(&[("-o", args.output.as_deref()), pictures[0], pictures[1]])?;
+    let outputs = [("-o", args.output.as_deref()), pictures[0], pictures[1]];
+    request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &pictures)?;
     let path = follow(&arm, args)?;
     let Some(document) = PathDocument::new(&path, varied) else {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use hydrostat_figures::{
     Abscissa, Coloured, ColouredColumn, KeyValues, Page, Scene, curve_figure, map_figure, value_text, workspace_figure,
 };
-use hydrostat_sweep::{Table, VariedKey, names, varied_keys};
+use hydrostat_sweep::{Table, VariedKey, names, note_beside, varied_keys};
 
 use crate::args::PlotArgs;
 use crate::output;
@@ -19,7 +19,8 @@ pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
     let over = over(&keys, &args.over)?;
     let pictures = pictures(args, all.iter().any(|name| name == TIP[0]));
     let outputs: Vec<_> = pictures.iter().map(|(option, file, _)| (*option, Some(file.as_path()))).collect();
-    request::check_outputs(&outputs)?;
+    let beside = note_beside(&args.sweep);
+    request::check_outputs(&[Some(("SWEEP", &*args.sweep)), Some(("SWEEP", &*beside))], &outputs)?;
 
     let mut wanted: Vec<&str> = keys.iter().map(|key| key.column.as_str()).collect();
     wanted.extend(TIP);

@@ -9,11 +9,15 @@ use super::{Advised, NoAnswer};
 use super::{boundary, follow};
 use crate::args::{By, Format, Point, ReachArgs};
 use crate::output;
-use crate::request;
+use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
+    if args.arm.tension.is_some() && args.path.is_none() {
+        return Err(WrongRequest::TensionsAreFound.into());
+    }
     let arm = request::arm(&args.arm)?;
-    request::check_outputs(&[("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())])?;
+    let inputs = [request::arm_input(&args.arm.file), args.path.as_deref().map(|path| ("--path", path))];
+    request::check_outputs(&inputs, &[("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())])?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
     let Some(Point([x, y])) = args.target else {
         return match &args.path {

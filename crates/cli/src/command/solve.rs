@@ -12,7 +12,8 @@ use crate::request;
 pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
     let arm = request::arm(&args.arm)?;
     let mut solver = Solver::new(&arm, Options { tol: args.tol })?;
-    request::check_outputs(&[("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())])?;
+    let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
+    request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
     match solver.solve() {
         Ok(configuration) => report(args, configuration),

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use hydrostat::SolveError;
-use hydrostat_sweep::{Plan, Sample, Summary, Sweep, SweepError, SweepOptions};
+use hydrostat_sweep::{Plan, Sample, Summary, Sweep, SweepError, SweepOptions, note_beside};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::NoAnswer;
@@ -29,6 +29,10 @@ pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
         }
         other => other.into(),
     })?;
+    let beside = note_beside(&args.output);
+    for file in [&args.output, &beside] {
+        request::check_not_read(&[request::arm_input(&args.arm.file)], "-o", file)?;
+    }
     output::check_writable(&args.output)?;
     let rows = sweep.rows();
     exit::at_ctrl_c("stopped: the same command with --resume goes on");

@@ -10,13 +10,21 @@ use hydrostat_validate::{Listener, PeersFile, Report, Scope, html, markdown, run
 use crate::args::ValidateArgs;
 use crate::output;
 use crate::progress::Progress;
-use crate::request::WrongRequest;
+use crate::request::{self, WrongRequest};
+
+/// The report as a page, and as text.
+const PAGE: &str = "index.html";
+const TEXT: &str = "report.md";
 
 pub(crate) fn run(args: &ValidateArgs) -> anyhow::Result<()> {
     let peers = match &args.peers {
         Some(path) => read_peers(path)?,
         None => PeersFile::committed()?,
     };
+    let read = [args.peers.as_deref().map(|path| ("--peers", path))];
+    for name in [PAGE, TEXT] {
+        request::check_not_read(&read, "-o", &args.output.join(name))?;
+    }
     output::make_directory(&args.output)?.keep();
     output::make_directory(&args.output.join("figures"))?.keep();
     let scope = if args.quick { Scope::Quick } else { Scope::Whole };
@@ -37,10 +45,10 @@ fn read_peers(path: &Path) -> anyhow::Result<PeersFile> {
 
 /// Writes all files and says where the page is.
 fn write(report: &Report, directory: &Path) -> anyhow::Result<String> {
-    let page = directory.join("index.html");
+    let page = directory.join(PAGE);
     write_whole(&page, html(report).as_bytes())?;
     let text = markdown(report);
-    write_whole(directory.join("report.md"), text.text.as_bytes())?;
+    write_whole(directory.join(TEXT), text.text.as_bytes())?;
     for (path, svg) in &text.figures {
         write_whole(directory.join(path), svg.as_bytes())?;
     }

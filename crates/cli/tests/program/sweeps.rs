@@ -263,6 +263,34 @@ fn ctrl_c_said_nothing() {
     assert_eq!((ended.status.code(), said.trim()), (Some(130), "stopped: the same command with --resume goes on"));
 }
 
+/// One was told to remove the directory in which another sweep was at work.
+#[test]
+fn a_second_sweep_was_told_to_remove_the_first() {
+    let directory = directory();
+    let here = directory.path();
+    let keys = ["--vary", "flow.speed=0:0.5:6000", "--vary", "cable[0].tension=0:60:130", "-o", "out.parquet"];
+    let sweep = [&["sweep", "paper"][..], &keys].concat();
+    let mut first = Command::new(env!("CARGO_BIN_EXE_hydrostat"))
+        .args(&sweep)
+        .args(["--threads", "1"])
+        .current_dir(here)
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while parts(&here.join("out.parquet.parts")).is_empty() {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    for more in [&[][..], &["--resume"]] {
+        let run = hydrostat_in(here, &[&sweep[..], more].concat());
+        let said = "error: another sweep is at work on out.parquet; wait until it has ended, or choose another name\n";
+        assert_eq!((run.code, run.err.as_str()), (2, said), "{more:?}");
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let run = hydrostat_in(here, &sweep);
+    assert!(run.code == 2 && run.err.contains("a sweep that was not ended; --resume goes on with it"), "{}", run.err);
+}
+
 /// A part that was cut was joined as it was, and its rows were missing.
 #[test]
 fn cut_parts_were_joined() {
