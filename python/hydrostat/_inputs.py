@@ -112,14 +112,18 @@ def mapping(name: str, value: Mapping[K, V], such_as: str) -> dict[K, V]:
     return dict(value)
 
 
-def texts(name: str, key: str, values: Sequence[float | str]) -> list[str]:
-    """Numbers of a key that stand together, as the command line takes them.
+def texts(name: str | Sequence[str], key: str, values: Sequence[float | str]) -> list[str]:
+    """Numbers of a key that stand together, as the command line takes them; `name` is that of all, or one for each.
 
     There a unit behind the last number holds for all; here a number that is no string keeps its own, of SI or degrees.
     """
     strings = any(isinstance(value, str) for value in values)
     unit = (_native.bare_unit(key) or "") if strings else ""
-    return [value if isinstance(value, str) else f"{number(name, value)!r} {unit}".strip() for value in values]
+    names = [name] * len(values) if isinstance(name, str) else name
+    return [
+        value if isinstance(value, str) else f"{number(own, value)!r} {unit}".strip()
+        for own, value in zip(names, values, strict=True)
+    ]
 
 
 def toml(name: str, value: object) -> str:

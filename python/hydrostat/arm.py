@@ -326,7 +326,7 @@ class Arm:
         """
         from hydrostat.paths import EquilibriumPath
 
-        vary = f"{parameter}={':'.join(_inputs.texts('start, stop', parameter, [start, stop]))}"
+        vary = f"{parameter}={':'.join(_inputs.texts(['start', 'stop'], parameter, [start, stop]))}"
         step = _inputs.number("longest", longest)
         points = _inputs.count("most", most)
         asked = (vary, _inputs.number("tol", tol), step, points, branches)

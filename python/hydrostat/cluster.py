@@ -85,7 +85,7 @@ class Run:
             return da.concatenate(parts)
 
         axes = self._sweep.axes
-        values = {variable: rows_of(variable) for variable in variables(self._probe)}
+        values = {variable: rows_of(variable) for variable in variables(self._sweep, self._probe)}
         keys = {}
         if self._plan.sample is not None:
             own = [Variable(column, (column,), "", None, isinstance(self._probe[column], tuple)) for _, column, *_ in axes]
@@ -127,7 +127,7 @@ class Run:
         tiles = self._sweep.tiles
         threads = max(sum(self._client.nthreads().values()), 1)
         most = max(tiles // (_EACH * threads), 1)
-        width = sum(len(variable.columns) for variable in variables(self._probe)) + 1
+        width = sum(len(variable.columns) for variable in variables(self._sweep, self._probe)) + 1
         largest = max(_LARGEST // width // max(self._rows((0, 1)), 1), 1)
         size = min(most, largest)
         if size > 1:

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 #: Values of a key: a grid ``"0:1:26"``, a range to draw from ``"0:1"``, a list with commas, an array, or one value.
 Values = Union[str, float, Sequence[float], Sequence[str], "NDArray[np.generic]"]
 
-_COLUMN = re.compile(r"(?P<name>.+?)(\[(?P<index>\d+)\])?(_(?P<unit>m|rad|N|Nm))?$")
+_COLUMN = re.compile(r"(?P<name>.+?)(_(?P<index>\d+))?(_(?P<unit>m|rad|N|Nm))?$")
 _UNITS = {"Nm": "N m"}
 #: Numbers of a row that are not of cables or stations, all columns together.
-_NUMBERS = 17
+_NUMBERS = 18
 _ENDINGS = (".parquet", ".csv")
 
 
@@ -138,7 +138,7 @@ def sweep(
         Error of the tip position over the length, in [1e-12, 1e-2].
     columns : sequence of str, optional
         What is answered: some of ``tip``, ``alpha``, ``strokes``, ``tensions``, ``base``, ``fold``, ``stability``, ``error``,
-        ``verdict``.
+        ``warnings``, ``verdict``.
     shapes : int
         So many equally spaced stations of every row; none below 2.
     output : path, optional
@@ -220,7 +220,7 @@ def sweep(
                 warnings.warn(f"{output}: {parts} of an earlier run had changed since; solved again", stacklevel=2)
             return FilePath(output)
         found = native.columns((0, native.tiles), threads, bar)
-    values = {variable: assembled(found, variable) for variable in variables(found)}
+    values = {variable: assembled(found, variable) for variable in variables(native, found)}
     return dataset(plan, given, values, {axis[1]: assembled(found, _key(axis[1], found)) for axis in native.axes})
 
 
@@ -243,13 +243,14 @@ def _values(key: str, values: Values) -> str:
 Columns = Mapping[str, Any]
 
 
-def variables(found: Columns) -> list[Variable]:
-    """The variables of some columns, without the row and the keys."""
+def variables(native: _native.Sweep, found: Columns) -> list[Variable]:
+    """The variables of some columns of a sweep, without the row and the keys."""
+    keys = {column for _, column, *_ in native.axes}
     grouped: dict[str, list[str]] = {}
     parsed: dict[str, re.Match[str]] = {}
     for column in found:
         match = _COLUMN.match(column)
-        if column == "row" or "." in column or match is None:
+        if column == "row" or column in keys or match is None:
             continue
         grouped.setdefault(match["name"], []).append(column)
         parsed[match["name"]] = match

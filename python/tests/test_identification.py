@@ -139,14 +139,14 @@ def test_the_template_is_a_table_that_can_be_filled_in(silicone: hs.Arm, tmp_pat
     path = tmp_path / "data.csv"
     path.write_text(silicone.measurements_template(), encoding="utf-8")
     table = pd.read_csv(path, comment="#")
-    heads = ["cable[0].tension [N]", "cable[1].tension [N]", "flow.speed [m/s]"]
+    heads = ["cable_0_tension_N", "cable_1_tension_N", "flow_speed_m_s"]
     # A case gives its loads once.
     table.loc[table["case"] == "b", heads] = [[0.2, 0.0, 0.1], *[[np.nan] * 3] * 3]
     for row in table.index:
         pulls = [0.2, 0.0] if table.loc[row, "case"] == "b" else [0.0, 0.0]
         shape = silicone.solve(tensions=pulls, flow_speed=0.1 if pulls[0] else 0.0)
-        place = shape.at([1e-3 * float(table.loc[row, "s [mm]"])])
-        table.loc[row, ["x [mm]", "y [mm]"]] = [1e3 * place.x[0], 1e3 * place.y[0]]
+        place = shape.at([1e-3 * float(table.loc[row, "s_mm"])])
+        table.loc[row, ["x_mm", "y_mm"]] = [1e3 * place.x[0], 1e3 * place.y[0]]
     table.to_csv(path, index=False)
     fit = silicone.identify(path, "young=90 kPa", cross_validate=False)
     assert fit.residuals["measured"].shape == (16,)

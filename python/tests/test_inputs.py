@@ -208,7 +208,8 @@ def test_nothing_to_vary_is_one_row(silicone: hs.Arm) -> None:
 
 def test_a_unit_behind_a_range_was_that_of_its_end_alone(silicone: hs.Arm) -> None:
     pytest.importorskip("xarray")
-    for values in ("5:20 cm/s:2", "5,20 cm/s", ["5", "20 cm/s"], ["5 cm/s", "20 cm/s"], [0.05, "20 cm/s"]):
+    given: list[Any] = ["5:20 cm/s:2", "5,20 cm/s", ["5", "20 cm/s"], ["5 cm/s", "20 cm/s"], [0.05, "20 cm/s"]]
+    for values in given:
         found = hs.sweep(silicone, {"flow.speed": values}, columns=["tip"])
         assert found["flow.speed"].values.tolist() == pytest.approx([5.0, 20.0], rel=1e-12) or values == [0.05, "20 cm/s"]
         alone = hs.sweep(silicone, {"flow.speed": [0.05, 0.2]}, columns=["tip"])

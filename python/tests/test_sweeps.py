@@ -41,3 +41,28 @@ def test_cut_parts_were_joined(tmp_path: Path, silicone: hs.Arm, monkeypatch: py
     with pytest.warns(UserWarning, match="a part of an earlier run had changed since; solved again"):
         hs.sweep(silicone, vary, columns=columns, output=out, resume=True)
     assert out.read_bytes() == whole.read_bytes()
+
+
+def test_heads_are_identifiers_and_rows_have_their_warnings(tmp_path: Path) -> None:
+    paper = hs.Arm.load("paper")
+    vary = {"flow.speed": [0.0, 0.5], "cable[0].tension": [0.0, 40.0]}
+    found = hs.sweep(paper, vary, shapes=3)
+    assert {"stroke", "shape_x", "warnings", "verdict"} <= set(found.data_vars)
+    assert found.stroke.dims[-1] == "cable" and found.shape_x.sizes["station"] == 3
+    assert found.stroke.attrs["column"] == "stroke_0_m" and found.tip_y.attrs["units"] == "m"
+    for speed, rows in zip(vary["flow.speed"], found.warnings.values.tolist(), strict=True):
+        for tension, kinds in zip(vary["cable[0].tension"], rows, strict=True):
+            own = paper.replace({"flow.speed": speed, "cable[0].tension": tension}).solve(tol=1e-6)
+            assert kinds.split() == [warning.kind for warning in own.warnings]
+    output = hs.sweep(paper, vary, output=tmp_path / "out.csv")
+    heads = output.read_text(encoding="utf-8").splitlines()[0].split(",")
+    assert heads[:3] == ["row", "flow_speed_m_s", "cable_0_tension_N"]
+    assert all(head.isidentifier() for head in heads)
+
+
+def test_points_joined_by_straight_lines() -> None:
+    radius = {"points": [[0.0, 0.01], [0.1, 0.01], [0.2, 0.002]], "join": "linear"}
+    arm = hs.Arm(arm={"length": 0.2, "radius": radius}, material={"young": 1e5}, tip={"force": [0.0, 1e-3]})
+    assert arm.to_dict()["arm"]["radius"] == radius
+    cubic = hs.Arm(arm={"length": 0.2, "radius": radius["points"]}, material={"young": 1e5}, tip={"force": [0.0, 1e-3]})
+    assert abs(arm.solve().tip.y - cubic.solve().tip.y) > 1e-5

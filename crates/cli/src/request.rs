@@ -32,6 +32,8 @@ pub(crate) enum WrongRequest {
     Value(String, ArmError),
     /// A column that a sweep does not have, and those that it has.
     NoColumn(String, Vec<String>),
+    /// A sweep without an answer, or without a value in a column.
+    NothingToDraw(PathBuf, Option<String>),
     /// What an option needs of a sweep and does not find.
     NotInSweep(&'static str, &'static str),
     /// Keys that give no map, and those of the sweep.
@@ -85,6 +87,14 @@ impl std::fmt::Display for WrongRequest {
             Self::Value(at, error) => write!(f, "{at}: {error}"),
             Self::NoColumn(name, columns) => {
                 write!(f, "--quantity {name}: expected one of {}", columns.join(", "))
+            }
+            Self::NothingToDraw(path, None) => write!(
+                f,
+                "{}: no row has an answer, so that there is nothing to draw; the column `verdict` says why",
+                path.display()
+            ),
+            Self::NothingToDraw(path, Some(column)) => {
+                write!(f, "{}: no row has a value of {column}, so that there is nothing to draw", path.display())
             }
             Self::NotInSweep(option, needed) => write!(f, "{option}: expected {needed} in the sweep, found none"),
             Self::Over(keys) => {

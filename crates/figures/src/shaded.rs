@@ -112,14 +112,35 @@ fn title(name: &str) -> (Label, f64) {
         "tip_alpha_rad" => Some("$α$($L$) (°)"),
         _ => None,
     };
-    let units =
-        [("_rad", " (°)", 1.0_f64.to_degrees()), ("_Nm", " (N m)", 1.0), ("_N", " (N)", 1.0), ("_m", " (mm)", 1e3)];
+    // Those that end as another one come first.
+    let units = [
+        ("_rad", " (°)", 1.0_f64.to_degrees()),
+        ("_Nm_m", " (N m/m)", 1.0),
+        ("_N_m", " (N/m)", 1.0),
+        ("_per_m", " (1/m)", 1.0),
+        ("_m_s2", " (m/s²)", 1.0),
+        ("_m_s", " (m/s)", 1.0),
+        ("_kg_m3", " (kg/m³)", 1.0),
+        ("_Pa", " (Pa)", 1.0),
+        ("_Nm", " (N m)", 1.0),
+        ("_N", " (N)", 1.0),
+        ("_m", " (mm)", 1e3),
+    ];
     let (stem, unit, per_si) = units
         .into_iter()
         .find_map(|(ending, unit, per_si)| Some((name.strip_suffix(ending)?, unit, per_si)))
         .unwrap_or((name, "", 1.0));
-    let label = known.map_or_else(|| Label::plain(format!("{}{unit}", stem.replace('_', " "))), Label::math);
+    let label = known.map_or_else(|| Label::plain(format!("{}{unit}", words(stem))), Label::math);
     (label, per_si)
+}
+
+/// `stroke_0` as `stroke[0]`, and `fold_margin` as `fold margin`.
+fn words(stem: &str) -> String {
+    let index = stem.rsplit_once('_').filter(|(_, index)| index.bytes().all(|byte| byte.is_ascii_digit()));
+    match index {
+        Some((stem, index)) => format!("{}[{index}]", stem.replace('_', " ")),
+        None => stem.replace('_', " "),
+    }
 }
 
 #[cfg(test)]
@@ -130,7 +151,9 @@ mod tests {
     fn columns_have_names_and_units() {
         for (name, words, per_si) in [
             ("tip_x_m", "x(L) (mm)", 1e3),
-            ("stroke[0]_m", "stroke[0] (mm)", 1e3),
+            ("stroke_0_m", "stroke[0] (mm)", 1e3),
+            ("shape_x_12_m", "shape x[12] (mm)", 1e3),
+            ("flow_speed_m_s", "flow speed (m/s)", 1.0),
             ("base_moment_Nm", "base moment (N m)", 1.0),
             ("base_force_x_N", "base force x (N)", 1.0),
             ("fold_margin", "fold margin", 1.0),

@@ -6,6 +6,7 @@ use hydrostat::parameter::names;
 
 use crate::error::shortened;
 use crate::format::{dimension_at, home_of, is_key, nearest};
+use crate::heads::head_of;
 use crate::quantity::{Dimension, WrongValue};
 use crate::shared_unit::{PartialUnit, bare, shared_unit};
 use crate::varied::{hint, rounded};
@@ -20,7 +21,7 @@ const MOST: u64 = 1_000_000_000;
 ///
 /// let axis: Axis = "cable[0].tension=0:500 mN:3".parse().unwrap();
 /// assert_eq!(axis.value(1), Some(AxisValue::Number(0.25)));
-/// assert_eq!((axis.values.count(), axis.column().as_str()), (Some(3), "cable[0].tension_N"));
+/// assert_eq!((axis.values.count(), axis.column().as_str()), (Some(3), "cable_0_tension_N"));
 /// let axis: Axis = "model.volume=planar,none".parse().unwrap();
 /// assert_eq!(axis.value(1), Some(AxisValue::Word("none")));
 /// let axis: Axis = "arm.radius.tip=1 mm:2 mm".parse().unwrap();
@@ -261,14 +262,14 @@ impl Axis {
         }
     }
 
-    /// The key with its SI unit, as the head of a column: `flow.speed_m_per_s`.
+    /// The key with its SI unit, as the head of a column: `flow_speed_m_s`.
     pub fn column(&self) -> String {
         let unit = match self.dimension {
-            None | Some(Dimension::Number) => return self.key.clone(),
+            None => "",
             Some(Dimension::Angle) => "rad",
             Some(dimension) => dimension.bare_unit(),
         };
-        format!("{}_{}", self.key, unit.replace(' ', "").replace("1/", "per_").replace('/', "_per_"))
+        head_of(&self.key, unit)
     }
 
     /// How many of the unit shown an SI unit is.
@@ -337,13 +338,13 @@ mod tests {
     #[test]
     fn columns_have_the_si_unit() {
         for (text, column, unit) in [
-            ("flow.direction=0:10 mrad:2", "flow.direction_rad", "mrad"),
-            ("material.young=1 kPa", "material.young_Pa", "kPa"),
-            ("reference.mu=1", "reference.mu_per_m", "1/m"),
-            ("tip.moment=1", "tip.moment_Nm", "N m"),
-            ("arm.density=1", "arm.density_kg_per_m3", "kg/m3"),
-            ("material.poisson=0.5", "material.poisson", ""),
-            ("arm.radius[1][0]=0.1", "arm.radius[1][0]_m", "m"),
+            ("flow.direction=0:10 mrad:2", "flow_direction_rad", "mrad"),
+            ("material.young=1 kPa", "material_young_Pa", "kPa"),
+            ("reference.mu=1", "reference_mu_per_m", "1/m"),
+            ("tip.moment=1", "tip_moment_Nm", "N m"),
+            ("arm.density=1", "arm_density_kg_m3", "kg/m3"),
+            ("material.poisson=0.5", "material_poisson", ""),
+            ("arm.radius[1][0]=0.1", "arm_radius_1_0_m", "m"),
             ("name=a,b", "name", ""),
         ] {
             let axis: Axis = text.parse().unwrap();

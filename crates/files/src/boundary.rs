@@ -3,7 +3,8 @@
 use hydrostat::{Arm, Boundary, BoundaryKind, BoundaryPiece, BoundaryPoint};
 use serde::Serialize;
 
-use crate::results::{SCHEMA, TipOut, cell, json, row};
+use crate::csv_text::Rows;
+use crate::results::{SCHEMA, TipOut, cell, json};
 use crate::written::Inputs;
 
 #[derive(Debug, Clone, Serialize)]
@@ -66,8 +67,8 @@ impl<'a> BoundaryDocument<'a> {
 pub fn boundary_csv(cables: usize, found: &Boundary) -> String {
     let mut names = ["piece", "kind", "cables"].map(str::to_owned).to_vec();
     names.extend(["tip_x_m", "tip_y_m", "tip_theta_rad", "tip_alpha_rad"].map(str::to_owned));
-    names.extend((0..cables).map(|c| format!("tension[{c}]_N")));
-    let mut out = row(&names);
+    names.extend((0..cables).map(|c| format!("tension_{c}_N")));
+    let mut out = Rows::new(&names);
     for (index, piece) in found.pieces.iter().enumerate() {
         let (kind, free) = kind(piece);
         let free: Vec<String> = free.iter().map(usize::to_string).collect();
@@ -75,8 +76,8 @@ pub fn boundary_csv(cables: usize, found: &Boundary) -> String {
             let mut cells = vec![index.to_string(), kind.to_owned(), free.join(" ")];
             cells.extend([point.tip.x, point.tip.y, point.tip.theta, point.tip.alpha].map(cell));
             cells.extend(point.tensions.iter().copied().map(cell));
-            out.push_str(&row(&cells));
+            out.row(&cells);
         }
     }
-    out
+    out.text()
 }

@@ -3,9 +3,10 @@
 use hydrostat::{Arm, Equilibria, Equilibrium, PathEnd, Stability};
 use serde::Serialize;
 
+use crate::csv_text::Rows;
 use crate::digits::number;
 use crate::paths::{EndOut, limit_message};
-use crate::results::{SCHEMA, cell, json, row};
+use crate::results::{SCHEMA, cell, json};
 use crate::state::State;
 use crate::varied::Varied;
 use crate::written::Inputs;
@@ -144,27 +145,27 @@ impl<'a> OverDocument<'a> {
 pub fn equilibria_csv(cables: usize, all: &Equilibria) -> String {
     let mut names = vec!["number".to_owned()];
     names.extend(State::columns(cables, &[]));
-    let mut out = row(&names);
+    let mut out = Rows::new(&names);
     for (index, one) in all.found.iter().enumerate() {
         let mut cells = vec![(index + 1).to_string()];
         cells.extend(state(one).cells(&[]));
-        out.push_str(&row(&cells));
+        out.row(&cells);
     }
-    out
+    out.text()
 }
 
 /// [`equilibria_csv`] at each value of what varies; `complete` says whether those at a value are all.
 pub fn over_csv(cables: usize, varied: &Varied, searches: &[(f64, Result<Equilibria, String>)]) -> String {
     let mut names = vec![varied.column(), "complete".to_owned(), "number".to_owned()];
     names.extend(State::columns(cables, &[]));
-    let mut out = row(&names);
+    let mut out = Rows::new(&names);
     for (value, found) in searches {
         let Ok(all) = found else { continue };
         for (index, one) in all.found.iter().enumerate() {
             let mut cells = vec![cell(*value), all.complete.to_string(), (index + 1).to_string()];
             cells.extend(state(one).cells(&[]));
-            out.push_str(&row(&cells));
+            out.row(&cells);
         }
     }
-    out
+    out.text()
 }

@@ -3,7 +3,8 @@
 use hydrostat::{Arm, Followed, Target};
 use serde::Serialize;
 
-use crate::results::{SCHEMA, TipOut, cell, json, row};
+use crate::csv_text::Rows;
+use crate::results::{SCHEMA, TipOut, cell, json};
 use crate::written::Inputs;
 
 /// The place and the angle (rad) that a row asks for.
@@ -76,8 +77,8 @@ pub fn followed_csv(cables: usize, rows: &[(Target, Followed)]) -> String {
             .map(str::to_owned)
             .into();
     names.extend(["tip_x_m", "tip_y_m", "tip_theta_rad", "tip_alpha_rad"].map(str::to_owned));
-    names.extend((0..cables).map(|c| format!("tension[{c}]_N")));
-    let mut out = row(&names);
+    names.extend((0..cables).map(|c| format!("tension_{c}_N")));
+    let mut out = Rows::new(&names);
     for (index, (target, found)) in rows.iter().enumerate() {
         let mut cells = vec![(index + 1).to_string(), cell(target.x), cell(target.y)];
         cells.push(target.angle.map_or_else(String::new, cell));
@@ -85,7 +86,7 @@ pub fn followed_csv(cables: usize, rows: &[(Target, Followed)]) -> String {
         cells.extend([cell(found.distance), found.solves.to_string()]);
         cells.extend([found.tip.x, found.tip.y, found.tip.theta, found.tip.alpha].map(cell));
         cells.extend(found.tensions.iter().copied().map(cell));
-        out.push_str(&row(&cells));
+        out.row(&cells);
     }
-    out
+    out.text()
 }

@@ -15,7 +15,7 @@ pub(crate) enum Kind {
     Quantity(Dimension),
     /// Two numbers, `[_, _]`.
     Pair(Dimension),
-    /// A quantity along the arm: a number, `{ base, tip }` or `[[s, value], ...]`.
+    /// A quantity along the arm: a number, `{ base, tip }`, `[[s, value], ...]` or `{ points, join }`.
     Profile(Dimension),
     /// Two profiles, `[_, _]`.
     ProfilePair(Dimension),
@@ -179,6 +179,8 @@ const MODEL: &[Key] = &[
 
 /// The keys of a profile given at both ends.
 pub(crate) const ENDS: [&str; 2] = ["base", "tip"];
+/// The keys of a profile given by points and how they are joined.
+pub(crate) const JOINED: [&str; 2] = ["points", "join"];
 
 impl Kind {
     /// What a value may be, in words.
@@ -192,7 +194,10 @@ impl Kind {
             Quantity(dimension) => dimension.expected(),
             Pair(dimension) => format!("two values [_, _], each {}", dimension.expected()),
             Profile(dimension) => {
-                format!("{}, as one value, {{ base = _, tip = _ }} or [[s, value], ...]", dimension.expected())
+                format!(
+                    "{}, as one value, {{ base = _, tip = _ }}, [[s, value], ...] or {{ points = [[s, value], ...], join = \"linear\" }}",
+                    dimension.expected()
+                )
             }
             ProfilePair(_) => "two profiles [_, _]".to_owned(),
             Table(keys) => format!("a table with {}", names(keys)),

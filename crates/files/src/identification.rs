@@ -4,7 +4,8 @@ use hydrostat::Arm;
 use hydrostat_identify::{Case, Fit, Loss};
 use serde::Serialize;
 
-use crate::results::{SCHEMA, cell, json, row};
+use crate::csv_text::Rows;
+use crate::results::{SCHEMA, cell, json};
 use crate::written::Inputs;
 
 #[derive(Debug, Clone, Serialize)]
@@ -169,12 +170,12 @@ impl IdentificationDocument {
 /// Every measured number beside the fit, one row each.
 pub fn residuals_csv(cases: &[Case], fit: &Fit) -> String {
     let names = ["case", "quantity", "s_m", "unit", "measured", "sd", "fitted", "residual_sd", "weight", "row"];
-    let mut out = row(&names.map(str::to_owned));
+    let mut out = Rows::new(&names.map(str::to_owned));
     for one in &fit.residuals {
         let quantity = one.measurement.quantity;
         let case = cases.get(one.case).map(|case| case.name.as_str()).unwrap_or_default();
-        out.push_str(&row(&[
-            quoted(case),
+        out.row(&[
+            case.to_owned(),
             quantity.name(),
             quantity.place().map_or_else(String::new, cell),
             quantity.unit().to_owned(),
@@ -184,12 +185,7 @@ pub fn residuals_csv(cases: &[Case], fit: &Fit) -> String {
             cell(one.standardised),
             cell(one.weight),
             if one.measurement.row == 0 { String::new() } else { one.measurement.row.to_string() },
-        ]));
+        ]);
     }
-    out
-}
-
-/// A name as a cell.
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+    out.text()
 }

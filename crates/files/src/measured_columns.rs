@@ -3,8 +3,10 @@
 use hydrostat_identify::Quantity;
 
 use crate::error::shortened;
-use crate::format::{dimension_at, is_key, nearest};
+use crate::format::{dimension_at, nearest};
+use crate::heads::{identifier, key_named, readings, unit_of};
 use crate::quantity::Dimension;
+use crate::results::{INNER, THETA};
 
 /// What a measured column is of; places are in another column.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,17 +22,18 @@ pub(crate) enum Measured {
 }
 
 impl Measured {
-    pub(crate) fn named(name: &str) -> Option<Self> {
-        let index = |stem: &str| name.strip_prefix(stem)?.strip_prefix('[')?.strip_suffix(']')?.parse().ok();
+    /// By its name as an identifier: `base_force_x`, `stroke_0`.
+    fn named(name: &str) -> Option<Self> {
+        let index = |stem: &str| name.strip_prefix(stem)?.parse().ok();
         Some(match name {
             "x" => Self::X,
             "y" => Self::Y,
             "angle" => Self::Angle,
             "tangent" => Self::Tangent,
-            "base force x" => Self::BaseForce(0),
-            "base force y" => Self::BaseForce(1),
-            "base moment" => Self::BaseMoment,
-            _ => match (index("stroke"), index("tension")) {
+            "base_force_x" => Self::BaseForce(0),
+            "base_force_y" => Self::BaseForce(1),
+            "base_moment" => Self::BaseMoment,
+            _ => match (index("stroke_"), index("tension_")) {
                 (Some(c), _) => Self::Stroke(c),
                 (_, Some(c)) => Self::Tension(c),
                 _ => return None,
@@ -71,6 +74,10 @@ pub(crate) enum Column {
     Deviation(Option<Measured>),
     /// A key of the arm file, with what it measures; `None` for words.
     Setting(String, Option<Dimension>),
+    /// The section's angle in a table of stations, which is measured where such tables are not computed.
+    Theta,
+    /// What tables of stations have and nobody measures.
+    Inner,
 }
 
 /// A column with how it is headed.
@@ -81,40 +88,61 @@ pub(crate) struct Head {
     pub(crate) unit: String,
 }
 
-/// What a column head means.
+/// What a column head means: a name with its unit, as `x [mm]` or as `x_mm`.
 pub(crate) fn head(text: &str) -> Result<Head, String> {
-    let (name, unit) = match text.strip_suffix(']').and_then(|rest| rest.rsplit_once(" [")) {
-        Some((name, unit)) => (name.trim(), unit.trim()),
-        None => (text, ""),
-    };
-    let lower = name.to_lowercase();
-    let (column, dimension) = if lower == "case" {
-        (Column::Case, None)
-    } else if lower == "s" {
-        (Column::Place, Some(Dimension::Length))
-    } else if lower == "sd position" {
-        (Column::Deviation(None), Some(Dimension::Length))
-    } else if let Some(measured) = Measured::named(&lower) {
-        (Column::Value(measured), Some(measured.dimension()))
-    } else if let Some(measured) = lower.strip_prefix("sd ").and_then(|name| Measured::named(name.trim())) {
-        (Column::Deviation(Some(measured)), Some(measured.dimension()))
-    } else if is_key(name) && name.contains('.') {
-        let dimension = dimension_at(name);
-        (Column::Setting(name.to_owned(), dimension), dimension)
-    } else {
-        return Err(unknown(&lower));
-    };
+    let inner = if text == THETA { Some(Column::Theta) } else { INNER.contains(&text).then_some(Column::Inner) };
+    if let Some(column) = inner {
+        return Ok(Head { column, text: text.to_owned(), unit: "rad".to_owned() });
+    }
+    let readings = readings(text);
+    let mut refused = None;
+    for (name, unit) in &readings {
+        let Some((column, dimension)) = named(name) else { continue };
+        match unit_in_head(name, unit, dimension) {
+            Ok(unit) => return Ok(Head { column, text: text.to_owned(), unit: unit.to_owned() }),
+            // The longest name is the one that was meant.
+            Err(why) => refused = refused.or(Some(why)),
+        }
+    }
+    Err(refused.unwrap_or_else(|| unknown(&readings)))
+}
+
+/// The column of a name, with what it measures.
+fn named(name: &str) -> Option<(Column, Option<Dimension>)> {
+    let plain = identifier(&name.to_lowercase());
+    Some(match plain.as_str() {
+        "case" => (Column::Case, None),
+        "s" => (Column::Place, Some(Dimension::Length)),
+        "sd_position" => (Column::Deviation(None), Some(Dimension::Length)),
+        _ => {
+            if let Some(measured) = Measured::named(&plain) {
+                (Column::Value(measured), Some(measured.dimension()))
+            } else if let Some(measured) = plain.strip_prefix("sd_").and_then(Measured::named) {
+                (Column::Deviation(Some(measured)), Some(measured.dimension()))
+            } else {
+                let key = key_named(name).filter(|key| key.contains('.'))?;
+                let dimension = dimension_at(&key);
+                (Column::Setting(key, dimension), dimension)
+            }
+        }
+    })
+}
+
+/// The unit of a column as it is spelled in arm files; none of words and plain numbers.
+fn unit_in_head(name: &str, unit: &str, dimension: Option<Dimension>) -> Result<&'static str, String> {
     match dimension {
         None | Some(Dimension::Number) if !unit.is_empty() => {
             Err(format!("expected no unit, found [{}]", shortened(unit)))
         }
-        None | Some(Dimension::Number) => Ok(()),
-        Some(dimension) => check_unit(name, unit, dimension),
-    }?;
-    Ok(Head { column, text: text.to_owned(), unit: unit.to_owned() })
+        None | Some(Dimension::Number) => Ok(""),
+        Some(dimension) => match unit_of(dimension, unit) {
+            Some(known) => Ok(known),
+            None => Err(wrong_unit(name, unit, dimension)),
+        },
+    }
 }
 
-fn unknown(name: &str) -> String {
+fn unknown(readings: &[(&str, &str)]) -> String {
     const KNOWN: [&str; 12] = [
         "case",
         "s",
@@ -130,29 +158,28 @@ fn unknown(name: &str) -> String {
         "sd position",
     ];
     let keys = hydrostat::parameter::names();
-    let candidates = KNOWN.into_iter().chain(keys.iter().map(String::as_str));
-    let hint = nearest(name, candidates).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let near = readings.iter().find_map(|(name, _)| {
+        let candidates = KNOWN.into_iter().chain(keys.iter().map(String::as_str));
+        nearest(&name.to_lowercase(), candidates).map(str::to_owned)
+    });
+    let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     format!(
         "is no column of measurements: expected {}, `sd` with one of the measured names, or a key of the arm file such as flow.speed{hint}",
         KNOWN.join(", ")
     )
 }
 
-fn check_unit(name: &str, unit: &str, dimension: Dimension) -> Result<(), String> {
+fn wrong_unit(name: &str, unit: &str, dimension: Dimension) -> String {
     let units: Vec<&str> = dimension.units_shown();
     let expected = format!("expected {dimension} in {}", units.join(", "));
     if unit.is_empty() {
-        return Err(format!(
+        return format!(
             "{expected}; write the unit behind the name, as in \"{name} [{}]\"",
             units.first().unwrap_or(&"")
-        ));
+        );
     }
-    if dimension.spellings().any(|known| known == unit) {
-        return Ok(());
-    }
-    let other = Dimension::ALL.into_iter().find(|other| other.spellings().any(|known| known == unit));
-    Err(match other {
+    match Dimension::ALL.into_iter().find(|other| unit_of(*other, unit).is_some()) {
         Some(other) => format!("{expected}; `{unit}` is the unit of {other}"),
         None => format!("{expected}; `{}` is no unit known here", shortened(unit)),
-    })
+    }
 }

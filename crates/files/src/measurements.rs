@@ -4,14 +4,16 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use csv::{ReaderBuilder, StringRecord, Trim};
+use csv::StringRecord;
 use hydrostat::{Arm, Parameter};
 use hydrostat_identify::{Case, Measurement, Quantity};
 
 use crate::arm_file::ArmFile;
+use crate::csv_text::{Dialect, Lines, is_missing, records, without_mark};
 use crate::deviations::Deviations;
 use crate::digits::number;
 use crate::error::shortened;
+use crate::marker_columns;
 use crate::measured_columns::{Column, Head, Measured, head};
 use crate::quantity::Dimension;
 
@@ -102,34 +104,32 @@ pub fn parse_measurements(
     deviations: &Deviations,
     fitted: &[Parameter],
 ) -> Result<Vec<Case>, MeasurementsError> {
-    let text = text.trim_start_matches('\u{feff}');
-    let delimiter = delimiter(text);
-    let mut reader = ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .delimiter(delimiter)
-        .trim(Trim::All)
-        .from_reader(text.as_bytes());
+    let text = without_mark(text);
+    let dialect = Dialect::of(text);
+    let mut reader = records(text, dialect);
     let fault = |row: usize, why: String| MeasurementsError { path: path.to_owned(), row, column: None, why };
     let mut table = Table {
         path,
         file,
         deviations,
         heads: Vec::new(),
-        decimal_comma: delimiter == b';',
+        dialect,
         length: arm_of(file).map_err(|why| fault(0, why))?.length,
         cases: Vec::new(),
     };
-    let mut lines = Lines { text, at: 0, line: 1 };
-    for record in reader.records() {
+    let mut lines = Lines::new(text);
+    let mut all = reader.records();
+    while let Some(record) = all.next() {
         let record = record.map_err(|error| {
             let row = error.position().map_or(0, |position| lines.of(position.byte()));
             fault(row, error.to_string())
         })?;
         let row = record.position().map_or(0, |position| lines.of(position.byte()));
         if table.heads.is_empty() {
-            table.read_heads(row, &record, fitted)?;
+            table.read_heads(row, &record, fitted).map_err(|error| {
+                let first = all.next().and_then(Result::ok);
+                marker_columns::hint(&record, first.as_ref()).map_or(error, |why| fault(row, why))
+            })?;
         } else if record.iter().any(|cell| !cell.is_empty()) {
             table.read_row(row, &record)?;
         }
@@ -138,49 +138,6 @@ pub fn parse_measurements(
         return Err(fault(0, "is empty: expected a row of column heads, as `--template` writes it".to_owned()));
     }
     table.cases()
-}
-
-/// The lines of rows, asked for from the first to the last. A row's position is where the one before ends: ends of lines, empty lines and
-/// comments can stand between that and the row itself.
-struct Lines<'a> {
-    text: &'a str,
-    at: usize,
-    line: usize,
-}
-
-impl Lines<'_> {
-    fn of(&mut self, position: u64) -> usize {
-        let bytes = self.text.as_bytes();
-        let position = usize::try_from(position).unwrap_or(usize::MAX);
-        while self.at < bytes.len() {
-            let begins = self.at == 0 || matches!(bytes[self.at - 1], b'\n' | b'\r');
-            let between = matches!(bytes[self.at], b'\n' | b'\r') || (begins && bytes[self.at] == b'#');
-            if self.at >= position && !between {
-                break;
-            }
-            if self.at >= position && bytes[self.at] == b'#' {
-                let rest = &bytes[self.at..];
-                self.at += rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
-                continue;
-            }
-            self.line += usize::from(bytes[self.at] == b'\n');
-            self.at += 1;
-        }
-        self.line
-    }
-}
-
-/// What parts the cells of the first row that is no comment: a comma, a semicolon or a tab.
-fn delimiter(text: &str) -> u8 {
-    let first = text.lines().find(|line| !line.starts_with('#') && !line.trim().is_empty()).unwrap_or_default();
-    let count = |sign: u8| first.bytes().filter(|b| *b == sign).count();
-    if count(b';') > count(b',') {
-        b';'
-    } else if count(b'\t') > count(b',') {
-        b'\t'
-    } else {
-        b','
-    }
 }
 
 fn arm_of(file: &ArmFile) -> Result<Arm, String> {
@@ -201,7 +158,7 @@ struct Table<'a> {
     file: &'a ArmFile,
     deviations: &'a Deviations,
     heads: Vec<Head>,
-    decimal_comma: bool,
+    dialect: Dialect,
     length: f64,
     cases: Vec<Building>,
 }
@@ -213,8 +170,14 @@ impl Table<'_> {
 
     fn read_heads(&mut self, row: usize, record: &StringRecord, fitted: &[Parameter]) -> Result<(), MeasurementsError> {
         for text in record {
-            let head = head(text).map_err(|why| self.fault(row, Some(text), why))?;
-            if let Some(other) = self.heads.iter().find(|other| other.column == head.column) {
+            let mut head = head(text).map_err(|why| self.fault(row, Some(text), why))?;
+            if head.column == Column::Theta {
+                // Of a table of stations, which has no standard deviations of its own.
+                let counts = self.deviations.angle.is_some();
+                head.column = if counts { Column::Value(Measured::Angle) } else { Column::Inner };
+            }
+            let others = self.heads.iter().filter(|other| other.column != Column::Inner);
+            if let Some(other) = others.into_iter().find(|other| other.column == head.column) {
                 return Err(self.fault(row, Some(text), format!("the column \"{}\" has the same", other.text)));
             }
             if let Column::Setting(key, _) = &head.column
@@ -227,7 +190,7 @@ impl Table<'_> {
         Ok(())
     }
 
-    /// A number in SI; `None` in an empty cell.
+    /// A number in SI; `None` in a cell that says that nothing was measured.
     fn number(
         &self,
         row: usize,
@@ -235,10 +198,10 @@ impl Table<'_> {
         cell: &str,
         dimension: Dimension,
     ) -> Result<Option<f64>, MeasurementsError> {
-        if cell.is_empty() {
+        if is_missing(cell) {
             return Ok(None);
         }
-        let plain = if self.decimal_comma { cell.replace(',', ".") } else { cell.to_owned() };
+        let plain = self.dialect.plain(cell);
         let found = plain.parse::<f64>().ok().filter(|value| value.is_finite()).and_then(|value| match dimension {
             Dimension::Number => Some(value),
             // From the decimal text, so that 0.1 mm is 1e-4 to the last bit.
@@ -282,7 +245,11 @@ impl Table<'_> {
     /// Where a row was measured (m): the tip where it does not say.
     fn place(&self, row: usize, record: &StringRecord) -> Result<f64, MeasurementsError> {
         let Some((head, cell)) = self.cell(record, &Column::Place) else { return Ok(self.length) };
-        let Some(s) = self.number(row, head, cell, Dimension::Length)? else { return Ok(self.length) };
+        let Some(s) = self.number(row, head, cell, Dimension::Length)? else {
+            // Only nothing at all is the tip.
+            let why = format!("expected a place along the arm, or nothing for the tip, found \"{}\"", shortened(cell));
+            return if cell.is_empty() { Ok(self.length) } else { Err(self.fault(row, Some(&head.text), why)) };
+        };
         let slack = SAME * self.length;
         if (-slack..=self.length + slack).contains(&s) {
             return Ok(s);
@@ -342,6 +309,7 @@ impl Table<'_> {
     /// Adds what a row measures to a case, to which no quantity may belong twice.
     fn keep(&mut self, row: usize, index: usize, found: Vec<(Measurement, String)>) -> Result<(), MeasurementsError> {
         let slack = SAME * self.length;
+        let stations = self.heads.iter().any(|head| head.column == Column::Inner);
         if self.cases[index].measurements.len() + found.len() > MOST_NUMBERS {
             let why = format!("expected at most {MOST_NUMBERS} measured numbers a load case, found more");
             return Err(self.fault(row, None, why));
@@ -349,6 +317,10 @@ impl Table<'_> {
         for (measurement, column) in found {
             let case = &self.cases[index];
             if let Some(other) = case.measurements.iter().find(|own| same(own.quantity, measurement.quantity, slack)) {
+                if stations && other.value == measurement.value {
+                    // A table of stations has the end of a cable twice.
+                    continue;
+                }
                 let (quantity, name) = (measurement.quantity, shortened(&case.name));
                 let why = format!("{quantity} of load case {name} is in row {} already", other.row);
                 return Err(self.fault(row, Some(&column), why));
@@ -375,14 +347,13 @@ impl Table<'_> {
         let heads = self.heads.clone();
         for (at, (head, cell)) in heads.iter().zip(record).enumerate() {
             let Column::Setting(_, dimension) = &head.column else { continue };
-            if cell.is_empty() {
+            if cell.is_empty() || (dimension.is_some() && is_missing(cell)) {
                 continue;
             }
             let text = match dimension {
                 Some(dimension) => {
                     self.number(row, head, cell, *dimension)?;
-                    let plain = if self.decimal_comma { cell.replace(',', ".") } else { cell.to_owned() };
-                    format!("{plain} {}", head.unit).trim_end().to_owned()
+                    format!("{} {}", self.dialect.plain(cell), head.unit).trim_end().to_owned()
                 }
                 None => cell.to_owned(),
             };

@@ -2,6 +2,7 @@
 
 use hydrostat::Arm;
 
+use crate::csv_text::Rows;
 use crate::measurements::rounded_mm;
 
 /// A table to fill in: two load cases of `arm` with four places each.
@@ -20,20 +21,18 @@ pub fn measurements_template(arm: &Arm) -> String {
          # A row is a place of the arm in a load case. s is along the arm before anything acts, from its base; empty is the tip.\n\
          # x and y are of the centreline, from the base of the arm file; angle is that of the section, from e1. Empty cells were not measured.\n\
          # The loads of a case stand in its first row: any key of the arm file with its unit. sd is a standard deviation.\n\
-         # More can be measured: tangent [deg], stroke[0] [mm], tension[0] [N], base force x [N], base force y [N], base moment [N mm].\n",
+         # More can be measured: tangent_deg, stroke_0_mm, tension_0_N, base_force_x_N, base_force_y_N, base_moment_Nmm.\n",
         arm.name.escape_debug()
     );
     let mut heads = vec!["case".to_owned()];
     heads.extend((0..arm.cables.len()).map(|c| {
         let commanded = arm.cables[c].stroke.is_some();
-        if commanded { format!("cable[{c}].stroke [mm]") } else { format!("cable[{c}].tension [N]") }
+        if commanded { format!("cable_{c}_stroke_mm") } else { format!("cable_{c}_tension_N") }
     }));
     heads.extend(
-        ["flow.speed [m/s]", "s [mm]", "x [mm]", "y [mm]", "angle [deg]", "sd position [mm]", "sd angle [deg]"]
-            .map(str::to_owned),
+        ["flow_speed_m_s", "s_mm", "x_mm", "y_mm", "angle_deg", "sd_position_mm", "sd_angle_deg"].map(str::to_owned),
     );
-    out.push_str(&heads.join(","));
-    out.push('\n');
+    let mut rows = Rows::new(&heads);
     for case in ["a", "b"] {
         for quarter in 1..=4 {
             let loads = |cable: &hydrostat::Cable| cable.stroke.map_or(cable.tension, rounded_mm).to_string();
@@ -43,9 +42,9 @@ pub fn measurements_template(arm: &Arm) -> String {
             cells.push(if first { arm.flow.speed.to_string() } else { String::new() });
             cells.push(rounded_mm(0.25 * f64::from(quarter) * arm.length).to_string());
             cells.extend(["", "", "", "1", "1"].map(str::to_owned));
-            out.push_str(&cells.join(","));
-            out.push('\n');
+            rows.row(&cells);
         }
     }
+    out.push_str(&rows.text());
     out
 }

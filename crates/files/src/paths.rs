@@ -3,7 +3,8 @@
 use hydrostat::{Branch, Event, Path, PathEnd, PathPoint, VerdictKind};
 use serde::Serialize;
 
-use crate::results::{SCHEMA, cell, json, row};
+use crate::csv_text::Rows;
+use crate::results::{SCHEMA, cell, json};
 use crate::state::State;
 use crate::varied::Varied;
 use crate::written::Inputs;
@@ -116,7 +117,7 @@ pub fn path_csv(path: &Path, varied: &Varied) -> String {
     let cables = all().next().map_or(0, |(_, p)| p.configuration.cables.len());
     let mut names = vec!["branch".to_owned(), varied.column()];
     names.extend(State::columns(cables, &["event"]));
-    let mut out = row(&names);
+    let mut out = Rows::new(&names);
     for (branch, point) in all() {
         let mut cells = vec![branch.to_string(), cell(point.value)];
         let name = |event: Event| match event.cable() {
@@ -125,7 +126,7 @@ pub fn path_csv(path: &Path, varied: &Varied) -> String {
         };
         let event = point.event.map(name).unwrap_or_default();
         cells.extend(State::new(&point.configuration, point.stability).cells(&[&event]));
-        out.push_str(&row(&cells));
+        out.row(&cells);
     }
-    out
+    out.text()
 }

@@ -3,7 +3,8 @@
 use hydrostat::{Arm, Bound, Reach, Reached, Station};
 use serde::Serialize;
 
-use crate::results::{SCHEMA, cell, json, row};
+use crate::csv_text::Rows;
+use crate::results::{SCHEMA, cell, json};
 use crate::state::State;
 use crate::written::Inputs;
 
@@ -101,10 +102,10 @@ pub fn reach_csv(cables: usize, found: &Reach) -> String {
     let all: Vec<&Reached> = found.solutions.iter().chain(&found.closest).collect();
     let mut names = ["number", "reached", "effort_N2", "distance"].map(str::to_owned).to_vec();
     for k in 0..all.first().map_or(0, |one| one.places.len()) {
-        names.extend(["s_m", "x_m", "y_m", "theta_rad", "alpha_rad"].map(|name| format!("place[{k}]_{name}")));
+        names.extend(["s_m", "x_m", "y_m", "theta_rad", "alpha_rad"].map(|name| format!("place_{k}_{name}")));
     }
     names.extend(State::columns(cables, &["on_the_path"]));
-    let mut out = row(&names);
+    let mut out = Rows::new(&names);
     for (index, one) in all.iter().enumerate() {
         let reached = found.closest.is_none();
         let mut cells = vec![(index + 1).to_string(), reached.to_string(), cell(one.effort), cell(one.distance)];
@@ -112,7 +113,7 @@ pub fn reach_csv(cables: usize, found: &Reach) -> String {
             cells.extend([place.s, place.x, place.y, place.theta, place.alpha].map(cell));
         }
         cells.extend(State::new(&one.configuration, one.stability).cells(&[&one.on_the_path.to_string()]));
-        out.push_str(&row(&cells));
+        out.row(&cells);
     }
-    out
+    out.text()
 }

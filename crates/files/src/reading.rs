@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use hydrostat::profile::TableError;
-use hydrostat::{ArmError, Profile};
+use hydrostat::{ArmError, Join, Profile};
 
 use crate::document::{Entry, Field, Node, Origin, segment};
-use crate::format::{self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_POINTS, PULL};
+use crate::format::{self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, JOINED, Key, Kind, MAX_CABLES, MAX_POINTS, PULL};
 use crate::quantity::Dimension;
 
 /// What is wrong, without the names of files.
@@ -185,6 +185,9 @@ impl Values {
 
     fn profile_at(&mut self, path: &str, dimension: Dimension, entry: &Entry) -> Result<Profile, Fault> {
         let profile = match &entry.node {
+            Node::Table(fields) if fields.iter().any(|field| JOINED.contains(&field.name.as_str())) => {
+                joined(path, dimension, entry, fields)?
+            }
             Node::Table(fields) => {
                 let mut ends = [None; 2];
                 for field in fields {
@@ -204,7 +207,7 @@ impl Values {
                 };
                 Profile::linear(ends[0].ok_or_else(|| missing("base"))?, ends[1].ok_or_else(|| missing("tip"))?)
             }
-            Node::Array(points) => profile_table(path, dimension, entry, points)?,
+            Node::Array(points) => profile_table(path, dimension, entry, points, Join::Cubic)?,
             Node::Number(_) | Node::Text(_) => {
                 quantity(path, dimension, entry).map(Profile::Constant).map_err(|fault| match fault.kind {
                     FaultKind::Value { found, .. } => {
@@ -287,7 +290,41 @@ impl Values {
     }
 }
 
-fn profile_table(path: &str, dimension: Dimension, entry: &Entry, points: &[Entry]) -> Result<Profile, Fault> {
+/// A profile of points, with how they are joined.
+fn joined(path: &str, dimension: Dimension, entry: &Entry, fields: &[Field]) -> Result<Profile, Fault> {
+    let (mut points, mut way) = (None, Join::Cubic);
+    for field in fields {
+        let here = join(path, &field.name);
+        match (field.name.as_str(), &field.entry.node) {
+            ("points", Node::Array(all)) => points = Some((&field.entry, all)),
+            ("join", Node::Text(word)) if Join::NAMES.contains(&word.as_str()) => {
+                way = Join::ALL.into_iter().find(|join| join.name() == word).unwrap_or_default();
+            }
+            ("points", node) => {
+                return Err(value_fault(&here, field.origin, "points [[s, value], ...]".to_owned(), node.describe()));
+            }
+            ("join", _) => return Err(refuse(&here, Kind::Choice(&Join::NAMES), &field.entry)),
+            (name, _) => {
+                let suggestion = format::nearest(name, JOINED.into_iter()).map(str::to_owned);
+                let kind = FaultKind::Unknown { expected: "points and join".to_owned(), suggestion };
+                return Err(Fault { origin: field.origin, key: here, kind });
+            }
+        }
+    }
+    let Some((own, points)) = points else {
+        let kind = FaultKind::Missing { expected: "points [[s, value], ...]".to_owned() };
+        return Err(Fault { origin: entry.origin, key: join(path, "points"), kind });
+    };
+    profile_table(path, dimension, own, points, way)
+}
+
+fn profile_table(
+    path: &str,
+    dimension: Dimension,
+    entry: &Entry,
+    points: &[Entry],
+    way: Join,
+) -> Result<Profile, Fault> {
     if points.len() > MAX_POINTS {
         let expected = format!("at most {MAX_POINTS} points");
         return Err(value_fault(path, entry.origin, expected, format!("{}", points.len())));
@@ -306,7 +343,7 @@ fn profile_table(path: &str, dimension: Dimension, entry: &Entry, points: &[Entr
             }
         }
     }
-    Profile::table(&pairs).map_err(|source| {
+    Profile::joined(&pairs, way).map_err(|source| {
         let (origin, key) = match &source {
             TableError::NotFinite { index, .. } | TableError::NotIncreasing { index, .. } => {
                 (points[*index].origin, format!("{path}[{index}]"))

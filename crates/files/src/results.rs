@@ -6,6 +6,7 @@
 use hydrostat::{CableState, Configuration, NoEquilibrium, Stability, Stations, Tip, Verdict, Warning, Wrench};
 use serde::Serialize;
 
+use crate::csv_text::Rows;
 use crate::equilibria::Others;
 use crate::written::Inputs;
 
@@ -42,6 +43,9 @@ pub struct FailureDocument<'a> {
     last_good: Option<SolutionDocument<'a>>,
 }
 
+/// The kind of the note on an answer that is less accurate than was asked for.
+pub const TOLERANCE_MISSED: &str = "tolerance_missed";
+
 /// Something that should be known about an answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Note {
@@ -60,7 +64,7 @@ impl Note {
         if configuration.error_estimate > asked {
             let [found, asked] = [configuration.error_estimate, asked].map(|metres| 1e3 * metres);
             let message = format!("the tip error, about {found:.1e} mm, is above the {asked:.1e} mm asked for");
-            notes.push(Self { kind: "tolerance_missed", message });
+            notes.push(Self { kind: TOLERANCE_MISSED, message });
         }
         notes
     }
@@ -271,13 +275,6 @@ pub fn json(document: &impl Serialize) -> String {
     text.unwrap_or_default()
 }
 
-/// One line of CSV.
-pub(crate) fn row(cells: &[String]) -> String {
-    let mut out = cells.join(",");
-    out.push('\n');
-    out
-}
-
 /// A number as a cell of CSV; empty if it is not finite.
 pub(crate) fn cell(value: f64) -> String {
     if value.is_finite() { format!("{value:?}") } else { String::new() }
@@ -286,10 +283,10 @@ pub(crate) fn cell(value: f64) -> String {
 /// The stations, one row each, with names and units in the first row.
 pub fn stations_csv(stations: &Stations) -> String {
     let columns: [(&str, &[f64]); 12] = [
-        ("s_m", &stations.s),
+        (PLACE, &stations.s),
         ("x_m", &stations.x),
         ("y_m", &stations.y),
-        ("theta_rad", &stations.theta),
+        (THETA, &stations.theta),
         ("nu", &stations.nu),
         ("eta", &stations.eta),
         ("mu_per_m", &stations.mu),
@@ -299,11 +296,16 @@ pub fn stations_csv(stations: &Stations) -> String {
         ("n_b_N", &stations.n_b),
         ("m_Nm", &stations.m),
     ];
-    let mut out = columns.map(|(name, _)| name).join(",");
-    out.push('\n');
+    let mut out = Rows::new(&columns.map(|(name, _)| name.to_owned()));
     for index in 0..stations.len() {
-        let cells = columns.map(|(_, values)| values.get(index).copied().map_or_else(String::new, cell));
-        out.push_str(&row(&cells));
+        out.row(&columns.map(|(_, values)| values.get(index).copied().map_or_else(String::new, cell)));
     }
-    out
+    out.text()
 }
+
+/// The head of the place in [`stations_csv`].
+pub(crate) const PLACE: &str = "s_m";
+/// The head of the section's angle in [`stations_csv`].
+pub(crate) const THETA: &str = "theta_rad";
+/// Heads of [`stations_csv`] that are no measurements: readers of tables leave them out.
+pub(crate) const INNER: [&str; 8] = ["nu", "eta", "mu_per_m", "beta", "alpha_rad", "n_a_N", "n_b_N", "m_Nm"];

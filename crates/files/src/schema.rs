@@ -3,6 +3,7 @@
 //! It says which keys there are, of which types, and which are required. What depends on numbers
 //! (a cable inside the section, a table that covers the arm) only the parser knows.
 
+use hydrostat::Join;
 use serde_json::{Map, Value, json};
 
 use crate::format::{self, COEFFICIENTS, DRAG, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_NAME, MAX_POINTS, PULL};
@@ -128,8 +129,15 @@ fn escaped(unit: &str) -> String {
 fn profile(dimension: Dimension) -> Value {
     let value = json!({ "$ref": format!("#/$defs/{}", id("quantity", dimension)) });
     let place = json!({ "$ref": format!("#/$defs/{}", id("quantity", Dimension::Length)) });
+    let points = json!({
+        "type": "array",
+        "minItems": 2,
+        "maxItems": MAX_POINTS,
+        "items": { "type": "array", "prefixItems": [place, value], "minItems": 2, "maxItems": 2 },
+    });
+    let [all, way] = format::JOINED;
     json!({
-        "description": "along the arm: one value, linear from base to tip, or points from 0 to the length",
+        "description": "along the arm: one value, linear from base to tip, or points from 0 to the length, joined by a monotone cubic or by straight lines",
         "anyOf": [
             value,
             {
@@ -138,11 +146,12 @@ fn profile(dimension: Dimension) -> Value {
                 "properties": { "base": value, "tip": value },
                 "required": format::ENDS,
             },
+            points,
             {
-                "type": "array",
-                "minItems": 2,
-                "maxItems": MAX_POINTS,
-                "items": { "type": "array", "prefixItems": [place, value], "minItems": 2, "maxItems": 2 },
+                "type": "object",
+                "additionalProperties": false,
+                "properties": { all: points, way: { "enum": Join::NAMES } },
+                "required": [all],
             },
         ],
     })

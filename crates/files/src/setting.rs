@@ -1,7 +1,9 @@
 //! Overrides: `--set KEY=VALUE`, applied to the tree before it is read.
 
+use hydrostat::Join;
+
 use crate::document::{Entry, Field, Node, Origin, parse_setting};
-use crate::format::{self, Key, Kind};
+use crate::format::{self, JOINED, Key, Kind};
 use crate::reading::{Fault, join, unknown, value_fault};
 
 /// One step of a dotted path.
@@ -102,10 +104,26 @@ fn into_value(entry: &mut Entry, path: &str, kind: Kind, steps: &[Step], target:
         (Kind::Tables(_), Step::Name(_), _) => {
             Err(target.refuse(path, format!("an index, as in {path}[0].tension"), "none"))
         }
+        (Kind::Profile(_), Step::Index(_), Node::Table(fields)) if fields.iter().any(is_points) => {
+            match fields.iter_mut().find(|field| is_points(field)) {
+                Some(points) => into_value(&mut points.entry, path, kind, steps, target),
+                None => Ok(()),
+            }
+        }
+        // Points that have no word yet for how they are joined get one.
+        (Kind::Profile(_), Step::Name(name), Node::Array(points)) if name == JOINED[1] && rest.is_empty() => {
+            let points = Entry { node: Node::Array(std::mem::take(points)), origin: entry.origin };
+            let field = |name: &str, entry: Entry| Field { name: name.to_owned(), origin: entry.origin, entry };
+            let word = Entry { node: target.node(Kind::Choice(&Join::NAMES)), origin: target.origin };
+            entry.node = Node::Table(vec![field(JOINED[0], points), field(JOINED[1], word)]);
+            Ok(())
+        }
         (Kind::Profile(_), Step::Name(name), Node::Table(fields)) => {
             let here = join(path, name);
-            if !format::ENDS.contains(&name.as_str()) {
-                return Err(target.refuse(&here, "base or tip", format!("\"{name}\"")));
+            let known = if fields.iter().any(is_points) { JOINED } else { format::ENDS };
+            if !known.contains(&name.as_str()) {
+                let expected = format!("{} or {}", known[0], known[1]);
+                return Err(target.refuse(&here, expected, format!("\"{name}\"")));
             }
             if !rest.is_empty() {
                 return Err(target.refuse(&here, "the end of the key", "more of it"));
@@ -141,6 +159,10 @@ fn into_value(entry: &mut Entry, path: &str, kind: Kind, steps: &[Step], target:
             Err(target.refuse(path, "the end of the key", "more of it"))
         }
     }
+}
+
+fn is_points(field: &Field) -> bool {
+    field.name == JOINED[0]
 }
 
 /// `cable[0].tension` as steps.

@@ -40,7 +40,7 @@ impl<'a> State<'a> {
     /// The heads of [`State::cells`] for an arm with so many cables; `more` come before the last one.
     pub(crate) fn columns(cables: usize, more: &[&str]) -> Vec<String> {
         let mut out: Vec<String> = ["tip_x_m", "tip_y_m", "tip_theta_rad", "tip_alpha_rad"].map(str::to_owned).into();
-        out.extend((0..cables).flat_map(|c| [format!("stroke[{c}]_m"), format!("tension[{c}]_N")]));
+        out.extend((0..cables).flat_map(|c| [format!("stroke_{c}_m"), format!("tension_{c}_N")]));
         out.extend(["stability", "unstable_directions"].map(str::to_owned));
         out.extend(more.iter().chain(&["error_estimate_m"]).map(|name| (*name).to_owned()));
         out

@@ -4,24 +4,17 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use csv::StringRecord;
 use hydrostat::Target;
 
+use crate::csv_text::{Dialect, Lines, is_missing, without_mark};
 use crate::error::shortened;
+use crate::heads::{readings, unit_of};
+use crate::quantity::Dimension;
+use crate::results::{INNER, PLACE, THETA};
 
 /// The most that is read, in bytes.
 const MOST: u64 = 64 << 20;
-
-/// Names of columns, their unit in SI, and what they are.
-const COLUMNS: [(&str, f64, Kind); 8] = [
-    ("x_m", 1.0, Kind::X),
-    ("x_cm", 1e-2, Kind::X),
-    ("x_mm", 1e-3, Kind::X),
-    ("y_m", 1.0, Kind::Y),
-    ("y_cm", 1e-2, Kind::Y),
-    ("y_mm", 1e-3, Kind::Y),
-    ("angle_rad", 1.0, Kind::Angle),
-    ("angle_deg", std::f64::consts::PI / 180.0, Kind::Angle),
-];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
@@ -91,8 +84,8 @@ pub enum TargetsError {
     },
 }
 
-/// Targets of the place `s` (m along the arm, none for the tip), in the order of the rows of a file. Empty lines and what
-/// follows a `#` are left out.
+/// Targets of the place `s` (m along the arm, none for the tip), in the order of the rows of a file. Empty lines, what follows a `#`, and of
+/// a table of stations all but x and y are left out. An angle that is empty, `NaN` or `NA` does not matter.
 ///
 /// # Errors
 /// [`TargetsError`].
@@ -122,31 +115,44 @@ pub fn read_targets(path: impl AsRef<Path>, s: Option<f64>) -> Result<Vec<Target
 /// ```
 pub fn parse_targets(text: &str, path: &str, s: Option<f64>) -> Result<Vec<Target>, TargetsError> {
     let path = path.to_owned();
-    let mut columns: Option<Vec<(&str, f64, Kind)>> = None;
+    let text = without_comments(without_mark(text));
+    let dialect = Dialect::of(&text);
+    let mut reader = dialect.reader().from_reader(text.as_bytes());
+    let mut lines = Lines::new(&text);
+    let mut columns: Option<Vec<TargetColumn>> = None;
     let mut out = Vec::new();
-    for (index, row) in text.trim_start_matches('\u{feff}').lines().enumerate() {
-        let line = index + 1;
-        let row = row.split('#').next().unwrap_or_default();
-        if row.trim().is_empty() {
+    for record in reader.records() {
+        // The text is in memory and is UTF-8.
+        let Ok(record) = record else { continue };
+        let line = record.position().map_or(0, |position| lines.of(position.byte()));
+        if record.iter().all(str::is_empty) {
             continue;
         }
-        let cells: Vec<&str> = row.split(',').map(|cell| cell.trim().trim_matches('"').trim()).collect();
         let Some(columns) = &columns else {
-            columns = Some(header(&cells).map_err(|found| TargetsError::Header { path: path.clone(), line, found })?);
+            columns =
+                Some(header(&record).map_err(|found| TargetsError::Header { path: path.clone(), line, found })?);
             continue;
         };
-        if cells.len() != columns.len() {
-            return Err(TargetsError::Ragged { path, line, expected: columns.len(), found: cells.len() });
+        if record.len() != columns.len() {
+            return Err(TargetsError::Ragged { path, line, expected: columns.len(), found: record.len() });
         }
         let mut target = Target { s, ..Target::tip(0.0, 0.0) };
-        for (cell, (column, unit, kind)) in cells.iter().zip(columns) {
-            let Some(value) = cell.parse().ok().filter(|value: &f64| value.is_finite()) else {
-                return Err(TargetsError::Value { path, line, column: (*column).to_owned(), found: shortened(cell) });
+        for (cell, column) in record.iter().zip(columns) {
+            let Some((kind, dimension, unit)) = column.quantity else { continue };
+            if kind == Kind::Angle && is_missing(cell) {
+                continue;
+            }
+            // From the decimal text, so that 0.1 mm is 1e-4 to the last bit.
+            let number =
+                dialect.number(cell).and_then(|_| dimension.parse(&format!("{} {unit}", dialect.plain(cell))).ok());
+            let Some(value) = number else {
+                let column = column.head.clone();
+                return Err(TargetsError::Value { path, line, column, found: shortened(cell) });
             };
             match kind {
-                Kind::X => target.x = value * unit,
-                Kind::Y => target.y = value * unit,
-                Kind::Angle => target.angle = Some(value * unit),
+                Kind::X => target.x = value,
+                Kind::Y => target.y = value,
+                Kind::Angle => target.angle = Some(value),
             }
         }
         out.push(target);
@@ -158,22 +164,62 @@ pub fn parse_targets(text: &str, path: &str, s: Option<f64>) -> Result<Vec<Targe
     }
 }
 
-/// What the columns are, or what is wrong with them.
-fn header(cells: &[&str]) -> Result<Vec<(&'static str, f64, Kind)>, String> {
-    let mut out: Vec<(&'static str, f64, Kind)> = Vec::new();
-    for cell in cells {
-        let Some(known) = COLUMNS.into_iter().find(|(name, ..)| name == cell) else {
-            return Err(format!("the column \"{}\"", shortened(cell)));
-        };
-        if let Some((other, ..)) = out.iter().find(|(.., kind)| *kind == known.2) {
-            return Err(format!("{other} and {cell}"));
+/// A text without what follows a # in its lines.
+fn without_comments(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.split_inclusive('\n') {
+        match line.split_once('#') {
+            Some((kept, comment)) => out.extend([kept, if comment.ends_with('\n') { "\n" } else { "" }]),
+            None => out.push_str(line),
         }
-        out.push(known);
     }
-    match [("x", Kind::X), ("y", Kind::Y)].into_iter().find(|(_, kind)| !out.iter().any(|(.., own)| own == kind)) {
+    out
+}
+
+/// A column and what it has of a target, in which unit.
+struct TargetColumn {
+    head: String,
+    quantity: Option<(Kind, Dimension, &'static str)>,
+}
+
+/// What the columns are, or what is wrong with them. Those of a table of stations beside x and y do not count.
+fn header(record: &StringRecord) -> Result<Vec<TargetColumn>, String> {
+    let mut out: Vec<TargetColumn> = Vec::new();
+    for head in record {
+        let quantity = quantity(head);
+        if quantity.is_none() && !(INNER.contains(&head) || head == THETA || head == PLACE) {
+            return Err(format!("the column \"{}\"", shortened(head)));
+        }
+        let same = |other: &&TargetColumn| {
+            quantity.is_some() && other.quantity.map(|(kind, ..)| kind) == quantity.map(|(kind, ..)| kind)
+        };
+        if let Some(other) = out.iter().find(same) {
+            return Err(format!("{} and {head}", other.head));
+        }
+        out.push(TargetColumn { head: head.to_owned(), quantity });
+    }
+    let has = |kind: Kind| out.iter().any(|column| column.quantity.is_some_and(|(own, ..)| own == kind));
+    match [("x", Kind::X), ("y", Kind::Y)].into_iter().find(|(_, kind)| !has(*kind)) {
         Some((name, _)) => Err(format!("no {name}")),
         None => Ok(out),
     }
+}
+
+/// The units of targets.
+const UNITS: [&str; 5] = ["m", "cm", "mm", "rad", "deg"];
+
+/// What a head names, as `x_mm` or as `x [mm]`.
+fn quantity(head: &str) -> Option<(Kind, Dimension, &'static str)> {
+    readings(head).into_iter().find_map(|(name, unit)| {
+        let (kind, dimension) = match name.to_lowercase().as_str() {
+            "x" | "target_x" => (Kind::X, Dimension::Length),
+            "y" | "target_y" => (Kind::Y, Dimension::Length),
+            "angle" | "target_angle" => (Kind::Angle, Dimension::Angle),
+            _ => return None,
+        };
+        let unit = unit_of(dimension, unit).filter(|unit| UNITS.contains(unit))?;
+        Some((kind, dimension, unit))
+    })
 }
 
 #[cfg(test)]
@@ -198,9 +244,29 @@ mod tests {
                 format!("t.csv:2: y_m: expected a finite number, found \"{}...\"", "9".repeat(60)).as_str(),
             ),
             ("x_m,y_m\n,1\n", "t.csv:2: x_m: expected a finite number, found \"\""),
+            ("x [mm];y [N]\n1;2\n", "found the column \"y [N]\""),
+            ("x_m,y_m,target_x_m\n", "found x_m and target_x_m"),
         ] {
             let error = parse_targets(text, "t.csv", None).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
         }
+    }
+
+    #[test]
+    fn tables_of_spreadsheets_and_of_stations_are_read() {
+        let read = |text: &str| -> Vec<(f64, f64, Option<f64>)> {
+            parse_targets(text, "t.csv", None).unwrap().iter().map(|t| (t.x, t.y, t.angle)).collect()
+        };
+        let want = [(0.1805, 0.07, None), (0.181, -0.071, Some(90_f64.to_radians()))];
+        for text in [
+            "\u{feff}x [mm];y [mm];angle [deg]\r\n180,5;70;\r\n181;-71;90\r\n",
+            "x_mm\ty_mm\tangle_deg\n180.5\t70\tNaN\n\n181\t-71\t90\n",
+            "# targets\n\"x_cm\",Y_cm,angle_deg # with an angle, or not\n18.05,7,NA\n18.1,-7.1,90\n",
+        ] {
+            assert_eq!(read(text), want, "{text}");
+        }
+        let stations =
+            "s_m,x_m,y_m,theta_rad,nu,eta,mu_per_m,beta,alpha_rad,n_a_N,n_b_N,m_Nm\n0.1,0.09,0.01,0.2,,,,,,,,\n";
+        assert_eq!(read(stations), [(0.09, 0.01, None)]);
     }
 }

@@ -8,6 +8,7 @@ use hydrostat::parameter::{UnknownParameter, names};
 use crate::digits::number;
 use crate::error::shortened;
 use crate::format::{dimension_at, home_of, nearest};
+use crate::heads::head_of;
 use crate::quantity::{Dimension, WrongValue};
 use crate::shared_unit::{PartialUnit, bare, shared_unit};
 
@@ -132,11 +133,9 @@ impl Varied {
         (0..count).map(|k| if k == last { to } else { rounded(from + share(k) * (to - from)) }).collect()
     }
 
-    /// The quantity with its SI unit, as the head of a column: `flow.speed_m_per_s`.
+    /// The quantity with its SI unit, as the head of a column: `flow_speed_m_s`.
     pub fn column(&self) -> String {
-        let unit = self.parameter.unit().replace(' ', "").replace('/', "_per_");
-        let key = self.parameter.to_string();
-        if unit.is_empty() { key } else { format!("{key}_{unit}") }
+        head_of(&self.parameter.to_string(), self.parameter.unit())
     }
 }
 
@@ -215,8 +214,8 @@ mod tests {
         let varied: Varied = "flow.speed=0:10 cm/s".parse().unwrap();
         assert_eq!(varied.values(3), [0.0, 0.05, 0.1]);
         assert_eq!(varied.values(1), [0.0]);
-        assert_eq!(varied.column(), "flow.speed_m_per_s");
-        assert_eq!("tip.moment=0:1".parse::<Varied>().unwrap().column(), "tip.moment_Nm");
-        assert_eq!("material.poisson=0:0.1".parse::<Varied>().unwrap().column(), "material.poisson");
+        assert_eq!(varied.column(), "flow_speed_m_s");
+        assert_eq!("tip.moment=0:1".parse::<Varied>().unwrap().column(), "tip_moment_Nm");
+        assert_eq!("material.poisson=0:0.1".parse::<Varied>().unwrap().column(), "material_poisson");
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use hydrostat::{Arm, Cavity, FlowLaw, Material, Profile, Readings};
+use hydrostat::{Arm, Cavity, FlowLaw, Join, Material, Profile, Readings};
 use serde::{Serialize, Serializer};
 
 /// An arm in the form of its file, every default filled in: SI numbers, angles as bare numbers in
@@ -104,7 +104,15 @@ impl Tree {
             Profile::Linear { base, tip } => {
                 Self::Table(vec![("base", Self::Number(*base)), ("tip", Self::Number(*tip))])
             }
-            Profile::Table(table) => Self::Array(table.points().map(Self::pair).collect()),
+            Profile::Table(table) => {
+                let points = Self::Array(table.points().map(Self::pair).collect());
+                match table.join() {
+                    Join::Cubic => points,
+                    join @ Join::Linear => {
+                        Self::Table(vec![("points", points), ("join", Self::Text(join.name().to_owned()))])
+                    }
+                }
+            }
         }
     }
 

@@ -74,6 +74,60 @@ fn spreadsheets_with_semicolons_and_decimal_commas_are_read() {
     assert_eq!((cases.len(), cases[0].name.as_str(), cases[0].measurements.len()), (1, "1", 2));
 }
 
+/// `NaN` and `NA` were refused, and a byte order mark with decimal commas read.
+#[test]
+fn what_programs_write_for_nothing_was_refused() {
+    for text in [
+        "s [mm],x [mm],y [mm]\n50,42.51,-23.16\n150,NaN,NaN\n245,84.83,NA\n",
+        "s_mm,x_mm,y_mm\n50,42.51,-23.16\n150,,\n245,84.83,nan\n",
+        "\u{feff}s [mm];x [mm];y [mm]\r\n50;42,51;-23,16\r\n245;84,83;\r\n",
+        "s [mm]\tx [mm]\ty [mm]\n50\t42,51\t-23.16\n245\t84.83\tNA\n",
+    ] {
+        let cases = read(text).unwrap();
+        let values: Vec<f64> = cases[0].measurements.iter().map(|m| m.value).collect();
+        assert_eq!(values, [0.04251, -0.02316, 0.08483], "{text}");
+    }
+}
+
+#[test]
+fn heads_are_read_as_identifiers() {
+    let bracketed = "case,cable[0].tension [mN],flow.speed [m/s],flow.law,s [mm],x [mm],base force x [N],base moment [N mm],stroke[1] [mm],sd x [mm]\n";
+    let plain = "case,cable_0_tension_mN,flow_speed_m_s,flow_law,s_mm,x_mm,base_force_x_N,base_moment_Nmm,stroke_1_mm,sd_x_mm\n";
+    let row = "a,200,0.1,quadratic-drag,245,230,0.1,2,3,0.5\n";
+    let [first, second] = [bracketed, plain].map(|heads| read(&format!("{heads}{row}")).unwrap().remove(0));
+    assert_eq!((&first.arm, &first.measurements), (&second.arm, &second.measurements));
+    assert_eq!((first.arm.cables[0].tension, first.measurements.len()), (0.2, 4));
+    assert!(
+        refused("s_mm,x\n1,1\n").contains("column \"x\": expected a length in m, cm, mm, um, in, ft; write the unit")
+    );
+    assert!(refused("s_mm,x_N\n1,1\n").contains("`N` is the unit of a force"));
+    assert!(refused("s_mm,flow_sped_m_s\n1,1\n").contains("did you mean `flow.speed`?"));
+}
+
+/// A table of stations is read as measured positions; its angles count where they have a standard deviation.
+#[test]
+fn the_tables_of_solves_are_measurements() {
+    let mut arm = ArmFile::parse(shipped::get("silicone").unwrap(), "silicone").unwrap();
+    arm.set("cable[0].end", "0.5").unwrap();
+    arm.set("cable[0].tension", "0.2").unwrap();
+    let solved = hydrostat::Solver::new(&arm.arm().unwrap(), hydrostat::Options::default()).unwrap().solve().unwrap();
+    let text = hydrostat_files::stations_csv(&solved.stations);
+    let nodes = solved.stations.len();
+    let positions = read_with(&text, &["1 mm"], &[]).unwrap();
+    // The end of the cable stands there twice.
+    assert_eq!(positions[0].measurements.len(), 2 * (nodes - 1));
+    let angles = read_with(&text, &["1 mm", "1 deg"], &[]).unwrap();
+    assert_eq!(angles[0].measurements.len(), 3 * (nodes - 1));
+}
+
+/// The first column was said to be unknown.
+#[test]
+fn columns_of_markers_are_refused_with_how_to_turn_them_round() {
+    let message = refused("frame,time,m1_x,m1_y,m2_x,m2_y\n7,0.0,0.0653,-0.0679,0.0848,-0.2109\n");
+    assert!(message.starts_with("data.csv, row 1: has columns for each marker (m1_x, m1_y, m2_x, m2_y)"), "{message}");
+    assert!(message.contains("\"case,s_mm,x_mm,y_mm\"") && message.contains("\"7,s,0.0653,-0.0679\""), "{message}");
+}
+
 #[test]
 fn columns_that_cannot_be_meant_are_named() {
     for (head, says) in [
@@ -109,7 +163,11 @@ fn rows_that_cannot_be_meant_are_named() {
         ("a,0.1,100,1,1,1,1\n", ", row 2: expected 6 cells"),
         ("a,0.1,100,one,1,1\n", ", row 2, column \"x [mm]\": expected a number (mm, as the head says), found \"one\""),
         ("a,0.1,100,5 mm,1,1\n", "found \"5 mm\""),
-        ("a,0.1,100,nan,1,1\n", "found \"nan\""),
+        ("a,0.1,100,inf,1,1\n", "found \"inf\""),
+        (
+            "a,0.1,NaN,1,1,1\n",
+            "column \"s [mm]\": expected a place along the arm, or nothing for the tip, found \"NaN\"",
+        ),
         ("a,0.1,100,1e999,1,1\n", "found \"1e999\""),
         ("a,0.1,300,1,1,1\n", ", row 2, column \"s [mm]\": 300 mm is beyond the arm, which goes from 0 to 245 mm"),
         ("a,0.1,-1,1,1,1\n", "-1 mm is beyond the arm"),

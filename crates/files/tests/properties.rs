@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use hydrostat::{
-    Arm, Base, Cable, Cavity, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity, Hydrostatics,
+    Arm, Base, Cable, Cavity, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity, Hydrostatics, Join,
     LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
 };
 use hydrostat_files::{ArmFile, Inputs, arm_to_toml, schema, shipped};
@@ -18,18 +18,20 @@ fn profile(low: f64, high: f64, length: f64) -> impl Strategy<Value = Profile> {
     prop_oneof![
         (low..high).prop_map(Profile::Constant),
         (low..high, low..high).prop_map(|(base, tip)| Profile::linear(base, tip)),
-        proptest::collection::vec((0.1..1.0, low..high), 2..6).prop_map(move |steps| {
-            let total: f64 = steps[1..].iter().map(|(step, _)| step).sum();
-            let mut s = 0.0;
-            let mut points: Vec<[f64; 2]> = Vec::new();
-            for (i, (step, value)) in steps.iter().enumerate() {
-                s += if i == 0 { 0.0 } else { step / total * length };
-                points.push([s, *value]);
+        (proptest::collection::vec((0.1..1.0, low..high), 2..6), select(Join::ALL.to_vec())).prop_map(
+            move |(steps, join)| {
+                let total: f64 = steps[1..].iter().map(|(step, _)| step).sum();
+                let mut s = 0.0;
+                let mut points: Vec<[f64; 2]> = Vec::new();
+                for (i, (step, value)) in steps.iter().enumerate() {
+                    s += if i == 0 { 0.0 } else { step / total * length };
+                    points.push([s, *value]);
+                }
+                let last = points.len() - 1;
+                points[last][0] = length;
+                Profile::joined(&points, join).unwrap()
             }
-            let last = points.len() - 1;
-            points[last][0] = length;
-            Profile::table(&points).unwrap()
-        }),
+        ),
     ]
 }
 

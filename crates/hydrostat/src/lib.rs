@@ -170,7 +170,7 @@ pub use dispatch::has_wide_vectors;
 pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
 pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
-pub use profile::{Point, Profile, Sample};
+pub use profile::{Join, Point, Profile, Sample, TableError};
 pub use reach::{
     Bound, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, BoundaryProgress, Followed, Follower,
     Reach, ReachError, ReachOptions, Reached, Target,

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use crate::arm::{Arm, ArmError, Flow};
-use crate::configuration::{Configuration, FoldMargin, Stations, Tip, Wrench};
+use crate::configuration::{Configuration, FoldMargin, Stations, Tip, Warning, Wrench};
 use crate::engine::{Engine, First, Guess};
 use crate::path::Travelled;
 use crate::readings::Support;
@@ -20,6 +20,7 @@ const FARTHEST: f64 = 0.5;
 
 /// What is asked of every row beyond tip, base reaction and error estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[allow(clippy::struct_excessive_bools, reason = "each is asked for by itself")]
 pub struct Wanted {
     /// How far each cable is reeled in.
     pub strokes: bool,
@@ -27,6 +28,8 @@ pub struct Wanted {
     pub fold_margin: bool,
     /// Stability, one to two milliseconds.
     pub stability: bool,
+    /// What should be known about the answer: reads the whole configuration.
+    pub warnings: bool,
     /// So many equally spaced stations; none below two.
     pub stations: usize,
 }
@@ -65,6 +68,8 @@ pub struct Row {
     pub fold_margin: Option<FoldMargin>,
     /// `None` where it was not asked for or is not established.
     pub stability: Option<Stability>,
+    /// What should be known about the answer; empty unless asked for.
+    pub warnings: Vec<Warning>,
     /// Empty unless asked for.
     pub stations: Stations,
 }
@@ -176,7 +181,7 @@ impl Tile {
         if engine.may_have_left_the_branch() || (engine.tip_angle() - before).abs() > FARTHEST {
             return None;
         }
-        if self.wanted.fold_margin || self.wanted.stability || self.wanted.stations >= 2 {
+        if self.wanted.fold_margin || self.wanted.stability || self.wanted.warnings || self.wanted.stations >= 2 {
             return Some(self.row(&solver.read(estimate, Travelled::default()).ok()?));
         }
         self.read(engine, estimate)
@@ -204,13 +209,14 @@ impl Tile {
             strokes,
             fold_margin: None,
             stability: None,
+            warnings: Vec::new(),
             stations: Stations::default(),
         })
     }
 
     /// A row from a whole configuration.
     fn row(&self, configuration: &Configuration) -> Row {
-        let Wanted { strokes, fold_margin, stability, stations } = self.wanted;
+        let Wanted { strokes, fold_margin, stability, warnings, stations } = self.wanted;
         let cables = &configuration.cables;
         Row {
             tip: configuration.tip(),
@@ -220,6 +226,7 @@ impl Tile {
             strokes: if strokes { cables.iter().map(|cable| cable.stroke).collect() } else { Vec::new() },
             fold_margin: fold_margin.then(|| configuration.fold_margin()),
             stability: if stability { configuration.stability() } else { None },
+            warnings: if warnings { configuration.warnings() } else { Vec::new() },
             stations: if stations < 2 { Stations::default() } else { configuration.resampled(stations) },
         }
     }

@@ -31,8 +31,30 @@ pub enum Profile {
         /// Value at s = L.
         tip: f64,
     },
-    /// Monotone piecewise cubic through given points.
+    /// Through given points, joined by a monotone piecewise cubic or by straight lines.
     Table(Table),
+}
+
+/// How the points of a [`Table`] are joined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Join {
+    /// By a monotone piecewise cubic: the slope is continuous, and between two points is no value beyond theirs.
+    #[default]
+    Cubic,
+    /// By straight lines: the slope jumps at the points.
+    Linear,
+}
+
+impl Join {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Cubic, Self::Linear];
+    /// Their words in arm files, in the same order.
+    pub const NAMES: [&'static str; 2] = ["cubic", "linear"];
+
+    /// The word in arm files.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
 }
 
 /// Value and derivatives of a [`Profile`] at one place.
@@ -58,7 +80,23 @@ impl Profile {
     /// # Errors
     /// [`TableError`] when there are fewer than two points, one is not finite, or `s` does not increase.
     pub fn table(points: &[[f64; 2]]) -> Result<Self, TableError> {
-        Table::new(points).map(Self::Table)
+        Self::joined(points, Join::Cubic)
+    }
+
+    /// A profile through `points`, each `[s in m, value]`, joined as `join` says.
+    ///
+    /// ```
+    /// use hydrostat::{Join, Profile};
+    ///
+    /// let radius = Profile::joined(&[[0.0, 0.010], [0.1, 0.010], [0.2, 0.002]], Join::Linear)?;
+    /// assert!((radius.at(0.15, 0.2).value - 0.006).abs() < 1e-15);
+    /// # Ok::<(), hydrostat::TableError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`Profile::table`].
+    pub fn joined(points: &[[f64; 2]], join: Join) -> Result<Self, TableError> {
+        Table::joined(points, join).map(Self::Table)
     }
 
     /// Value, slope and curvature at `s` (m) on an arm of length `length` (m).
@@ -96,7 +134,7 @@ impl Profile {
         }
     }
 
-    /// The places strictly inside (0, length) where the curvature jumps: the knots of a table.
+    /// The places strictly inside (0, length) where the curvature jumps, or the slope: the knots of a table.
     pub fn knots(&self) -> &[f64] {
         match self {
             Self::Table(table) => &table.s[1..table.s.len() - 1],
@@ -165,11 +203,12 @@ impl From<f64> for Profile {
 }
 
 /// Points joined by a monotone piecewise cubic (Fritsch and Carlson 1980; Fritsch and Butland 1984
-/// for the weighted harmonic mean), with the slopes of SciPy's `PchipInterpolator`, end slopes included.
+/// for the weighted harmonic mean), with the slopes of SciPy's `PchipInterpolator`, end slopes included; or by straight lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     s: Vec<f64>,
     value: Vec<f64>,
+    /// At the points; none where straight lines join them.
     slope: Vec<f64>,
 }
 
@@ -205,11 +244,19 @@ pub enum TableError {
 }
 
 impl Table {
-    /// Builds the interpolant through `points`, each `[s in m, value]`.
+    /// Builds the monotone piecewise cubic through `points`, each `[s in m, value]`.
     ///
     /// # Errors
     /// See [`TableError`].
     pub fn new(points: &[[f64; 2]]) -> Result<Self, TableError> {
+        Self::joined(points, Join::Cubic)
+    }
+
+    /// Builds the interpolant through `points`, each `[s in m, value]`.
+    ///
+    /// # Errors
+    /// See [`TableError`].
+    pub fn joined(points: &[[f64; 2]], join: Join) -> Result<Self, TableError> {
         if points.len() < 2 {
             return Err(TableError::TooShort { found: points.len() });
         }
@@ -223,7 +270,7 @@ impl Table {
         }
         let s: Vec<f64> = points.iter().map(|p| p[0]).collect();
         let value: Vec<f64> = points.iter().map(|p| p[1]).collect();
-        let slope = pchip_slopes(&s, &value);
+        let slope = slopes(join, &s, &value);
         Ok(Self { s, value, slope })
     }
 
@@ -232,11 +279,19 @@ impl Table {
         self.s.iter().zip(&self.value).map(|(s, v)| [*s, *v])
     }
 
+    /// How they are joined.
+    pub fn join(&self) -> Join {
+        if self.slope.is_empty() { Join::Linear } else { Join::Cubic }
+    }
+
     fn at(&self, s: f64) -> Sample {
         let last = self.s.len() - 2;
         let i = self.s.partition_point(|knot| *knot <= s).saturating_sub(1).min(last);
         let h = self.s[i + 1] - self.s[i];
         let chord = (self.value[i + 1] - self.value[i]) / h;
+        if self.slope.is_empty() {
+            return Sample { value: self.value[i] + (s - self.s[i]) * chord, slope: chord, curvature: 0.0 };
+        }
         let c2 = (3.0 * chord - 2.0 * self.slope[i] - self.slope[i + 1]) / h;
         let c3 = (self.slope[i] + self.slope[i + 1] - 2.0 * chord) / (h * h);
         let t = s - self.s[i];
@@ -245,6 +300,14 @@ impl Table {
             slope: self.slope[i] + t * (2.0 * c2 + 3.0 * t * c3),
             curvature: 2.0 * c2 + 6.0 * t * c3,
         }
+    }
+}
+
+/// At the points; none where straight lines join them.
+fn slopes(join: Join, s: &[f64], value: &[f64]) -> Vec<f64> {
+    match join {
+        Join::Cubic => pchip_slopes(s, value),
+        Join::Linear => Vec::new(),
     }
 }
 
@@ -306,6 +369,22 @@ mod tests {
             assert!(((hi.value - lo.value) / (2.0 * d) - p.at(s, 1.0).slope).abs() < 1e-8);
             assert!(((hi.slope - lo.slope) / (2.0 * d) - p.at(s, 1.0).curvature).abs() < 1e-7);
         }
+    }
+
+    #[test]
+    fn straight_lines_go_from_point_to_point() {
+        let points = [[0.0, 1.0], [0.3, 1.6], [0.7, 1.2], [1.0, 3.0]];
+        let p = Profile::joined(&points, Join::Linear).unwrap();
+        for pair in points.windows(2) {
+            let [[s, v], [t, w]] = [pair[0], pair[1]];
+            for share in [0.0, 0.25, 0.9] {
+                let at = p.at(s + share * (t - s), 1.0);
+                assert!((at.value - (v + share * (w - v))).abs() < 1e-14 && at.curvature == 0.0);
+                assert!((at.slope - (w - v) / (t - s)).abs() < 1e-12);
+            }
+        }
+        assert_eq!((p.at(1.0, 1.0).value, p.knots(), p.range(1.0, 1.0)), (3.0, &[0.3, 0.7][..], (1.0, 3.0)));
+        assert_eq!(p.scaled(2.0, 0.5).at(0.25, 0.5).slope, 4.0 * p.at(0.5, 1.0).slope);
     }
 
     #[test]

@@ -77,7 +77,7 @@ fn rows_stay_on_their_own_branch_and_end_with_their_own_verdict() {
 #[test]
 fn threads_do_not_matter() {
     let arms = grid(&arm("paper"), 120.0, 0.9, 14);
-    let wanted = Wanted { strokes: true, fold_margin: true, stability: false, stations: 5 };
+    let wanted = Wanted { strokes: true, fold_margin: true, stations: 5, ..Wanted::default() };
     for wanted in [Wanted::default(), wanted] {
         let solve = |threads: usize, tile: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -101,7 +101,7 @@ fn a_row_has_what_was_asked_for() {
     let plain = row(Wanted::default());
     assert!(plain.strokes.is_empty() && plain.fold_margin.is_none() && plain.stability.is_none());
     assert!(plain.stations.is_empty());
-    let all = row(Wanted { strokes: true, fold_margin: true, stability: true, stations: 7 });
+    let all = row(Wanted { strokes: true, fold_margin: true, stability: true, warnings: true, stations: 7 });
     let own = own(&arms[5], 1e-9).unwrap();
     assert_eq!((all.strokes.len(), all.stations.len()), (2, 7));
     assert_eq!(all.stability, own.stability());

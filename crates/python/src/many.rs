@@ -83,7 +83,7 @@ pub(crate) fn solve_many<'py>(
         parameter.of(&arm.given).map_err(|error| of_gradients(&error))?;
         Ok(parameter)
     };
-    let wanted = Wanted { strokes, fold_margin, stability, stations };
+    let wanted = Wanted { strokes, fold_margin, stability, warnings: false, stations };
     let gradients = gradients.iter().map(by).collect::<PyResult<_>>()?;
     let request = Request { base: &arm.given, varied, tol, tile, wanted, gradients };
     // Options are looked at whatever the rows.

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use hydrostat::{Row, Stability, Verdict, Wanted};
-use hydrostat_files::{Axis, AxisValue};
+use hydrostat::{Row, Stability, Verdict, Wanted, Warning};
+use hydrostat_files::{Axis, AxisValue, TOLERANCE_MISSED};
 
 /// Something that can be asked of every row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,13 +25,15 @@ pub enum Output {
     Stability,
     /// Estimated error of the tip position.
     Error,
+    /// What should be known about the answer.
+    Warnings,
     /// Why there is no answer: kind, phase, load fraction and place.
     Verdict,
 }
 
 impl Output {
     /// All, in the order of their columns.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Tip,
         Self::Alpha,
         Self::Strokes,
@@ -40,11 +42,13 @@ impl Output {
         Self::Fold,
         Self::Stability,
         Self::Error,
+        Self::Warnings,
         Self::Verdict,
     ];
 
     /// What is written unless something else is asked for.
-    pub const DEFAULT: [Self; 6] = [Self::Tip, Self::Alpha, Self::Strokes, Self::Base, Self::Error, Self::Verdict];
+    pub const DEFAULT: [Self; 7] =
+        [Self::Tip, Self::Alpha, Self::Strokes, Self::Base, Self::Error, Self::Warnings, Self::Verdict];
 
     /// The name that it is asked for with.
     pub fn name(self) -> &'static str {
@@ -57,6 +61,7 @@ impl Output {
             Self::Fold => "fold",
             Self::Stability => "stability",
             Self::Error => "error",
+            Self::Warnings => "warnings",
             Self::Verdict => "verdict",
         }
     }
@@ -118,6 +123,25 @@ pub struct Column {
 /// What became of a row: its answer, or why there is none; nothing where its values make no arm.
 pub(crate) type Answer = Result<Row, Option<Verdict>>;
 
+/// An answer, and the error of the tip (m) that was asked for.
+pub(crate) struct Answered {
+    pub(crate) answer: Answer,
+    pub(crate) asked: f64,
+}
+
+/// The column of warnings.
+pub(crate) const WARNINGS: &str = "warnings";
+
+/// The kinds of the warnings of a row with blanks between, each once.
+fn kinds(row: &Row, asked: f64) -> String {
+    let mut out: Vec<&str> = row.warnings.iter().map(Warning::kind).collect();
+    out.dedup();
+    if row.error_estimate > asked {
+        out.push(TOLERANCE_MISSED);
+    }
+    out.join(" ")
+}
+
 /// The columns of a sweep.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
@@ -146,6 +170,7 @@ impl Layout {
             strokes: has(Output::Strokes),
             fold_margin: has(Output::Fold),
             stability: has(Output::Stability),
+            warnings: has(Output::Warnings),
             stations: self.stations,
         }
     }
@@ -163,14 +188,18 @@ impl Layout {
             let numbers: Vec<String> = match output {
                 Output::Tip => ["tip_x_m", "tip_y_m", "tip_theta_rad"].map(str::to_owned).into(),
                 Output::Alpha => vec!["tip_alpha_rad".to_owned()],
-                Output::Strokes => (0..self.cables).map(|c| format!("stroke[{c}]_m")).collect(),
-                Output::Tensions => (0..self.cables).map(|c| format!("tension[{c}]_N")).collect(),
+                Output::Strokes => (0..self.cables).map(|c| format!("stroke_{c}_m")).collect(),
+                Output::Tensions => (0..self.cables).map(|c| format!("tension_{c}_N")).collect(),
                 Output::Base => ["base_force_x_N", "base_force_y_N", "base_moment_Nm"].map(str::to_owned).into(),
                 Output::Fold => ["fold_margin", "fold_s_m"].map(str::to_owned).into(),
                 Output::Error => vec!["error_estimate_m".to_owned()],
                 Output::Stability => {
                     out.push(text("stability"));
                     out.push(Column { name: "unstable_directions".to_owned(), data: Data::Whole(Vec::new()) });
+                    continue;
+                }
+                Output::Warnings => {
+                    out.push(text(WARNINGS));
                     continue;
                 }
                 Output::Verdict => {
@@ -181,13 +210,14 @@ impl Layout {
             out.extend(numbers.into_iter().map(number));
         }
         for (name, unit) in SHAPE {
-            out.extend((0..self.stations).map(|k| number(format!("shape_{name}[{k}]_{unit}"))));
+            out.extend((0..self.stations).map(|k| number(format!("shape_{name}_{k}_{unit}"))));
         }
         out
     }
 
     /// Adds a row to what [`Layout::columns`] has made; a row without a verdict has no arm.
-    pub(crate) fn add(&self, columns: &mut [Column], index: u64, values: &[AxisValue<'_>], row: &Answer) {
+    pub(crate) fn add(&self, columns: &mut [Column], index: u64, values: &[AxisValue<'_>], answer: &Answered) {
+        let Answered { answer: row, asked } = answer;
         let mut cells = Cells { columns: columns.iter_mut() };
         cells.whole(i64::try_from(index).ok());
         for value in values {
@@ -220,6 +250,10 @@ impl Layout {
                     let stability = found.and_then(|row| row.stability);
                     cells.text(stability.map(Stability::name));
                     cells.whole(stability.and_then(Stability::directions).and_then(|count| i64::try_from(count).ok()));
+                }
+                Output::Warnings => {
+                    let kinds = found.map(|row| kinds(row, *asked)).filter(|kinds| !kinds.is_empty());
+                    cells.text(kinds.as_deref());
                 }
                 Output::Verdict => {
                     let verdict = row.as_ref().err().and_then(Option::as_ref);

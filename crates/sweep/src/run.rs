@@ -1,5 +1,6 @@
 //! A sweep from its plan to its output.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -10,7 +11,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::arms::{Arms, Last};
-use crate::column::{Answer, Column, Data, Layout, Output};
+use crate::column::{Answered, Column, Data, Layout, Output, WARNINGS};
 use crate::error::{SweepError, parquet_error};
 use crate::parquet_file::Reader;
 use crate::parts::{Part, Parts, difference};
@@ -83,7 +84,7 @@ impl Default for SweepOptions {
 }
 
 /// What a sweep came to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Summary {
     /// Rows written.
     pub rows: u64,
@@ -93,6 +94,8 @@ pub struct Summary {
     pub resumed: u64,
     /// Parts of an earlier run whose bytes were not those written, and that were solved again.
     pub damaged: u64,
+    /// The kinds of warnings, each with how many rows have it; none where warnings are no column.
+    pub warnings: BTreeMap<String, u64>,
 }
 
 /// A sweep that can be run.
@@ -119,6 +122,7 @@ pub struct Sweep {
     layout: Layout,
     start: Tile,
     tiles: Range<u64>,
+    tol: f64,
     name: String,
     note: String,
 }
@@ -169,7 +173,7 @@ impl Sweep {
         };
         let note = note(&plan, &arms, &layout, options, &tiles);
         let name = arms.base().name.clone();
-        Ok(Self { plan, arms, layout, start, tiles, name, note })
+        Ok(Self { plan, arms, layout, start, tiles, tol: options.tol, name, note })
     }
 
     /// The name of the arm.
@@ -233,7 +237,8 @@ impl Sweep {
         if output.exists() {
             self.is_ended(output, resume, format)?;
             let count = rows.end - rows.start;
-            return Ok(Summary { rows: count, answered: answered(output)?, resumed: count, damaged: 0 });
+            let (answered, warnings) = (answered(output)?, warnings(output)?);
+            return Ok(Summary { rows: count, answered, resumed: count, damaged: 0, warnings });
         }
         if format == Format::Csv && csv_file::note(output)?.is_some_and(|note| note != self.note) {
             return Err(SweepError::Exists { path: csv_file::beside(output) });
@@ -272,6 +277,12 @@ impl Sweep {
         }
         let paths: Vec<PathBuf> = written.iter().map(|part| part.path.clone()).collect();
         let columns = self.layout.columns(self.plan.axes());
+        let mut warnings = BTreeMap::new();
+        if let Some(index) = columns.iter().position(|column| column.name == WARNINGS) {
+            for path in &paths {
+                count_kinds(&words_of_part(path, index, format)?, &mut warnings);
+            }
+        }
         if format == Format::Csv {
             write_whole(csv_file::beside(output), self.note.as_bytes())?;
         }
@@ -288,7 +299,7 @@ impl Sweep {
         })?;
         parts.remove()?;
         let answered = written.iter().map(|part| part.answered).sum();
-        Ok(Summary { rows: rows.end - rows.start, answered, resumed, damaged })
+        Ok(Summary { rows: rows.end - rows.start, answered, resumed, damaged, warnings })
     }
 
     /// An output that is there is the end of this sweep, or in the way.
@@ -362,7 +373,7 @@ impl Sweep {
             }
             (rows, answers)
         };
-        let solved: Vec<(Range<u64>, Vec<Answer>)> = tiles.clone().into_par_iter().map(solve).collect();
+        let solved: Vec<(Range<u64>, Vec<Answered>)> = tiles.clone().into_par_iter().map(solve).collect();
         let mut columns: Vec<Column> = self.layout.columns(self.plan.axes());
         for (rows, answers) in solved {
             for (row, answer) in rows.zip(&answers) {
@@ -402,20 +413,21 @@ impl Sweep {
     }
 
     /// The rows of a tile with what became of each.
-    fn tile(&self, tile: u64) -> (Range<u64>, Vec<Answer>) {
+    fn tile(&self, tile: u64) -> (Range<u64>, Vec<Answered>) {
         let rows = self.plan.tile(tile);
         let mut solver = self.start.clone();
         let mut last = Last::default();
-        let mut solved: Vec<(u64, Answer)> = Vec::new();
+        let mut solved: Vec<(u64, Answered)> = Vec::new();
         for row in self.plan.order(tile) {
             let arm = self.arms.arm(&self.plan.values(row), &mut last);
+            let asked = arm.map_or(f64::INFINITY, |arm| self.tol * arm.length);
             let answer = arm.ok_or(None).and_then(|arm| {
                 solver.solve(arm).map_err(|no| match no {
                     NoRow::Verdict(verdict) => Some(verdict),
                     NoRow::Arm(_) => None,
                 })
             });
-            solved.push((row, answer));
+            solved.push((row, Answered { answer, asked }));
         }
         solved.sort_unstable_by_key(|(row, _)| *row);
         (rows, solved.into_iter().map(|(_, answer)| answer).collect())
@@ -447,6 +459,32 @@ fn without_verdict(columns: &[Column]) -> u64 {
 fn answered(output: &Path) -> Result<u64, SweepError> {
     let table = crate::table::Table::read(output, &["verdict"])?;
     Ok(table.words("verdict").map_or(0, |words| words.iter().filter(|word| word.is_none()).count() as u64))
+}
+
+/// The words of a column of a part, by its index.
+fn words_of_part(path: &Path, index: usize, format: Format) -> Result<Vec<Option<String>>, SweepError> {
+    if format == Format::Csv {
+        return csv_file::words_of_part(path, index);
+    }
+    match Reader::open(path)?.column(WARNINGS)?.map(|column| column.data) {
+        Some(Data::Text(words)) => Ok(words),
+        _ => Ok(Vec::new()),
+    }
+}
+
+/// The kinds of warnings of a whole output.
+fn warnings(output: &Path) -> Result<BTreeMap<String, u64>, SweepError> {
+    let mut out = BTreeMap::new();
+    let table = crate::table::Table::read(output, &[WARNINGS])?;
+    count_kinds(&table.words(WARNINGS).unwrap_or_default(), &mut out);
+    Ok(out)
+}
+
+/// Adds the kinds of some rows to those counted before.
+fn count_kinds(rows: &[Option<String>], counts: &mut BTreeMap<String, u64>) {
+    for kind in rows.iter().flatten().flat_map(|kinds| kinds.split(' ')) {
+        *counts.entry(kind.to_owned()).or_default() += 1;
+    }
 }
 
 fn note(plan: &Plan, arms: &Arms, layout: &Layout, options: &SweepOptions, tiles: &Range<u64>) -> String {

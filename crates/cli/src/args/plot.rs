@@ -28,9 +28,9 @@ pub(crate) struct PlotArgs {
     /// The result of a sweep, .parquet or .csv
     #[arg(value_name = "SWEEP", value_parser = table)]
     pub(crate) sweep: PathBuf,
-    /// The column that gives colours
-    #[arg(long, value_name = "COLUMN", default_value = "tip_alpha_rad")]
-    pub(crate) quantity: String,
+    /// The column that gives colours [default: tip_alpha_rad where it varies by 10 deg, else the coordinate of the tip that varies most, else another that varies]
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) quantity: Option<String>,
     /// The two keys of the map, across and up; needed where more than two were varied
     #[arg(long, value_name = "KEY,KEY", value_delimiter = ',')]
     pub(crate) over: Vec<String>,

@@ -99,8 +99,11 @@ impl FromStr for Point {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (x, y) = text.split_once(',').ok_or_else(|| format!("expected X,Y, as in 0.12,0.05; found \"{text}\""))?;
-        let texts = shared_unit(Dimension::Length, "X,Y", &[x, y], ",").map_err(|error| error.to_string())?;
-        Ok(Self([length(&texts[0])?, length(&texts[1])?]))
+        // Two quantities, not the numbers of one: a bare y beside an x with a unit is in m.
+        match shared_unit(Dimension::Length, "X,Y", &[x, y], ",").as_deref() {
+            Ok([x, y]) => Ok(Self([length(x)?, length(y)?])),
+            _ => Ok(Self([length(x)?, length(y)?])),
+        }
     }
 }
 

@@ -43,8 +43,13 @@ pub(crate) struct SweepArgs {
     /// Seed of the sample
     #[arg(long, value_name = "SEED", default_value = "0")]
     pub(crate) seed: u64,
-    /// What is written of each row: tip, alpha, strokes, tensions, base, fold, stability, error, verdict
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "tip,alpha,strokes,base,error,verdict")]
+    /// What is written of each row: tip, alpha, strokes, tensions, base, fold, stability, error, warnings, verdict
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        default_value = "tip,alpha,strokes,base,error,warnings,verdict"
+    )]
     pub(crate) columns: Vec<Output>,
     /// Write the shape of each row, too, at N equally spaced stations (at least 2)
     #[arg(long, value_name = "N", value_parser = stations)]

@@ -1,10 +1,11 @@
 //! `hydrostat plot`: pictures of a sweep.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use hydrostat_figures::{
     Abscissa, Coloured, ColouredColumn, KeyValues, Page, Scene, curve_figure, map_figure, value_text, workspace_figure,
 };
+use hydrostat_files::head_now;
 use hydrostat_sweep::{Table, VariedKey, names, note_beside, varied_keys};
 
 use crate::args::PlotArgs;
@@ -12,6 +13,12 @@ use crate::output;
 use crate::request::{self, WrongRequest};
 
 const TIP: [&str; 2] = ["tip_x_m", "tip_y_m"];
+const ALPHA: &str = "tip_alpha_rad";
+/// How little an error estimate says of an arm.
+const ERROR: &str = "error_estimate_m";
+const VERDICT: &str = "verdict";
+/// What is drawn first where several vary.
+const TIP_FIRST: [&str; 2] = ["tip_theta_rad", ALPHA];
 
 pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
     let keys = varied_keys(&args.sweep)?;
@@ -22,11 +29,20 @@ pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
     let beside = note_beside(&args.sweep);
     request::check_outputs(&[Some(("SWEEP", &*args.sweep)), Some(("SWEEP", &*beside))], &outputs)?;
 
+    let quantity = match &args.quantity {
+        Some(asked) => head_now(asked),
+        None => varying(&args.sweep, &all, &keys)?,
+    };
     let mut wanted: Vec<&str> = keys.iter().map(|key| key.column.as_str()).collect();
     wanted.extend(TIP);
-    wanted.push(&args.quantity);
+    wanted.push(&quantity);
     let table = Table::read(&args.sweep, &wanted)?;
-    let column = coloured(&table, &args.quantity).ok_or_else(|| WrongRequest::NoColumn(args.quantity.clone(), all))?;
+    let Some(column) = coloured(&table, &quantity) else {
+        return Err(WrongRequest::NoColumn(args.quantity.clone().unwrap_or(quantity), all).into());
+    };
+    if matches!(&column.values, Coloured::Numbers(values) if !values.iter().any(|value| value.is_finite())) {
+        return Err(WrongRequest::NothingToDraw(args.sweep.clone(), Some(quantity)).into());
+    }
     let name = args.sweep.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let page = args.picture.page();
     let mut written = String::new();
@@ -80,13 +96,43 @@ fn over(keys: &[VariedKey], asked: &[String]) -> Result<Vec<VariedKey>, WrongReq
     if asked.is_empty() {
         return if keys.len() <= 2 { Ok(keys.to_vec()) } else { Err(WrongRequest::Over(known())) };
     }
-    let named =
-        |asked: &String| keys.iter().find(|key| key.name == asked.trim() || key.column == asked.trim()).cloned();
+    let named = |asked: &String| {
+        let asked = asked.trim();
+        keys.iter().find(|key| key.name == asked || key.column == head_now(asked)).cloned()
+    };
     let found: Option<Vec<VariedKey>> = asked.iter().map(named).collect();
     match found {
         Some(found) if found.len() == 1 || (found.len() == 2 && found[0] != found[1]) => Ok(found),
         _ => Err(WrongRequest::Over(known())),
     }
+}
+
+/// The column that gives colours where none is asked for: one that varies.
+fn varying(sweep: &Path, all: &[String], keys: &[VariedKey]) -> anyhow::Result<String> {
+    const LEAST_ANGLE: f64 = 10.0 * std::f64::consts::PI / 180.0;
+    let is_key = |name: &str| keys.iter().any(|key| key.column == name);
+    let mut outputs: Vec<&str> = all.iter().skip(1).map(String::as_str).filter(|name| !is_key(name)).collect();
+    outputs.sort_by_key(|name| TIP_FIRST.iter().position(|first| first == name).unwrap_or(TIP_FIRST.len()));
+    let table = Table::read(sweep, &outputs)?;
+    if table.words(VERDICT).is_some_and(|verdicts| verdicts.iter().all(Option::is_some)) {
+        return Err(WrongRequest::NothingToDraw(sweep.to_owned(), None).into());
+    }
+    let span = |name: &str| {
+        let values = table.numbers(name)?;
+        let ends = |ends: [f64; 2], v: &f64| [ends[0].min(*v), ends[1].max(*v)];
+        let [from, to] = values.iter().filter(|v| v.is_finite()).fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+        // What differs by rounding does not vary.
+        Some(to - from).filter(|span| *span > 1e-9 * from.abs().max(to.abs()))
+    };
+    if span(ALPHA).is_some_and(|span| span >= LEAST_ANGLE) {
+        return Ok(ALPHA.to_owned());
+    }
+    let widest = TIP.into_iter().filter_map(|name| Some((name, span(name)?))).max_by(|a, b| a.1.total_cmp(&b.1));
+    let other = || outputs.iter().copied().filter(|name| *name != ERROR).find(|name| span(name).is_some());
+    // Where nothing varies, one colour is what there is to see.
+    let any =
+        || outputs.iter().copied().find(|name| table.numbers(name).is_some_and(|v| v.iter().any(|v| v.is_finite())));
+    Ok(widest.map(|(name, _)| name).or_else(other).or_else(any).unwrap_or(VERDICT).to_owned())
 }
 
 fn coloured(table: &Table, name: &str) -> Option<ColouredColumn> {

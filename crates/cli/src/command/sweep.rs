@@ -42,6 +42,7 @@ pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
         .map_err(anyhow::Error::new)?;
     progress.end();
     let Summary { rows, answered, .. } = summary;
+    let warnings = warnings(&summary);
     if summary.damaged > 0 {
         let parts = if summary.damaged == 1 { "part" } else { "parts" };
         eprintln!("note: {} {parts} of an earlier run had changed since; solved again", summary.damaged);
@@ -50,8 +51,20 @@ pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
     if answered == 0 {
         return Err(NoAnswer(format!("{words}: the column `verdict` says why"))).context(words);
     }
-    eprintln!("{words}{}", progress.rate(summary));
+    eprintln!("{words}{}", progress.rate(&summary));
+    if let Some(warnings) = warnings {
+        eprintln!("note: {warnings}");
+    }
     Ok(())
+}
+
+/// How many rows have which warning, the most frequent first; `None` where there is none.
+fn warnings(summary: &Summary) -> Option<String> {
+    let mut all: Vec<(&String, &u64)> = summary.warnings.iter().collect();
+    all.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+    let of = |(kind, count): &(&String, &u64)| format!("{kind} in {count}");
+    let all: Vec<String> = all.iter().map(of).collect();
+    (!all.is_empty()).then(|| format!("warnings, of {} rows: {} (column `warnings`)", summary.rows, all.join(", ")))
 }
 
 /// How many rows are done, how fast, and how long the rest takes: a bar on a terminal, a line now and then elsewhere.
@@ -98,7 +111,7 @@ impl Rate {
         self.bar.finish_and_clear();
     }
 
-    fn rate(&self, summary: Summary) -> String {
+    fn rate(&self, summary: &Summary) -> String {
         let seconds = self.start.elapsed().as_secs_f64();
         let solved = summary.rows - summary.resumed;
         if solved == 0 {

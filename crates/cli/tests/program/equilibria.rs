@@ -32,7 +32,7 @@ fn text_says_how_many_and_whether_these_are_all() {
 fn csv_and_json_are_sorted_by_the_angle_of_the_tip() {
     let run = solved(&five(&["--format", "csv"]));
     let (names, rows) = columns(&run.out);
-    let expected = "number,tip_x_m,tip_y_m,tip_theta_rad,tip_alpha_rad,stroke[0]_m,tension[0]_N,stroke[1]_m,tension[1]_N,\
+    let expected = "number,tip_x_m,tip_y_m,tip_theta_rad,tip_alpha_rad,stroke_0_m,tension_0_N,stroke_1_m,tension_1_N,\
                     stability,unstable_directions,error_estimate_m";
     assert_eq!(names.join(","), expected);
     let angles: Vec<f64> = rows.iter().map(|row| row[3].parse().unwrap()).collect();
@@ -94,7 +94,7 @@ fn over_a_range_each_value_has_its_own() {
     assert_eq!(counts, [["10", "1", "1", "complete"], ["15", "5", "3", "complete"], ["20", "5", "3", "complete"]]);
     let csv = with(&["--format", "csv", "--plot-over", "over.png", "--quantity", "stroke[0]"]);
     let (names, rows) = columns(&csv);
-    assert_eq!(names[..4], ["flow.speed_m_per_s", "complete", "number", "tip_x_m"]);
+    assert_eq!(names[..4], ["flow_speed_m_s", "complete", "number", "tip_x_m"]);
     let keys: Vec<[&str; 3]> = rows.iter().map(|row| [row[0], row[1], row[2]]).collect();
     assert_eq!((keys[0], keys[5], keys.len()), (["0.1", "true", "1"], ["0.15", "true", "5"], 11));
     let document = json(&with(&["--format", "json"]));

@@ -13,6 +13,7 @@ mod reach;
 mod refusals;
 mod serve;
 mod sweeps;
+mod tables;
 mod units;
 mod validate;
 mod verdicts;

@@ -34,8 +34,8 @@ fn text_has_ends_events_and_a_summary() {
 fn csv_has_a_row_a_point_in_si_units() {
     let run = solved(&turned(&["--format", "csv"]));
     let (names, rows) = columns(&run.out);
-    let expected = "branch,arm.base.angle_rad,tip_x_m,tip_y_m,tip_theta_rad,tip_alpha_rad,stroke[0]_m,tension[0]_N,\
-                    stroke[1]_m,tension[1]_N,stability,unstable_directions,event,error_estimate_m";
+    let expected = "branch,arm_base_angle_rad,tip_x_m,tip_y_m,tip_theta_rad,tip_alpha_rad,stroke_0_m,tension_0_N,\
+                    stroke_1_m,tension_1_N,stability,unstable_directions,event,error_estimate_m";
     assert_eq!(names.join(","), expected);
     let first = rows.first().unwrap();
     assert_eq!((first[0], first[1].parse()), ("0", Ok(FRAC_PI_2)));
@@ -242,6 +242,6 @@ fn a_cable_gives_way_as_it_is_pulled() {
     ]);
     assert_eq!(run.code, 0, "{}", run.err);
     let (names, rows) = columns(&run.out);
-    assert_eq!(names[1], "flow.direction_rad");
+    assert_eq!(names[1], "flow_direction_rad");
     assert_eq!(rows.last().unwrap()[1].parse(), Ok(PI));
 }

@@ -79,7 +79,7 @@ fn the_place_asked_for_was_not_said() {
 
     let text = solved(&[&args[..], &["--format", "csv"]].concat()).out;
     let (names, rows) = columns(&text);
-    assert_eq!(names[4..9], ["s_m", "x_m", "y_m", "theta_rad", "alpha_rad"].map(|name| format!("place[0]_{name}")));
+    assert_eq!(names[4..9], ["s_m", "x_m", "y_m", "theta_rad", "alpha_rad"].map(|name| format!("place_0_{name}")));
     assert_eq!((rows[0].len(), rows[0][4], names[9]), (names.len(), "0.15", "tip_x_m"));
     assert!((rows[0][5].parse::<f64>().unwrap() - wanted_x).abs() < 1e-8, "{text}");
 
@@ -185,7 +185,7 @@ fn a_path_of_targets_is_followed() {
     assert_eq!(rows.len(), 12);
     for (k, row) in rows.iter().enumerate() {
         let angle = k as f64 * std::f64::consts::TAU / 12.0;
-        let left: f64 = row[column("tension[0]_N")].parse().unwrap();
+        let left: f64 = row[column("tension_0_N")].parse().unwrap();
         assert!((left - 0.2 - 0.05 * angle.cos()).abs() < 1e-5, "{k}: {row:?}");
         assert_eq!((row[column("reached")], row[column("jumped")]), ("true", "false"));
     }

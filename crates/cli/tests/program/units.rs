@@ -40,7 +40,6 @@ fn a_unit_behind_the_first_number_alone_has_two_readings() {
         (&["path", "paper", "--vary", "flow.speed=5 cm/s:20"], "5:20 cm/s", "5 cm/s:20 m/s"),
         (&["equilibria", "paper", "--over", "flow.speed=5 cm/s:20:4"], "5:20 cm/s", "5 cm/s:20 m/s"),
         (&["solve", "paper", "--tension", "20 mN,10"], "20,10 mN", "20 mN,10 N"),
-        (&["reach", "paper", "--target", "150 mm,-20"], "150,-20 mm", "150 mm,-20 m"),
     ] {
         let message = refused(args);
         assert!(message.contains(&format!("\"{shared}\"")) && message.contains(&format!("\"{each}\"")), "{message}");

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Profile, Table, end_slope, pchip_slopes};
+use super::{Join, Profile, Table, end_slope, slopes};
 
 /// One of the numbers that a profile is given by. Shown, it is what follows the profile's key in the arm file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -71,7 +71,7 @@ impl Profile {
             (Self::Linear { tip, .. }, _) => *tip = value,
             (Self::Table(table), Point::Knot(k)) => {
                 table.value[k] = value;
-                table.slope = pchip_slopes(&table.s, &table.value);
+                table.slope = slopes(table.join(), &table.s, &table.value);
             }
             (Self::Table(_), _) => return None,
         }
@@ -97,6 +97,9 @@ impl Profile {
 
 /// How the slopes of a table change with its values.
 fn slope_changes(table: &Table, change: &[f64]) -> Vec<f64> {
+    if table.join() == Join::Linear {
+        return Vec::new();
+    }
     let n = table.s.len();
     let h: Vec<f64> = table.s.windows(2).map(|w| w[1] - w[0]).collect();
     let chords = |values: &[f64]| -> Vec<f64> { values.windows(2).zip(&h).map(|(v, h)| (v[1] - v[0]) / h).collect() };
@@ -141,6 +144,7 @@ mod tests {
             Profile::Constant(0.01),
             Profile::linear(0.01, 0.002),
             Profile::table(&[[0.0, 1.0], [0.4, 1.5], [1.0, 3.0]]).unwrap(),
+            Profile::joined(&[[0.0, 1.0], [0.4, 1.5], [1.0, 3.0]], Join::Linear).unwrap(),
         ] {
             for point in profile.points() {
                 assert_eq!(Point::read(&point.to_string()), Some(point));
@@ -168,8 +172,8 @@ mod tests {
             &[[0.0, 1.0], [0.5, 1.05], [1.0, 9.0]],
             &[[0.0, 1.0], [1.0, 3.0]],
         ];
-        for points in tables {
-            let profile = Profile::table(points).unwrap();
+        for (points, join) in tables.into_iter().flat_map(|points| Join::ALL.map(|join| (points, join))) {
+            let profile = Profile::joined(points, join).unwrap();
             for (k, point) in profile.points().into_iter().enumerate() {
                 let change = profile.by_point(point).unwrap();
                 let step = 1e-6;
@@ -177,7 +181,7 @@ mod tests {
                     let moved = profile.with_point(point, points[k][1] + by).unwrap();
                     let mut own = points.to_vec();
                     own[k][1] += by;
-                    assert_eq!(moved, Profile::table(&own).unwrap());
+                    assert_eq!(moved, Profile::joined(&own, join).unwrap());
                     moved
                 };
                 let (after, before) = (moved(step), moved(-step));
