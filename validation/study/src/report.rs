@@ -7,7 +7,7 @@ use std::path::Path;
 
 use hydrostat::{EnteringSpeed, FlowSurface, LayerMean, Options, Readings, Solver, Volume, WettedLength};
 use hydrostat_figures::{
-    Abscissa, Coloured, ColouredColumn, KeyValues, Measure, Panel, Scale, arm_figure, lines_figure, map_figure,
+    Abscissa, Coloured, ColouredColumn, KeyValues, Measure, Page, Panel, Scale, arm_figure, lines_figure, map_figure,
 };
 use hydrostat_files::{arm_to_toml, number, write_whole};
 
@@ -42,7 +42,10 @@ pub fn write(folder: &Path, drawn: &[Found], scopes: &[Vec<Found>; 2]) -> anyhow
             let mut arm = best.set.arm(tension, SPEEDS[0]);
             arm.name = format!("best at {name} tension");
             let shape = Solver::new(&arm, Options { tol: TOL })?.solve()?;
-            write_whole(folder.join(format!("shape-{name}.svg")), arm_figure(&shape, None).svg().as_bytes())?;
+            write_whole(
+                folder.join(format!("shape-{name}.svg")),
+                arm_figure(&shape, None, &Page::default()).svg().as_bytes(),
+            )?;
             write_whole(folder.join(format!("best-{name}.toml")), arm_to_toml(&arm).as_bytes())?;
             let table = verification(&best.set, tension);
             write_whole(folder.join(format!("streams-{name}.csv")), table.as_bytes())?;
@@ -179,7 +182,7 @@ fn map_of_failing(drawn: &[Found]) -> hydrostat_figures::Scene {
     let word = |judged: &Judged| judged.failing(false).last().map(|s| s.words().to_owned());
     let words = all.iter().map(|(_, judged)| word(judged)).collect();
     let column = ColouredColumn { name: "failing".to_owned(), values: Coloured::Words(words) };
-    map_figure(&keys, &column, "the last statement that fails, at the highest tension")
+    map_figure(&keys, &column, "the last statement that fails, at the highest tension", &Page::default())
 }
 
 /// alpha(s) of a set at its highest tension in several streams.
@@ -204,7 +207,7 @@ fn curves(file: &Path, best: &Found) -> anyhow::Result<()> {
         Panel { up: measure("less that at 0 m/s (°)"), lines: less },
     ];
     let title = format!("alpha(s) at {} N", number(tension));
-    let figure = lines_figure(&title, &measure("s (mm)"), &["0 m/s", "0.5 m/s", "1 m/s"], &panels);
+    let figure = lines_figure(&title, &measure("s (mm)"), &["0 m/s", "0.5 m/s", "1 m/s"], &panels, &Page::default());
     write_whole(file, figure.svg().as_bytes())?;
     Ok(())
 }
