@@ -90,7 +90,7 @@ pub(crate) fn subtract_applied<const FUSED: bool, const N: usize, R: Real>(
 #[inline(always)]
 pub(crate) fn inverse<const N: usize>(m: &Block<N>, smallest: f64) -> Option<Block<N>> {
     let mut inverse = *m;
-    let fine = invert_in_order::<false, N, f64>(&mut inverse);
+    let (fine, _) = invert_in_order::<false, N, f64>(&mut inverse);
     if fine > 0.0 { Some(inverse) } else { inverse_with_pivoting(*m, smallest) }
 }
 
@@ -98,9 +98,9 @@ pub(crate) fn inverse<const N: usize>(m: &Block<N>, smallest: f64) -> Option<Blo
 const SMALL_PIVOT: f64 = 0.1;
 
 /// Inverse in place by Gauss–Jordan elimination without exchanges. Returns one, or zero where a pivot is
-/// small against the largest entry of the matrix given or against what stands under it.
+/// small against the largest entry of the matrix given or against what stands under it; and the determinant.
 #[inline(always)]
-pub(crate) fn invert_in_order<const FUSED: bool, const N: usize, R: Real>(m: &mut Block<N, R>) -> R {
+pub(crate) fn invert_in_order<const FUSED: bool, const N: usize, R: Real>(m: &mut Block<N, R>) -> (R, R) {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let mut columns = [zero; N];
     for row in m.iter() {
@@ -114,12 +114,14 @@ pub(crate) fn invert_in_order<const FUSED: bool, const N: usize, R: Real>(m: &mu
     }
     let mut fine = largest.if_less(R::of(f64::INFINITY), one, zero);
     let least = R::of(1e-3) * largest;
+    let mut product = one;
     for k in 0..N {
         let pivot = m[k][k].abs();
         fine = least.if_less(pivot, fine, zero);
         for i in k + 1..N {
             fine = pivot.if_less(R::of(SMALL_PIVOT) * m[i][k].abs(), zero, fine);
         }
+        product = product * m[k][k];
         let scale = one / m[k][k];
         // Column k is replaced by choice, not by storing into a row: a row that was stored in
         // parts cannot be loaded as one vector until all of it has reached the cache.
@@ -139,7 +141,30 @@ pub(crate) fn invert_in_order<const FUSED: bool, const N: usize, R: Real>(m: &mu
         }
         m[k] = own;
     }
-    fine
+    (fine, product)
+}
+
+/// Determinant, with pivoting.
+pub(crate) fn determinant<const N: usize>(mut m: Block<N>) -> f64 {
+    let mut product = 1.0;
+    for k in 0..N {
+        let best = (k..N).fold(k, |best, i| if m[i][k].abs() > m[best][k].abs() { i } else { best });
+        if best != k {
+            m.swap(best, k);
+            product = -product;
+        }
+        product *= m[k][k];
+        if m[k][k] == 0.0 {
+            return 0.0;
+        }
+        for i in k + 1..N {
+            let f = m[i][k] / m[k][k];
+            for c in k..N {
+                m[i][c] -= f * m[k][c];
+            }
+        }
+    }
+    product
 }
 
 /// Inverse by Gauss–Jordan elimination with partial pivoting.

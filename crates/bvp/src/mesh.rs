@@ -19,6 +19,13 @@ enum Pin {
     Loose,
 }
 
+impl Default for Mesh {
+    /// One element.
+    fn default() -> Self {
+        Self::uniform(1, &[])
+    }
+}
+
 impl Clone for Mesh {
     fn clone(&self) -> Self {
         Self { nodes: self.nodes.clone(), pinned: self.pinned.clone() }

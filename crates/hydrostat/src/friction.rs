@@ -18,7 +18,7 @@
 
 use std::sync::Arc;
 
-use hydrostat_bvp::{Gauss, LANES};
+use hydrostat_bvp::Gauss;
 
 use crate::arm::{Arm, Motion};
 use crate::engine::{Engine, M};
@@ -53,17 +53,6 @@ struct Turn {
     rate: Vec<[f64; M]>,
 }
 
-/// T(s)/T(0) at a place, and its slope.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Share {
-    pub(crate) value: f64,
-    pub(crate) slope: f64,
-}
-
-impl Share {
-    pub(crate) const WHOLE: Self = Self { value: 1.0, slope: 0.0 };
-}
-
 /// What the exponent is by the turn, a cable, with a share of the friction: minus the friction while reeling in.
 pub(crate) fn exponents(arm: &Arm, of_friction: f64) -> Vec<f64> {
     let sign = |motion| match motion {
@@ -86,7 +75,12 @@ impl Turns {
             for i in 0..mesh.elements() {
                 turned += step_at(engine, c, i)?;
                 turn.before.push(turned);
-                let rate: [f64; M] = std::array::from_fn(|j| equations.cable_turn(c, i, j).abs());
+                let angles: [f64; M] = std::array::from_fn(|j| {
+                    let (block, lane) = engine.solution.groups().at(i, j);
+                    equations.cable_angle_in(c, block, &engine.system.stations()[block]).0[lane]
+                });
+                let slope = |j: usize| (0..M).map(|l| gauss.d[j][l] * angles[l]).sum::<f64>() / mesh.step(i);
+                let rate: [f64; M] = std::array::from_fn(|j| slope(j).abs());
                 for j in 0..M {
                     turned += mesh.step(i) * gauss.b[j] * rate[j];
                 }
@@ -97,22 +91,20 @@ impl Turns {
         Ok(Self { gauss, nodes: mesh.nodes().to_vec(), cables })
     }
 
-    /// Phi of cable `c` at `s` (over L), and |chi'|.
-    pub(crate) fn at(&self, c: usize, s: f64, from_left: bool) -> [f64; 2] {
+    /// Phi of cable `c` at `s` (over L).
+    pub(crate) fn at(&self, c: usize, s: f64, from_left: bool) -> f64 {
         let turn = &self.cables[c];
         let last = self.nodes.len() - 2;
         let right = self.nodes.partition_point(|node| *node <= s).saturating_sub(1).min(last);
         let i = if from_left && right > 0 && self.nodes[right] == s { right - 1 } else { right };
         let h = self.nodes[i + 1] - self.nodes[i];
         let x = (s - self.nodes[i]) / h;
-        let (integrals, cardinals) = (self.gauss.integrals(x), self.gauss.cardinals(x));
+        let integrals = self.gauss.integrals(x);
         let mut turned = turn.before[i];
-        let mut rate = 0.0;
         for j in 0..M {
             turned += h * integrals[j] * turn.rate[i][j];
-            rate += cardinals[j] * turn.rate[i][j];
         }
-        [turned, rate]
+        turned
     }
 }
 
@@ -122,19 +114,13 @@ impl Grip {
     }
 
     /// The share of its tension that cable `c` has left at `s` (over L).
-    fn share(&self, c: usize, s: f64, from_left: bool) -> Share {
+    fn share(&self, c: usize, s: f64, from_left: bool) -> f64 {
         let exponent = self.exponents[c];
         if exponent == 0.0 {
-            return Share::WHOLE;
+            return 1.0;
         }
-        let [mut turned, mut rate] = [0.0; 2];
-        for (weight, shape) in &self.shapes {
-            let own = shape.at(c, s, from_left);
-            turned += weight * own[0];
-            rate += weight * own[1];
-        }
-        let value = (exponent * turned).exp();
-        Share { value, slope: exponent * rate * value }
+        let turned: f64 = self.shapes.iter().map(|(weight, shape)| weight * shape.at(c, s, from_left)).sum();
+        (exponent * turned).exp()
     }
 }
 
@@ -151,12 +137,6 @@ fn step_at(engine: &Engine, c: usize, i: usize) -> Result<f64, SectionFailure> {
 }
 
 impl Equations {
-    /// chi' of cable `c` at stage `j` of element `i`, over L.
-    fn cable_turn(&self, c: usize, i: usize, j: usize) -> f64 {
-        let (block, lane) = self.groups().at(i, j);
-        self.cable_turns(c, block).0[lane]
-    }
-
     /// Angle of cable `c` from the section normal at a place.
     fn cable_angle(&self, c: usize, s: f64, at: &AtPlace) -> f64 {
         let offset = self.offset(c, s);
@@ -168,20 +148,11 @@ impl Equations {
     /// Takes what friction leaves of the tensions, at every station.
     pub(crate) fn set_grip(&mut self, grip: Option<&Grip>) {
         self.grip = grip.cloned();
-        let groups = self.groups();
-        if self.stations().is_empty() {
-            return;
-        }
-        for block in 0..groups.count() * groups.stages {
-            for lane in 0..LANES {
-                let s = self.stations()[groups.station_in(block, lane)];
-                self.place_pull(block, lane, s);
-            }
-        }
+        self.take_pulls();
     }
 
     /// What friction leaves of the tension of cable `c` at `s`.
-    pub(crate) fn pull_share(&self, c: usize, s: f64, from_left: bool) -> Share {
-        self.grip.as_ref().map_or(Share::WHOLE, |grip| grip.share(c, s, from_left))
+    pub(crate) fn pull_share(&self, c: usize, s: f64, from_left: bool) -> f64 {
+        self.grip.as_ref().map_or(1.0, |grip| grip.share(c, s, from_left))
     }
 }

@@ -198,7 +198,7 @@ impl Rounds {
             for k in 0..=INTERVALS {
                 let s = f64::from(k) / f64::from(INTERVALS);
                 let turned = weights.iter().zip(&self.shapes).filter(|(weight, _)| **weight != 0.0);
-                out.push(exponent * turned.map(|(weight, shape)| weight * shape.at(c, s, true)[0]).sum::<f64>());
+                out.push(exponent * turned.map(|(weight, shape)| weight * shape.at(c, s, true)).sum::<f64>());
             }
         }
         out
@@ -208,7 +208,7 @@ impl Rounds {
     /// if all of the arm did the same.
     fn ease(&self) -> f64 {
         let Some(shape) = self.shapes.last() else { return 1.0 };
-        let steep = |(c, exponent): (usize, &f64)| -exponent * shape.at(c, 1.0, true)[0];
+        let steep = |(c, exponent): (usize, &f64)| -exponent * shape.at(c, 1.0, true);
         let steepest = self.exponents.iter().enumerate().map(steep).fold(0.0, f64::max);
         if steepest > 0.5 { 1.0 / (1.0 + steepest) } else { 1.0 }
     }

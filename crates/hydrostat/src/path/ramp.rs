@@ -37,7 +37,6 @@ fn follow_at(engine: &mut Engine, mut pace: Pace, hurry: bool) -> Result<Travell
         pace.longest *= 1.5;
     }
     let mut travelled = Travelled::default();
-    engine.on_a_path = true;
     engine.in_a_hurry = hurry;
     engine.set_phase(Phase::Loads, START);
     engine.start_unloaded(10);
@@ -249,7 +248,8 @@ impl Ramp<'_> {
         let engine = &self.stepper.engine;
         if engine.spent().is_none() && engine.equations.arm().readings.load_can_jump() {
             let length = self.stepper.engine.equations.units.length;
-            self.end(VerdictKind::LoadJump, 0.0, self.stepper.engine.nearest_switch().map(|s| s * length))
+            let place = self.stepper.engine.nearest_switch();
+            self.end(VerdictKind::LoadJump, 0.0, place.map(|s| s * length))
         } else {
             self.end(VerdictKind::NotFound, 0.0, None)
         }

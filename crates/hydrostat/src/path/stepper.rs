@@ -5,7 +5,7 @@ use hydrostat_bvp::{Correction, Mesh, Solution};
 
 use super::{CORNER, EVEN, FINEST, LOOSE, MANY, Pace, SYMMETRIC};
 use crate::engine::{Engine, HOP, M, Round, State, Trouble, roughly};
-use crate::equilibrium::{N, Q};
+use crate::equilibrium::{L, N, Q};
 use crate::verdict::Phase;
 
 /// The largest correction (rad) of a prediction that leads to the same branch.
@@ -19,7 +19,7 @@ pub(super) struct Point {
     pub(super) state: State,
     pub(super) fraction: f64,
     /// Change a unit of load.
-    pub(super) response: Correction<N, M, Q>,
+    pub(super) response: Correction<N, M, Q, L>,
     /// That of the tensions that commanded strokes take.
     pub(super) tensions: Vec<f64>,
     /// How far each commanded cable is from what it cannot pass: the tension of a taut one, the slack of a slack one.
@@ -111,7 +111,6 @@ pub(super) enum Turn {
 
 impl<'e> Stepper<'e> {
     pub(super) fn new(engine: &'e mut Engine, along: Along, bounds: [f64; 2]) -> Self {
-        engine.on_a_path = true;
         Self {
             engine,
             along,
@@ -183,7 +182,8 @@ impl<'e> Stepper<'e> {
     }
 
     /// [`Stepper::point`] by the last linearisation.
-    fn point_of_round(&self, fraction: f64) -> Result<Point, Trouble> {
+    fn point_of_round(&mut self, fraction: f64) -> Result<Point, Trouble> {
+        self.engine.take_switches();
         let weights = self.weights();
         let square: f64 = weights.iter().zip(&self.round.response.nodes).map(|(w, z)| w * z[0] * z[0]).sum();
         let norm = (1.0 + square).sqrt();
@@ -243,7 +243,7 @@ impl<'e> Stepper<'e> {
         for round in 0..12 {
             self.set(*fraction);
             self.linearise()?;
-            let dot = |c: &Correction<N, M, Q>| -> f64 { normal.iter().zip(&c.nodes).map(|(n, z)| n * z[0]).sum() };
+            let dot = |c: &Correction<N, M, Q, L>| -> f64 { normal.iter().zip(&c.nodes).map(|(n, z)| n * z[0]).sum() };
             let slide = -dot(&self.round.rest) / (dot(&self.round.response) + here.rise);
             self.engine.system.quadratures(&mut self.engine.spans);
             self.engine.tip = [0.0; Q];
@@ -278,7 +278,7 @@ impl<'e> Stepper<'e> {
     fn arrive(
         &mut self,
         here: &Point,
-        from: &Solution<N, M>,
+        from: &Solution<N, M, L>,
         mut fraction: Fraction,
         step: f64,
         pace: Pace,
@@ -320,15 +320,14 @@ impl<'e> Stepper<'e> {
     fn changed_sides(&self, here: &Point) -> f64 {
         let mesh = &self.engine.solution.mesh;
         let gauss = &self.engine.system.gauss;
-        let (before, now) = (&here.state.equations, &self.engine.equations);
         let mut share = 0.0;
         for (k, s) in self.engine.equations.stations().iter().enumerate() {
             let e = here.mesh().element_of(*s);
             let w = gauss.cardinals((s - here.mesh().nodes()[e]) / here.mesh().step(e));
             let length = mesh.step(k / M) * gauss.b[k % M];
             for side in 0..2 {
-                let then: f64 = (0..M).map(|j| w[j] * before.switch(e, j, side)).sum();
-                if then * now.switch(k / M, k % M, side) < 0.0 {
+                let then: f64 = (0..M).map(|j| w[j] * here.state.switch(e, j, side)).sum();
+                if then * self.engine.switch(k / M, k % M, side) < 0.0 {
                     share += length;
                 }
             }
@@ -415,7 +414,7 @@ impl<'e> Stepper<'e> {
     }
 }
 
-fn largest_turn(a: &Solution<N, M>, b: &Solution<N, M>) -> f64 {
+fn largest_turn(a: &Solution<N, M, L>, b: &Solution<N, M, L>) -> f64 {
     if a.nodes.len() != b.nodes.len() {
         return 0.0;
     }
