@@ -10,7 +10,7 @@ mod adjoint;
 use crate::block::{add_scaled, apply};
 use crate::condense::{Column, Condensed, Map, condense, condense_closed, solve_column};
 use crate::determinant::{Determinant, Product};
-use crate::directions::{Directions, Flow, Side};
+use crate::directions::{Directions, Side};
 use crate::gauss::{Gauss, POINTS};
 use crate::groups::Groups;
 use crate::mesh::Mesh;
@@ -97,7 +97,7 @@ pub struct Collocation<const N: usize, const M: usize, const Q: usize, const L: 
     ends: Vec<Inner<N, L, Lanes>>,
     directions: Directions,
     closed: bool,
-    condensed: Vec<Condensed<N, M>>,
+    condensed: Condensed<N, M>,
     maps: Vec<Map<N>>,
     closings: Vec<Closing<N, M>>,
     panels: Panels<N>,
@@ -159,7 +159,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             ends: Vec::new(),
             directions: Directions::default(),
             closed: false,
-            condensed: Vec::new(),
+            condensed: Condensed::default(),
             maps: Vec::new(),
             closings: Vec::new(),
             panels: Panels::default(),
@@ -400,7 +400,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
     ) -> Result<(), Singular> {
         let groups = self.groups;
         let mut product = Product::new();
-        self.condensed.resize_with(groups.count(), Condensed::blank);
+        self.condensed.resize(groups.count(), self.closed);
         let blank = Map {
             by_state: [[0.0; N]; N],
             by_taken: [0.0; N],
@@ -414,13 +414,8 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 self.condense_closed::<FUSED>(g, &mut own_product)
             } else {
                 let locals = &self.locals[g * M..(g + 1) * M];
-                condense::<FUSED, N, M, Q, L>(
-                    self.steps[g],
-                    &self.gauss,
-                    locals,
-                    &mut self.condensed[g],
-                    &mut own_product,
-                )
+                let (group, _) = self.condensed.group_mut(g);
+                condense::<FUSED, N, M, Q, L>(self.steps[g], &self.gauss, locals, group, &mut own_product)
             };
             condensed.map_err(|lane| Singular::Element(groups.element(g, lane)))?;
             for lane in 0..groups.filled(g) {
@@ -463,6 +458,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             values[M + 1].0[lane] = self.ends[block].value.0[from];
         }
         let locals = &self.locals[g * M..(g + 1) * M];
+        let (group, Some(closure)) = self.condensed.group_mut(g) else { return Err(0) };
         condense_closed::<FUSED, N, M, Q, L>(
             self.steps[g],
             &self.gauss,
@@ -471,7 +467,8 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             &self.ends[g],
             &values,
             &slopes,
-            &mut self.condensed[g],
+            group,
+            closure,
             product,
         )
     }
@@ -479,10 +476,9 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
     /// Block and lane of the end whose value element `i` takes over.
     #[inline(always)]
     fn taken_from(&self, i: usize) -> (usize, usize) {
-        match self.directions.side(i) {
-            Side::Left if self.directions.flow[i + 1] == Flow::Left => ((i + 1) / LANES, (i + 1) % LANES),
-            Side::Right if self.directions.flow[i] == Flow::Right => ((i - 1) / LANES, (i - 1) % LANES),
-            _ => {
+        match self.directions.taken_from(i) {
+            Some(neighbour) => (neighbour / LANES, neighbour % LANES),
+            None => {
                 let k = self.directions.closings.iter().position(|c| *c == i).unwrap_or(0);
                 (self.groups.count() + k / LANES, k % LANES)
             }
@@ -492,7 +488,8 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
     /// The maps of the elements of a group.
     #[inline(always)]
     fn map_group<const FUSED: bool>(&mut self, g: usize) {
-        let (groups, h, condensed) = (self.groups, self.steps[g], &self.condensed[g]);
+        let (groups, h) = (self.groups, self.steps[g]);
+        let (by_stages, by_taken_stages) = (self.condensed.by_state(g), self.condensed.by_taken(g));
         let zero = Lanes::of(0.0);
         let mut by_state = [[zero; N]; N];
         for a in 0..N {
@@ -500,7 +497,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         }
         for j in 0..M {
             let w = h * Lanes::of(self.gauss.b[j]);
-            add_scaled::<FUSED, N, Lanes>(&mut by_state, w, &condensed.by_state[j]);
+            add_scaled::<FUSED, N, Lanes>(&mut by_state, w, &by_stages[j]);
         }
         for lane in 0..groups.filled(g) {
             let out = &mut self.maps[g * LANES + lane];
@@ -513,24 +510,24 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         if !self.closed {
             return;
         }
-        let closure = &condensed.closure;
+        let closure = &self.condensed.closures[g];
         let mut by_taken = [zero; N];
         let mut own_by_state = [zero; N];
         let mut own_by_taken = closure.own_by_taken;
-        for m in 0..=M {
+        for m in 0..M + 1 {
             let inner = if m < M { &self.locals[g * M + m].inner } else { &self.ends[g] };
             for a in 0..N {
-                own_by_state[a] += closure.p[M][m] * inner.value_gradient[a];
+                own_by_state[a] += closure.own[m] * inner.value_gradient[a];
             }
         }
         for j in 0..M {
             let w = h * Lanes::of(self.gauss.b[j]);
             for a in 0..N {
                 let s = h * closure.own_by_slopes[j][a];
-                by_taken[a] += w * condensed.by_taken[j][a];
-                own_by_taken += s * condensed.by_taken[j][a];
+                by_taken[a] += w * by_taken_stages[j][a];
+                own_by_taken += s * by_taken_stages[j][a];
                 for b in 0..N {
-                    own_by_state[b] += s * condensed.by_state[j][a][b];
+                    own_by_state[b] = own_by_state[b].plus::<FUSED>(s, by_stages[j][a][b]);
                 }
             }
         }
@@ -564,8 +561,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
 
     fn closing(&self, i: usize, block: usize, lane: usize, product: &mut Product) -> Option<Closing<N, M>> {
         let (g, own) = (i / LANES, i % LANES);
-        let (condensed, map) = (&self.condensed[g], &self.maps[i]);
-        let closure = &condensed.closure;
+        let (map, closure) = (&self.maps[i], &self.condensed.closures[g]);
         let h = self.steps[g].0[own];
         let at = |v: Lanes| v.0[own];
         let inner = |m: usize| if m < M { &self.locals[g * M + m].inner } else { &self.ends[g] };
@@ -573,21 +569,13 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         let reach = other.reach.0[lane];
         let at_right = self.directions.side(i) == Side::Left;
         // Slopes at the other end by the values at the points, and by those that P leaves.
-        let mut defect = -self.end_stations[block].closure_slope.0[lane];
-        defect += at(closure.d[M + 1][M + 1]) * other.value.0[lane];
-        let mut by_point = [0.0; POINTS];
-        for m in 0..=M {
-            defect += at(closure.d[M + 1][m]) * at(inner(m).value);
-            for k in 0..=M {
-                by_point[m] += at(closure.d[M + 1][k]) * at(closure.p[k][m]);
-            }
-        }
-        let mut by_taken = at(closure.d[M + 1][M + 1]);
+        let defect = at(closure.other_slope) - self.end_stations[block].closure_slope.0[lane];
+        let by_point = closure.other.map(|v| v.0[own]);
+        let slope_by_taken = at(closure.other_by_taken);
         let mut by_slopes = [[0.0; N]; M];
         let mut row = [0.0; N];
-        for m in 0..=M {
+        for m in 0..M + 1 {
             let gradient = inner(m).value_gradient.map(|v| v.0[own]);
-            by_taken += by_point[m] * at(inner(m).reach) * at(closure.d[m][M + 1]);
             for a in 0..N {
                 row[a] += by_point[m] * gradient[a];
             }
@@ -608,13 +596,12 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 }
             }
         }
-        let slope_by_taken = by_taken;
-        by_taken *= reach;
+        let mut by_taken = reach * slope_by_taken;
         for l in 0..M {
             for a in 0..N {
-                by_taken += by_slopes[l][a] * at(condensed.by_taken[l][a]);
+                by_taken += by_slopes[l][a] * at(self.condensed.by_taken(g)[l][a]);
                 for b in 0..N {
-                    row[b] += by_slopes[l][a] * at(condensed.by_state[l][a][b]);
+                    row[b] += by_slopes[l][a] * at(self.condensed.by_state(g)[l][a][b]);
                 }
             }
         }
@@ -652,21 +639,20 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         defect: Option<&[Lanes; POINTS]>,
     ) -> Column<N, M> {
         let zero = Lanes::of(0.0);
-        let condensed = &self.condensed[g];
         let (mut value, mut by_closure) = ([zero; POINTS], [zero; POINTS]);
         if self.closed {
-            let closure = &condensed.closure;
+            let closure = &self.condensed.closures[g];
             value = *change;
             if let Some(defect) = defect {
-                for m in 0..=M {
+                for m in 0..M + 1 {
                     let inner = if m < M { &self.locals[g * M + m].inner } else { &self.ends[g] };
                     value[m] += inner.reach * defect[m];
                     by_closure[m] = defect[m];
                 }
             }
-            for j in 0..=M {
-                for m in 0..=M {
-                    by_closure[j] += closure.w[j][m] * value[m];
+            for j in 0..M + 1 {
+                for m in 0..M + 1 {
+                    by_closure[j] = by_closure[j].plus::<FUSED>(closure.w[j][m], value[m]);
                 }
             }
             for j in 0..M {
@@ -676,7 +662,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 }
             }
         }
-        solve_column::<FUSED, N, M>(&condensed.lu, &mut slopes);
+        solve_column::<FUSED, N, M>(self.condensed.lu(g), &mut slopes);
         Column { slopes, closure: by_closure, value, change: *change }
     }
 
@@ -696,7 +682,8 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         if self.closed {
             change[M] = self.ends[g].value_change;
         }
-        self.column::<FUSED>(g, slopes, &change, Some(&self.condensed[g].closure.defect))
+        let defect = self.condensed.closures.get(g).map(|closure| &closure.defect);
+        self.column::<FUSED>(g, slopes, &change, defect)
     }
 
     /// Loads of the rows of a column's elements: jumps of the state over them (without those of the solution), and own values.
@@ -712,9 +699,9 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             }
         }
         if self.closed {
-            let closure = &self.condensed[g].closure;
-            for m in 0..=M {
-                own += closure.p[M][m] * column.value[m];
+            let closure = &self.condensed.closures[g];
+            for m in 0..M + 1 {
+                own += closure.own[m] * column.value[m];
             }
             for j in 0..M {
                 for a in 0..N {
@@ -747,7 +734,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             if with_defect {
                 taken += closing.by_defect * closing.defect;
             }
-            for m in 0..=M {
+            for m in 0..M + 1 {
                 taken += closing.by_value[m] * column.value[m].0[own];
             }
             for l in 0..M {
@@ -928,7 +915,8 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         out.total = [0.0; Q];
         memory.values.clear();
         for g in 0..groups.count() {
-            let (h, condensed, column) = (self.steps[g], &self.condensed[g], &memory.columns[g]);
+            let (h, column) = (self.steps[g], &memory.columns[g]);
+            let (by_stages, by_taken_stages) = (self.condensed.by_state(g), self.condensed.by_taken(g));
             let mut z = [zero; N];
             let mut taken = zero;
             for lane in 0..LANES {
@@ -942,11 +930,11 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             }
             let mut k = column.slopes;
             for j in 0..M {
-                let by_state = apply(&condensed.by_state[j], &z);
+                let by_state = apply(&by_stages[j], &z);
                 for a in 0..N {
                     k[j][a] += by_state[a];
                     if self.closed {
-                        k[j][a] += condensed.by_taken[j][a] * taken;
+                        k[j][a] += by_taken_stages[j][a] * taken;
                     }
                 }
             }
@@ -955,13 +943,13 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 for l in 0..M {
                     let w = h * Lanes::of(self.gauss.a[j][l]);
                     for a in 0..N {
-                        states[j][a] += w * k[l][a];
+                        states[j][a] = states[j][a].plus::<FUSED>(w, k[l][a]);
                     }
                 }
             }
             let mut closure_slopes = [zero; POINTS];
             if self.closed {
-                let closure = &condensed.closure;
+                let closure = &self.condensed.closures[g];
                 let mut values = [zero; POINTS];
                 let mut own = z;
                 for l in 0..M {
@@ -970,24 +958,24 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                         own[a] += w * k[l][a];
                     }
                 }
-                for m in 0..=M {
+                for m in 0..M + 1 {
                     let (inner, state) = if m < M {
                         (&self.locals[g * M + m].inner, &states[m])
                     } else {
                         (&self.ends[g], &own)
                     };
                     for a in 0..N {
-                        values[m] += inner.value_gradient[a] * state[a];
+                        values[m] = values[m].plus::<FUSED>(inner.value_gradient[a], state[a]);
                     }
                 }
-                for j in 0..=M {
+                for j in 0..M + 1 {
                     let mut slope = column.closure[j] + closure.omega[j] * taken;
-                    for m in 0..=M {
-                        slope += closure.w[j][m] * values[m];
+                    for m in 0..M + 1 {
+                        slope = slope.plus::<FUSED>(closure.w[j][m], values[m]);
                     }
                     closure_slopes[j] = slope;
                 }
-                for m in 0..=M {
+                for m in 0..M + 1 {
                     let inner = if m < M { &self.locals[g * M + m].inner } else { &self.ends[g] };
                     values[m] += column.change[m] + inner.reach * closure_slopes[m];
                 }
@@ -1010,13 +998,13 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 for a in 0..L {
                     stage.inner[a] = local.inner.by_closure[a] * closure_slopes[j];
                     for b in 0..N {
-                        stage.inner[a] += local.inner.gradient[a][b] * states[j][b];
+                        stage.inner[a] = stage.inner[a].plus::<FUSED>(local.inner.gradient[a][b], states[j][b]);
                     }
                 }
                 for q in 0..Q {
                     rate[q] = local.rate_by_closure[q] * closure_slopes[j];
                     for a in 0..N {
-                        rate[q] += local.rate_gradient[q][a] * states[j][a];
+                        rate[q] = rate[q].plus::<FUSED>(local.rate_gradient[q][a], states[j][a]);
                     }
                 }
                 add(g, j, &mut stage, &mut rate);
@@ -1051,10 +1039,11 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                     }
                 }
             }
-            let d = &self.condensed[g].closure.d[M + 1];
-            let mut slope = d[M + 1].0[own] * memory.taken[i];
-            for m in 0..=M {
-                slope += d[m].0[own] * memory.values[g][m].0[own];
+            let d = &self.gauss.closure[self.directions.side(i).index()][M + 1];
+            let inverse_h = 1.0 / self.steps[g].0[own];
+            let mut slope = inverse_h * d[M + 1] * memory.taken[i];
+            for m in 0..M + 1 {
+                slope += inverse_h * d[m] * memory.values[g][m].0[own];
             }
             if memory.with_defects {
                 slope += closing.defect;

@@ -24,38 +24,107 @@ use crate::block::{Block, apply, determinant, inverse, invert_in_order, multiply
 use crate::directions::Side;
 use crate::gauss::{Gauss, POINTS};
 use crate::problem::{Inner, Local};
-use crate::real::{LANES, Lanes, Real, each};
+use crate::real::{LANES, Lanes, Real};
+
+/// All groups of elements, condensed, in flat memory.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Condensed<const N: usize, const M: usize> {
+    lu: Vec<Block<N, Lanes>>,
+    by_state: Vec<Block<N, Lanes>>,
+    by_taken: Vec<[Lanes; N]>,
+    pub(crate) closures: Vec<Closure<N, M>>,
+}
+
+/// The stage equations of a group in block LU: inverses on the diagonal, a unit upper part.
+pub(crate) type BlockLu<const N: usize, const M: usize> = [[Block<N, Lanes>; M]];
 
 /// A group of elements, condensed.
-#[derive(Debug, Clone)]
-pub(crate) struct Condensed<const N: usize, const M: usize> {
-    /// The stage equations in block LU: inverses on the diagonal, a unit upper part.
-    pub(crate) lu: [[Block<N, Lanes>; M]; M],
+#[derive(Debug)]
+pub(crate) struct GroupMut<'a, const N: usize, const M: usize> {
+    pub(crate) lu: &'a mut BlockLu<N, M>,
     /// d (stage slopes) / d z.
-    pub(crate) by_state: [Block<N, Lanes>; M],
+    pub(crate) by_state: &'a mut [Block<N, Lanes>],
     /// d (stage slopes) / d w.
-    pub(crate) by_taken: [[Lanes; N]; M],
-    pub(crate) closure: Closure<N, M>,
+    pub(crate) by_taken: &'a mut [[Lanes; N]],
+}
+
+impl<const N: usize, const M: usize> Condensed<N, M> {
+    /// Room for so many groups.
+    pub(crate) fn resize(&mut self, groups: usize, closed: bool) {
+        // What is new is written before it is read.
+        let blank = Lanes::of(f64::NAN);
+        self.lu.resize(groups * M * M, [[blank; N]; N]);
+        self.by_state.resize(groups * M, [[blank; N]; N]);
+        self.by_taken.resize(groups * M, [blank; N]);
+        self.closures.resize(if closed { groups } else { 0 }, Closure::blank());
+    }
+
+    /// Group `g`, and its closure where there is one.
+    #[inline(always)]
+    pub(crate) fn group_mut(&mut self, g: usize) -> (GroupMut<'_, N, M>, Option<&mut Closure<N, M>>) {
+        let lu = self.lu[g * M * M..(g + 1) * M * M].as_chunks_mut::<M>().0;
+        let by_state = &mut self.by_state[g * M..(g + 1) * M];
+        let by_taken = &mut self.by_taken[g * M..(g + 1) * M];
+        (GroupMut { lu, by_state, by_taken }, self.closures.get_mut(g))
+    }
+
+    #[inline(always)]
+    pub(crate) fn lu(&self, g: usize) -> &BlockLu<N, M> {
+        self.lu[g * M * M..(g + 1) * M * M].as_chunks::<M>().0
+    }
+
+    /// d (stage slopes) / d z of group `g`.
+    #[inline(always)]
+    pub(crate) fn by_state(&self, g: usize) -> &[Block<N, Lanes>] {
+        &self.by_state[g * M..(g + 1) * M]
+    }
+
+    /// d (stage slopes) / d w of group `g`.
+    #[inline(always)]
+    pub(crate) fn by_taken(&self, g: usize) -> &[[Lanes; N]] {
+        &self.by_taken[g * M..(g + 1) * M]
+    }
 }
 
 /// The closure of a group of elements; point M is the own end.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Closure<const N: usize, const M: usize> {
-    /// D, by the sides of the elements.
-    pub(crate) d: [[Lanes; POINTS]; POINTS],
-    /// P.
-    pub(crate) p: [[Lanes; POINTS]; POINTS],
     /// W.
     pub(crate) w: [[Lanes; POINTS]; POINTS],
     pub(crate) omega: [Lanes; POINTS],
+    /// The row of P of the own end.
+    pub(crate) own: [Lanes; POINTS],
     /// d w_own / d w directly.
     pub(crate) own_by_taken: Lanes,
     /// d w_own / d (stage slopes), over the step.
     pub(crate) own_by_slopes: [[Lanes; N]; M],
     /// What the slopes of the polynomial through w differ by from the closure slopes.
     pub(crate) defect: [Lanes; POINTS],
+    /// The slope at the other end, by what P leaves at the points, and by w.
+    pub(crate) other: [Lanes; POINTS],
+    pub(crate) other_by_taken: Lanes,
+    /// The slope of the polynomial through w there.
+    pub(crate) other_slope: Lanes,
     /// Whether a lane's own end is its right one: 0 or 1.
     pub(crate) right: Lanes,
+}
+
+impl<const N: usize, const M: usize> Closure<N, M> {
+    fn blank() -> Self {
+        let blank = Lanes::of(f64::NAN);
+        Self {
+            w: [[blank; POINTS]; POINTS],
+            omega: [blank; POINTS],
+            own: [blank; POINTS],
+            own_by_taken: blank,
+            own_by_slopes: [[blank; N]; M],
+            defect: [blank; POINTS],
+            other: [blank; POINTS],
+            other_by_taken: blank,
+            other_slope: blank,
+            right: blank,
+        }
+    }
 }
 
 /// The maps of an element, see the module.
@@ -78,34 +147,14 @@ pub(crate) struct Column<const N: usize, const M: usize> {
     pub(crate) change: [Lanes; POINTS],
 }
 
-impl<const N: usize, const M: usize> Condensed<N, M> {
-    pub(crate) fn blank() -> Self {
-        let zero = Lanes::of(0.0);
-        Self {
-            lu: [[[[zero; N]; N]; M]; M],
-            by_state: [[[zero; N]; N]; M],
-            by_taken: [[zero; N]; M],
-            closure: Closure {
-                d: [[zero; POINTS]; POINTS],
-                p: [[zero; POINTS]; POINTS],
-                w: [[zero; POINTS]; POINTS],
-                omega: [zero; POINTS],
-                own_by_taken: zero,
-                own_by_slopes: [[zero; N]; M],
-                defect: [zero; POINTS],
-                right: zero,
-            },
-        }
-    }
-}
-
-/// Condenses a group without a closure variable; false where a lane's stages cannot be eliminated. `sign` is multiplied by the determinant.
+/// Condenses a group without a closure variable; else the lane whose stages cannot be eliminated. `product` is multiplied by the
+/// determinants.
 #[inline(always)]
 pub(crate) fn condense<const FUSED: bool, const N: usize, const M: usize, const Q: usize, const L: usize>(
     h: Lanes,
     gauss: &Gauss<M>,
     locals: &[Local<N, Q, L, Lanes>],
-    out: &mut Condensed<N, M>,
+    out: GroupMut<'_, N, M>,
     product: &mut Lanes,
 ) -> Result<(), usize> {
     let locals = &locals[..M];
@@ -125,8 +174,8 @@ pub(crate) fn condense<const FUSED: bool, const N: usize, const M: usize, const 
         }
         out.by_state[j] = *jacobian;
     }
-    factorise::<FUSED, N, M>(&mut out.lu, product)?;
-    solve_blocks::<FUSED, N, M>(&out.lu, &mut out.by_state);
+    factorise::<FUSED, N, M>(out.lu, product)?;
+    solve_blocks::<FUSED, N, M>(out.lu, out.by_state);
     Ok(())
 }
 
@@ -142,58 +191,72 @@ pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize,
     own: &Inner<N, L, Lanes>,
     values: &[Lanes; POINTS],
     slopes: &[Lanes; POINTS],
-    out: &mut Condensed<N, M>,
+    out: GroupMut<'_, N, M>,
+    closure: &mut Closure<N, M>,
     product: &mut Lanes,
 ) -> Result<(), usize> {
     let locals = &locals[..M];
     let inner = |m: usize| if m < M { &locals[m].inner } else { own };
     let zero = Lanes::of(0.0);
     let inverse_h = Lanes::of(1.0) / h;
-    let closure = &mut out.closure;
-    closure.right = Lanes(sides.map(Side::place));
+    let right = Lanes(sides.map(Side::place));
+    closure.right = right;
+    let mut d = [[zero; POINTS]; POINTS];
     for m in 0..M + 2 {
         for l in 0..M + 2 {
-            let [left, right] = [gauss.closure[0][m][l], gauss.closure[1][m][l]];
-            closure.d[m][l] = inverse_h * Lanes(each(|lane| if sides[lane] == Side::Left { left } else { right }));
+            let [on_left, on_right] = [gauss.closure[0][m][l], gauss.closure[1][m][l]];
+            d[m][l] = inverse_h * (Lanes::of(on_left) + right * Lanes::of(on_right - on_left));
         }
     }
-    let d = &closure.d;
     // P by elimination in order; the matrix is near one, or its largest entries stand on the diagonal.
-    let p = &mut closure.p;
-    for m in 0..=M {
+    let mut p = [[zero; POINTS]; POINTS];
+    for m in 0..M + 1 {
         let reach = inner(m).reach;
-        for l in 0..=M {
+        for l in 0..M + 1 {
             p[m][l] = -(reach * d[m][l]);
         }
         p[m][m] += Lanes::of(1.0);
     }
-    invert_points::<M>(p, product)?;
-    for m in 0..=M {
+    invert_points::<FUSED, M>(&mut p, product)?;
+    closure.own = p[M];
+    for m in 0..M + 1 {
         let mut defect = d[m][M + 1] * values[M + 1] - slopes[m];
-        for l in 0..=M {
-            defect += d[m][l] * values[l];
+        for l in 0..M + 1 {
+            defect = defect.plus::<FUSED>(d[m][l], values[l]);
         }
         closure.defect[m] = defect;
-        for l in 0..=M {
+        for l in 0..M + 1 {
             let mut sum = zero;
-            for k in 0..=M {
-                sum += d[m][k] * p[k][l];
+            for k in 0..M + 1 {
+                sum = sum.plus::<FUSED>(d[m][k], p[k][l]);
             }
             closure.w[m][l] = sum;
         }
     }
-    for m in 0..=M {
+    let mut taken = [zero; POINTS];
+    for m in 0..M + 1 {
+        taken[m] = inner(m).reach * d[m][M + 1];
+    }
+    for m in 0..M + 1 {
         let mut omega = d[m][M + 1];
-        for l in 0..=M {
-            omega += closure.w[m][l] * inner(l).reach * d[l][M + 1];
+        for l in 0..M + 1 {
+            omega = omega.plus::<FUSED>(closure.w[m][l], taken[l]);
         }
         closure.omega[m] = omega;
     }
-    let mut own_by_taken = zero;
-    for m in 0..=M {
-        own_by_taken += p[M][m] * inner(m).reach * d[m][M + 1];
+    let (mut own_by_taken, mut other_by_taken) = (zero, d[M + 1][M + 1]);
+    let mut other_slope = d[M + 1][M + 1] * values[M + 1];
+    for m in 0..M + 1 {
+        let mut other = zero;
+        for k in 0..M + 1 {
+            other = other.plus::<FUSED>(d[M + 1][k], p[k][m]);
+        }
+        closure.other[m] = other;
+        own_by_taken += p[M][m] * taken[m];
+        other_by_taken += other * taken[m];
+        other_slope += d[M + 1][m] * values[m];
     }
-    closure.own_by_taken = own_by_taken;
+    (closure.own_by_taken, closure.other_by_taken, closure.other_slope) = (own_by_taken, other_by_taken, other_slope);
 
     // Integrals up to stages and own end.
     let upto = |m: usize, l: usize, right: Lanes| {
@@ -201,20 +264,27 @@ pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize,
     };
     for l in 0..M {
         let mut own_by_slopes = [zero; N];
-        for m in 0..=M {
-            let f = p[M][m] * upto(m, l, closure.right);
+        for m in 0..M + 1 {
+            let f = p[M][m] * upto(m, l, right);
             for a in 0..N {
-                own_by_slopes[a] += f * inner(m).value_gradient[a];
+                own_by_slopes[a] = own_by_slopes[a].plus::<FUSED>(f, inner(m).value_gradient[a]);
             }
         }
         closure.own_by_slopes[l] = own_by_slopes;
     }
+    // Minus h times these.
+    let mut weights = [[zero; M]; POINTS];
+    for m in 0..M + 1 {
+        for l in 0..M {
+            weights[m][l] = -(h * upto(m, l, right));
+        }
+    }
     for j in 0..M {
         let (jacobian, u) = (&locals[j].jacobian, &locals[j].by_closure);
         let mut by_state = [zero; N];
-        for m in 0..=M {
+        for m in 0..M + 1 {
             for a in 0..N {
-                by_state[a] += closure.w[j][m] * inner(m).value_gradient[a];
+                by_state[a] = by_state[a].plus::<FUSED>(closure.w[j][m], inner(m).value_gradient[a]);
             }
         }
         for a in 0..N {
@@ -225,14 +295,11 @@ pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize,
         }
         for l in 0..M {
             let mut x = [zero; N];
-            for m in 0..=M {
-                let f = closure.w[j][m] * upto(m, l, closure.right);
+            for m in 0..M + 1 {
+                let f = closure.w[j][m] * weights[m][l];
                 for a in 0..N {
                     x[a] = x[a].plus::<FUSED>(f, inner(m).value_gradient[a]);
                 }
-            }
-            for a in 0..N {
-                x[a] = -(h * x[a]);
             }
             let f = -(h * Lanes::of(gauss.a[j][l]));
             let block = &mut out.lu[j][l];
@@ -246,18 +313,19 @@ pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize,
             out.lu[j][j][a][a] += Lanes::of(1.0);
         }
     }
-    factorise::<FUSED, N, M>(&mut out.lu, product)?;
-    solve_blocks::<FUSED, N, M>(&out.lu, &mut out.by_state);
-    solve_column::<FUSED, N, M>(&out.lu, &mut out.by_taken);
+    factorise::<FUSED, N, M>(out.lu, product)?;
+    solve_blocks::<FUSED, N, M>(out.lu, out.by_state);
+    solve_column::<FUSED, N, M>(out.lu, out.by_taken);
     Ok(())
 }
 
 /// Block LU without exchanges of blocks; the lane where that fails.
 #[inline(always)]
 fn factorise<const FUSED: bool, const N: usize, const M: usize>(
-    m: &mut [[Block<N, Lanes>; M]; M],
+    m: &mut BlockLu<N, M>,
     product: &mut Lanes,
 ) -> Result<(), usize> {
+    let m = &mut m[..M];
     for j in 0..M {
         let (upper, lower) = m.split_at_mut(j + 1);
         let (inv, row) = upper[j].split_at_mut(j + 1);
@@ -310,9 +378,9 @@ fn invert_lanes<const N: usize>(
 /// Inverts the leading M + 1 rows and columns in place. With the own end first no entry grows, however long the reach is against
 /// the element; with the stages first all digits are lost where it is longer than ten elements.
 #[inline(always)]
-fn invert_points<const M: usize>(p: &mut [[Lanes; POINTS]; POINTS], product: &mut Lanes) -> Result<(), usize> {
+fn invert_points<const FUSED: bool, const M: usize>(p: &mut [[Lanes; POINTS]; POINTS], product: &mut Lanes) -> Result<(), usize> {
     let one = Lanes::of(1.0);
-    for step in 0..=M {
+    for step in 0..M + 1 {
         let k = if step == 0 { M } else { step - 1 };
         let pivot = p[k][k];
         for lane in 0..LANES {
@@ -324,16 +392,16 @@ fn invert_points<const M: usize>(p: &mut [[Lanes; POINTS]; POINTS], product: &mu
         }
         *product = *product * pivot;
         let scale = one / pivot;
-        for c in 0..=M {
+        for c in 0..M + 1 {
             p[k][c] = scale * if c == k { one } else { p[k][c] };
         }
         let own = p[k];
-        for i in 0..=M {
+        for i in 0..M + 1 {
             if i != k {
                 let f = p[i][k];
-                for c in 0..=M {
+                for c in 0..M + 1 {
                     let rest = if c == k { Lanes::of(0.0) } else { p[i][c] };
-                    p[i][c] = rest - f * own[c];
+                    p[i][c] = rest.plus::<FUSED>(f, -own[c]);
                 }
             }
         }
@@ -344,9 +412,10 @@ fn invert_points<const M: usize>(p: &mut [[Lanes; POINTS]; POINTS], product: &mu
 /// Solves for one right side a stage in place.
 #[inline(always)]
 pub(crate) fn solve_column<const FUSED: bool, const N: usize, const M: usize>(
-    lu: &[[Block<N, Lanes>; M]; M],
-    column: &mut [[Lanes; N]; M],
+    lu: &BlockLu<N, M>,
+    column: &mut [[Lanes; N]],
 ) {
+    let (lu, column) = (&lu[..M], &mut column[..M]);
     for j in 0..M {
         column[j] = apply(&lu[j][j], &column[j]);
         let own = column[j];
@@ -365,9 +434,10 @@ pub(crate) fn solve_column<const FUSED: bool, const N: usize, const M: usize>(
 /// Solves for a block a stage in place.
 #[inline(always)]
 fn solve_blocks<const FUSED: bool, const N: usize, const M: usize>(
-    lu: &[[Block<N, Lanes>; M]; M],
-    blocks: &mut [Block<N, Lanes>; M],
+    lu: &BlockLu<N, M>,
+    blocks: &mut [Block<N, Lanes>],
 ) {
+    let (lu, blocks) = (&lu[..M], &mut blocks[..M]);
     for j in 0..M {
         let (own, others) = blocks.split_at_mut(j + 1);
         let own = &mut own[j];
@@ -387,7 +457,7 @@ fn solve_blocks<const FUSED: bool, const N: usize, const M: usize>(
 /// Solves the transposed equations for one right side a stage in place.
 #[inline(always)]
 pub(crate) fn solve_column_transposed<const N: usize, const M: usize>(
-    lu: &[[Block<N, Lanes>; M]; M],
+    lu: &BlockLu<N, M>,
     column: &mut [[Lanes; N]; M],
 ) {
     for j in 0..M {

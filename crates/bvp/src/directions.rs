@@ -126,6 +126,16 @@ impl Directions {
         self.sides.get(i).copied().unwrap_or_default()
     }
 
+    /// The element that `i` takes the closure variable over from; none where it is closing.
+    #[inline(always)]
+    pub(crate) fn taken_from(&self, i: usize) -> Option<usize> {
+        match self.side(i) {
+            Side::Left if self.flow[i + 1] == Flow::Left => Some(i + 1),
+            Side::Right if self.flow[i] == Flow::Right => Some(i - 1),
+            _ => None,
+        }
+    }
+
     /// The ends at which the inner equations are met, in blocks.
     pub fn ends(&self) -> &[EndPlace] {
         &self.ends

@@ -92,6 +92,19 @@ impl<const M: usize> Gauss<M> {
         }))
     }
 
+    /// Weights at `x` of the values at the stages, and at both ends.
+    pub fn cardinals_with_ends(&self, x: f64) -> ([f64; M], [f64; 2]) {
+        let mut at_stages = self.cardinals(x);
+        for (weight, c) in at_stages.iter_mut().zip(self.c) {
+            *weight *= x * (x - 1.0) / (c * (c - 1.0));
+        }
+        let end = |own: f64, other: f64| {
+            let distance: f64 = self.c.iter().map(|c| (x - c) / (own - c)).product();
+            distance * (x - other) / (own - other)
+        };
+        (at_stages, [end(0.0, 1.0), end(1.0, 0.0)])
+    }
+
     /// Weights at `x` of the values at the stages and, last, at the end of an element that is its own (0 or 1).
     pub fn cardinals_with_end(&self, x: f64, own: f64) -> ([f64; M], f64) {
         let distance: f64 = self.c.iter().map(|c| (x - c) / (own - c)).product();

@@ -19,4 +19,4 @@ pub use groups::Groups;
 pub use mesh::{Limits, Mesh};
 pub use problem::{Condition, Drift, Inner, Local, Problem, Station};
 pub use real::{LANES, Lanes, Real, each};
-pub use solution::{Correction, End, InnerState, Solution, Stage};
+pub use solution::{Correction, End, InnerState, Resampling, Solution, Stage};

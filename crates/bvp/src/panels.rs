@@ -28,15 +28,6 @@ impl<const N: usize> Row<N> {
     fn at(&self, k: usize) -> f64 {
         if k < N { self.own[k] } else { self.own_w }
     }
-
-    #[inline(always)]
-    fn set(&mut self, k: usize, value: f64) {
-        if k < N {
-            self.own[k] = value;
-        } else {
-            self.own_w = value;
-        }
-    }
 }
 
 /// The rows that eliminate the unknowns of a node.
@@ -121,7 +112,6 @@ impl<const N: usize> Panels<N> {
         }
         let (mut start, mut carried) = (0, left.len());
         let mut shared = 0;
-        let mut clearance = 1.0;
         for (i, map) in maps.iter().enumerate() {
             let (here, next) = (flow(i), flow(i + 1));
             let unknowns = N + usize::from(here != Flow::None);
@@ -174,31 +164,28 @@ impl<const N: usize> Panels<N> {
         if panel.rows != N {
             return None;
         }
-        clearance = f64::min(clearance, self.eliminate::<FUSED>(panel, &mut product)?);
+        self.eliminate::<FUSED>(panel, &mut product)?;
         self.panels.push(panel);
         // The conditions at s = 1 have passed all rows between nodes.
         if right.len() * (n * N + shared) % 2 == 1 {
             product.turn();
         }
-        Some(product.whole(clearance))
+        Some(product.whole(self.clearance(panel)))
     }
 
-    /// Eliminates the unknowns of a panel; what is left of the last pivot.
+    /// Eliminates the unknowns of a panel.
     #[inline(always)]
-    fn eliminate<const FUSED: bool>(&mut self, panel: Panel, product: &mut Product) -> Option<f64> {
+    fn eliminate<const FUSED: bool>(&mut self, panel: Panel, product: &mut Product) -> Option<()> {
         let rows = &mut self.rows[panel.start..panel.start + panel.rows];
-        let mut clearance = 1.0;
-        for k in 0..panel.unknowns {
-            let (mut best, mut largest) = (k, rows[k].at(k).abs());
-            for (r, row) in rows.iter().enumerate().skip(k + 1) {
-                let size = row.at(k).abs();
-                if size > largest {
-                    (best, largest) = (r, size);
+        for k in 0..N {
+            let mut best = k;
+            for r in k + 1..rows.len() {
+                if rows[r].own[k].abs() > rows[best].own[k].abs() {
+                    best = r;
                 }
             }
-            // The negation also catches NaN.
-            #[allow(clippy::neg_cmp_op_on_partial_ord)]
-            if !(largest > 0.0) || largest == f64::INFINITY {
+            let pivot = rows[best].own[k];
+            if pivot == 0.0 || !pivot.is_finite() {
                 return None;
             }
             if best != k {
@@ -206,32 +193,75 @@ impl<const N: usize> Panels<N> {
                 product.turn();
             }
             self.pivots.push(best);
-            let (upper, lower) = rows.split_at_mut(k + 1);
-            let own = &upper[k];
-            let pivot = own.at(k);
             product.times(pivot);
             let scale = 1.0 / pivot;
-            let last = k + 2 == panel.unknowns && lower.len() == 1;
+            if k + 1 == N && rows.len() == N {
+                break;
+            }
+            let (upper, lower) = rows.split_at_mut(k + 1);
+            let own = &upper[k];
             for row in lower {
-                let f = row.at(k) * scale;
-                if last {
-                    let (before, by) = (row.at(k + 1), f * own.at(k + 1));
-                    clearance = (before - by).abs() / before.abs().max(by.abs()).max(1e-300);
-                }
+                let f = row.own[k] * scale;
                 for c in k + 1..N {
                     row.own[c] = row.own[c].plus::<FUSED>(-f, own.own[c]);
                 }
                 for c in 0..N {
                     row.next[c] = row.next[c].plus::<FUSED>(-f, own.next[c]);
                 }
-                if k < N {
-                    row.own_w = row.own_w.plus::<FUSED>(-f, own.own_w);
-                }
-                row.next_w = row.next_w.plus::<FUSED>(-f, own.next_w);
-                row.set(k, f);
+                row.own_w -= f * own.own_w;
+                row.next_w -= f * own.next_w;
+                row.own[k] = f;
             }
         }
-        Some(clearance)
+        if panel.unknowns > N {
+            self.eliminate_closure::<FUSED>(panel, product)?;
+        }
+        Some(())
+    }
+
+    /// The last unknown of a panel, where it is a closure variable.
+    #[inline(always)]
+    fn eliminate_closure<const FUSED: bool>(&mut self, panel: Panel, product: &mut Product) -> Option<()> {
+        let rows = &mut self.rows[panel.start..panel.start + panel.rows];
+        let mut best = N;
+        for r in N + 1..rows.len() {
+            if rows[r].own_w.abs() > rows[best].own_w.abs() {
+                best = r;
+            }
+        }
+        let pivot = rows[best].own_w;
+        if pivot == 0.0 || !pivot.is_finite() {
+            return None;
+        }
+        if best != N {
+            rows.swap(best, N);
+            product.turn();
+        }
+        self.pivots.push(best);
+        product.times(pivot);
+        let scale = 1.0 / pivot;
+        let (upper, lower) = rows.split_at_mut(N + 1);
+        let own = &upper[N];
+        for row in lower {
+            let f = row.own_w * scale;
+            for c in 0..N {
+                row.next[c] = row.next[c].plus::<FUSED>(-f, own.next[c]);
+            }
+            row.next_w -= f * own.next_w;
+            row.own_w = f;
+        }
+        Some(())
+    }
+
+    /// The last pivot of the last panel over the numbers that it is the difference of: the digits that are left of it.
+    fn clearance(&self, panel: Panel) -> f64 {
+        let Some(row) = self.rows.get(panel.start + N - 1).filter(|_| N > 1) else { return 1.0 };
+        // Its column before elimination, by multiplying the factors.
+        let mut terms = row.own[N - 1].abs();
+        for k in 0..N - 1 {
+            terms = terms.max((row.own[k] * self.rows[panel.start + k].own[N - 1]).abs());
+        }
+        if terms > 0.0 { row.own[N - 1].abs() / terms } else { 0.0 }
     }
 
     /// Solves for a right side.
@@ -263,10 +293,16 @@ impl<const N: usize> Panels<N> {
             for (k, pivot) in pivots.by_ref().take(panel.unknowns).enumerate() {
                 right.swap(k, *pivot);
             }
-            for k in 0..panel.unknowns {
+            for k in 0..N {
                 let own = right[k];
-                for (r, row) in rows.iter().enumerate().skip(k + 1) {
-                    right[r] -= row.at(k) * own;
+                for r in k + 1..rows.len() {
+                    right[r] -= rows[r].own[k] * own;
+                }
+            }
+            if panel.unknowns > N {
+                let own = right[N];
+                for r in N + 1..rows.len() {
+                    right[r] -= rows[r].own_w * own;
                 }
             }
             if i < n {
@@ -277,23 +313,24 @@ impl<const N: usize> Panels<N> {
         for (i, panel) in self.panels.iter().enumerate().rev() {
             let (z_next, w_next) = if i < n { (out.z[i + 1], out.w[i + 1]) } else { ([0.0; N], 0.0) };
             let (mut z, mut w) = ([0.0; N], 0.0);
-            for k in (0..panel.unknowns).rev() {
-                let row = &self.rows[panel.start + k];
-                let mut sum = memory[panel.start + k] - row.next_w * w_next;
+            let rows = &self.rows[panel.start..panel.start + panel.unknowns];
+            let right = &memory[panel.start..panel.start + panel.unknowns];
+            let known = |k: usize| {
+                let mut sum = right[k] - rows[k].next_w * w_next;
                 for c in 0..N {
-                    sum -= row.next[c] * z_next[c];
+                    sum -= rows[k].next[c] * z_next[c];
                 }
-                for (c, z) in z.iter().enumerate().skip(k + 1) {
-                    sum -= row.own[c] * z;
+                sum
+            };
+            if panel.unknowns > N {
+                w = known(N) / rows[N].own_w;
+            }
+            for k in (0..N).rev() {
+                let mut sum = known(k) - rows[k].own_w * w;
+                for c in k + 1..N {
+                    sum -= rows[k].own[c] * z[c];
                 }
-                if k < N {
-                    if panel.unknowns > N {
-                        sum -= row.own_w * w;
-                    }
-                    z[k] = sum / row.own[k];
-                } else {
-                    w = sum / row.own_w;
-                }
+                z[k] = sum / rows[k].own[k];
             }
             (out.z[i], out.w[i]) = (z, w);
         }

@@ -151,8 +151,12 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
 
     /// Slope of the state at `x` in [0, 1] of element `i` by the polynomial through the stages.
     pub fn slope_in(&self, gauss: &Gauss<M>, i: usize, x: f64) -> [f64; N] {
+        self.slope_by(&gauss.cardinals(x), i)
+    }
+
+    fn slope_by(&self, cardinals: &[f64; M], i: usize) -> [f64; N] {
         let mut out = [0.0; N];
-        for (j, w) in gauss.cardinals(x).iter().enumerate() {
+        for (j, w) in cardinals.iter().enumerate() {
             let slope = self.slope(i, j);
             for a in 0..N {
                 out[a] += w * slope[a];
@@ -162,44 +166,69 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
     }
 
     /// Inner unknowns and closure slope at `x` in [0, 1] of element `i`, by the polynomials through the stages and, where there is a
-    /// closure variable, the own end.
+    /// closure variable, the ends. (The closure slope is of the degree that stages and own end settle.)
     pub fn inner_in(&self, gauss: &Gauss<M>, i: usize, x: f64) -> InnerState<L> {
+        self.inner_by(gauss, &gauss.cardinals(x), i, x)
+    }
+
+    /// [`Solution::inner_in`], given the cardinal polynomials at `x`.
+    fn inner_by(&self, gauss: &Gauss<M>, cardinals: &[f64; M], i: usize, x: f64) -> InnerState<L> {
         let mut out = InnerState { inner: [0.0; L], closure_slope: 0.0 };
-        let mut add = |weight: f64, of: InnerState<L>| {
+        if !self.directions.is_closed() {
+            for (j, w) in cardinals.iter().enumerate() {
+                let of = self.inner(i, j).inner;
+                for a in 0..L {
+                    out.inner[a] += w * of[a];
+                }
+            }
+            return out;
+        }
+        let side = self.directions.side(i);
+        let place = side.place();
+        let own = self.inner_at_own_end(i);
+        let mut ends = [own.inner; 2];
+        ends[side.other().index()] = self.inner_at_other_end(i);
+        let ([left, right], mut slope_at_own) = ([x, 1.0 - x], 1.0);
+        let mut at_ends = [right, left];
+        for c in gauss.c {
+            at_ends[0] *= (x - c) / -c;
+            at_ends[1] *= (x - c) / (1.0 - c);
+            slope_at_own *= (x - c) / (place - c);
+        }
+        for j in 0..M {
+            let (of, c) = (self.inner(i, j), gauss.c[j]);
+            let weight = cardinals[j] * x * (x - 1.0) / (c * (c - 1.0));
             for a in 0..L {
                 out.inner[a] += weight * of.inner[a];
             }
-            out.closure_slope += weight * of.closure_slope;
-        };
-        if self.directions.is_closed() {
-            let (at_stages, at_end) = gauss.cardinals_with_end(x, self.directions.side(i).place());
-            for (j, w) in at_stages.iter().enumerate() {
-                add(*w, self.inner(i, j));
-            }
-            add(at_end, self.inner_at_own_end(i));
-        } else {
-            for (j, w) in gauss.cardinals(x).iter().enumerate() {
-                add(*w, self.inner(i, j));
-            }
+            out.closure_slope += cardinals[j] * (x - place) / (c - place) * of.closure_slope;
         }
+        for a in 0..L {
+            out.inner[a] += at_ends[0] * ends[0][a] + at_ends[1] * ends[1][a];
+        }
+        out.closure_slope += slope_at_own * own.closure_slope;
         out
     }
 
-    /// Carries the solution over to `mesh` by its polynomials; elements that both meshes have stay as they are. `side` and `jumps`
-    /// say where the new elements take the closure variable over; see [`Directions::set`]. `sampled` is the solution to fill; it may
-    /// have another number of stages.
-    pub fn onto<const K: usize>(
-        &self,
-        gauss: &Gauss<M>,
-        stages: &Gauss<K>,
-        jumps: impl Fn(f64) -> bool,
-        out: &mut Solution<N, K, L>,
-    ) {
+    /// Inner unknowns at the end of element `i` that is not its own.
+    fn inner_at_other_end(&self, i: usize) -> [f64; L] {
+        let (block, lane) = match self.directions.taken_from(i) {
+            Some(neighbour) => (neighbour / LANES, neighbour % LANES),
+            None => {
+                let k = self.directions.closings.iter().position(|c| *c == i).unwrap_or(0);
+                (self.groups().count() + k / LANES, k % LANES)
+            }
+        };
+        self.ends[block].inner.map(|v| v.0[lane])
+    }
+
+    /// Carries the solution over to the mesh of `out` by its polynomials; elements that both meshes have stay as they are. `jumps`
+    /// say where the new elements take the closure variable over; see [`Directions::set`].
+    pub fn onto(&self, gauss: &Gauss<M>, jumps: impl Fn(f64) -> bool, out: &mut Self) {
         let n = out.mesh.elements();
-        let groups = Groups { elements: n, stages: K };
-        let same = K == M;
+        let groups = Groups { elements: n, stages: M };
         out.nodes.clear();
-        out.stages.resize(groups.count() * K, Stage::default());
+        out.stages.resize(groups.count() * M, Stage::default());
         let old = self.mesh.nodes();
         let mut sides = Vec::with_capacity(n);
         let mut e = 0;
@@ -213,16 +242,17 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
             let (s, h) = (out.mesh.nodes()[i], out.mesh.step(i));
             let own = advance(&mut e, s);
             out.nodes.push(if s == old[own] { self.nodes[own] } else { self.state_in(gauss, own, s) });
-            let kept = same && s == old[own] && out.mesh.nodes()[i + 1] == old[own + 1];
+            let kept = s == old[own] && out.mesh.nodes()[i + 1] == old[own + 1];
             let (block, lane) = groups.at(i, 0);
-            for j in 0..K {
+            for j in 0..M {
                 let (slope, inner) = if kept {
                     (self.slope(own, j), self.inner(own, j))
                 } else {
-                    let at = s + h * stages.c[j];
+                    let at = s + h * gauss.c[j];
                     let from = advance(&mut e, at);
                     let x = (at - old[from]) / self.mesh.step(from);
-                    (self.slope_in(gauss, from, x), self.inner_in(gauss, from, x))
+                    let cardinals = gauss.cardinals(x);
+                    (self.slope_by(&cardinals, from), self.inner_by(gauss, &cardinals, from, x))
                 };
                 let stage = &mut out.stages[block + j];
                 put(stage, lane, &slope, &inner);
@@ -246,8 +276,67 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
         self.fill_ends(gauss, out);
     }
 
+    /// This solution's polynomials sampled with `K` stages on the same mesh.
+    #[inline(always)]
+    pub fn resample<const K: usize>(&self, weights: &Resampling<M, K>, out: &mut Solution<N, K, L>) {
+        let groups = self.groups();
+        out.mesh.clone_from(&self.mesh);
+        out.directions.clone_from(&self.directions);
+        out.nodes.clone_from(&self.nodes);
+        out.ends.clone_from(&self.ends);
+        out.stages.resize(groups.count() * K, Stage::default());
+        let closed = self.directions.is_closed();
+        for g in 0..groups.count() {
+            let own = &self.stages[g * M..(g + 1) * M];
+            let mut right = Lanes::default();
+            // Inner unknowns at the left and the right end.
+            let mut ends = [[Lanes::default(); L]; 2];
+            if closed {
+                for lane in 0..LANES {
+                    let i = groups.element(g, lane);
+                    let side = self.directions.side(i);
+                    right.0[lane] = side.place();
+                    let other = self.inner_at_other_end(i);
+                    for a in 0..L {
+                        ends[side.index()][a].0[lane] = self.ends[g].inner[a].0[lane];
+                        ends[side.other().index()][a].0[lane] = other[a];
+                    }
+                }
+            }
+            for (j, stage) in out.stages[g * K..(g + 1) * K].iter_mut().enumerate() {
+                let mut new = Stage::default();
+                for m in 0..M {
+                    let w = Lanes([weights.values[j][m]; LANES]);
+                    for a in 0..N {
+                        new.slope[a] += w * own[m].slope[a];
+                    }
+                    let w = Lanes([if closed { weights.inner[j].0[m] } else { weights.values[j][m] }; LANES]);
+                    for a in 0..L {
+                        new.inner[a] += w * own[m].inner[a];
+                    }
+                    if closed {
+                        let [on_left, on_right] = [weights.slopes[0][j].0[m], weights.slopes[1][j].0[m]];
+                        let w = Lanes([on_left; LANES]) + right * Lanes([on_right - on_left; LANES]);
+                        new.closure_slope += w * own[m].closure_slope;
+                    }
+                }
+                if closed {
+                    for (end, weight) in ends.iter().zip(weights.inner[j].1) {
+                        for a in 0..L {
+                            new.inner[a] += Lanes([weight; LANES]) * end[a];
+                        }
+                    }
+                    let [on_left, on_right] = [weights.slopes[0][j].1, weights.slopes[1][j].1];
+                    let w = Lanes([on_left; LANES]) + right * Lanes([on_right - on_left; LANES]);
+                    new.closure_slope += w * self.ends[g].closure_slope;
+                }
+                *stage = new;
+            }
+        }
+    }
+
     /// Fills the ends of `out` with what this solution's polynomials have there.
-    fn fill_ends<const K: usize>(&self, gauss: &Gauss<M>, out: &mut Solution<N, K, L>) {
+    fn fill_ends(&self, gauss: &Gauss<M>, out: &mut Self) {
         let Solution { mesh, directions, ends, .. } = out;
         ends.clear();
         let old = &self.mesh;
@@ -264,7 +353,15 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
                     (false, Side::Left) => old.element_of(s),
                     (false, Side::Right) => old.nodes().partition_point(|node| *node < s).clamp(1, old.elements()) - 1,
                 };
-                let inner = self.inner_in(gauss, from, (s - old.nodes()[from]) / old.step(from));
+                let kept = self.directions.is_closed()
+                    && old.nodes()[from..from + 2] == mesh.nodes()[i..i + 2]
+                    && self.directions.side(from) == side
+                    && directions.side(i) == side;
+                let inner = if kept {
+                    self.inner_at_own_end(from)
+                } else {
+                    self.inner_in(gauss, from, (s - old.nodes()[from]) / old.step(from))
+                };
                 for a in 0..L {
                     end.inner[a].0[lane] = inner.inner[a];
                 }
@@ -331,6 +428,27 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
                 own.inner[a] += f * change.inner[a];
             }
             own.closure_slope += f * change.closure_slope;
+        }
+    }
+}
+
+/// Weights that take the stages of one method to those of another.
+#[derive(Debug, Clone)]
+pub struct Resampling<const M: usize, const K: usize> {
+    values: [[f64; M]; K],
+    /// With both ends.
+    inner: [([f64; M], [f64; 2]); K],
+    /// With the own end, on either side.
+    slopes: [[([f64; M], f64); K]; 2],
+}
+
+impl<const M: usize, const K: usize> Resampling<M, K> {
+    /// From one method to another.
+    pub fn new(from: &Gauss<M>, to: &Gauss<K>) -> Self {
+        Self {
+            values: to.c.map(|x| from.cardinals(x)),
+            inner: to.c.map(|x| from.cardinals_with_ends(x)),
+            slopes: [Side::Left, Side::Right].map(|side| to.c.map(|x| from.cardinals_with_end(x, side.place()))),
         }
     }
 }

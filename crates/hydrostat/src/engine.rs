@@ -15,7 +15,7 @@ mod watch;
 
 use std::sync::LazyLock;
 
-use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Lanes, RoundError, Solution};
+use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Lanes, Resampling, RoundError, Solution};
 
 use crate::arm::Arm;
 use crate::configuration::{Statistics, Tip};
@@ -112,9 +112,14 @@ pub(crate) struct Engine {
 struct Methods {
     solve: Gauss<M>,
     check: Gauss<K>,
+    to_check: Resampling<M, K>,
 }
 
-static METHODS: LazyLock<Methods> = LazyLock::new(|| Methods { solve: Gauss::new(), check: Gauss::new() });
+static METHODS: LazyLock<Methods> = LazyLock::new(|| {
+    let (solve, check) = (Gauss::new(), Gauss::new());
+    let to_check = Resampling::new(&solve, &check);
+    Methods { solve, check, to_check }
+});
 
 /// How far the tip (over L) would move, to first order, if the stream's tangential load on `solution`
 /// were `factor` of what it is.

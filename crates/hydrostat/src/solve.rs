@@ -385,7 +385,9 @@ impl Solver {
             }
             let settled = self.engine.settle(self.options.tol.max(1e-6), First::Warm);
             let moved = (self.engine.tip[0] - kept.tip[0]).hypot(self.engine.tip[1] - kept.tip[1]);
-            last_good = settled.ok().filter(|_| moved < 0.05).and_then(|e| self.read(e, Travelled::default()).ok());
+            // Where sections give way, arms are many times as long as they were.
+            let size = kept.tip[0].hypot(kept.tip[1]).max(1.0);
+            last_good = settled.ok().filter(|_| moved < 0.05 * size).and_then(|e| self.read(e, Travelled::default()).ok());
             if last_good.is_some() {
                 break;
             }

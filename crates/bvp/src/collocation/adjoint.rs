@@ -82,16 +82,15 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
     #[inline(always)]
     fn gather(&self, g: usize, weights: &[StageWeights<N>], ends: &[EndWeights<N>]) -> Gathered<N, M> {
         let zero = Lanes::of(0.0);
-        let condensed = &self.condensed[g];
         let mut out = Gathered { slopes: [[zero; N]; M], node: [zero; N], taken: zero };
         for j in 0..M {
             self.add_state_weights(g, j, &weights[j].state, &mut out);
         }
         if self.closed {
-            let closure = &condensed.closure;
+            let closure = &self.condensed.closures[g];
             let (on_own_slope, on_points) = self.gather_ends(g, ends, &mut out);
             out.taken += on_own_slope * closure.omega[M];
-            for m in 0..=M {
+            for m in 0..M + 1 {
                 let mut on_value = on_points[m] + on_own_slope * closure.w[M][m];
                 for j in 0..M {
                     on_value += weights[j].closure_slope * closure.w[j][m];
@@ -107,10 +106,10 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             for a in 0..N {
                 let own = out.slopes[l][a];
                 for b in 0..N {
-                    out.node[b] += condensed.by_state[l][a][b] * own;
+                    out.node[b] += self.condensed.by_state(g)[l][a][b] * own;
                 }
                 if self.closed {
-                    out.taken += condensed.by_taken[l][a] * own;
+                    out.taken += self.condensed.by_taken(g)[l][a] * own;
                 }
             }
         }
@@ -149,7 +148,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                     }
                 }
             }
-            for m in 0..=M {
+            for m in 0..M + 1 {
                 on_points[m].0[lane] += end.closure_slope * closing.slope_by_point[m];
             }
             out.taken.0[lane] += end.closure_slope * closing.slope_by_taken;
@@ -174,7 +173,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             let upto = if m < M {
                 Lanes::of(self.gauss.a[m][l])
             } else {
-                self.condensed[g].closure.right * Lanes::of(self.gauss.b[l])
+                self.condensed.closures[g].right * Lanes::of(self.gauss.b[l])
             };
             for a in 0..N {
                 out.slopes[l][a] += h * upto * weights[a];
@@ -232,7 +231,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             right: rows.right.iter().map(|v| -v).collect(),
         };
         for g in 0..groups.count() {
-            let (h, condensed) = (self.steps[g], &self.condensed[g]);
+            let h = self.steps[g];
             let (mut jump, mut own) = ([zero; N], zero);
             let mut on_closing = zero;
             for lane in 0..groups.filled(g) {
@@ -249,7 +248,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 for a in 0..N {
                     slopes[l][a] += weight * jump[a];
                     if self.closed {
-                        slopes[l][a] += h * condensed.closure.own_by_slopes[l][a] * own;
+                        slopes[l][a] += h * self.condensed.closures[g].own_by_slopes[l][a] * own;
                     }
                 }
             }
@@ -265,7 +264,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                         slopes[l][a].0[lane] += closing.by_slopes[l][a] * taken;
                     }
                 }
-                for m in 0..=M {
+                for m in 0..M + 1 {
                     on_value[m].0[lane] += closing.by_value[m] * taken;
                 }
                 out.ends[closing.block].0[closing.lane] = closing.by_change * taken;
@@ -274,9 +273,9 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             for lane in groups.filled(g)..LANES {
                 slopes.as_flattened_mut().iter_mut().for_each(|v| v.0[lane] = 0.0);
             }
-            solve_column_transposed(&condensed.lu, &mut slopes);
+            solve_column_transposed(self.condensed.lu(g), &mut slopes);
             if self.closed {
-                let closure = &condensed.closure;
+                let closure = &self.condensed.closures[g];
                 for j in 0..M {
                     let mut on_slope = weights(g)[j].closure_slope;
                     for lane in groups.filled(g)..LANES {
@@ -285,13 +284,13 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                     for a in 0..N {
                         on_slope += self.locals[g * M + j].by_closure[a] * slopes[j][a];
                     }
-                    for m in 0..=M {
+                    for m in 0..M + 1 {
                         on_value[m] += closure.w[j][m] * on_slope;
                     }
                 }
                 let (on_own_slope, on_points) = self.gather_ends(g, &functional.ends, &mut gathered[g].clone());
-                for m in 0..=M {
-                    on_value[m] += closure.p[M][m] * own + on_points[m] + closure.w[M][m] * on_own_slope;
+                for m in 0..M + 1 {
+                    on_value[m] += closure.own[m] * own + on_points[m] + closure.w[M][m] * on_own_slope;
                 }
                 out.ends[g] = on_value[M];
             }

@@ -16,7 +16,7 @@ impl Engine {
     pub(super) fn come_from_before(&mut self) {
         self.meshes += 1;
         let (gauss, equations) = (&self.system.gauss, &self.equations);
-        self.before.onto(gauss, gauss, |s| equations.jumps_at(s), &mut self.solution);
+        self.before.onto(gauss, |s| equations.jumps_at(s), &mut self.solution);
         self.equations.place_on(gauss, &self.solution);
     }
 

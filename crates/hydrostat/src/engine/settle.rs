@@ -64,8 +64,11 @@ impl Engine {
         }
         let methods = &*METHODS;
         let own = &self.equations;
-        self.finer.mesh.clone_from(&self.solution.mesh);
-        self.solution.onto(&methods.solve, &methods.check, |s| own.jumps_at(s), &mut self.finer);
+        let (solution, finer) = (&self.solution, &mut self.finer);
+        widest(
+            #[inline(always)]
+            || solution.resample(&methods.to_check, finer),
+        );
         self.check_equations.fraction = own.fraction;
         self.check_equations.phase = own.phase;
         self.check_equations.take_arm_of(own);

@@ -92,33 +92,28 @@ impl Engine {
         if !self.solution.directions.is_closed() {
             return false;
         }
-        let groups = self.solution.groups();
-        let mut changed = false;
-        let sides: Vec<Side> = (0..groups.elements)
-            .map(|i| {
-                let mut largest = 0.0_f64;
-                for j in 0..M {
-                    let reach = self.system.reach(i, j);
-                    if reach.abs() > largest.abs() {
-                        largest = reach;
-                    }
+        let (solution, system) = (&self.solution, &self.system);
+        let side = |i: usize| {
+            let mut largest = 0.0_f64;
+            for j in 0..M {
+                let reach = system.reach(i, j);
+                if reach.abs() > largest.abs() {
+                    largest = reach;
                 }
-                let own = self.solution.directions.side(i);
-                let wanted = if largest >= 0.0 { Side::Left } else { Side::Right };
-                if wanted == own || largest.abs() < HARMLESS * self.solution.mesh.step(i) {
-                    own
-                } else {
-                    changed = true;
-                    wanted
-                }
-            })
-            .collect();
-        if changed {
-            let equations = &self.equations;
-            self.solution.set_directions(&self.system.gauss, |i| sides[i], |s| equations.jumps_at(s));
-            self.equations.place_ends(&self.solution);
+            }
+            let wanted = if largest >= 0.0 { Side::Left } else { Side::Right };
+            let harmless = largest.abs() < HARMLESS * solution.mesh.step(i);
+            if harmless { solution.directions.side(i) } else { wanted }
+        };
+        let elements = solution.mesh.elements();
+        if (0..elements).all(|i| side(i) == solution.directions.side(i)) {
+            return false;
         }
-        changed
+        let sides: Vec<Side> = (0..elements).map(side).collect();
+        let equations = &self.equations;
+        self.solution.set_directions(&self.system.gauss, |i| sides[i], |s| equations.jumps_at(s));
+        self.equations.place_ends(&self.solution);
+        true
     }
 }
 

@@ -24,20 +24,25 @@ impl Solved<Lanes> {
     #[inline(always)]
     pub(super) fn is_fine(&self, tolerance: f64) -> bool {
         let open = self.balance.openness - Lanes::of(FOLDED);
-        let positive = self.regularity.min(open).min(self.strain[0]);
+        let regular = self.regularity - Lanes::of(SINGULAR);
+        let positive = regular.min(open).min(self.strain[0]);
         // A number that is none is below nothing.
-        self.size.all_below(tolerance) & (-positive).all_below(0.0) & (-self.regularity).all_below(0.0)
+        self.size.all_below(tolerance) & (-positive).all_below(0.0) & (-regular).all_below(0.0)
     }
 
     #[inline(always)]
     pub(super) fn is_fine_in(&self, lane: usize, tolerance: f64) -> bool {
-        let positive = [self.regularity, self.balance.openness - Lanes::of(FOLDED), self.strain[0]];
+        let positive = [self.regularity - Lanes::of(SINGULAR), self.balance.openness - Lanes::of(FOLDED), self.strain[0]];
         (self.size.0[lane] < tolerance) & positive.iter().all(|v| v.0[lane] > 0.0)
     }
 }
 
 /// Openness at which a cable has folded its side shut: below, steps are small because the law is steep, not because it is met.
 pub(super) const FOLDED: f64 = 1e-8;
+
+/// Determinant of the section law over that of the slack one, up to which the law counts as singular: `circular` never ends, but
+/// stretches by 3e4 there, at 0.99997 of what it can carry.
+pub(super) const SINGULAR: f64 = 3e-5;
 
 /// Newton on the section law from `strain` until the step is below `tolerance` in every lane; that last step is not taken.
 #[inline(always)]
@@ -63,7 +68,8 @@ pub(crate) fn solve_section<R: Real>(
         let rest = each(|k| contact[k] - balance.carried[k]);
         let change = apply3(&inverse, rest);
         let mu_scale = one / (R::of(2.0) + strain[2].abs());
-        let size = change[0].abs().max(change[1].abs()).max(change[2].abs() * mu_scale);
+        let nu_scale = one / one.max(strain[0]);
+        let size = (change[0].abs().max(change[1].abs()) * nu_scale).max(change[2].abs() * mu_scale);
         let size = size.if_less(R::of(f64::INFINITY), size, R::of(f64::INFINITY));
         if size.all_below(tolerance) || round == MOST {
             let area = balance.swelling.beta * balance.swelling.beta;
