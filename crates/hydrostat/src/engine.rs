@@ -15,7 +15,7 @@ mod watch;
 
 use std::sync::LazyLock;
 
-use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Lanes, Resampling, RoundError, Solution};
+use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Lanes, Resampling, RoundError, Solution, Station};
 
 use crate::arm::Arm;
 use crate::configuration::{Statistics, Tip};
@@ -293,6 +293,13 @@ impl Engine {
     pub(crate) fn response(&self, way: Way, out: &mut Correction<N, M, Q, L>) {
         let change = response_change(&self.equations, &self.system, &self.solution, way);
         respond(&self.system, &change, out);
+    }
+
+    /// The stations of the present solution, in blocks.
+    pub(crate) fn stations(&self) -> Vec<Station<N, L>> {
+        let mut system = Collocation::<N, M, Q, L>::with(self.system.gauss.clone());
+        system.take_stations(&self.solution);
+        system.stations().to_vec()
     }
 
     /// The stroke that is commanded of cable `c` for the present solution, over L.

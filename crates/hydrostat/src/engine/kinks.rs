@@ -1,6 +1,7 @@
 //! Kinks of the load, and nodes that follow them.
 
 use super::{Engine, M};
+use crate::friction::Turns;
 
 /// How close (over L) nodes are kept to the kinks of the load at a tolerance: the error that a kink leaves is of second
 /// order in the distance, and the estimate does not see all of it. Closer than rounding places kinks, nodes would chase it.
@@ -75,11 +76,27 @@ impl Engine {
                 }
             }
         }
+        self.add_kinks_of_friction(out);
         out.retain(|s| *s > resolution && *s < 1.0 - resolution);
         out.sort_by(f64::total_cmp);
         out.dedup_by(|b, a| *b - *a < resolution);
         if out.len() > MOST {
             out.clear();
+        }
+    }
+
+    /// Adds the places where cables that rub turn back: their tensions have kinks there.
+    fn add_kinks_of_friction(&self, out: &mut Vec<f64>) {
+        if self.equations.grip.is_none() {
+            return;
+        }
+        let cables = self.equations.arm().cables.iter().enumerate();
+        let rubbing = |(c, cable): (usize, &crate::Cable)| {
+            (cable.friction > 0.0 && self.equations.tension(c) != 0.0).then_some(c)
+        };
+        let rubbing: Vec<usize> = cables.filter_map(rubbing).collect();
+        if let Ok(turns) = Turns::of(self) {
+            out.extend(turns.kinks(&rubbing));
         }
     }
 

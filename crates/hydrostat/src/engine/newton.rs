@@ -92,6 +92,12 @@ impl Engine {
         }
     }
 
+    /// The largest correction (rad) at the last linearisation, which is not made.
+    pub(crate) fn correction_here(&mut self) -> f64 {
+        correct(&mut self.system, &self.solution, &mut self.correction);
+        self.correction.largest(0)
+    }
+
     /// The largest change of the angle within an element by the last correction.
     fn reached(&self) -> f64 {
         let mesh = &self.solution.mesh;

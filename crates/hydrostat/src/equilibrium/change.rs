@@ -26,7 +26,7 @@ pub(crate) enum Way {
 }
 
 /// Part of its scale by which a number is moved to either side for a difference; with four places the error is its fourth power.
-const STEP: f64 = 1e-4;
+const STEP: f64 = 1e-3;
 
 /// The places of a difference of the fourth order, in steps, and their weights.
 const PLACES: [(f64, f64); 4] = [(1.0, 8.0 / 12.0), (-1.0, -8.0 / 12.0), (2.0, -1.0 / 12.0), (-2.0, 1.0 / 12.0)];

@@ -10,7 +10,7 @@ use crate::sensitivity::SensitivityError;
 use crate::solve::Solver;
 
 /// Most rounds a target.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 20;
 
 /// The share of a distance that a round may leave before the jacobian is taken anew.
 const SLOW: f64 = 0.1;

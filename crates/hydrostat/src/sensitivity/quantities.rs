@@ -1,12 +1,14 @@
 //! What is differentiated, and how each of it follows the solution and what is given.
 
-use hydrostat_bvp::{Change, Correction, Cotangent, EndWeights, Functional, LANES, Lanes, Real, Side, StageWeights, each};
+use hydrostat_bvp::{Change, Collocation, Correction, Cotangent, EndWeights, Functional, LANES, Lanes, Real, Side, StageWeights, each};
 
 use super::{SensitivityError, SensitivityMethod, unsettled};
 use crate::elimination::solved;
-use crate::engine::{Engine, M, Trouble};
+use crate::engine::{Engine, M, Trouble, linearise, respond, response_change};
 use crate::equilibrium::{L, N, Q, Way};
 use crate::parameter::Parameter;
+
+type System = Collocation<N, M, Q, L>;
 
 /// What Newton's last round moves (rad, and the tip over L) before an exact derivative is taken.
 const CONVERGED: f64 = 1e-12;
@@ -67,11 +69,16 @@ impl Engine {
 
     /// Rounds until nothing moves any more, and what the equations are at that.
     pub(crate) fn converge_fully(&mut self) -> Result<(), SensitivityError> {
+        // Rounds that move nothing but rounding are not made, so that derivatives taken twice are the same.
+        self.linearise().map_err(|trouble| unsettled(&trouble))?;
+        if self.equations.held.is_none() && self.correction_here() < CONVERGED {
+            return Ok(());
+        }
         match self.newton(CONVERGED, ROUNDS) {
             Err(Trouble::Stalled(size)) if size < NEARLY => {}
             other => other.map_err(|trouble| unsettled(&trouble))?,
         }
-        self.linearise().map_err(|trouble| unsettled(&trouble))
+        Ok(())
     }
 
     /// Derivatives by `parameters` at the last evaluation, cables that are commanded held. `None` where the system is singular.
@@ -98,7 +105,11 @@ impl Engine {
         sources.extend(taut.iter().map(|c| Parameter::Tension(*c)));
         let asked = sums.len();
         sums.extend(taut.iter().map(|c| vec![(Quantity::Command(*c), 1.0)]));
-        let mut rows = self.unheld_derivatives(&sums, &sources, method)?;
+        // About the solution itself: the engine's last linearisation may be a round behind.
+        let mut system = System::with(self.system.gauss.clone());
+        linearise(&mut system, &self.equations, &self.solution).ok()?;
+        let about = About { engine: self, system: &system };
+        let mut rows = about.unheld_derivatives(&sums, &sources, method)?;
 
         let count = parameters.len();
         let strokes = rows.split_off(asked);
@@ -127,7 +138,15 @@ impl Engine {
         }
         Some(Found { rows, tensions })
     }
+}
 
+/// Derivatives about the engine's solution.
+struct About<'e> {
+    engine: &'e Engine,
+    system: &'e System,
+}
+
+impl About<'_> {
     /// Derivatives with all tensions given.
     fn unheld_derivatives(
         &self,
@@ -138,7 +157,7 @@ impl Engine {
         let rows: Vec<Row> = sums.iter().map(|sum| self.sum_row(sum, sources)).collect::<Option<_>>()?;
         let changes: Vec<Change<N, Q, L>> = sources
             .iter()
-            .map(|source| crate::engine::response_change(&self.equations, &self.system, &self.solution, Way::Of(*source)))
+            .map(|source| response_change(&self.engine.equations, self.system, &self.engine.solution, Way::Of(*source)))
             .collect();
         let adjoint = match method {
             SensitivityMethod::Forward => false,
@@ -156,7 +175,7 @@ impl Engine {
         } else {
             let mut response = Correction::default();
             for (k, change) in changes.iter().enumerate() {
-                crate::engine::respond(&self.system, change, &mut response);
+                respond(self.system, change, &mut response);
                 let states = self.system.moved_states(&response);
                 for (row, out) in rows.iter().zip(&mut out) {
                     out[k] += self.apply(&row.functional, &response, &states) + row.drifts(change);
@@ -172,7 +191,7 @@ impl Engine {
         for (i, weights) in &functional.nodes {
             sum += (0..N).map(|a| weights[a] * response.nodes[*i][a]).sum::<f64>();
         }
-        let groups = self.solution.groups();
+        let groups = self.engine.solution.groups();
         for (block, weights) in functional.stages.iter().enumerate() {
             let mut own = weights.closure_slope * response.stages[block].closure_slope;
             for a in 0..N {
@@ -182,7 +201,7 @@ impl Engine {
         }
         for end in &functional.ends {
             sum += end.closure_slope * response.ends[end.block].closure_slope.0[end.lane];
-            let place = &self.solution.directions.ends()[end.block];
+            let place = &self.engine.solution.directions.ends()[end.block];
             let (i, side) = (place.elements[end.lane], place.sides[end.lane]);
             let mut z = response.nodes[i];
             if side == Side::Right {
@@ -190,7 +209,7 @@ impl Engine {
                 for l in 0..M {
                     for a in 0..N {
                         let slope = response.stages[g * M + l].slope[a].0[lane];
-                        z[a] += self.solution.mesh.step(i) * self.system.gauss.b[l] * slope;
+                        z[a] += self.engine.solution.mesh.step(i) * self.system.gauss.b[l] * slope;
                     }
                 }
             }
@@ -210,7 +229,7 @@ impl Engine {
 
     /// Adds `weight` times a quantity to a row.
     fn add_quantity(&self, quantity: Quantity, weight: f64, sources: &[Parameter], row: &mut Row) -> Option<()> {
-        let equations = &self.equations;
+        let equations = &self.engine.equations;
         let (length, force) = (equations.units.length, equations.units.force);
         let mut state = |i: usize, a: usize, weight: f64| {
             let mut weights = [0.0; N];
@@ -230,7 +249,7 @@ impl Engine {
 
     /// x (0) or y (1) at a node: the integral of its slope.
     fn add_position(&self, node: usize, q: usize, factor: f64, row: &mut Row) {
-        let groups = self.solution.groups();
+        let groups = self.engine.solution.groups();
         row.reserve(groups.count() * M);
         for (block, local) in self.system.locals().iter().enumerate() {
             let (g, j) = (block / M, block % M);
@@ -251,8 +270,8 @@ impl Engine {
 
     /// The stroke of a cable: of its path, or, unstretched, as it is commanded.
     fn add_stroke(&self, c: usize, commanded: bool, factor: f64, sources: &[Parameter], row: &mut Row) {
-        let equations = &self.equations;
-        let groups = self.solution.groups();
+        let equations = &self.engine.equations;
+        let groups = self.engine.solution.groups();
         let end = equations.cable_end(c);
         row.reserve(groups.count() * M);
         for (block, (local, station)) in self.system.locals().iter().zip(self.system.stations()).enumerate() {
@@ -291,13 +310,13 @@ impl Engine {
         };
         let Some((block, lane)) = self.end_at(node) else {
             // Without a closure strains follow the state and what is given alone.
-            let asked = self.asked_beside(node, node > 0);
-            let found = self.equations.at_place(&asked).ok()?;
+            let asked = self.engine.asked_beside(node, node > 0);
+            let found = self.engine.equations.at_place(&asked).ok()?;
             let by = turn(found.strain);
             let weights = each(|a| (0..L).map(|k| by[k] * found.strain_by_state[k][a]).sum());
             row.functional.nodes.push((node, weights));
             for (direct, source) in row.direct.iter_mut().zip(sources) {
-                let change = self.equations.strain_by(&asked, Way::Of(*source));
+                let change = self.engine.equations.strain_by(&asked, Way::Of(*source));
                 *direct += (0..L).map(|k| by[k] * change[k]).sum::<f64>();
             }
             return Some(());
@@ -317,7 +336,7 @@ impl Engine {
 
     /// The end at a node at which the section law is met.
     fn end_at(&self, node: usize) -> Option<(usize, usize)> {
-        let places = self.solution.directions.ends();
+        let places = self.engine.solution.directions.ends();
         let find = |element: usize, side: Side| {
             places.iter().enumerate().find_map(|(block, place)| {
                 let lane = (0..LANES).find(|l| place.elements[*l] == element && place.sides[*l] == side)?;
