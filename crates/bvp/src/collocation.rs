@@ -419,7 +419,9 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             };
             condensed.map_err(|lane| Singular::Element(groups.element(g, lane)))?;
             for lane in 0..groups.filled(g) {
-                product.times(own_product.0[lane]);
+                if own_product.0[lane] < 0.0 {
+                    product.turn();
+                }
             }
             self.map_group::<FUSED>(g);
         }
@@ -609,7 +611,9 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         if left == 0.0 || !left.is_finite() {
             return None;
         }
-        product.times(left);
+        if left < 0.0 {
+            product.turn();
+        }
         let scale = 1.0 / left;
         Some(Closing {
             element: i,

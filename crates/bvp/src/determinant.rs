@@ -1,8 +1,9 @@
 //! Determinants of large systems: signs, sizes, and how well the sign is known.
 
-/// The sign and size of the determinant of a linearised problem, all of its equations included: those of the stages and of the closure,
-/// the end conditions, and whatever was added to it. It does not depend on the mesh but for the error of
-/// discretisation, and changes sign where two solutions meet or cross.
+/// The determinant of a linearised problem. Its sign is that of all equations together, those of the stages and of the closure included:
+/// the condensed equations alone change sign, too, where the stages of a long element do, which means nothing. Its size is that of
+/// the condensed equations: the determinant of the conditions at s = 1 by the states that those at s = 0 leave free. It changes
+/// sign where two solutions meet or cross.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Determinant {
     /// -1, 0 or 1.
