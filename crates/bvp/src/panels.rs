@@ -16,23 +16,23 @@ use crate::real::Real;
 #[derive(Debug, Clone, Copy)]
 struct Row<const N: usize> {
     own: [f64; N],
-    own_w: f64,
     next: [f64; N],
-    next_w: f64,
+    /// Of the closure variables, own and next.
+    w: [f64; 2],
 }
 
 impl<const N: usize> Row<N> {
-    const ZERO: Self = Self { own: [0.0; N], own_w: 0.0, next: [0.0; N], next_w: 0.0 };
+    const ZERO: Self = Self { own: [0.0; N], next: [0.0; N], w: [0.0; 2] };
 
     #[inline(always)]
     fn at(&self, k: usize) -> f64 {
-        if k < N { self.own[k] } else { self.own_w }
+        if k < N { self.own[k] } else { self.w[0] }
     }
 }
 
 /// The rows that eliminate the unknowns of a node.
-#[derive(Debug, Clone, Copy, Default)]
-struct Panel {
+#[derive(Debug, Clone, Copy)]
+struct Panel<const N: usize> {
     /// Where they start, and how many they are.
     start: usize,
     rows: usize,
@@ -43,15 +43,26 @@ struct Panel {
     /// Whether the first row after those carried, or the last, is that of a closure variable.
     first_is_closure: bool,
     last_is_closure: bool,
+    /// The row that was exchanged with each unknown's, within the panel: of the state, and of the closure variable.
+    pivots: [usize; N],
+    last_pivot: usize,
+}
+
+impl<const N: usize> Panel<N> {
+    /// The row that was exchanged with that of unknown `k`.
+    #[inline(always)]
+    fn pivot(&self, k: usize) -> usize {
+        if k < N { self.pivots[k] } else { self.last_pivot }
+    }
 }
 
 /// The factorised system.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Panels<const N: usize> {
-    panels: Vec<Panel>,
+    panels: Vec<Panel<N>>,
     rows: Vec<Row<N>>,
-    /// The row that was exchanged with each unknown's, within its panel: as many a panel as it has unknowns.
-    pivots: Vec<usize>,
+    /// Rows in use.
+    used: usize,
     left_count: usize,
 }
 
@@ -103,158 +114,100 @@ impl<const N: usize> Panels<N> {
     ) -> Option<Determinant> {
         let n = maps.len();
         self.panels.clear();
-        self.rows.clear();
-        self.pivots.clear();
+        self.panels.reserve(n + 1);
+        // A panel has at most as many rows as two nodes have unknowns. All are written before they are read.
+        let most = (n + 1) * (2 * N + 2);
+        if self.rows.len() < most {
+            self.rows.resize(most, Row::ZERO);
+        }
         self.left_count = left.len();
         let flow = |node: usize| directions.flow.get(node).copied().unwrap_or_default();
-        for condition in left {
-            self.rows.push(Row { own: condition.gradient, ..Row::ZERO });
+        for (row, condition) in self.rows.iter_mut().zip(left) {
+            *row = Row { own: condition.gradient, ..Row::ZERO };
         }
         let (mut start, mut carried) = (0, left.len());
         let mut shared = 0;
+        let mut here = flow(0);
         for (i, map) in maps.iter().enumerate() {
-            let (here, next) = (flow(i), flow(i + 1));
+            let next = flow(i + 1);
             let unknowns = N + usize::from(here != Flow::None);
             shared += usize::from(next != Flow::None);
             // Where the value that the element takes over stands, if it is a node's.
-            let (from_own, from_next) = match directions.side(i) {
-                Side::Left => (false, next == Flow::Left),
-                Side::Right => (here == Flow::Right, false),
+            let from = match directions.side(i) {
+                Side::Left => [0.0, -f64::from(u8::from(next == Flow::Left))],
+                Side::Right => [-f64::from(u8::from(here == Flow::Right)), 0.0],
             };
-            let own_row = Row {
+            let rows = &mut self.rows[start..start + 2 * (2 * N + 2)];
+            let mut at = carried;
+            let own_row = |w: [f64; 2]| Row {
                 own: map.own_by_state.map(|v| -v),
-                own_w: if from_own { -map.own_by_taken } else { 0.0 },
                 next: [0.0; N],
-                next_w: if from_next { -map.own_by_taken } else { 0.0 },
+                w: [from[0] * map.own_by_taken + w[0], from[1] * map.own_by_taken + w[1]],
             };
             if here == Flow::Left {
-                self.rows.push(Row { own_w: 1.0, ..own_row });
+                rows[at] = own_row([1.0, 0.0]);
+                at += 1;
             }
-            for a in 0..N {
-                let mut row = Row { own: map.by_state[a].map(|v| -v), ..Row::ZERO };
+            for (a, row) in rows[at..at + N].iter_mut().enumerate() {
+                row.own = map.by_state[a].map(|v| -v);
+                row.next = [0.0; N];
                 row.next[a] = 1.0;
-                row.own_w = if from_own { -map.by_taken[a] } else { 0.0 };
-                row.next_w = if from_next { -map.by_taken[a] } else { 0.0 };
-                self.rows.push(row);
+                row.w = [from[0] * map.by_taken[a], from[1] * map.by_taken[a]];
             }
+            at += N;
             if next == Flow::Right {
-                self.rows.push(Row { next_w: 1.0, ..own_row });
+                rows[at] = own_row([0.0, 1.0]);
+                at += 1;
             }
-            let panel = Panel {
+            let mut panel = Panel {
                 start,
-                rows: self.rows.len() - start,
+                rows: at,
                 carried,
                 unknowns,
                 first_is_closure: here == Flow::Left,
                 last_is_closure: next == Flow::Right,
+                pivots: [0; N],
+                last_pivot: 0,
             };
-            self.eliminate::<FUSED>(panel, &mut product)?;
-            self.panels.push(panel);
-            carried = panel.rows - unknowns;
-            start = self.rows.len();
-            for r in 0..carried {
-                let row = self.rows[panel.start + unknowns + r];
-                self.rows.push(Row { own: row.next, own_w: row.next_w, ..Row::ZERO });
+            let (rows, behind) = rows.split_at_mut(at);
+            eliminate::<FUSED, N>(rows, &mut panel, &mut product)?;
+            carried = at - unknowns;
+            for (row, from) in behind.iter_mut().zip(&rows[unknowns..]) {
+                *row = Row { own: from.next, next: [0.0; N], w: [from.w[1], 0.0] };
             }
+            self.panels.push(panel);
+            start += at;
+            here = next;
         }
-        for condition in right {
-            self.rows.push(Row { own: condition.gradient, ..Row::ZERO });
-        }
-        let panel = Panel { start, rows: self.rows.len() - start, carried, unknowns: N, ..Panel::default() };
+        let mut panel = Panel {
+            start,
+            rows: carried + right.len(),
+            carried,
+            unknowns: N,
+            first_is_closure: false,
+            last_is_closure: false,
+            pivots: [0; N],
+            last_pivot: 0,
+        };
         if panel.rows != N {
             return None;
         }
-        self.eliminate::<FUSED>(panel, &mut product)?;
+        let rows = &mut self.rows[start..start + N];
+        for (row, condition) in rows[carried..].iter_mut().zip(right) {
+            *row = Row { own: condition.gradient, ..Row::ZERO };
+        }
+        eliminate::<FUSED, N>(rows, &mut panel, &mut product)?;
+        self.used = start + N;
         self.panels.push(panel);
         // The conditions at s = 1 have passed all rows between nodes.
         if right.len() * (n * N + shared) % 2 == 1 {
             product.turn();
         }
-        Some(product.whole(self.clearance(panel)))
-    }
-
-    /// Eliminates the unknowns of a panel.
-    #[inline(always)]
-    fn eliminate<const FUSED: bool>(&mut self, panel: Panel, product: &mut Product) -> Option<()> {
-        let rows = &mut self.rows[panel.start..panel.start + panel.rows];
-        for k in 0..N {
-            let mut best = k;
-            for r in k + 1..rows.len() {
-                if rows[r].own[k].abs() > rows[best].own[k].abs() {
-                    best = r;
-                }
-            }
-            let pivot = rows[best].own[k];
-            if pivot == 0.0 || !pivot.is_finite() {
-                return None;
-            }
-            if best != k {
-                rows.swap(best, k);
-                product.turn();
-            }
-            self.pivots.push(best);
-            product.times(pivot);
-            let scale = 1.0 / pivot;
-            if k + 1 == N && rows.len() == N {
-                break;
-            }
-            let (upper, lower) = rows.split_at_mut(k + 1);
-            let own = &upper[k];
-            for row in lower {
-                let f = row.own[k] * scale;
-                for c in k + 1..N {
-                    row.own[c] = row.own[c].plus::<FUSED>(-f, own.own[c]);
-                }
-                for c in 0..N {
-                    row.next[c] = row.next[c].plus::<FUSED>(-f, own.next[c]);
-                }
-                row.own_w -= f * own.own_w;
-                row.next_w -= f * own.next_w;
-                row.own[k] = f;
-            }
-        }
-        if panel.unknowns > N {
-            self.eliminate_closure::<FUSED>(panel, product)?;
-        }
-        Some(())
-    }
-
-    /// The last unknown of a panel, where it is a closure variable.
-    #[inline(always)]
-    fn eliminate_closure<const FUSED: bool>(&mut self, panel: Panel, product: &mut Product) -> Option<()> {
-        let rows = &mut self.rows[panel.start..panel.start + panel.rows];
-        let mut best = N;
-        for r in N + 1..rows.len() {
-            if rows[r].own_w.abs() > rows[best].own_w.abs() {
-                best = r;
-            }
-        }
-        let pivot = rows[best].own_w;
-        if pivot == 0.0 || !pivot.is_finite() {
-            return None;
-        }
-        if best != N {
-            rows.swap(best, N);
-            product.turn();
-        }
-        self.pivots.push(best);
-        product.times(pivot);
-        let scale = 1.0 / pivot;
-        let (upper, lower) = rows.split_at_mut(N + 1);
-        let own = &upper[N];
-        for row in lower {
-            let f = row.own_w * scale;
-            for c in 0..N {
-                row.next[c] = row.next[c].plus::<FUSED>(-f, own.next[c]);
-            }
-            row.next_w -= f * own.next_w;
-            row.own_w = f;
-        }
-        Some(())
+        Some(product.whole(self.clearance(&panel)))
     }
 
     /// The last pivot of the last panel over the numbers that it is the difference of: the digits that are left of it.
-    fn clearance(&self, panel: Panel) -> f64 {
+    fn clearance(&self, panel: &Panel<N>) -> f64 {
         let Some(row) = self.rows.get(panel.start + N - 1).filter(|_| N > 1) else { return 1.0 };
         // Its column before elimination, by multiplying the factors.
         let mut terms = row.own[N - 1].abs();
@@ -269,9 +222,8 @@ impl<const N: usize> Panels<N> {
     pub(crate) fn solve(&self, loads: &Loads<N>, out: &mut AtNodes<N>, memory: &mut Vec<f64>) {
         let n = self.panels.len() - 1;
         memory.clear();
-        memory.resize(self.rows.len(), 0.0);
+        memory.resize(self.used, 0.0);
         memory[..self.left_count].copy_from_slice(&loads.left[..self.left_count]);
-        let mut pivots = self.pivots.iter();
         for (i, panel) in self.panels.iter().enumerate() {
             let rows = &self.rows[panel.start..panel.start + panel.rows];
             let (before, behind) = memory.split_at_mut(panel.start + panel.rows);
@@ -290,8 +242,8 @@ impl<const N: usize> Panels<N> {
             } else {
                 right[at..].copy_from_slice(&loads.right[..panel.rows - at]);
             }
-            for (k, pivot) in pivots.by_ref().take(panel.unknowns).enumerate() {
-                right.swap(k, *pivot);
+            for k in 0..panel.unknowns {
+                right.swap(k, panel.pivot(k));
             }
             for k in 0..N {
                 let own = right[k];
@@ -302,7 +254,7 @@ impl<const N: usize> Panels<N> {
             if panel.unknowns > N {
                 let own = right[N];
                 for r in N + 1..rows.len() {
-                    right[r] -= rows[r].own_w * own;
+                    right[r] -= rows[r].w[0] * own;
                 }
             }
             if i < n {
@@ -316,17 +268,17 @@ impl<const N: usize> Panels<N> {
             let rows = &self.rows[panel.start..panel.start + panel.unknowns];
             let right = &memory[panel.start..panel.start + panel.unknowns];
             let known = |k: usize| {
-                let mut sum = right[k] - rows[k].next_w * w_next;
+                let mut sum = right[k] - rows[k].w[1] * w_next;
                 for c in 0..N {
                     sum -= rows[k].next[c] * z_next[c];
                 }
                 sum
             };
             if panel.unknowns > N {
-                w = known(N) / rows[N].own_w;
+                w = known(N) / rows[N].w[0];
             }
             for k in (0..N).rev() {
-                let mut sum = known(k) - rows[k].own_w * w;
+                let mut sum = known(k) - rows[k].w[0] * w;
                 for c in k + 1..N {
                     sum -= rows[k].own[c] * z[c];
                 }
@@ -341,7 +293,7 @@ impl<const N: usize> Panels<N> {
     pub(crate) fn solve_transposed(&self, weights: &AtNodes<N>, out: &mut Loads<N>, memory: &mut Vec<f64>) {
         let n = self.panels.len() - 1;
         memory.clear();
-        memory.resize(self.rows.len(), 0.0);
+        memory.resize(self.used, 0.0);
         // From the upper factor.
         let (mut z_given, mut w_given) = ([0.0; N], 0.0);
         for (i, panel) in self.panels.iter().enumerate() {
@@ -349,8 +301,7 @@ impl<const N: usize> Panels<N> {
             let own = &mut memory[panel.start..panel.start + panel.rows];
             let (mut z_passed, mut w_passed) = ([0.0; N], 0.0);
             for k in 0..panel.unknowns {
-                let mut sum =
-                    if k < N { weights.z[i][k] - z_given[k] } else { weights.w[i] - w_given };
+                let mut sum = if k < N { weights.z[i][k] - z_given[k] } else { weights.w[i] - w_given };
                 for m in 0..k {
                     sum -= rows[m].at(k) * own[m];
                 }
@@ -358,7 +309,7 @@ impl<const N: usize> Panels<N> {
                 for c in 0..N {
                     z_passed[c] += rows[k].next[c] * own[k];
                 }
-                w_passed += rows[k].next_w * own[k];
+                w_passed += rows[k].w[1] * own[k];
             }
             (z_given, w_given) = (z_passed, w_passed);
         }
@@ -366,7 +317,6 @@ impl<const N: usize> Panels<N> {
         out.transitions.resize(n, [0.0; N]);
         out.own.clear();
         out.own.resize(n, 0.0);
-        let mut end = self.pivots.len();
         for (i, panel) in self.panels.iter().enumerate().rev() {
             let rows = &self.rows[panel.start..panel.start + panel.rows];
             let (before, behind) = memory.split_at_mut(panel.start + panel.rows);
@@ -374,8 +324,6 @@ impl<const N: usize> Panels<N> {
             if i < n {
                 own[panel.unknowns..].copy_from_slice(&behind[..panel.rows - panel.unknowns]);
             }
-            let pivots = &self.pivots[end - panel.unknowns..end];
-            end -= panel.unknowns;
             for k in (0..panel.unknowns).rev() {
                 let mut sum = own[k];
                 for (r, row) in rows.iter().enumerate().skip(k + 1) {
@@ -384,7 +332,7 @@ impl<const N: usize> Panels<N> {
                 own[k] = sum;
             }
             for k in (0..panel.unknowns).rev() {
-                own.swap(k, pivots[k]);
+                own.swap(k, panel.pivot(k));
             }
             let mut at = panel.carried;
             if i < n {
@@ -403,4 +351,87 @@ impl<const N: usize> Panels<N> {
         }
         out.left[..self.left_count].copy_from_slice(&memory[..self.left_count]);
     }
+}
+
+/// Eliminates the unknowns of a panel.
+#[inline(always)]
+fn eliminate<const FUSED: bool, const N: usize>(
+    rows: &mut [Row<N>],
+    panel: &mut Panel<N>,
+    product: &mut Product,
+) -> Option<()> {
+    // Steps one by one, so that each is compiled for its column.
+    const APART: usize = 4;
+    if N > 0 {
+        panel.pivots[0] = eliminate_one::<FUSED, N>(rows, 0, product)?;
+    }
+    if N > 1 {
+        panel.pivots[1] = eliminate_one::<FUSED, N>(rows, 1, product)?;
+    }
+    if N > 2 {
+        panel.pivots[2] = eliminate_one::<FUSED, N>(rows, 2, product)?;
+    }
+    if N > 3 {
+        panel.pivots[3] = eliminate_one::<FUSED, N>(rows, 3, product)?;
+    }
+    for k in APART..N {
+        panel.pivots[k] = eliminate_one::<FUSED, N>(rows, k, product)?;
+    }
+    if panel.unknowns > N {
+        panel.last_pivot = eliminate_one::<FUSED, N>(rows, N, product)?;
+    }
+    Some(())
+}
+
+/// Eliminates unknown `k` of a panel, the closure variable where it is the last; the row that was exchanged with its own.
+#[inline(always)]
+fn eliminate_one<const FUSED: bool, const N: usize>(
+    rows: &mut [Row<N>],
+    k: usize,
+    product: &mut Product,
+) -> Option<usize> {
+    let (mut best, mut largest) = (k, rows.get(k)?.at(k).abs());
+    for (r, row) in rows.iter().enumerate().skip(k + 1) {
+        let size = row.at(k).abs();
+        if size > largest {
+            (best, largest) = (r, size);
+        }
+    }
+    if largest == 0.0 || !largest.is_finite() {
+        return None;
+    }
+    if best != k {
+        rows.swap(best, k);
+        product.turn();
+    }
+    let (upper, lower) = rows.split_at_mut(k + 1);
+    let own = &upper[k];
+    let pivot = own.at(k);
+    product.times(pivot);
+    let scale = 1.0 / pivot;
+    // The columns before are the lower factor's: they get nothing, so that rows are whole vectors.
+    let mut behind = own.own;
+    for c in 0..N {
+        behind[c] = if c > k { own.own[c] } else { 0.0 };
+    }
+    let [own_w, next_w] = own.w;
+    let w = [if k < N { own_w } else { 0.0 }, next_w];
+    for row in lower {
+        let f = row.at(k) * scale;
+        for c in 0..N {
+            row.own[c] = row.own[c].plus::<FUSED>(-f, behind[c]);
+        }
+        for c in 0..N {
+            row.next[c] = row.next[c].plus::<FUSED>(-f, own.next[c]);
+        }
+        for c in 0..2 {
+            row.w[c] = row.w[c].plus::<FUSED>(-f, w[c]);
+        }
+        if k < N {
+            row.own[k] = f;
+        } else {
+            row.w[0] = f;
+        }
+    }
+    Some(best)
 }
