@@ -196,95 +196,114 @@ pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize,
     product: &mut Lanes,
 ) -> Result<(), usize> {
     let locals = &locals[..M];
-    let inner = |m: usize| if m < M { &locals[m].inner } else { own };
     let zero = Lanes::of(0.0);
     let inverse_h = Lanes::of(1.0) / h;
+    // What the points have, side by side, so that loops over them choose nothing.
+    let mut gradients = [[zero; N]; POINTS];
+    let mut reaches = [zero; POINTS];
+    for m in 0..M {
+        (gradients[m], reaches[m]) = (locals[m].inner.value_gradient, inverse_h * locals[m].inner.reach);
+    }
+    (gradients[M], reaches[M]) = (own.value_gradient, inverse_h * own.reach);
     let right = Lanes(sides.map(Side::place));
     closure.right = right;
+    // Differentiation on an element of length one.
     let mut d = [[zero; POINTS]; POINTS];
-    for m in 0..M + 2 {
-        for l in 0..M + 2 {
-            let [on_left, on_right] = [gauss.closure[0][m][l], gauss.closure[1][m][l]];
-            d[m][l] = inverse_h * (Lanes::of(on_left) + right * Lanes::of(on_right - on_left));
+    if sides == [sides[0]; LANES] {
+        let table = &gauss.closure[sides[0].index()];
+        for m in 0..M + 2 {
+            for l in 0..M + 2 {
+                d[m][l] = Lanes::of(table[m][l]);
+            }
+        }
+    } else {
+        for m in 0..M + 2 {
+            for l in 0..M + 2 {
+                let [on_left, on_right] = [gauss.closure[0][m][l], gauss.closure[1][m][l]];
+                d[m][l] = Lanes::of(on_left) + right * Lanes::of(on_right - on_left);
+            }
         }
     }
     // P by elimination in order; the matrix is near one, or its largest entries stand on the diagonal.
     let mut p = [[zero; POINTS]; POINTS];
     for m in 0..M + 1 {
-        let reach = inner(m).reach;
         for l in 0..M + 1 {
-            p[m][l] = -(reach * d[m][l]);
+            p[m][l] = -(reaches[m] * d[m][l]);
         }
         p[m][m] += Lanes::of(1.0);
     }
     invert_points::<FUSED, M>(&mut p, product)?;
     closure.own = p[M];
     for m in 0..M + 1 {
-        let mut defect = d[m][M + 1] * values[M + 1] - slopes[m];
+        let mut defect = d[m][M + 1] * values[M + 1];
         for l in 0..M + 1 {
             defect = defect.plus::<FUSED>(d[m][l], values[l]);
         }
-        closure.defect[m] = defect;
+        closure.defect[m] = inverse_h * defect - slopes[m];
+    }
+    for m in 0..M + 1 {
         for l in 0..M + 1 {
-            let mut sum = zero;
-            for k in 0..M + 1 {
+            let mut sum = d[m][0] * p[0][l];
+            for k in 1..M + 1 {
                 sum = sum.plus::<FUSED>(d[m][k], p[k][l]);
             }
-            closure.w[m][l] = sum;
+            closure.w[m][l] = inverse_h * sum;
         }
     }
     let mut taken = [zero; POINTS];
     for m in 0..M + 1 {
-        taken[m] = inner(m).reach * d[m][M + 1];
+        taken[m] = reaches[m] * d[m][M + 1];
     }
     for m in 0..M + 1 {
-        let mut omega = d[m][M + 1];
+        let mut omega = inverse_h * d[m][M + 1];
         for l in 0..M + 1 {
             omega = omega.plus::<FUSED>(closure.w[m][l], taken[l]);
         }
         closure.omega[m] = omega;
     }
-    let (mut own_by_taken, mut other_by_taken) = (zero, d[M + 1][M + 1]);
+    let (mut own_by_taken, mut other_by_taken) = (zero, inverse_h * d[M + 1][M + 1]);
     let mut other_slope = d[M + 1][M + 1] * values[M + 1];
     for m in 0..M + 1 {
         let mut other = zero;
         for k in 0..M + 1 {
             other = other.plus::<FUSED>(d[M + 1][k], p[k][m]);
         }
+        let other = inverse_h * other;
         closure.other[m] = other;
-        own_by_taken += p[M][m] * taken[m];
-        other_by_taken += other * taken[m];
-        other_slope += d[M + 1][m] * values[m];
+        own_by_taken = own_by_taken.plus::<FUSED>(p[M][m], taken[m]);
+        other_by_taken = other_by_taken.plus::<FUSED>(other, taken[m]);
+        other_slope = other_slope.plus::<FUSED>(d[M + 1][m], values[m]);
     }
-    (closure.own_by_taken, closure.other_by_taken, closure.other_slope) = (own_by_taken, other_by_taken, other_slope);
+    (closure.own_by_taken, closure.other_by_taken) = (own_by_taken, other_by_taken);
+    closure.other_slope = inverse_h * other_slope;
 
     // Integrals up to stages and own end.
-    let upto = |m: usize, l: usize, right: Lanes| {
-        if m < M { Lanes::of(gauss.a[m][l]) } else { right * Lanes::of(gauss.b[l]) }
-    };
+    let end = right;
     for l in 0..M {
         let mut own_by_slopes = [zero; N];
         for m in 0..M + 1 {
-            let f = p[M][m] * upto(m, l, right);
+            let f = p[M][m] * if m < M { Lanes::of(gauss.a[m][l]) } else { end * Lanes::of(gauss.b[l]) };
             for a in 0..N {
-                own_by_slopes[a] = own_by_slopes[a].plus::<FUSED>(f, inner(m).value_gradient[a]);
+                own_by_slopes[a] = own_by_slopes[a].plus::<FUSED>(f, gradients[m][a]);
             }
         }
         closure.own_by_slopes[l] = own_by_slopes;
     }
     // Minus h times these.
     let mut weights = [[zero; M]; POINTS];
-    for m in 0..M + 1 {
-        for l in 0..M {
-            weights[m][l] = -(h * upto(m, l, right));
+    let minus = -h;
+    for l in 0..M {
+        for m in 0..M {
+            weights[m][l] = minus * Lanes::of(gauss.a[m][l]);
         }
+        weights[M][l] = minus * end * Lanes::of(gauss.b[l]);
     }
     for j in 0..M {
         let (jacobian, u) = (&locals[j].jacobian, &locals[j].by_closure);
         let mut by_state = [zero; N];
         for m in 0..M + 1 {
             for a in 0..N {
-                by_state[a] = by_state[a].plus::<FUSED>(closure.w[j][m], inner(m).value_gradient[a]);
+                by_state[a] = by_state[a].plus::<FUSED>(closure.w[j][m], gradients[m][a]);
             }
         }
         for a in 0..N {
@@ -298,10 +317,10 @@ pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize,
             for m in 0..M + 1 {
                 let f = closure.w[j][m] * weights[m][l];
                 for a in 0..N {
-                    x[a] = x[a].plus::<FUSED>(f, inner(m).value_gradient[a]);
+                    x[a] = x[a].plus::<FUSED>(f, gradients[m][a]);
                 }
             }
-            let f = -(h * Lanes::of(gauss.a[j][l]));
+            let f = weights[j][l];
             let block = &mut out.lu[j][l];
             for a in 0..N {
                 for c in 0..N {
@@ -378,30 +397,33 @@ fn invert_lanes<const N: usize>(
 /// Inverts the leading M + 1 rows and columns in place. With the own end first no entry grows, however long the reach is against
 /// the element; with the stages first all digits are lost where it is longer than ten elements.
 #[inline(always)]
-fn invert_points<const FUSED: bool, const M: usize>(p: &mut [[Lanes; POINTS]; POINTS], product: &mut Lanes) -> Result<(), usize> {
-    let one = Lanes::of(1.0);
+fn invert_points<const FUSED: bool, const M: usize>(
+    p: &mut [[Lanes; POINTS]; POINTS],
+    product: &mut Lanes,
+) -> Result<(), usize> {
     for step in 0..M + 1 {
         let k = if step == 0 { M } else { step - 1 };
         let pivot = p[k][k];
-        for lane in 0..LANES {
-            // The negation also catches NaN.
-            #[allow(clippy::neg_cmp_op_on_partial_ord)]
-            if !(pivot.0[lane].abs() > 1e-9) {
-                return Err(lane);
-            }
+        // The comparison also catches NaN.
+        if !(-pivot.abs()).all_below(-1e-9) {
+            let lost = |lane: &usize| pivot.0[*lane].is_nan() || pivot.0[*lane].abs() <= 1e-9;
+            return Err((0..LANES).find(lost).unwrap_or(0));
         }
         *product = *product * pivot;
-        let scale = one / pivot;
+        let scale = Lanes::of(1.0) / pivot;
+        // Column k starts as that of one.
+        p[k][k] = Lanes::of(1.0);
+        let mut own = [Lanes::of(0.0); POINTS];
         for c in 0..M + 1 {
-            p[k][c] = scale * if c == k { one } else { p[k][c] };
+            own[c] = scale * p[k][c];
         }
-        let own = p[k];
+        p[k] = own;
         for i in 0..M + 1 {
             if i != k {
                 let f = p[i][k];
+                p[i][k] = Lanes::of(0.0);
                 for c in 0..M + 1 {
-                    let rest = if c == k { Lanes::of(0.0) } else { p[i][c] };
-                    p[i][c] = rest.plus::<FUSED>(f, -own[c]);
+                    p[i][c] = p[i][c].plus::<FUSED>(f, -own[c]);
                 }
             }
         }
@@ -433,10 +455,7 @@ pub(crate) fn solve_column<const FUSED: bool, const N: usize, const M: usize>(
 
 /// Solves for a block a stage in place.
 #[inline(always)]
-fn solve_blocks<const FUSED: bool, const N: usize, const M: usize>(
-    lu: &BlockLu<N, M>,
-    blocks: &mut [Block<N, Lanes>],
-) {
+fn solve_blocks<const FUSED: bool, const N: usize, const M: usize>(lu: &BlockLu<N, M>, blocks: &mut [Block<N, Lanes>]) {
     let (lu, blocks) = (&lu[..M], &mut blocks[..M]);
     for j in 0..M {
         let (own, others) = blocks.split_at_mut(j + 1);
