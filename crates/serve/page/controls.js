@@ -13,6 +13,7 @@ export const READINGS = /** @type {const} */ ([
   { key: "entering_speed", label: "Entering speed", words: ["tangential", "resultant"] },
   { key: "layer_mean", label: "Mean over the layer", words: ["speed", "momentum"] },
   { key: "wetted_length", label: "Wetted length", words: ["reference", "deformed"] },
+  { key: "displaced", label: "Displaced water", words: ["volume", "section"] },
   { key: "hydrostatics", label: "Hydrostatics", words: ["archimedes", "normal-only"] },
   { key: "support", label: "Support", words: ["clamped", "unstrained-base"] },
 ]);

@@ -1,6 +1,7 @@
 //! How hard loads push against the arm, and whether it is in line with them.
 
 use super::{Equations, N};
+use crate::swelling::{displacement, swelling};
 
 /// Where the unloaded arm points at a place, and the load on its tip that would turn with it.
 pub(crate) struct Unloaded {
@@ -64,12 +65,10 @@ impl Equations {
     /// Weight less buoyancy, and forces along the arm, at station `k`, per length.
     fn net_weight(&self, k: usize) -> [f64; 2] {
         let (block, lane) = self.groups.station(k);
-        let (place, beta) = (&self.places[block], self.beta.value[block].0[lane]);
+        let place = &self.places[block];
         let nu = self.strain(k)[0];
-        [0, 1].map(|c| {
-            place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * nu * beta * beta
-                + place.body.force[c].0[lane]
-        })
+        let [d, _] = displacement(self.water.displaced, self.water.volume, nu, &swelling(self.water.volume, nu));
+        [0, 1].map(|c| place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * d + place.body.force[c].0[lane])
     }
 
     /// Whether the arm at station `k`, turned to `theta`, is nearly in line with a load: small angles to it decide then to
