@@ -61,7 +61,7 @@ fn s_shaped(seed: u64) -> Arm {
 
 /// On 200 S-shaped arms the error is within three times the estimate in 95 of 100, and never above ten times.
 #[test]
-#[ignore = "no node stands where chi' changes its sign: 21 of 110 within 3 times, most 1e3 to 1e7 times above"]
+#[ignore = "no node stands where chi' changes its sign: of 199 answered 26 are within 3 times, most 1e3 to 1e7 times above"]
 fn estimates_hold_where_cables_turn_both_ways() {
     let cases: Vec<(u64, Judged)> = (0..200_u64)
         .into_par_iter()
@@ -81,7 +81,7 @@ fn estimates_hold_where_cables_turn_both_ways() {
         );
     }
     println!("{} answered, {} known, {} within 3, {} within 10", cases.len(), known.len(), within(3.0), within(10.0));
-    assert!(known.len() > 100);
+    assert!(known.len() > 180);
     assert!(within(3.0) * 100 >= 95 * known.len() && within(10.0) == known.len());
 }
 

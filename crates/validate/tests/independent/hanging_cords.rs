@@ -1,4 +1,4 @@
-//! Thin heavy rods: one shape for every load, however heavy (`cords`). Of 60 of them 12 were refused with limit points that do not exist.
+//! Thin heavy rods: one shape for every load, however heavy (`cords`). Of 40 of them 9 were refused.
 
 use hydrostat::{
     Arm, Gravity, Material, Options, Parameter, PathEnd, PathOptions, SolveError, Solver, VerdictKind, Volume,
@@ -40,9 +40,9 @@ fn cords_that_are_not_heavy_hang_as_shot() {
     none_wrong(count(40).into_par_iter().map(|seed| cord(seed, 300.0)));
 }
 
-/// 1000 with HYDROSTAT_CORDS=1000.
+/// 1000 with HYDROSTAT_CORDS=1000, of which 137 are wrong.
 #[test]
-#[ignore = "12 of the first 60 seeds are refused, by limit points that do not exist"]
+#[ignore = "9 of 40 are refused, most by limit points that do not exist"]
 fn heavy_cords_hang_as_shot() {
     none_wrong(count(40).into_par_iter().map(|seed| cord(seed, 1e6)));
 }
@@ -94,7 +94,7 @@ fn a_silicone_cord_of_any_length_hangs_as_shot() {
 
 /// Loads along a sheet, N/m, and its tip, mm.
 #[test]
-#[ignore = "`limit point` at 0.5 and 0.05 of the loads"]
+#[ignore = "both are refused, the first past all of its tensions"]
 fn a_heavy_sheet_hangs_as_shot() {
     for (load, x, y) in [(-1000.0, 45.99, -981.14), (-10_000.0, 14.26, -994.11)] {
         let mut file = ArmFile::parse(include_str!("cases/heavy-sheet.toml"), "heavy-sheet.toml").unwrap();
@@ -164,7 +164,7 @@ fn limit_of(arm: &Arm) -> f64 {
 
 /// The sign that decides must not hang on the mesh: whatever the tolerance, there is an answer.
 #[test]
-#[ignore = "refused at 1e-8 and finer"]
+#[ignore = "refused at 1e-5 and finer"]
 fn a_cord_hangs_at_any_tolerance() {
     let mut arm = silicone_cord();
     arm.length = 0.3;
