@@ -125,7 +125,9 @@ pub fn parse_targets(text: &str, path: &str, s: Option<f64>) -> Result<Vec<Targe
         // The text is in memory and is UTF-8.
         let Ok(record) = record else { continue };
         let line = record.position().map_or(0, |position| lines.of(position.byte()));
-        if record.iter().all(str::is_empty) {
+        // Spreadsheets leave empty rows as wide as the table; a wider one is a slip.
+        let fits = columns.as_ref().is_none_or(|columns| record.len() <= columns.len());
+        if fits && record.iter().all(str::is_empty) {
             continue;
         }
         let Some(columns) = &columns else {
