@@ -90,17 +90,20 @@ pub(crate) fn subtract_applied<const FUSED: bool, const N: usize, R: Real>(
 #[inline(always)]
 pub(crate) fn inverse<const N: usize>(m: &Block<N>, smallest: f64) -> Option<Block<N>> {
     let mut inverse = *m;
-    let fine = invert_in_order::<false, N, f64>(&mut inverse);
+    let (fine, _) = invert_in_order::<false, N, f64>(&mut inverse);
     if fine > 0.0 { Some(inverse) } else { inverse_with_pivoting(*m, smallest) }
 }
 
 /// A pivot below this share of what stands under it would lose digits.
 const SMALL_PIVOT: f64 = 0.1;
 
+/// Steps of an elimination that are compiled one by one.
+const APART: usize = 4;
+
 /// Inverse in place by Gauss–Jordan elimination without exchanges. Returns one, or zero where a pivot is
-/// small against the largest entry of the matrix given or against what stands under it.
+/// small against the largest entry of the matrix given or against what stands under it; and the determinant.
 #[inline(always)]
-pub(crate) fn invert_in_order<const FUSED: bool, const N: usize, R: Real>(m: &mut Block<N, R>) -> R {
+pub(crate) fn invert_in_order<const FUSED: bool, const N: usize, R: Real>(m: &mut Block<N, R>) -> (R, R) {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let mut columns = [zero; N];
     for row in m.iter() {
@@ -114,32 +117,86 @@ pub(crate) fn invert_in_order<const FUSED: bool, const N: usize, R: Real>(m: &mu
     }
     let mut fine = largest.if_less(R::of(f64::INFINITY), one, zero);
     let least = R::of(1e-3) * largest;
+    let mut product = one;
+    // Steps one by one, so that each is compiled for its column.
+    if N > 0 {
+        invert_step::<FUSED, N, R>(m, 0, least, &mut fine, &mut product);
+    }
+    if N > 1 {
+        invert_step::<FUSED, N, R>(m, 1, least, &mut fine, &mut product);
+    }
+    if N > 2 {
+        invert_step::<FUSED, N, R>(m, 2, least, &mut fine, &mut product);
+    }
+    if N > 3 {
+        invert_step::<FUSED, N, R>(m, 3, least, &mut fine, &mut product);
+    }
+    for k in APART..N {
+        invert_step::<FUSED, N, R>(m, k, least, &mut fine, &mut product);
+    }
+    (fine, product)
+}
+
+#[inline(always)]
+fn invert_step<const FUSED: bool, const N: usize, R: Real>(
+    m: &mut Block<N, R>,
+    k: usize,
+    least: R,
+    fine: &mut R,
+    product: &mut R,
+) {
+    let (zero, one) = (R::of(0.0), R::of(1.0));
+    let pivot = m[k][k].abs();
+    *fine = least.if_less(pivot, *fine, zero);
+    let mut below = zero;
+    for i in k + 1..N {
+        below = below.max(m[i][k].abs());
+    }
+    if k + 1 < N {
+        *fine = pivot.if_less(R::of(SMALL_PIVOT) * below, zero, *fine);
+    }
+    *product = *product * m[k][k];
+    let scale = one / m[k][k];
+    // Column k is replaced by choice, not by storing into a row: a row that was stored in
+    // parts cannot be loaded as one vector until all of it has reached the cache.
+    let mut own = [zero; N];
+    for c in 0..N {
+        own[c] = if c == k { scale } else { scale * m[k][c] };
+    }
+    for i in 0..N {
+        if i != k {
+            let f = m[i][k];
+            let mut row = [zero; N];
+            for c in 0..N {
+                row[c] = if c == k { -(f * own[c]) } else { m[i][c].plus::<FUSED>(f, -own[c]) };
+            }
+            m[i] = row;
+        }
+    }
+    m[k] = own;
+}
+
+/// Determinant, with pivoting.
+pub(crate) fn determinant<const N: usize>(mut m: Block<N>) -> f64 {
+    let mut product = 1.0;
     for k in 0..N {
-        let pivot = m[k][k].abs();
-        fine = least.if_less(pivot, fine, zero);
+        let best = (k..N).fold(k, |best, i| if m[i][k].abs() > m[best][k].abs() { i } else { best });
+        if best != k {
+            m.swap(best, k);
+            product = -product;
+        }
+        product *= m[k][k];
+        if m[k][k] == 0.0 {
+            return 0.0;
+        }
         for i in k + 1..N {
-            fine = pivot.if_less(R::of(SMALL_PIVOT) * m[i][k].abs(), zero, fine);
-        }
-        let scale = one / m[k][k];
-        // Column k is replaced by choice, not by storing into a row: a row that was stored in
-        // parts cannot be loaded as one vector until all of it has reached the cache.
-        let mut own = [zero; N];
-        for c in 0..N {
-            own[c] = scale * if c == k { one } else { m[k][c] };
-        }
-        for i in 0..N {
-            if i != k {
-                let f = m[i][k];
-                let mut row = [zero; N];
-                for c in 0..N {
-                    row[c] = if c == k { zero } else { m[i][c] }.plus::<FUSED>(f, -own[c]);
-                }
-                m[i] = row;
+            let f = m[i][k] / m[k][k];
+            for c in k..N {
+                m[i][c] -= f * m[k][c];
             }
         }
-        m[k] = own;
     }
-    fine
+    product
 }
 
 /// Inverse by Gauss–Jordan elimination with partial pivoting.

@@ -1,5 +1,14 @@
 //! Gauss–Legendre collocation with `M` stages on [0, 1]: order 2M at the nodes.
 
+/// Most stages of a method for problems with a closure variable.
+pub const MOST_STAGES: usize = 5;
+
+/// The stages and both ends of an element.
+pub(crate) const POINTS: usize = MOST_STAGES + 2;
+
+/// Weights by two of the stages and ends.
+pub(crate) type Differentiation = [[f64; POINTS]; POINTS];
+
 /// Points and weights of the `M`-stage Gauss method.
 ///
 /// Everything follows from the cardinal polynomials
@@ -15,24 +24,13 @@ pub struct Gauss<const M: usize> {
     pub a: [[f64; M]; M],
     /// `d[j][l]`: slope of `l_l` at `c[j]`.
     pub d: [[f64; M]; M],
-    /// Second derivative at `c[j]` of the polynomial of degree 2M-1 that has given values and
-    /// slopes at all stages: `hermite[0][j][l]` weighs values, `hermite[1][j][l]` slopes.
-    pub hermite: [[[f64; M]; M]; 2],
-    /// [`Gauss::hermite_at`] both ends of an element.
-    pub ends: [Hermite<M>; 2],
+    /// Differentiation on the stages and both ends, for either side that is an element's own
+    /// ([`Side`](crate::directions::Side)): `closure[side][m][l]` is the slope at point `m` of the polynomial that is one at
+    /// point `l`. Points 0 to M-1 are the stages, M is the own end, M+1 the other one. Zero for methods
+    /// with more than [`MOST_STAGES`] stages.
+    pub closure: [Differentiation; 2],
     /// `legendre[n][j]`: weight of P_n in `l_j`, `(2n+1) b_j P_n(c_j)`.
     legendre: [[f64; M]; M],
-}
-
-/// Weights of the values and of the slopes at the stages of an element of length one.
-#[derive(Debug, Clone, Copy)]
-pub struct Hermite<const M: usize> {
-    /// For the value: of values, of slopes.
-    pub value: [[f64; M]; 2],
-    /// For the first derivative: of values, of slopes.
-    pub slope: [[f64; M]; 2],
-    /// For the second derivative: of values, of slopes.
-    pub curvature: [[f64; M]; 2],
 }
 
 impl<const M: usize> Gauss<M> {
@@ -56,9 +54,8 @@ impl<const M: usize> Gauss<M> {
             c[j] = 0.5 * (1.0 + x);
             b[j] = 1.0 / ((1.0 - x * x) * slope * slope);
         }
-        let blank = Hermite { value: [[0.0; M]; 2], slope: [[0.0; M]; 2], curvature: [[0.0; M]; 2] };
         let zero = [[0.0; M]; M];
-        let mut gauss = Self { c, b, a: zero, d: zero, hermite: [zero; 2], ends: [blank; 2], legendre: zero };
+        let mut gauss = Self { c, b, a: zero, d: zero, closure: [[[0.0; POINTS]; POINTS]; 2], legendre: zero };
         for n in 0..M {
             for j in 0..M {
                 gauss.legendre[n][j] = (2 * n + 1) as f64 * gauss.b[j] * legendre(n, 2.0 * c[j] - 1.0).0;
@@ -68,8 +65,9 @@ impl<const M: usize> Gauss<M> {
             gauss.a[j] = gauss.integrals(c[j]);
             gauss.d[j] = gauss.slopes(c[j]);
         }
-        gauss.hermite = gauss.second_derivatives();
-        gauss.ends = [0.0, 1.0].map(|x| gauss.hermite_at(x));
+        if M <= MOST_STAGES {
+            gauss.closure = [[0.0, 1.0], [1.0, 0.0]].map(|ends| differentiation(&gauss.c, ends));
+        }
         gauss
     }
 
@@ -94,47 +92,27 @@ impl<const M: usize> Gauss<M> {
         }))
     }
 
-    /// From H_l = (1 - 2 (x - c_l) l_l'(c_l)) l_l^2 for values and (x - c_l) l_l^2 for slopes.
-    fn second_derivatives(&self) -> [[[f64; M]; M]; 2] {
-        let mut out = [[[0.0; M]; M]; 2];
-        for j in 0..M {
-            for l in 0..M {
-                let own = self.d[l][l];
-                if j == l {
-                    let curvature: f64 = (0..M).map(|k| self.d[l][k] * self.d[k][l]).sum();
-                    out[0][j][l] = 2.0 * curvature - 6.0 * own * own;
-                    out[1][j][l] = 4.0 * own;
-                } else {
-                    let square = 2.0 * self.d[j][l] * self.d[j][l];
-                    let distance = self.c[j] - self.c[l];
-                    out[0][j][l] = square * (1.0 - 2.0 * distance * own);
-                    out[1][j][l] = square * distance;
-                }
-            }
+    /// Weights at `x` of the values at the stages, and at both ends.
+    pub fn cardinals_with_ends(&self, x: f64) -> ([f64; M], [f64; 2]) {
+        let mut at_stages = self.cardinals(x);
+        for (weight, c) in at_stages.iter_mut().zip(self.c) {
+            *weight *= x * (x - 1.0) / (c * (c - 1.0));
         }
-        out
+        let end = |own: f64, other: f64| {
+            let distance: f64 = self.c.iter().map(|c| (x - c) / (own - c)).product();
+            distance * (x - other) / (own - other)
+        };
+        (at_stages, [end(0.0, 1.0), end(1.0, 0.0)])
     }
 
-    /// Value, first and second derivative at `x` of the polynomial that [`Gauss::hermite`] is of.
-    pub fn hermite_at(&self, x: f64) -> Hermite<M> {
-        let values = self.cardinals(x);
-        let slopes = self.slopes(x);
-        let t = 2.0 * x - 1.0;
-        let curvatures = self.combine(&std::array::from_fn(|n| 4.0 * legendre_curvature(n, t)));
-        let mut out = Hermite { value: [[0.0; M]; 2], slope: [[0.0; M]; 2], curvature: [[0.0; M]; 2] };
-        for l in 0..M {
-            let (v, v1, v2) = (values[l], slopes[l], curvatures[l]);
-            let own = self.d[l][l];
-            let distance = x - self.c[l];
-            let lean = 1.0 - 2.0 * distance * own;
-            out.value[0][l] = lean * v * v;
-            out.value[1][l] = distance * v * v;
-            out.slope[0][l] = -2.0 * own * v * v + 2.0 * lean * v * v1;
-            out.slope[1][l] = v * v + 2.0 * distance * v * v1;
-            out.curvature[0][l] = -8.0 * own * v * v1 + 2.0 * lean * (v1 * v1 + v * v2);
-            out.curvature[1][l] = 4.0 * v * v1 + 2.0 * distance * (v1 * v1 + v * v2);
+    /// Weights at `x` of the values at the stages and, last, at the end of an element that is its own (0 or 1).
+    pub fn cardinals_with_end(&self, x: f64, own: f64) -> ([f64; M], f64) {
+        let distance: f64 = self.c.iter().map(|c| (x - c) / (own - c)).product();
+        let mut at_stages = self.cardinals(x);
+        for (weight, c) in at_stages.iter_mut().zip(self.c) {
+            *weight *= (x - own) / (c - own);
         }
-        out
+        (at_stages, distance)
     }
 
     #[inline]
@@ -185,14 +163,20 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
     (p1, d1)
 }
 
-/// Second derivative of the Legendre polynomial of degree `n` at `x` in [-1, 1].
-fn legendre_curvature(n: usize, x: f64) -> f64 {
-    // P_{k+1}' - P_{k-1}' = (2k + 1) P_k, differentiated once.
-    let (mut d0, mut d1) = (0.0, 0.0);
-    for k in 1..n {
-        (d0, d1) = (d1, d0 + (2 * k + 1) as f64 * legendre(k, x).1);
+/// Derivatives of the polynomials through stages and ends, by barycentric weights (Berrut and Trefethen 2004).
+fn differentiation<const M: usize>(c: &[f64; M], ends: [f64; 2]) -> Differentiation {
+    let points: Vec<f64> = c.iter().chain(&ends).copied().collect();
+    let weight = |k: usize| -> f64 {
+        points.iter().enumerate().filter(|(l, _)| *l != k).map(|(_, x)| 1.0 / (points[k] - x)).product()
+    };
+    let mut out = [[0.0; POINTS]; POINTS];
+    for m in 0..points.len() {
+        for l in (0..points.len()).filter(|l| *l != m) {
+            out[m][l] = weight(l) / weight(m) / (points[m] - points[l]);
+            out[m][m] -= out[m][l];
+        }
     }
-    d1
+    out
 }
 
 #[cfg(test)]
@@ -207,25 +191,17 @@ mod tests {
     }
 
     #[test]
-    fn hermite_second_derivatives_are_exact_to_degree_seven() {
+    fn slopes_through_stages_and_ends_are_exact_to_degree_five() {
         let g = Gauss::<4>::new();
-        for j in 0..4 {
-            let sum: f64 =
-                (0..4).map(|l| g.hermite[0][j][l] * g.c[l].powi(7) + g.hermite[1][j][l] * 7.0 * g.c[l].powi(6)).sum();
-            assert!((sum - 42.0 * g.c[j].powi(5)).abs() < 1e-11, "{sum}");
-        }
-    }
-
-    #[test]
-    fn hermite_derivatives_between_stages_are_exact_to_degree_seven() {
-        let g = Gauss::<4>::new();
-        for x in [0.03, 0.4, 0.77, 1.0] {
-            let h = g.hermite_at(x);
-            let sum = |w: [[f64; 4]; 2]| -> f64 {
-                (0..4).map(|l| w[0][l] * g.c[l].powi(7) + w[1][l] * 7.0 * g.c[l].powi(6)).sum()
-            };
-            assert!((sum(h.slope) - 7.0 * x.powi(6)).abs() < 1e-11);
-            assert!((sum(h.curvature) - 42.0 * x.powi(5)).abs() < 1e-10, "{}", sum(h.curvature));
+        for (side, ends) in [[0.0, 1.0], [1.0, 0.0]].into_iter().enumerate() {
+            let points: Vec<f64> = g.c.iter().chain(&ends).copied().collect();
+            for m in 0..6 {
+                let slope: f64 = (0..6).map(|l| g.closure[side][m][l] * points[l].powi(5)).sum();
+                assert!((slope - 5.0 * points[m].powi(4)).abs() < 1e-12, "{slope}");
+            }
+            let (at_stages, at_end) = g.cardinals_with_end(0.37, ends[0]);
+            let value: f64 = (0..4).map(|l| at_stages[l] * g.c[l].powi(4)).sum::<f64>() + at_end * ends[0].powi(4);
+            assert!((value - 0.37_f64.powi(4)).abs() < 1e-13);
         }
     }
 

@@ -2,6 +2,21 @@
 
 use crate::real::LANES;
 
+/// `Vec::resize` with room for twice as much at first, because meshes grow from the first on: moving what is there costs more than it.
+#[inline(always)]
+pub(crate) fn resize<T: Copy>(list: &mut Vec<T>, count: usize, blank: T) {
+    make_room(list, count);
+    list.resize(count, blank);
+}
+
+/// The room for [`resize`].
+#[inline(always)]
+pub(crate) fn make_room<T>(list: &mut Vec<T>, count: usize) {
+    if list.capacity() < count {
+        list.reserve_exact(2 * count - list.len());
+    }
+}
+
 /// How the stages of a mesh stand in blocks: block `g M + j` holds stage `j` of the elements of group
 /// `g`, one a lane. The last group is filled up with the last element, again and again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

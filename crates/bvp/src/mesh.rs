@@ -19,6 +19,13 @@ enum Pin {
     Loose,
 }
 
+impl Default for Mesh {
+    /// One element.
+    fn default() -> Self {
+        Self::uniform(1, &[])
+    }
+}
+
 impl Clone for Mesh {
     fn clone(&self) -> Self {
         Self { nodes: self.nodes.clone(), pinned: self.pinned.clone() }
@@ -142,6 +149,18 @@ impl Mesh {
         let mut mesh = Self { nodes: vec![0.0], pinned: vec![Pin::Pinned] };
         for i in 0..self.elements() {
             mesh.fill(self.nodes[i], self.nodes[i + 1], parts.max(1), |t| t);
+            if let Some(last) = mesh.pinned.last_mut() {
+                *last = self.pinned[i + 1];
+            }
+        }
+        mesh
+    }
+
+    /// This mesh with every element cut into equal ones no longer than `longest`.
+    pub fn cut_to(&self, longest: f64) -> Self {
+        let mut mesh = Self { nodes: vec![0.0], pinned: vec![Pin::Pinned] };
+        for i in 0..self.elements() {
+            mesh.fill(self.nodes[i], self.nodes[i + 1], whole(self.step(i) / longest - 1e-9), |t| t);
             if let Some(last) = mesh.pinned.last_mut() {
                 *last = self.pinned[i + 1];
             }

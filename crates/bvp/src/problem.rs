@@ -1,55 +1,121 @@
 //! What a boundary-value problem tells the solver.
+//!
+//! The general problem is a system of `N` first-order equations for the state z with `L` inner unknowns y, which are
+//! determined at every place by as many algebraic equations, and at most one closure variable w, a function of the inner
+//! unknowns whose slope enters the equations (a differential-algebraic system of index one):
+//!
+//! ```text
+//! z' = f(s, z, y, w')        0 = g(s, z, y, w')        w = w(y)        q' = r(s, z, y)
+//! ```
+//!
+//! The quadratures q are integrals that no right side depends on. A plain system of differential equations has `L` = 0 and
+//! no closure variable.
 
+use crate::directions::EndPlace;
 use crate::groups::Groups;
-use crate::real::{LANES, Lanes, Real};
+use crate::real::{Lanes, Real};
 
-/// Slopes and rates at one station, or at one stage of four elements, with their gradients in the state.
+/// A place of a discrete solution, or the same place in four elements.
 #[derive(Debug, Clone, Copy)]
-pub struct Local<const N: usize, const Q: usize, R = f64> {
-    /// `z'` there.
+pub struct Station<const N: usize, const L: usize, R = Lanes> {
+    /// State.
+    pub z: [R; N],
+    /// Inner unknowns.
+    pub inner: [R; L],
+    /// Slope of the closure variable.
+    pub closure_slope: R,
+}
+
+/// The inner equations at a station, linearised and solved for the inner unknowns:
+/// `dy = change + gradient dz + by_closure dw'`, and for the closure variable alike.
+#[derive(Debug, Clone, Copy)]
+pub struct Inner<const N: usize, const L: usize, R = f64> {
+    /// The Newton step of the inner unknowns at fixed state and closure slope.
+    pub change: [R; L],
+    /// d y / d z.
+    pub gradient: [[R; N]; L],
+    /// d y / d w'.
+    pub by_closure: [R; L],
+    /// The closure variable at the inner unknowns.
+    pub value: R,
+    /// Its change by `change`.
+    pub value_change: R,
+    /// d w / d z.
+    pub value_gradient: [R; N],
+    /// d w / d w': the length over which disturbances of w fade or grow.
+    pub reach: R,
+}
+
+/// Slopes at a station with their derivatives, the inner unknowns eliminated: by state and closure slope.
+#[derive(Debug, Clone, Copy)]
+pub struct Local<const N: usize, const Q: usize, const L: usize, R = f64> {
+    /// `z'`, with what the Newton step of the inner unknowns changes to first order.
     pub slope: [R; N],
     /// `jacobian[a][b]` = d slope_a / d z_b.
     pub jacobian: [[R; N]; N],
-    /// Slopes of the quantities that the state does not depend on (a centreline, say): the solver
-    /// integrates them and measures its error in them.
+    /// d slope / d w'.
+    pub by_closure: [R; N],
+    /// Slopes of the quadratures, with the change by the inner unknowns.
     pub rate: [R; Q],
     /// `rate_gradient[q][b]` = d rate_q / d z_b.
     pub rate_gradient: [[R; N]; Q],
+    /// d rate / d w'.
+    pub rate_by_closure: [R; Q],
+    /// The inner equations.
+    pub inner: Inner<N, L, R>,
 }
 
-impl<const N: usize, const Q: usize, R: Real> Default for Local<N, Q, R> {
+impl<const N: usize, const L: usize, R: Real> Default for Inner<N, L, R> {
+    #[inline(always)]
     fn default() -> Self {
         let zero = R::of(0.0);
-        Self { slope: [zero; N], jacobian: [[zero; N]; N], rate: [zero; Q], rate_gradient: [[zero; N]; Q] }
+        Self {
+            change: [zero; L],
+            gradient: [[zero; N]; L],
+            by_closure: [zero; L],
+            value: zero,
+            value_change: zero,
+            value_gradient: [zero; N],
+            reach: zero,
+        }
     }
 }
 
-impl<const N: usize, const Q: usize> Local<N, Q, Lanes> {
-    /// That of one of the four elements.
-    pub fn lane(&self, lane: usize) -> Local<N, Q> {
-        let row = |row: [Lanes; N]| row.map(|v| v.0[lane]);
-        Local {
-            slope: row(self.slope),
-            jacobian: self.jacobian.map(row),
-            rate: self.rate.map(|v| v.0[lane]),
-            rate_gradient: self.rate_gradient.map(row),
+impl<const N: usize, const Q: usize, const L: usize, R: Real> Default for Local<N, Q, L, R> {
+    #[inline(always)]
+    fn default() -> Self {
+        let zero = R::of(0.0);
+        Self {
+            slope: [zero; N],
+            jacobian: [[zero; N]; N],
+            by_closure: [zero; N],
+            rate: [zero; Q],
+            rate_gradient: [[zero; N]; Q],
+            rate_by_closure: [zero; Q],
+            inner: Inner::default(),
         }
     }
+}
 
-    /// Takes `of` for one of the four elements.
-    pub fn set_lane(&mut self, lane: usize, of: &Local<N, Q>) {
-        for a in 0..N {
-            self.slope[a].0[lane] = of.slope[a];
-            for b in 0..N {
-                self.jacobian[a][b].0[lane] = of.jacobian[a][b];
-            }
-        }
-        for q in 0..Q {
-            self.rate[q].0[lane] = of.rate[q];
-            for b in 0..N {
-                self.rate_gradient[q][b].0[lane] = of.rate_gradient[q][b];
-            }
-        }
+/// A change of the equations at a station at fixed state and closure slope, the inner unknowns eliminated: the derivative by a
+/// parameter, or a load.
+#[derive(Debug, Clone, Copy)]
+pub struct Drift<const N: usize, const Q: usize, const L: usize, R = Lanes> {
+    /// Of the slopes.
+    pub slope: [R; N],
+    /// Of the rates of the quadratures.
+    pub rate: [R; Q],
+    /// Of the inner unknowns.
+    pub inner: [R; L],
+    /// Of the closure variable.
+    pub value: R,
+}
+
+impl<const N: usize, const Q: usize, const L: usize, R: Real> Default for Drift<N, Q, L, R> {
+    #[inline(always)]
+    fn default() -> Self {
+        let zero = R::of(0.0);
+        Self { slope: [zero; N], rate: [zero; Q], inner: [zero; L], value: zero }
     }
 }
 
@@ -60,42 +126,53 @@ pub struct Condition<const N: usize> {
     pub residual: f64,
     /// d residual / d z.
     pub gradient: [f64; N],
-    /// d residual / d parameter.
-    pub drift: f64,
 }
 
 impl<const N: usize> Default for Condition<N> {
     fn default() -> Self {
-        Self { residual: 0.0, gradient: [0.0; N], drift: 0.0 }
+        Self { residual: 0.0, gradient: [0.0; N] }
     }
 }
 
-/// A first-order system `z' = F(s, z)` of `N` equations on [0, 1] with separated end conditions and
-/// `Q` quadratures `q' = g(s, z)`.
+/// A boundary-value problem on [0, 1] with separated end conditions; see the [module](self).
 ///
-/// The solver calls [`Problem::slopes`] for all stations at once, the same stage of four elements side
-/// by side as [`Groups`] says, so that an implementation can keep memory a station (a warm start of a
-/// local law, say) and work on four stations as on one. One that works on one station at a time is
-/// a [`Plain`] problem, which [`OneByOne`] makes a problem of this kind.
-pub trait Problem<const N: usize, const Q: usize> {
-    /// Why slopes cannot be had at a state.
+/// Evaluation is a function of the stations alone: the same stations give the same bits, whatever was evaluated before.
+pub trait Problem<const N: usize, const Q: usize, const L: usize> {
+    /// Why a station has no slopes.
     type Failure;
 
-    /// Slopes and gradients at every station: `z` and `out` hold the blocks of `groups`. With `FUSED` the caller
-    /// is compiled for a processor with fused multiply-add ([`Real::plus`]).
+    /// Whether a closure variable enters the equations.
+    fn is_closed(&self) -> bool {
+        false
+    }
+
+    /// Slopes and derivatives at the stages of all elements, the same stage of four elements side by side as [`Groups`] says. Inner
+    /// unknowns that are far from their equations may be brought nearer at fixed state and closure slope; all that is
+    /// given out is then about those. With `FUSED` the caller is compiled for a processor with fused multiply-add ([`Real::plus`]).
     ///
     /// # Errors
-    /// When the state has no slopes: the solver then takes a shorter step.
-    fn slopes<const FUSED: bool>(
-        &mut self,
+    /// When a station has no slopes.
+    fn stages<const FUSED: bool>(
+        &self,
         groups: Groups,
-        z: &[[Lanes; N]],
-        out: &mut [Local<N, Q, Lanes>],
+        stations: &mut [Station<N, L>],
+        out: &mut [Local<N, Q, L, Lanes>],
     ) -> Result<(), Self::Failure>;
 
-    /// Slopes differentiated by the continuation parameter, at the state of the last call of
-    /// [`Problem::slopes`] and in its order.
-    fn drift(&mut self, out: &mut [[Lanes; N]]);
+    /// The inner equations at ends of elements, for problems with a closure variable: `places[b]` are the ends in the lanes of
+    /// block `b`.
+    ///
+    /// # Errors
+    /// When a station has no inner unknowns.
+    fn ends<const FUSED: bool>(
+        &self,
+        places: &[EndPlace],
+        stations: &mut [Station<N, L>],
+        out: &mut [Inner<N, L, Lanes>],
+    ) -> Result<(), Self::Failure> {
+        let _ = (places, stations, out);
+        Ok(())
+    }
 
     /// How many conditions hold at s = 0; the other `N` less that number hold at s = 1.
     fn left_count(&self) -> usize;
@@ -105,93 +182,4 @@ pub trait Problem<const N: usize, const Q: usize> {
 
     /// The conditions at s = 1 (the first `N` - [`Problem::left_count`] of `out`).
     fn right(&self, z: &[f64; N], out: &mut [Condition<N>; N]);
-}
-
-/// A [`Problem`] that is evaluated station by station.
-pub trait Plain<const N: usize, const Q: usize> {
-    /// Why slopes cannot be had at a state.
-    type Failure;
-
-    /// Slopes and gradients at `station`, counted along the mesh, at the state `z`.
-    ///
-    /// # Errors
-    /// When the state has no slopes: the solver then takes a shorter step.
-    fn local(&mut self, station: usize, z: &[f64; N]) -> Result<Local<N, Q>, Self::Failure>;
-
-    /// Slopes differentiated by the continuation parameter at `station`, where the last state was `z`.
-    fn drift(&mut self, station: usize, z: &[f64; N]) -> [f64; N] {
-        let _ = (station, z);
-        [0.0; N]
-    }
-
-    /// See [`Problem::left_count`].
-    fn left_count(&self) -> usize;
-
-    /// See [`Problem::left`].
-    fn left(&self, z: &[f64; N], out: &mut [Condition<N>; N]);
-
-    /// See [`Problem::right`].
-    fn right(&self, z: &[f64; N], out: &mut [Condition<N>; N]);
-}
-
-/// A [`Plain`] problem as a [`Problem`].
-#[derive(Debug, Clone)]
-pub struct OneByOne<P, const N: usize> {
-    /// The problem.
-    pub problem: P,
-    groups: Groups,
-    last: Vec<[Lanes; N]>,
-}
-
-impl<P, const N: usize> OneByOne<P, N> {
-    /// Of `problem`.
-    pub fn new(problem: P) -> Self {
-        Self { problem, groups: Groups { elements: 0, stages: 1 }, last: Vec::new() }
-    }
-}
-
-impl<P: Plain<N, Q>, const N: usize, const Q: usize> Problem<N, Q> for OneByOne<P, N> {
-    type Failure = P::Failure;
-
-    fn slopes<const FUSED: bool>(
-        &mut self,
-        groups: Groups,
-        z: &[[Lanes; N]],
-        out: &mut [Local<N, Q, Lanes>],
-    ) -> Result<(), P::Failure> {
-        self.groups = groups;
-        self.last.clear();
-        self.last.extend_from_slice(z);
-        for (block, (z, out)) in z.iter().zip(out).enumerate() {
-            for lane in 0..LANES {
-                let local = self.problem.local(groups.station_in(block, lane), &z.map(|v| v.0[lane]))?;
-                out.set_lane(lane, &local);
-            }
-        }
-        Ok(())
-    }
-
-    fn drift(&mut self, out: &mut [[Lanes; N]]) {
-        for (block, (z, out)) in self.last.iter().zip(out).enumerate() {
-            for lane in 0..LANES {
-                let station = self.groups.station_in(block, lane);
-                let drift = self.problem.drift(station, &z.map(|v| v.0[lane]));
-                for a in 0..N {
-                    out[a].0[lane] = drift[a];
-                }
-            }
-        }
-    }
-
-    fn left_count(&self) -> usize {
-        self.problem.left_count()
-    }
-
-    fn left(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
-        self.problem.left(z, out);
-    }
-
-    fn right(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
-        self.problem.right(z, out);
-    }
 }

@@ -1,163 +1,528 @@
 //! Discrete solutions, and corrections of them.
 
+use crate::directions::{Directions, Side};
 use crate::gauss::Gauss;
+use crate::groups::{Groups, make_room, resize};
 use crate::mesh::Mesh;
+use crate::real::{LANES, Lanes};
 
-/// A discrete solution: states at the nodes and slopes at the stages.
-#[derive(Debug, Clone)]
-pub struct Solution<const N: usize, const M: usize> {
-    /// The mesh.
-    pub mesh: Mesh,
-    /// States at the nodes.
-    pub nodes: Vec<[f64; N]>,
-    /// Slopes at the stages of each element.
-    pub slopes: Vec<[[f64; N]; M]>,
+/// The unknowns at a stage of four elements.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stage<const N: usize, const L: usize> {
+    /// Slope of the state.
+    pub slope: [Lanes; N],
+    /// Inner unknowns.
+    pub inner: [Lanes; L],
+    /// Slope of the closure variable.
+    pub closure_slope: Lanes,
 }
 
-impl<const N: usize, const M: usize> Solution<N, M> {
-    /// The state `z` everywhere.
-    pub fn constant(mesh: Mesh, z: [f64; N]) -> Self {
-        let n = mesh.elements();
-        Self { mesh, nodes: vec![z; n + 1], slopes: vec![[[0.0; N]; M]; n] }
+impl<const N: usize, const L: usize> Default for Stage<N, L> {
+    fn default() -> Self {
+        Self { slope: [Lanes::default(); N], inner: [Lanes::default(); L], closure_slope: Lanes::default() }
+    }
+}
+
+/// The unknowns at an end of four elements.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End<const L: usize> {
+    /// Inner unknowns.
+    pub inner: [Lanes; L],
+    /// Slope of the closure variable.
+    pub closure_slope: Lanes,
+}
+
+impl<const L: usize> Default for End<L> {
+    fn default() -> Self {
+        Self { inner: [Lanes::default(); L], closure_slope: Lanes::default() }
+    }
+}
+
+/// A discrete solution: a point of the space that Newton's method works in.
+#[derive(Debug, Default)]
+pub struct Solution<const N: usize, const M: usize, const L: usize = 0> {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// From which side elements take the closure variable.
+    pub directions: Directions,
+    /// States at the nodes.
+    pub nodes: Vec<[f64; N]>,
+    /// The stages in the blocks of [`Groups`].
+    pub stages: Vec<Stage<N, L>>,
+    /// The ends in the blocks of [`Directions::ends`].
+    pub ends: Vec<End<L>>,
+}
+
+impl<const N: usize, const M: usize, const L: usize> Clone for Solution<N, M, L> {
+    fn clone(&self) -> Self {
+        Self {
+            mesh: self.mesh.clone(),
+            directions: self.directions.clone(),
+            nodes: self.nodes.clone(),
+            stages: self.stages.clone(),
+            ends: self.ends.clone(),
+        }
     }
 
-    /// State at `s` from the collocation polynomial of element `i`.
-    pub fn state_in(&self, gauss: &Gauss<M>, i: usize, s: f64) -> [f64; N] {
+    /// Without allocation where there is room.
+    fn clone_from(&mut self, other: &Self) {
+        self.mesh.clone_from(&other.mesh);
+        self.directions.clone_from(&other.directions);
+        self.nodes.clone_from(&other.nodes);
+        self.stages.clone_from(&other.stages);
+        self.ends.clone_from(&other.ends);
+    }
+}
+
+/// The unknowns of the closure at a place of one element.
+#[derive(Debug, Clone, Copy)]
+pub struct InnerState<const L: usize> {
+    /// Inner unknowns.
+    pub inner: [f64; L],
+    /// Slope of the closure variable.
+    pub closure_slope: f64,
+}
+
+impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
+    /// The state `z` everywhere, with the inner unknowns `inner`, and no closure variable yet.
+    pub fn constant(mesh: Mesh, z: [f64; N], inner: [f64; L]) -> Self {
+        let n = mesh.elements();
+        let groups = Groups { elements: n, stages: M };
+        let stage = Stage { inner: inner.map(|v| Lanes([v; LANES])), ..Stage::default() };
+        Self {
+            mesh,
+            directions: Directions::default(),
+            nodes: vec![z; n + 1],
+            stages: vec![stage; groups.count() * M],
+            ends: Vec::new(),
+        }
+    }
+
+    /// How the stages stand in blocks.
+    #[inline(always)]
+    pub fn groups(&self) -> Groups {
+        Groups { elements: self.mesh.elements(), stages: M }
+    }
+
+    /// Slope of the state at stage `j` of element `i`.
+    #[inline(always)]
+    pub fn slope(&self, i: usize, j: usize) -> [f64; N] {
+        let (block, lane) = self.groups().at(i, j);
+        self.stages[block].slope.map(|v| v.0[lane])
+    }
+
+    /// Inner unknowns and closure slope at stage `j` of element `i`.
+    #[inline(always)]
+    pub fn inner(&self, i: usize, j: usize) -> InnerState<L> {
+        let (block, lane) = self.groups().at(i, j);
+        let stage = &self.stages[block];
+        InnerState { inner: stage.inner.map(|v| v.0[lane]), closure_slope: stage.closure_slope.0[lane] }
+    }
+
+    /// The same at the own end of element `i`, for problems with a closure variable.
+    pub fn inner_at_own_end(&self, i: usize) -> InnerState<L> {
+        let (block, lane) = (i / LANES, i % LANES);
+        let end = &self.ends[block];
+        InnerState { inner: end.inner.map(|v| v.0[lane]), closure_slope: end.closure_slope.0[lane] }
+    }
+
+    /// The state at stage `j` of element `i`.
+    pub fn stage_state(&self, gauss: &Gauss<M>, i: usize, j: usize) -> [f64; N] {
+        self.weighed(i, &gauss.a[j])
+    }
+
+    /// The state of element `i` where the integrals of the cardinal polynomials are `weights`.
+    fn weighed(&self, i: usize, weights: &[f64; M]) -> [f64; N] {
         let h = self.mesh.step(i);
-        let w = gauss.integrals((s - self.mesh.nodes()[i]) / h);
         let mut z = self.nodes[i];
-        for j in 0..M {
+        for (j, w) in weights.iter().enumerate() {
+            let slope = self.slope(i, j);
             for a in 0..N {
-                z[a] += h * w[j] * self.slopes[i][j][a];
+                z[a] += h * w * slope[a];
             }
         }
         z
     }
 
-    /// Carries the solution over to the mesh of `out` by its polynomials; elements that both meshes have stay as they are.
-    pub fn onto(&self, gauss: &Gauss<M>, out: &mut Self) {
-        let Self { mesh, nodes, slopes } = out;
-        nodes.clear();
-        slopes.clear();
+    /// State at `s` from the collocation polynomial of element `i`.
+    pub fn state_in(&self, gauss: &Gauss<M>, i: usize, s: f64) -> [f64; N] {
+        self.weighed(i, &gauss.integrals((s - self.mesh.nodes()[i]) / self.mesh.step(i)))
+    }
+
+    /// Slope of the state at `x` in [0, 1] of element `i` by the polynomial through the stages.
+    pub fn slope_in(&self, gauss: &Gauss<M>, i: usize, x: f64) -> [f64; N] {
+        self.slope_by(&gauss.cardinals(x), i)
+    }
+
+    fn slope_by(&self, cardinals: &[f64; M], i: usize) -> [f64; N] {
+        let mut out = [0.0; N];
+        for (j, w) in cardinals.iter().enumerate() {
+            let slope = self.slope(i, j);
+            for a in 0..N {
+                out[a] += w * slope[a];
+            }
+        }
+        out
+    }
+
+    /// Inner unknowns and closure slope at `x` in [0, 1] of element `i`, by the polynomials through the stages and, where there is a
+    /// closure variable, the ends. (The closure slope is of the degree that stages and own end settle.)
+    pub fn inner_in(&self, gauss: &Gauss<M>, i: usize, x: f64) -> InnerState<L> {
+        self.inner_by(gauss, &gauss.cardinals(x), i, x)
+    }
+
+    /// [`Solution::inner_in`], given the cardinal polynomials at `x`.
+    fn inner_by(&self, gauss: &Gauss<M>, cardinals: &[f64; M], i: usize, x: f64) -> InnerState<L> {
+        let mut out = InnerState { inner: [0.0; L], closure_slope: 0.0 };
+        if !self.directions.is_closed() {
+            for (j, w) in cardinals.iter().enumerate() {
+                let of = self.inner(i, j).inner;
+                for a in 0..L {
+                    out.inner[a] += w * of[a];
+                }
+            }
+            return out;
+        }
+        let side = self.directions.side(i);
+        let place = side.place();
+        let own = self.inner_at_own_end(i);
+        let mut ends = [own.inner; 2];
+        ends[side.other().index()] = self.inner_at_other_end(i);
+        let ([left, right], mut slope_at_own) = ([x, 1.0 - x], 1.0);
+        let mut at_ends = [right, left];
+        for c in gauss.c {
+            at_ends[0] *= (x - c) / -c;
+            at_ends[1] *= (x - c) / (1.0 - c);
+            slope_at_own *= (x - c) / (place - c);
+        }
+        for j in 0..M {
+            let (of, c) = (self.inner(i, j), gauss.c[j]);
+            let weight = cardinals[j] * x * (x - 1.0) / (c * (c - 1.0));
+            for a in 0..L {
+                out.inner[a] += weight * of.inner[a];
+            }
+            out.closure_slope += cardinals[j] * (x - place) / (c - place) * of.closure_slope;
+        }
+        for a in 0..L {
+            out.inner[a] += at_ends[0] * ends[0][a] + at_ends[1] * ends[1][a];
+        }
+        out.closure_slope += slope_at_own * own.closure_slope;
+        out
+    }
+
+    /// Inner unknowns at the end of element `i` that is not its own.
+    fn inner_at_other_end(&self, i: usize) -> [f64; L] {
+        let (block, lane) = self.directions.end_taken(i);
+        self.ends[block].inner.map(|v| v.0[lane])
+    }
+
+    /// Carries the solution over to the mesh of `out` by its polynomials; elements that both meshes have stay as they are. `jumps`
+    /// say where the new elements take the closure variable over; see [`Directions::set`].
+    pub fn onto(&self, gauss: &Gauss<M>, jumps: impl Fn(f64) -> bool, out: &mut Self) {
+        let n = out.mesh.elements();
+        let groups = Groups { elements: n, stages: M };
+        out.nodes.clear();
+        make_room(&mut out.nodes, n + 1);
+        resize(&mut out.stages, groups.count() * M, Stage::default());
+        let old = self.mesh.nodes();
         let mut e = 0;
-        let mut advance = |s: f64| {
-            while e + 1 < self.mesh.elements() && self.mesh.nodes()[e + 1] <= s {
-                e += 1;
+        let advance = |e: &mut usize, s: f64| {
+            while *e + 1 < self.mesh.elements() && old[*e + 1] <= s {
+                *e += 1;
             }
-            e
+            *e
         };
-        for (i, &s) in mesh.nodes().iter().enumerate() {
-            let e = advance(s);
-            let start = self.mesh.nodes()[e];
-            nodes.push(if s == start { self.nodes[e] } else { self.state_in(gauss, e, s) });
-            if i == mesh.elements() {
-                break;
-            }
-            if s == start && mesh.nodes()[i + 1] == self.mesh.nodes()[e + 1] {
-                slopes.push(self.slopes[e]);
-                continue;
-            }
-            let h = mesh.step(i);
-            let mut k = [[0.0; N]; M];
+        for i in 0..n {
+            let (s, h) = (out.mesh.nodes()[i], out.mesh.step(i));
+            let own = advance(&mut e, s);
+            out.nodes.push(if s == old[own] { self.nodes[own] } else { self.state_in(gauss, own, s) });
+            let kept = s == old[own] && out.mesh.nodes()[i + 1] == old[own + 1];
+            let (block, lane) = groups.at(i, 0);
             for j in 0..M {
-                let at = s + h * gauss.c[j];
-                let e = advance(at);
-                let l = gauss.cardinals((at - self.mesh.nodes()[e]) / self.mesh.step(e));
-                for m in 0..M {
-                    for a in 0..N {
-                        k[j][a] += l[m] * self.slopes[e][m][a];
+                let (slope, inner) = if kept {
+                    (self.slope(own, j), self.inner(own, j))
+                } else {
+                    let at = s + h * gauss.c[j];
+                    let from = advance(&mut e, at);
+                    let x = (at - old[from]) / self.mesh.step(from);
+                    let cardinals = gauss.cardinals(x);
+                    (self.slope_by(&cardinals, from), self.inner_by(gauss, &cardinals, from, x))
+                };
+                let stage = &mut out.stages[block + j];
+                put(stage, lane, &slope, &inner);
+                if i + 1 == n {
+                    for lane in lane + 1..LANES {
+                        put(stage, lane, &slope, &inner);
                     }
                 }
             }
-            slopes.push(k);
+        }
+        out.nodes.push(self.nodes[self.mesh.elements()]);
+        if !self.directions.is_closed() {
+            out.directions.clear();
+            out.ends.clear();
+            return;
+        }
+        let Self { mesh, directions, .. } = out;
+        let nodes = mesh.nodes();
+        let middle = |i: usize| 0.5 * (nodes[i] + nodes[i + 1]);
+        let sides = (0..n).map(|i| self.directions.side(self.mesh.element_of(middle(i))));
+        directions.set(sides, |node| jumps(nodes[node]));
+        self.fill_ends(gauss, out);
+    }
+
+    /// This solution's polynomials sampled with `K` stages on the same mesh.
+    #[inline(always)]
+    pub fn resample<const K: usize>(&self, weights: &Resampling<M, K>, out: &mut Solution<N, K, L>) {
+        let groups = self.groups();
+        out.mesh.clone_from(&self.mesh);
+        out.directions.clone_from(&self.directions);
+        out.nodes.clone_from(&self.nodes);
+        out.ends.clone_from(&self.ends);
+        resize(&mut out.stages, groups.count() * K, Stage::default());
+        let closed = self.directions.is_closed();
+        for g in 0..groups.count() {
+            let own = &self.stages[g * M..(g + 1) * M];
+            let mut right = Lanes::default();
+            // Inner unknowns at the left and the right end.
+            let mut ends = [[Lanes::default(); L]; 2];
+            if closed {
+                for lane in 0..LANES {
+                    let i = groups.element(g, lane);
+                    let side = self.directions.side(i);
+                    right.0[lane] = side.place();
+                    let other = self.inner_at_other_end(i);
+                    for a in 0..L {
+                        ends[side.index()][a].0[lane] = self.ends[g].inner[a].0[lane];
+                        ends[side.other().index()][a].0[lane] = other[a];
+                    }
+                }
+            }
+            for (j, stage) in out.stages[g * K..(g + 1) * K].iter_mut().enumerate() {
+                let mut new = Stage::default();
+                for m in 0..M {
+                    let w = Lanes([weights.values[j][m]; LANES]);
+                    for a in 0..N {
+                        new.slope[a] += w * own[m].slope[a];
+                    }
+                    let w = Lanes([if closed { weights.inner[j].0[m] } else { weights.values[j][m] }; LANES]);
+                    for a in 0..L {
+                        new.inner[a] += w * own[m].inner[a];
+                    }
+                    if closed {
+                        let [on_left, on_right] = [weights.slopes[0][j].0[m], weights.slopes[1][j].0[m]];
+                        let w = Lanes([on_left; LANES]) + right * Lanes([on_right - on_left; LANES]);
+                        new.closure_slope += w * own[m].closure_slope;
+                    }
+                }
+                if closed {
+                    for (end, weight) in ends.iter().zip(weights.inner[j].1) {
+                        for a in 0..L {
+                            new.inner[a] += Lanes([weight; LANES]) * end[a];
+                        }
+                    }
+                    let [on_left, on_right] = [weights.slopes[0][j].1, weights.slopes[1][j].1];
+                    let w = Lanes([on_left; LANES]) + right * Lanes([on_right - on_left; LANES]);
+                    new.closure_slope += w * self.ends[g].closure_slope;
+                }
+                *stage = new;
+            }
         }
     }
 
-    /// This solution's polynomials sampled as a solution with `K` stages on the same mesh: `weights` are the cardinal
-    /// polynomials at the stages.
-    pub fn resample<const K: usize>(&self, weights: &[[f64; M]; K], out: &mut Solution<N, K>) {
-        out.mesh.clone_from(&self.mesh);
-        out.nodes.clone_from(&self.nodes);
-        out.slopes.clear();
-        out.slopes.extend(self.slopes.iter().map(|own| {
-            let mut slopes = [[0.0; N]; K];
-            for (slope, l) in slopes.iter_mut().zip(weights) {
-                for m in 0..M {
-                    for a in 0..N {
-                        slope[a] += l[m] * own[m][a];
-                    }
+    /// Fills the ends of `out` with what this solution's polynomials have there.
+    fn fill_ends(&self, gauss: &Gauss<M>, out: &mut Self) {
+        let Solution { mesh, directions, ends, .. } = out;
+        ends.clear();
+        make_room(ends, directions.ends.len());
+        let old = &self.mesh;
+        for place in directions.ends() {
+            let mut end = End::default();
+            for lane in 0..LANES {
+                let (i, side) = (place.elements[lane], place.sides[lane]);
+                let s = mesh.nodes()[i + side.index()];
+                // The element of the old mesh on the same side of a jump.
+                let from = old.element_of(mesh.nodes()[i] + 0.5 * mesh.step(i));
+                let inside = s >= old.nodes()[from] && s <= old.nodes()[from + 1];
+                let from = match (inside, side) {
+                    (true, _) => from,
+                    (false, Side::Left) => old.element_of(s),
+                    (false, Side::Right) => old.nodes().partition_point(|node| *node < s).clamp(1, old.elements()) - 1,
+                };
+                let kept = self.directions.is_closed()
+                    && old.nodes()[from..from + 2] == mesh.nodes()[i..i + 2]
+                    && self.directions.side(from) == side
+                    && directions.side(i) == side;
+                let inner = if kept {
+                    self.inner_at_own_end(from)
+                } else {
+                    self.inner_in(gauss, from, (s - old.nodes()[from]) / old.step(from))
+                };
+                for a in 0..L {
+                    end.inner[a].0[lane] = inner.inner[a];
                 }
+                end.closure_slope.0[lane] = inner.closure_slope;
             }
-            slopes
-        }));
+            ends.push(end);
+        }
+    }
+
+    /// This solution with an own end given to every element, and the unknowns there by extrapolation; see [`Directions::set`].
+    pub fn turned(&self, gauss: &Gauss<M>, side: impl Fn(usize) -> Side, jumps: impl Fn(f64) -> bool, out: &mut Self) {
+        out.clone_from(self);
+        let nodes = self.mesh.nodes();
+        out.directions.set((0..self.mesh.elements()).map(side), |node| jumps(nodes[node]));
+        self.fill_ends(gauss, out);
+    }
+
+    /// Moves the solution on by `share` times its way from the solution `before`; false, and as it was, where the two do not correspond.
+    pub fn lead_on(&mut self, before: &Self, share: f64) -> bool {
+        if self.nodes.len() != before.nodes.len() || self.directions != before.directions {
+            return false;
+        }
+        let by = Lanes([share; LANES]);
+        let nodes = self.nodes.as_flattened_mut().iter_mut().zip(before.nodes.as_flattened());
+        nodes.for_each(|(own, other)| *own += share * (*own - other));
+        for (own, other) in self.stages.iter_mut().zip(&before.stages) {
+            own.slope.iter_mut().zip(&other.slope).for_each(|(own, other)| *own += by * (*own - *other));
+            own.inner.iter_mut().zip(&other.inner).for_each(|(own, other)| *own += by * (*own - *other));
+            own.closure_slope += by * (own.closure_slope - other.closure_slope);
+        }
+        for (own, other) in self.ends.iter_mut().zip(&before.ends) {
+            own.inner.iter_mut().zip(&other.inner).for_each(|(own, other)| *own += by * (*own - *other));
+            own.closure_slope += by * (own.closure_slope - other.closure_slope);
+        }
+        true
     }
 
     /// Adds `factor` times a correction.
     #[inline(always)]
-    pub fn add<const Q: usize>(&mut self, correction: &Correction<N, M, Q>, factor: f64) {
+    pub fn add<const Q: usize>(&mut self, correction: &Correction<N, M, Q, L>, factor: f64) {
         for (z, dz) in self.nodes.iter_mut().zip(&correction.nodes) {
             for a in 0..N {
                 z[a] += factor * dz[a];
             }
         }
-        for (k, dk) in self.slopes.iter_mut().zip(&correction.slopes) {
-            for j in 0..M {
-                for a in 0..N {
-                    k[j][a] += factor * dk[j][a];
-                }
+        let f = Lanes([factor; LANES]);
+        for (own, change) in self.stages.iter_mut().zip(&correction.stages) {
+            for a in 0..N {
+                own.slope[a] += f * change.slope[a];
             }
+            for a in 0..L {
+                own.inner[a] += f * change.inner[a];
+            }
+            own.closure_slope += f * change.closure_slope;
+        }
+        for (own, change) in self.ends.iter_mut().zip(&correction.ends) {
+            for a in 0..L {
+                own.inner[a] += f * change.inner[a];
+            }
+            own.closure_slope += f * change.closure_slope;
         }
     }
 }
 
+/// Weights that take the stages of one method to those of another.
+#[derive(Debug, Clone)]
+pub struct Resampling<const M: usize, const K: usize> {
+    values: [[f64; M]; K],
+    /// With both ends.
+    inner: [([f64; M], [f64; 2]); K],
+    /// With the own end, on either side.
+    slopes: [[([f64; M], f64); K]; 2],
+}
+
+impl<const M: usize, const K: usize> Resampling<M, K> {
+    /// From one method to another.
+    pub fn new(from: &Gauss<M>, to: &Gauss<K>) -> Self {
+        Self {
+            values: to.c.map(|x| from.cardinals(x)),
+            inner: to.c.map(|x| from.cardinals_with_ends(x)),
+            slopes: [Side::Left, Side::Right].map(|side| to.c.map(|x| from.cardinals_with_end(x, side.place()))),
+        }
+    }
+}
+
+#[inline(always)]
+fn put<const N: usize, const L: usize>(stage: &mut Stage<N, L>, lane: usize, slope: &[f64; N], inner: &InnerState<L>) {
+    for a in 0..N {
+        stage.slope[a].0[lane] = slope[a];
+    }
+    for a in 0..L {
+        stage.inner[a].0[lane] = inner.inner[a];
+    }
+    stage.closure_slope.0[lane] = inner.closure_slope;
+}
+
 /// A Newton correction, or a tangent.
 #[derive(Debug, Clone)]
-pub struct Correction<const N: usize, const M: usize, const Q: usize> {
+pub struct Correction<const N: usize, const M: usize, const Q: usize, const L: usize = 0> {
     /// At the nodes.
     pub nodes: Vec<[f64; N]>,
-    /// At the stages, of the slopes.
-    pub slopes: Vec<[[f64; N]; M]>,
+    /// At the stages, in blocks.
+    pub stages: Vec<Stage<N, L>>,
+    /// At the ends, in blocks.
+    pub ends: Vec<End<L>>,
     /// Of the quadratures over each element.
     pub by_element: Vec<[f64; Q]>,
     /// Of the quadratures over [0, 1].
     pub total: [f64; Q],
 }
 
-impl<const N: usize, const M: usize, const Q: usize> Default for Correction<N, M, Q> {
+impl<const N: usize, const M: usize, const Q: usize, const L: usize> Default for Correction<N, M, Q, L> {
     fn default() -> Self {
-        Self { nodes: Vec::new(), slopes: Vec::new(), by_element: Vec::new(), total: [0.0; Q] }
+        Self { nodes: Vec::new(), stages: Vec::new(), ends: Vec::new(), by_element: Vec::new(), total: [0.0; Q] }
     }
 }
 
-impl<const N: usize, const M: usize, const Q: usize> Correction<N, M, Q> {
+impl<const N: usize, const M: usize, const Q: usize, const L: usize> Correction<N, M, Q, L> {
     /// Multiplies it by `factor`.
     pub fn scale(&mut self, factor: f64) {
-        self.for_each(&Self::default(), |own, _| *own *= factor);
+        let by = Lanes([factor; LANES]);
+        self.nodes.as_flattened_mut().iter_mut().for_each(|v| *v *= factor);
+        for stage in &mut self.stages {
+            stage.slope.iter_mut().for_each(|v| *v = *v * by);
+            stage.inner.iter_mut().for_each(|v| *v = *v * by);
+            stage.closure_slope = stage.closure_slope * by;
+        }
+        for end in &mut self.ends {
+            end.inner.iter_mut().for_each(|v| *v = *v * by);
+            end.closure_slope = end.closure_slope * by;
+        }
+        self.by_element.as_flattened_mut().iter_mut().for_each(|v| *v *= factor);
+        self.total.iter_mut().for_each(|v| *v *= factor);
     }
 
     /// Adds `factor` times another correction on the same mesh.
     pub fn add(&mut self, other: &Self, factor: f64) {
-        self.for_each(other, |own, other| *own += factor * other);
+        let by = Lanes([factor; LANES]);
+        let plain = |own: &mut [f64], other: &[f64]| {
+            own.iter_mut().zip(other).for_each(|(own, other)| *own += factor * other);
+        };
+        plain(self.nodes.as_flattened_mut(), other.nodes.as_flattened());
+        plain(self.by_element.as_flattened_mut(), other.by_element.as_flattened());
+        plain(&mut self.total, &other.total);
+        for (own, other) in self.stages.iter_mut().zip(&other.stages) {
+            own.slope.iter_mut().zip(&other.slope).for_each(|(own, other)| *own += by * *other);
+            own.inner.iter_mut().zip(&other.inner).for_each(|(own, other)| *own += by * *other);
+            own.closure_slope += by * other.closure_slope;
+        }
+        for (own, other) in self.ends.iter_mut().zip(&other.ends) {
+            own.inner.iter_mut().zip(&other.inner).for_each(|(own, other)| *own += by * *other);
+            own.closure_slope += by * other.closure_slope;
+        }
     }
 
-    /// Every number with its counterpart, zero where there is none.
-    fn for_each(&mut self, other: &Self, mut change: impl FnMut(&mut f64, f64)) {
-        let z = [0.0; N];
-        for (i, own) in self.nodes.iter_mut().enumerate() {
-            let other = other.nodes.get(i).unwrap_or(&z);
-            own.iter_mut().zip(other).for_each(|(own, other)| change(own, *other));
+    /// Largest change of an inner unknown, at stages and ends.
+    pub fn largest_inner(&self) -> f64 {
+        let mut largest = [0.0_f64; LANES];
+        let all = self.stages.iter().map(|stage| &stage.inner).chain(self.ends.iter().map(|end| &end.inner));
+        for v in all.flatten() {
+            for lane in 0..LANES {
+                largest[lane] = largest[lane].max(v.0[lane].abs());
+            }
         }
-        for (i, own) in self.slopes.iter_mut().flatten().enumerate() {
-            let other = other.slopes.as_flattened().get(i).unwrap_or(&z);
-            own.iter_mut().zip(other).for_each(|(own, other)| change(own, *other));
-        }
-        for (i, own) in self.by_element.iter_mut().enumerate() {
-            let other = other.by_element.get(i).unwrap_or(&[0.0; Q]);
-            own.iter_mut().zip(other).for_each(|(own, other)| change(own, *other));
-        }
-        for (own, other) in self.total.iter_mut().zip(&other.total) {
-            change(own, *other);
-        }
+        largest.into_iter().fold(0.0, f64::max)
     }
 
     /// Largest change of component `a` at the nodes.

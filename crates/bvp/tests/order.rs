@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::f64::consts::PI;
 
-use hydrostat_bvp::{Collocation, Condition, Correction, Local, Mesh, OneByOne, Plain, Solution};
+use hydrostat_bvp::{Collocation, Condition, Correction, LANES, Lanes, Mesh, OnMesh, Pointwise, Slopes, Solution};
 
 /// u'' = f(s, u), with u or u' given at each end.
 trait Equation {
@@ -19,25 +19,23 @@ trait Equation {
     fn ends(&self) -> [(usize, f64); 2];
 }
 
-/// An equation as the solver takes it: states only, so that the places come from the mesh.
+/// An equation as the solver takes it.
 struct Scalar<'e, E> {
     equation: &'e E,
-    stations: Vec<f64>,
 }
 
 fn given((a, value): (usize, f64), z: &[f64; 2]) -> Condition<2> {
     let mut gradient = [0.0; 2];
     gradient[a] = 1.0;
-    Condition { residual: z[a] - value, gradient, drift: 0.0 }
+    Condition { residual: z[a] - value, gradient }
 }
 
-impl<E: Equation> Plain<2, 1> for Scalar<'_, E> {
+impl<E: Equation> Pointwise<2, 1> for Scalar<'_, E> {
     type Failure = Infallible;
 
-    fn local(&mut self, station: usize, &[u, v]: &[f64; 2]) -> Result<Local<2, 1>, Infallible> {
-        let s = self.stations[station];
+    fn slopes(&self, s: f64, &[u, v]: &[f64; 2]) -> Result<Slopes<2, 1>, Infallible> {
         let ([bend, by_u], [rate, rate_by_u]) = (self.equation.bend(s, u), self.equation.rate(u));
-        Ok(Local {
+        Ok(Slopes {
             slope: [v, bend],
             jacobian: [[0.0, 1.0], [by_u, 0.0]],
             rate: [rate],
@@ -61,18 +59,17 @@ impl<E: Equation> Plain<2, 1> for Scalar<'_, E> {
 /// Newton from `solution`, undamped, until corrections stop falling. Returns the workspace at the end.
 fn newton<const M: usize>(equation: &impl Equation, solution: &mut Solution<2, M>) -> Collocation<2, M, 1> {
     let mut system = Collocation::new();
-    let mut problem = OneByOne::new(Scalar { equation, stations: Vec::new() });
-    system.stations(&solution.mesh, &mut problem.problem.stations);
+    let problem = OnMesh::new(Scalar { equation }, &system.gauss, &solution.mesh);
     let mut correction = Correction::default();
     for _ in 0..12 {
-        system.linearise(&mut problem, solution, false).unwrap();
-        system.solve(solution, 0, &mut correction);
+        system.linearise::<_, false>(&problem, solution).unwrap();
+        system.newton::<false>(solution, &mut correction);
         solution.add(&correction, 1.0);
         if (0..2).all(|a| correction.largest(a) < 1e-14) {
             break;
         }
     }
-    system.linearise(&mut problem, solution, false).unwrap();
+    system.linearise::<_, false>(&problem, solution).unwrap();
     system
 }
 
@@ -93,13 +90,13 @@ impl Equation for Parabola {
 /// Largest error at the nodes, and that of the quadrature, on `elements` equal elements.
 fn parabola_errors<const M: usize>(elements: usize) -> [f64; 2] {
     let mesh = Mesh::uniform(elements, &[]);
-    let mut solution = Solution::<2, M>::constant(mesh, [4.0, -8.0]);
+    let mut solution = Solution::<2, M>::constant(mesh, [4.0, -8.0], []);
     // Started on the solution's side of the other solution that this problem has.
     for (z, s) in solution.nodes.iter_mut().zip(solution.mesh.nodes()) {
         *z = [4.0 - 3.0 * s, -3.0];
     }
-    for slopes in &mut solution.slopes {
-        *slopes = [[-3.0, 0.0]; M];
+    for stage in &mut solution.stages {
+        stage.slope = [Lanes([-3.0; LANES]), Lanes::default()];
     }
     let system = newton(&Parabola, &mut solution);
     let nodes = solution.nodes.iter().zip(solution.mesh.nodes()).fold(0.0_f64, |worst, (z, s)| {
@@ -163,7 +160,7 @@ fn growing_and_decaying_solutions_are_solved_together() {
         let mut breaks: Vec<f64> = (1..=inner).map(|i| f64::from(i) * 0.5 / k).collect();
         let mirrored: Vec<f64> = breaks.iter().rev().map(|s| 1.0 - s).collect();
         breaks.extend(mirrored);
-        let mut solution = Solution::<2, 4>::constant(Mesh::uniform(64, &breaks), [0.0; 2]);
+        let mut solution = Solution::<2, 4>::constant(Mesh::uniform(64, &breaks), [0.0; 2], []);
         let system = newton(&problem, &mut solution);
         let worst = solution.nodes.iter().zip(solution.mesh.nodes()).fold(0.0_f64, |worst, (z, s)| {
             let exact = problem.exact(*s);
@@ -180,7 +177,7 @@ fn growing_and_decaying_solutions_are_solved_together() {
 fn the_determinant_does_not_overflow() {
     for k in [1.0_f64, 50.0, 1000.0] {
         let problem = Layers { k };
-        let mut solution = Solution::<2, 4>::constant(Mesh::uniform(2000, &[]), [0.0; 2]);
+        let mut solution = Solution::<2, 4>::constant(Mesh::uniform(2000, &[]), [0.0; 2], []);
         let found = newton(&problem, &mut solution).determinant();
         let log = k + (-(-2.0 * k).exp()).ln_1p() - (2.0 * k).ln();
         assert_eq!(found.sign, 1.0);
@@ -215,7 +212,7 @@ fn the_determinant_changes_sign_at_each_eigenvalue() {
         for share in [0.9999, 1.0001] {
             let lambda = share * eigenvalue;
             for elements in [20, 37] {
-                let mut solution = Solution::<2, 4>::constant(Mesh::uniform(elements, &[]), [0.0; 2]);
+                let mut solution = Solution::<2, 4>::constant(Mesh::uniform(elements, &[]), [0.0; 2], []);
                 let found = newton(&Column { lambda }, &mut solution).determinant();
                 let want = lambda.sqrt().cos();
                 assert_eq!(found.sign, want.signum(), "mode {mode}, {share}, {elements} elements");
@@ -231,13 +228,19 @@ fn the_determinant_changes_sign_at_each_eigenvalue() {
 #[test]
 fn the_bent_column_has_the_sign_of_the_straight_one_below_its_load() {
     let lambda = 1.1 * PI * PI / 4.0;
-    let mut solution = Solution::<2, 4>::constant(Mesh::uniform(10, &[]), [0.0; 2]);
+    let mut solution = Solution::<2, 4>::constant(Mesh::uniform(10, &[]), [0.0; 2], []);
     for (z, s) in solution.nodes.iter_mut().zip(solution.mesh.nodes()) {
         *z = [0.9 * (0.5 * PI * s).sin(), 0.9 * 0.5 * PI * (0.5 * PI * s).cos()];
     }
     for i in 0..10 {
         let slope = |a: usize| (solution.nodes[i + 1][a] - solution.nodes[i][a]) / solution.mesh.step(i);
-        solution.slopes[i] = [[slope(0), slope(1)]; 4];
+        let slopes = [slope(0), slope(1)];
+        for j in 0..4 {
+            let (block, lane) = solution.groups().at(i, j);
+            for a in 0..2 {
+                solution.stages[block].slope[a].0[lane] = slopes[a];
+            }
+        }
     }
     let system = newton(&Column { lambda }, &mut solution);
     assert!(solution.nodes[10][0] > 0.5);

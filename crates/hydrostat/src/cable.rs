@@ -3,12 +3,11 @@
 use crate::swelling::Swelling;
 use hydrostat_bvp::{Real, each};
 
-/// Offset of a cable at a place: y, y', y''.
+/// Offset of a cable at a place: y and y'.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Offset<R> {
     pub(crate) y: R,
     pub(crate) slope: R,
-    pub(crate) curvature: R,
 }
 
 /// Unit tangent t_c of a cable in the directors, and the derivatives of its components.
@@ -59,44 +58,31 @@ pub(crate) struct Pull<R> {
     pub(crate) load: [R; 3],
     /// By nu, eta, mu (columns).
     pub(crate) by_strain: [[R; 3]; 3],
-    /// Along s at fixed strains.
-    pub(crate) along_s: [R; 3],
-    /// By T: (t_c . a, t_c . b, -y beta t_c . a).
-    pub(crate) by_tension: [R; 3],
-    /// By beta'': the part of `along_s` that it carries.
-    pub(crate) by_curvature: [R; 3],
+    /// By beta'.
+    pub(crate) by_beta_slope: [R; 3],
 }
 
 /// Integrated from s to the tip, (5) and (6) leave the local law
 /// n = n_f - sum T t_c, m = m_f + sum T y beta (t_c . a).
-///
-/// `beta_slope` and `beta_curvature` are beta' and beta'' along the arm, held fixed in the
-/// derivatives by strain (they follow by iteration, `docs/model.md`, section 8, item 1).
 #[inline(always)]
 pub(crate) fn pull<R: Real>(
     tension: R,
     offset: &Offset<R>,
     strain: [R; 3],
     swelling: &Swelling<R>,
-    [beta_slope, beta_curvature]: [R; 2],
+    beta_slope: R,
 ) -> (Pull<R>, Tangent<R>) {
     let t = tangent(offset, strain, swelling, beta_slope);
     let [_, _, mu] = strain;
     let arm = offset.y * swelling.beta;
 
-    // d(tau . a), d(tau . b) by nu, by mu (eta enters tau . b alone), and along s.
+    // d(tau . a), d(tau . b) by nu, by mu; eta enters tau . b alone.
     let along_nu = R::of(1.0) - offset.y * mu * swelling.slope;
     let across_nu = offset.slope * swelling.slope;
-    let along_s = -(offset.slope * swelling.beta * mu);
-    let across_s = offset.curvature * swelling.beta + offset.slope * beta_slope + offset.y * beta_curvature;
-
-    let chain = |along: R, across: R| {
-        (t.by_along.0 * along + t.by_across.0 * across, t.by_along.1 * along + t.by_across.1 * across)
-    };
-    let (a_nu, b_nu) = chain(along_nu, across_nu);
+    let a_nu = t.by_along.0 * along_nu + t.by_across.0 * across_nu;
+    let b_nu = t.by_along.1 * along_nu + t.by_across.1 * across_nu;
     let (a_eta, b_eta) = t.by_across;
     let (a_mu, b_mu) = (-(arm * t.by_along.0), -(arm * t.by_along.1));
-    let (a_s, b_s) = chain(along_s, across_s);
 
     let lever = tension * arm;
     let by_strain = [
@@ -104,8 +90,7 @@ pub(crate) fn pull<R: Real>(
         [tension * b_nu, tension * b_eta, tension * b_mu],
         [-(lever * a_nu + tension * offset.y * swelling.slope * t.a), -(lever * a_eta), -(lever * a_mu)],
     ];
-    let along_s = [tension * a_s, tension * b_s, -(lever * a_s + tension * offset.slope * swelling.beta * t.a)];
-    let by_curvature = each(|k| offset.y * by_strain[k][1]);
-    let by_tension = [t.a, t.b, -(arm * t.a)];
-    (Pull { load: [tension * t.a, tension * t.b, -(lever * t.a)], by_strain, along_s, by_tension, by_curvature }, t)
+    // beta' enters tau . b as eta does, times y.
+    let by_beta_slope = each(|k| offset.y * by_strain[k][1]);
+    (Pull { load: [tension * t.a, tension * t.b, -(lever * t.a)], by_strain, by_beta_slope }, t)
 }

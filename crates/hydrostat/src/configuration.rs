@@ -3,7 +3,7 @@
 use crate::arm::{Arm, Cable, FlowLaw};
 use crate::dense::Dense;
 use crate::engine::{Engine, M, shift_by_tangential_load};
-use crate::equilibrium::{Equations, SectionFailure, Units};
+use crate::equilibrium::{SectionFailure, Units};
 use crate::flow::layer_profile;
 use crate::loads::stream_along;
 use crate::readings::Support;
@@ -322,12 +322,7 @@ impl Configuration {
         error_estimate: f64,
         statistics: Statistics,
     ) -> Result<Self, SectionFailure> {
-        if engine.equations.held.is_some() {
-            // Strains follow unknown tensions, too, and lengths are what was asked for.
-            engine.refresh()?;
-        } else {
-            engine.foresee();
-        }
+        engine.system.take_stations(&engine.solution);
         let dense = Box::new(Dense::new(engine));
         let arm = dense.equations.arm_at_fraction();
         let mesh = &dense.solution.mesh;
@@ -345,16 +340,17 @@ impl Configuration {
         let mut energy = 0.0;
         let (equations, groups) = (&dense.equations, dense.equations.groups());
         for block in 0..groups.count() * M {
-            let strained = equations.strain_energy(block);
+            let station = &engine.system.stations()[block];
+            let strained = equations.strain_energy(block, station);
             let weight = |i: usize| length * mesh.step(i) * engine.system.gauss.b[block % M];
             let own = (0..groups.filled(block / M)).map(|lane| (lane, groups.element(block / M, lane)));
             for (lane, i) in own {
                 energy += weight(i) * strained.0[lane];
-                let (s, [nu, mu], half_width) = equations.stretched(block, lane);
+                let (s, [nu, mu], half_width) = equations.stretched(block, station, lane);
                 extremes.note(s * length, [nu, mu], half_width);
             }
         }
-        let cables = cable_states(&arm, equations, &engine.system.gauss.b);
+        let cables = cable_states(&arm, engine);
         let base_reaction = Wrench::of_base(dense.solution.nodes[0], &dense.equations.units);
         let unmet = (arm.readings.support == Support::UnstrainedBase).then(|| {
             let end = dense.solution.nodes[n];
@@ -531,13 +527,15 @@ fn sides_of_nodes(dense: &Dense) -> Vec<(usize, bool)> {
 }
 
 /// Lengths and strokes of the cables at the last evaluation, with what is commanded of them.
-fn cable_states(arm: &Arm, equations: &Equations, weights: &[f64]) -> Vec<CableState> {
+fn cable_states(arm: &Arm, engine: &Engine) -> Vec<CableState> {
+    let equations = &engine.equations;
     let taut = |cable: usize| {
         let held = equations.held.as_ref();
         held.is_some_and(|held| held.cables.iter().zip(&held.taut).any(|(own, taut)| *own == cable && *taut))
     };
     let state = |(index, cable): (usize, &Cable)| {
-        let [now, unloaded] = equations.cable_lengths(index, weights);
+        let system = &engine.system;
+        let [now, unloaded] = equations.cable_lengths(index, &system.gauss.b, system.steps(), system.stations());
         let (length, stroke) = (arm.length * now, arm.length * (unloaded - now));
         let command =
             cable.stroke.map(|given| Command { stroke: given, length: length + stroke - given, slack: !taut(index) });

@@ -1,18 +1,25 @@
 //! A solution between its nodes.
 
-use hydrostat_bvp::{Gauss, LANES, Local, Solution, step};
+use hydrostat_bvp::{Gauss, LANES, Solution};
 
 use crate::configuration::Station;
 use crate::dispatch::widest;
-use crate::engine::{Engine, M};
-use crate::equilibrium::{Asked, AtPlace, Equations, N, Q, SectionFailure};
+use crate::elimination::solve_in_place;
+use crate::engine::{Engine, M, asked_in, sharpened};
+use crate::equilibrium::{Asked, AtPlace, Equations, L, N, Q, SectionFailure};
+
+/// Unknowns of a step between nodes: the slopes at its stages.
+const SLOPES: usize = N * M;
+
+/// A state, and the way of x, y over L since the start of its element.
+type Reached = ([f64; N], [f64; Q]);
 
 /// What it takes to evaluate a configuration anywhere: the nodes, which are accurate to the order
 /// of the method, and enough of the stages to start from.
 #[derive(Debug, Clone)]
 pub(crate) struct Dense {
     pub(crate) equations: Equations,
-    pub(crate) solution: Solution<N, M>,
+    pub(crate) solution: Solution<N, M, L>,
     /// x, y over L at the nodes, from the base.
     positions: Vec<[f64; Q]>,
     gauss: Gauss<M>,
@@ -34,67 +41,137 @@ impl Dense {
         Self { equations: engine.equations.clone(), solution: engine.solution.clone(), positions, gauss }
     }
 
-    /// Strains, beta' and beta'' of element `i` at `x` in [0, 1], from its stages.
-    fn guess(&self, i: usize, x: f64) -> ([f64; 3], [f64; 2]) {
-        self.equations.remembered_sharply(i, &self.gauss.cardinals(x), &self.gauss.hermite_at(x))
+    /// What is known at `s` in element `i`, where the state is `z`.
+    fn asked(&self, i: usize, s: f64, z: [f64; N]) -> Asked {
+        let mesh = &self.solution.mesh;
+        let x = (s - mesh.nodes()[i]) / mesh.step(i);
+        Asked { s, ..asked_in(&self.solution, &self.gauss, i, x, z) }
+    }
+
+    /// What is asked with beta' as outputs have it, given everything there with the beta' of the polynomial.
+    fn sharp(&self, i: usize, asked: Asked, here: &AtPlace) -> Asked {
+        let mesh = &self.solution.mesh;
+        let x = (asked.s - mesh.nodes()[i]) / mesh.step(i);
+        widest(
+            #[inline(always)]
+            || sharpened(&self.equations, &self.solution, &self.gauss, (i, x), asked, here),
+        )
     }
 
     fn section(&self, i: usize, s: f64, from_left: bool, z: [f64; N]) -> Result<AtPlace, SectionFailure> {
-        let mesh = &self.solution.mesh;
-        let (strain, beta) = self.guess(i, (s - mesh.nodes()[i]) / mesh.step(i));
-        let asked = Asked { s, from_left, z, strain, beta };
-        match self.equations.at_place(&asked) {
+        let asked = Asked { from_left, ..self.asked(i, s, z) };
+        let found = match self.equations.at_place(&asked) {
             Err(_) => {
                 // Extrapolated strains can be off: start from the nearest stage instead.
-                let nearest = if from_left { i * M + M - 1 } else { i * M };
-                self.equations.at_place(&Asked { strain: self.equations.strain(nearest), ..asked })
+                let nearest = if from_left { M - 1 } else { 0 };
+                self.equations.at_place(&Asked { strain: self.solution.inner(i, nearest).inner, ..asked })?
             }
-            found => found,
-        }
+            Ok(found) => found,
+        };
+        Ok(self.equations.at_place(&self.sharp(i, asked, &found)).unwrap_or(found))
     }
 
-    /// What the problem is at stages within element `i`.
-    fn stages(&self, i: usize, s: &[f64; M], z: &[[f64; N]; M]) -> Result<[Local<N, Q>; M], SectionFailure> {
+    /// Everything at stages within element `i`.
+    fn stages(&self, i: usize, s: &[f64; M], z: &[[f64; N]; M]) -> Result<[AtPlace; M], SectionFailure> {
+        const { assert!(M == LANES, "the stages of a step are solved side by side") };
+        let asked: [Asked; LANES] = std::array::from_fn(|j| Asked { from_left: false, ..self.asked(i, s[j], z[j]) });
+        let found = widest(
+            #[inline(always)]
+            || self.equations.at_places(&asked),
+        );
+        if let Some(found) = found {
+            return Ok(std::array::from_fn(|j| found.lane(j)));
+        }
+        let one = |j: usize| self.section(i, s[j], false, z[j]);
+        Ok([one(0)?, one(1)?, one(2)?, one(3)?])
+    }
+
+    /// One Gauss step from the start of element `i` to `s`: the state and the place there, to the order of the nodes. `None` where its
+    /// equations are singular.
+    fn step(&self, i: usize, s: f64) -> Result<Option<Reached>, SectionFailure> {
         let mesh = &self.solution.mesh;
-        let mut out = [Local::default(); M];
-        for first in (0..M).step_by(LANES) {
-            let stage = |lane: usize| (first + lane).min(M - 1);
-            let asked: [Asked; LANES] = std::array::from_fn(|lane| {
-                let (s, z) = (s[stage(lane)], z[stage(lane)]);
-                let (strain, beta) = self.guess(i, (s - mesh.nodes()[i]) / mesh.step(i));
-                Asked { s, from_left: false, z, strain, beta }
-            });
-            let found = widest(
-                #[inline(always)]
-                || self.equations.at_places(&asked),
-            );
-            for lane in 0..LANES.min(M - first) {
-                out[first + lane] = match &found {
-                    Some(found) => found.local.lane(lane),
-                    None => self.section(i, asked[lane].s, false, asked[lane].z)?.local,
-                };
+        let (start, from) = (mesh.nodes()[i], self.solution.nodes[i]);
+        let h = s - start;
+        let share = h / mesh.step(i);
+        let places = self.gauss.c.map(|c| start + h * c);
+        let mut slopes: [[f64; N]; M] =
+            std::array::from_fn(|j| self.solution.slope_in(&self.gauss, i, share * self.gauss.c[j]));
+        let mut rates = [[0.0; Q]; M];
+        for _ in 0..8 {
+            let mut states = [from; M];
+            for j in 0..M {
+                for l in 0..M {
+                    for a in 0..N {
+                        states[j][a] += h * self.gauss.a[j][l] * slopes[l][a];
+                    }
+                }
+            }
+            let at = self.stages(i, &places, &states)?;
+            let mut matrix = [[0.0; SLOPES]; SLOPES];
+            let mut right = [[0.0]; SLOPES];
+            for j in 0..M {
+                rates[j] = at[j].rate;
+                for a in 0..N {
+                    let row = N * j + a;
+                    right[row][0] = at[j].slope[a] - slopes[j][a];
+                    matrix[row][row] += 1.0;
+                    for l in 0..M {
+                        for b in 0..N {
+                            matrix[row][N * l + b] -= h * self.gauss.a[j][l] * at[j].jacobian[a][b];
+                        }
+                    }
+                }
+            }
+            if !solve_in_place(&mut matrix, &mut right, 0.0) {
+                return Ok(None);
+            }
+            let mut size = 0.0_f64;
+            for j in 0..M {
+                for a in 0..N {
+                    slopes[j][a] += right[N * j + a][0];
+                    size = size.max(right[N * j + a][0].abs() / (1.0 + slopes[j][a].abs()));
+                }
+            }
+            if size * h.abs() < 1e-11 {
+                break;
             }
         }
-        Ok(out)
+        let (mut end, mut moved) = (from, [0.0; Q]);
+        for j in 0..M {
+            for a in 0..N {
+                end[a] += h * self.gauss.b[j] * slopes[j][a];
+            }
+            for q in 0..Q {
+                moved[q] += h * self.gauss.b[j] * rates[j][q];
+            }
+        }
+        Ok(Some((end, moved)))
     }
 
     /// Everything at nodes, each the start of an element, or its end.
     pub(crate) fn at_nodes(&self, nodes: &[(usize, bool)]) -> Result<Vec<(Station, AtPlace)>, SectionFailure> {
         let mesh = &self.solution.mesh;
-        let weights = [self.gauss.cardinals(0.0), self.gauss.cardinals(1.0)];
         let mut out = Vec::with_capacity(nodes.len());
         for four in nodes.chunks(LANES) {
-            let asked: [Asked; LANES] = std::array::from_fn(|lane| {
-                let (i, end) = four[lane.min(four.len() - 1)];
+            let places: [(usize, bool); LANES] = std::array::from_fn(|lane| four[lane.min(four.len() - 1)]);
+            let asked = places.map(|(i, end)| {
                 let k = i + usize::from(end);
-                let which = usize::from(end);
-                let (strain, beta) = self.equations.remembered_sharply(i, &weights[which], &self.gauss.ends[which]);
-                Asked { s: mesh.nodes()[k], from_left: end, z: self.solution.nodes[k], strain, beta }
+                Asked { from_left: end, ..self.asked(i, mesh.nodes()[k], self.solution.nodes[k]) }
             });
-            let found = widest(
-                #[inline(always)]
-                || self.equations.at_places(&asked),
-            );
+            let solved = |asked: &[Asked; LANES]| {
+                widest(
+                    #[inline(always)]
+                    || self.equations.at_places(asked),
+                )
+            };
+            let found = solved(&asked).and_then(|first| {
+                let mut lane = 0..LANES;
+                let sharp = asked.map(|asked| {
+                    let lane = lane.next().unwrap_or(0);
+                    self.sharp(places[lane].0, asked, &first.lane(lane))
+                });
+                solved(&sharp)
+            });
             for (lane, (i, end)) in four.iter().enumerate() {
                 let Asked { s, z, .. } = asked[lane];
                 let place = match &found {
@@ -116,19 +193,7 @@ impl Dense {
         } else if s >= end {
             (self.solution.nodes[i + 1], self.positions[i + 1])
         } else {
-            let h = s - start;
-            let share = h / (end - start);
-            let mut slopes = [[0.0; N]; M];
-            for j in 0..M {
-                let w = self.gauss.cardinals(share * self.gauss.c[j]);
-                for l in 0..M {
-                    for a in 0..N {
-                        slopes[j][a] += w[l] * self.solution.slopes[i][l][a];
-                    }
-                }
-            }
-            let from = self.solution.nodes[i];
-            match step(&self.gauss, from, start, h, slopes, |s, z| self.stages(i, s, z))? {
+            match self.step(i, s)? {
                 Some((z, moved)) => {
                     let p = self.positions[i];
                     (z, [p[0] + moved[0], p[1] + moved[1]])
@@ -149,7 +214,7 @@ impl Dense {
         let mut out = self.positions[i];
         for (j, weight) in weights.iter().enumerate() {
             let [theta, ..] = self.solution.state_in(&self.gauss, i, start + step * self.gauss.c[j]);
-            let [nu, eta, _] = self.equations.strain(i * M + j);
+            let [nu, eta, _] = self.solution.inner(i, j).inner;
             let (sin, cos) = theta.sin_cos();
             out[0] += step * weight * (nu * cos - eta * sin);
             out[1] += step * weight * (nu * sin + eta * cos);
@@ -159,7 +224,7 @@ impl Dense {
 
     /// beta' (times L) at the start or the end of element `i`, as its stages have it.
     pub(crate) fn beta_slope_beside(&self, i: usize, end: bool) -> f64 {
-        self.guess(i, f64::from(u8::from(end))).1[0]
+        self.solution.inner_in(&self.gauss, i, f64::from(u8::from(end))).closure_slope
     }
 
     fn station(&self, s: f64, z: [f64; N], position: [f64; Q], place: &AtPlace) -> Station {

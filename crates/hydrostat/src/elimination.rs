@@ -55,7 +55,7 @@ pub(crate) type Equation = (Vec<f64>, [f64; 2]);
 /// Solves for both right sides; with the determinant.
 pub(crate) fn solved(mut rows: Vec<Equation>) -> Option<(Vec<[f64; 2]>, Determinant)> {
     let n = rows.len();
-    let mut determinant = Determinant { sign: 1.0, log: 0.0 };
+    let mut determinant = Determinant::ONE;
     for k in 0..n {
         let best = (k..n).max_by(|i, j| rows[*i].0[k].abs().total_cmp(&rows[*j].0[k].abs()))?;
         if best != k {

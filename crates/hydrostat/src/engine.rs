@@ -15,27 +15,25 @@ mod watch;
 
 use std::sync::LazyLock;
 
-use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Hermite, Mesh, RoundError, Solution};
+use hydrostat_bvp::{
+    Collocation, Correction, Determinant, Gauss, LANES, Lanes, Resampling, RoundError, Solution, Station,
+};
 
 use crate::arm::Arm;
 use crate::configuration::{Statistics, Tip};
-use crate::dispatch::widest;
-use crate::equilibrium::{Asked, AtPlace, Equations, N, Nearness, Q, SectionFailure};
+use crate::equilibrium::{Asked, AtPlace, Equations, L, N, Nearness, Q, SectionFailure, Way};
 use crate::verdict::Phase;
 
 pub(crate) use self::budget::WORK;
-pub(crate) use self::held::{Round, UnitPull, at_stations, pull_taut};
-pub(crate) use self::rounds::{evaluate, linearise, solve};
+pub(crate) use self::held::{Round, UnitPull, pull_taut, stroke_change};
+pub(crate) use self::rounds::{correct, evaluate, linearise, respond};
 pub(crate) use self::settle::First;
 
 /// Stages of the solve, and of the check that estimates its error.
 pub(crate) const M: usize = 4;
 const K: usize = M + 1;
 
-/// A tolerance down to which what Newton leaves is foreseen well enough not to wait for it.
-const TIGHT: f64 = 1e-9;
-
-pub(crate) type Guess = Solution<N, M>;
+pub(crate) type Guess = Solution<N, M, L>;
 
 #[derive(Debug, Clone)]
 pub(crate) enum Trouble {
@@ -67,24 +65,26 @@ pub(crate) fn roughly(result: Result<(), Trouble>) -> Result<(), Trouble> {
     }
 }
 
+/// Steps of the section law that the check leaves: its one round has to take up their squares.
+const CHECKED: f64 = 1e-5;
+
 #[derive(Debug, Clone)]
 pub(crate) struct Engine {
     pub(crate) equations: Equations,
-    pub(crate) system: Collocation<N, M, Q>,
+    pub(crate) system: Collocation<N, M, Q, L>,
     check_equations: Equations,
-    check: Collocation<N, K, Q>,
-    pub(crate) solution: Solution<N, M>,
-    correction: Correction<N, M, Q>,
-    check_correction: Correction<N, K, Q>,
+    check: Collocation<N, K, Q, L>,
+    pub(crate) solution: Solution<N, M, L>,
+    correction: Correction<N, M, Q, L>,
+    check_correction: Correction<N, K, Q, L>,
     /// The solution with one more stage, for the check.
-    finer: Solution<N, K>,
-    stations: Vec<f64>,
-    check_stations: Vec<f64>,
-    guesses: Vec<SectionGuess>,
+    finer: Solution<N, K, L>,
     /// The kinks that were found last.
     found: Vec<f64>,
+    /// Speeds whose change of sign kinks the load, at the stations.
+    switches: Vec<[Lanes; 3]>,
     /// The solution before it was moved to another mesh.
-    before: Solution<N, M>,
+    before: Solution<N, M, L>,
     errors: Vec<f64>,
     /// x, y over L that each element adds, at the last round.
     pub(crate) spans: Vec<[f64; Q]>,
@@ -92,13 +92,10 @@ pub(crate) struct Engine {
     pub(crate) rounds: usize,
     pub(crate) meshes: usize,
     pub(crate) last: f64,
-    /// Whether a path is followed, which has more to lose from an estimate that is off by what beta' lags behind: an arm in
-    /// line with the stream is led by angles of its size.
-    pub(crate) on_a_path: bool,
-    /// Whether such a path only has to lead to its end.
+    /// What the last round leaves to the next (tip over L), by the way rounds fall.
+    left_over: f64,
+    /// Whether a path only has to lead to its end.
     pub(crate) in_a_hurry: bool,
-    /// What the last round moved the tip by (over L), or would have where Newton stopped ahead of it.
-    rest: f64,
     /// Tip position over L at the last round.
     pub(crate) tip: [f64; Q],
     /// The part of unknown tensions in the determinant of the last round.
@@ -107,25 +104,23 @@ pub(crate) struct Engine {
     allowed: usize,
     /// The part of it that other engines did.
     done_beside: usize,
+    /// Evaluations before the work that counts, and before those of the statistics.
+    worked_from: usize,
+    counted_from: usize,
 }
 
-/// Strains, beta' and beta'' at a station to be.
-pub(crate) type SectionGuess = ([f64; 3], f64, f64);
-
-/// The methods of solve and check, and the weights that take the stages of one to those of the other.
+/// The methods of solve and check.
 #[derive(Debug)]
 struct Methods {
     solve: Gauss<M>,
     check: Gauss<K>,
-    values: [[f64; M]; K],
-    sharp: [Hermite<M>; K],
+    to_check: Resampling<M, K>,
 }
 
 static METHODS: LazyLock<Methods> = LazyLock::new(|| {
-    let (solve, check) = (Gauss::<M>::new(), Gauss::<K>::new());
-    let values = check.c.map(|x| solve.cardinals(x));
-    let sharp = check.c.map(|x| solve.hermite_at(x));
-    Methods { solve, check, values, sharp }
+    let (solve, check) = (Gauss::new(), Gauss::new());
+    let to_check = Resampling::new(&solve, &check);
+    Methods { solve, check, to_check }
 });
 
 /// How far the tip (over L) would move, to first order, if the stream's tangential load on `solution`
@@ -133,8 +128,8 @@ static METHODS: LazyLock<Methods> = LazyLock::new(|| {
 pub(crate) fn shift_by_tangential_load(equations: &Equations, solution: &Guess, factor: f64) -> Option<f64> {
     let (mut equations, mut system, mut correction) = (equations.clone(), Collocation::new(), Correction::default());
     equations.set_tangential_factor(factor);
-    linearise(&mut system, &mut equations, solution, false).ok()?;
-    solve(&system, solution, 0, &mut correction);
+    linearise(&mut system, &equations, solution).ok()?;
+    correct(&mut system, solution, &mut correction);
     Some(correction.total[0].hypot(correction.total[1]))
 }
 
@@ -145,6 +140,15 @@ pub(crate) struct State {
     pub(crate) equations: Equations,
     spans: Vec<[f64; Q]>,
     pub(crate) tip: [f64; Q],
+    switches: Vec<[Lanes; 3]>,
+}
+
+impl State {
+    /// Switch `which` of the load at stage `j` of element `i`, see [`Engine::take_switches`].
+    pub(crate) fn switch(&self, i: usize, j: usize, which: usize) -> f64 {
+        let (block, lane) = self.solution.groups().at(i, j);
+        self.switches[block][which].0[lane]
+    }
 }
 
 impl Engine {
@@ -154,16 +158,15 @@ impl Engine {
             equations: self.equations.clone(),
             spans: self.spans.clone(),
             tip: self.tip,
+            switches: self.switches.clone(),
         }
     }
 
     pub(crate) fn restore(&mut self, state: &State) {
         self.solution.clone_from(&state.solution);
-        let (evaluations, work) = (self.equations.evaluations, self.equations.work);
         self.equations.clone_from(&state.equations);
-        // What was done stays done.
-        (self.equations.evaluations, self.equations.work) = (evaluations, work);
         self.spans.clone_from(&state.spans);
+        self.switches.clone_from(&state.switches);
         self.tip = state.tip;
         // Friction belongs to the shape, and the check is of the same arm.
         if self.equations.grip.is_some() || self.check_equations.grip.is_some() {
@@ -184,7 +187,7 @@ impl Engine {
             newton_rounds: self.rounds,
             meshes: self.meshes,
             load_steps,
-            evaluations: self.equations.evaluations,
+            evaluations: self.system.evaluations - self.counted_from,
         }
     }
 
@@ -192,32 +195,31 @@ impl Engine {
         let methods = &*METHODS;
         let breaks: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
         Self {
-            equations: Equations::new(arm, &methods.solve),
-            check_equations: Equations::new(arm, &methods.check),
+            equations: Equations::new(arm, M),
+            check_equations: Equations::new(arm, K).leaving(CHECKED),
             system: Collocation::with(methods.solve.clone()),
             check: Collocation::with(methods.check.clone()),
-            solution: Solution::constant(Mesh::uniform(1, &[]), [0.0; N]),
+            solution: Solution::default(),
             correction: Correction::default(),
             check_correction: Correction::default(),
-            finer: Solution::constant(Mesh::uniform(1, &[]), [0.0; N]),
-            stations: Vec::new(),
-            check_stations: Vec::new(),
-            guesses: Vec::new(),
+            finer: Solution::default(),
             found: Vec::new(),
-            before: Solution::constant(Mesh::uniform(1, &[]), [0.0; N]),
+            switches: Vec::new(),
+            before: Solution::default(),
             errors: Vec::new(),
             spans: Vec::new(),
             breaks,
             rounds: 0,
             meshes: 0,
             last: 0.0,
-            rest: 0.0,
-            on_a_path: false,
+            left_over: 0.0,
             in_a_hurry: false,
             tip: [0.0; 2],
-            border: Determinant { sign: 1.0, log: 0.0 },
+            border: Determinant::ONE,
             allowed: usize::MAX,
             done_beside: 0,
+            worked_from: 0,
+            counted_from: 0,
         }
     }
 
@@ -227,13 +229,16 @@ impl Engine {
         let (node, nearest) = if tip { (n, n * M - 1) } else { (0, 0) };
         self.beside_node(node, tip).or_else(|_| {
             let asked = self.asked_beside(node, tip);
-            self.equations.at_place(&Asked { strain: self.equations.strain(nearest), ..asked })
+            self.equations.at_place(&Asked { strain: self.solution.inner(nearest / M, nearest % M).inner, ..asked })
         })
     }
 
     /// Where the tip is, after Newton has converged.
     pub(crate) fn read_tip(&self) -> Result<Tip, SectionFailure> {
-        let [nu, eta, _] = self.at_end(true)?.strain;
+        let (n, here) = (self.solution.mesh.elements(), self.at_end(true)?);
+        let asked = self.asked_beside(n, true);
+        let sharp = sharpened(&self.equations, &self.solution, &self.system.gauss, (n - 1, 1.0), asked, &here);
+        let [nu, eta, _] = self.equations.at_place(&sharp)?.strain;
         let (base, length) = (self.equations.arm().base, self.equations.units.length);
         let [x, y] = self.tip;
         Ok(Tip { x: base.x + length * x, y: base.y + length * y, theta: self.tip_angle(), alpha: eta.atan2(nu) })
@@ -246,8 +251,8 @@ impl Engine {
 
     /// How near the limits of the section law stations and ends are.
     pub(crate) fn nearest_limits(&mut self) -> Nearness {
-        let _ = self.refresh();
-        let mut near = self.equations.nearness;
+        self.system.take_stations(&self.solution);
+        let mut near = self.equations.nearness(self.system.stations());
         for (tip, s) in [(false, 0.0), (true, 1.0)] {
             if let Ok(end) = self.at_end(tip) {
                 near.note(s, end.openness, end.strain[0], end.regularity);
@@ -256,27 +261,62 @@ impl Engine {
         near
     }
 
+    /// Brings the stations and the load's switches there up to date with the solution.
+    pub(crate) fn take_switches(&mut self) {
+        self.system.take_stations(&self.solution);
+        let stations = self.system.stations().iter().enumerate();
+        self.switches.clear();
+        self.switches.extend(stations.map(|(block, station)| self.equations.switches(block, station)));
+    }
+
+    /// Switch `which` of the load at stage `j` of element `i`.
+    pub(crate) fn switch(&self, i: usize, j: usize, which: usize) -> f64 {
+        let (block, lane) = self.solution.groups().at(i, j);
+        self.switches[block][which].0[lane]
+    }
+
     /// Where the switch of the load that can jump is nearest to its jump.
-    pub(crate) fn nearest_switch(&self) -> Option<f64> {
+    pub(crate) fn nearest_switch(&mut self) -> Option<f64> {
+        self.take_switches();
         let which = if self.equations.arm().readings.flow_surface == crate::FlowSurface::Lateral { 2 } else { 0 };
         (0..self.equations.stations().len())
             .min_by(|a, b| {
-                let distance = |k: usize| self.equations.switch(k / M, k % M, which).abs();
+                let distance = |k: usize| self.switch(k / M, k % M, which).abs();
                 distance(*a).total_cmp(&distance(*b))
             })
             .map(|k| self.equations.stations()[k])
     }
 
     /// Factorises at the present solution.
-    pub(crate) fn linearise(&mut self, parameter: bool) -> Result<(), Trouble> {
+    pub(crate) fn linearise(&mut self) -> Result<(), Trouble> {
         self.may_go_on()?;
         self.rounds += 1;
-        Ok(linearise(&mut self.system, &mut self.equations, &self.solution, parameter)?)
+        Ok(linearise(&mut self.system, &self.equations, &self.solution)?)
     }
 
-    /// Brings stages, strains and switches up to date with the solution.
+    /// The response of the solution at the last linearisation to a change of what is given.
+    pub(crate) fn response(&self, way: Way, out: &mut Correction<N, M, Q, L>) {
+        let change = response_change(&self.equations, &self.system, &self.solution, way);
+        respond(&self.system, &change, out);
+    }
+
+    /// The stations of the present solution, in blocks.
+    pub(crate) fn stations(&self) -> Vec<Station<N, L>> {
+        let mut system = Collocation::<N, M, Q, L>::with(self.system.gauss.clone());
+        system.take_stations(&self.solution);
+        system.stations().to_vec()
+    }
+
+    /// The stroke that is commanded of cable `c` for the present solution, over L.
+    pub(crate) fn stroke(&self, c: usize) -> f64 {
+        let mut system = Collocation::<N, M, Q, L>::with(self.system.gauss.clone());
+        system.take_stations(&self.solution);
+        self.equations.stroke(c, &system.gauss.b, system.steps(), system.stations())[0]
+    }
+
+    /// Evaluates the equations at the present solution.
     pub(crate) fn refresh(&mut self) -> Result<(), SectionFailure> {
-        evaluate(&mut self.system, &mut self.equations, &self.solution)
+        evaluate(&mut self.system, &self.equations, &self.solution)
     }
 
     /// What each element adds to the tip's position, of a solution that Newton left on another mesh.
@@ -287,15 +327,6 @@ impl Engine {
         Ok(())
     }
 
-    /// Brings what is remembered at the stations up to the solution, to first order.
-    pub(crate) fn foresee(&mut self) {
-        let (system, equations, solution) = (&mut self.system, &mut self.equations, &self.solution);
-        widest(
-            #[inline(always)]
-            || equations.foresee(system.take_states(solution)),
-        );
-    }
-
     /// The section on either side of node `i`.
     pub(crate) fn beside_node(&self, i: usize, left: bool) -> Result<AtPlace, SectionFailure> {
         self.equations.at_place(&self.asked_beside(i, left))
@@ -303,19 +334,101 @@ impl Engine {
 
     pub(crate) fn asked_beside(&self, i: usize, left: bool) -> Asked {
         let (element, x) = if left { (i - 1, 1.0) } else { (i, 0.0) };
-        let gauss = &self.system.gauss;
-        let (strain, beta) =
-            self.equations.remembered_sharply(element, &gauss.cardinals(x), &gauss.ends[usize::from(left)]);
-        Asked { s: self.solution.mesh.nodes()[i], from_left: left, z: self.solution.nodes[i], strain, beta }
+        asked_in(&self.solution, &self.system.gauss, element, x, self.solution.nodes[i])
     }
 
     pub(crate) fn reset_statistics(&mut self) {
         self.rounds = 0;
         self.meshes = 0;
-        self.equations.evaluations = 0;
+        self.counted_from = self.system.evaluations;
     }
 
     pub(crate) fn set_phase(&mut self, phase: Phase, fraction: f64) {
         self.equations.set_phase(phase, fraction);
     }
+}
+
+/// The change of the equations by `way` at the last linearisation of `system`.
+pub(crate) fn response_change(
+    equations: &Equations,
+    system: &Collocation<N, M, Q, L>,
+    solution: &Guess,
+    way: Way,
+) -> hydrostat_bvp::Change<N, Q, L> {
+    let ends = [&solution.nodes[0], &solution.nodes[solution.mesh.elements()]];
+    equations.change_by(way, system.stations(), system.locals(), system.end_stations(), ends)
+}
+
+/// The reach of beta' over an element's length up to which the section law gives beta' better than the element's polynomial.
+const SHORT_REACH: f64 = 0.05;
+
+/// The same with the beta' that follows from the section law along the arm, given everything at the place with the beta' of the polynomial.
+///
+/// beta' at the end of a polynomial of degree M + 1 is right to order M only. With beta = g(s, z, beta') the section law,
+///
+/// ```text
+/// beta' = g_s + g_z z' + r beta''        r = dg/d beta'
+/// ```
+///
+/// at each place, where the reach r is mostly some micrometres: how beta'' is known hardly counts. Both are derivatives of g along the arm,
+/// by its values here and at three places inside the element, where beta' follows a line; beta'' with r times the beta''' of the polynomial
+/// beside. Twice, the second time with the beta' and beta'' of the first.
+#[inline(always)]
+pub(crate) fn sharpened(
+    equations: &Equations,
+    solution: &Guess,
+    gauss: &Gauss<M>,
+    (i, x): (usize, f64),
+    asked: Asked,
+    here: &AtPlace,
+) -> Asked {
+    const STEP: f64 = 1e-3;
+    const REACH_STEP: f64 = 1e-4;
+    if !solution.directions.is_closed() {
+        return asked;
+    }
+    let h = solution.mesh.step(i);
+    let step = if x > 0.5 { -STEP * h } else { STEP * h };
+    // The derivative of a polynomial of degree four or less, wherever its places are.
+    let derivative = |[a, b, c, d]: [f64; 4]| (8.0 * (c - b) - (d - a)) / (12.0 * 0.125 * h);
+    let places = [-0.25, -0.125, 0.125, 0.25].map(|d| x + d);
+    let slopes = places.map(|x| solution.slope_in(gauss, i, x));
+    let bend: [f64; N] = std::array::from_fn(|a| derivative(slopes.map(|slope| slope[a])));
+    let [a, b, c, d] = places.map(|x| solution.inner_in(gauss, i, x).closure_slope);
+    let curvature = derivative([a, b, c, d]);
+    // Second derivative of beta', likewise.
+    let bend_of_slope = (16.0 * (b + c) - 30.0 * asked.beta_slope - (a + d)) / (12.0 * (0.125 * h) * (0.125 * h));
+    let along = |k: f64, beta_slope: f64, curvature: f64| {
+        let d = k * step;
+        let z = std::array::from_fn(|a| asked.z[a] + d * (here.slope[a] + 0.5 * d * bend[a]));
+        let beta_slope = beta_slope + d * curvature;
+        Asked { s: asked.s + d, from_left: asked.from_left && k == 0.0, z, strain: here.strain, beta_slope }
+    };
+    // beta' and beta'' from beta here and further on.
+    let slopes_of = |[a, b, c, d]: [f64; LANES], reach: f64| {
+        let slope = (18.0 * b - 9.0 * c + 2.0 * d - 11.0 * a) / (6.0 * step);
+        (slope, (2.0 * a - 5.0 * b + 4.0 * c - d) / (step * step) + reach * bend_of_slope)
+    };
+    let push = REACH_STEP * asked.beta_slope.abs().max(1.0);
+    let pushed = Asked { beta_slope: asked.beta_slope + push, strain: here.strain, ..asked };
+    let [first, second, third] = [1.0, 2.0, 3.0].map(|k| along(k, asked.beta_slope, curvature));
+    let Some([one, two, three, pushed]) = equations.beta_at(&[first, second, third, pushed]) else { return asked };
+    let reach = (pushed - here.beta) / push;
+    if reach.abs() > SHORT_REACH * h {
+        return asked;
+    }
+    let (slope, curved) = slopes_of([here.beta, one, two, three], reach);
+    let (slope, curvature) = (slope + reach * (curved - curvature), curved);
+    let Some(again) = equations.beta_at(&[0.0, 1.0, 2.0, 3.0].map(|k| along(k, slope, curvature))) else {
+        return asked;
+    };
+    let (slope, curved) = slopes_of(again, reach);
+    Asked { beta_slope: slope + reach * (curved - curvature), strain: here.strain, ..asked }
+}
+
+/// What is known at `x` in [0, 1] of element `i`, where the state is `z`.
+pub(crate) fn asked_in(solution: &Guess, gauss: &Gauss<M>, i: usize, x: f64, z: [f64; N]) -> Asked {
+    let known = solution.inner_in(gauss, i, x);
+    let s = if x == 1.0 { solution.mesh.nodes()[i + 1] } else { solution.mesh.nodes()[i] + x * solution.mesh.step(i) };
+    Asked { s, from_left: x > 0.0, z, strain: known.inner, beta_slope: known.closure_slope }
 }

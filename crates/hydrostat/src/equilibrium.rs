@@ -15,43 +15,42 @@
 mod adversity;
 mod at_place;
 mod cable_paths;
+mod change;
 mod ends;
 mod few;
 mod gradients;
 mod held;
 mod nearness;
-mod partials;
 mod places;
-mod remembered;
-mod strains;
+mod section_solve;
 mod varied;
 
-use hydrostat_bvp::{Condition, Gauss, Groups, LANES, Lanes, Local, Problem, Real, each};
+use hydrostat_bvp::{Condition, EndPlace, Groups, Inner, LANES, Lanes, Local, Problem, Real, Station, each};
 
 pub(crate) use self::adversity::Unloaded;
 pub(crate) use self::at_place::{Asked, AtPlace};
+pub(crate) use self::change::Way;
 use self::few::Few;
-use self::gradients::{by_strain_change, jacobian, rate_gradient, slopes, strain_by_state};
-pub(crate) use self::held::{Column, Held};
-use self::nearness::NearnessLanes;
+use self::gradients::{by_strain_change, jacobian, rate_gradient, strain_by_state};
+pub(crate) use self::held::Held;
 pub(crate) use self::nearness::{Nearness, SectionFailure};
-pub(crate) use self::partials::{BY, ByState, CLOSED, OUT, RATE, Spot, VALUE};
-use self::places::Place;
-use self::strains::{STATION, Solved, solve_section};
+use self::places::{EndSection, Place};
+use self::section_solve::{Solved, solve_section};
 use crate::arm::Arm;
-use crate::beta_along::{BetaAlong, Coupling};
 use crate::flow::Law;
 use crate::loads::{Load, Water, load};
-use crate::readings::{Support, Volume};
+use crate::readings::{FlowSurface, Support, Volume};
 use crate::section::{CableAt, apply3};
 use crate::sincos::sin_cos;
-use crate::swelling::swelling;
+use crate::swelling::{Swelling, swelling};
 use crate::verdict::Phase;
 
 /// States: theta, n_f along e1, n_f along e2, m_f.
 pub(crate) const N: usize = 4;
 /// Quadratures: x, y.
 pub(crate) const Q: usize = 2;
+/// Inner unknowns: nu, eta, mu.
+pub(crate) const L: usize = 3;
 
 /// The units in which the equations are solved: lengths in L, forces in `force`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,19 +59,10 @@ pub(crate) struct Units {
     pub(crate) force: f64,
 }
 
-/// What the section law remembers from the last state at a station.
-#[derive(Debug, Clone, Copy)]
-struct Memory<R> {
-    z: [R; N],
-    strain: [R; 3],
-    /// d strain / d z.
-    by_state: [[R; N]; 3],
-    /// beta' that the strains are of, and d strain / d beta'.
-    beta_slope: R,
-    by_beta_slope: [R; 3],
-}
+/// Steps of the section law that Newton's rounds on the arm leave to the next one.
+const ROUGH: f64 = 1e-3;
 
-/// Equations of one arm at given fractions of its loads.
+/// Equations of one arm at given fractions of its loads, on a mesh.
 #[derive(Debug, Clone)]
 pub(crate) struct Equations {
     pub(crate) units: Units,
@@ -89,33 +79,21 @@ pub(crate) struct Equations {
     varied: Option<varied::Varied>,
     /// Cables whose stroke is commanded, from where on these are.
     pub(crate) held: Option<Held>,
-    /// The cable whose tension takes the place of the parameter.
-    pub(crate) pulled: Option<usize>,
-    /// How strains and beta' followed the parameter when [`Problem::drift`] was asked last.
-    pub(crate) column: Column,
     /// What friction leaves of the tensions, if there is any.
     pub(crate) grip: Option<crate::friction::Grip>,
-    /// (nu, eta, mu)' at the stations.
-    strain_slopes: Vec<[Lanes; 3]>,
     /// A couple over s/L that takes the place of the parameter, at every station.
     imposed: Option<Vec<f64>>,
+    /// Steps of the section law that are left to the next round.
+    pub(crate) inner_tolerance: f64,
     /// How the stations stand in blocks of four.
     groups: Groups,
     stations: Vec<f64>,
-    /// Element lengths, a group.
-    steps: Vec<Lanes>,
     places: Vec<Place<Lanes>>,
     cables: Vec<CableAt<Lanes>>,
-    memory: Vec<Memory<Lanes>>,
-    pub(crate) beta: BetaAlong,
-    drifts: Vec<[Lanes; N]>,
-    /// Load switches.
-    switches: Vec<[Lanes; 3]>,
-    pub(crate) evaluations: usize,
-    /// Evaluations with what cables add to them, see `engine/budget`.
-    pub(crate) work: usize,
-    /// At the last evaluation.
-    pub(crate) nearness: Nearness,
+    /// The ends at which elements meet the section law, in blocks, and what is there.
+    end_places: Vec<EndPlace>,
+    end_sections: Vec<EndSection>,
+    end_cables: Vec<CableAt<Lanes>>,
     /// A chosen shape, with the loads that make it an equilibrium.
     #[cfg(test)]
     pub(crate) manufactured: Option<crate::engine::manufactured::Manufactured>,
@@ -123,7 +101,7 @@ pub(crate) struct Equations {
 
 impl Equations {
     /// The equations of `arm` (already checked), with all loads whole.
-    pub(crate) fn new<const M: usize>(arm: &Arm, gauss: &Gauss<M>) -> Self {
+    pub(crate) fn new(arm: &Arm, stages: usize) -> Self {
         let length = arm.length;
         let mut this = Self {
             units: Units { length, force: 1.0 },
@@ -136,23 +114,16 @@ impl Equations {
             phase: Phase::Tension,
             varied: None,
             held: None,
-            pulled: None,
-            column: Column::default(),
             grip: None,
-            strain_slopes: Vec::new(),
             imposed: None,
-            groups: Groups { elements: 0, stages: M },
+            inner_tolerance: ROUGH,
+            groups: Groups { elements: 0, stages },
             stations: Vec::new(),
-            steps: Vec::new(),
             places: Vec::new(),
             cables: Vec::new(),
-            memory: Vec::new(),
-            beta: BetaAlong::new(gauss),
-            drifts: Vec::new(),
-            switches: Vec::new(),
-            evaluations: 0,
-            work: 0,
-            nearness: Nearness::FAR,
+            end_places: Vec::new(),
+            end_sections: Vec::new(),
+            end_cables: Vec::new(),
             #[cfg(test)]
             manufactured: None,
         };
@@ -161,6 +132,11 @@ impl Equations {
         this.units.force = bending;
         this.set_tensions();
         this
+    }
+
+    /// The same equations with steps of the section law left up to `inner_tolerance`.
+    pub(crate) fn leaving(self, inner_tolerance: f64) -> Self {
+        Self { inner_tolerance, ..self }
     }
 
     /// Takes loads, stream and material from an arm of the same geometry.
@@ -240,6 +216,11 @@ impl Equations {
         self.groups
     }
 
+    /// Pieces of work that an evaluation of a station is.
+    pub(crate) fn work(&self) -> usize {
+        self.arm.dearness()
+    }
+
     pub(crate) fn stations(&self) -> &[f64] {
         &self.stations
     }
@@ -279,14 +260,22 @@ impl Equations {
         self.tensions[c] * self.fraction[1]
     }
 
-    /// The shortest part of element `i` that beta' can still be found on.
-    pub(crate) fn shortest_element(&self, i: usize) -> f64 {
-        self.beta.shortest(i, self.groups.elements).max(1e-6)
+    /// Whether beta' enters the equations.
+    pub(crate) fn is_closed(&self) -> bool {
+        let lateral = self.arm.readings.flow_surface == FlowSurface::Lateral && self.water.stream != [0.0; 2];
+        self.volume != Volume::None && (!self.tensions.is_empty() || lateral)
     }
 
     #[inline(always)]
-    fn load<R: Real>(&self, place: &Place<R>, direction: [R; 2], solved: &Solved<R>, beta_slope: R) -> Load<R> {
-        let mut load = load(&self.water, &place.body, direction, solved.strain, &solved.balance.swelling, beta_slope);
+    fn load<R: Real>(
+        &self,
+        place: &Place<R>,
+        direction: [R; 2],
+        strain: [R; 3],
+        swelling: &Swelling<R>,
+        beta_slope: R,
+    ) -> Load<R> {
+        let mut load = load(&self.water, &place.body, direction, strain, swelling, beta_slope);
         let fraction = R::of(self.fraction[0]);
         for k in 0..2 {
             load.force[k] = load.force[k] * fraction;
@@ -295,6 +284,166 @@ impl Equations {
             load.by_beta_slope[k] = load.by_beta_slope[k] * fraction;
         }
         load
+    }
+
+    /// Speeds whose change of sign kinks the load in a block of stations, see [`Load::switches`].
+    #[inline(always)]
+    pub(crate) fn switches(&self, block: usize, station: &Station<N, L>) -> [Lanes; 3] {
+        let (sin, cos) = sin_cos(station.z[0]);
+        let swelling = swelling(self.volume, station.inner[0]);
+        load(&self.water, &self.places[block].body, [cos, sin], station.inner, &swelling, station.closure_slope)
+            .switches
+    }
+
+    /// Strains of the unloaded arm at station `k`, mu times L.
+    pub(crate) fn reference_strain(&self, k: usize) -> [f64; 3] {
+        let (block, lane) = self.groups.station(k);
+        self.places[block].stiffness.reference.map(|v| v.0[lane])
+    }
+
+    /// The reference strains in a block of stations.
+    pub(crate) fn reference_in(&self, block: usize) -> [Lanes; L] {
+        self.places[block].stiffness.reference
+    }
+
+    /// Place (over L), nu and mu (times L), and beta R (over L), in a lane of a block.
+    pub(crate) fn stretched(&self, block: usize, station: &Station<N, L>, lane: usize) -> (f64, [f64; 2], f64) {
+        let (place, [nu, _, mu]) = (&self.places[block], station.inner);
+        let half_width = swelling(self.volume, nu).beta * place.body.radius;
+        (place.s.0[lane], [nu.0[lane], mu.0[lane]], half_width.0[lane])
+    }
+
+    /// Strain measure 1/2 (C1 (nu-nu_o)^2 + C2 (eta-eta_o)^2 + C3 (mu-mu_o)^2) A per length in a block of stations.
+    #[inline(always)]
+    pub(crate) fn strain_energy(&self, block: usize, station: &Station<N, L>) -> Lanes {
+        let stiffness = &self.places[block].stiffness;
+        let strain = station.inner;
+        let beta = swelling(self.volume, strain[0]).beta;
+        let mut sum = Lanes::of(0.0);
+        for a in 0..3 {
+            let strained = strain[a] - stiffness.reference[a];
+            sum += Lanes::of(0.5) * stiffness.value[a] * beta * beta * strained * strained;
+        }
+        sum
+    }
+
+    /// Fills `out` with the cables that pull in a block of stations, given all of them there.
+    #[inline(always)]
+    fn pulled_in(&self, cables: &[CableAt<Lanes>], out: &mut Few<Lanes>) {
+        out.clear();
+        for (cable, tension) in cables.iter().zip(&self.tensions) {
+            let tension = tension * self.fraction[1];
+            if tension != 0.0 {
+                out.push(CableAt { tension: cable.tension * Lanes::of(tension), ..*cable });
+            }
+        }
+    }
+
+    /// The cables of a block of stations.
+    #[inline(always)]
+    fn cables_in(&self, block: usize) -> &[CableAt<Lanes>] {
+        let count = self.tensions.len();
+        &self.cables[block * count..(block + 1) * count]
+    }
+
+    /// The section in a block, near `strain`.
+    #[inline(always)]
+    fn solved_in(
+        &self,
+        block: usize,
+        station: &Station<N, L>,
+        pulled: &mut Few<Lanes>,
+    ) -> ([Lanes; 2], [Lanes; 3], Solved<Lanes>) {
+        self.pulled_in(self.cables_in(block), pulled);
+        let (sin, cos) = sin_cos(station.z[0]);
+        let contact = in_directors([cos, sin], &station.z);
+        let solved = solve_section(
+            self.volume,
+            &self.places[block].stiffness,
+            pulled.as_slice(),
+            contact,
+            station.inner,
+            station.closure_slope,
+            self.inner_tolerance,
+        );
+        ([cos, sin], contact, solved)
+    }
+
+    /// The stations of a block.
+    #[inline(always)]
+    fn block(
+        &self,
+        block: usize,
+        station: &mut Station<N, L>,
+        pulled: &mut Few<Lanes>,
+        out: &mut Local<N, Q, L, Lanes>,
+    ) -> Result<(), SectionFailure> {
+        let place = &self.places[block];
+        let (direction, contact, solved) = self.solved_in(block, station, pulled);
+        if !solved.is_fine(self.inner_tolerance) {
+            return Err(failure(place.s, &solved, self.inner_tolerance));
+        }
+        let [cos, sin] = direction;
+        let [nu, eta, mu] = solved.strain;
+        let beta_slope = station.closure_slope;
+        let load = self.load(place, direction, solved.strain, &solved.balance.swelling, beta_slope);
+        let couple = place.body.couple * Lanes::of(self.fraction[0]);
+        let by_state = strain_by_state(&solved.inverse, direction, contact);
+        let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
+        // With the step of the strains, to first order.
+        let by_change = by_strain_change(&load, contact, solved.change);
+        out.slope = [mu, -load.force[0], -load.force[1], eta * contact[0] - nu * contact[1] - couple];
+        for a in 0..N {
+            out.slope[a] += by_change[a];
+        }
+        out.jacobian = jacobian(direction, contact, &solved, &load, &by_state);
+        let rates = |[nu, eta, _]: [Lanes; 3]| [nu * cos - eta * sin, nu * sin + eta * cos];
+        let rate_change = rates(solved.change);
+        out.rate = each(|q| rate[q] + rate_change[q]);
+        out.rate_gradient = rate_gradient(direction, rate, &by_state);
+        out.inner = inner(&solved, by_state);
+        out.by_closure = by_strain_change(&load, contact, out.inner.by_closure);
+        for k in 0..2 {
+            out.by_closure[1 + k] -= load.by_beta_slope[k];
+        }
+        out.rate_by_closure = rates(out.inner.by_closure);
+        station.inner = solved.strain;
+        Ok(())
+    }
+}
+
+/// n_f along a and b, and m_f.
+#[inline(always)]
+fn in_directors<R: Real>([cos, sin]: [R; 2], z: &[R; N]) -> [R; 3] {
+    [cos * z[1] + sin * z[2], cos * z[2] - sin * z[1], z[3]]
+}
+
+/// The section law linearised and solved for the strains.
+#[inline(always)]
+fn inner(solved: &Solved<Lanes>, by_state: [[Lanes; N]; 3]) -> Inner<N, L, Lanes> {
+    let swelling = &solved.balance.swelling;
+    let less = apply3(&solved.inverse, solved.balance.by_beta_slope);
+    Inner {
+        change: solved.change,
+        gradient: by_state,
+        by_closure: each(|k| -less[k]),
+        value: swelling.beta,
+        value_change: swelling.slope * solved.change[0],
+        value_gradient: each(|a| swelling.slope * by_state[0][a]),
+        reach: -(swelling.slope * less[0]),
+    }
+}
+
+/// The first station of a block, along the arm, that could not be solved.
+#[cold]
+#[inline(never)]
+fn failure(s: Lanes, solved: &Solved<Lanes>, tolerance: f64) -> SectionFailure {
+    let lane = (0..LANES).find(|lane| !solved.is_fine_in(*lane, tolerance)).unwrap_or(0);
+    SectionFailure {
+        s: s.0[lane],
+        openness: solved.balance.openness.0[lane],
+        nu: solved.strain[0].0[lane],
+        regularity: solved.regularity.0[lane],
     }
 }
 
@@ -310,57 +459,57 @@ fn water(arm: &Arm) -> Water {
     }
 }
 
-impl Problem<N, Q> for Equations {
+impl Problem<N, Q, L> for Equations {
     type Failure = SectionFailure;
 
+    fn is_closed(&self) -> bool {
+        self.is_closed()
+    }
+
     #[inline(always)]
-    fn slopes<const FUSED: bool>(
-        &mut self,
-        groups: Groups,
-        z: &[[Lanes; N]],
-        out: &mut [Local<N, Q, Lanes>],
+    fn stages<const FUSED: bool>(
+        &self,
+        _: Groups,
+        stations: &mut [Station<N, L>],
+        out: &mut [Local<N, Q, L, Lanes>],
     ) -> Result<(), SectionFailure> {
-        let evaluations = groups.elements * groups.stages;
-        self.evaluations += evaluations;
-        self.work += evaluations * self.arm.dearness();
-        let mut near = NearnessLanes::far();
-        self.follow(z);
         let mut pulled = Few::new();
-        for (block, (z, out)) in z.iter().zip(out.iter_mut()).enumerate() {
-            self.pulled_in(block, &mut pulled);
-            let solved = self.block(block, z, pulled.as_slice(), &mut near, out);
-            if solved.is_err() {
-                self.nearness = near.nearest();
-                return solved;
-            }
-        }
-        self.nearness = near.nearest();
-        self.beta.close::<FUSED>(&self.steps, out, &mut self.drifts);
-        if self.beta.some_short {
-            let memory = &self.memory;
-            self.beta.carry(groups.elements, &self.steps, |block, lane| memory[block].beta_slope.0[lane], out);
+        for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+            self.block(block, station, &mut pulled, out)?;
         }
         Ok(())
     }
 
     #[inline(always)]
-    fn drift(&mut self, out: &mut [[Lanes; N]]) {
-        let followed = match self.pulled {
-            Some(cable) => self.drift_by_tension(cable, out),
-            None => self.drift_by_share(out),
-        };
-        if followed {
-            return;
+    fn ends<const FUSED: bool>(
+        &self,
+        _: &[EndPlace],
+        stations: &mut [Station<N, L>],
+        out: &mut [Inner<N, L, Lanes>],
+    ) -> Result<(), SectionFailure> {
+        let mut pulled = Few::new();
+        let count = self.tensions.len();
+        for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+            let section = &self.end_sections[block];
+            self.pulled_in(&self.end_cables[block * count..(block + 1) * count], &mut pulled);
+            let (sin, cos) = sin_cos(station.z[0]);
+            let contact = in_directors([cos, sin], &station.z);
+            let solved = solve_section(
+                self.volume,
+                &section.stiffness,
+                pulled.as_slice(),
+                contact,
+                station.inner,
+                station.closure_slope,
+                self.inner_tolerance,
+            );
+            if !solved.is_fine(self.inner_tolerance) {
+                return Err(failure(section.s, &solved, self.inner_tolerance));
+            }
+            *out = inner(&solved, strain_by_state(&solved.inverse, [cos, sin], contact));
+            station.inner = solved.strain;
         }
-        if self.held.is_some() {
-            self.column.clear(out.len());
-        }
-        if self.pulled.is_some() {
-            // Without strains to follow it the tension moves nothing, which no round can work with.
-            out.fill([Lanes::of(0.0); N]);
-        } else {
-            out.copy_from_slice(&self.drifts);
-        }
+        Ok(())
     }
 
     fn left_count(&self) -> usize {
@@ -376,179 +525,5 @@ impl Problem<N, Q> for Equations {
 
     fn right(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
         self.tip_conditions(z, out);
-    }
-}
-
-impl Equations {
-    /// Fills `out` with the cables that pull in a block of stations.
-    #[inline(always)]
-    fn pulled_in(&self, block: usize, out: &mut Few<Lanes>) {
-        let cable_count = self.tensions.len();
-        out.clear();
-        for c in 0..cable_count {
-            let tension = self.tensions[c] * self.fraction[1];
-            if tension != 0.0 {
-                let mut cable = self.cables[block * cable_count + c];
-                cable.tension = cable.tension * Lanes::of(tension);
-                cable.tension_slope = cable.tension_slope * Lanes::of(tension);
-                out.push(cable);
-            }
-        }
-    }
-
-    /// The stations of a block at the states `z`: all but what beta' adds.
-    #[inline(always)]
-    fn block(
-        &mut self,
-        block: usize,
-        z: &[Lanes; N],
-        pulled: &[CableAt<Lanes>],
-        near: &mut NearnessLanes,
-        out: &mut Local<N, Q, Lanes>,
-    ) -> Result<(), SectionFailure> {
-        let state = *z;
-        let place = &self.places[block];
-        let couple = place.body.couple * Lanes::of(self.fraction[0]);
-        let (sin, cos) = sin_cos(state[0]);
-        let direction = [cos, sin];
-        let contact = [cos * state[1] + sin * state[2], cos * state[2] - sin * state[1], state[3]];
-
-        let guess = self.memory[block].strain;
-        let beta_along = [self.beta.slope[block], self.beta.curvature[block]];
-
-        let solved = solve_section(self.volume, &place.stiffness, pulled, contact, guess, beta_along, STATION);
-        if !solved.fine() {
-            return Err(self.failure(block, &solved));
-        }
-        let load = self.load(place, direction, &solved, beta_along[0]);
-        let slopes = slopes(couple, direction, contact, &solved, &load);
-
-        self.strain_slopes[block] = slopes.strain_slope;
-        let by_state = strain_by_state(&solved.inverse, direction, contact);
-        let [nu, eta, _] = solved.strain;
-        let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
-        out.slope = slopes.slope;
-        out.jacobian = jacobian(direction, contact, &solved, &load, &by_state);
-        out.rate = rate;
-        out.rate_gradient = rate_gradient(direction, rate, &by_state);
-        // What moves at fixed z with beta': the strains, and all that follows from them.
-        let less = apply3(&solved.inverse, solved.balance.by_curvature);
-        let [nu_p, eta_p, mu_p] = each(|k| -less[k]);
-        let force_by_slope = |k: usize| {
-            let by = load.by_strain[k];
-            -(by[0] * nu_p + by[1] * eta_p + by[2] * mu_p + load.by_beta_slope[k])
-        };
-        let swelling_slope = solved.balance.swelling.slope;
-        let (drift, nu_drift) = self.drift_of(block, contact, &solved, &load);
-        self.drifts[block] = drift;
-        self.beta.coupling[block] = Coupling {
-            slope: [mu_p, force_by_slope(0), force_by_slope(1), contact[0] * eta_p - contact[1] * nu_p],
-            rate: [nu_p * cos - eta_p * sin, nu_p * sin + eta_p * cos],
-            value: each(|a| swelling_slope * by_state[0][a]),
-            value_drift: swelling_slope * nu_drift,
-        };
-        self.beta.value[block] = solved.balance.swelling.beta;
-        self.beta.slope[block] = beta_along[0];
-        self.beta.closed[block] = slopes.beta_slope;
-        self.beta.reach[block] = swelling_slope * nu_p;
-        self.switches[block] = load.switches;
-        near.note(self.places[block].s, [solved.balance.openness, nu, solved.regularity]);
-        let by_beta_slope = [nu_p, eta_p, mu_p];
-        self.memory[block] =
-            Memory { z: state, strain: solved.strain, by_state, beta_slope: beta_along[0], by_beta_slope };
-        Ok(())
-    }
-
-    /// Moves what is remembered along its tangents to the states `z`: strains, beta and its derivatives. Left where it
-    /// was where those lead too far to mean anything.
-    #[inline(always)]
-    fn follow(&mut self, z: &[[Lanes; N]]) {
-        let zero = Lanes::of(0.0);
-        for (block, state) in z.iter().enumerate() {
-            let memory = &self.memory[block];
-            let mut moved = [zero; N];
-            for a in 0..N {
-                moved[a] = state[a] - memory.z[a];
-            }
-            let slope = self.beta.followed(block, &moved);
-            let turned = slope - memory.beta_slope;
-            let mut strain = memory.strain;
-            let mut leap = zero;
-            for a in 0..3 {
-                let mut move_by = memory.by_beta_slope[a] * turned;
-                for b in 0..N {
-                    move_by += memory.by_state[a][b] * moved[b];
-                }
-                let size = if a == 2 { move_by.abs() / (Lanes::of(2.0) + strain[2].abs()) } else { move_by.abs() };
-                leap = leap.max(size);
-                strain[a] += move_by;
-            }
-            let near_enough = Lanes::of(0.3);
-            for a in 0..3 {
-                strain[a] = leap.if_less(near_enough, strain[a], memory.strain[a]);
-            }
-            let slope = leap.if_less(near_enough, slope, self.beta.slope[block]);
-            self.beta.value[block] = swelling(self.volume, strain[0]).beta;
-            self.beta.slope[block] = slope;
-            let memory = &mut self.memory[block];
-            memory.z = *state;
-            memory.strain = strain;
-            memory.beta_slope = slope;
-        }
-        self.beta.follow_curvature(&self.steps);
-    }
-
-    /// What the next evaluation, at the states `z`, would find but for what is of second order: strains, beta and its
-    /// derivatives, the load's switches.
-    #[inline(always)]
-    pub(crate) fn foresee(&mut self, z: &[[Lanes; N]]) {
-        self.follow(z);
-        for (block, state) in z.iter().enumerate() {
-            let (sin, cos) = sin_cos(state[0]);
-            let strain = self.memory[block].strain;
-            let swelling = swelling(self.volume, strain[0]);
-            let slope = self.beta.slope[block];
-            let load = load(&self.water, &self.places[block].body, [cos, sin], strain, &swelling, slope);
-            self.switches[block] = load.switches;
-        }
-    }
-
-    /// The first station of a block, along the arm, that could not be solved.
-    #[cold]
-    #[inline(never)]
-    fn failure(&self, block: usize, solved: &Solved<Lanes>) -> SectionFailure {
-        let lane = (0..LANES).find(|lane| !solved.fine_in(*lane)).unwrap_or(0);
-        SectionFailure {
-            s: self.places[block].s.0[lane],
-            openness: solved.balance.openness.0[lane],
-            nu: solved.strain[0].0[lane],
-            regularity: solved.regularity.0[lane],
-        }
-    }
-
-    /// d z' / d fraction of the phase, and that of nu, at fixed z and beta'.
-    #[inline(always)]
-    fn drift_of(
-        &self,
-        block: usize,
-        contact: [Lanes; 3],
-        solved: &Solved<Lanes>,
-        load: &Load<Lanes>,
-    ) -> ([Lanes; N], Lanes) {
-        let zero = Lanes::of(0.0);
-        match self.phase {
-            Phase::Loads => {
-                let f = self.fraction[0];
-                let per = Lanes::of(if f == 0.0 { 0.0 } else { 1.0 / f });
-                let couple = self.places[block].body.couple;
-                ([zero, -(load.force[0] * per), -(load.force[1] * per), -couple], zero)
-            }
-            Phase::Tension | Phase::Stroke | Phase::Friction => {
-                let f = self.fraction[1];
-                let per = Lanes::of(if f == 0.0 { 0.0 } else { -1.0 / f });
-                let strain = apply3(&solved.inverse, each(|k| solved.balance.cables[k] * per));
-                (by_strain_change(load, contact, strain), strain[0])
-            }
-        }
     }
 }

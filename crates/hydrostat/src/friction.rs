@@ -13,12 +13,12 @@
 //! distributed force (T t_c)' in place of T t_c', acting at the cable, which integrates to the same local law
 //! (section 2 of `docs/model.md`) with the local T(s). At no friction it is the law without.
 //!
-//! The tension at a place hangs on all the turns before it, so that it is found in rounds: a shape for given turns,
-//! the turns of that shape, and so on, see `rubbing`.
+//! The tension at a place follows all turns before it, so that it is found in rounds: a shape for given turns,
+//! the turns of that shape, and so on, see `rubbing`. Where chi' changes its sign the tension has a kink, and the mesh a node.
 
 use std::sync::Arc;
 
-use hydrostat_bvp::{Gauss, LANES};
+use hydrostat_bvp::Gauss;
 
 use crate::arm::{Arm, Motion};
 use crate::engine::{Engine, M};
@@ -44,24 +44,18 @@ pub(crate) struct Turns {
     cables: Vec<Turn>,
 }
 
+/// The stages and both ends of an element.
+const POINTS: usize = M + 2;
+
 /// The turn of one cable.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Turn {
     /// Phi at the left node of every element, its step there included.
     before: Vec<f64>,
-    /// |chi'| at the stages of every element.
-    rate: Vec<[f64; M]>,
-}
-
-/// T(s)/T(0) at a place, and its slope.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Share {
-    pub(crate) value: f64,
-    pub(crate) slope: f64,
-}
-
-impl Share {
-    pub(crate) const WHOLE: Self = Self { value: 1.0, slope: 0.0 };
+    /// chi at the left end, the stages and the right end of every element.
+    angles: Vec<[f64; POINTS]>,
+    /// Where in an element (in [0, 1]) chi turns back, in order.
+    extremes: Vec<Vec<f64>>,
 }
 
 /// What the exponent is by the turn, a cable, with a share of the friction: minus the friction while reeling in.
@@ -74,46 +68,117 @@ pub(crate) fn exponents(arm: &Arm, of_friction: f64) -> Vec<f64> {
 }
 
 impl Turns {
-    /// Of the engine's solution, whose stations are up to date.
+    /// Of the engine's solution.
     pub(crate) fn of(engine: &Engine) -> Result<Self, SectionFailure> {
         let equations = &engine.equations;
         let gauss = engine.system.gauss.clone();
         let mesh = &engine.solution.mesh;
-        let mut cables = Vec::with_capacity(equations.arm().cables.len());
-        for c in 0..equations.arm().cables.len() {
-            let mut turn = Turn { before: Vec::new(), rate: Vec::new() };
-            let mut turned = 0.0;
-            for i in 0..mesh.elements() {
-                turned += step_at(engine, c, i)?;
-                turn.before.push(turned);
-                let rate: [f64; M] = std::array::from_fn(|j| equations.cable_turn(c, i, j).abs());
+        let count = equations.arm().cables.len();
+        let stations = engine.stations();
+        let mut cables: Vec<Turn> = (0..count).map(|_| Turn::default()).collect();
+        let mut last: Vec<f64> = vec![0.0; count];
+        for i in 0..mesh.elements() {
+            let [left, right] = [engine.beside_node(i, false)?, engine.beside_node(i + 1, true)?];
+            let ends = [(mesh.nodes()[i], &left, i), (mesh.nodes()[i + 1], &right, i + 1)];
+            for (c, turn) in cables.iter_mut().enumerate() {
+                let [first, end] =
+                    ends.map(|(s, at, node)| engine.solution.nodes[node][0] + equations.cable_angle(c, s, at));
+                let mut angles = [first; POINTS];
                 for j in 0..M {
-                    turned += mesh.step(i) * gauss.b[j] * rate[j];
+                    let (block, lane) = engine.solution.groups().at(i, j);
+                    angles[1 + j] = equations.cable_angle_in(c, block, &stations[block]).0[lane];
                 }
-                turn.rate.push(rate);
+                angles[POINTS - 1] = end;
+                // Where another cable ends the angle steps.
+                let step = if i > 0 && equations.jumps_at(mesh.nodes()[i]) { (first - last[c]).abs() } else { 0.0 };
+                let before = turn.before.last().copied().unwrap_or(0.0) + turn.over_last(&gauss) + step;
+                turn.before.push(before);
+                turn.extremes.push(extremes(&gauss, &angles));
+                turn.angles.push(angles);
+                last[c] = end;
             }
-            cables.push(turn);
         }
         Ok(Self { gauss, nodes: mesh.nodes().to_vec(), cables })
     }
 
-    /// Phi of cable `c` at `s` (over L), and |chi'|.
-    pub(crate) fn at(&self, c: usize, s: f64, from_left: bool) -> [f64; 2] {
+    /// Phi of cable `c` at `s` (over L).
+    pub(crate) fn at(&self, c: usize, s: f64, from_left: bool) -> f64 {
         let turn = &self.cables[c];
         let last = self.nodes.len() - 2;
         let right = self.nodes.partition_point(|node| *node <= s).saturating_sub(1).min(last);
         let i = if from_left && right > 0 && self.nodes[right] == s { right - 1 } else { right };
-        let h = self.nodes[i + 1] - self.nodes[i];
-        let x = (s - self.nodes[i]) / h;
-        let (integrals, cardinals) = (self.gauss.integrals(x), self.gauss.cardinals(x));
-        let mut turned = turn.before[i];
-        let mut rate = 0.0;
-        for j in 0..M {
-            turned += h * integrals[j] * turn.rate[i][j];
-            rate += cardinals[j] * turn.rate[i][j];
-        }
-        [turned, rate]
+        let x = (s - self.nodes[i]) / (self.nodes[i + 1] - self.nodes[i]);
+        turn.before[i] + turn.within(&self.gauss, i, x)
     }
+
+    /// Where chi of one of these cables turns back (over L): its tension has a kink there.
+    pub(crate) fn kinks<'a>(&'a self, cables: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
+        cables.iter().flat_map(move |c| {
+            let turn = &self.cables[*c];
+            turn.extremes.iter().enumerate().flat_map(move |(i, own)| {
+                own.iter().map(move |x| self.nodes[i] + x * (self.nodes[i + 1] - self.nodes[i]))
+            })
+        })
+    }
+}
+
+impl Turn {
+    /// How far chi turns over the last element.
+    fn over_last(&self, gauss: &Gauss<M>) -> f64 {
+        if self.angles.is_empty() { 0.0 } else { self.within(gauss, self.angles.len() - 1, 1.0) }
+    }
+
+    /// How far chi turns from the left end of element `i` to `x`: its variation.
+    fn within(&self, gauss: &Gauss<M>, i: usize, x: f64) -> f64 {
+        let angles = &self.angles[i];
+        let (mut turned, mut from) = (0.0, angles[0]);
+        let stops = self.extremes[i].iter().copied().filter(|stop| *stop < x).chain([x]);
+        for stop in stops {
+            let angle = value(gauss, angles, stop);
+            turned += (angle - from).abs();
+            from = angle;
+        }
+        turned
+    }
+}
+
+/// The polynomial through stages and ends at `x`.
+fn value(gauss: &Gauss<M>, angles: &[f64; POINTS], x: f64) -> f64 {
+    let (at_stages, [left, right]) = gauss.cardinals_with_ends(x);
+    let inner: f64 = at_stages.iter().zip(&angles[1..]).map(|(w, angle)| w * angle).sum();
+    inner + left * angles[0] + right * angles[POINTS - 1]
+}
+
+/// Where the polynomial through stages and ends has an extreme value inside an element.
+fn extremes(gauss: &Gauss<M>, angles: &[f64; POINTS]) -> Vec<f64> {
+    const SAMPLES: u32 = 16;
+    /// What of the turn is rounding.
+    const ROUNDING: f64 = 1e-10;
+    const NEAR: f64 = 1e-5;
+    let spread = angles.iter().fold(0.0_f64, |m, angle| m.max((angle - angles[0]).abs()));
+    let mut out = Vec::new();
+    if spread < ROUNDING {
+        return out;
+    }
+    let slope = |x: f64| value(gauss, angles, x + NEAR) - value(gauss, angles, x - NEAR);
+    let mut before = (0.0, slope(0.0));
+    for k in 1..=SAMPLES {
+        let x = f64::from(k) / f64::from(SAMPLES);
+        let now = (x, slope(x));
+        if before.1 * now.1 < 0.0 {
+            let (mut low, mut high) = (before, now);
+            for _ in 0..40 {
+                let middle = 0.5 * (low.0 + high.0);
+                let there = slope(middle);
+                if there * low.1 > 0.0 { low = (middle, there) } else { high = (middle, there) }
+            }
+            out.push(0.5 * (low.0 + high.0));
+        }
+        if now.1 != 0.0 {
+            before = now;
+        }
+    }
+    out
 }
 
 impl Grip {
@@ -122,41 +187,17 @@ impl Grip {
     }
 
     /// The share of its tension that cable `c` has left at `s` (over L).
-    fn share(&self, c: usize, s: f64, from_left: bool) -> Share {
+    fn share(&self, c: usize, s: f64, from_left: bool) -> f64 {
         let exponent = self.exponents[c];
         if exponent == 0.0 {
-            return Share::WHOLE;
+            return 1.0;
         }
-        let [mut turned, mut rate] = [0.0; 2];
-        for (weight, shape) in &self.shapes {
-            let own = shape.at(c, s, from_left);
-            turned += weight * own[0];
-            rate += weight * own[1];
-        }
-        let value = (exponent * turned).exp();
-        Share { value, slope: exponent * rate * value }
+        let turned: f64 = self.shapes.iter().map(|(weight, shape)| weight * shape.at(c, s, from_left)).sum();
+        (exponent * turned).exp()
     }
-}
-
-/// The step of cable `c`'s angle at the left node of element `i`, where another cable ends.
-fn step_at(engine: &Engine, c: usize, i: usize) -> Result<f64, SectionFailure> {
-    let (equations, mesh) = (&engine.equations, &engine.solution.mesh);
-    let s = mesh.nodes()[i];
-    let cables = equations.arm().cables.len();
-    if i == 0 || !(0..cables).any(|c| (equations.cable_end(c) - s).abs() < 1e-9) {
-        return Ok(0.0);
-    }
-    let [before, after] = [engine.beside_node(i, true)?, engine.beside_node(i, false)?];
-    Ok((equations.cable_angle(c, s, &after) - equations.cable_angle(c, s, &before)).abs())
 }
 
 impl Equations {
-    /// chi' of cable `c` at stage `j` of element `i`, over L.
-    fn cable_turn(&self, c: usize, i: usize, j: usize) -> f64 {
-        let (block, lane) = self.groups().at(i, j);
-        self.cable_turns(c, block).0[lane]
-    }
-
     /// Angle of cable `c` from the section normal at a place.
     fn cable_angle(&self, c: usize, s: f64, at: &AtPlace) -> f64 {
         let offset = self.offset(c, s);
@@ -168,20 +209,11 @@ impl Equations {
     /// Takes what friction leaves of the tensions, at every station.
     pub(crate) fn set_grip(&mut self, grip: Option<&Grip>) {
         self.grip = grip.cloned();
-        let groups = self.groups();
-        if self.stations().is_empty() {
-            return;
-        }
-        for block in 0..groups.count() * groups.stages {
-            for lane in 0..LANES {
-                let s = self.stations()[groups.station_in(block, lane)];
-                self.place_pull(block, lane, s);
-            }
-        }
+        self.take_pulls();
     }
 
     /// What friction leaves of the tension of cable `c` at `s`.
-    pub(crate) fn pull_share(&self, c: usize, s: f64, from_left: bool) -> Share {
-        self.grip.as_ref().map_or(Share::WHOLE, |grip| grip.share(c, s, from_left))
+    pub(crate) fn pull_share(&self, c: usize, s: f64, from_left: bool) -> f64 {
+        self.grip.as_ref().map_or(1.0, |grip| grip.share(c, s, from_left))
     }
 }

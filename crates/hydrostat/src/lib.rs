@@ -131,7 +131,6 @@
 //! on it carries a [`Warning::TangentialLoad`], and [`FlowLaw::QuadraticDrag`] is the alternative.
 
 pub mod arm;
-mod beta_along;
 mod cable;
 pub mod cases;
 mod compliance;

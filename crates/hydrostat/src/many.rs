@@ -173,7 +173,6 @@ impl Tile {
         self.before = Some(here);
         engine.take_loads(arm);
         engine.set_phase(Phase::Tension, 1.0);
-        engine.on_a_path = false;
         engine.reset_statistics();
         let before = engine.tip_angle();
         let estimate = engine.settle(self.options.tol, First::Warm).ok()?;
@@ -191,10 +190,11 @@ impl Tile {
     fn read(&self, engine: &mut Engine, estimate: f64) -> Option<Row> {
         let mut strokes = Vec::new();
         if self.wanted.strokes {
-            engine.foresee();
+            engine.system.take_stations(&engine.solution);
             let (equations, weights) = (&engine.equations, &engine.system.gauss.b);
             let stroke = |cable| {
-                let [now, unloaded] = equations.cable_lengths(cable, weights);
+                let [now, unloaded] =
+                    equations.cable_lengths(cable, weights, engine.system.steps(), engine.system.stations());
                 equations.units.length * (unloaded - now)
             };
             strokes = (0..equations.arm().cables.len()).map(stroke).collect();

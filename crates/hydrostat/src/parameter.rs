@@ -340,6 +340,24 @@ impl Parameter {
         })
     }
 
+    /// A change of it that counts for the arm, in its unit, given the unit of force of the equations (N).
+    pub(crate) fn scale(self, arm: &Arm, force: f64) -> f64 {
+        let least = match self {
+            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) => force,
+            Self::Stroke(_) => arm.length,
+            Self::Offset(..) | Self::Radius(_) => 1e-3 * arm.length,
+            Self::FlowSpeed => 0.1,
+            Self::FlowDensity | Self::Density => 1000.0,
+            Self::GravityAcceleration => 10.0,
+            Self::TipMoment => force * arm.length,
+            Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => return 1.0,
+            Self::DragNormal | Self::DragTangential => 1.0,
+            Self::Young | Self::Poisson | Self::ShearFactor | Self::Coefficient(_) => 0.0,
+        };
+        let value = self.of(arm).unwrap_or(0.0).abs().max(least);
+        if value > 0.0 { value } else { 1.0 }
+    }
+
     /// Whether the data of the sections depend on it.
     pub(crate) fn is_of_sections(self) -> bool {
         matches!(

@@ -23,6 +23,10 @@ const DEPTH: usize = 5;
 const LARGEST_TURN: f64 = 0.3;
 /// The least step of friction or load.
 const LEAST: f64 = 1e-6;
+/// Halvings of elements that confirm the turns.
+const CUTS: usize = 4;
+/// The part of what halving elements moves that is taken to be left.
+const FINER: f64 = 0.25;
 /// Intervals at whose ends turns are compared.
 const INTERVALS: u32 = 32;
 
@@ -54,8 +58,12 @@ impl Solver {
         loop {
             let kept = self.engine.state();
             let next = (share + step).min(1.0);
-            match self.rub(next) {
-                Ok(configuration) if next == 1.0 => return Ok(configuration),
+            match self.rub(next).map(|estimate| if next == 1.0 { self.confirm(estimate) } else { estimate }) {
+                Ok(estimate) if next == 1.0 => {
+                    return self
+                        .read(estimate, Travelled::default())
+                        .map_err(|trouble| self.limit(Phase::Friction, share, &trouble));
+                }
                 Ok(_) => {
                     share = next;
                     step *= 1.5;
@@ -84,11 +92,13 @@ impl Solver {
             let kept = self.engine.state();
             let next = (share + step).min(1.0);
             self.engine.set_phase(Phase::Tension, next);
-            match self.rub(1.0) {
-                Ok(configuration) => {
+            match self.rub(1.0).map(|estimate| if next == 1.0 { self.confirm(estimate) } else { estimate }) {
+                Ok(estimate) => {
                     share = next;
                     step *= 1.5;
-                    last = configuration;
+                    last = self
+                        .read(estimate, Travelled::default())
+                        .map_err(|trouble| Some(self.limit(Phase::Tension, share, &trouble)))?;
                 }
                 Err(trouble) => {
                     self.engine.restore(&kept);
@@ -117,14 +127,35 @@ impl Solver {
         Verdict { kind, phase, load_fraction, s, residual, spent }
     }
 
-    /// Rounds of turns and shape at `share` of the friction until the tip stays.
-    fn rub(&mut self, share: f64) -> Result<Configuration, Trouble> {
+    /// What the tip is off by (over L) beside the estimate of the shape with its turns given: the turns are those of a mesh, too. They are
+    /// found again on elements of half the length, until the tip moves by less than the tolerance; the shape on those stays.
+    fn confirm(&mut self, estimate: f64) -> f64 {
+        let (tol, mut estimate) = (self.options.tol, estimate);
+        for _ in 0..CUTS {
+            let before = (self.engine.tip, self.engine.state());
+            let cut = self.engine.solution.mesh.cut(2);
+            self.engine.move_to(cut);
+            let Ok(again) = self.rub(1.0) else {
+                self.engine.restore(&before.1);
+                break;
+            };
+            let moved = (self.engine.tip[0] - before.0[0]).hypot(self.engine.tip[1] - before.0[1]);
+            // Halves of elements leave a small part of what they moved.
+            estimate = again.max(FINER * moved);
+            if moved <= tol {
+                break;
+            }
+        }
+        estimate
+    }
+
+    /// Rounds of turns and shape at `share` of the friction until the tip stays; its estimated error over L.
+    fn rub(&mut self, share: f64) -> Result<f64, Trouble> {
         let tol = self.options.tol;
         let start = self.engine.tip_angle();
         let sign = self.engine.determinant().sign;
         let mut rounds = Rounds::new(share, exponents(self.engine.equations.arm(), share));
         for _ in 0..ROUNDS {
-            self.engine.refresh().map_err(Trouble::Section)?;
             let ease = rounds.go_on(Turns::of(&self.engine).map_err(Trouble::Section)?);
             self.engine.set_grip(Some(&rounds.grip()));
             let (before, angle) = (self.engine.tip, self.engine.tip_angle());
@@ -136,7 +167,7 @@ impl Solver {
             let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
             let turned = (self.engine.tip_angle() - angle).abs();
             if moved.max(0.1 * turned) <= 0.2 * ease * tol {
-                return self.read(estimate + moved, Travelled::default());
+                return Ok(estimate + moved);
             }
         }
         Err(Trouble::Stalled(f64::INFINITY))
@@ -198,7 +229,7 @@ impl Rounds {
             for k in 0..=INTERVALS {
                 let s = f64::from(k) / f64::from(INTERVALS);
                 let turned = weights.iter().zip(&self.shapes).filter(|(weight, _)| **weight != 0.0);
-                out.push(exponent * turned.map(|(weight, shape)| weight * shape.at(c, s, true)[0]).sum::<f64>());
+                out.push(exponent * turned.map(|(weight, shape)| weight * shape.at(c, s, true)).sum::<f64>());
             }
         }
         out
@@ -208,7 +239,7 @@ impl Rounds {
     /// if all of the arm did the same.
     fn ease(&self) -> f64 {
         let Some(shape) = self.shapes.last() else { return 1.0 };
-        let steep = |(c, exponent): (usize, &f64)| -exponent * shape.at(c, 1.0, true)[0];
+        let steep = |(c, exponent): (usize, &f64)| -exponent * shape.at(c, 1.0, true);
         let steepest = self.exponents.iter().enumerate().map(steep).fold(0.0, f64::max);
         if steepest > 0.5 { 1.0 / (1.0 + steepest) } else { 1.0 }
     }

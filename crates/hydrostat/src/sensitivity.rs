@@ -14,11 +14,6 @@
 //! d out = out_p + out_t dt,    s_t dt = d command - s_p
 //! ```
 
-mod band;
-mod carry;
-pub(crate) mod dual;
-mod element;
-mod linear;
 mod quantities;
 
 use self::quantities::POSE;

@@ -100,7 +100,6 @@ impl Solver {
     /// With all tensions given.
     pub(crate) fn solve_tensions(&mut self) -> Result<Configuration, SolveError> {
         self.settled = false;
-        self.engine.on_a_path = false;
         self.engine.reset_statistics();
         self.engine.set_phase(Phase::Tension, 1.0);
         let tol = self.options.tol;
@@ -302,7 +301,6 @@ impl Solver {
             return None;
         }
         self.settled = false;
-        self.engine.on_a_path = false;
         self.engine.reset_statistics();
         let before = self.engine.tip_angle();
         let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
@@ -336,8 +334,10 @@ impl Solver {
         let sign = self.engine.system.determinant().sign;
         match settled {
             Ok(estimate) if moved < 0.05 && same => {
-                let mut configuration =
-                    self.read(estimate, travelled).map_err(|_| self.no_equilibrium(self.last_verdict(Some(1.0))))?;
+                let Ok(mut configuration) = self.read(estimate, travelled) else {
+                    let verdict = self.last_verdict(Some(1.0));
+                    return Err(self.no_equilibrium(verdict));
+                };
                 if travelled.crossings > 0 || sign < 0.0 {
                     configuration.stable = Some(false);
                 }
@@ -345,7 +345,10 @@ impl Solver {
                 self.sign = sign;
                 Ok(configuration)
             }
-            _ => Err(self.no_equilibrium(self.last_verdict(None))),
+            _ => {
+                let verdict = self.last_verdict(None);
+                Err(self.no_equilibrium(verdict))
+            }
         }
     }
 
@@ -355,7 +358,7 @@ impl Solver {
         &mut self.engine
     }
 
-    pub(crate) fn last_verdict(&self, load_fraction: Option<f64>) -> Verdict {
+    pub(crate) fn last_verdict(&mut self, load_fraction: Option<f64>) -> Verdict {
         let spent = self.engine.spent();
         let jumps = spent.is_none() && self.engine.equations.arm().readings.load_can_jump();
         Verdict {
@@ -382,7 +385,10 @@ impl Solver {
             }
             let settled = self.engine.settle(self.options.tol.max(1e-6), First::Warm);
             let moved = (self.engine.tip[0] - kept.tip[0]).hypot(self.engine.tip[1] - kept.tip[1]);
-            last_good = settled.ok().filter(|_| moved < 0.05).and_then(|e| self.read(e, Travelled::default()).ok());
+            // Where sections give way, arms are many times as long as they were.
+            let size = kept.tip[0].hypot(kept.tip[1]).max(1.0);
+            last_good =
+                settled.ok().filter(|_| moved < 0.05 * size).and_then(|e| self.read(e, Travelled::default()).ok());
             if last_good.is_some() {
                 break;
             }

@@ -64,7 +64,10 @@ impl Solver {
         if let Some(configuration) = self.solve_strokes_by_tensions(&arm) {
             return Ok(configuration);
         }
-        Err(first.unwrap_or_else(|| self.no_equilibrium(self.last_verdict(Some(0.0)))))
+        Err(first.unwrap_or_else(|| {
+            let verdict = self.last_verdict(Some(0.0));
+            self.no_equilibrium(verdict)
+        }))
     }
 
     /// Along the path from the tensions of `start`.
@@ -135,7 +138,6 @@ impl Solver {
     /// Newton from the tensions `guess`, N.
     fn settle_strokes(&mut self, arm: &Arm, guess: &[f64]) -> Result<f64, Trouble> {
         self.forget();
-        self.engine.on_a_path = false;
         self.engine.set_phase(Phase::Tension, 1.0);
         self.engine.set_loads(&with_tensions(arm, |c| guess[c]));
         self.engine.equations.hold_strokes();
@@ -157,8 +159,7 @@ impl Solver {
         if engine.refresh().is_ok()
             && let Some(held) = engine.equations.held.clone()
         {
-            let weights = engine.system.gauss.b;
-            let strokes: Vec<f64> = held.cables.iter().map(|c| engine.equations.stroke(*c, &weights)[0]).collect();
+            let strokes: Vec<f64> = held.cables.iter().map(|c| engine.stroke(*c)).collect();
             let all_slack = !held.taut.contains(&true);
             if all_slack && strokes.iter().enumerate().all(|(i, stroke)| *stroke >= engine.equations.command(&held, i))
             {

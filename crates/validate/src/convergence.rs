@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use hydrostat::{Arm, Cable, Configuration, Gravity, Options, Profile, Solver, cases};
-use hydrostat_bvp::{Collocation, Condition, Correction, Local, Mesh, OneByOne, Plain, Solution};
+use hydrostat_bvp::{Collocation, Condition, Correction, Mesh, OnMesh, Pointwise, Slopes, Solution};
 use hydrostat_figures::{Measure, Page, Panel, Scale, lines_figure};
 use rayon::prelude::*;
 
@@ -34,9 +34,7 @@ pub fn arms() -> Vec<Arm> {
 
 /// An inextensible rod with EI = 1 under a dead end force across it and a couple along it that makes theta = sin(12 s) + s^2/2
 /// exact: m' = -P cos(theta) - c(s).
-struct Rod {
-    stations: Vec<f64>,
-}
+struct Rod;
 
 const PULL: f64 = 3.0;
 
@@ -62,14 +60,14 @@ impl Rod {
     }
 }
 
-impl Plain<2, 2> for Rod {
+impl Pointwise<2, 2> for Rod {
     type Failure = Infallible;
 
-    fn local(&mut self, station: usize, &[theta, m]: &[f64; 2]) -> Result<Local<2, 2>, Infallible> {
+    fn slopes(&self, s: f64, &[theta, m]: &[f64; 2]) -> Result<Slopes<2, 2>, Infallible> {
         let (sin, cos) = theta.sin_cos();
-        let [exact, _, bend] = Self::exact(self.stations[station]);
+        let [exact, _, bend] = Self::exact(s);
         let couple = -bend - PULL * exact.cos();
-        Ok(Local {
+        Ok(Slopes {
             slope: [m, -PULL * cos - couple],
             jacobian: [[0.0, 1.0], [PULL * sin, 0.0]],
             rate: [cos, sin],
@@ -82,32 +80,31 @@ impl Plain<2, 2> for Rod {
     }
 
     fn left(&self, z: &[f64; 2], out: &mut [Condition<2>; 2]) {
-        out[0] = Condition { residual: z[0], gradient: [1.0, 0.0], drift: 0.0 };
+        out[0] = Condition { residual: z[0], gradient: [1.0, 0.0] };
     }
 
     fn right(&self, z: &[f64; 2], out: &mut [Condition<2>; 2]) {
-        out[0] = Condition { residual: z[1] - Self::exact(1.0)[1], gradient: [0.0, 1.0], drift: 0.0 };
+        out[0] = Condition { residual: z[1] - Self::exact(1.0)[1], gradient: [0.0, 1.0] };
     }
 }
 
 /// The largest error of theta at the nodes, and that of the tip, on equal elements with `M` stages.
 fn rod_errors<const M: usize>(elements: usize, tip: [f64; 2]) -> [f64; 2] {
-    let mut solution = Solution::<2, M>::constant(Mesh::uniform(elements, &[]), [0.0; 2]);
+    let mut solution = Solution::<2, M>::constant(Mesh::uniform(elements, &[]), [0.0; 2], []);
     let mut system = Collocation::<2, M, 2>::new();
-    let mut problem = OneByOne::new(Rod { stations: Vec::new() });
-    system.stations(&solution.mesh, &mut problem.problem.stations);
+    let problem = OnMesh::new(Rod, &system.gauss, &solution.mesh);
     let mut correction = Correction::default();
     for _ in 0..20 {
-        if system.linearise(&mut problem, &solution, false).is_err() {
+        if system.linearise::<_, false>(&problem, &solution).is_err() {
             return [f64::NAN; 2];
         }
-        system.solve(&solution, 0, &mut correction);
+        system.newton::<false>(&solution, &mut correction);
         solution.add(&correction, 1.0);
         if correction.largest(0) < 1e-14 {
             break;
         }
     }
-    if system.linearise(&mut problem, &solution, false).is_err() {
+    if system.linearise::<_, false>(&problem, &solution).is_err() {
         return [f64::NAN; 2];
     }
     let nodes = solution.mesh.nodes().iter().zip(&solution.nodes).map(|(s, z)| (z[0] - Rod::exact(*s)[0]).abs());

@@ -12,12 +12,12 @@ pub(crate) const WORK: usize = 4_000_000;
 impl Engine {
     /// Work done since [`Engine::allow`].
     pub(crate) fn work(&self) -> usize {
-        self.done_beside + self.equations.work + self.check_equations.work
+        self.done_beside + (self.system.evaluations + self.check.evaluations - self.worked_from) * self.equations.work()
     }
 
     /// Allows so much work from now on.
     pub(crate) fn allow(&mut self, work: usize) {
-        (self.equations.work, self.check_equations.work, self.done_beside) = (0, 0, 0);
+        (self.worked_from, self.done_beside) = (self.system.evaluations + self.check.evaluations, 0);
         self.allowed = work;
     }
 

@@ -10,12 +10,12 @@
 //! that of A times that of B = s_t - s_z A^-1 A_t, the strokes that unit tensions reel in: positive in the
 //! unloaded arm.
 
-use hydrostat_bvp::{Collocation, Correction, Determinant, LANES, Lanes};
+use hydrostat_bvp::{Collocation, Correction, Determinant};
 
 use super::newton::add_to_spans;
-use super::{Engine, Guess, M, Trouble, linearise, solve};
+use super::{Engine, Guess, M, Trouble, correct, respond, response_change};
 use crate::elimination::solved;
-use crate::equilibrium::{Column, Equations, Held, N, Q, SectionFailure};
+use crate::equilibrium::{Equations, Held, L, N, Q, SectionFailure, Way};
 
 /// What strokes may be off by (over L) before the last round, which leaves the square of that.
 const STROKES: f64 = 1e-10;
@@ -36,9 +36,9 @@ const MORE: usize = 12;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Round {
     /// What is left to correct at the commanded strokes.
-    pub(crate) rest: Correction<N, M, Q>,
+    pub(crate) rest: Correction<N, M, Q, L>,
     /// Change a unit of the parameter.
-    pub(crate) response: Correction<N, M, Q>,
+    pub(crate) response: Correction<N, M, Q, L>,
     /// Of the tensions (in the unit of force), one a commanded cable: by the rest, and by the parameter.
     pub(crate) tension: [Vec<f64>; 2],
     /// Strokes less commands: those after the rest, and by the parameter.
@@ -54,47 +54,44 @@ impl Engine {
         if self.equations.held.is_none() {
             return shape;
         }
-        Determinant { sign: shape.sign * self.border.sign, log: shape.log + self.border.log }
+        shape.times(self.border)
     }
 
     /// [`Engine::linearise`] with the corrections, at held strokes where there are any.
     pub(crate) fn linearise_held(&mut self, parameter: bool, round: &mut Round) -> Result<(), Trouble> {
-        let Some(held) = self.equations.held.clone() else {
-            self.linearise(parameter)?;
-            solve(&self.system, &self.solution, 0, &mut round.rest);
-            if parameter {
-                solve(&self.system, &self.solution, 1, &mut round.response);
-            }
-            return Ok(());
-        };
-        self.may_go_on()?;
-        let count = held.cables.len();
-        let taut = held.tight();
-        let pulled = pull_taut(&mut self.equations, &mut self.system, &self.solution, &held)?;
-        self.rounds += pulled.len();
-        let moves = parameter && !self.equations.only_commands_move();
-        if moves || taut.is_empty() {
-            self.linearise(moves)?;
+        self.match_closure();
+        self.linearise()?;
+        if self.choose_sides() {
+            self.linearise()?;
         }
-        solve(&self.system, &self.solution, 0, &mut round.rest);
-        let after_rest = self.stroke_changes(&held, &round.rest, false);
-        let mut by_parameter = vec![0.0; count];
-        if moves {
-            solve(&self.system, &self.solution, 1, &mut round.response);
-            by_parameter = self.stroke_changes(&held, &round.response, true);
+        correct(&mut self.system, &self.solution, &mut round.rest);
+        if parameter {
+            self.response(Way::Path, &mut round.response);
         } else {
             round.response.clone_from(&round.rest);
             round.response.scale(0.0);
         }
+        let Some(held) = self.equations.held.clone() else {
+            round.tension = [Vec::new(), Vec::new()];
+            round.slack = [Vec::new(), Vec::new()];
+            return Ok(());
+        };
+        let count = held.cables.len();
+        let taut = held.tight();
+        let pulled = pull_taut(&self.equations, &self.system, &self.solution, &held);
         let mut slack: [Vec<f64>; 2] = std::array::from_fn(|_| Vec::with_capacity(count));
         round.off = 0.0;
+        let change =
+            |cable: usize, by: &Correction<N, M, Q, L>| stroke_change(&self.equations, &self.system, cable, by);
         for (index, cable) in held.cables.iter().enumerate() {
-            let off = self.equations.stroke(*cable, &self.system.gauss.b)[0] - self.equations.command(&held, index);
+            let stroke =
+                self.equations.stroke(*cable, &self.system.gauss.b, self.system.steps(), self.system.stations());
+            let off = stroke[0] - self.equations.command(&held, index);
             if held.taut[index] {
                 round.off = round.off.max(off.abs());
             }
-            slack[0].push(off + after_rest[index]);
-            slack[1].push(by_parameter[index] - self.equations.command_drift(&held, index));
+            slack[0].push(off + change(*cable, &round.rest));
+            slack[1].push(change(*cable, &round.response) - self.equations.command_drift(&held, index));
         }
         let row = |index: &usize| {
             (pulled.iter().map(|by| by.strokes[*index]).collect(), [-slack[0][*index], -slack[1][*index]])
@@ -135,10 +132,6 @@ impl Engine {
         self.equations.held = Some(held);
     }
 
-    fn stroke_changes(&self, held: &Held, change: &Correction<N, M, Q>, with_column: bool) -> Vec<f64> {
-        stroke_changes(&self.equations, &self.system, &self.solution, held, change, with_column)
-    }
-
     /// Newton at held strokes until the tip moves by less than `tolerance` and the strokes are met.
     pub(super) fn iterate_held(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
         let strokes = STROKES.max(0.01 * tolerance);
@@ -164,12 +157,10 @@ impl Engine {
             halvings = 0;
             self.add_round(&round, 0, applied);
             let ([x, y], [dx, dy]) = (self.system.totals(), round.rest.total);
-            let tip = [x + dx, y + dy];
-            let drifted = if count > 1 { (tip[0] - self.tip[0]).hypot(tip[1] - self.tip[1]) } else { 0.0 };
-            self.tip = tip;
-            let moved = dx.hypot(dy).max(0.1 * size).max(0.1 * drifted);
+            self.tip = [x + dx, y + dy];
+            let moved = dx.hypot(dy).max(0.1 * size);
             self.last = size;
-            self.rest = if tolerance <= super::TIGHT { moved } else { 0.0 };
+            self.left_over = moved;
             if size < SETTLED && self.switch_taut(&round.slack[0]) {
                 switches += 1;
                 if switches > MORE {
@@ -183,7 +174,7 @@ impl Engine {
             let restless = last && size <= ROUNDING && round.off <= ROUNDING;
             let done = applied == 1.0 && (met && moved <= tolerance || restless && moved <= tolerance.max(ROUNDING));
             if !met {
-                self.rest = self.rest.max(10.0 * round.off);
+                self.left_over = self.left_over.max(10.0 * round.off);
             }
             if done || last || (count >= MORE && size > 3.0) {
                 self.system.quadratures(&mut self.spans);
@@ -234,72 +225,41 @@ impl Engine {
 /// What a unit of tension of a taut cable does at a fixed tension of all others.
 #[derive(Debug)]
 pub(crate) struct UnitPull {
-    /// To the state.
-    pub(crate) response: Correction<N, M, Q>,
+    /// To the solution.
+    pub(crate) response: Correction<N, M, Q, L>,
     /// To the strokes of all commanded cables, over L.
     pub(crate) strokes: Vec<f64>,
-    /// How the strains follow it at a fixed state.
-    pub(crate) column: Column,
 }
 
-/// One linearisation for every taut cable, the last of which stands in `system`.
+/// One for every taut cable, at the last linearisation.
 pub(crate) fn pull_taut(
-    equations: &mut Equations,
-    system: &mut Collocation<N, M, Q>,
+    equations: &Equations,
+    system: &Collocation<N, M, Q, L>,
     solution: &Guess,
     held: &Held,
-) -> Result<Vec<UnitPull>, Trouble> {
+) -> Vec<UnitPull> {
     let mut out = Vec::new();
     for index in held.tight() {
         let cable = held.cables[index];
-        equations.pulled = Some(cable);
-        let linear = linearise(system, equations, solution, true);
-        equations.pulled = None;
-        linear?;
+        let change = response_change(equations, system, solution, Way::Tension(cable));
         let mut response = Correction::default();
-        solve(system, solution, 1, &mut response);
-        let mut strokes = stroke_changes(equations, system, solution, held, &response, true);
-        strokes[index] += equations.stroke(cable, &system.gauss.b)[2];
-        out.push(UnitPull { response, strokes, column: equations.column.clone() });
-    }
-    Ok(out)
-}
-
-/// Changes of the strokes of the held cables with a change of the shape and, with the column, of a parameter.
-fn stroke_changes(
-    equations: &Equations,
-    system: &Collocation<N, M, Q>,
-    solution: &Guess,
-    held: &Held,
-    change: &Correction<N, M, Q>,
-    with_column: bool,
-) -> Vec<f64> {
-    let weights = &system.gauss.b;
-    let moved = at_stations(equations, system, solution, change);
-    let by_length = |cable: usize| equations.stroke(cable, weights)[1];
-    let lengthened = |cable: usize| equations.length_change(cable, weights, &moved, with_column);
-    held.cables.iter().map(|cable| by_length(*cable) * lengthened(*cable)).collect()
-}
-
-/// A change of the shape at the stations, in their blocks; zero in lanes without an element of their own.
-pub(crate) fn at_stations(
-    equations: &Equations,
-    system: &Collocation<N, M, Q>,
-    solution: &Guess,
-    change: &Correction<N, M, Q>,
-) -> Vec<[Lanes; N]> {
-    let (groups, gauss, mesh) = (equations.groups(), &system.gauss, &solution.mesh);
-    let mut out = vec![[Lanes([0.0; LANES]); N]; groups.count() * M];
-    for i in 0..mesh.elements() {
-        for j in 0..M {
-            let (block, lane) = groups.at(i, j);
-            for a in 0..N {
-                let inside: f64 = (0..M).map(|l| gauss.a[j][l] * change.slopes[i][l][a]).sum();
-                out[block][a].0[lane] = change.nodes[i][a] + mesh.step(i) * inside;
-            }
-        }
+        respond(system, &change, &mut response);
+        let mut strokes: Vec<f64> =
+            held.cables.iter().map(|cable| stroke_change(equations, system, *cable, &response)).collect();
+        strokes[index] += equations.stroke(cable, &system.gauss.b, system.steps(), system.stations())[1];
+        out.push(UnitPull { response, strokes });
     }
     out
+}
+
+/// The change of the stroke of a cable with a change of the solution, over L.
+pub(crate) fn stroke_change(
+    equations: &Equations,
+    system: &Collocation<N, M, Q, L>,
+    cable: usize,
+    change: &Correction<N, M, Q, L>,
+) -> f64 {
+    equations.stroke_change(cable, &system.gauss.b, system.steps(), system.stations(), change)
 }
 
 #[cfg(test)]
@@ -344,7 +304,7 @@ mod tests {
             (Parameter::FlowDirection, 1e-3, 2),
             (Parameter::Young, 200.0, 2),
             (Parameter::BaseAngle, 1e-3, 2),
-            (Parameter::TipFollower(1), 1e-4, 2),
+            (Parameter::TipFollower(1), 2e-5, 2),
         ] {
             let arm = arm();
             let mut engine = settled(&arm);
@@ -364,8 +324,7 @@ mod tests {
             let (before, after) = (at(value - step), at(value + step));
             let turned = 0.5 * (after.tip_angle() - before.tip_angle());
             let found = round.response.nodes.last().unwrap()[0] / RANGE;
-            // Differences by a parameter of the sections see beta' after one round.
-            let bound = if matches!(parameter, Parameter::Stroke(_)) { 2e-4 } else { 3e-3 };
+            let bound = 2e-4;
             assert!((turned - found).abs() < bound * turned.abs().max(1e-3), "{parameter}: {found} for {turned}");
             let unit = engine.equations.units.force;
             for (c, (after, before)) in tensions(&after, unit).iter().zip(tensions(&before, unit)).enumerate() {
@@ -374,8 +333,7 @@ mod tests {
             }
             let slack = |engine: &Engine| {
                 let held = engine.equations.held.clone().unwrap();
-                let weights = engine.system.gauss.b;
-                let one = |i: usize| engine.equations.stroke(i, &weights)[0] - engine.equations.command(&held, i);
+                let one = |i: usize| engine.stroke(i) - engine.equations.command(&held, i);
                 [one(0), one(1), one(2)]
             };
             for ((after, before), found) in slack(&after).iter().zip(slack(&before)).zip(&round.slack[1]) {

@@ -1,6 +1,7 @@
 //! Kinks of the load, and nodes that follow them.
 
 use super::{Engine, M};
+use crate::friction::Turns;
 
 /// How close (over L) nodes are kept to the kinks of the load at a tolerance: the error that a kink leaves is of second
 /// order in the distance, and the estimate does not see all of it. Closer than rounding places kinks, nodes would chase it.
@@ -16,8 +17,9 @@ impl Engine {
     /// Places inside (0, 1) where the load of the stream has a kink: where a switch changes sign.
     /// Changes closer than `resolution`, or than interpolation in an element tells apart, count as one, or
     /// cancel: on both sides of a node on a kink the polynomials put it at slightly different places.
-    pub(crate) fn kinks(&self, resolution: f64) -> Vec<f64> {
+    pub(crate) fn kinks(&mut self, resolution: f64) -> Vec<f64> {
         let mut out = Vec::new();
+        self.take_switches();
         self.find_kinks(resolution, &mut out);
         out
     }
@@ -38,7 +40,7 @@ impl Engine {
             for i in 0..mesh.elements() {
                 let (start, h) = (mesh.nodes()[i], mesh.step(i));
                 let apart = resolution.max(1e-3 * h);
-                let own: [f64; M] = std::array::from_fn(|j| self.equations.switch(i, j, switch));
+                let own: [f64; M] = std::array::from_fn(|j| self.switch(i, j, switch));
                 let largest = own.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
                 if largest < 1e-6 {
                     before.1 = 0.0;
@@ -74,11 +76,27 @@ impl Engine {
                 }
             }
         }
+        self.add_kinks_of_friction(out);
         out.retain(|s| *s > resolution && *s < 1.0 - resolution);
         out.sort_by(f64::total_cmp);
         out.dedup_by(|b, a| *b - *a < resolution);
         if out.len() > MOST {
             out.clear();
+        }
+    }
+
+    /// Adds the places where cables that rub turn back: their tensions have kinks there.
+    fn add_kinks_of_friction(&self, out: &mut Vec<f64>) {
+        if self.equations.grip.is_none() {
+            return;
+        }
+        let cables = self.equations.arm().cables.iter().enumerate();
+        let rubbing = |(c, cable): (usize, &crate::Cable)| {
+            (cable.friction > 0.0 && self.equations.tension(c) != 0.0).then_some(c)
+        };
+        let rubbing: Vec<usize> = cables.filter_map(rubbing).collect();
+        if let Ok(turns) = Turns::of(self) {
+            out.extend(turns.kinks(&rubbing));
         }
     }
 
@@ -95,7 +113,7 @@ impl Engine {
             return place;
         }
         let Ok(at_node) = self.beside_node(node, at_end) else { return place };
-        let own: [f64; M] = std::array::from_fn(|j| self.equations.switch(i, j, switch));
+        let own: [f64; M] = std::array::from_fn(|j| self.switch(i, j, switch));
         let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
         let off = at_node.switches[switch] - weigh(&gauss.cardinals(end));
         let mut x = end;
@@ -134,7 +152,7 @@ impl Engine {
 
     /// Moves nodes onto the kinks at the present solution; whether any moved.
     pub(super) fn pin_kinks(&mut self, resolution: f64) -> bool {
-        self.foresee();
+        self.take_switches();
         let mut kinks = std::mem::take(&mut self.found);
         self.find_kinks(10.0 * resolution, &mut kinks);
         let moved = self.pin(&kinks, resolution);

@@ -8,24 +8,24 @@ use crate::friction::Grip;
 impl Engine {
     /// Whether something pushes against the arm hard enough that a direct solve may have landed on a
     /// branch that the path does not lead to. Cheap and on the safe side.
-    pub(crate) fn may_have_left_the_branch(&self) -> bool {
+    pub(crate) fn may_have_left_the_branch(&mut self) -> bool {
         if self.equations.arm().readings.support == crate::Support::UnstrainedBase {
             // An initial-value problem has one solution.
             return false;
         }
-        if self.system.determinant().sign <= 0.0 {
+        if self.system.determinant().known_sign() != Some(1.0) {
             return true;
         }
+        self.system.take_stations(&self.solution);
+        let stations = self.system.stations();
         let mut unloaded = Unloaded::new(&self.equations, self.equations.arm().base.angle);
         let mesh = &self.solution.mesh;
         for i in 0..mesh.elements() {
             for j in 0..M {
                 let k = i * M + j;
-                let s = self.equations.stations()[k];
-                let z = self.system.state(i, j);
                 let mu = self.equations.reference_strain(k)[2];
                 unloaded.turn(&self.equations, mesh.step(i) * self.system.gauss.b[j] * mu);
-                if self.equations.adversity(k, s, z, &unloaded) > 0.3 {
+                if self.equations.adversity(k, stations, &unloaded) > 0.3 {
                     return true;
                 }
             }
@@ -34,8 +34,10 @@ impl Engine {
     }
 
     /// Whether any of the arm is nearly in line with a load.
-    pub(crate) fn is_in_line(&self) -> bool {
-        (0..self.equations.stations().len()).any(|k| self.equations.is_in_line(k, self.system.state(k / M, k % M)[0]))
+    pub(crate) fn is_in_line(&mut self) -> bool {
+        self.system.take_stations(&self.solution);
+        let stations = self.system.stations();
+        (0..self.equations.stations().len()).any(|k| self.equations.is_in_line(k, stations))
     }
 
     /// Changes loads of the arm in place.
@@ -69,8 +71,8 @@ impl Engine {
 
     /// Ends a path: `arm` stays, with all angles less by whole turns of the size `angle`.
     pub(crate) fn hold(&mut self, arm: &Arm, angle: f64) {
-        self.equations.hold(arm, angle);
-        self.check_equations.hold(arm, angle);
+        self.equations.hold(arm);
+        self.check_equations.hold(arm);
         for z in &mut self.solution.nodes {
             z[0] -= angle;
         }

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use hydrostat_bvp::{Mesh, Solution};
 
-use super::{Engine, M, Trouble};
+use super::{Engine, Trouble};
 use crate::arm::{Arm, Cable, Cavity, FlowLaw, Gravity, Material};
 use crate::equilibrium::{N, Units};
 use crate::loads::{Body, Water, load};
@@ -236,18 +236,25 @@ fn errors(shape: &Manufactured, elements: usize) -> [f64; 3] {
     engine.equations.manufactured = Some(shape.clone());
     let units = engine.equations.units;
     let mesh = Mesh::uniform(elements, &[]);
-    engine.system.stations(&mesh, &mut engine.stations);
-    let stations = engine.stations.clone();
-    engine.equations.place_stations(&stations, &mesh, |k| {
-        let at = shape.at(stations[k]);
-        (at.strain.map(Series::value), at.beta.slope().value(), at.beta.slope().slope().value())
-    });
-    engine.solution = Solution::constant(mesh, [0.0; N]);
+    engine.solution = Solution::constant(mesh, [0.0; N], [1.0, 0.0, 0.0]);
+    engine.equations.place_on(&engine.system.gauss, &engine.solution);
     for (z, s) in engine.solution.nodes.iter_mut().zip(engine.solution.mesh.nodes()) {
         *z = shape.state(units, *s);
     }
-    for (i, slopes) in engine.solution.slopes.iter_mut().enumerate() {
-        *slopes = std::array::from_fn(|j| shape.state_slope(units, stations[i * M + j]));
+    let groups = engine.solution.groups();
+    for (block, stage) in engine.solution.stages.iter_mut().enumerate() {
+        for lane in 0..hydrostat_bvp::LANES {
+            let s = engine.equations.stations()[groups.station_in(block, lane)];
+            let at = shape.at(s);
+            let (slope, strain) = (shape.state_slope(units, s), at.strain.map(Series::value));
+            for a in 0..N {
+                stage.slope[a].0[lane] = slope[a];
+            }
+            for a in 0..3 {
+                stage.inner[a].0[lane] = strain[a];
+            }
+            stage.closure_slope.0[lane] = at.beta.slope().value();
+        }
     }
     match engine.newton(1e-14, 30) {
         Ok(()) => {}
@@ -332,6 +339,15 @@ fn check(law: FlowLaw) {
     for readings in &all {
         let shape = Manufactured::new(arm(*readings, law));
         let [coarse, fine, finest] = [16, 32, 64].map(|n| errors(&shape, n));
+        println!(
+            "{:.1} {:.1} {:?} {:?} {:?} {:?}",
+            (coarse[0] / fine[0]).log2(),
+            (fine[0] / finest[0]).log2(),
+            readings,
+            coarse,
+            fine,
+            finest
+        );
         for k in 0..2 {
             lowest[k] = lowest[k].min((coarse[k] / fine[k]).log2());
         }

@@ -2,7 +2,7 @@
 
 use hydrostat_bvp::RoundError;
 
-use super::{Engine, TIGHT, Trouble, linearise, solve};
+use super::{Engine, M, Trouble, correct, linearise};
 use crate::equilibrium::Q;
 
 /// Corrections (rad) after which kinks of the load are where they will be, but for second order.
@@ -11,35 +11,35 @@ const SMALL: f64 = 0.1;
 /// Rounds of Newton after which nodes are moved onto the kinks before the next.
 const PINS: usize = 2;
 
+/// What the square of a change of strains leaves to the tip's way (over L).
+const LEFT_BY_STRAINS: f64 = 0.01;
+
+/// Changes of own ends that one call may make.
+const TURNS: usize = 2;
+
 impl Engine {
     /// Newton on the present mesh until the tip moves by less than `tolerance`.
     pub(crate) fn newton(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
-        self.iterate(tolerance, most, false, None)
+        self.iterate(tolerance, most, None)
     }
 
-    /// Newton until the tip moves by less than `tolerance`, or, looking `ahead`, until it would move by
-    /// less in the round to come. Given how close to the kinks of the load nodes have to be, they are moved there as soon
+    /// Newton until what is left of the tip's way is below `tolerance`, by the way rounds fall. Given how close to the kinks of the load
+    /// nodes have to be, they are moved there as soon
     /// as corrections are small: a round on nodes that are off is as good as lost.
-    pub(super) fn iterate(
-        &mut self,
-        tolerance: f64,
-        most: usize,
-        ahead: bool,
-        resolution: Option<f64>,
-    ) -> Result<(), Trouble> {
+    pub(super) fn iterate(&mut self, tolerance: f64, most: usize, resolution: Option<f64>) -> Result<(), Trouble> {
         if self.equations.held.is_some() {
             return self.iterate_held(tolerance, most);
         }
         let clamped = self.equations.arm().readings.support == crate::Support::Clamped;
         let most = if clamped { most } else { 60 };
-        let mut applied = 0.0;
-        let mut halvings = 0;
-        let mut round = 0;
-        let mut before = 0.0;
+        let (mut applied, mut halvings, mut round) = (0.0, 0, 0);
+        let mut before = f64::INFINITY;
         let mut pins = if resolution.is_some() { PINS } else { 0 };
+        let mut turns = 0;
+        self.match_closure();
         loop {
             self.may_go_on()?;
-            match linearise(&mut self.system, &mut self.equations, &self.solution, false) {
+            match linearise(&mut self.system, &self.equations, &self.solution) {
                 Ok(()) => {}
                 Err(RoundError::Slopes(failure)) => {
                     if applied == 0.0 || halvings == 8 {
@@ -53,8 +53,13 @@ impl Engine {
                 Err(singular) => return Err(singular.into()),
             }
             self.rounds += 1;
+            if turns < TURNS && self.choose_sides() {
+                turns += 1;
+                applied = 0.0;
+                continue;
+            }
             round += 1;
-            solve(&self.system, &self.solution, 0, &mut self.correction);
+            correct(&mut self.system, &self.solution, &mut self.correction);
             let size = self.correction.largest(0);
             if !size.is_finite() {
                 return Err(Trouble::Singular);
@@ -64,25 +69,21 @@ impl Engine {
             halvings = 0;
             self.solution.add(&self.correction, applied);
             let [x, y] = self.system.totals();
-            let tip = [x + dx, y + dy];
-            // beta'' runs a round behind: what it still moves shows from round to round.
-            let drifted = if round > 1 { (tip[0] - self.tip[0]).hypot(tip[1] - self.tip[1]) } else { 0.0 };
-            self.tip = tip;
+            self.tip = [x + dx, y + dy];
             let moved = dx.hypot(dy).max(0.1 * size);
-            let moved = if ahead {
-                let seen = if round > 1 { size / before } else { 0.0 };
-                moved * if applied < 1.0 { 1.0 } else { self.foreseen_rate(size, seen) }
-            } else {
-                moved.max(0.1 * drifted)
-            };
-            before = size;
+            // Rounds fall with the square of their size, and no faster than the last one did. Strains count, too: those at the
+            // ends of elements may be far off where no angle is.
+            let strained = self.correction.largest_inner();
+            let whole = size.max(strained);
+            let rate = if applied < 1.0 { 1.0 } else { (whole / before).min(1.0).max(10.0 * size.max(self.reached())) };
+            self.left_over = (moved * rate.min(1.0)).max(LEFT_BY_STRAINS * strained * strained);
+            before = whole;
             self.last = size;
-            self.rest = if ahead || tolerance <= TIGHT { moved } else { 0.0 };
             let stop = round == most || (clamped && round >= 4 && size > 3.0);
-            if moved <= tolerance || stop {
+            if self.left_over <= tolerance || stop {
                 self.system.quadratures(&mut self.spans);
                 add_to_spans(&mut self.spans, &self.correction.by_element);
-                return if moved <= tolerance { Ok(()) } else { Err(Trouble::Stalled(size)) };
+                return if self.left_over <= tolerance { Ok(()) } else { Err(Trouble::Stalled(size)) };
             }
             if size < SMALL
                 && pins > 0
@@ -97,17 +98,24 @@ impl Engine {
         }
     }
 
-    /// The share of a correction of this size that is left to the next: it falls with the square of the correction, but not below the
-    /// share of beta'', which is a round behind, and no faster than it was `seen` to fall.
-    fn foreseen_rate(&self, size: f64, seen: f64) -> f64 {
-        (10.0 * self.reached().max(size)).max(seen).clamp(0.05, 1.0)
+    /// The largest correction (rad) at the last linearisation, which is not made.
+    pub(crate) fn correction_here(&mut self) -> f64 {
+        correct(&mut self.system, &self.solution, &mut self.correction);
+        self.correction.largest(0)
     }
 
     /// The largest change of the angle within an element by the last correction.
     fn reached(&self) -> f64 {
         let mesh = &self.solution.mesh;
-        let each = self.correction.slopes.iter().enumerate();
-        each.fold(0.0, |m, (i, k)| k.iter().fold(m, |m, k| f64::max(m, mesh.step(i) * k[0].abs())))
+        let groups = self.solution.groups();
+        let mut largest = 0.0_f64;
+        for i in 0..mesh.elements() {
+            for j in 0..M {
+                let (block, lane) = groups.at(i, j);
+                largest = largest.max(mesh.step(i) * self.correction.stages[block].slope[0].0[lane].abs());
+            }
+        }
+        largest
     }
 }
 

@@ -1,71 +1,86 @@
-//! Evaluation, linearisation and correction in the processor's widest vectors.
+//! What is compiled for the widest vectors: evaluation, linearisation, corrections.
 
-use hydrostat_bvp::{Collocation, Correction, RoundError, Singular, Solution};
+use hydrostat_bvp::{Change, Collocation, Correction, RoundError, Solution};
 
-use crate::dispatch::{Work, dispatch, widest};
-use crate::equilibrium::{Equations, N, Q, SectionFailure};
+use crate::dispatch::{Work, dispatch};
+use crate::equilibrium::{Equations, L, N, Q, SectionFailure};
 
-struct Evaluate<'a, const S: usize> {
-    system: &'a mut Collocation<N, S, Q>,
-    equations: &'a mut Equations,
-    solution: &'a Solution<N, S>,
-}
+struct Evaluate<'a, const S: usize>(&'a mut Collocation<N, S, Q, L>, &'a Equations, &'a Solution<N, S, L>);
 
 impl<const S: usize> Work for Evaluate<'_, S> {
     type Output = Result<(), SectionFailure>;
-
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Self::Output {
-        self.system.evaluate_with::<_, FUSED>(self.equations, self.solution)
+        self.0.evaluate::<_, FUSED>(self.1, self.2)
     }
 }
 
-/// [`Collocation::evaluate`] in the processor's widest vectors.
+struct Linearise<'a, const S: usize>(&'a mut Collocation<N, S, Q, L>, &'a Equations, &'a Solution<N, S, L>);
+
+impl<const S: usize> Work for Linearise<'_, S> {
+    type Output = Result<(), RoundError<SectionFailure>>;
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Self::Output {
+        self.0.linearise::<_, FUSED>(self.1, self.2)
+    }
+}
+
+struct Correct<'a, const S: usize>(
+    &'a mut Collocation<N, S, Q, L>,
+    &'a Solution<N, S, L>,
+    &'a mut Correction<N, S, Q, L>,
+);
+
+impl<const S: usize> Work for Correct<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        self.0.newton::<FUSED>(self.1, self.2);
+    }
+}
+
+struct Respond<'a, const S: usize>(&'a Collocation<N, S, Q, L>, &'a Change<N, Q, L>, &'a mut Correction<N, S, Q, L>);
+
+impl<const S: usize> Work for Respond<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        self.0.response::<FUSED>(self.1, self.2);
+    }
+}
+
+/// [`Collocation::evaluate`].
 pub(crate) fn evaluate<const S: usize>(
-    system: &mut Collocation<N, S, Q>,
-    equations: &mut Equations,
-    solution: &Solution<N, S>,
+    system: &mut Collocation<N, S, Q, L>,
+    equations: &Equations,
+    solution: &Solution<N, S, L>,
 ) -> Result<(), SectionFailure> {
-    dispatch(Evaluate { system, equations, solution })
+    dispatch(Evaluate(system, equations, solution))
 }
 
-struct Factorise<'a, const S: usize> {
-    system: &'a mut Collocation<N, S, Q>,
-    equations: &'a mut Equations,
-    solution: &'a Solution<N, S>,
-    parameter: bool,
-}
-
-impl<const S: usize> Work for Factorise<'_, S> {
-    type Output = Result<(), Singular>;
-
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Self::Output {
-        let Self { system, equations, solution, parameter } = self;
-        system.factorise_with::<_, FUSED>(equations, solution, parameter)
-    }
-}
-
-/// [`Collocation::linearise`] in the processor's widest vectors.
+/// [`Collocation::linearise`].
 pub(crate) fn linearise<const S: usize>(
-    system: &mut Collocation<N, S, Q>,
-    equations: &mut Equations,
-    solution: &Solution<N, S>,
-    parameter: bool,
+    system: &mut Collocation<N, S, Q, L>,
+    equations: &Equations,
+    solution: &Solution<N, S, L>,
 ) -> Result<(), RoundError<SectionFailure>> {
-    evaluate(system, equations, solution).map_err(RoundError::Slopes)?;
-    dispatch(Factorise { system, equations, solution, parameter }).map_err(RoundError::Singular)
+    dispatch(Linearise(system, equations, solution))
 }
 
-/// [`Collocation::solve`] in the processor's widest vectors.
-pub(crate) fn solve<const S: usize>(
-    system: &Collocation<N, S, Q>,
-    solution: &Solution<N, S>,
-    column: usize,
-    correction: &mut Correction<N, S, Q>,
+/// [`Collocation::newton`].
+pub(crate) fn correct<const S: usize>(
+    system: &mut Collocation<N, S, Q, L>,
+    solution: &Solution<N, S, L>,
+    out: &mut Correction<N, S, Q, L>,
 ) {
-    widest(
-        #[inline(always)]
-        || system.solve(solution, column, correction),
-    );
+    dispatch(Correct(system, solution, out));
+}
+
+/// [`Collocation::response`].
+pub(crate) fn respond<const S: usize>(
+    system: &Collocation<N, S, Q, L>,
+    change: &Change<N, Q, L>,
+    out: &mut Correction<N, S, Q, L>,
+) {
+    dispatch(Respond(system, change, out));
 }

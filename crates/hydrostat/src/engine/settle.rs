@@ -3,7 +3,7 @@
 use hydrostat_bvp::{LANES, Limits, Mesh};
 
 use super::kinks::kink_resolution;
-use super::{Engine, K, M, METHODS, State, TIGHT, Trouble, evaluate, linearise, roughly, solve};
+use super::{Engine, M, METHODS, State, Trouble, correct, linearise, roughly};
 use crate::dispatch::widest;
 
 /// How close (over L) nodes are kept to kinks on meshes that are refined afterwards.
@@ -22,17 +22,20 @@ const WORST: f64 = 1e-4;
 const HOPS: usize = 2;
 
 /// Corrections of the tip (over L) that Newton is not asked to get below.
-const RESTLESS: f64 = 1e-11;
+const RESTLESS: f64 = 1e-13;
 
-/// At accuracies (tip over L) tighter than this, a hurried path brings beta' up to date before it estimates: the lag is of the size of the
-/// tiny angles that decide where an arm in line with the stream goes.
-const LED: f64 = 1e-6;
+/// What Newton leaves (tip over L), over the tolerance.
+const LEFT: f64 = 0.1;
 
 /// Errors of the tip (over L) that rounding makes, which no comparison shows.
 const ROUNDED: f64 = 1e-13;
 
 /// What Newton moves the tip by (over L) at the end of an approach.
 const NEAR: f64 = 0.03;
+
+/// Reach of beta' over the length of the shortest element that meets the section law at both ends: on shorter ones the equations there
+/// hardly differ.
+const SHORTEST_CLOSING: f64 = 0.3;
 
 /// Elements on which most arms meet a tolerance: by the order of the method, and what `paper` takes.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "tolerances are in [1e-12, 1e-2]")]
@@ -59,37 +62,20 @@ impl Engine {
             // The last Newton rounds on this mesh did not converge: there is nothing to compare with.
             return Err(Trouble::Mesh);
         }
-        self.foresee();
         let methods = &*METHODS;
-        self.solution.resample(&methods.values, &mut self.finer);
-        self.check.stations(&self.finer.mesh, &mut self.check_stations);
         let own = &self.equations;
+        let (solution, finer) = (&self.solution, &mut self.finer);
+        widest(
+            #[inline(always)]
+            || solution.resample(&methods.to_check, finer),
+        );
         self.check_equations.fraction = own.fraction;
         self.check_equations.phase = own.phase;
         self.check_equations.take_arm_of(own);
-        self.check_equations.place_stations(&self.check_stations, &self.finer.mesh, |k| {
-            let j = k % K;
-            let (strain, [slope, curvature]) = own.remembered_sharply(k / K, &methods.values[j], &methods.sharp[j]);
-            (strain, slope, curvature)
-        });
-        // So that beta' and beta'' are those of this state, where what is between counts.
-        let tight = match (self.on_a_path, self.in_a_hurry) {
-            (true, false) => true,
-            (true, true) => tolerance <= LED,
-            (false, _) => tolerance <= TIGHT,
-        };
-        let rehearsals = if self.on_a_path { 2 } else { 1 };
-        if tight {
-            self.rehearse(rehearsals)?;
-        }
+        self.check_equations.place_on(&methods.check, &self.finer);
         let mut estimate = self.compare()?;
-        if self.on_a_path && !tight && estimate > tolerance {
-            self.rehearse(1)?;
-            estimate = self.compare()?;
-        }
-        // Where Newton stopped ahead of its last round, or where little is asked to be left, the comparison may miss what
-        // one more would have moved.
-        let unseen = (0.1 * self.rest).max(ROUNDED);
+        // What Newton left is in the solution, but not in the tip that its last round foresaw.
+        let unseen = (LEFT * self.left_over).max(ROUNDED);
         if enough.is_some_and(|enough| estimate.max(unseen) <= enough) {
             return Ok(estimate.max(unseen));
         }
@@ -108,20 +94,12 @@ impl Engine {
         Ok(estimate.max(unseen))
     }
 
-    /// Brings beta' and beta'' of the check up to its shape, a round at a time.
-    fn rehearse(&mut self, rounds: usize) -> Result<(), Trouble> {
-        for _ in 0..rounds {
-            evaluate(&mut self.check, &mut self.check_equations, &self.finer).map_err(Trouble::Section)?;
-        }
-        Ok(())
-    }
-
     /// How far a Newton round with one more stage puts the tip from where the solve has it.
     fn compare(&mut self) -> Result<f64, Trouble> {
         self.may_go_on()?;
-        linearise(&mut self.check, &mut self.check_equations, &self.finer, false)?;
+        linearise(&mut self.check, &self.check_equations, &self.finer)?;
         self.rounds += 1;
-        solve(&self.check, &self.finer, 0, &mut self.check_correction);
+        correct(&mut self.check, &self.finer, &mut self.check_correction);
         let total = self.check.totals();
         let [dx, dy] = self.check_correction.total;
         Ok((total[0] + dx - self.tip[0]).hypot(total[1] + dy - self.tip[1]))
@@ -135,15 +113,16 @@ impl Engine {
     /// A mesh on which every element would contribute the same to an error `target`.
     fn refined(&self, target: f64, most: usize) -> Mesh {
         let limits = Limits { fewest: 4, most, growth: 6.0, cut: 8.0, least: 0.2 };
-        let shortest: Vec<f64> =
-            (0..self.solution.mesh.elements()).map(|i| self.equations.shortest_element(i)).collect();
+        let mut shortest = vec![1e-6; self.solution.mesh.elements()];
+        for (i, reach) in self.system.closing_reaches() {
+            shortest[i] = f64::max(shortest[i], reach / SHORTEST_CLOSING);
+        }
         self.solution.mesh.redistributed(&self.errors, &shortest, (2 * M + 1) as f64, target, limits)
     }
 
     /// Newton from a rough start until corrections are small, and on to a mesh on which most arms meet `tolerance`.
     pub(crate) fn approach(&mut self, tolerance: f64) -> Result<(), Trouble> {
-        self.iterate(NEAR, 14, false, None)?;
-        self.foresee();
+        self.iterate(NEAR, 14, None)?;
         let kinks = self.kinks(10.0 * kink_resolution(tolerance));
         let mut mesh = self.graded(fair_elements(tolerance));
         mesh.pin(&self.breaks, &kinks);
@@ -163,22 +142,17 @@ impl Engine {
         let mut estimate = f64::INFINITY;
         let mut best: Option<(f64, State)> = None;
         let mut hops = 0;
-        // What is left of beta'', a round behind, counts at tight tolerances, down to where rounding ends it.
-        let least =
-            if tolerance > TIGHT { 3.0 * tolerance } else { (0.1 * tolerance).max(RESTLESS.min(3.0 * tolerance)) };
+        let least = (LEFT * tolerance).max(RESTLESS);
         for attempt in 0..10 {
             let goal = match (attempt, first) {
-                (0, First::Warm) if tolerance > TIGHT => tolerance,
                 (0, First::Warm | First::Fair) => least,
                 (0, First::Rough) => tolerance.max(FIRST),
                 _ => (1e-4 * estimate).min(tolerance.max(1e-3)).max(least),
             };
             let mut fine = goal <= 3.0 * tolerance;
-            // The warm mesh has met the tolerance before: nothing but Newton's rest can have been added.
-            let ahead = first == First::Warm && attempt == 0 && tolerance > TIGHT;
             // A first mesh is only there to make a better one from.
             let resolution = if fine { kink_resolution(tolerance) } else { kink_resolution(tolerance).max(COARSE) };
-            let mut converged = self.converge(goal, resolution, ahead);
+            let mut converged = self.converge(goal, resolution);
             let mut hop = 0.0;
             if converged.is_err() && hops < HOPS && (attempt > 0 || first == First::Fair) {
                 hops += 1;
@@ -201,13 +175,14 @@ impl Engine {
                 best = Some((estimate, self.state()));
             }
             let mut mesh = self.refined(TARGET * tolerance, 2000);
-            mesh.pin(&self.breaks, &self.kinks(10.0 * kink_resolution(tolerance)));
+            let kinks = self.kinks(10.0 * kink_resolution(tolerance));
+            mesh.pin(&self.breaks, &kinks);
             self.move_to(mesh);
         }
         match best {
             Some((estimate, state)) => {
                 self.restore(&state);
-                self.linearise(false)?;
+                self.linearise()?;
                 Ok(estimate)
             }
             None => Err(Trouble::Mesh),
@@ -215,13 +190,13 @@ impl Engine {
     }
 
     /// Newton on this mesh, with nodes moved to within `resolution` of the kinks of the load.
-    fn converge(&mut self, goal: f64, resolution: f64, ahead: bool) -> Result<(), Trouble> {
-        self.iterate(goal, 14, ahead, Some(resolution))?;
+    fn converge(&mut self, goal: f64, resolution: f64) -> Result<(), Trouble> {
+        self.iterate(goal, 14, Some(resolution))?;
         for _ in 0..4 {
             if !self.pin_kinks(resolution) {
                 break;
             }
-            self.iterate(goal, 14, ahead, None)?;
+            self.iterate(goal, 14, None)?;
         }
         Ok(())
     }

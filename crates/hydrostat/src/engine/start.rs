@@ -1,60 +1,68 @@
 //! Where Newton starts from.
 
-use hydrostat_bvp::{Mesh, Solution};
+use hydrostat_bvp::{Collocation, LANES, Lanes, Mesh, Side, Solution};
 
-use super::{Engine, M, Trouble};
+use super::{Engine, Guess, M, Trouble, evaluate};
+use crate::equilibrium::{L, N, Q};
 
 impl Engine {
     /// Strains from the cables alone (no stream, weight or tip load): a start that is exact when
     /// nothing else acts.
     pub(crate) fn start_from_cables(&mut self, elements: usize) -> Result<(), Trouble> {
         self.place_unloaded(Mesh::uniform(elements, &self.breaks));
-        self.equations.beta.blunt = true;
-        let strains = self.strains_from_cables();
-        self.equations.beta.blunt = false;
-        strains?;
-        self.turn_by(|this, k| this.system.local(k / M, k % M).slope[0]);
+        self.strains_from_cables()?;
+        self.turn_sections();
         Ok(())
     }
 
     /// The unloaded arm: reference strains, nothing carried.
     pub(crate) fn start_unloaded(&mut self, elements: usize) {
         self.place_unloaded(Mesh::uniform(elements, &self.breaks));
-        self.turn_by(|this, k| this.equations.strain(k)[2]);
+        self.turn_sections();
     }
 
     /// Stations on a mesh, each with the reference strains, and nothing carried.
     fn place_unloaded(&mut self, mesh: Mesh) {
         self.meshes += 1;
-        self.system.stations(&mesh, &mut self.stations);
-        self.equations.place_stations(&self.stations, &mesh, |_| ([0.0; 3], 0.0, 0.0));
-        self.equations.forget_strains();
         let angle = self.equations.arm().base.angle;
-        self.solution = Solution::constant(mesh, [angle, 0.0, 0.0, 0.0]);
+        self.solution = Solution::constant(mesh, [angle, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+        self.equations.place_on(&self.system.gauss, &self.solution);
+        for (block, stage) in self.solution.stages.iter_mut().enumerate() {
+            stage.inner = self.equations.reference_in(block);
+        }
+        if self.equations.is_closed() {
+            self.turn(|_, _, _| Side::Left);
+        }
     }
 
-    /// Turns the sections by the bending strain `mu` of each station, from the base.
-    fn turn_by(&mut self, mu: impl Fn(&Self, usize) -> f64) {
-        for i in 0..self.solution.mesh.elements() {
+    /// Turns the sections by the bending strain of each station, from the base.
+    fn turn_sections(&mut self) {
+        let groups = self.solution.groups();
+        for i in 0..groups.elements {
             let h = self.solution.mesh.step(i);
             let mut next = self.solution.nodes[i];
             for j in 0..M {
-                let mu = mu(self, i * M + j);
-                self.solution.slopes[i][j] = [mu, 0.0, 0.0, 0.0];
+                let (block, lane) = groups.at(i, j);
+                let mu = self.solution.stages[block].inner[2].0[lane];
+                self.solution.stages[block].slope = [0; 4].map(|_: i32| Lanes::default());
                 next[0] += h * self.system.gauss.b[j] * mu;
             }
             self.solution.nodes[i + 1] = next;
+        }
+        for block in 0..self.solution.stages.len() {
+            let mu = self.solution.stages[block].inner[2];
+            self.solution.stages[block].slope[0] = mu;
         }
     }
 
     fn strains_from_cables(&mut self) -> Result<(), Trouble> {
         let whole = self.equations.fraction;
-        let mut fine = self.refresh().is_ok();
+        let mut fine = self.take_strains().is_ok();
         if !fine {
             // Raise the tensions in steps, each from the strains of the last.
             for k in 1..=16 {
                 self.equations.fraction[1] = whole[1] * f64::from(k) / 16.0;
-                fine = self.refresh().is_ok();
+                fine = self.take_strains().is_ok();
                 if !fine {
                     break;
                 }
@@ -62,8 +70,52 @@ impl Engine {
             self.equations.fraction = whole;
         }
         for _ in 0..2 {
-            self.refresh().map_err(Trouble::Section)?;
+            self.take_strains()?;
         }
         Ok(())
     }
+
+    /// The strains that the section law has at the present state, and the slopes of beta that follow.
+    fn take_strains(&mut self) -> Result<(), Trouble> {
+        evaluate(&mut self.system, &self.equations, &self.solution).map_err(Trouble::Section)?;
+        self.system.take_inner(&mut self.solution);
+        if self.choose_sides() {
+            evaluate(&mut self.system, &self.equations, &self.solution).map_err(Trouble::Section)?;
+            self.system.take_inner(&mut self.solution);
+        }
+        Ok(())
+    }
+
+    /// Gives elements the own ends that the reach of beta' at the last evaluation asks for; whether any changed.
+    pub(crate) fn choose_sides(&mut self) -> bool {
+        if !self.solution.directions.is_closed() {
+            return false;
+        }
+        let (solution, system) = (&self.solution, &self.system);
+        if (0..solution.mesh.elements()).all(|i| wanted_side(system, solution, i) == solution.directions.side(i)) {
+            return false;
+        }
+        self.turn(wanted_side);
+        true
+    }
 }
+
+/// The end of element `i` towards which disturbances of beta fade, by its largest reach.
+fn wanted_side(system: &Collocation<N, M, Q, L>, solution: &Guess, i: usize) -> Side {
+    let mut largest = 0.0_f64;
+    for j in 0..M {
+        let reach = system.reach(i, j);
+        if reach.abs() > largest.abs() {
+            largest = reach;
+        }
+    }
+    if largest.abs() < HARMLESS * solution.mesh.step(i) {
+        return solution.directions.side(i);
+    }
+    if largest >= 0.0 { Side::Left } else { Side::Right }
+}
+
+/// Reach over the length of an element up to which either end may be its own.
+const HARMLESS: f64 = 0.02;
+
+const _: () = assert!(LANES == 4);

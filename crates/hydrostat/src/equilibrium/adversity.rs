@@ -1,6 +1,9 @@
 //! How hard loads push against the arm, and whether it is in line with them.
 
-use super::{Equations, N};
+use hydrostat_bvp::Station;
+
+use super::{Equations, L, N};
+use crate::swelling::swelling;
 
 /// Where the unloaded arm points at a place, and the load on its tip that would turn with it.
 pub(crate) struct Unloaded {
@@ -32,12 +35,12 @@ impl Equations {
     /// arm. Well below one, equilibria are unique: a cantilever buckles at 2.47 under a force on its tip and at
     /// 7.84 under a load along it. The stream counts with S U^2 times [`Law::largest`](crate::flow::Law::largest). Moments and couples
     /// bend the arm and push nothing along it: they are in the compression of the shape that they lead to.
-    pub(crate) fn adversity(&self, k: usize, s: f64, z: [f64; N], unloaded: &Unloaded) -> f64 {
-        let rest = 1.0 - s;
+    pub(crate) fn adversity(&self, k: usize, stations: &[Station<N, L>], unloaded: &Unloaded) -> f64 {
         let (block, lane) = self.groups.station(k);
         let place = &self.places[block];
-        let beta = self.beta.value[block].0[lane];
-        let [nu, eta, _] = self.strain(k);
+        let rest = 1.0 - place.s.0[lane];
+        let (z, [nu, eta, _]) = at(&stations[block], lane);
+        let beta = swelling(self.volume, nu).beta;
         let stiffness = place.stiffness.value[2].0[lane] * beta * beta;
         // Along the centreline: the section's directions, turned by alpha.
         let stretch = (nu * nu + eta * eta).sqrt();
@@ -47,7 +50,7 @@ impl Equations {
         let stream = self.water.stream;
         let speed_square = stream[0] * stream[0] + stream[1] * stream[1];
         let drag = self.water.law.largest() * place.body.wetted.0[lane] * beta * speed_square * stretch;
-        let net = self.net_weight(k);
+        let net = self.net_weight(k, nu);
         let cube = rest * rest * rest / stiffness;
         let mut worst = compression;
         let slow = 1e-9 * speed_square.sqrt();
@@ -62,28 +65,33 @@ impl Equations {
     }
 
     /// Weight less buoyancy, and forces along the arm, at station `k`, per length.
-    fn net_weight(&self, k: usize) -> [f64; 2] {
+    fn net_weight(&self, k: usize, nu: f64) -> [f64; 2] {
         let (block, lane) = self.groups.station(k);
-        let (place, beta) = (&self.places[block], self.beta.value[block].0[lane]);
-        let nu = self.strain(k)[0];
+        let (place, beta) = (&self.places[block], swelling(self.volume, nu).beta);
         [0, 1].map(|c| {
             place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * nu * beta * beta
                 + place.body.force[c].0[lane]
         })
     }
 
-    /// Whether the arm at station `k`, turned to `theta`, is nearly in line with a load: small angles to it decide then to
+    /// Whether the arm at station `k` is nearly in line with a load: small angles to it decide then to
     /// which side it goes.
-    pub(crate) fn is_in_line(&self, k: usize, theta: f64) -> bool {
+    pub(crate) fn is_in_line(&self, k: usize, stations: &[Station<N, L>]) -> bool {
         const NEARLY: f64 = 0.05;
-        let [nu, eta, _] = self.strain(k);
+        let (block, lane) = self.groups.station(k);
+        let ([theta, ..], [nu, eta, _]) = at(&stations[block], lane);
         let (sin, cos) = (theta + eta.atan2(nu)).sin_cos();
         let (tip, _) = self.tip_load(theta);
-        [self.water.stream, self.net_weight(k), [tip[0], tip[1]]].iter().any(|[x, y]| {
+        [self.water.stream, self.net_weight(k, nu), [tip[0], tip[1]]].iter().any(|[x, y]| {
             let size = x.hypot(*y);
             size > 0.0 && (cos * y - sin * x).abs() < NEARLY * size
         })
     }
+}
+
+/// State and strains in a lane.
+fn at(station: &Station<N, L>, lane: usize) -> ([f64; N], [f64; L]) {
+    (station.z.map(|v| v.0[lane]), station.inner.map(|v| v.0[lane]))
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! Everything at a place between stations, or at four of them.
 
-use hydrostat_bvp::{LANES, Lanes, Local, Real, each};
+use hydrostat_bvp::{LANES, Lanes, Real, each};
 
 use super::few::Few;
-use super::gradients::{jacobian, rate_gradient, slopes, strain_by_state};
+use super::gradients::{jacobian, strain_by_state};
 use super::places::{Place, blank_cable};
-use super::strains::{FOLDED, solve_section};
-use super::{Equations, N, Q, SectionFailure};
+use super::section_solve::{FOLDED, solve_section};
+use super::{Equations, N, SectionFailure, in_directors};
 use crate::section::CableAt;
 use crate::sincos::sin_cos;
 
@@ -20,8 +20,7 @@ pub(crate) struct Asked {
     pub(crate) z: [f64; N],
     /// A guess of the strains.
     pub(crate) strain: [f64; 3],
-    /// beta' and beta''.
-    pub(crate) beta: [f64; 2],
+    pub(crate) beta_slope: f64,
 }
 
 /// Everything at one place, or at four, in the solver's units.
@@ -36,7 +35,13 @@ pub(crate) struct AtPlace<R = f64> {
     pub(crate) openness: R,
     /// Determinant of the section law over that of the slack one.
     pub(crate) regularity: R,
-    pub(crate) local: Local<N, Q, R>,
+    /// z' and its derivatives by z.
+    pub(crate) slope: [R; N],
+    pub(crate) jacobian: [[R; N]; N],
+    /// (x, y)'.
+    pub(crate) rate: [R; 2],
+    /// d strain / d z.
+    pub(crate) strain_by_state: [[R; N]; 3],
     /// Undeformed radius.
     pub(crate) radius: R,
     /// Load switches.
@@ -53,12 +58,26 @@ impl AtPlace<Lanes> {
             contact: self.contact.map(|v| v.0[lane]),
             openness: self.openness.0[lane],
             regularity: self.regularity.0[lane],
-            local: self.local.lane(lane),
+            slope: self.slope.map(|v| v.0[lane]),
+            jacobian: self.jacobian.map(|row| row.map(|v| v.0[lane])),
+            rate: self.rate.map(|v| v.0[lane]),
+            strain_by_state: self.strain_by_state.map(|row| row.map(|v| v.0[lane])),
             radius: self.radius.0[lane],
             switches: self.switches.map(|v| v.0[lane]),
         }
     }
 }
+
+/// State, guess of the strains and beta' of four places.
+#[inline(always)]
+fn in_lanes(asked: &[Asked; LANES]) -> ([Lanes; N], [Lanes; 3], Lanes) {
+    let z = each(|a| Lanes(each(|lane| asked[lane].z[a])));
+    let strain = each(|a| Lanes(each(|lane| asked[lane].strain[a])));
+    (z, strain, Lanes(each(|lane| asked[lane].beta_slope)))
+}
+
+/// Steps of the section law that leave beta right to rounding: it takes up their first order.
+const ROUGH_STEP: f64 = 1e-9;
 
 impl Equations {
     /// Solves section law and loads at one place, for output between stations.
@@ -71,7 +90,7 @@ impl Equations {
         }
         let cables = cables.as_slice();
         let (sin, cos) = asked.z[0].sin_cos();
-        let (at, fine) = self.solve_place(&place, cables, [cos, sin], asked.z, asked.strain, asked.beta);
+        let (at, fine) = self.solve_place(&place, cables, [cos, sin], asked.z, asked.strain, asked.beta_slope);
         if fine {
             Ok(at)
         } else {
@@ -82,48 +101,53 @@ impl Equations {
     /// [`Equations::at_place`] at four places; `None` when one of them has no solution.
     #[inline(always)]
     pub(crate) fn at_places(&self, asked: &[Asked; LANES]) -> Option<AtPlace<Lanes>> {
-        let zero = Lanes::of(0.0);
-        let s = Lanes(each(|lane| asked[lane].s));
-        let mut place = self.place_four(s);
-        let mut cables = Few::new();
-        let (mut z, mut strain, mut beta) = ([zero; N], [zero; 3], [zero; 2]);
-        for lane in 0..LANES {
-            let asked = &asked[lane];
-            for a in 0..N {
-                z[a].0[lane] = asked.z[a];
-            }
-            for a in 0..3 {
-                strain[a].0[lane] = asked.strain[a];
-            }
-            for a in 0..2 {
-                beta[a].0[lane] = asked.beta[a];
-            }
-        }
+        let mut place = self.place_four(Lanes(each(|lane| asked[lane].s)));
         place.body.couple = place.body.couple * Lanes::of(self.fraction[0]);
+        let cables = self.cables_at(asked, place.s);
+        let (z, strain, beta_slope) = in_lanes(asked);
+        let (sin, cos) = sin_cos(z[0]);
+        let (at, fine) = self.solve_place(&place, cables.as_slice(), [cos, sin], z, strain, beta_slope);
+        fine.then_some(at)
+    }
+
+    /// beta alone at four places near strains that are known; `None` when one of them has no solution.
+    #[inline(always)]
+    pub(crate) fn beta_at(&self, asked: &[Asked; LANES]) -> Option<[f64; LANES]> {
+        let place = self.place_four(Lanes(each(|lane| asked[lane].s)));
+        let cables = self.cables_at(asked, place.s);
+        let (z, strain, beta_slope) = in_lanes(asked);
+        let (sin, cos) = sin_cos(z[0]);
+        let contact = in_directors([cos, sin], &z);
+        let (volume, stiffness) = (self.volume, &place.stiffness);
+        let solved = solve_section(volume, stiffness, cables.as_slice(), contact, strain, beta_slope, ROUGH_STEP);
+        let swelling = &solved.balance.swelling;
+        solved.size.all_below(ROUGH_STEP).then(|| (swelling.beta + swelling.slope * solved.change[0]).0)
+    }
+
+    /// The cables that pull at one of four places.
+    #[inline(always)]
+    fn cables_at(&self, asked: &[Asked; LANES], s: Lanes) -> Few<Lanes> {
+        let mut cables = Few::new();
         for c in 0..self.tensions.len() {
             let mut cable = blank_cable();
             for (lane, asked) in asked.iter().enumerate().filter(|(_, asked)| self.acts_at(c, asked)) {
-                [cable.tension.0[lane], cable.tension_slope.0[lane]] = self.tension_at(c, asked);
+                cable.tension.0[lane] = self.tension_at(c, asked);
             }
-            if cable.tension != zero {
+            if cable.tension != Lanes::of(0.0) {
                 cables.push(CableAt { offset: self.offset_four(c, s), ..cable });
             }
         }
-        let (sin, cos) = sin_cos(z[0]);
-        let (at, fine) = self.solve_place(&place, cables.as_slice(), [cos, sin], z, strain, beta);
-        fine.then_some(at)
+        cables
     }
 
     /// Cable `c` at a place up to its end.
     fn cable_at(&self, c: usize, asked: &Asked) -> CableAt<f64> {
-        let [tension, tension_slope] = self.tension_at(c, asked);
-        CableAt { offset: self.offset(c, asked.s), tension, tension_slope }
+        CableAt { offset: self.offset(c, asked.s), tension: self.tension_at(c, asked) }
     }
 
-    /// The tension of cable `c` at a place up to its end, and its slope.
-    fn tension_at(&self, c: usize, asked: &Asked) -> [f64; 2] {
-        let (tension, share) = (self.tension(c), self.pull_share(c, asked.s, asked.from_left));
-        [tension * share.value, tension * share.slope]
+    /// The tension of cable `c` at a place up to its end.
+    fn tension_at(&self, c: usize, asked: &Asked) -> f64 {
+        self.tension(c) * self.pull_share(c, asked.s, asked.from_left)
     }
 
     /// Whether cable `c` pulls at a place.
@@ -140,44 +164,31 @@ impl Equations {
         cables: &[CableAt<R>],
         [cos, sin]: [R; 2],
         z: [R; N],
-        mut strain: [R; 3],
-        [mut beta_slope, beta_curvature]: [R; 2],
+        strain: [R; 3],
+        beta_slope: R,
     ) -> (AtPlace<R>, bool) {
-        let contact = [cos * z[1] + sin * z[2], cos * z[2] - sin * z[1], z[3]];
-        for round in 0.. {
-            let beta = [beta_slope, beta_curvature];
-            let solved = solve_section(self.volume, &place.stiffness, cables, contact, strain, beta, 1e-13);
-            let fine = solved.step.all_below(1e-9)
-                && (-solved.regularity).all_below(0.0)
-                && (-solved.balance.openness).all_below(-FOLDED);
-            strain = solved.strain;
-            let load = self.load(place, [cos, sin], &solved, beta_slope);
-            let slopes = slopes(place.body.couple, [cos, sin], contact, &solved, &load);
-            let change = (slopes.beta_slope - beta_slope).abs();
-            beta_slope = slopes.beta_slope;
-            if change.all_below(1e-13) || round == 29 || !fine {
-                let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
-                let [nu, eta, _] = solved.strain;
-                let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
-                let at = AtPlace {
-                    strain,
-                    beta: solved.balance.swelling.beta,
-                    beta_slope,
-                    contact: each(|k| contact[k] - solved.balance.cables[k]),
-                    openness: solved.balance.openness,
-                    regularity: solved.regularity,
-                    local: Local {
-                        slope: slopes.slope,
-                        jacobian: jacobian([cos, sin], contact, &solved, &load, &by_state),
-                        rate,
-                        rate_gradient: rate_gradient([cos, sin], rate, &by_state),
-                    },
-                    radius: place.body.radius,
-                    switches: load.switches,
-                };
-                return (at, fine);
-            }
-        }
-        unreachable!("the loop returns at its last round")
+        let contact = in_directors([cos, sin], &z);
+        let solved = solve_section(self.volume, &place.stiffness, cables, contact, strain, beta_slope, 1e-10);
+        let fine = solved.size.all_below(1e-9)
+            && (-solved.regularity).all_below(0.0)
+            && (-solved.balance.openness).all_below(-FOLDED);
+        let load = self.load(place, [cos, sin], solved.strain, &solved.balance.swelling, beta_slope);
+        let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
+        let [nu, eta, mu] = solved.strain;
+        let at = AtPlace {
+            strain: each(|k| solved.strain[k] + solved.change[k]),
+            beta: solved.balance.swelling.beta + solved.balance.swelling.slope * solved.change[0],
+            beta_slope,
+            contact: each(|k| contact[k] - solved.balance.cables[k]),
+            openness: solved.balance.openness,
+            regularity: solved.regularity,
+            slope: [mu, -load.force[0], -load.force[1], eta * contact[0] - nu * contact[1] - place.body.couple],
+            jacobian: jacobian([cos, sin], contact, &solved, &load, &by_state),
+            rate: [nu * cos - eta * sin, nu * sin + eta * cos],
+            strain_by_state: by_state,
+            radius: place.body.radius,
+            switches: load.switches,
+        };
+        (at, fine)
     }
 }

@@ -1,57 +1,146 @@
 //! The paths that cables take through the deformed arm.
 
-use hydrostat_bvp::{Lanes, Real};
+use hydrostat_bvp::{Correction, Lanes, Real, Station};
 
-use super::Equations;
-use crate::cable::tangent;
+use super::{Equations, L, N, Q};
+use crate::cable::{Tangent, tangent};
 use crate::swelling::swelling;
 
 impl Equations {
-    /// |tau| of cable `c` in a block of stations, now and at the reference strains.
+    /// The tangent of cable `c` in a block of stations.
     #[inline(always)]
-    fn cable_stretch(&self, c: usize, block: usize) -> [Lanes; 2] {
-        let offset = &self.cables[block * self.tensions.len() + c].offset;
+    fn cable_tangent(&self, c: usize, block: usize, station: &Station<N, L>) -> Tangent<Lanes> {
+        let offset = &self.cables_in(block)[c].offset;
+        let [nu, ..] = station.inner;
+        tangent(offset, station.inner, &swelling(self.volume, nu), station.closure_slope)
+    }
+
+    /// |tau| of cable `c` in a block of stations at the reference strains.
+    #[inline(always)]
+    fn reference_stretch(&self, c: usize, block: usize) -> Lanes {
+        let offset = &self.cables_in(block)[c].offset;
         let stiffness = &self.places[block].stiffness;
         let reference = swelling(self.volume, stiffness.reference[0]);
-        let reference_slope = reference.slope * stiffness.reference_slope[0];
-        let strain = self.memory[block].strain;
-        [
-            tangent(offset, strain, &swelling(self.volume, strain[0]), self.beta.slope[block]).stretch,
-            tangent(offset, stiffness.reference, &reference, reference_slope).stretch,
-        ]
+        let slope = reference.slope * stiffness.reference_slope;
+        tangent(offset, stiffness.reference, &reference, slope).stretch
     }
 
-    /// chi' of cable `c` in a block of stations, over L: see [`crate::friction`].
-    pub(crate) fn cable_turns(&self, c: usize, block: usize) -> Lanes {
-        let offset = &self.cables[block * self.tensions.len() + c].offset;
-        let [nu, eta, mu] = self.memory[block].strain;
-        let [nu_s, eta_s, mu_s] = self.strain_slopes[block];
-        let beta = swelling(self.volume, nu).beta;
-        let (beta_s, beta_ss) = (self.beta.slope[block], self.beta.curvature[block]);
-        let along = nu - offset.y * beta * mu;
-        let across = eta + offset.slope * beta + offset.y * beta_s;
-        let along_s = nu_s - (offset.slope * beta + offset.y * beta_s) * mu - offset.y * beta * mu_s;
-        let twice = Lanes::of(2.0) * offset.slope * beta_s;
-        let across_s = eta_s + offset.curvature * beta + twice + offset.y * beta_ss;
-        mu + (along * across_s - across * along_s) / (along * along + across * across)
+    /// The angle chi of cable `c` in space in a block of stations: see [`crate::friction`].
+    pub(crate) fn cable_angle_in(&self, c: usize, block: usize, station: &Station<N, L>) -> Lanes {
+        let t = self.cable_tangent(c, block, station);
+        let mut out = station.z[0];
+        for lane in 0..hydrostat_bvp::LANES {
+            out.0[lane] += t.b.0[lane].atan2(t.a.0[lane]);
+        }
+        out
     }
 
-    /// Length of the path of cable `c`, now and at the reference strains, over L, with the weights of the stages.
-    pub(crate) fn cable_lengths(&self, c: usize, weights: &[f64]) -> [f64; 2] {
-        let mut lengths = [0.0; 2];
-        let groups = self.groups();
+    /// Sums `value` over the path of cable `c`, with the weights of the stages and the lengths of elements.
+    #[inline(always)]
+    fn along_cable(&self, c: usize, weights: &[f64], steps: &[Lanes], value: impl Fn(usize) -> Lanes) -> f64 {
+        let groups = self.groups;
+        let mut sum = 0.0;
         for block in 0..groups.count() * groups.stages {
             let (group, stage) = (block / groups.stages, block % groups.stages);
-            let stretches = self.cable_stretch(c, block);
+            let value = value(block);
             for lane in 0..groups.filled(group) {
                 if self.stations[groups.station_in(block, lane)] < self.ends[c] {
-                    let weight = self.steps[group].0[lane] * weights[stage];
-                    lengths[0] += weight * stretches[0].0[lane];
-                    lengths[1] += weight * stretches[1].0[lane];
+                    sum += steps[group].0[lane] * weights[stage] * value.0[lane];
                 }
             }
         }
-        lengths
+        sum
+    }
+
+    /// Length of the path of cable `c`, now and at the reference strains, over L, with the weights of the stages.
+    pub(crate) fn cable_lengths(
+        &self,
+        c: usize,
+        weights: &[f64],
+        steps: &[Lanes],
+        stations: &[Station<N, L>],
+    ) -> [f64; 2] {
+        [
+            self.along_cable(c, weights, steps, |block| self.cable_tangent(c, block, &stations[block]).stretch),
+            self.along_cable(c, weights, steps, |block| self.reference_stretch(c, block)),
+        ]
+    }
+
+    /// The unstretched length of cable `c` over L: the integral of |tau| / (1 + T(s)/EA), with its derivative by the tension (in the unit
+    /// of force).
+    fn unstretched(&self, c: usize, weights: &[f64], steps: &[Lanes], stations: &[Station<N, L>]) -> [f64; 2] {
+        let per_force = self.per_force(c);
+        let tension = self.tensions[c];
+        let stretch = |block: usize| self.cable_tangent(c, block, &stations[block]).stretch;
+        let share = |block: usize| self.cables_in(block)[c].tension;
+        if per_force == 0.0 {
+            return [self.along_cable(c, weights, steps, stretch), 0.0];
+        }
+        let longer = |block: usize| Lanes::of(1.0) + share(block) * Lanes::of(tension * per_force);
+        [
+            self.along_cable(c, weights, steps, |block| stretch(block) / longer(block)),
+            self.along_cable(c, weights, steps, |block| {
+                let longer = longer(block);
+                -(stretch(block) * share(block) * Lanes::of(per_force)) / (longer * longer)
+            }),
+        ]
+    }
+
+    /// The unit of force over EA of cable `c`; zero where it does not stretch.
+    fn per_force(&self, c: usize) -> f64 {
+        self.arm.cables[c].stiffness.map_or(0.0, |stiffness| self.units.force / stiffness)
+    }
+
+    /// Unstretched stroke of `cable` at stations, over L, with the weights of the stages, and its derivative by the
+    /// tension (in the unit of force).
+    pub(crate) fn stroke(
+        &self,
+        cable: usize,
+        weights: &[f64],
+        steps: &[Lanes],
+        stations: &[Station<N, L>],
+    ) -> [f64; 2] {
+        let [now, by_tension] = self.unstretched(cable, weights, steps, stations);
+        let reference = self.along_cable(cable, weights, steps, |block| self.reference_stretch(cable, block));
+        [reference - now, -by_tension]
+    }
+
+    /// Derivatives of |tau| of cable `c` in a block of stations by the strains and by beta'.
+    #[inline(always)]
+    pub(crate) fn stretch_gradient(&self, c: usize, block: usize, station: &Station<N, L>) -> ([Lanes; L], Lanes) {
+        let offset = &self.cables_in(block)[c].offset;
+        let [nu, _, mu] = station.inner;
+        let swelling = swelling(self.volume, nu);
+        let t = tangent(offset, station.inner, &swelling, station.closure_slope);
+        let by_nu = t.a * (Lanes::of(1.0) - offset.y * swelling.slope * mu) + t.b * offset.slope * swelling.slope;
+        ([by_nu, t.b, -(t.a * offset.y * swelling.beta)], t.b * offset.y)
+    }
+
+    /// What a change of |tau| changes the stroke of cable `c` by, in a block of stations: with a stretch of its own less.
+    #[inline(always)]
+    pub(crate) fn stroke_by_stretch(&self, c: usize, block: usize) -> Lanes {
+        let stretched = self.cables_in(block)[c].tension * Lanes::of(self.tensions[c] * self.per_force(c));
+        Lanes::of(-1.0) / (Lanes::of(1.0) + stretched)
+    }
+
+    /// Change of the stroke of `cable` (over L) with a change of the solution, at fixed tension.
+    pub(crate) fn stroke_change<const M: usize>(
+        &self,
+        cable: usize,
+        weights: &[f64; M],
+        steps: &[Lanes],
+        stations: &[Station<N, L>],
+        change: &Correction<N, M, Q, L>,
+    ) -> f64 {
+        self.along_cable(cable, weights, steps, |block| {
+            let (by_strain, by_beta_slope) = self.stretch_gradient(cable, block, &stations[block]);
+            let stage = &change.stages[block];
+            let mut rate = by_beta_slope * stage.closure_slope;
+            for (by, strain) in by_strain.iter().zip(&stage.inner) {
+                rate += *by * *strain;
+            }
+            rate * self.stroke_by_stretch(cable, block)
+        })
     }
 
     /// Stroke (over L) of cable `a` a unit of tension of cable `b` in the straight arm, by compression and bending.

@@ -5,7 +5,6 @@ use hydrostat_bvp::Condition;
 use super::{Equations, N};
 use crate::arm::TipLoad;
 use crate::readings::Support;
-use crate::verdict::Phase;
 
 impl Equations {
     /// theta(0) = theta_0; with the unstrained base also nu = beta = 1, eta = mu = beta' = 0 there, by the section law
@@ -13,7 +12,6 @@ impl Equations {
     pub(super) fn base_conditions(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
         out[0].residual = z[0] - self.arm.base.angle;
         out[0].gradient[0] = 1.0;
-        out[0].drift = -self.base_turn();
         if self.arm.readings.support == Support::UnstrainedBase {
             let (sin, cos) = self.arm.base.angle.sin_cos();
             let stiffness = self.place(0.0).stiffness;
@@ -32,14 +30,6 @@ impl Equations {
                 out[k + 1].residual = z[k + 1] - at_base[k];
                 out[k + 1].gradient[k + 1] = 1.0;
             }
-            if let Some(c) = self.pulled {
-                let offset = self.offset(c, 0.0);
-                let stretch = 1.0_f64.hypot(offset.slope);
-                let (t_a, t_b) = (1.0 / stretch, offset.slope / stretch);
-                out[1].drift = -(t_a * cos - t_b * sin);
-                out[2].drift = -(t_a * sin + t_b * cos);
-                out[3].drift = offset.y * t_a;
-            }
         }
     }
 
@@ -49,14 +39,10 @@ impl Equations {
             return;
         }
         let (load, turn) = self.tip_load(z[0]);
-        let drift = self.tip_drift(z[0]);
-        let per_fraction =
-            if self.phase == Phase::Loads && self.fraction[0] != 0.0 { 1.0 / self.fraction[0] } else { 0.0 };
         for k in 0..3 {
             out[k].residual = z[k + 1] - load[k];
             out[k].gradient[k + 1] = 1.0;
             out[k].gradient[0] = -turn[k];
-            out[k].drift = -load[k] * per_fraction - drift[k];
         }
     }
 
@@ -65,7 +51,7 @@ impl Equations {
         self.load_of(&self.arm.tip, theta)
     }
 
-    pub(super) fn load_of(&self, tip: &TipLoad, theta: f64) -> ([f64; 3], [f64; 3]) {
+    fn load_of(&self, tip: &TipLoad, theta: f64) -> ([f64; 3], [f64; 3]) {
         let (sin, cos) = theta.sin_cos();
         let share = self.fraction[0] / self.units.force;
         let [f_a, f_b] = tip.follower;

@@ -19,8 +19,7 @@ impl<R: Real> Few<R> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         let zero = R::of(0.0);
-        let blank =
-            CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero, tension_slope: zero };
+        let blank = CableAt { offset: Offset { y: zero, slope: zero }, tension: zero };
         Self { count: 0, in_place: [blank; MOST_IN_PLACE], many: Vec::new() }
     }
 

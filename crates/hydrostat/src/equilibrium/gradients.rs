@@ -2,40 +2,9 @@
 
 use hydrostat_bvp::{Real, each};
 
-use super::strains::Solved;
+use super::section_solve::Solved;
 use super::{N, Q};
 use crate::loads::Load;
-use crate::section::apply3;
-
-pub(super) struct Slopes<R> {
-    pub(super) slope: [R; N],
-    pub(super) beta_slope: R,
-    /// (nu, eta, mu)'.
-    pub(super) strain_slope: [R; 3],
-}
-
-/// z' at a station, and beta' by implicit differentiation of the section law.
-#[inline(always)]
-pub(super) fn slopes<R: Real>(
-    couple: R,
-    [cos, sin]: [R; 2],
-    contact: [R; 3],
-    solved: &Solved<R>,
-    load: &Load<R>,
-) -> Slopes<R> {
-    let [nu, eta, mu] = solved.strain;
-    let [n_a, n_b, _] = contact;
-    let force = load.force;
-    let m_slope = eta * n_a - nu * n_b - couple;
-    // n_f . a and n_f . b turn with the directors.
-    let f_a = cos * force[0] + sin * force[1];
-    let f_b = cos * force[1] - sin * force[0];
-    let contact_slope = [mu * n_b - f_a, -(mu * n_a + f_b), m_slope];
-    let rest = each(|k| contact_slope[k] - solved.balance.along_s[k]);
-    let strain_slope = apply3(&solved.inverse, rest);
-    let beta_slope = solved.balance.swelling.slope * strain_slope[0];
-    Slopes { slope: [mu, -force[0], -force[1], m_slope], beta_slope, strain_slope }
-}
 
 /// d(nu, eta, mu)/dz: the law depends on z through n_f.a, n_f.b and m_f alone.
 #[inline(always)]

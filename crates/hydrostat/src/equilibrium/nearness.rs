@@ -1,6 +1,9 @@
 //! How near the limits of the section law an arm comes.
 
-use hydrostat_bvp::{LANES, Lanes, Real};
+use hydrostat_bvp::Station;
+
+use super::few::Few;
+use super::{Equations, L, N};
 
 /// Where a section law failed and how near each limit it was.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,33 +43,20 @@ impl Nearness {
     }
 }
 
-/// [`Nearness`] lane by lane: openness, stretch, determinant.
-pub(super) struct NearnessLanes {
-    least: [Lanes; 3],
-    s: [Lanes; 3],
-}
-
-impl NearnessLanes {
-    #[inline(always)]
-    pub(super) fn far() -> Self {
-        let infinity = Lanes::of(f64::INFINITY);
-        Self { least: [Lanes::of(1.0), infinity, infinity], s: [Lanes::of(0.0); 3] }
-    }
-
-    #[inline(always)]
-    pub(super) fn note(&mut self, s: Lanes, values: [Lanes; 3]) {
-        for k in 0..3 {
-            self.s[k] = values[k].if_less(self.least[k], s, self.s[k]);
-            self.least[k] = values[k].min(self.least[k]);
+impl Equations {
+    /// How near the limits of the section law stations and ends are.
+    pub(crate) fn nearness(&self, stations: &[Station<N, L>]) -> Nearness {
+        let mut out = Nearness::FAR;
+        let mut pulled = Few::new();
+        for (block, station) in stations.iter().enumerate() {
+            let (_, _, solved) = self.solved_in(block, station, &mut pulled);
+            let s = self.places[block].s;
+            for lane in 0..self.groups.filled(block / self.groups.stages) {
+                let [openness, nu, regularity] =
+                    [solved.balance.openness, solved.strain[0], solved.regularity].map(|v| v.0[lane]);
+                out.note(s.0[lane], openness, nu, regularity);
+            }
         }
-    }
-
-    /// The nearest of all lanes, of the equally near the first along the arm.
-    pub(super) fn nearest(&self) -> Nearness {
-        let [openness, nu, regularity] = [0, 1, 2].map(|k| {
-            let each = (0..LANES).map(|lane| (self.least[k].0[lane], self.s[k].0[lane]));
-            each.reduce(|a, b| if b < a { b } else { a }).unwrap_or((f64::INFINITY, 0.0))
-        });
-        Nearness { openness, nu, regularity }
+        out
     }
 }

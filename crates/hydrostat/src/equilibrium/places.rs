@@ -1,8 +1,8 @@
 //! The data of an arm at the stations: sections and cables.
 
-use hydrostat_bvp::{Groups, LANES, Lanes, Mesh, Real, each};
+use hydrostat_bvp::{Gauss, LANES, Lanes, Real, Side, Solution, each};
 
-use super::{Equations, Memory, N};
+use super::{Equations, L, N};
 use crate::arm::{Arm, Cavity, Material};
 use crate::cable::Offset;
 use crate::loads::Body;
@@ -16,6 +16,14 @@ pub(super) struct Place<R> {
     pub(super) s: R,
     pub(super) stiffness: Stiffness<R>,
     pub(super) body: Body<R>,
+}
+
+/// Sections at the ends of four elements.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EndSection {
+    /// Over L.
+    pub(super) s: Lanes,
+    pub(super) stiffness: Stiffness<Lanes>,
 }
 
 impl Equations {
@@ -46,7 +54,7 @@ impl Equations {
     pub(super) fn place_four(&self, s: Lanes) -> Place<Lanes> {
         #[cfg(test)]
         if self.manufactured.is_some() {
-            let mut place = converted(&self.place(s.0[0]), Lanes::of);
+            let mut place = in_lanes(&self.place(s.0[0]));
             for lane in 1..LANES {
                 set_lane(&mut place, lane, &self.place(s.0[lane]));
             }
@@ -73,24 +81,19 @@ impl Equations {
     ) -> Place<R> {
         let units = self.units;
         let length = units.length;
-        let [r_in, r_in_slope] = at(&arm.inner_radius);
-        let (zero, two, four) = (R::of(0.0), R::of(2.0), R::of(4.0));
+        let [r_in, _] = at(&arm.inner_radius);
+        let four = R::of(4.0);
         let pi = std::f64::consts::PI;
         let area = R::of(pi) * (r * r - r_in * r_in);
-        let area_slope = R::of(2.0 * pi) * (r * r_slope - r_in * r_in_slope);
-        let (c, c_slope) = match &arm.material {
+        let c = match &arm.material {
             Material::Homogeneous { young, poisson, shear_factor } => {
                 // C1 = E, C2 = k G, C3 = E I/A of a ring.
                 let square = r * r + r_in * r_in;
-                let square_slope = two * (r * r_slope + r_in * r_in_slope);
                 let shear = shear_factor * young / (2.0 * (1.0 + poisson));
                 let young = R::of(*young);
-                ([young, R::of(shear), young * square / four], [zero, zero, young * square_slope / four])
+                [young, R::of(shear), young * square / four]
             }
-            Material::Coefficients { c1, c2, c3 } => {
-                let c = [at(c1), at(c2), at(c3)];
-                (c.map(|[value, _]| value), c.map(|[_, slope]| slope))
-            }
+            Material::Coefficients { c1, c2, c3 } => [at(c1), at(c2), at(c3)].map(|[value, _]| value),
         };
         // Stiffness in the units: C1 A0 / F, C2 A0 / F, C3 A0 / (F L^2).
         let unit = [1.0 / units.force, 1.0 / units.force, 1.0 / (units.force * length * length)];
@@ -98,9 +101,8 @@ impl Equations {
         let per_length = [1.0, 1.0, length];
         let stiffness = Stiffness {
             value: each(|k| c[k] * area * R::of(unit[k])),
-            slope: each(|k| (c_slope[k] * area + c[k] * area_slope) * R::of(unit[k]) * R::of(length)),
             reference: each(|k| reference[k][0] * R::of(per_length[k])),
-            reference_slope: each(|k| reference[k][1] * R::of(per_length[k]) * R::of(length)),
+            reference_slope: reference[0][1] * R::of(length),
         };
         let load_unit = length / units.force;
         let gravity = arm.gravity.map_or([0.0; 2], |g| {
@@ -126,70 +128,48 @@ impl Equations {
     pub(crate) fn offset(&self, cable: usize, s: f64) -> Offset<f64> {
         let length = self.units.length;
         let offset = self.arm.cables[cable].offset.at(s * length, length);
-        Offset { y: offset.value / length, slope: offset.slope, curvature: offset.curvature * length }
+        Offset { y: offset.value / length, slope: offset.slope }
     }
 
     /// [`Equations::offset`] at four places.
     #[inline(always)]
     pub(super) fn offset_four(&self, cable: usize, s: Lanes) -> Offset<Lanes> {
         let length = self.units.length;
-        let [y, slope, curvature] = self.arm.cables[cable].offset.at_four(s * Lanes::of(length), length);
-        Offset { y: y / Lanes::of(length), slope, curvature: curvature * Lanes::of(length) }
+        let [y, slope, _] = self.arm.cables[cable].offset.at_four(s * Lanes::of(length), length);
+        Offset { y: y / Lanes::of(length), slope }
     }
 
-    /// Takes a new set of stations, those of `mesh`, with guesses of the strains and of beta'.
-    pub(crate) fn place_stations(
-        &mut self,
-        stations: &[f64],
-        mesh: &Mesh,
-        guess: impl Fn(usize) -> ([f64; 3], f64, f64),
-    ) {
-        let stages = self.groups.stages;
-        let groups = Groups { elements: mesh.elements(), stages };
-        let blocks = groups.count() * stages;
-        let zero = Lanes::of(0.0);
+    /// Takes the stations and ends of a solution's mesh.
+    pub(crate) fn place_on<const M: usize>(&mut self, gauss: &Gauss<M>, solution: &Solution<N, M, L>) {
+        let mesh = &solution.mesh;
+        let groups = solution.groups();
+        let blocks = groups.count() * M;
         let cable_count = self.tensions.len();
         let before = std::mem::replace(&mut self.groups, groups).elements;
-        let memory = Memory {
-            z: [zero; N],
-            strain: [zero; 3],
-            by_state: [[zero; N]; 3],
-            beta_slope: zero,
-            by_beta_slope: [zero; 3],
-        };
-        self.memory.clear();
-        self.memory.resize(blocks, memory);
+        let mut stations = std::mem::take(&mut self.stations);
         if self.places.len() < blocks {
-            let blank = self.place_four(Lanes::of(stations[0]));
+            let blank = self.place_four(Lanes::of(0.5));
             self.places.resize(blocks, blank);
         }
         self.places.truncate(blocks);
         self.cables.resize(blocks * cable_count, blank_cable());
-        self.steps.resize(groups.count(), zero);
-        self.beta.resize(blocks);
-        self.switches.resize(blocks, [zero; 3]);
-        self.strain_slopes.resize(blocks, [zero; 3]);
-        self.drifts.resize(blocks, [zero; N]);
+        stations.resize(groups.elements * M, f64::NAN);
         for group in 0..groups.count() {
-            for lane in 0..LANES {
-                self.steps[group].0[lane] = mesh.step(groups.element(group, lane));
-            }
-            for j in 0..stages {
-                let block = group * stages + j;
-                let mut places = zero;
+            for j in 0..M {
+                let block = group * M + j;
+                let mut places = Lanes::of(0.0);
                 // Stations that stay where they were keep their data.
                 let mut stay = true;
                 for lane in 0..LANES {
                     let i = groups.element(group, lane);
-                    let k = i * stages + j;
-                    let (strain, slope, curvature) = guess(k);
-                    for a in 0..3 {
-                        self.memory[block].strain[a].0[lane] = strain[a];
+                    let k = i * M + j;
+                    let s = mesh.nodes()[i] + mesh.step(i) * gauss.c[j];
+                    places.0[lane] = s;
+                    let own = group * LANES + lane == i;
+                    stay &= own && i < before && stations[k] == s;
+                    if own {
+                        stations[k] = s;
                     }
-                    self.beta.start(block, lane, slope, curvature);
-                    places.0[lane] = stations[k];
-                    let own = group * LANES + lane == i && i < before;
-                    stay &= own && self.stations[k] == stations[k];
                 }
                 if !stay {
                     self.place_section(block, places);
@@ -199,12 +179,41 @@ impl Equations {
                 }
             }
         }
-        self.stations.clear();
-        self.stations.extend_from_slice(stations);
-        // Where a cable ends strains jump.
-        let ends = &self.ends;
-        let jumps = |i: &usize| ends.iter().any(|end| *end < 1.0 && (mesh.nodes()[i + 1] - end).abs() < 1e-9);
-        self.beta.take_jumps((0..mesh.elements()).filter(jumps));
+        self.stations = stations;
+        self.place_ends(solution);
+    }
+
+    /// Takes the ends at which elements meet the section law.
+    pub(crate) fn place_ends<const M: usize>(&mut self, solution: &Solution<N, M, L>) {
+        self.end_places.clear();
+        self.end_places.extend_from_slice(solution.directions.ends());
+        self.end_sections.clear();
+        self.end_cables.clear();
+        for b in 0..self.end_places.len() {
+            let place = self.end_places[b];
+            let node = |lane: usize| place.elements[lane] + place.sides[lane].index();
+            let s = Lanes(each(|lane| solution.mesh.nodes()[node(lane)]));
+            self.end_sections.push(EndSection { s, stiffness: self.place_four(s).stiffness });
+            for c in 0..self.tensions.len() {
+                let mut cable = CableAt { offset: self.offset_four(c, s), tension: Lanes::of(0.0) };
+                for lane in 0..LANES {
+                    let from_left = place.sides[lane] == Side::Right;
+                    cable.tension.0[lane] = self.pull_at(c, s.0[lane], from_left);
+                }
+                self.end_cables.push(cable);
+            }
+        }
+    }
+
+    /// What is left of a unit of the tension of cable `c` at `s` (over L), on the side of it that is said.
+    pub(super) fn pull_at(&self, c: usize, s: f64, from_left: bool) -> f64 {
+        let runs = if from_left { s <= self.ends[c] + 1e-12 } else { s < self.ends[c] - 1e-12 };
+        if runs { self.pull_share(c, s, from_left) } else { 0.0 }
+    }
+
+    /// Whether strains jump at `s` (over L), where a cable ends.
+    pub(crate) fn jumps_at(&self, s: f64) -> bool {
+        self.ends.iter().any(|end| *end < 1.0 && (s - end).abs() < 1e-9)
     }
 
     /// Takes the data at the four stations of a block: all but what is left of the tensions.
@@ -222,17 +231,42 @@ impl Equations {
         for c in 0..cable_count {
             let runs = f64::from(u8::from(s <= self.ends[c]));
             let share = self.pull_share(c, s, true);
-            let at = &mut self.cables[block * cable_count + c];
-            at.tension.0[lane] = runs * share.value;
-            at.tension_slope.0[lane] = runs * share.slope;
+            self.cables[block * cable_count + c].tension.0[lane] = runs * share;
         }
     }
 
-    /// Takes the arm's sections, and its cables' offsets, at all stations.
+    /// Takes the arm's sections, and its cables' offsets, at all stations and ends.
     pub(super) fn take_sections(&mut self) {
         for block in 0..self.places.len() {
             let own = each(|lane| self.stations[self.groups.station_in(block, lane)]);
             self.place_section(block, Lanes(own));
+        }
+        let cable_count = self.tensions.len();
+        for b in 0..self.end_places.len() {
+            let s = self.end_sections[b].s;
+            self.end_sections[b].stiffness = self.place_four(s).stiffness;
+            for c in 0..cable_count {
+                self.end_cables[b * cable_count + c].offset = self.offset_four(c, s);
+            }
+        }
+    }
+
+    /// Takes what friction leaves of the tensions, at all stations and ends.
+    pub(crate) fn take_pulls(&mut self) {
+        for block in 0..self.places.len() {
+            for lane in 0..LANES {
+                let s = self.stations[self.groups.station_in(block, lane)];
+                self.place_pull(block, lane, s);
+            }
+        }
+        let cable_count = self.tensions.len();
+        for b in 0..self.end_places.len() {
+            for c in 0..cable_count {
+                for lane in 0..LANES {
+                    let (s, side) = (self.end_sections[b].s.0[lane], self.end_places[b].sides[lane]);
+                    self.end_cables[b * cable_count + c].tension.0[lane] = self.pull_at(c, s, side == Side::Right);
+                }
+            }
         }
     }
 }
@@ -240,29 +274,29 @@ impl Equations {
 #[inline(always)]
 pub(super) fn blank_cable() -> CableAt<Lanes> {
     let zero = Lanes([0.0; LANES]);
-    CableAt { offset: Offset { y: zero, slope: zero, curvature: zero }, tension: zero, tension_slope: zero }
+    CableAt { offset: Offset { y: zero, slope: zero }, tension: zero }
 }
 
-/// The same data in other numbers.
-#[inline(always)]
-pub(super) fn converted<A: Copy, B>(place: &Place<A>, number: impl Fn(A) -> B) -> Place<B> {
+/// The same data in four lanes.
+#[cfg(test)]
+fn in_lanes(place: &Place<f64>) -> Place<Lanes> {
     let Place { s, stiffness, body } = place;
+    let of = |v: f64| Lanes::of(v);
     Place {
-        s: number(*s),
+        s: of(*s),
         stiffness: Stiffness {
-            value: stiffness.value.map(&number),
-            slope: stiffness.slope.map(&number),
-            reference: stiffness.reference.map(&number),
-            reference_slope: stiffness.reference_slope.map(&number),
+            value: stiffness.value.map(of),
+            reference: stiffness.reference.map(of),
+            reference_slope: of(stiffness.reference_slope),
         },
         body: Body {
-            radius: number(body.radius),
-            radius_slope: number(body.radius_slope),
-            wetted: number(body.wetted),
-            weight: body.weight.map(&number),
-            displaced: body.displaced.map(&number),
-            force: body.force.map(&number),
-            couple: number(body.couple),
+            radius: of(body.radius),
+            radius_slope: of(body.radius_slope),
+            wetted: of(body.wetted),
+            weight: body.weight.map(of),
+            displaced: body.displaced.map(of),
+            force: body.force.map(of),
+            couple: of(body.couple),
         },
     }
 }
@@ -273,10 +307,9 @@ fn set_lane(out: &mut Place<Lanes>, lane: usize, place: &Place<f64>) {
     out.s.0[lane] = *s;
     for k in 0..3 {
         out.stiffness.value[k].0[lane] = stiffness.value[k];
-        out.stiffness.slope[k].0[lane] = stiffness.slope[k];
         out.stiffness.reference[k].0[lane] = stiffness.reference[k];
-        out.stiffness.reference_slope[k].0[lane] = stiffness.reference_slope[k];
     }
+    out.stiffness.reference_slope.0[lane] = stiffness.reference_slope;
     for k in 0..2 {
         out.body.weight[k].0[lane] = body.weight[k];
         out.body.displaced[k].0[lane] = body.displaced[k];

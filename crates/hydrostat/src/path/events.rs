@@ -5,7 +5,7 @@ use hydrostat_bvp::Correction;
 use super::Pace;
 use super::stepper::{Fraction, Point, Stepper, Turn};
 use crate::engine::{M, Round};
-use crate::equilibrium::{N, Q};
+use crate::equilibrium::{L, N, Q};
 
 /// The climb that stands for none in the tangent of a branch that crosses.
 const MODE: f64 = 1e-9;
@@ -159,6 +159,7 @@ impl Stepper<'_> {
                 tensions: tensions.clone(),
                 margins: at.margins.clone(),
                 rise: side * MODE,
+                oriented: true,
                 size: 0.0,
                 error: at.error,
             };
@@ -190,7 +191,7 @@ impl Stepper<'_> {
 
     /// What moves at a bifurcation while the load does not, in the length of the path's metric over [`MODE`]:
     /// inverse iteration with loads that turn the arm.
-    fn null_mode(&mut self, at: &Point) -> Option<(Correction<N, M, Q>, Vec<f64>)> {
+    fn null_mode(&mut self, at: &Point) -> Option<(Correction<N, M, Q, L>, Vec<f64>)> {
         let mesh = self.engine.solution.mesh.clone();
         let mut round = Round::default();
         let mut couple: Box<dyn Fn(f64) -> f64> = Box::new(|s| 1.0 + s);

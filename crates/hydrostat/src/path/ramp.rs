@@ -13,6 +13,9 @@ const SHARP_TOLERANCE: f64 = 1e-8;
 /// Fractions of a phase at which a path in a hurry may have started wrongly.
 const HASTE: f64 = 1e-6;
 
+/// Margins of cables (as in `contact`) within which a coarse mesh may have mistaken which of them changes.
+const CONTACT: f64 = 1e-6;
+
 /// The first step on that mesh.
 const SHARP_STEP: f64 = 1e-3;
 
@@ -37,7 +40,6 @@ fn follow_at(engine: &mut Engine, mut pace: Pace, hurry: bool) -> Result<Travell
         pace.longest *= 1.5;
     }
     let mut travelled = Travelled::default();
-    engine.on_a_path = true;
     engine.in_a_hurry = hurry;
     engine.set_phase(Phase::Loads, START);
     engine.start_unloaded(10);
@@ -212,9 +214,11 @@ impl Ramp<'_> {
     }
 
     /// The last good point, or one just before it, on a mesh that is as accurate as an answer. Where the section law ends the
-    /// path it may be for what a coarse mesh makes of the ends of the arm. `None` where something else does.
+    /// path it may be for what a coarse mesh makes of the ends of the arm, and where cables go slack or taut close to each other
+    /// what a mesh is off by decides which does first. `None` where something else ends the path.
     fn sharpen(&mut self, here: &Point) -> Option<Point> {
-        if !matches!(self.stepper.last_trouble, Some(Trouble::Section(_))) {
+        let at_contact = here.margins.iter().any(|margin| *margin < CONTACT);
+        if !matches!(self.stepper.last_trouble, Some(Trouble::Section(_))) && !at_contact {
             return None;
         }
         for back in [0.0, 1e-4, 1e-3, 1e-2] {
@@ -222,7 +226,9 @@ impl Ramp<'_> {
             let fraction = here.fraction * (1.0 - back);
             self.stepper.set(fraction);
             let before = self.stepper.engine.tip;
+            self.stepper.engine.equations.let_cables_switch(at_contact);
             let settled = self.stepper.engine.settle(SHARP_TOLERANCE, First::Warm);
+            self.stepper.engine.equations.let_cables_switch(false);
             let [x, y] = self.stepper.engine.tip;
             if settled.is_ok()
                 && (x - before[0]).hypot(y - before[1]) < 10.0 * (LOOSE + back)
@@ -249,7 +255,8 @@ impl Ramp<'_> {
         let engine = &self.stepper.engine;
         if engine.spent().is_none() && engine.equations.arm().readings.load_can_jump() {
             let length = self.stepper.engine.equations.units.length;
-            self.end(VerdictKind::LoadJump, 0.0, self.stepper.engine.nearest_switch().map(|s| s * length))
+            let place = self.stepper.engine.nearest_switch();
+            self.end(VerdictKind::LoadJump, 0.0, place.map(|s| s * length))
         } else {
             self.end(VerdictKind::NotFound, 0.0, None)
         }

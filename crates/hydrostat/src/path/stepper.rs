@@ -5,7 +5,7 @@ use hydrostat_bvp::{Correction, Mesh, Solution};
 
 use super::{CORNER, EVEN, FINEST, LOOSE, MANY, Pace, SYMMETRIC};
 use crate::engine::{Engine, HOP, M, Round, State, Trouble, roughly};
-use crate::equilibrium::{N, Q};
+use crate::equilibrium::{L, N, Q};
 use crate::verdict::Phase;
 
 /// The largest correction (rad) of a prediction that leads to the same branch.
@@ -19,7 +19,7 @@ pub(super) struct Point {
     pub(super) state: State,
     pub(super) fraction: f64,
     /// Change a unit of load.
-    pub(super) response: Correction<N, M, Q>,
+    pub(super) response: Correction<N, M, Q, L>,
     /// That of the tensions that commanded strokes take.
     pub(super) tensions: Vec<f64>,
     /// How far each commanded cable is from what it cannot pass: the tension of a taut one, the slack of a slack one.
@@ -27,6 +27,8 @@ pub(super) struct Point {
     /// The fraction's part of the unit tangent, positive where the load rises along the path: `rise`
     /// times `response` is the rest.
     pub(super) rise: f64,
+    /// Whether the determinant says which way is on: not where rounding alone can turn its sign.
+    pub(super) oriented: bool,
     /// Natural logarithm of the size of the determinant.
     pub(super) size: f64,
     /// Estimated error of the tip over L.
@@ -111,7 +113,6 @@ pub(super) enum Turn {
 
 impl<'e> Stepper<'e> {
     pub(super) fn new(engine: &'e mut Engine, along: Along, bounds: [f64; 2]) -> Self {
-        engine.on_a_path = true;
         Self {
             engine,
             along,
@@ -183,7 +184,8 @@ impl<'e> Stepper<'e> {
     }
 
     /// [`Stepper::point`] by the last linearisation.
-    fn point_of_round(&self, fraction: f64) -> Result<Point, Trouble> {
+    fn point_of_round(&mut self, fraction: f64) -> Result<Point, Trouble> {
+        self.engine.take_switches();
         let weights = self.weights();
         let square: f64 = weights.iter().zip(&self.round.response.nodes).map(|(w, z)| w * z[0] * z[0]).sum();
         let norm = (1.0 + square).sqrt();
@@ -191,10 +193,12 @@ impl<'e> Stepper<'e> {
             return Err(Trouble::Singular);
         }
         let determinant = self.engine.determinant();
-        let rise = self.orientation * determinant.sign / norm;
+        let known = determinant.known_sign();
+        let rise = self.orientation * known.unwrap_or(1.0) / norm;
         let (state, response) = (self.engine.state(), self.round.response.clone());
         let (tensions, margins) = (self.round.tension[1].clone(), self.margins());
-        Ok(Point { state, fraction, response, tensions, margins, rise, size: determinant.log, error: self.error })
+        let (oriented, size) = (known.is_some(), determinant.log);
+        Ok(Point { state, fraction, response, tensions, margins, rise, oriented, size, error: self.error })
     }
 
     /// Moves the solution from `here` along its tangent.
@@ -243,7 +247,7 @@ impl<'e> Stepper<'e> {
         for round in 0..12 {
             self.set(*fraction);
             self.linearise()?;
-            let dot = |c: &Correction<N, M, Q>| -> f64 { normal.iter().zip(&c.nodes).map(|(n, z)| n * z[0]).sum() };
+            let dot = |c: &Correction<N, M, Q, L>| -> f64 { normal.iter().zip(&c.nodes).map(|(n, z)| n * z[0]).sum() };
             let slide = -dot(&self.round.rest) / (dot(&self.round.response) + here.rise);
             self.engine.system.quadratures(&mut self.engine.spans);
             self.engine.tip = [0.0; Q];
@@ -278,7 +282,7 @@ impl<'e> Stepper<'e> {
     fn arrive(
         &mut self,
         here: &Point,
-        from: &Solution<N, M>,
+        from: &Solution<N, M, L>,
         mut fraction: Fraction,
         step: f64,
         pace: Pace,
@@ -293,8 +297,15 @@ impl<'e> Stepper<'e> {
         self.keep_accuracy(Some(here), &mut fraction, [accuracy, pace.accuracy])?;
         self.engine.ends_fine()?;
         let fraction = fraction.value();
-        let next = if self.current { self.point_of_round(fraction)? } else { self.point(fraction)? };
-        let cosine = self.cosine(here, &next);
+        let mut next = if self.current { self.point_of_round(fraction)? } else { self.point(fraction)? };
+        let mut cosine = self.cosine(here, &next);
+        if cosine < 0.0 && !(here.oriented && next.oriented) {
+            // Rounding may have turned the sign: the path goes straight on.
+            (cosine, next.rise) = (-cosine, -next.rise);
+            if next.oriented {
+                self.orientation = -self.orientation;
+            }
+        }
         let crossing = cosine < 0.0 && -cosine >= pace.straightness;
         // Nothing turns on a symmetric branch but the load: bifurcations are passed at once, because
         // near them rounding would lead off the branch.
@@ -320,15 +331,14 @@ impl<'e> Stepper<'e> {
     fn changed_sides(&self, here: &Point) -> f64 {
         let mesh = &self.engine.solution.mesh;
         let gauss = &self.engine.system.gauss;
-        let (before, now) = (&here.state.equations, &self.engine.equations);
         let mut share = 0.0;
         for (k, s) in self.engine.equations.stations().iter().enumerate() {
             let e = here.mesh().element_of(*s);
             let w = gauss.cardinals((s - here.mesh().nodes()[e]) / here.mesh().step(e));
             let length = mesh.step(k / M) * gauss.b[k % M];
             for side in 0..2 {
-                let then: f64 = (0..M).map(|j| w[j] * before.switch(e, j, side)).sum();
-                if then * now.switch(k / M, k % M, side) < 0.0 {
+                let then: f64 = (0..M).map(|j| w[j] * here.state.switch(e, j, side)).sum();
+                if then * self.engine.switch(k / M, k % M, side) < 0.0 {
                     share += length;
                 }
             }
@@ -415,7 +425,7 @@ impl<'e> Stepper<'e> {
     }
 }
 
-fn largest_turn(a: &Solution<N, M>, b: &Solution<N, M>) -> f64 {
+fn largest_turn(a: &Solution<N, M, L>, b: &Solution<N, M, L>) -> f64 {
     if a.nodes.len() != b.nodes.len() {
         return 0.0;
     }

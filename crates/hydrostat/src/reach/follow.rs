@@ -22,6 +22,10 @@ const SLIDE: f64 = 0.02;
 /// How far (over L) the arm may end from where its derivatives lead before it has jumped to another branch.
 const JUMP: f64 = 0.1;
 
+/// Damping of a step, over the largest square of a column of the jacobian: where nothing speaks against it. A step that leads no nearer takes more, one
+/// that does takes less again.
+const DAMPING: f64 = 1e-9;
+
 /// The least part of a change of the tensions that is tried on its own.
 const LEAST: f64 = 1e-2;
 
@@ -111,7 +115,7 @@ impl Follower {
         let (mut jumped, mut solves, mut fresh) = (false, 0, false);
         // After a step that led no nearer, with the jacobian of where it began: shorter ones.
         let mut careful = false;
-        let mut damping = 1e-9;
+        let mut damping = DAMPING;
         while self.state.distance() > self.search.tol && solves < ROUNDS {
             let before = self.state.distance();
             let wanted = self.next(damping, careful, solves == 0);
@@ -129,6 +133,7 @@ impl Follower {
                 fresh = true;
                 continue;
             };
+            damping = (0.01 * damping).max(DAMPING);
             let last = std::mem::replace(&mut self.state, next);
             let change: Vec<f64> = self.state.tensions.iter().zip(&last.tensions).map(|(a, b)| a - b).collect();
             let off = led_astray(&self.slopes.rest, &change, &last.rest, &self.state.rest);

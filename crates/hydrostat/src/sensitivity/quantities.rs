@@ -1,12 +1,16 @@
-//! What is differentiated, and how each of it weighs changes of the solution.
+//! What is differentiated, and how each of it follows the solution and what is given.
 
-use super::dual::WAYS;
-use super::linear::{Drift, Functional, Linear};
+use hydrostat_bvp::{
+    Change, Collocation, Correction, Cotangent, EndWeights, Functional, LANES, Lanes, Real, Side, StageWeights, each,
+};
+
 use super::{SensitivityError, SensitivityMethod, unsettled};
 use crate::elimination::solved;
-use crate::engine::{Engine, M, Trouble};
-use crate::equilibrium::{Asked, CLOSED, Equations, N, OUT, RATE, Spot};
+use crate::engine::{Engine, M, Trouble, linearise, respond, response_change};
+use crate::equilibrium::{L, N, Q, Way};
 use crate::parameter::Parameter;
+
+type System = Collocation<N, M, Q, L>;
 
 /// What Newton's last round moves (rad, and the tip over L) before an exact derivative is taken.
 const CONVERGED: f64 = 1e-12;
@@ -46,12 +50,15 @@ pub(crate) struct Found {
     pub(crate) tensions: Vec<Vec<f64>>,
 }
 
-/// A quantity as weights on the change of the solution, with what follows a parameter beside that.
+/// A quantity as weights on the change of the solution and on that of the equations.
+#[derive(Default)]
 struct Row {
-    functional: Functional,
-    /// What a unit of it is in SI.
-    unit: f64,
-    /// One a source, in SI.
+    functional: Functional<N>,
+    /// Weights on the drifts of rates and strains at the stages, in blocks; empty where there are none.
+    stages: Vec<([Lanes; Q], [Lanes; L])>,
+    /// Weights on the drifts of strains at ends: block, lane.
+    ends: Vec<(usize, usize, [f64; L])>,
+    /// What follows the sources at a fixed solution, in SI.
     direct: Vec<f64>,
 }
 
@@ -64,11 +71,16 @@ impl Engine {
 
     /// Rounds until nothing moves any more, and what the equations are at that.
     pub(crate) fn converge_fully(&mut self) -> Result<(), SensitivityError> {
+        // Rounds that move nothing but rounding are not made, so that derivatives taken twice are the same.
+        self.linearise().map_err(|trouble| unsettled(&trouble))?;
+        if self.equations.held.is_none() && self.correction_here() < CONVERGED {
+            return Ok(());
+        }
         match self.newton(CONVERGED, ROUNDS) {
             Err(Trouble::Stalled(size)) if size < NEARLY => {}
             other => other.map_err(|trouble| unsettled(&trouble))?,
         }
-        self.refresh().map_err(|failure| unsettled(&Trouble::Section(failure)))
+        Ok(())
     }
 
     /// Derivatives by `parameters` at the last evaluation, cables that are commanded held. `None` where the system is singular.
@@ -89,14 +101,17 @@ impl Engine {
 
     /// Derivatives of weighted sums.
     fn derivatives_of(&self, mut sums: Vec<Sum>, parameters: &[Parameter], method: SensitivityMethod) -> Option<Found> {
-        let equations = &self.equations;
-        let (held, cables) = (equations.held.as_ref(), equations.arm().cables.len());
+        let (held, cables) = (self.equations.held.clone(), self.equations.arm().cables.len());
         let taut: Vec<usize> = held.map_or(Vec::new(), |held| held.tight().iter().map(|i| held.cables[*i]).collect());
         let mut sources = parameters.to_vec();
         sources.extend(taut.iter().map(|c| Parameter::Tension(*c)));
         let asked = sums.len();
         sums.extend(taut.iter().map(|c| vec![(Quantity::Command(*c), 1.0)]));
-        let mut rows = self.unheld_derivatives(&sums, &sources, method)?;
+        // About the solution itself: the engine's last linearisation may be a round behind.
+        let mut system = System::with(self.system.gauss.clone());
+        linearise(&mut system, &self.equations, &self.solution).ok()?;
+        let about = About { engine: self, system: &system };
+        let mut rows = about.unheld_derivatives(&sums, &sources, method)?;
 
         let count = parameters.len();
         let strokes = rows.split_off(asked);
@@ -125,7 +140,15 @@ impl Engine {
         }
         Some(Found { rows, tensions })
     }
+}
 
+/// Derivatives about the engine's solution.
+struct About<'e> {
+    engine: &'e Engine,
+    system: &'e System,
+}
+
+impl About<'_> {
     /// Derivatives with all tensions given.
     fn unheld_derivatives(
         &self,
@@ -133,184 +156,239 @@ impl Engine {
         sources: &[Parameter],
         method: SensitivityMethod,
     ) -> Option<Vec<Vec<f64>>> {
-        let equations = &self.equations;
-        let spots = equations.spots();
-        let linear = Linear::new(self, &spots)?;
-        let drifts = self.drifts(&spots, sources);
-        let rows: Option<Vec<Row>> = sums.iter().map(|sum| self.sum_row(&linear, &spots, sum, sources)).collect();
-        let rows = rows?;
-        let forward = match method {
-            SensitivityMethod::Forward => true,
-            SensitivityMethod::Adjoint => false,
-            SensitivityMethod::Best => sources.len() <= rows.len(),
+        let rows: Vec<Row> = sums.iter().map(|sum| self.sum_row(sum, sources)).collect::<Option<_>>()?;
+        let changes: Vec<Change<N, Q, L>> = sources
+            .iter()
+            .map(|source| response_change(&self.engine.equations, self.system, &self.engine.solution, Way::Of(*source)))
+            .collect();
+        let adjoint = match method {
+            SensitivityMethod::Forward => false,
+            SensitivityMethod::Adjoint => true,
+            SensitivityMethod::Best => rows.len() < sources.len(),
         };
-        let mut out = vec![vec![0.0; sources.len()]; rows.len()];
-        if forward {
-            for (k, drift) in drifts.iter().enumerate() {
-                let response = linear.response(drift);
-                for (out, row) in out.iter_mut().zip(&rows) {
-                    out[k] = row.unit * linear.apply(&row.functional, &response, drift) + row.direct[k];
+        let mut out: Vec<Vec<f64>> = rows.iter().map(|row| row.direct.clone()).collect();
+        if adjoint {
+            for (row, out) in rows.iter().zip(&mut out) {
+                let cotangent = self.system.adjoint(&row.functional);
+                for (out, change) in out.iter_mut().zip(&changes) {
+                    *out += along(&cotangent, change) + row.drifts(change);
                 }
             }
         } else {
-            for (out, row) in out.iter_mut().zip(&rows) {
-                let cotangent = linear.adjoint(&row.functional);
-                for (k, drift) in drifts.iter().enumerate() {
-                    out[k] = row.unit * linear.along(&row.functional, &cotangent, drift) + row.direct[k];
+            let mut response = Correction::default();
+            for (k, change) in changes.iter().enumerate() {
+                respond(self.system, change, &mut response);
+                let states = self.system.moved_states(&response);
+                for (row, out) in rows.iter().zip(&mut out) {
+                    out[k] += self.apply(&row.functional, &response, &states) + row.drifts(change);
                 }
             }
         }
-        Some(out)
+        out.iter().flatten().all(|v| v.is_finite()).then_some(out)
     }
 
-    /// The row of a sum; of several quantities, all of them poses.
-    fn sum_row(&self, linear: &Linear, spots: &[Spot], sum: &Sum, sources: &[Parameter]) -> Option<Row> {
-        if let [(quantity, weight)] = sum[..]
-            && weight == 1.0
-        {
-            return self.row(linear, spots, quantity, sources);
+    /// What a functional makes of a response.
+    fn apply(&self, functional: &Functional<N>, response: &Correction<N, M, Q, L>, states: &[[Lanes; N]]) -> f64 {
+        let mut sum = 0.0;
+        for (i, weights) in &functional.nodes {
+            sum += (0..N).map(|a| weights[a] * response.nodes[*i][a]).sum::<f64>();
         }
-        let mut out = Row { functional: Functional::default(), unit: 1.0, direct: vec![0.0; sources.len()] };
-        for (quantity, weight) in sum.iter().filter(|(_, weight)| *weight != 0.0) {
-            let row = self.row(linear, spots, *quantity, sources)?;
-            out.functional.add(weight * row.unit, &row.functional);
-            for (out, own) in out.direct.iter_mut().zip(&row.direct) {
-                *out += weight * own;
+        let groups = self.engine.solution.groups();
+        for (block, weights) in functional.stages.iter().enumerate() {
+            let mut own = weights.closure_slope * response.stages[block].closure_slope;
+            for a in 0..N {
+                own += weights.state[a] * states[block][a];
             }
+            sum += own.0[..groups.filled(block / M)].iter().sum::<f64>();
         }
-        Some(out)
-    }
-
-    fn row(&self, linear: &Linear, spots: &[Spot], quantity: Quantity, sources: &[Parameter]) -> Option<Row> {
-        let equations = &self.equations;
-        let length = equations.units.length;
-        let mut direct = vec![0.0; sources.len()];
-        let (functional, unit) = match quantity {
-            Quantity::Position(node, q) => (linear.position(node, q), length),
-            Quantity::Theta(node) => (Linear::state(node, 0), 1.0),
-            Quantity::Alpha(node) => (self.alpha_row(linear, node, sources, &mut direct)?, 1.0),
-            Quantity::Stroke(c) => {
-                self.reference_row(spots, c, sources, &mut direct);
-                (linear.length(equations, c, -1.0), length)
-            }
-            Quantity::Base(k) => {
-                let force = equations.units.force;
-                (Linear::state(0, k + 1), if k < 2 { -force } else { -force * length })
-            }
-            Quantity::Command(c) => {
-                self.reference_row(spots, c, sources, &mut direct);
-                let [_, by_length, by_tension] = equations.stroke(c, &self.system.gauss.b);
-                for (direct, source) in direct.iter_mut().zip(sources) {
-                    if *source == Parameter::Tension(c) {
-                        *direct = by_tension * length / equations.units.force;
+        for end in &functional.ends {
+            sum += end.closure_slope * response.ends[end.block].closure_slope.0[end.lane];
+            let place = &self.engine.solution.directions.ends()[end.block];
+            let (i, side) = (place.elements[end.lane], place.sides[end.lane]);
+            let mut z = response.nodes[i];
+            if side == Side::Right {
+                let (g, lane) = (i / LANES, i % LANES);
+                for l in 0..M {
+                    for a in 0..N {
+                        let slope = response.stages[g * M + l].slope[a].0[lane];
+                        z[a] += self.engine.solution.mesh.step(i) * self.system.gauss.b[l] * slope;
                     }
                 }
-                (linear.length(equations, c, by_length), length)
             }
-        };
-        Some(Row { functional, unit, direct })
+            sum += (0..N).map(|a| end.state[a] * z[a]).sum::<f64>();
+        }
+        sum
     }
 
-    /// What the length of a cable at the reference strains makes of the geometry.
-    fn reference_row(&self, spots: &[Spot], c: usize, sources: &[Parameter], direct: &mut [f64]) {
-        let equations = &self.equations;
-        for (direct, source) in direct.iter_mut().zip(sources) {
-            let by = equations.reference_length_by(spots, c, *source, &self.system.gauss.b);
-            *direct = by * equations.units.length;
+    /// The row of a sum.
+    fn sum_row(&self, sum: &Sum, sources: &[Parameter]) -> Option<Row> {
+        let mut out = Row { direct: vec![0.0; sources.len()], ..Row::default() };
+        for (quantity, weight) in sum.iter().filter(|(_, weight)| *weight != 0.0) {
+            self.add_quantity(*quantity, *weight, sources, &mut out)?;
+        }
+        Some(out)
+    }
+
+    /// Adds `weight` times a quantity to a row.
+    fn add_quantity(&self, quantity: Quantity, weight: f64, sources: &[Parameter], row: &mut Row) -> Option<()> {
+        let equations = &self.engine.equations;
+        let (length, force) = (equations.units.length, equations.units.force);
+        let mut state = |i: usize, a: usize, weight: f64| {
+            let mut weights = [0.0; N];
+            weights[a] = weight;
+            row.functional.nodes.push((i, weights));
+        };
+        match quantity {
+            Quantity::Position(node, q) => self.add_position(node, q, weight * length, row),
+            Quantity::Theta(node) => state(node, 0, weight),
+            Quantity::Base(k) => state(0, k + 1, -weight * if k < 2 { force } else { force * length }),
+            Quantity::Alpha(node) => self.add_alpha(node, weight, sources, row)?,
+            Quantity::Stroke(c) => self.add_stroke(c, false, weight * length, sources, row),
+            Quantity::Command(c) => self.add_stroke(c, true, weight * length, sources, row),
+        }
+        Some(())
+    }
+
+    /// x (0) or y (1) at a node: the integral of its slope.
+    fn add_position(&self, node: usize, q: usize, factor: f64, row: &mut Row) {
+        let groups = self.engine.solution.groups();
+        row.reserve(groups.count() * M);
+        for (block, local) in self.system.locals().iter().enumerate() {
+            let (g, j) = (block / M, block % M);
+            let mut weight = Lanes::default();
+            for lane in 0..groups.filled(g) {
+                if g * LANES + lane < node {
+                    weight.0[lane] = factor * self.system.steps()[g].0[lane] * self.system.gauss.b[j];
+                }
+            }
+            let own = &mut row.functional.stages[block];
+            for a in 0..N {
+                own.state[a] += weight * local.rate_gradient[q][a];
+            }
+            own.closure_slope += weight * local.rate_by_closure[q];
+            row.stages[block].0[q] += weight;
         }
     }
 
-    /// alpha where a node ends an element (at the base, begins one): beta' there is by the closed form, and beta'' from the element.
-    fn alpha_row(&self, linear: &Linear, node: usize, sources: &[Parameter], direct: &mut [f64]) -> Option<Functional> {
-        let equations = &self.equations;
-        let left = node > 0;
-        let (element, nearest) = if left { (node - 1, node * M - 1) } else { (0, 0) };
-        let asked = self.asked_beside(node, left);
-        let found = match equations.at_place(&asked) {
-            Err(_) => equations.at_place(&Asked { strain: equations.strain(nearest), ..asked }).ok()?,
-            Ok(found) => found,
-        };
-        let beta = [found.beta_slope, asked.beta[1]];
-        let spot = equations.spot_at(&Asked { strain: found.strain, beta, ..asked });
-        let spot = std::slice::from_ref(&spot);
-        let state = *equations.by_state(spot, &mut Vec::new()).first()?;
-        let [x, y] = state.rate;
-        let square = x * x + y * y;
-        // alpha is the direction of (x, y)' less theta.
-        let turn = |by_x: f64, by_y: f64| (x * by_y - y * by_x) / square;
-        let one = |out: usize, way: usize| state.by[out][way];
-        let by_beta = turn(one(RATE, N), one(RATE + 1, N));
-        let share = by_beta / (1.0 - one(CLOSED, N));
-        let mut weights: [f64; N] =
-            std::array::from_fn(|a| turn(one(RATE, a), one(RATE + 1, a)) + share * one(CLOSED, a));
-        weights[0] -= 1.0;
-        for (direct, source) in direct.iter_mut().zip(sources) {
-            let own = direct_change(equations, spot, *source);
-            *direct = turn(own[RATE], own[RATE + 1]) + share * own[CLOSED];
-        }
-        Some(linear.at_end(equations, (node, weights), (element, usize::from(left)), share * state.reach))
-    }
-
-    fn drifts(&self, spots: &[Spot], sources: &[Parameter]) -> Vec<Drift> {
-        let equations = &self.equations;
-        let mut out: Vec<Drift> = sources.iter().map(|source| self.end_drift(*source)).collect();
-        let of_sections: Vec<usize> = (0..sources.len()).filter(|k| is_of_section_law(sources[*k])).collect();
-        for ways in of_sections.chunks(WAYS) {
-            let parameters: Vec<Parameter> = ways.iter().map(|k| sources[*k]).collect();
-            let mut stretch = Vec::new();
-            let found = equations.by_section(spots, &parameters, &mut stretch);
-            for (way, k) in ways.iter().enumerate() {
-                out[*k].stations = found.iter().map(|by| by.map(|by| by.0[way])).collect();
-                out[*k].stretch = stretch.iter().map(|by| by.0[way]).collect();
+    /// The stroke of a cable: of its path, or, unstretched, as it is commanded.
+    fn add_stroke(&self, c: usize, commanded: bool, factor: f64, sources: &[Parameter], row: &mut Row) {
+        let equations = &self.engine.equations;
+        let groups = self.engine.solution.groups();
+        let end = equations.cable_end(c);
+        row.reserve(groups.count() * M);
+        for (block, (local, station)) in self.system.locals().iter().zip(self.system.stations()).enumerate() {
+            let (g, j) = (block / M, block % M);
+            let (by_strain, by_slope) = equations.stretch_gradient(c, block, station);
+            let by_stretch = if commanded { equations.stroke_by_stretch(c, block) } else { Lanes::of(-1.0) };
+            let mut weight = Lanes::default();
+            for lane in 0..groups.filled(g) {
+                if equations.stations()[groups.station_in(block, lane)] < end {
+                    let own = factor * self.system.steps()[g].0[lane] * self.system.gauss.b[j];
+                    weight.0[lane] = own * by_stretch.0[lane];
+                }
+            }
+            let own = &mut row.functional.stages[block];
+            own.closure_slope += weight * by_slope;
+            for (k, by) in by_strain.iter().enumerate() {
+                for a in 0..N {
+                    own.state[a] += weight * *by * local.inner.gradient[k][a];
+                }
+                own.closure_slope += weight * *by * local.inner.by_closure[k];
+                row.stages[block].1[k] += weight * *by;
             }
         }
-        for (drift, source) in out.iter_mut().zip(sources).filter(|(_, source)| is_of_loads(**source)) {
-            drift.stations = spots.iter().map(|spot| equations.by_load(spot, *source)).collect();
+        let (weights, steps, stations) = (&self.system.gauss.b, self.system.steps(), self.system.stations());
+        for (direct, source) in row.direct.iter_mut().zip(sources) {
+            *direct += factor * equations.stroke_by(c, commanded, Way::Of(*source), weights, steps, stations);
+        }
+    }
+
+    /// alpha at a node, where it ends an element, or, at the base and where it is met there alone, begins one.
+    fn add_alpha(&self, node: usize, weight: f64, sources: &[Parameter], row: &mut Row) -> Option<()> {
+        let turn = |[nu, eta, _]: [f64; L]| {
+            let square = nu * nu + eta * eta;
+            [-weight * eta / square, weight * nu / square, 0.0]
+        };
+        let Some((block, lane)) = self.end_at(node) else {
+            // Without a closure strains follow the state and what is given alone.
+            let asked = self.engine.asked_beside(node, node > 0);
+            let found = self.engine.equations.at_place(&asked).ok()?;
+            let by = turn(found.strain);
+            let weights = each(|a| (0..L).map(|k| by[k] * found.strain_by_state[k][a]).sum());
+            row.functional.nodes.push((node, weights));
+            for (direct, source) in row.direct.iter_mut().zip(sources) {
+                let change = self.engine.equations.strain_by(&asked, Way::Of(*source));
+                *direct += (0..L).map(|k| by[k] * change[k]).sum::<f64>();
+            }
+            return Some(());
+        };
+        let inner = &self.system.ends()[block];
+        let strain = self.system.end_stations()[block].inner.map(|v| v.0[lane]);
+        let by = turn(each(|k| strain[k] + inner.change[k].0[lane]));
+        row.functional.ends.push(EndWeights {
+            block,
+            lane,
+            state: each(|a| (0..L).map(|k| by[k] * inner.gradient[k][a].0[lane]).sum()),
+            closure_slope: (0..L).map(|k| by[k] * inner.by_closure[k].0[lane]).sum(),
+        });
+        row.ends.push((block, lane, by));
+        Some(())
+    }
+
+    /// The end at a node at which the section law is met.
+    fn end_at(&self, node: usize) -> Option<(usize, usize)> {
+        let places = self.engine.solution.directions.ends();
+        let find = |element: usize, side: Side| {
+            places.iter().enumerate().find_map(|(block, place)| {
+                let lane = (0..LANES).find(|l| place.elements[*l] == element && place.sides[*l] == side)?;
+                Some((block, lane))
+            })
+        };
+        let before = node.checked_sub(1).and_then(|element| find(element, Side::Right));
+        before.or_else(|| find(node, Side::Left))
+    }
+}
+
+impl Row {
+    /// Room for weights at so many blocks of stations.
+    fn reserve(&mut self, blocks: usize) {
+        self.functional.stages.resize(blocks, StageWeights::default());
+        self.stages.resize(blocks, ([Lanes::default(); Q], [Lanes::default(); L]));
+    }
+
+    /// What the drifts of rates and strains add.
+    fn drifts(&self, change: &Change<N, Q, L>) -> f64 {
+        let mut sum = Lanes::default();
+        for ((rates, strains), drift) in self.stages.iter().zip(&change.stages) {
+            for q in 0..Q {
+                sum += rates[q] * drift.rate[q];
+            }
+            for k in 0..L {
+                sum += strains[k] * drift.inner[k];
+            }
+        }
+        let mut out: f64 = sum.0.iter().sum();
+        for (block, lane, by) in &self.ends {
+            if let Some((inner, _)) = change.ends.get(*block) {
+                out += (0..L).map(|k| by[k] * inner[k].0[*lane]).sum::<f64>();
+            }
         }
         out
     }
+}
 
-    /// What the conditions at the ends make of a parameter.
-    fn end_drift(&self, source: Parameter) -> Drift {
-        let left = f64::from(u8::from(source == Parameter::BaseAngle));
-        let right = self.equations.tip_load_by(source, self.tip_angle());
-        Drift { left, right, ..Drift::default() }
+/// What weights on changes of the equations make of one.
+fn along(weights: &Cotangent<N>, change: &Change<N, Q, L>) -> f64 {
+    let mut sum = Lanes::default();
+    for ((slopes, values), drift) in weights.slopes.iter().zip(&weights.values).zip(&change.stages) {
+        for a in 0..N {
+            sum += slopes[a] * drift.slope[a];
+        }
+        sum += *values * drift.value;
     }
-}
-
-/// How what is evaluated at one place follows a parameter.
-fn direct_change(equations: &Equations, spot: &[Spot], source: Parameter) -> [f64; OUT] {
-    if is_of_section_law(source) {
-        return equations.by_section(spot, &[source], &mut Vec::new())[0].map(|by| by.0[0]);
+    for (weight, (_, value)) in weights.ends.iter().zip(&change.ends) {
+        sum += *weight * *value;
     }
-    if is_of_loads(source) { equations.by_load(&spot[0], source) } else { [0.0; OUT] }
-}
-
-/// Whether strains follow it at a fixed state.
-fn is_of_section_law(parameter: Parameter) -> bool {
-    matches!(
-        parameter,
-        Parameter::Tension(_)
-            | Parameter::Young
-            | Parameter::Poisson
-            | Parameter::ShearFactor
-            | Parameter::Offset(..)
-            | Parameter::Radius(_)
-            | Parameter::Coefficient(_)
-    )
-}
-
-/// Whether the loads along the arm follow it.
-fn is_of_loads(parameter: Parameter) -> bool {
-    matches!(
-        parameter,
-        Parameter::FlowSpeed
-            | Parameter::FlowDirection
-            | Parameter::FlowDensity
-            | Parameter::GravityAcceleration
-            | Parameter::GravityDirection
-            | Parameter::Density
-            | Parameter::DragNormal
-            | Parameter::DragTangential
-    )
+    let conditions = weights.left.iter().zip(&change.left).chain(weights.right.iter().zip(&change.right));
+    sum.0.iter().sum::<f64>() + conditions.map(|(w, v)| w * v).sum::<f64>()
 }

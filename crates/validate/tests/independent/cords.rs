@@ -103,7 +103,7 @@ impl Cord {
     /// Whether every section of the shape carries its force.
     pub(crate) fn has_shape(&self) -> bool {
         let wanted = (self.arm.base.angle - self.down).abs();
-        let (mut low, mut high) = (-700.0, wanted.ln());
+        let (mut low, mut high) = (-690.0, wanted.ln());
         let mut carried = true;
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -124,7 +124,7 @@ impl Cord {
         let wanted = wanted - 2.0 * PI * (wanted / (2.0 * PI)).round();
         let (side, wanted) = (wanted.signum(), wanted.abs());
         // phi at the base grows with phi at the tip, and is the larger one.
-        let (mut low, mut high) = (-700.0, wanted.ln());
+        let (mut low, mut high) = (-690.0, wanted.ln());
         let off = |logarithm: f64| self.shot(logarithm).map_or(f64::INFINITY, |end| end[0].ln() - wanted.ln());
         let (mut below, mut above) = (off(low), off(high));
         assert!(below <= 0.0 && above >= 0.0, "no shape of {}: {below} {above}", self.arm.name);
@@ -161,7 +161,7 @@ enum Shot {
     Winds,
 }
 
-/// phi, -m, N, and how far the tip is from here along and across d; by the length from the tip.
+/// phi, -m L/EI, N, and how far the tip is from here along and across d; by the length from the tip.
 struct Hanging<'a> {
     cord: &'a Cord,
     /// Whether the last section that was asked for has no strains.
@@ -176,10 +176,9 @@ impl Motion<5> for Hanging<'_> {
         let stretched = cord.stretched(force * cos);
         self.breaks = stretched.is_none();
         let [nu, area] = stretched?;
-        let area = area * cord.area;
-        let eta = -force * sin / (cord.shear * area);
-        let turn = moment / (cord.bending / cord.area * area);
-        let lever = force * (nu * sin + eta * cos);
+        let eta = -force * sin / (cord.shear * cord.area * area);
+        let turn = moment / (cord.arm.length * area);
+        let lever = force * (nu * sin + eta * cos) * cord.arm.length / cord.bending;
         let pull = cord.pull(cord.arm.length - t, nu);
         Some([turn, lever, pull, nu * cos - eta * sin, nu * sin + eta * cos])
     }
@@ -189,7 +188,7 @@ impl Motion<5> for Hanging<'_> {
         let length = cord.arm.length;
         let weight = cord.pull(0.0, 1.0) * length;
         // Relative to what is there: a tip's angle of 1e-290 has digits.
-        let moment = y[1].abs().max(1e-3 * y[0].abs() * cord.bending / length);
+        let moment = y[1].abs().max(1e-3 * y[0].abs());
         [y[0].abs(), moment, weight, length, length.min(length * (y[0].abs() + 1e-3))]
     }
 

@@ -4,12 +4,12 @@
 //! law and where the loads have kinks. What the residuals of an answer do to its tip is then no estimate: the tip moves by it.
 
 use crate::banded::{Banded, Factors};
-use crate::mechanics::{Model, NoStrains, Place, State, Strains, directors, solve3};
+use crate::mechanics::{Model, NoStrains, Place, State, Strains, directors};
 use crate::polynomials::Points;
 use crate::shape::{POINTS, Shape};
 use hydrostat::{Configuration, Support};
 
-/// Rounds of what stands still while Newton's method runs: beta', the turns of cables, tensions that follow from strokes.
+/// Rounds of what stands still while Newton's method runs: turns of cables before an element, tensions that follow from strokes.
 const OUTER: usize = 40;
 
 /// How far the equilibrium beside a shape is.
@@ -51,8 +51,8 @@ struct Linear {
 }
 
 struct LinearElement {
-    /// d slopes / d state at the points, in scaled units.
-    by_state: Vec<Matrix>,
+    /// d slopes at point i / d state at point j, in scaled units.
+    by_state: Vec<Vec<Matrix>>,
     stages: Factors,
     /// How the states at the points follow that at the element's start: one column a component.
     by_start: [Vec<f64>; 4],
@@ -182,16 +182,14 @@ impl<'a, 'b> Newton<'a, 'b> {
 
     fn solve_sections(&mut self) -> Result<(), NoCorrection> {
         for k in 0..self.inner.len() {
-            for j in 0..self.inner[k].len() {
-                let z = self.unscaled(self.inner[k][j]);
-                let element = &mut self.shape.elements[k];
-                let (place, tensions) = (&element.places[j], &element.tensions[j]);
-                let e = self.shape.model.strains(place, tensions, z, element.beta_slope[j], element.strains[j])?;
-                element.strains[j] = e;
-                element.theta[j] = z[0];
-            }
+            let states = self.states(k);
+            self.shape.elements[k].carry(self.shape.model, self.shape.points, &states)?;
         }
         Ok(())
+    }
+
+    fn states(&self, k: usize) -> Vec<State> {
+        self.inner[k].iter().map(|z| self.unscaled(*z)).collect()
     }
 
     fn slopes(&self, k: usize, j: usize) -> State {
@@ -201,22 +199,21 @@ impl<'a, 'b> Newton<'a, 'b> {
         [0, 1, 2, 3].map(|c| slopes[c] / self.scale[c])
     }
 
-    fn linearise(&self) -> Result<Linear, NoCorrection> {
-        let points = self.shape.points;
+    fn linearise(&mut self) -> Result<Linear, NoCorrection> {
+        let (model, points) = (self.shape.model, self.shape.points);
         let (count, size) = (points.count(), 4 * points.count());
         let mut elements = Vec::with_capacity(self.inner.len());
-        for (k, element) in self.shape.elements.iter().enumerate() {
-            let by_state: Vec<Matrix> = (0..count)
-                .map(|j| {
-                    let z = self.unscaled(self.inner[k][j]);
-                    let own = self.shape.model.slopes_by_state(
-                        &element.places[j],
-                        &element.tensions[j],
-                        z,
-                        element.strains[j],
-                        element.beta_slope[j],
-                    );
-                    [0, 1, 2, 3].map(|r| [0, 1, 2, 3].map(|c| own[r][c] * self.scale[c] / self.scale[r]))
+        for k in 0..self.inner.len() {
+            let states = self.states(k);
+            let element = &mut self.shape.elements[k];
+            let response = element.response(model, points, &states).ok_or(NoCorrection::Singular)?;
+            let scale = self.scale;
+            let scaled = |own: Matrix| [0, 1, 2, 3].map(|r| [0, 1, 2, 3].map(|c| own[r][c] * scale[c] / scale[r]));
+            let by_state: Vec<Vec<Matrix>> = (0..count)
+                .map(|i| {
+                    let direct =
+                        model.direct_slopes(&element.places[i], states[i], element.strains[i], element.beta_slope[i]);
+                    (0..count).map(|j| scaled(direct.by_state(&response.by_state[i][j], i == j))).collect()
                 })
                 .collect();
             let mut matrix = Banded::new(size, size - 1, 0);
@@ -225,8 +222,8 @@ impl<'a, 'b> Newton<'a, 'b> {
                     for r in 0..4 {
                         for c in 0..4 {
                             let one = f64::from(u8::from(i == j && r == c));
-                            let entry = one - element.step * points.upto[i][j] * by_state[j][r][c];
-                            matrix.set(4 * i + r, 4 * j + c, entry);
+                            let sum: f64 = (0..count).map(|k| points.upto[i][k] * by_state[k][j][r][c]).sum();
+                            matrix.set(4 * i + r, 4 * j + c, one - element.step * sum);
                         }
                     }
                 }
@@ -246,10 +243,12 @@ impl<'a, 'b> Newton<'a, 'b> {
     fn gathered(&self, k: usize, linear: &LinearElement, stages: &[f64]) -> State {
         let (points, step) = (self.shape.points, self.shape.elements[k].step);
         let mut out = [0.0; 4];
-        for (j, by) in linear.by_state.iter().enumerate() {
-            for (r, out) in out.iter_mut().enumerate() {
-                let slope: f64 = (0..4).map(|c| by[r][c] * stages[4 * j + c]).sum();
-                *out += step * points.weight[j] * slope;
+        for (i, row) in linear.by_state.iter().enumerate() {
+            for (j, by) in row.iter().enumerate() {
+                for (r, out) in out.iter_mut().enumerate() {
+                    let slope: f64 = (0..4).map(|c| by[r][c] * stages[4 * j + c]).sum();
+                    *out += step * points.weight[i] * slope;
+                }
             }
         }
         out
@@ -387,31 +386,18 @@ impl Shape<'_> {
 
     /// Whether something of it stands still while Newton's method runs.
     fn hangs_on_more(&self) -> bool {
-        let arm = &self.model.arm;
-        let pulls = self.tensions.iter().any(|tension| *tension != 0.0);
-        let lateral = arm.flow.speed > 0.0 && arm.readings.flow_surface == hydrostat::FlowSurface::Lateral;
-        let swells = arm.readings.volume != hydrostat::Volume::None;
-        let rubs = arm.cables.iter().any(|cable| cable.friction != 0.0);
-        rubs || (swells && (pulls || lateral)) || !self.taut().is_empty()
+        self.model.arm.cables.iter().any(|cable| cable.friction != 0.0) || !self.taut().is_empty()
     }
 
-    /// beta' and the tensions along the arm, by the present strains; a `share` of the way.
+    /// The tensions along the arm, by the present strains; a `share` of the way.
     fn follow(&mut self, share: f64) {
-        let before: Vec<(Vec<f64>, Vec<Vec<f64>>)> =
-            self.elements.iter().map(|own| (own.beta_slope.clone(), own.tensions.clone())).collect();
-        let (model, points) = (self.model, self.points);
-        for element in &mut self.elements {
-            element.follow_beta(model, points);
-        }
+        let before: Vec<Vec<f64>> = self.elements.iter().map(|own| own.start.clone()).collect();
         self.rub();
-        let mix = |new: &mut f64, old: f64| *new = share * *new + (1.0 - share) * old;
-        for (element, (slopes, tensions)) in self.elements.iter_mut().zip(before) {
-            for (new, old) in element.beta_slope.iter_mut().zip(slopes) {
-                mix(new, old);
+        for (element, old) in self.elements.iter_mut().zip(before) {
+            for (new, old) in element.start.iter_mut().zip(old) {
+                *new = share * *new + (1.0 - share) * old;
             }
-            for (new, old) in element.tensions.iter_mut().flatten().zip(tensions.into_iter().flatten()) {
-                mix(new, old);
-            }
+            element.follow_turns(self.model, self.points);
         }
     }
 
@@ -430,40 +416,55 @@ impl Shape<'_> {
     fn set_tension(&mut self, cable: usize, tension: f64) {
         let factor = tension / self.tensions[cable];
         self.tensions[cable] = tension;
-        for tensions in self.elements.iter_mut().flat_map(|element| &mut element.tensions) {
-            tensions[cable] *= factor;
+        for element in &mut self.elements {
+            element.start[cable] *= factor;
+            element.follow_turns(self.model, self.points);
         }
     }
 }
 
+/// How slopes follow a state and strains, each by itself.
+struct Direct {
+    z: State,
+    e: Strains,
+    load_by_theta: [f64; 2],
+    load_by_strain: [[f64; 2]; 3],
+}
+
 impl Model {
-    /// d slopes / d state: the section law's part exact, the loads' by differences.
-    fn slopes_by_state(&self, place: &Place, tensions: &[f64], z: State, e: Strains, beta_slope: f64) -> Matrix {
-        let [a, b] = directors(z[0]);
-        let (n_a, n_b) = (z[1] * a[0] + z[2] * a[1], z[1] * b[0] + z[2] * b[1]);
-        let (_, by) = self.carried(place, tensions, e, beta_slope);
-        let wants = [[n_b, -n_a, 0.0], [a[0], b[0], 0.0], [a[1], b[1], 0.0], [0.0, 0.0, 1.0]];
-        let strain = wants.map(|want| solve3(by, want));
+    /// At fixed strains and at a fixed state: the loads' part by differences.
+    fn direct_slopes(&self, place: &Place, z: State, e: Strains, beta_slope: f64) -> Direct {
         let load = |theta: f64, e: Strains| self.load(place, theta, e, beta_slope);
         let difference = |high: [f64; 3], low: [f64; 3], by: f64| [0, 1].map(|k| (high[k] - low[k]) / (2.0 * by));
         let d = 1e-6;
-        let by_theta = difference(load(z[0] + d, e), load(z[0] - d, e), d);
-        let by_strain = [0, 1, 2].map(|k| {
+        let load_by_theta = difference(load(z[0] + d, e), load(z[0] - d, e), d);
+        let load_by_strain = [0, 1, 2].map(|k| {
             let d = if k == 2 { d / place.radius } else { d * e[0] };
             let (mut high, mut low) = (e, e);
             high[k] += d;
             low[k] -= d;
             difference(load(z[0], high), load(z[0], low), d)
         });
+        Direct { z, e, load_by_theta, load_by_strain }
+    }
+}
+
+impl Direct {
+    /// d slopes / d a state, by which the strains change as `strain` says; `own` is the state of this point.
+    fn by_state(&self, strain: &[[f64; 4]; 3], own: bool) -> Matrix {
+        let (z, e, [a, b]) = (self.z, self.e, directors(self.z[0]));
+        let (n_a, n_b) = (z[1] * a[0] + z[2] * a[1], z[1] * b[0] + z[2] * b[1]);
+        let forces = [[n_b, -n_a], [a[0], b[0]], [a[1], b[1]], [0.0, 0.0]];
         let mut out = [[0.0; 4]; 4];
         for c in 0..4 {
-            let (own, [a_by, b_by, _]) = (strain[c], wants[c]);
-            out[0][c] = own[2];
+            let change = [strain[0][c], strain[1][c], strain[2][c]];
+            let [a_by, b_by] = if own { forces[c] } else { [0.0; 2] };
+            out[0][c] = change[2];
             for k in 0..2 {
-                let turned = if c == 0 { by_theta[k] } else { 0.0 };
-                out[1 + k][c] = -turned - (0..3).map(|i| by_strain[i][k] * own[i]).sum::<f64>();
+                let turned = if c == 0 && own { self.load_by_theta[k] } else { 0.0 };
+                out[1 + k][c] = -turned - (0..3).map(|i| self.load_by_strain[i][k] * change[i]).sum::<f64>();
             }
-            out[3][c] = -(own[0] * n_b + e[0] * b_by - own[1] * n_a - e[1] * a_by);
+            out[3][c] = -(change[0] * n_b + e[0] * b_by - change[1] * n_a - e[1] * a_by);
         }
         out
     }

@@ -26,7 +26,7 @@ fn the_equilibrium_beside_the_s_turn_is_the_known_one() {
 }
 
 #[test]
-#[ignore = "off by 7.7e-6 L at 1e-10, where 6e-13 is claimed"]
+#[ignore = "at 1e-6 friction is not raised past 0.066 of it; 1e-8 and 1e-10 are right to 1e-10"]
 fn a_cable_that_turns_both_ways_leaves_the_tip_where_it_is_known() {
     let arm = s_turn();
     for tol in [1e-6, 1e-8, 1e-10] {
@@ -61,7 +61,7 @@ fn s_shaped(seed: u64) -> Arm {
 
 /// On 200 S-shaped arms the error is within three times the estimate in 95 of 100, and never above ten times.
 #[test]
-#[ignore = "no node stands where chi' changes its sign: 21 of 110 within 3 times, most 1e3 to 1e7 times above"]
+#[ignore = "some are not answered: friction is not raised to the end"]
 fn estimates_hold_where_cables_turn_both_ways() {
     let cases: Vec<(u64, Judged)> = (0..200_u64)
         .into_par_iter()
@@ -81,14 +81,13 @@ fn estimates_hold_where_cables_turn_both_ways() {
         );
     }
     println!("{} answered, {} known, {} within 3, {} within 10", cases.len(), known.len(), within(3.0), within(10.0));
-    assert!(known.len() > 100);
+    assert!(known.len() > 180);
     assert!(within(3.0) * 100 >= 95 * known.len() && within(10.0) == known.len());
 }
 
 /// An elastic cable that rubs is stretched by the tension of each place: the integral of |tau| / (1 + T(s)/EA) is what the
 /// command leaves of it.
 #[test]
-#[ignore = "the cable is stretched by T(0)/EA all along: off by 1e-4 of its length"]
 fn elastic_cables_that_rub_stretch_by_the_tension_of_each_place() {
     let mut arm = Arm::cone(0.3, 0.012, 0.006, 1e5, 0.5);
     arm.reference.mu = 4.0.into();

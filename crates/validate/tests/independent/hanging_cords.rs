@@ -1,4 +1,4 @@
-//! Thin heavy rods: one shape for every load, however heavy (`cords`). Of 60 of them 12 were refused with limit points that do not exist.
+//! Thin heavy rods: one shape for every load, however heavy (`cords`). Of 40 of them 9 were refused.
 
 use hydrostat::{
     Arm, Gravity, Material, Options, Parameter, PathEnd, PathOptions, SolveError, Solver, VerdictKind, Volume,
@@ -40,9 +40,8 @@ fn cords_that_are_not_heavy_hang_as_shot() {
     none_wrong(count(40).into_par_iter().map(|seed| cord(seed, 300.0)));
 }
 
-/// 1000 with HYDROSTAT_CORDS=1000.
+/// 1000 with HYDROSTAT_CORDS=1000, of which 137 are wrong.
 #[test]
-#[ignore = "12 of the first 60 seeds are refused, by limit points that do not exist"]
 fn heavy_cords_hang_as_shot() {
     none_wrong(count(40).into_par_iter().map(|seed| cord(seed, 1e6)));
 }
@@ -81,7 +80,6 @@ fn light_cords_are_those_of_the_tables() {
 
 /// Of 45 lengths of the silicone cord 26 were refused.
 #[test]
-#[ignore = "26 of 45 lengths are refused: 0.3 m by `no equilibrium past 1.000000 of the tensions`, 1 m by a limit point at 0.0256"]
 fn a_silicone_cord_of_any_length_hangs_as_shot() {
     let cords = (0..45).map(|k| {
         let mut arm = silicone_cord();
@@ -92,21 +90,20 @@ fn a_silicone_cord_of_any_length_hangs_as_shot() {
     none_wrong(cords.collect::<Vec<_>>());
 }
 
-/// Loads along a sheet, N/m, and its tip, mm.
+/// Loads along a sheet, N/m, and its tip, mm: that of the inextensible one by shooting from the tip in 8000 Runge-Kutta steps, 45.98645, -981.14127 and
+/// 14.26089, -994.10993 mm, and the stretch w L^2/(2 C1 A0) of the part that hangs.
 #[test]
-#[ignore = "`limit point` at 0.5 and 0.05 of the loads"]
 fn a_heavy_sheet_hangs_as_shot() {
-    for (load, x, y) in [(-1000.0, 45.99, -981.14), (-10_000.0, 14.26, -994.11)] {
+    for (load, x, y) in [(-1000.0, 45.98645, -981.14286), (-10_000.0, 14.26089, -994.12585)] {
         let mut file = ArmFile::parse(include_str!("cases/heavy-sheet.toml"), "heavy-sheet.toml").unwrap();
         file.set("distributed.force", &format!("[0, {load}]")).unwrap();
         let tip = file.arm().unwrap().solve().unwrap().tip();
-        assert!((1e3 * tip.x - x).abs() < 0.006 && (1e3 * tip.y - y).abs() < 0.006, "{load}: {tip:?}");
+        assert!((1e3 * tip.x - x).abs() < 1e-4 && (1e3 * tip.y - y).abs() < 1e-4, "{load}: {tip:?}");
     }
 }
 
 /// Over gravity the cord hangs ever more steeply, with nothing special on the way.
 #[test]
-#[ignore = "two bifurcations that do not exist are met"]
 fn the_path_over_gravity_meets_nothing() {
     let mut arm = silicone_cord();
     arm.readings.volume = Volume::None;
@@ -127,7 +124,7 @@ fn the_path_over_gravity_meets_nothing() {
 /// Where the base's axial force passes C1 A0/4 a `planar` section carries no more: the verdict says so, at that load. C2 = C1, as with
 /// C1/3 a straight cord shears to the side from nu = 1.5 on, before that limit at nu = 2.
 #[test]
-#[ignore = "of heavy cords the first limit point that does not exist comes before"]
+#[ignore = "one is refused at 0.50 of its load for a section within reach"]
 fn beyond_its_limit_a_cord_is_refused_at_the_true_load() {
     for (length, radius) in [(1.0, 1e-3), (0.5, 2e-3), (0.3, 3e-3)] {
         let mut arm = Arm::cone(length, radius, radius, 1e5, 0.5);
@@ -164,7 +161,6 @@ fn limit_of(arm: &Arm) -> f64 {
 
 /// The sign that decides must not hang on the mesh: whatever the tolerance, there is an answer.
 #[test]
-#[ignore = "refused at 1e-8 and finer"]
 fn a_cord_hangs_at_any_tolerance() {
     let mut arm = silicone_cord();
     arm.length = 0.3;
@@ -179,7 +175,6 @@ fn a_cord_hangs_at_any_tolerance() {
 
 /// `no equilibrium past 1.000000 of the tensions` was said of an arm without a cable.
 #[test]
-#[ignore = "cords that are refused are so in the phase of their tensions, of which they have none"]
 fn no_verdict_names_a_phase_that_has_nothing_in_it() {
     let wrong: Vec<String> = count(100)
         .into_par_iter()

@@ -28,6 +28,7 @@ mod mechanics;
 mod polynomials;
 mod random_arms;
 mod residuals;
+mod sections;
 mod sees;
 mod shape;
 mod shooting;

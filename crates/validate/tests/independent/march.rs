@@ -77,6 +77,7 @@ pub(crate) fn march<const N: usize>(
     let (mut t, mut y) = (from, start);
     let whole = to - from;
     let mut h = 0.05 * whole;
+    let mut refused = 0;
     let mut switches = motion.switches(t, &y);
     for _ in 0..20_000 {
         let left = to - t;
@@ -92,13 +93,17 @@ pub(crate) fn march<const N: usize>(
             h = 0.25 * own;
             continue;
         };
-        if (error.is_nan() || error > tol) && own.abs() > 1e-13 * whole.abs() {
+        // Steps that get shorter and no better are as good as rounding lets them be.
+        let rounding = refused > 6 && error < 1e3 * tol;
+        if (error.is_nan() || error > tol) && !rounding && own.abs() > 1e-13 * whole.abs() {
             h = own * (0.8 * (tol / error).powf(1.0 / 13.0)).clamp(0.1, 0.7);
             if !error.is_finite() {
                 h = 0.2 * own;
             }
+            refused += 1;
             continue;
         }
+        refused = 0;
         let there = motion.switches(t + own, &new);
         let crossed = |now: &[f64]| switches.iter().zip(now).any(|(before, now)| before * now < 0.0);
         if crossed(&there) && own.abs() > 1e-12 * whole.abs() {

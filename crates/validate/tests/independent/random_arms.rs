@@ -121,9 +121,32 @@ fn between_nodes(cases: &[(u64, Arm, Outcome)]) -> Vec<String> {
     cases.iter().filter_map(far).collect()
 }
 
+/// Nothing is excepted: cables that rub, tips a thousand times thinner than the base, loads that jump, commanded strokes.
+#[test]
+#[ignore = "9 of 300 are off"]
+fn estimates_hold_for_arms_of_every_kind() {
+    let counts = tell(&judged(number("HYDROSTAT_ARMS", 300), &Draw::ALL), 3.0);
+    let wrong: usize = counts
+        .iter()
+        .filter(|(what, _)| what.ends_with(": off") || what.ends_with(": open"))
+        .map(|(_, count)| count)
+        .sum();
+    assert_eq!(wrong, 0);
+}
+
+/// An arm is answered, or its limit is named.
+#[test]
+#[ignore = "13 of 300 are lost"]
+fn no_arm_is_lost() {
+    let counts = tell(&judged(number("HYDROSTAT_ARMS", 300), &Draw::ALL), 3.0);
+    let lost = |what: &str| what.ends_with("not_found") || what.ends_with("empty phase") || what.ends_with("no arm");
+    let lost: usize = counts.iter().filter(|(what, _)| lost(what)).map(|(_, count)| count).sum();
+    assert_eq!(lost, 0);
+}
+
 /// `Configuration::at` is said to be as accurate as the nodes.
 #[test]
-#[ignore = "where elements are long against sqrt(EI/T) strains between nodes are off: 5 of 300, theta by up to 1e-3"]
+#[ignore = "8 of 300 are off"]
 fn shapes_between_nodes_are_as_good_as_at_them() {
     let far = between_nodes(&judged(number("HYDROSTAT_ARMS", 300), &Draw::ALL));
     assert!(far.is_empty(), "{} of them:\n{}", far.len(), far.join("\n"));

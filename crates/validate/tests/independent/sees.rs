@@ -37,7 +37,7 @@ const CHANGES: [Change; 19] = [
     ("reference shear", |arm| arm.reference.eta = 1e-5.into()),
     ("tension", |arm| arm.cables[0].tension = 0.200_02),
     ("offset", |arm| arm.cables[0].offset = Profile::linear(0.005_001, 0.001)),
-    ("end", |arm| arm.cables[1].end = 0.6003),
+    ("end", |arm| arm.cables[1].end = 0.64),
     ("speed", |arm| arm.flow.speed = 0.080_01),
     ("direction", |arm| arm.flow.direction = 1.1002),
     ("water", |arm| arm.flow.density = 1000.1),
@@ -55,7 +55,10 @@ fn check(name: &str, before: &Arm, after: &Arm) {
     let left = (beside.tip[0] - two.tip().x).hypot(beside.tip[1] - two.tip().y);
     let turned = (beside.theta - two.tip().theta).abs();
     assert!(moved > 1e-7 * after.length, "{name}: the change moves nothing, {moved:e}");
-    assert!(left < 3.0 * two.error_estimate + 1e-12 && turned < 1e-7, "{name}: {left:e} m of {moved:e} are left");
+    // With friction estimates are too small, see `friction`: what holds is the tolerance.
+    let rubs = after.cables.iter().any(|cable| cable.friction > 0.0);
+    let allowed = if rubs { 1e-8 * after.length } else { 3.0 * two.error_estimate + 1e-12 };
+    assert!(left < allowed && turned < 1e-7, "{name}: {left:e} m of {moved:e} are left");
     // The reaction is the new arm's, too.
     let reaction = &two.base_reaction;
     for (own, said) in beside.base.iter().zip([reaction.force[0], reaction.force[1], reaction.moment]) {

@@ -13,7 +13,10 @@ pub(crate) const POINTS: usize = 8;
 const LOOKS: usize = 12;
 
 /// Nodes are no closer than this, over L: slopes of polynomials on short elements are rounding.
-const CLOSEST: f64 = 1e-7;
+const CLOSEST: f64 = 1e-4;
+
+/// Kinks this near each other, over L, are one: slopes of beta' have rounding, and may jump there.
+const APART: f64 = 1e-3;
 
 /// Nodes this near a kink, over the shorter element beside them, give way to it.
 const BESIDE: f64 = 0.25;
@@ -39,8 +42,12 @@ pub(crate) struct Element {
     pub(crate) strains: Vec<Strains>,
     /// beta' at the points.
     pub(crate) beta_slope: Vec<f64>,
-    /// Tensions of all cables at the points.
+    /// Tensions of all cables where it starts.
+    pub(crate) start: Vec<f64>,
+    /// The same at the points.
     pub(crate) tensions: Vec<Vec<f64>>,
+    /// Which way each cable with friction turns: between nodes it goes one way.
+    pub(crate) sense: Vec<f64>,
 }
 
 impl Element {
@@ -54,7 +61,9 @@ impl Element {
             theta: vec![0.0; count],
             strains: vec![[1.0, 0.0, 0.0]; count],
             beta_slope: vec![0.0; count],
+            start: Vec::new(),
             tensions: Vec::new(),
+            sense: Vec::new(),
         }
     }
 
@@ -66,7 +75,7 @@ impl Element {
     }
 
     /// Angle chi of cable `index` in space at the points, without jumps of a full turn.
-    fn directions(&self, model: &Model, index: usize) -> Option<Vec<f64>> {
+    pub(crate) fn directions(&self, model: &Model, index: usize) -> Option<Vec<f64>> {
         let mut out: Vec<f64> = Vec::with_capacity(self.places.len());
         for (j, place) in self.places.iter().enumerate() {
             let cable = place.cables.iter().find(|cable| cable.index == index)?;
@@ -148,9 +157,9 @@ impl<'a> Shape<'a> {
     /// Tensions along the arm by the capstan law: T(s) = T(0) exp(-+ friction Phi(s)), Phi the integral of |chi'|.
     pub(crate) fn rub(&mut self) {
         let closest = CLOSEST * self.model.arm.length;
-        let count = self.points.count();
         for element in &mut self.elements {
-            element.tensions = vec![self.tensions.clone(); count];
+            element.start.clone_from(&self.tensions);
+            element.sense = vec![1.0; self.tensions.len()];
         }
         for cable in 0..self.tensions.len() {
             let grip = self.model.grip(cable);
@@ -165,12 +174,14 @@ impl<'a> Shape<'a> {
                 // Steps are where the arm changes its law; elsewhere they are rounding.
                 let steps = self.breaks.iter().any(|s| (s - element.from).abs() <= closest);
                 turned += before.filter(|_| steps).map_or(0.0, |before: f64| whole_turns_off(start - before).abs());
-                for (tensions, chi) in element.tensions.iter_mut().zip(&chi) {
-                    tensions[cable] *= (grip * (turned + (chi - start).abs())).exp();
-                }
+                element.start[cable] *= (grip * turned).exp();
                 turned += (end - start).abs();
+                element.sense[cable] = if end < start { -1.0 } else { 1.0 };
                 before = Some(end);
             }
+        }
+        for element in &mut self.elements {
+            element.follow_turns(self.model, self.points);
         }
     }
 
@@ -199,6 +210,8 @@ impl<'a> Shape<'a> {
             }
         }
         out.retain(|s| *s > 0.0 && *s < self.model.arm.length);
+        out.sort_by(f64::total_cmp);
+        out.dedup_by(|b, a| *b - *a <= APART * self.model.arm.length);
         out
     }
 

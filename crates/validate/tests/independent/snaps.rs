@@ -11,7 +11,7 @@ fn leaning(tension: f64) -> Arm {
 
 /// Tip x, y of each of 40 tensions up to 3e-4 N, each solved by itself: there is a snap of 0.5 mm and 0.17 deg on the way, and no more.
 #[test]
-#[ignore = "16 of the 40 tensions are refused"]
+#[ignore = "3e-4 N is refused with a limit point at 0.0826 of it, where all tensions below are answered"]
 fn forty_tensions_in_order_give_forty_tips_in_order() {
     let tips: Vec<_> = (1..=40)
         .map(|k| {
@@ -23,13 +23,13 @@ fn forty_tensions_in_order_give_forty_tips_in_order() {
     for pair in tips.windows(2) {
         let ((tension, one), (_, two)) = (pair[0], pair[1]);
         assert!(two.theta > one.theta, "past {tension} N the tip turns back: {one:?} {two:?}");
-        assert!((two.x - one.x).hypot(two.y - one.y) < 0.005, "past {tension} N the tip jumps: {one:?} {two:?}");
+        assert!((two.x - one.x).hypot(two.y - one.y) < 0.0015, "past {tension} N the tip jumps: {one:?} {two:?}");
     }
 }
 
 /// What is answered does not depend on the way: raised in steps, the tensions give the same tips.
 #[test]
-#[ignore = "16 of the 40 tensions are refused"]
+#[ignore = "3e-4 N is refused with a limit point at 0.0826 of it, where all tensions below are answered"]
 fn tensions_raised_in_steps_give_the_tips_of_tensions_solved_by_themselves() {
     let mut solver = Solver::new(&leaning(0.0), Options::default()).unwrap();
     solver.solve().unwrap();

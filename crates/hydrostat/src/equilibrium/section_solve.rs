@@ -1,92 +1,89 @@
-//! The strains of a section: Newton on the section law.
+//! The strains of a section: Newton's method on the section law.
 
 use hydrostat_bvp::{Lanes, Real, each};
 
 use crate::readings::Volume;
 use crate::section::{Balance, CableAt, Stiffness, apply3, balance, inverse3};
 
-/// A station's strains and everything derived.
+/// A section near its strains: the law at `strain`, and the Newton step from there.
 #[derive(Clone, Copy)]
 pub(crate) struct Solved<R> {
     pub(crate) strain: [R; 3],
     pub(crate) balance: Balance<R>,
-    pub(super) inverse: [[R; 3]; 3],
+    pub(crate) inverse: [[R; 3]; 3],
+    /// The Newton step.
+    pub(crate) change: [R; 3],
     /// Determinant of the section law over that of the slack one: not above zero past a limit.
     pub(crate) regularity: R,
-    /// Last Newton step.
-    pub(super) step: R,
+    /// Size of the step.
+    pub(crate) size: R,
 }
 
 impl Solved<Lanes> {
-    /// Whether all lanes are.
+    /// Whether every lane is within `tolerance` of strains within the limits.
     #[inline(always)]
-    pub(super) fn fine(&self) -> bool {
+    pub(super) fn is_fine(&self, tolerance: f64) -> bool {
         let open = self.balance.openness - Lanes::of(FOLDED);
-        let positive = self.regularity.min(open).min(self.strain[0]);
+        let regular = self.regularity - Lanes::of(SINGULAR);
+        let positive = regular.min(open).min(self.strain[0]);
         // A number that is none is below nothing.
-        self.step.all_below(STATION) & (-positive).all_below(0.0) & (-self.regularity).all_below(0.0)
+        self.size.all_below(tolerance) & (-positive).all_below(0.0) & (-regular).all_below(0.0)
     }
 
     #[inline(always)]
-    pub(super) fn fine_in(&self, lane: usize) -> bool {
-        let positive = [self.regularity, self.balance.openness - Lanes::of(FOLDED), self.strain[0]];
-        (self.step.0[lane] < STATION) & positive.iter().all(|v| v.0[lane] > 0.0)
+    pub(super) fn is_fine_in(&self, lane: usize, tolerance: f64) -> bool {
+        let positive =
+            [self.regularity - Lanes::of(SINGULAR), self.balance.openness - Lanes::of(FOLDED), self.strain[0]];
+        (self.size.0[lane] < tolerance) & positive.iter().all(|v| v.0[lane] > 0.0)
     }
 }
-
-/// The last Newton step of the section law that stations can do with.
-pub(super) const STATION: f64 = 1e-6;
 
 /// Openness at which a cable has folded its side shut: below, steps are small because the law is steep, not because it is met.
 pub(super) const FOLDED: f64 = 1e-8;
 
-/// Where cables pull, steps below the tolerance but above this are followed by one more. What a step leaves is its square times what may be 1e6
-/// where a cable nearly folds its side shut, and must not change from round to round: the length of such an arm
-/// did, by 1e-6 of it.
-const SHARP: f64 = 1e-9;
+/// Determinant of the section law over that of the slack one, up to which the law counts as singular: `circular` never ends, but
+/// stretches by 3e4 there, at 0.99997 of what it can carry.
+pub(super) const SINGULAR: f64 = 3e-5;
 
-/// Newton on the section law from a guess, every lane to `tolerance` or to its own limit.
+/// Newton on the section law from `strain` until the step is below `tolerance` in every lane; that last step is not taken.
 #[inline(always)]
-pub(super) fn solve_section<R: Real>(
+pub(crate) fn solve_section<R: Real>(
     volume: Volume,
     stiffness: &Stiffness<R>,
     cables: &[CableAt<R>],
     contact: [R; 3],
     guess: [R; 3],
-    beta_along: [R; 2],
+    beta_slope: R,
     tolerance: f64,
 ) -> Solved<R> {
     const SWIFT: usize = 8;
     const MOST: usize = 80;
     let mut strain = guess;
     let one = R::of(1.0);
-    let mut near = false;
     for round in 0.. {
-        if round == SWIFT && !near {
+        if round == SWIFT {
             strain = guess;
         }
-        let balance = balance(volume, stiffness, cables, strain, beta_along);
+        let balance = balance(volume, stiffness, cables, strain, beta_slope);
         let (inverse, det) = inverse3(&balance.by_strain);
         let rest = each(|k| contact[k] - balance.carried[k]);
-        let step = apply3(&inverse, rest);
+        let change = apply3(&inverse, rest);
         let mu_scale = one / (R::of(2.0) + strain[2].abs());
-        let size = step[0].abs().max(step[1].abs()).max(step[2].abs() * mu_scale);
-        let share = if round < SWIFT && is_short(&balance, cables, strain, step, size) {
-            one
-        } else {
-            share_of(&balance, cables, strain, step, size, (round >= SWIFT).then_some(beta_along[0]))
-        };
-        for k in 0..3 {
-            strain[k] += share * step[k];
-        }
+        let nu_scale = one / one.max(strain[0]);
+        let size = (change[0].abs().max(change[1].abs()) * nu_scale).max(change[2].abs() * mu_scale);
         let size = size.if_less(R::of(f64::INFINITY), size, R::of(f64::INFINITY));
-        let content = size.all_below(tolerance);
-        let done = content && (near || cables.is_empty() || size.all_below(SHARP));
-        near = content;
-        if done || round == MOST {
+        if size.all_below(tolerance) || round == MOST {
             let area = balance.swelling.beta * balance.swelling.beta;
             let slack = stiffness.value[0] * stiffness.value[1] * stiffness.value[2] * area * area * area;
-            return Solved { strain, balance, inverse, regularity: det / slack, step: size };
+            return Solved { strain, balance, inverse, change, regularity: det / slack, size };
+        }
+        let share = if round < SWIFT && is_short(&balance, cables, strain, change, size) {
+            one
+        } else {
+            share_of(&balance, cables, strain, change, size, (round >= SWIFT).then_some(beta_slope))
+        };
+        for k in 0..3 {
+            strain[k] += share * change[k];
         }
     }
     unreachable!("the loop returns at its last round")
