@@ -28,6 +28,9 @@ pub(crate) enum Way {
 /// Part of its scale by which a number is moved to either side for a difference; with four places the error is its fourth power.
 const STEP: f64 = 1e-3;
 
+/// The same for angles of the stream. Rounding leaves some 1e-10 of a load by it.
+const SHORT_STEP: f64 = 1e-6;
+
 /// The places of a difference of the fourth order, in steps, and their weights.
 const PLACES: [(f64, f64); 4] = [(1.0, 8.0 / 12.0), (-1.0, -8.0 / 12.0), (2.0, -1.0 / 12.0), (-2.0, 1.0 / 12.0)];
 
@@ -281,13 +284,17 @@ fn following(gradient: &[[Lanes; N]; 3], [cos, sin]: [Lanes; 2], carried: [Lanes
 impl Equations {
     /// The step of differences by `way`, in its unit.
     fn difference_step(&self, way: Way) -> f64 {
+        // Where an arm lies along the stream its load has kinks within small angles.
+        let step = |parameter| if parameter == Parameter::FlowDirection { SHORT_STEP } else { STEP };
         match way {
             Way::Path => match self.varied_over() {
-                Some((parameter, change)) => STEP * parameter.scale(&self.arm, self.units.force) / change.abs(),
+                Some((parameter, change)) => {
+                    step(parameter) * parameter.scale(&self.arm, self.units.force) / change.abs()
+                }
                 None => STEP,
             },
             Way::Tension(_) => STEP,
-            Way::Of(parameter) => STEP * parameter.scale(&self.arm, self.units.force),
+            Way::Of(parameter) => step(parameter) * parameter.scale(&self.arm, self.units.force),
         }
     }
 
