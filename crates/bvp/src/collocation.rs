@@ -96,7 +96,6 @@ pub struct Collocation<const N: usize, const M: usize, const Q: usize, const L: 
     end_stations: Vec<Station<N, L>>,
     ends: Vec<Inner<N, L, Lanes>>,
     directions: Directions,
-    closed: bool,
     condensed: Condensed<N, M>,
     maps: Vec<Map<N>>,
     closings: Vec<Closing<N, M>>,
@@ -115,7 +114,6 @@ struct Memory<const N: usize, const M: usize> {
     closing: Vec<f64>,
     /// dw at stages and own ends, a group.
     values: Vec<[Lanes; POINTS]>,
-    with_defects: bool,
     rows: Vec<f64>,
 }
 
@@ -128,7 +126,6 @@ impl<const N: usize, const M: usize> Default for Memory<N, M> {
             taken: Vec::new(),
             closing: Vec::new(),
             values: Vec::new(),
-            with_defects: false,
             rows: Vec::new(),
         }
     }
@@ -158,7 +155,6 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             end_stations: Vec::new(),
             ends: Vec::new(),
             directions: Directions::default(),
-            closed: false,
             condensed: Condensed::default(),
             maps: Vec::new(),
             closings: Vec::new(),
@@ -241,6 +237,12 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         sum
     }
 
+    /// The inner equations at point `m` of group `g`: a stage, or the own end after them.
+    #[inline(always)]
+    fn inner_at(&self, g: usize, m: usize) -> &Inner<N, L, Lanes> {
+        if m < M { &self.locals[g * M + m].inner } else { &self.ends[g] }
+    }
+
     /// The determinant at the last factorisation.
     pub fn determinant(&self) -> Determinant {
         self.determinant
@@ -277,7 +279,6 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             self.steps[g] = h;
         }
         self.directions.clone_from(&solution.directions);
-        self.closed = self.directions.is_closed();
         resize(&mut self.end_stations, self.directions.ends.len(), blank);
         for (b, place) in self.directions.ends.iter().enumerate() {
             let station = &mut self.end_stations[b];
@@ -317,7 +318,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         resize(&mut self.locals, self.stations.len(), Local::default());
         self.evaluations += self.groups.elements * M;
         problem.stages::<FUSED>(self.groups, &mut self.stations, &mut self.locals)?;
-        if self.closed {
+        if self.directions.is_closed() {
             resize(&mut self.ends, self.end_stations.len(), Inner::default());
             problem.ends::<FUSED>(&self.directions.ends, &mut self.end_stations, &mut self.ends)?;
         }
@@ -332,7 +333,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 stage.inner[a] = station.inner[a] + local.inner.change[a];
             }
         }
-        if !self.closed {
+        if !self.directions.is_closed() {
             return;
         }
         for ((end, station), inner) in solution.ends.iter_mut().zip(&self.end_stations).zip(&self.ends) {
@@ -398,12 +399,12 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
     ) -> Result<(), Singular> {
         let groups = self.groups;
         let mut product = Product::new();
-        self.condensed.resize(groups.count(), self.closed);
+        self.condensed.resize(groups.count(), self.directions.is_closed());
         let blank = Map { by_state: [[0.0; N]; N], by_taken: [0.0; N], own_by_state: [0.0; N], own_by_taken: 0.0 };
         resize(&mut self.maps, groups.elements, blank);
         for g in 0..groups.count() {
             let mut own_product = Lanes::of(1.0);
-            let condensed = if self.closed {
+            let condensed = if self.directions.is_closed() {
                 self.condense_closed::<FUSED>(g, &mut own_product)
             } else {
                 let locals = &self.locals[g * M..(g + 1) * M];
@@ -490,7 +491,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 }
             }
         }
-        if !self.closed {
+        if !self.directions.is_closed() {
             return;
         }
         let closure = &self.condensed.closures[g];
@@ -498,7 +499,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         let mut own_by_state = [zero; N];
         let mut own_by_taken = closure.own_by_taken;
         for m in 0..M + 1 {
-            let inner = if m < M { &self.locals[g * M + m].inner } else { &self.ends[g] };
+            let inner = self.inner_at(g, m);
             for a in 0..N {
                 own_by_state[a] += closure.own[m] * inner.value_gradient[a];
             }
@@ -548,7 +549,6 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         let (map, closure) = (&self.maps[i], &self.condensed.closures[g]);
         let h = self.steps[g].0[own];
         let at = |v: Lanes| v.0[own];
-        let inner = |m: usize| if m < M { &self.locals[g * M + m].inner } else { &self.ends[g] };
         let other = &self.ends[block];
         let reach = other.reach.0[lane];
         let at_right = self.directions.side(i) == Side::Left;
@@ -559,7 +559,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         let mut by_slopes = [[0.0; N]; M];
         let mut row = [0.0; N];
         for m in 0..M + 1 {
-            let gradient = inner(m).value_gradient.map(|v| v.0[own]);
+            let gradient = self.inner_at(g, m).value_gradient.map(|v| v.0[own]);
             for a in 0..N {
                 row[a] += by_point[m] * gradient[a];
             }
@@ -626,11 +626,11 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
     ) -> Column<N, M> {
         let zero = Lanes::of(0.0);
         let (mut value, mut by_closure) = ([zero; POINTS], [zero; POINTS]);
-        if self.closed {
+        if self.directions.is_closed() {
             value = *change;
             if let Some(defect) = defect {
                 for m in 0..M + 1 {
-                    let inner = if m < M { &self.locals[g * M + m].inner } else { &self.ends[g] };
+                    let inner = self.inner_at(g, m);
                     value[m] += inner.reach * defect[m];
                 }
                 by_closure = *defect;
@@ -664,7 +664,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             }
             change[j] = local.inner.value_change;
         }
-        if self.closed {
+        if self.directions.is_closed() {
             change[M] = self.ends[g].value_change;
         }
         let defect = self.condensed.closures.get(g).map(|closure| &closure.defect);
@@ -683,7 +683,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 jump[a] += w * column.slopes[j][a];
             }
         }
-        if self.closed {
+        if self.directions.is_closed() {
             let closure = &self.condensed.closures[g];
             for m in 0..M + 1 {
                 own += closure.own[m] * column.value[m];
@@ -739,7 +739,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
     /// The values that elements take over, given those of the nodes and what closings add.
     fn fill_taken(&self, nodes: &AtNodes<N>, closing: &[f64], taken: &mut Vec<f64>) {
         taken.clear();
-        if !self.closed {
+        if !self.directions.is_closed() {
             return;
         }
         taken.extend((0..self.groups.elements).map(|i| match self.directions.side(i) {
@@ -790,8 +790,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         );
         self.panels.solve(&memory.loads, &mut memory.nodes, &mut memory.rows);
         self.fill_taken(&memory.nodes, &memory.closing, &mut memory.taken);
-        memory.with_defects = true;
-        self.finish::<FUSED>(&mut memory, out, |g, j, stage, _| {
+        self.finish::<FUSED>(&mut memory, true, out, |g, j, stage, _| {
             let (station, local) = (&self.stations[g * M + j], &self.locals[g * M + j]);
             let before = &solution.stages[g * M + j].inner;
             for a in 0..L {
@@ -866,8 +865,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         }
         self.panels.solve(&memory.loads, &mut memory.nodes, &mut memory.rows);
         self.fill_taken(&memory.nodes, &memory.closing, &mut memory.taken);
-        memory.with_defects = false;
-        self.finish::<FUSED>(&mut memory, out, |g, j, stage, rate| {
+        self.finish::<FUSED>(&mut memory, false, out, |g, j, stage, rate| {
             if let Some(drift) = change.stages.get(g * M + j) {
                 for a in 0..L {
                     stage.inner[a] += drift.inner[a];
@@ -884,13 +882,14 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         }
     }
 
-    /// Stages, ends and quadratures of a correction, given the nodes; `add` adds what changes inner unknowns and rates at
-    /// stage `j` of group `g` beside state and closure slope.
+    /// Stages, ends and quadratures of a correction, given the nodes; `with_defects` where those of the closure slopes count; `add` adds what changes inner
+    /// unknowns and rates at stage `j` of group `g` beside state and closure slope.
     #[inline(always)]
     #[allow(clippy::too_many_lines, reason = "one pass over a group, whose parts share what it has at hand")]
     fn finish<const FUSED: bool>(
         &self,
         memory: &mut Memory<N, M>,
+        with_defects: bool,
         out: &mut Correction<N, M, Q, L>,
         add: impl Fn(usize, usize, &mut Stage<N, L>, &mut [Lanes; Q]),
     ) {
@@ -913,7 +912,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 for a in 0..N {
                     z[a].0[lane] = memory.nodes.z[i][a];
                 }
-                if self.closed {
+                if self.directions.is_closed() {
                     taken.0[lane] = memory.taken[i];
                 }
             }
@@ -922,7 +921,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 let by_state = apply(&by_stages[j], &z);
                 for a in 0..N {
                     k[j][a] += by_state[a];
-                    if self.closed {
+                    if self.directions.is_closed() {
                         k[j][a] += by_taken_stages[j][a] * taken;
                     }
                 }
@@ -937,7 +936,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 }
             }
             let mut closure_slopes = [zero; POINTS];
-            if self.closed {
+            if self.directions.is_closed() {
                 let closure = &self.condensed.closures[g];
                 let mut values = [zero; POINTS];
                 let mut own = z;
@@ -948,8 +947,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                     }
                 }
                 for m in 0..M + 1 {
-                    let (inner, state) =
-                        if m < M { (&self.locals[g * M + m].inner, &states[m]) } else { (&self.ends[g], &own) };
+                    let (inner, state) = (self.inner_at(g, m), if m < M { &states[m] } else { &own });
                     for a in 0..N {
                         values[m] = values[m].plus::<FUSED>(inner.value_gradient[a], state[a]);
                     }
@@ -962,7 +960,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                     closure_slopes[j] = slope;
                 }
                 for m in 0..M + 1 {
-                    let inner = if m < M { &self.locals[g * M + m].inner } else { &self.ends[g] };
+                    let inner = self.inner_at(g, m);
                     values[m] += column.change[m] + inner.reach * closure_slopes[m];
                 }
                 memory.values.push(values);
@@ -1008,11 +1006,11 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 }
             }
         }
-        self.finish_closings(memory, out);
+        self.finish_closings(memory, with_defects, out);
     }
 
     /// The other ends of closing elements, by the polynomial through w.
-    fn finish_closings(&self, memory: &Memory<N, M>, out: &mut Correction<N, M, Q, L>) {
+    fn finish_closings(&self, memory: &Memory<N, M>, with_defects: bool, out: &mut Correction<N, M, Q, L>) {
         for (k, closing) in self.closings.iter().enumerate() {
             let i = closing.element;
             let (g, own) = (i / LANES, i % LANES);
@@ -1031,7 +1029,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             for m in 0..M + 1 {
                 slope += inverse_h * d[m] * memory.values[g][m].0[own];
             }
-            if memory.with_defects {
+            if with_defects {
                 slope += closing.defect;
             }
             let (inner, end) = (&self.ends[closing.block], &mut out.ends[closing.block]);

@@ -126,11 +126,6 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
         InnerState { inner: end.inner.map(|v| v.0[lane]), closure_slope: end.closure_slope.0[lane] }
     }
 
-    /// The state at stage `j` of element `i`.
-    pub fn stage_state(&self, gauss: &Gauss<M>, i: usize, j: usize) -> [f64; N] {
-        self.weighed(i, &gauss.a[j])
-    }
-
     /// The state of element `i` where the integrals of the cardinal polynomials are `weights`.
     fn weighed(&self, i: usize, weights: &[f64; M]) -> [f64; N] {
         let h = self.mesh.step(i);

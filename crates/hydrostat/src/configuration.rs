@@ -3,7 +3,7 @@
 use crate::arm::{Arm, Cable, FlowLaw};
 use crate::dense::Dense;
 use crate::engine::{Engine, M, shift_by_tangential_load};
-use crate::equilibrium::{SectionFailure, Units};
+use crate::equilibrium::{Measured, SectionFailure, Units};
 use crate::flow::layer_profile;
 use crate::loads::stream_along;
 use crate::readings::Support;
@@ -534,8 +534,7 @@ fn cable_states(arm: &Arm, engine: &Engine) -> Vec<CableState> {
         held.is_some_and(|held| held.cables.iter().zip(&held.taut).any(|(own, taut)| *own == cable && *taut))
     };
     let state = |(index, cable): (usize, &Cable)| {
-        let system = &engine.system;
-        let [now, unloaded] = equations.cable_lengths(index, &system.gauss.b, system.steps(), system.stations());
+        let [now, unloaded] = equations.cable_lengths(index, Measured::of(&engine.system));
         let (length, stroke) = (arm.length * now, arm.length * (unloaded - now));
         let command =
             cable.stroke.map(|given| Command { stroke: given, length: length + stroke - given, slack: !taut(index) });

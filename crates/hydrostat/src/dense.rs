@@ -58,16 +58,22 @@ impl Dense {
         )
     }
 
-    fn section(&self, i: usize, s: f64, from_left: bool, z: [f64; N]) -> Result<AtPlace, SectionFailure> {
-        let asked = Asked { from_left, ..self.asked(i, s, z) };
-        let found = match self.equations.at_place(&asked) {
+    /// Everything at a place with the beta' of the polynomial.
+    fn place(&self, i: usize, asked: Asked) -> Result<AtPlace, SectionFailure> {
+        match self.equations.at_place(&asked) {
             Err(_) => {
                 // Extrapolated strains can be off: start from the nearest stage instead.
-                let nearest = if from_left { M - 1 } else { 0 };
-                self.equations.at_place(&Asked { strain: self.solution.inner(i, nearest).inner, ..asked })?
+                let nearest = if asked.from_left { M - 1 } else { 0 };
+                self.equations.at_place(&Asked { strain: self.solution.inner(i, nearest).inner, ..asked })
             }
-            Ok(found) => found,
-        };
+            found => found,
+        }
+    }
+
+    /// The same with beta' as outputs have it.
+    fn section(&self, i: usize, s: f64, from_left: bool, z: [f64; N]) -> Result<AtPlace, SectionFailure> {
+        let asked = Asked { from_left, ..self.asked(i, s, z) };
+        let found = self.place(i, asked)?;
         Ok(self.equations.at_place(&self.sharp(i, asked, &found)).unwrap_or(found))
     }
 
@@ -82,7 +88,7 @@ impl Dense {
         if let Some(found) = found {
             return Ok(std::array::from_fn(|j| found.lane(j)));
         }
-        let one = |j: usize| self.section(i, s[j], false, z[j]);
+        let one = |j: usize| self.place(i, asked[j]);
         Ok([one(0)?, one(1)?, one(2)?, one(3)?])
     }
 
@@ -165,12 +171,7 @@ impl Dense {
                 )
             };
             let found = solved(&asked).and_then(|first| {
-                let mut lane = 0..LANES;
-                let sharp = asked.map(|asked| {
-                    let lane = lane.next().unwrap_or(0);
-                    self.sharp(places[lane].0, asked, &first.lane(lane))
-                });
-                solved(&sharp)
+                solved(&std::array::from_fn(|lane| self.sharp(places[lane].0, asked[lane], &first.lane(lane))))
             });
             for (lane, (i, end)) in four.iter().enumerate() {
                 let Asked { s, z, .. } = asked[lane];

@@ -29,6 +29,7 @@ use hydrostat_bvp::{Condition, EndPlace, Groups, Inner, LANES, Lanes, Local, Pro
 
 pub(crate) use self::adversity::Unloaded;
 pub(crate) use self::at_place::{Asked, AtPlace};
+pub(crate) use self::cable_paths::Measured;
 pub(crate) use self::change::Way;
 use self::few::Few;
 use self::gradients::{by_strain_change, jacobian, rate_gradient, strain_by_state};

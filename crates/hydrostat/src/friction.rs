@@ -74,7 +74,8 @@ impl Turns {
         let gauss = engine.system.gauss.clone();
         let mesh = &engine.solution.mesh;
         let count = equations.arm().cables.len();
-        let stations = engine.stations();
+        let system = engine.at_present();
+        let stations = system.stations();
         let mut cables: Vec<Turn> = (0..count).map(|_| Turn::default()).collect();
         let mut last: Vec<f64> = vec![0.0; count];
         for i in 0..mesh.elements() {

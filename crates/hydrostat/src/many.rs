@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use crate::arm::{Arm, ArmError, Flow};
 use crate::configuration::{Configuration, FoldMargin, Stations, Tip, Warning, Wrench};
 use crate::engine::{Engine, First, Guess};
+use crate::equilibrium::Measured;
 use crate::path::Travelled;
 use crate::readings::Support;
 use crate::solve::{Options, Solver};
@@ -191,10 +192,9 @@ impl Tile {
         let mut strokes = Vec::new();
         if self.wanted.strokes {
             engine.system.take_stations(&engine.solution);
-            let (equations, weights) = (&engine.equations, &engine.system.gauss.b);
+            let (equations, at) = (&engine.equations, Measured::of(&engine.system));
             let stroke = |cable| {
-                let [now, unloaded] =
-                    equations.cable_lengths(cable, weights, engine.system.steps(), engine.system.stations());
+                let [now, unloaded] = equations.cable_lengths(cable, at);
                 equations.units.length * (unloaded - now)
             };
             strokes = (0..equations.arm().cables.len()).map(stroke).collect();

@@ -24,7 +24,7 @@
 //! it as it is. Flutter, which takes inertia, is out of reach: Beck's column flutters where the overdamped one
 //! still creeps back.
 
-use hydrostat_bvp::{Collocation, Correction, Determinant, Solution};
+use hydrostat_bvp::{Collocation, Correction, Determinant, Lanes, Solution};
 use nalgebra::DMatrix;
 use nalgebra::linalg::Schur;
 
@@ -32,8 +32,8 @@ use crate::compliance::{Basis, Compliance, FIELDS, project};
 use crate::configuration::Configuration;
 use crate::dense::Dense;
 use crate::elimination::solved;
-use crate::engine::{M, UnitPull, correct, linearise, pull_taut, response_change, stroke_change};
-use crate::equilibrium::{Equations, L, N, Q, Way};
+use crate::engine::{M, UnitPull, correct, linearise, pull_taut, response_change, turn_sections};
+use crate::equilibrium::{Equations, L, Measured, N, Q, Way};
 use crate::readings::Support;
 use crate::verdict::Phase;
 
@@ -231,25 +231,12 @@ impl Tangent {
         solution.nodes.fill(base);
         for (block, stage) in solution.stages.iter_mut().enumerate() {
             stage.inner = equations.reference_in(block);
-            stage.slope = [
-                stage.inner[2],
-                hydrostat_bvp::Lanes::default(),
-                hydrostat_bvp::Lanes::default(),
-                hydrostat_bvp::Lanes::default(),
-            ];
-            stage.closure_slope = hydrostat_bvp::Lanes::default();
+            stage.closure_slope = Lanes::default();
         }
         for end in &mut solution.ends {
-            end.closure_slope = hydrostat_bvp::Lanes::default();
+            end.closure_slope = Lanes::default();
         }
-        for i in 0..solution.mesh.elements() {
-            let h = solution.mesh.step(i);
-            let mut next = solution.nodes[i];
-            for j in 0..M {
-                next[0] += h * system.gauss.b[j] * equations.reference_strain(i * M + j)[2];
-            }
-            solution.nodes[i + 1] = next;
-        }
+        turn_sections(&system.gauss, &mut solution);
         let mut unloaded = Self { equations, system, solution, determinant: Determinant::ONE };
         unloaded.linearise()?;
         let rates = scaled_rates(&unloaded.compliance(functions)?, functions, 1.0)?;
@@ -284,7 +271,7 @@ impl Tangent {
         let (equations, solution) = (&self.equations, &self.solution);
         let mut compliance =
             Compliance::new(&self.system, &solution.mesh, functions, cables.len(), |system, response| {
-                cables.iter().map(|cable| stroke_change(equations, system, *cable, response)).collect()
+                cables.iter().map(|cable| equations.stroke_change(*cable, Measured::of(system), response)).collect()
             });
         let basis = Basis::new(&self.system.gauss.c, &solution.mesh, functions);
         let motion = |(pulled, cable): (&UnitPull, &usize)| {

@@ -159,7 +159,7 @@ impl Solver {
         if engine.refresh().is_ok()
             && let Some(held) = engine.equations.held.clone()
         {
-            let strokes: Vec<f64> = held.cables.iter().map(|c| engine.stroke(*c)).collect();
+            let strokes = engine.strokes(held.cables.iter().copied());
             let all_slack = !held.taut.contains(&true);
             if all_slack && strokes.iter().enumerate().all(|(i, stroke)| *stroke >= engine.equations.command(&held, i))
             {

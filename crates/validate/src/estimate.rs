@@ -54,9 +54,10 @@ pub enum Compared {
         off: f64,
         /// What the answer itself says of its distance from the exact one.
         estimate: f64,
-        /// That distance over L, by an answer at a tolerance of 1e-11. The references let beta jump by r [beta'] where a table has a knot, r the reach
-        /// of beta' in the section law, and are up to 2e-8 L off there.
-        from_sharp: f64,
+        /// That distance over L: to the reference, and for arms with knots to an answer at a tolerance of 1e-11. The references let beta jump where
+        /// the curvature of a profile does, by what beta' jumps there, and are up to 1.3e-8 L off for that: with such jumps answers agree with them to
+        /// within 1.02 estimates.
+        distance: f64,
         /// The largest difference of places over L and of angles, along the arm.
         shape: f64,
         /// Whether the reading makes loads that jump, where answers are unique only within a gap.
@@ -98,14 +99,13 @@ pub fn compare(reference: &Reference) -> Compared {
     let readings = arm.readings;
     let jumps = readings.flow_surface == FlowSurface::Lateral || readings.entering_speed == EnteringSpeed::Resultant;
     let unstrained = readings.support == Support::UnstrainedBase;
+    let off = |solved: &Configuration| {
+        (solved.tip().x - reference.tip.x).hypot(solved.tip().y - reference.tip.y) / arm.length
+    };
     match Solver::new(&arm, Options::default()).and_then(|mut solver| solver.solve()) {
         Ok(solved) => Compared::Solved {
-            from_sharp: Solver::new(&arm, Options { tol: 1e-11 })
-                .and_then(|mut solver| solver.solve())
-                .map_or(f64::INFINITY, |sharp| {
-                    (solved.tip().x - sharp.tip().x).hypot(solved.tip().y - sharp.tip().y) / arm.length
-                }),
-            off: (solved.tip().x - reference.tip.x).hypot(solved.tip().y - reference.tip.y) / arm.length,
+            off: off(&solved),
+            distance: if has_knots(&arm) { from_sharp(&arm, &solved) } else { off(&solved) },
             estimate: solved.error_estimate / arm.length,
             shape: shape_error(&solved, &reference.stations),
             loose: jumps,
@@ -126,6 +126,20 @@ pub fn compare(reference: &Reference) -> Compared {
     }
 }
 
+/// Whether the curvature of a profile jumps somewhere along the arm: the breaks that are no ends of cables.
+fn has_knots(arm: &Arm) -> bool {
+    let ends = |s: f64| arm.cables.iter().any(|cable| (cable.end * arm.length - s).abs() <= 1e-9 * arm.length);
+    arm.breaks().into_iter().any(|s| !ends(s))
+}
+
+/// Distance of the tip from that of an answer at a tolerance of 1e-11, over L.
+fn from_sharp(arm: &Arm, solved: &Configuration) -> f64 {
+    let sharp = Solver::new(arm, Options { tol: 1e-11 }).and_then(|mut solver| solver.solve());
+    sharp.map_or(f64::INFINITY, |sharp| {
+        (solved.tip().x - sharp.tip().x).hypot(solved.tip().y - sharp.tip().y) / arm.length
+    })
+}
+
 fn shape_error(solved: &Configuration, stations: &ReferenceStations) -> f64 {
     let places = stations.s.iter().zip(&stations.x).zip(&stations.y).zip(&stations.theta);
     places
@@ -141,8 +155,8 @@ pub fn ratios<'a>(compared: impl IntoIterator<Item = &'a Compared>) -> Vec<f64> 
     let mut ratios: Vec<f64> = compared
         .into_iter()
         .filter_map(|c| match c {
-            Compared::Solved { from_sharp, estimate, loose: false, unmet: false, .. } => {
-                Some(from_sharp.max(1e-11) / estimate.max(1e-11))
+            Compared::Solved { distance, estimate, loose: false, unmet: false, .. } => {
+                Some(distance.max(1e-11) / estimate.max(1e-11))
             }
             _ => None,
         })

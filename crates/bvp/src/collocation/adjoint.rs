@@ -75,6 +75,9 @@ struct Gathered<const N: usize, const M: usize> {
     /// On the state at the left node, and on what the elements take over.
     node: [Lanes; N],
     taken: Lanes,
+    /// On the closure slope of the own ends, and on w at the points, by the weights at ends.
+    own_slope: Lanes,
+    points: [Lanes; POINTS],
 }
 
 impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation<N, M, Q, L> {
@@ -82,20 +85,21 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
     #[inline(always)]
     fn gather(&self, g: usize, weights: &[StageWeights<N>], ends: &[EndWeights<N>]) -> Gathered<N, M> {
         let zero = Lanes::of(0.0);
-        let mut out = Gathered { slopes: [[zero; N]; M], node: [zero; N], taken: zero };
+        let mut out =
+            Gathered { slopes: [[zero; N]; M], node: [zero; N], taken: zero, own_slope: zero, points: [zero; POINTS] };
         for j in 0..M {
             self.add_state_weights(g, j, &weights[j].state, &mut out);
         }
-        if self.closed {
+        if self.directions.is_closed() {
             let (closure, w) = (&self.condensed.closures[g], self.condensed.w(g));
-            let (on_own_slope, on_points) = self.gather_ends(g, ends, &mut out);
-            out.taken += on_own_slope * closure.omega[M];
+            self.gather_ends(g, ends, &mut out);
+            out.taken += out.own_slope * closure.omega[M];
             for m in 0..M + 1 {
-                let mut on_value = on_points[m] + on_own_slope * w[M][m];
+                let mut on_value = out.points[m] + out.own_slope * w[M][m];
                 for j in 0..M {
                     on_value += weights[j].closure_slope * w[j][m];
                 }
-                let gradient = self.value_gradient(g, m);
+                let gradient = self.inner_at(g, m).value_gradient;
                 self.add_state_weights(g, m, &gradient.map(|v| on_value * v), &mut out);
             }
             for j in 0..M {
@@ -108,7 +112,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 for b in 0..N {
                     out.node[b] += self.condensed.by_state(g)[l][a][b] * own;
                 }
-                if self.closed {
+                if self.directions.is_closed() {
                     out.taken += self.condensed.by_taken(g)[l][a] * own;
                 }
             }
@@ -116,10 +120,9 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         out
     }
 
-    /// Puts the weights at the ends of group `g` on states and on what is taken over; those on the closure slope of the own ends, and on
-    /// w at the points by that of other ends.
-    fn gather_ends(&self, g: usize, ends: &[EndWeights<N>], out: &mut Gathered<N, M>) -> (Lanes, [Lanes; POINTS]) {
-        let (mut on_own_slope, mut on_points) = (Lanes::default(), [Lanes::default(); POINTS]);
+    /// Puts the weights at the ends of group `g` on states, on what is taken over, on the closure slope of the own ends, and, by that of
+    /// other ends, on w at the points.
+    fn gather_ends(&self, g: usize, ends: &[EndWeights<N>], out: &mut Gathered<N, M>) {
         for end in ends {
             if end.block < self.groups.count() {
                 if end.block == g {
@@ -128,7 +131,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                         state[a].0[end.lane] = end.state[a];
                     }
                     self.add_state_weights(g, M, &state, out);
-                    on_own_slope.0[end.lane] += end.closure_slope;
+                    out.own_slope.0[end.lane] += end.closure_slope;
                 }
                 continue;
             }
@@ -144,20 +147,14 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 }
             }
             for m in 0..M + 1 {
-                on_points[m].0[lane] += end.closure_slope * closing.slope_by_point[m];
+                out.points[m].0[lane] += end.closure_slope * closing.slope_by_point[m];
             }
             out.taken.0[lane] += end.closure_slope * closing.slope_by_taken;
         }
-        (on_own_slope, on_points)
     }
 
     fn closing_at(&self, end: &EndWeights<N>) -> Option<&super::Closing<N, M>> {
         self.closings.iter().find(|c| c.block == end.block && c.lane == end.lane)
-    }
-
-    #[inline(always)]
-    fn value_gradient(&self, g: usize, m: usize) -> [Lanes; N] {
-        if m < M { self.locals[g * M + m].inner.value_gradient } else { self.ends[g].value_gradient }
     }
 
     /// Adds weights on the state at point `m` of group `g` to those on its slopes and its left node.
@@ -186,7 +183,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             for a in 0..N {
                 out.z[i][a] += gathered[g].node[a].0[lane];
             }
-            if self.closed && !self.directions.closings.contains(&i) {
+            if self.directions.is_closed() && !self.directions.closings.contains(&i) {
                 let node = if self.directions.side(i) == Side::Left { i + 1 } else { i };
                 out.w[node] += gathered[g].taken.0[lane];
             }
@@ -242,7 +239,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 let weight = h * Lanes::of(self.gauss.b[l]);
                 for a in 0..N {
                     slopes[l][a] += weight * jump[a];
-                    if self.closed {
+                    if self.directions.is_closed() {
                         slopes[l][a] += h * self.condensed.closures[g].own_by_slopes[l][a] * own;
                     }
                 }
@@ -269,7 +266,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 slopes.as_flattened_mut().iter_mut().for_each(|v| v.0[lane] = 0.0);
             }
             solve_column_transposed(self.condensed.lu(g), &mut slopes);
-            if self.closed {
+            if self.directions.is_closed() {
                 let (closure, w) = (&self.condensed.closures[g], self.condensed.w(g));
                 for j in 0..M {
                     let mut on_slope = weights(g)[j].closure_slope;
@@ -283,9 +280,8 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                         on_value[m] += w[j][m] * on_slope;
                     }
                 }
-                let (on_own_slope, on_points) = self.gather_ends(g, &functional.ends, &mut gathered[g].clone());
                 for m in 0..M + 1 {
-                    on_value[m] += closure.own[m] * own + on_points[m] + w[M][m] * on_own_slope;
+                    on_value[m] += closure.own[m] * own + gathered[g].points[m] + w[M][m] * gathered[g].own_slope;
                 }
                 out.ends[g] = on_value[M];
             }

@@ -15,7 +15,7 @@ use hydrostat_bvp::{Collocation, Correction, Determinant};
 use super::newton::add_to_spans;
 use super::{Engine, Guess, M, Trouble, correct, respond, response_change};
 use crate::elimination::solved;
-use crate::equilibrium::{Equations, Held, L, N, Q, SectionFailure, Way};
+use crate::equilibrium::{Equations, Held, L, Measured, N, Q, SectionFailure, Way};
 
 /// What strokes may be off by (over L) before the last round, which leaves the square of that.
 const STROKES: f64 = 1e-10;
@@ -81,12 +81,10 @@ impl Engine {
         let pulled = pull_taut(&self.equations, &self.system, &self.solution, &held);
         let mut slack: [Vec<f64>; 2] = std::array::from_fn(|_| Vec::with_capacity(count));
         round.off = 0.0;
-        let change =
-            |cable: usize, by: &Correction<N, M, Q, L>| stroke_change(&self.equations, &self.system, cable, by);
+        let at = Measured::of(&self.system);
+        let change = |cable: usize, by: &Correction<N, M, Q, L>| self.equations.stroke_change(cable, at, by);
         for (index, cable) in held.cables.iter().enumerate() {
-            let stroke =
-                self.equations.stroke(*cable, &self.system.gauss.b, self.system.steps(), self.system.stations());
-            let off = stroke[0] - self.equations.command(&held, index);
+            let off = self.equations.stroke(*cable, at)[0] - self.equations.command(&held, index);
             if held.taut[index] {
                 round.off = round.off.max(off.abs());
             }
@@ -238,6 +236,7 @@ pub(crate) fn pull_taut(
     solution: &Guess,
     held: &Held,
 ) -> Vec<UnitPull> {
+    let at = Measured::of(system);
     let mut out = Vec::new();
     for index in held.tight() {
         let cable = held.cables[index];
@@ -245,21 +244,11 @@ pub(crate) fn pull_taut(
         let mut response = Correction::default();
         respond(system, &change, &mut response);
         let mut strokes: Vec<f64> =
-            held.cables.iter().map(|cable| stroke_change(equations, system, *cable, &response)).collect();
-        strokes[index] += equations.stroke(cable, &system.gauss.b, system.steps(), system.stations())[1];
+            held.cables.iter().map(|cable| equations.stroke_change(*cable, at, &response)).collect();
+        strokes[index] += equations.stroke(cable, at)[1];
         out.push(UnitPull { response, strokes });
     }
     out
-}
-
-/// The change of the stroke of a cable with a change of the solution, over L.
-pub(crate) fn stroke_change(
-    equations: &Equations,
-    system: &Collocation<N, M, Q, L>,
-    cable: usize,
-    change: &Correction<N, M, Q, L>,
-) -> f64 {
-    equations.stroke_change(cable, &system.gauss.b, system.steps(), system.stations(), change)
 }
 
 #[cfg(test)]
@@ -333,7 +322,8 @@ mod tests {
             }
             let slack = |engine: &Engine| {
                 let held = engine.equations.held.clone().unwrap();
-                let one = |i: usize| engine.stroke(i) - engine.equations.command(&held, i);
+                let strokes = engine.strokes(0..3);
+                let one = |i: usize| strokes[i] - engine.equations.command(&held, i);
                 [one(0), one(1), one(2)]
             };
             for ((after, before), found) in slack(&after).iter().zip(slack(&before)).zip(&round.slack[1]) {

@@ -1,6 +1,6 @@
 //! Where Newton starts from.
 
-use hydrostat_bvp::{Collocation, LANES, Lanes, Mesh, Side, Solution};
+use hydrostat_bvp::{Collocation, Gauss, Lanes, Mesh, Side, Solution};
 
 use super::{Engine, Guess, M, Trouble, evaluate};
 use crate::equilibrium::{L, N, Q};
@@ -11,14 +11,14 @@ impl Engine {
     pub(crate) fn start_from_cables(&mut self, elements: usize) -> Result<(), Trouble> {
         self.place_unloaded(Mesh::uniform(elements, &self.breaks));
         self.strains_from_cables()?;
-        self.turn_sections();
+        turn_sections(&self.system.gauss, &mut self.solution);
         Ok(())
     }
 
     /// The unloaded arm: reference strains, nothing carried.
     pub(crate) fn start_unloaded(&mut self, elements: usize) {
         self.place_unloaded(Mesh::uniform(elements, &self.breaks));
-        self.turn_sections();
+        turn_sections(&self.system.gauss, &mut self.solution);
     }
 
     /// Stations on a mesh, each with the reference strains, and nothing carried.
@@ -30,29 +30,7 @@ impl Engine {
         for (block, stage) in self.solution.stages.iter_mut().enumerate() {
             stage.inner = self.equations.reference_in(block);
         }
-        if self.equations.is_closed() {
-            self.turn(|_, _, _| Side::Left);
-        }
-    }
-
-    /// Turns the sections by the bending strain of each station, from the base.
-    fn turn_sections(&mut self) {
-        let groups = self.solution.groups();
-        for i in 0..groups.elements {
-            let h = self.solution.mesh.step(i);
-            let mut next = self.solution.nodes[i];
-            for j in 0..M {
-                let (block, lane) = groups.at(i, j);
-                let mu = self.solution.stages[block].inner[2].0[lane];
-                self.solution.stages[block].slope = [0; 4].map(|_: i32| Lanes::default());
-                next[0] += h * self.system.gauss.b[j] * mu;
-            }
-            self.solution.nodes[i + 1] = next;
-        }
-        for block in 0..self.solution.stages.len() {
-            let mu = self.solution.stages[block].inner[2];
-            self.solution.stages[block].slope[0] = mu;
-        }
+        self.match_closure();
     }
 
     fn strains_from_cables(&mut self) -> Result<(), Trouble> {
@@ -100,6 +78,22 @@ impl Engine {
     }
 }
 
+/// Turns the sections by the bending strain of each station, from the base, with nothing carried.
+pub(crate) fn turn_sections(gauss: &Gauss<M>, solution: &mut Guess) {
+    let zero = Lanes::default();
+    for stage in &mut solution.stages {
+        stage.slope = [stage.inner[2], zero, zero, zero];
+    }
+    for i in 0..solution.mesh.elements() {
+        let h = solution.mesh.step(i);
+        let mut next = solution.nodes[i];
+        for (j, b) in gauss.b.iter().enumerate() {
+            next[0] += h * b * solution.slope(i, j)[0];
+        }
+        solution.nodes[i + 1] = next;
+    }
+}
+
 /// The end of element `i` towards which disturbances of beta fade, by its largest reach.
 fn wanted_side(system: &Collocation<N, M, Q, L>, solution: &Guess, i: usize) -> Side {
     let mut largest = 0.0_f64;
@@ -117,5 +111,3 @@ fn wanted_side(system: &Collocation<N, M, Q, L>, solution: &Guess, i: usize) -> 
 
 /// Reach over the length of an element up to which either end may be its own.
 const HARMLESS: f64 = 0.02;
-
-const _: () = assert!(LANES == 4);

@@ -76,6 +76,9 @@ fn in_lanes(asked: &[Asked; LANES]) -> ([Lanes; N], [Lanes; 3], Lanes) {
     (z, strain, Lanes(each(|lane| asked[lane].beta_slope)))
 }
 
+/// Steps of the section law that may be left to what is read at a place: forces of cables do not take them up.
+const SHARP_STEP: f64 = 1e-12;
+
 /// Steps of the section law that leave beta right to rounding: it takes up their first order.
 const ROUGH_STEP: f64 = 1e-9;
 
@@ -168,7 +171,7 @@ impl Equations {
         beta_slope: R,
     ) -> (AtPlace<R>, bool) {
         let contact = in_directors([cos, sin], &z);
-        let solved = solve_section(self.volume, &place.stiffness, cables, contact, strain, beta_slope, 1e-10);
+        let solved = solve_section(self.volume, &place.stiffness, cables, contact, strain, beta_slope, SHARP_STEP);
         let fine = solved.size.all_below(1e-9)
             && (-solved.regularity).all_below(0.0)
             && (-solved.balance.openness).all_below(-FOLDED);

@@ -1,10 +1,27 @@
 //! The paths that cables take through the deformed arm.
 
-use hydrostat_bvp::{Correction, Lanes, Real, Station};
+use hydrostat_bvp::{Collocation, Correction, Lanes, Real, Station};
 
 use super::{Equations, L, N, Q};
 use crate::cable::{Tangent, tangent};
 use crate::swelling::swelling;
+
+/// The stations of a solution, with what integrates over them.
+#[derive(Clone, Copy)]
+pub(crate) struct Measured<'a> {
+    /// Of the stages.
+    weights: &'a [f64],
+    /// Lengths of elements, a group.
+    steps: &'a [Lanes],
+    stations: &'a [Station<N, L>],
+}
+
+impl<'a> Measured<'a> {
+    /// The stations that `system` has.
+    pub(crate) fn of<const M: usize>(system: &'a Collocation<N, M, Q, L>) -> Self {
+        Self { weights: &system.gauss.b, steps: system.steps(), stations: system.stations() }
+    }
+}
 
 impl Equations {
     /// The tangent of cable `c` in a block of stations.
@@ -35,9 +52,9 @@ impl Equations {
         out
     }
 
-    /// Sums `value` over the path of cable `c`, with the weights of the stages and the lengths of elements.
+    /// Sums `value` over the path of cable `c`.
     #[inline(always)]
-    fn along_cable(&self, c: usize, weights: &[f64], steps: &[Lanes], value: impl Fn(usize) -> Lanes) -> f64 {
+    fn along_cable(&self, c: usize, at: Measured<'_>, value: impl Fn(usize) -> Lanes) -> f64 {
         let groups = self.groups;
         let mut sum = 0.0;
         for block in 0..groups.count() * groups.stages {
@@ -45,41 +62,35 @@ impl Equations {
             let value = value(block);
             for lane in 0..groups.filled(group) {
                 if self.stations[groups.station_in(block, lane)] < self.ends[c] {
-                    sum += steps[group].0[lane] * weights[stage] * value.0[lane];
+                    sum += at.steps[group].0[lane] * at.weights[stage] * value.0[lane];
                 }
             }
         }
         sum
     }
 
-    /// Length of the path of cable `c`, now and at the reference strains, over L, with the weights of the stages.
-    pub(crate) fn cable_lengths(
-        &self,
-        c: usize,
-        weights: &[f64],
-        steps: &[Lanes],
-        stations: &[Station<N, L>],
-    ) -> [f64; 2] {
+    /// Length of the path of cable `c`, now and at the reference strains, over L.
+    pub(crate) fn cable_lengths(&self, c: usize, at: Measured<'_>) -> [f64; 2] {
         [
-            self.along_cable(c, weights, steps, |block| self.cable_tangent(c, block, &stations[block]).stretch),
-            self.along_cable(c, weights, steps, |block| self.reference_stretch(c, block)),
+            self.along_cable(c, at, |block| self.cable_tangent(c, block, &at.stations[block]).stretch),
+            self.along_cable(c, at, |block| self.reference_stretch(c, block)),
         ]
     }
 
     /// The unstretched length of cable `c` over L: the integral of |tau| / (1 + T(s)/EA), with its derivative by the tension (in the unit
     /// of force).
-    fn unstretched(&self, c: usize, weights: &[f64], steps: &[Lanes], stations: &[Station<N, L>]) -> [f64; 2] {
+    fn unstretched(&self, c: usize, at: Measured<'_>) -> [f64; 2] {
         let per_force = self.per_force(c);
         let tension = self.tensions[c];
-        let stretch = |block: usize| self.cable_tangent(c, block, &stations[block]).stretch;
+        let stretch = |block: usize| self.cable_tangent(c, block, &at.stations[block]).stretch;
         let share = |block: usize| self.cables_in(block)[c].tension;
         if per_force == 0.0 {
-            return [self.along_cable(c, weights, steps, stretch), 0.0];
+            return [self.along_cable(c, at, stretch), 0.0];
         }
         let longer = |block: usize| Lanes::of(1.0) + share(block) * Lanes::of(tension * per_force);
         [
-            self.along_cable(c, weights, steps, |block| stretch(block) / longer(block)),
-            self.along_cable(c, weights, steps, |block| {
+            self.along_cable(c, at, |block| stretch(block) / longer(block)),
+            self.along_cable(c, at, |block| {
                 let longer = longer(block);
                 -(stretch(block) * share(block) * Lanes::of(per_force)) / (longer * longer)
             }),
@@ -91,17 +102,10 @@ impl Equations {
         self.arm.cables[c].stiffness.map_or(0.0, |stiffness| self.units.force / stiffness)
     }
 
-    /// Unstretched stroke of `cable` at stations, over L, with the weights of the stages, and its derivative by the
-    /// tension (in the unit of force).
-    pub(crate) fn stroke(
-        &self,
-        cable: usize,
-        weights: &[f64],
-        steps: &[Lanes],
-        stations: &[Station<N, L>],
-    ) -> [f64; 2] {
-        let [now, by_tension] = self.unstretched(cable, weights, steps, stations);
-        let reference = self.along_cable(cable, weights, steps, |block| self.reference_stretch(cable, block));
+    /// Unstretched stroke of `cable`, over L, and its derivative by the tension (in the unit of force).
+    pub(crate) fn stroke(&self, cable: usize, at: Measured<'_>) -> [f64; 2] {
+        let [now, by_tension] = self.unstretched(cable, at);
+        let reference = self.along_cable(cable, at, |block| self.reference_stretch(cable, block));
         [reference - now, -by_tension]
     }
 
@@ -127,13 +131,11 @@ impl Equations {
     pub(crate) fn stroke_change<const M: usize>(
         &self,
         cable: usize,
-        weights: &[f64; M],
-        steps: &[Lanes],
-        stations: &[Station<N, L>],
+        at: Measured<'_>,
         change: &Correction<N, M, Q, L>,
     ) -> f64 {
-        self.along_cable(cable, weights, steps, |block| {
-            let (by_strain, by_beta_slope) = self.stretch_gradient(cable, block, &stations[block]);
+        self.along_cable(cable, at, |block| {
+            let (by_strain, by_beta_slope) = self.stretch_gradient(cable, block, &at.stations[block]);
             let stage = &change.stages[block];
             let mut rate = by_beta_slope * stage.closure_slope;
             for (by, strain) in by_strain.iter().zip(&stage.inner) {

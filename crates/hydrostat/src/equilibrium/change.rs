@@ -2,6 +2,7 @@
 
 use hydrostat_bvp::{Change, Condition, Drift, Lanes, Local, Problem, Real, Station, each};
 
+use super::cable_paths::Measured;
 use super::few::Few;
 use super::gradients::by_strain_change;
 use super::places::Place;
@@ -336,15 +337,7 @@ impl Equations {
     }
 
     /// How the stroke of cable `c` (of its path, or as it is commanded) follows `way` at a fixed solution, over L.
-    pub(crate) fn stroke_by(
-        &self,
-        c: usize,
-        commanded: bool,
-        way: Way,
-        weights: &[f64],
-        steps: &[Lanes],
-        stations: &[Station<N, L>],
-    ) -> f64 {
+    pub(crate) fn stroke_by(&self, c: usize, commanded: bool, way: Way, at: Measured<'_>) -> f64 {
         let geometric = matches!(way, Way::Of(Parameter::Offset(..)));
         let stretched = commanded && self.arm.cables[c].stiffness.is_some();
         let pulled = stretched && matches!(way, Way::Of(Parameter::Tension(k)) if k == c);
@@ -353,9 +346,9 @@ impl Equations {
         }
         let stroke = |equations: &Self| {
             if commanded {
-                return equations.stroke(c, weights, steps, stations)[0];
+                return equations.stroke(c, at)[0];
             }
-            let [now, reference] = equations.cable_lengths(c, weights, steps, stations);
+            let [now, reference] = equations.cable_lengths(c, at);
             reference - now
         };
         self.difference(way, stroke)

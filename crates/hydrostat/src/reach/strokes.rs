@@ -58,7 +58,7 @@ impl Search {
     pub(super) fn strokes(&self, solver: &Solver) -> Vec<f64> {
         let engine = &solver.engine;
         let cables = if self.longest.is_some() { self.scale.len() } else { 0 };
-        (0..cables).map(|c| engine.stroke(c)).collect()
+        engine.strokes(0..cables)
     }
 
     /// Whether the cable hangs slack.

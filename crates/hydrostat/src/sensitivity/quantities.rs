@@ -7,7 +7,7 @@ use hydrostat_bvp::{
 use super::{SensitivityError, SensitivityMethod, unsettled};
 use crate::elimination::solved;
 use crate::engine::{Engine, M, Trouble, linearise, respond, response_change};
-use crate::equilibrium::{L, N, Q, Way};
+use crate::equilibrium::{L, Measured, N, Q, Way};
 use crate::parameter::Parameter;
 
 type System = Collocation<N, M, Q, L>;
@@ -297,9 +297,8 @@ impl About<'_> {
                 row.stages[block].1[k] += weight * *by;
             }
         }
-        let (weights, steps, stations) = (&self.system.gauss.b, self.system.steps(), self.system.stations());
         for (direct, source) in row.direct.iter_mut().zip(sources) {
-            *direct += factor * equations.stroke_by(c, commanded, Way::Of(*source), weights, steps, stations);
+            *direct += factor * equations.stroke_by(c, commanded, Way::Of(*source), Measured::of(self.system));
         }
     }
 
