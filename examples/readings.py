@@ -35,7 +35,7 @@ base
 # %% [markdown]
 # ## One option at a time
 #
-# How far the tip moves, over the length, when one reading is replaced. The arm has no gravity: `hydrostatics` changes nothing here. Readings in which the
+# How far the tip moves, over the length, when one reading is replaced. The arm has no gravity: `displaced` and `hydrostatics` change nothing here. Readings in which the
 # load jumps may have no solution; the verdict says so.
 
 # %%
@@ -45,6 +45,7 @@ alternatives: dict[str, list[str]] = {
     "entering_speed": ["resultant"],
     "layer_mean": ["momentum"],
     "wetted_length": ["deformed"],
+    "displaced": ["section"],
     "hydrostatics": ["normal-only"],
     "support": ["unstrained-base"],
     "closure": ["literal"],

@@ -363,7 +363,7 @@ def test_readings_stand_side_by_side(watched: Watched) -> None:
     page = watched.open("#arm=paper&cable[0].tension=20")
     page.locator("#tab-readings").click()
     rows = page.locator("#readings-table tbody tr")
-    expect(rows).to_have_count(9, timeout=20_000)
+    expect(rows).to_have_count(10, timeout=20_000)
     row = rows.filter(has_text="Volume: circular").locator("td").all_inner_texts()
     tip = said(solved("paper", "--tension", "20,0", "--set", "model.volume=circular"))
     values = [float(text.replace("\u2212", "-")) for text in row[1:4]]

@@ -5,8 +5,8 @@ use std::io::Read;
 use std::path::Path;
 
 use hydrostat::{
-    Arm, Base, Cable, Cavity, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity, Hydrostatics,
-    LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
+    Arm, Base, Cable, Cavity, Displaced, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity,
+    Hydrostatics, LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
 };
 
 use crate::document::{self, Field, Origin};
@@ -295,6 +295,7 @@ fn readings(v: &Values) -> Readings {
     take(v, "entering_speed", &EnteringSpeed::ALL, &EnteringSpeed::NAMES, &mut r.entering_speed);
     take(v, "layer_mean", &LayerMean::ALL, &LayerMean::NAMES, &mut r.layer_mean);
     take(v, "wetted_length", &WettedLength::ALL, &WettedLength::NAMES, &mut r.wetted_length);
+    take(v, "displaced", &Displaced::ALL, &Displaced::NAMES, &mut r.displaced);
     take(v, "hydrostatics", &Hydrostatics::ALL, &Hydrostatics::NAMES, &mut r.hydrostatics);
     take(v, "support", &Support::ALL, &Support::NAMES, &mut r.support);
     r

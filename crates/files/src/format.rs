@@ -1,6 +1,6 @@
 //! The arm file's format as data. Parser, `--set`, schema and messages all read this one table.
 
-use hydrostat::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Support, Volume, WettedLength};
+use hydrostat::{Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Support, Volume, WettedLength};
 
 use crate::quantity::Dimension;
 
@@ -167,12 +167,18 @@ const DISTRIBUTED: &[Key] = &[
 ];
 
 const MODEL: &[Key] = &[
-    default("closure", Choice(&["default", "literal"]), "\"default\"", "All readings together."),
+    default(
+        "closure",
+        Choice(&["default", "literal"]),
+        "\"default\"",
+        "All readings together, but `displaced`: `literal` has those closest to the source's words.",
+    ),
     optional("volume", Choice(&Volume::NAMES), "How a section swells."),
     optional("flow_surface", Choice(&FlowSurface::NAMES), "The surface that directs the loads of the stream."),
     optional("entering_speed", Choice(&EnteringSpeed::NAMES), "The speed that enters the layer."),
     optional("layer_mean", Choice(&LayerMean::NAMES), "The mean over the layer's profile."),
     optional("wetted_length", Choice(&WettedLength::NAMES), "The length on which the stream acts."),
+    optional("displaced", Choice(&Displaced::NAMES), "The water that a section displaces."),
     optional("hydrostatics", Choice(&Hydrostatics::NAMES), "The part of weight and buoyancy that acts."),
     optional("support", Choice(&Support::NAMES), "The conditions at the base."),
 ];

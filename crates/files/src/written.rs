@@ -307,6 +307,7 @@ fn model(r: Readings) -> Tree {
         ("entering_speed", r.entering_speed.name()),
         ("layer_mean", r.layer_mean.name()),
         ("wetted_length", r.wetted_length.name()),
+        ("displaced", r.displaced.name()),
         ("hydrostatics", r.hydrostatics.name()),
         ("support", r.support.name()),
     ];

@@ -3,7 +3,8 @@
 mod common;
 
 use hydrostat::{
-    Arm, Cable, Cavity, Flow, FlowLaw, FlowSurface, Gravity, Material, Profile, Readings, Reference, Support, Volume,
+    Arm, Cable, Cavity, Displaced, Flow, FlowLaw, FlowSurface, Gravity, Material, Profile, Readings, Reference,
+    Support, Volume,
 };
 use hydrostat_files::{ArmFile, shipped};
 
@@ -89,6 +90,7 @@ fn every_key_of_the_format() {
         [model]
         closure = "literal"
         volume = "none"
+        displaced = "section"
         support = "unstrained-base"
     "#
     .replace("1 mN m/m", "1 mN")
@@ -111,7 +113,12 @@ fn every_key_of_the_format() {
     assert_eq!((arm.tip.force, arm.tip.moment, arm.tip.follower), ([0.001, 0.002], 0.003, [0.0, -0.001]));
     assert_eq!(arm.distributed.force, [Profile::linear(0.001, 0.0), 0.5.into()]);
     assert_eq!(arm.distributed.couple, 0.001.into());
-    let want = Readings { volume: Volume::None, support: Support::UnstrainedBase, ..Readings::LITERAL };
+    let want = Readings {
+        volume: Volume::None,
+        displaced: Displaced::Section,
+        support: Support::UnstrainedBase,
+        ..Readings::LITERAL
+    };
     assert_eq!(arm.readings, want);
 }
 

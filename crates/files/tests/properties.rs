@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use hydrostat::{
-    Arm, Base, Cable, Cavity, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity, Hydrostatics, Join,
-    LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
+    Arm, Base, Cable, Cavity, Displaced, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity,
+    Hydrostatics, Join, LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
 };
 use hydrostat_files::{ArmFile, Inputs, arm_to_toml, schema, shipped};
 use proptest::prelude::*;
@@ -46,12 +46,24 @@ fn readings() -> impl Strategy<Value = Readings> {
         select(vec![EnteringSpeed::Tangential, EnteringSpeed::Resultant]),
         select(vec![LayerMean::Speed, LayerMean::Momentum]),
         select(vec![WettedLength::Reference, WettedLength::Deformed]),
+        select(Displaced::ALL.to_vec()),
         select(vec![Hydrostatics::Archimedes, Hydrostatics::NormalOnly]),
         select(vec![Support::Clamped, Support::UnstrainedBase]),
     )
-        .prop_map(|(volume, flow_surface, entering_speed, layer_mean, wetted_length, hydrostatics, support)| {
-            Readings { volume, flow_surface, entering_speed, layer_mean, wetted_length, hydrostatics, support }
-        })
+        .prop_map(
+            |(volume, flow_surface, entering_speed, layer_mean, wetted_length, displaced, hydrostatics, support)| {
+                Readings {
+                    volume,
+                    flow_surface,
+                    entering_speed,
+                    layer_mean,
+                    wetted_length,
+                    displaced,
+                    hydrostatics,
+                    support,
+                }
+            },
+        )
 }
 
 fn material(length: f64) -> impl Strategy<Value = Material> {

@@ -46,7 +46,7 @@ fn parser_and_schema_take_the_same() {
         "[distributed]\nforce = [0, { base = \"1 N/m\", tip = 0 }]\ncouple = \"1 N\"",
         "[gravity]\nacceleration = \"2 g\"\ndirection = \"-45\u{b0}\"",
         "[flow]\nspeed = \" +.5e0 m/s \"\ndensity = \"1.02 g/cm^3\"\nlayer_thickness = \"5 \u{b5}m\"",
-        "[model]\nclosure = \"literal\"\nvolume = \"none\"\nsupport = \"unstrained-base\"",
+        "[model]\nclosure = \"literal\"\nvolume = \"none\"\ndisplaced = \"section\"\nsupport = \"unstrained-base\"",
     ];
     for text in good {
         check(&format!("{ARM}{MATERIAL}{text}"), true);

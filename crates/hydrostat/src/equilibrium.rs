@@ -455,6 +455,8 @@ fn water(arm: &Arm) -> Water {
         law: Law::new(arm.flow.law, r.entering_speed, r.layer_mean.factor()),
         surface: r.flow_surface,
         wetted: r.wetted_length,
+        volume: r.volume,
+        displaced: r.displaced,
         hydrostatics: r.hydrostatics,
         tangential_factor: 1.0,
     }

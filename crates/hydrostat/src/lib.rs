@@ -174,7 +174,9 @@ pub use reach::{
     Bound, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, BoundaryProgress, Followed, Follower,
     Reach, ReachError, ReachOptions, Reached, Target,
 };
-pub use readings::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength};
+pub use readings::{
+    Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
+};
 pub use sensitivity::{
     Ellipse, PoseChange, SensitiveStation, Sensitivities, SensitivityError, SensitivityMethod, SensitivityOptions,
 };

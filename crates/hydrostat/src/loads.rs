@@ -2,8 +2,8 @@
 
 use crate::configuration::Station;
 use crate::flow::{Law, traction};
-use crate::readings::{FlowSurface, Hydrostatics, WettedLength};
-use crate::swelling::Swelling;
+use crate::readings::{Displaced, FlowSurface, Hydrostatics, Volume, WettedLength};
+use crate::swelling::{Swelling, displacement};
 use hydrostat_bvp::{Real, each};
 
 /// What the loads need to know of the arm as a whole.
@@ -14,6 +14,9 @@ pub(crate) struct Water {
     pub(crate) law: Law,
     pub(crate) surface: FlowSurface,
     pub(crate) wetted: WettedLength,
+    /// The law that `swelling` is of, and with it `displaced`.
+    pub(crate) volume: Volume,
+    pub(crate) displaced: Displaced,
     pub(crate) hydrostatics: Hydrostatics,
     /// Factor on the tangential load, one but for asking what hangs on it.
     pub(crate) tangential_factor: f64,
@@ -150,20 +153,26 @@ pub(crate) fn load<R: Real>(
         switches: [zero; 3],
     };
 
-    if water.stream != [0.0; 2] {
-        let wetted = wetted(water, body, strain, swelling);
-        match water.surface {
-            FlowSurface::Centreline => {
+    let streams = water.stream != [0.0; 2];
+    let wetted = wetted(water, body, strain, swelling);
+    match water.surface {
+        FlowSurface::Centreline => {
+            if streams {
                 stream_load(water, &along, one, wetted, one, &mut out);
             }
-            FlowSurface::Lateral => {
-                let radius = [body.radius, body.radius_slope];
-                let side = |sigma| lateral(sigma, strain, swelling, radius, beta_slope).frame(cos, sin);
-                lateral_load(water, &side(1.0), &side(-1.0), wetted, &mut out);
+            add_hydrostatics(water, body, nu, swelling, &[(one, along)], &mut out);
+        }
+        FlowSurface::Lateral => {
+            let radius = [body.radius, body.radius_slope];
+            let side = |sigma| lateral(sigma, strain, swelling, radius, beta_slope).frame(cos, sin);
+            let (left, right) = (side(1.0), side(-1.0));
+            let share = left_share(water, &left, &right);
+            if streams {
+                lateral_load(water, &left, &right, share, wetted, &mut out);
             }
+            add_hydrostatics(water, body, nu, swelling, &[(share, left), (one - share, right)], &mut out);
         }
     }
-    add_hydrostatics(water, body, nu, swelling, &along, &mut out);
     out
 }
 
@@ -182,14 +191,34 @@ fn wetted<R: Real>(water: &Water, body: &Body<R>, strain: [R; 3], swelling: &Swe
     }
 }
 
+/// U . u_n on the left and on the right side, u_n = sigma k x u_t outward: the smaller is windward.
+#[inline(always)]
+fn hits<R: Real>(water: &Water, left: &Frame<R>, right: &Frame<R>) -> [R; 2] {
+    let stream: [R; 2] = each(|k| R::of(water.stream[k]));
+    [dot(stream, left.w), -dot(stream, right.w)]
+}
+
+/// The left side's share of what acts on the windward surface: one or nothing, and half where the sides tie, as they do
+/// without a stream.
+#[inline(always)]
+fn left_share<R: Real>(water: &Water, left: &Frame<R>, right: &Frame<R>) -> R {
+    let (zero, one, half) = (R::of(0.0), R::of(1.0), R::of(0.5));
+    let [hit_left, hit_right] = hits(water, left, right);
+    hit_left.if_less(hit_right, one, hit_right.if_less(hit_left, zero, half))
+}
+
 /// Adds the stream's load on the windward one of the two sides, on each half where they tie.
 #[inline(always)]
-fn lateral_load<R: Real>(water: &Water, left: &Frame<R>, right: &Frame<R>, wetted: (R, [R; 3]), out: &mut Load<R>) {
-    let (zero, one, half) = (R::of(0.0), R::of(1.0), R::of(0.5));
-    let stream: [R; 2] = each(|k| R::of(water.stream[k]));
-    // U . u_n with u_n = sigma k x u_t outward: the smaller is windward.
-    let (hit_left, hit_right) = (dot(stream, left.w), -dot(stream, right.w));
-    let left_share = hit_left.if_less(hit_right, one, hit_right.if_less(hit_left, zero, half));
+fn lateral_load<R: Real>(
+    water: &Water,
+    left: &Frame<R>,
+    right: &Frame<R>,
+    left_share: R,
+    wetted: (R, [R; 3]),
+    out: &mut Load<R>,
+) {
+    let (zero, one) = (R::of(0.0), R::of(1.0));
+    let [hit_left, hit_right] = hits(water, left, right);
     let faces = |hit: R| hit.if_less(zero, one, zero);
     stream_load(water, left, faces(hit_left), wetted, left_share, out);
     stream_load(water, right, faces(hit_right), wetted, one - left_share, out);
@@ -199,21 +228,21 @@ fn lateral_load<R: Real>(water: &Water, left: &Frame<R>, right: &Frame<R>, wette
     out.switches[2] = (hit_left - hit_right) * speed;
 }
 
-/// Adds weight less buoyancy, the hydrostatic part of (9) and (10).
+/// Adds weight less buoyancy, the hydrostatic part of (9) and (10). `surfaces` are the one or two whose normals direct it
+/// where only its normal part acts, with their shares.
 #[inline(always)]
 fn add_hydrostatics<R: Real>(
     water: &Water,
     body: &Body<R>,
     nu: R,
     swelling: &Swelling<R>,
-    along: &Frame<R>,
+    surfaces: &[(R, Frame<R>)],
     out: &mut Load<R>,
 ) {
-    // Weight less buoyancy: f_h = (rho_arm - rho_w nu beta^2) pi (R^2 - R_in^2) g (solid or flooded).
-    let volume = nu * swelling.beta * swelling.beta;
-    let volume_nu = swelling.beta * (swelling.beta + R::of(2.0) * nu * swelling.slope);
-    let h: [R; 2] = each(|k| body.weight[k] - body.displaced[k] * volume);
-    let h_nu: [R; 2] = each(|k| -(body.displaced[k] * volume_nu));
+    // Weight less buoyancy: f_h = (rho_arm - rho_w d) pi (R^2 - R_in^2) g (solid or flooded).
+    let [d, d_nu] = displacement(water.displaced, water.volume, nu, swelling);
+    let h: [R; 2] = each(|k| body.weight[k] - body.displaced[k] * d);
+    let h_nu: [R; 2] = each(|k| -(body.displaced[k] * d_nu));
     match water.hydrostatics {
         Hydrostatics::Archimedes => {
             for k in 0..2 {
@@ -222,15 +251,19 @@ fn add_hydrostatics<R: Real>(
             }
         }
         Hydrostatics::NormalOnly => {
-            let (across, down, across_nu) = (dot(h, along.w), dot(h, along.u), dot(h_nu, along.w));
-            for k in 0..2 {
-                out.force[k] += across * along.w[k];
-                let turned = -(down * along.w[k] + across * along.u[k]);
-                out.by_theta[k] += turned;
-                for c in 0..3 {
-                    out.by_strain[k][c] += turned * along.turn[c];
+            for (share, surface) in surfaces {
+                let Frame { u, w, turn, turn_beta_slope } = surface;
+                let (across, down, across_nu) = (dot(h, *w) * *share, dot(h, *u) * *share, dot(h_nu, *w) * *share);
+                for k in 0..2 {
+                    out.force[k] += across * w[k];
+                    let turned = -(down * w[k] + across * u[k]);
+                    out.by_theta[k] += turned;
+                    out.by_beta_slope[k] += turned * *turn_beta_slope;
+                    for c in 0..3 {
+                        out.by_strain[k][c] += turned * turn[c];
+                    }
+                    out.by_strain[k][0] += across_nu * w[k];
                 }
-                out.by_strain[k][0] += across_nu * along.w[k];
             }
         }
     }
@@ -271,7 +304,7 @@ fn stream_load<R: Real>(
 mod tests {
     use super::*;
     use crate::arm::FlowLaw;
-    use crate::readings::{EnteringSpeed, LayerMean, Volume};
+    use crate::readings::{EnteringSpeed, LayerMean};
     use crate::swelling::swelling;
 
     /// Every reading's derivatives against differences, away from kinks.
@@ -289,16 +322,21 @@ mod tests {
         for surface in [FlowSurface::Centreline, FlowSurface::Lateral] {
             for entering in [EnteringSpeed::Tangential, EnteringSpeed::Resultant] {
                 for wetted in [WettedLength::Reference, WettedLength::Deformed] {
-                    for hydrostatics in [Hydrostatics::Archimedes, Hydrostatics::NormalOnly] {
-                        let water = Water {
-                            stream: [0.6, 0.3],
-                            law: Law::new(FlowLaw::Momentum, entering, LayerMean::Speed.factor()),
-                            surface,
-                            wetted,
-                            hydrostatics,
-                            tangential_factor: 1.0,
-                        };
-                        check(&water, &body);
+                    for hydrostatics in Hydrostatics::ALL {
+                        for (volume, displaced) in Volume::ALL.into_iter().flat_map(|v| Displaced::ALL.map(|d| (v, d)))
+                        {
+                            let water = Water {
+                                stream: [0.6, 0.3],
+                                law: Law::new(FlowLaw::Momentum, entering, LayerMean::Speed.factor()),
+                                surface,
+                                wetted,
+                                volume,
+                                displaced,
+                                hydrostatics,
+                                tangential_factor: 1.0,
+                            };
+                            check(&water, &body);
+                        }
                     }
                 }
             }
@@ -308,7 +346,7 @@ mod tests {
     fn check(water: &Water, body: &Body<f64>) {
         let at = |x: [f64; 5]| {
             let e = [x[1], x[2], x[3]];
-            load(water, body, [x[0].cos(), x[0].sin()], e, &swelling(Volume::Planar, e[0]), x[4])
+            load(water, body, [x[0].cos(), x[0].sin()], e, &swelling(water.volume, e[0]), x[4])
         };
         for theta in [0.9, 2.2, -1.4] {
             let x = [theta, 0.9, 0.1, 3.0, 0.3];

@@ -125,13 +125,38 @@ impl WettedLength {
     }
 }
 
+/// The water that a section displaces, in proportion to that of the unloaded arm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Displaced {
+    /// The volume of the arm, which (15) keeps: that of the unloaded arm under [`Volume::Planar`] and
+    /// [`Volume::Circular`], times nu under [`Volume::None`], whose rigid sections keep no volume.
+    #[default]
+    Volume,
+    /// What the round section below (12) sweeps, times nu beta^2. Under [`Volume::Planar`] that grows with
+    /// beta, so that an arm is lifted as its cables pull.
+    Section,
+}
+
+impl Displaced {
+    /// All of them, in the order of [`Displaced::NAMES`].
+    pub const ALL: [Self; 2] = [Self::Volume, Self::Section];
+    /// Their words in arm files.
+    pub const NAMES: [&'static str; 2] = ["volume", "section"];
+
+    /// Its word in arm files.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
 /// Which part of weight and buoyancy acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Hydrostatics {
     /// The whole of it.
     #[default]
     Archimedes,
-    /// Its part along the centreline's normal: (9) and (10) act along u_n only.
+    /// Its part along the normal of the [`FlowSurface`], as (9) and (10) act along u_n only: that of the centreline, or of the
+    /// windward lateral surface. Where both sides tie, as they do without a stream, the mean of both.
     NormalOnly,
 }
 
@@ -170,8 +195,8 @@ impl Support {
     }
 }
 
-/// All readings together. `Readings::default()` is the consistent one, [`Readings::LITERAL`] the
-/// source word by word.
+/// All readings together. `Readings::default()` is the consistent one, [`Readings::LITERAL`] the one closest to the
+/// source's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Readings {
     /// Section stretch.
@@ -184,6 +209,8 @@ pub struct Readings {
     pub layer_mean: LayerMean,
     /// Wetted length.
     pub wetted_length: WettedLength,
+    /// Displaced water.
+    pub displaced: Displaced,
     /// Hydrostatic part.
     pub hydrostatics: Hydrostatics,
     /// Support.
@@ -191,13 +218,19 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// `closure = "literal"`: lateral, resultant, speed, reference, normal-only, planar, clamped.
+    /// `closure = "literal"`: lateral, resultant, speed, reference, normal-only, planar, clamped. The water displaced
+    /// is that of the default.
+    ///
+    /// These are the surface, the speed and the directions that the source's sentences name. The signs of (8) are not:
+    /// as printed, minus along u_t, the stream would push the arm against itself. Here as in every reading they are
+    /// those with which water resists.
     pub const LITERAL: Self = Self {
         volume: Volume::Planar,
         flow_surface: FlowSurface::Lateral,
         entering_speed: EnteringSpeed::Resultant,
         layer_mean: LayerMean::Speed,
         wetted_length: WettedLength::Reference,
+        displaced: Displaced::Volume,
         hydrostatics: Hydrostatics::NormalOnly,
         support: Support::Clamped,
     };
@@ -219,6 +252,7 @@ mod tests {
         assert!(EnteringSpeed::ALL.iter().enumerate().all(|(k, one)| one.name() == EnteringSpeed::NAMES[k]));
         assert!(LayerMean::ALL.iter().enumerate().all(|(k, one)| one.name() == LayerMean::NAMES[k]));
         assert!(WettedLength::ALL.iter().enumerate().all(|(k, one)| one.name() == WettedLength::NAMES[k]));
+        assert!(Displaced::ALL.iter().enumerate().all(|(k, one)| one.name() == Displaced::NAMES[k]));
         assert!(Hydrostatics::ALL.iter().enumerate().all(|(k, one)| one.name() == Hydrostatics::NAMES[k]));
         assert!(Support::ALL.iter().enumerate().all(|(k, one)| one.name() == Support::NAMES[k]));
     }

@@ -291,7 +291,7 @@ impl Tangent {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Arm, Cable, Gravity, Options, Profile, Solver};
+    use crate::{Arm, Cable, Displaced, Gravity, Options, Profile, Solver};
 
     /// A xorshift generator.
     struct Dice(u64);
@@ -332,6 +332,8 @@ mod tests {
         arm.flow.speed = dice.one_of(&[0.0, 1.0]) * dice.between(0.0, 1.0);
         arm.flow.direction = dice.one_of(&[0.0_f64, 60.0, 90.0, 180.0, 270.0]).to_radians();
         arm.gravity = dice.one_of(&[None, Some(Gravity::default())]);
+        // The law by which the bounds of these tests were found.
+        arm.readings.displaced = Displaced::Section;
         arm
     }
 

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use hydrostat::cases::{inextensible_arm, uniform_arm};
 use hydrostat::{
-    Arm, Cable, Configuration, EnteringSpeed, FlowLaw, FlowSurface, Gravity, Hydrostatics, LayerMean, Options, Profile,
-    Readings, Solver, Support, Volume, WettedLength,
+    Arm, Cable, Cavity, Configuration, Displaced, EnteringSpeed, FlowLaw, FlowSurface, Gravity, Hydrostatics,
+    LayerMean, Options, Profile, Readings, Solver, Support, Volume, WettedLength,
 };
 
 fn solve(arm: &Arm) -> Configuration {
@@ -141,6 +141,68 @@ fn volume_laws_keep_what_they_say_everywhere() {
     }
 }
 
+/// `silicone` in its water with 0.4 N on both cables, and whether its support holds it up or down (N).
+fn weight_in_water(change: impl FnOnce(&mut Arm)) -> f64 {
+    let text = hydrostat_files::shipped::get("silicone").unwrap();
+    let mut arm = hydrostat_files::ArmFile::parse(text, "silicone").unwrap().arm().unwrap();
+    arm.set_tensions(&[0.4, 0.4]).unwrap();
+    arm.gravity = Some(Gravity::default());
+    change(&mut arm);
+    let [along, up] = solve(&arm).base_reaction.force;
+    assert!(along.abs() < 1e-12);
+    up
+}
+
+/// The volume is kept (15), and with it the water displaced, however far the cables compress the arm.
+#[test]
+fn an_arm_pulled_by_both_cables_floated_under_the_planar_law() {
+    // (rho_arm - rho_w) g times the volume of the cone.
+    let volume = PI * 0.245 * (0.010 * 0.010 + 0.010 * 0.002 + 0.002 * 0.002) / 3.0;
+    let weight = (1080.0 - 1022.0) * 9.81 * volume;
+    assert!((weight - 0.0181).abs() < 1e-4);
+    for volume_law in [Volume::Planar, Volume::Circular] {
+        let held = weight_in_water(|arm| arm.readings.volume = volume_law);
+        assert!((held / weight - 1.0).abs() < 1e-9, "{volume_law:?}: {held} of {weight}");
+    }
+    let by_section = weight_in_water(|arm| arm.readings.displaced = Displaced::Section);
+    assert!(by_section.abs() < 0.1 * weight, "{by_section}");
+    println!("{weight} N in water, {by_section} N by the section");
+}
+
+/// A sealed cavity displaces its outline, a flooded one its wall; sections that do not swell lose volume with the stretch.
+#[test]
+fn cavities_displace_what_they_did_in_the_unloaded_arm() {
+    let full = |radius: f64| PI * radius * radius;
+    // A cylinder compressed to the same stretch all along by equal pulls.
+    let mut arm = uniform_arm("hollow", 100.0, 1e6);
+    let outer = arm.radius.at(0.0, 1.0).value;
+    arm.inner_radius = (0.5 * outer).into();
+    arm.density = 1200.0;
+    arm.gravity = Some(Gravity { acceleration: 1e-6, direction: 0.0 });
+    arm.cables.push(Cable::new("left", 0.5 * outer).pulled(5.0));
+    arm.cables.push(Cable::new("right", -0.5 * outer).pulled(5.0));
+    let wall = full(outer) - full(0.5 * outer);
+    for (cavity, outline) in [(Cavity::Flooded, wall), (Cavity::Sealed, full(outer))] {
+        for volume in Volume::ALL {
+            for displaced in Displaced::ALL {
+                arm.cavity = cavity;
+                (arm.readings.volume, arm.readings.displaced) = (volume, displaced);
+                let solved = solve(&arm);
+                let middle = solved.at(0.5 * arm.length);
+                assert!(middle.nu < 0.99, "the cables compress the arm");
+                let d = match (displaced, volume) {
+                    (Displaced::Section, _) => middle.nu * middle.beta * middle.beta,
+                    (Displaced::Volume, Volume::None) => middle.nu,
+                    (Displaced::Volume, _) => 1.0,
+                };
+                let want = (1200.0 * wall - 1000.0 * outline * d) * 1e-6;
+                let held = -solved.base_reaction.force[0] / arm.length;
+                assert!((held / want - 1.0).abs() < 1e-6, "{cavity:?} {volume:?} {displaced:?}: {held} {want}");
+            }
+        }
+    }
+}
+
 /// A stiff heavy arm in a vacuum at 30 deg: only the weight across it is left.
 #[test]
 fn normal_only_leaves_no_weight_along_the_tangent() {
@@ -264,6 +326,7 @@ fn literal_is_the_listed_set() {
         entering_speed: EnteringSpeed::Resultant,
         layer_mean: LayerMean::Speed,
         wetted_length: WettedLength::Reference,
+        displaced: Displaced::Volume,
         hydrostatics: Hydrostatics::NormalOnly,
         support: Support::Clamped,
     };
@@ -274,6 +337,7 @@ fn literal_is_the_listed_set() {
     assert_eq!(default.entering_speed, EnteringSpeed::Tangential);
     assert_eq!(default.layer_mean, LayerMean::Speed);
     assert_eq!(default.wetted_length, WettedLength::Reference);
+    assert_eq!(default.displaced, Displaced::Volume);
     assert_eq!(default.hydrostatics, Hydrostatics::Archimedes);
     assert_eq!(default.support, Support::Clamped);
 }

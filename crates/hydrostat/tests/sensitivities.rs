@@ -1,8 +1,8 @@
 //! Sensitivities against extrapolated differences of solves, against each other, and against closed forms.
 
 use hydrostat::{
-    Arm, Cable, Configuration, Ellipse, FlowLaw, Gravity, Material, Options, Parameter, PoseChange, Profile, Readings,
-    SensitivityError, SensitivityMethod, SensitivityOptions, Solver,
+    Arm, Cable, Configuration, Displaced, Ellipse, FlowLaw, Gravity, Material, Options, Parameter, PoseChange, Profile,
+    Readings, SensitivityError, SensitivityMethod, SensitivityOptions, Solver, Volume,
 };
 
 /// Tolerance of the solves that are differenced.
@@ -51,6 +51,13 @@ fn stiff() -> Arm {
     arm.flow.speed = 0.5;
     // Not along the base, where a kink of the load would come and go with every parameter.
     arm.flow.direction = 0.3;
+    arm
+}
+
+/// The same loads where the displaced water follows the stretch.
+fn displacing(volume: Volume, displaced: Displaced) -> Arm {
+    let mut arm = loaded();
+    arm.readings = Readings { volume, displaced, ..Readings::default() };
     arm
 }
 
@@ -187,6 +194,8 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
     for (name, arm) in [
         ("cone", cone()),
         ("loaded", loaded()),
+        ("rigid sections", displacing(Volume::None, Displaced::Volume)),
+        ("by section", displacing(Volume::Planar, Displaced::Section)),
         ("held", held()),
         ("stiff", stiff()),
         ("dragged", dragged()),

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Support, Volume, WettedLength};
+use hydrostat::{Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Support, Volume, WettedLength};
 use hydrostat_figures::Palette;
 use serde::Serialize;
 
@@ -118,12 +118,21 @@ fn readings() -> Vec<Choice> {
             }),
         ),
         choice(
+            "model.displaced",
+            "Displaced water",
+            "The water that a section displaces, in proportion to that of the unloaded arm",
+            words(&Displaced::ALL, Displaced::name, |one| match one {
+                Displaced::Volume => "The arm's volume, which (15) keeps: buoyancy stays as cables pull",
+                Displaced::Section => "The round section's, times nu beta^2: under planar it grows as cables pull",
+            }),
+        ),
+        choice(
             "model.hydrostatics",
             "Hydrostatics",
             "Which part of weight and buoyancy acts, (9) and (10)",
             words(&Hydrostatics::ALL, Hydrostatics::name, |one| match one {
                 Hydrostatics::Archimedes => "The whole of it",
-                Hydrostatics::NormalOnly => "Its part across the centreline, as the source writes it",
+                Hydrostatics::NormalOnly => "Its part across the surface of the flow, as the source writes it",
             }),
         ),
         choice(

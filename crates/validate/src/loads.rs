@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use hydrostat::{
-    Arm, Cavity, EnteringSpeed, FlowLaw, FlowSurface, Hydrostatics, Material, Station, Volume, WettedLength,
+    Arm, Cavity, Displaced, EnteringSpeed, FlowLaw, FlowSurface, Hydrostatics, Material, Station, Volume, WettedLength,
 };
 
 /// Along e1 and e2.
@@ -111,14 +111,29 @@ pub(crate) fn weight(arm: &Arm, st: &Station) -> Pair {
     let (outer, inner) = (arm.radius.at(st.s, arm.length).value, arm.inner_radius.at(st.s, arm.length).value);
     let wall = outer * outer - inner * inner;
     let outline = if arm.cavity == Cavity::Sealed { outer * outer } else { wall };
-    let mass = PI * (arm.density * wall - arm.flow.density * outline * st.nu * st.beta * st.beta);
+    let displaced = match (arm.readings.displaced, arm.readings.volume) {
+        (Displaced::Volume, Volume::None) => st.nu,
+        (Displaced::Volume, _) => 1.0,
+        (Displaced::Section, _) => st.nu * st.beta * st.beta,
+    };
+    let mass = PI * (arm.density * wall - arm.flow.density * outline * displaced);
     let whole = [mass * g[0], mass * g[1]];
     if arm.readings.hydrostatics == Hydrostatics::Archimedes {
         return whole;
     }
-    let direction = st.theta + st.eta.atan2(st.nu);
-    let w = [-direction.sin(), direction.cos()];
-    [dot(whole, w) * w[0], dot(whole, w) * w[1]]
+    // Its part along the normal of the surface with the tangent x a + y b.
+    let (a, b) = axes(st);
+    let along_normal = |(x, y): (f64, f64)| {
+        let w = [-(x * a[1] + y * b[1]) / x.hypot(y), (x * a[0] + y * b[0]) / x.hypot(y)];
+        [dot(whole, w) * w[0], dot(whole, w) * w[1]]
+    };
+    if arm.readings.flow_surface == FlowSurface::Centreline {
+        return along_normal((st.nu, st.eta));
+    }
+    let [left, right] = [1.0, -1.0].map(|sigma| along_normal(lateral(arm, st, sigma)));
+    let [hit_left, hit_right] = [1.0, -1.0].map(|sigma| outward(arm, st, sigma));
+    let share = if hit_left < hit_right { 1.0 } else { f64::from(u8::from(hit_left == hit_right)) * 0.5 };
+    [0, 1].map(|k| share * left[k] + (1.0 - share) * right[k])
 }
 
 /// Force and moment about the origin, N/m and N m/m, of everything spread along the arm.

@@ -1,8 +1,8 @@
 //! The readings of the source side by side: what each changes.
 
 use hydrostat::{
-    Arm, EnteringSpeed, FlowSurface, Gravity, Hydrostatics, LayerMean, Options, Readings, SolveError, Solver, Support,
-    VerdictKind, Volume, WettedLength,
+    Arm, Displaced, EnteringSpeed, FlowSurface, Gravity, Hydrostatics, LayerMean, Options, Readings, SolveError,
+    Solver, Support, VerdictKind, Volume, WettedLength,
 };
 use hydrostat_figures::{Measure, Page, Panel, Scale, Scene, lines_figure};
 use rayon::prelude::*;
@@ -23,6 +23,7 @@ pub fn alternatives() -> Vec<(&'static str, Readings)> {
         ("entering_speed = resultant", Readings { entering_speed: EnteringSpeed::Resultant, ..default }),
         ("layer_mean = momentum", Readings { layer_mean: LayerMean::Momentum, ..default }),
         ("wetted_length = deformed", Readings { wetted_length: WettedLength::Deformed, ..default }),
+        ("displaced = section", Readings { displaced: Displaced::Section, ..default }),
         ("hydrostatics = normal-only", Readings { hydrostatics: Hydrostatics::NormalOnly, ..default }),
         ("closure = literal", Readings::LITERAL),
     ]

@@ -1,8 +1,8 @@
 //! Balance of the whole arm and of every part of it.
 
 use hydrostat::{
-    Arm, Cable, Cavity, EnteringSpeed, FlowLaw, FlowSurface, Gravity, Hydrostatics, Options, Profile, Readings, Solver,
-    Volume, WettedLength,
+    Arm, Cable, Cavity, Displaced, EnteringSpeed, FlowLaw, FlowSurface, Gravity, Hydrostatics, Options, Profile,
+    Readings, Solver, Volume, WettedLength,
 };
 use hydrostat_validate::balance::residuals;
 
@@ -152,10 +152,16 @@ fn other_readings() {
         ("normal-only", Readings { hydrostatics: Hydrostatics::NormalOnly, ..Readings::default() }),
         ("resultant", Readings { entering_speed: EnteringSpeed::Resultant, ..Readings::default() }),
         ("lateral", Readings { flow_surface: FlowSurface::Lateral, ..Readings::default() }),
+        ("section", Readings { displaced: Displaced::Section, ..Readings::default() }),
+        ("none", Readings { volume: Volume::None, ..Readings::default() }),
         ("literal", Readings::LITERAL),
     ] {
         name.clone_into(&mut arm.name);
         arm.readings = readings;
         check(&arm);
     }
+    // Without a stream neither side is windward: the mean of both.
+    "literal in still water".clone_into(&mut arm.name);
+    arm.flow.speed = 0.0;
+    check(&arm);
 }

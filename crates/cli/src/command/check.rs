@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{Arm, FlowLaw};
+use hydrostat::{Arm, Displaced, FlowLaw, Volume};
 use hydrostat_files::{arm_to_toml, number};
 
 use super::limits::{Limit, limits};
@@ -17,6 +17,7 @@ pub(crate) fn run(args: &CheckArgs) -> anyhow::Result<()> {
     out.push_str(&arm_to_toml(&arm));
     out.push('\n');
     cauchy(&mut out, &arm);
+    weight(&mut out, &arm);
     tension_limits(&mut out, &arm);
     Ok(output::print(&out)?)
 }
@@ -42,6 +43,23 @@ fn cauchy(out: &mut String, arm: &Arm) {
             number(2e3 * radius),
             number(stiffness),
             number(ca)
+        );
+    }
+}
+
+/// Which volume law a weight asks for.
+fn weight(out: &mut String, arm: &Arm) {
+    if arm.gravity.is_none() || arm.readings.volume != Volume::Planar {
+        return;
+    }
+    out.push_str(
+        "# The arm has weight, and model.volume is \"planar\", the law of the source's figure. Rubber and muscle keep the volume of a\n\
+         # round section: for a real arm take \"circular\".\n",
+    );
+    if arm.readings.displaced == Displaced::Section && arm.flow.density > 0.0 {
+        out.push_str(
+            "# model.displaced is \"section\": the water displaced grows with the section, so that the arm may float as its cables pull;\n\
+             # by \"volume\" it stays what it is.\n",
         );
     }
 }

@@ -140,6 +140,23 @@ fn check_says_what_the_file_means_and_can_be_read_back() {
 }
 
 #[test]
+fn check_says_which_volume_law_a_weight_asks_for() {
+    let heavy = "[arm]\nlength = 0.1\nradius = 0.01\n[material]\nyoung = 1e5\n[gravity]\n";
+    let says = |model: &str| {
+        let directory = directory();
+        std::fs::write(directory.path().join("heavy.toml"), format!("{heavy}[model]\n{model}\n")).unwrap();
+        let run = hydrostat_in(directory.path(), &["check", "heavy.toml"]);
+        assert_eq!(run.code, 0, "{}", run.err);
+        [run.out.contains("for a real arm take \"circular\""), run.out.contains("may float")]
+    };
+    assert_eq!(says(""), [true, false]);
+    assert_eq!(says("displaced = \"section\""), [true, true]);
+    assert_eq!(says("volume = \"circular\"\ndisplaced = \"section\""), [false, false]);
+    assert_eq!(says("volume = \"none\""), [false, false]);
+    assert!(!solved(&["check", "silicone"]).out.contains("real arm"), "no weight");
+}
+
+#[test]
 fn help_teaches() {
     let help = solved(&["--help"]).out;
     for words in ["solve", "path", "equilibria", "figures", "arms", "check", "Exit status", "Examples"] {

@@ -37,11 +37,12 @@ const KEYS: [&str; 24] = [
     "tip.force",
 ];
 
-const WORDS: [(&str, &str); 7] = [
+const WORDS: [(&str, &str); 8] = [
     ("model.volume", "none"),
     ("model.volume", "circular"),
     ("model.flow_surface", "lateral"),
     ("model.entering_speed", "resultant"),
+    ("model.displaced", "section"),
     ("model.closure", "literal"),
     ("model.support", "unstrained-base"),
     ("arm.cavity", "sealed"),

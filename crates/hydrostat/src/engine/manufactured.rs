@@ -15,7 +15,9 @@ use crate::arm::{Arm, Cable, Cavity, FlowLaw, Gravity, Material};
 use crate::equilibrium::{N, Units};
 use crate::loads::{Body, Water, load};
 use crate::profile::Profile;
-use crate::readings::{EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength};
+use crate::readings::{
+    Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
+};
 use crate::swelling::swelling;
 
 /// Taylor coefficients about a place, in s/L.
@@ -301,7 +303,9 @@ fn arm(readings: Readings, law: FlowLaw) -> Arm {
 fn combinations(law: FlowLaw) -> Vec<Readings> {
     let momentum = law == FlowLaw::Momentum;
     let mut out = Vec::new();
-    for volume in [Volume::Planar, Volume::Circular, Volume::None] {
+    // The readings of the displaced water differ under the planar law alone.
+    let kept = Volume::ALL.map(|volume| (volume, Displaced::Volume));
+    for (volume, displaced) in kept.into_iter().chain([(Volume::Planar, Displaced::Section)]) {
         for flow_surface in [FlowSurface::Centreline, FlowSurface::Lateral] {
             for entering_speed in [EnteringSpeed::Tangential, EnteringSpeed::Resultant] {
                 for layer_mean in [LayerMean::Speed, LayerMean::Momentum] {
@@ -314,6 +318,7 @@ fn combinations(law: FlowLaw) -> Vec<Readings> {
                                     entering_speed,
                                     layer_mean,
                                     wetted_length,
+                                    displaced,
                                     hydrostatics,
                                     support,
                                 };

@@ -3,7 +3,7 @@
 use hydrostat_bvp::Station;
 
 use super::{Equations, L, N};
-use crate::swelling::swelling;
+use crate::swelling::{displacement, swelling};
 
 /// Where the unloaded arm points at a place, and the load on its tip that would turn with it.
 pub(crate) struct Unloaded {
@@ -67,11 +67,9 @@ impl Equations {
     /// Weight less buoyancy, and forces along the arm, at station `k`, per length.
     fn net_weight(&self, k: usize, nu: f64) -> [f64; 2] {
         let (block, lane) = self.groups.station(k);
-        let (place, beta) = (&self.places[block], swelling(self.volume, nu).beta);
-        [0, 1].map(|c| {
-            place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * nu * beta * beta
-                + place.body.force[c].0[lane]
-        })
+        let place = &self.places[block];
+        let [d, _] = displacement(self.water.displaced, self.water.volume, nu, &swelling(self.water.volume, nu));
+        [0, 1].map(|c| place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * d + place.body.force[c].0[lane])
     }
 
     /// Whether the arm at station `k` is nearly in line with a load: small angles to it decide then to
