@@ -4,7 +4,8 @@ use std::sync::LazyLock;
 
 use hydrostat::{
     Arm, Base, Cable, Cavity, Displaced, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity,
-    Hydrostatics, Join, LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
+    Hydrostatics, Join, LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume,
+    WettedLength,
 };
 use hydrostat_files::{ArmFile, Inputs, arm_to_toml, schema, shipped};
 use proptest::prelude::*;

@@ -5,7 +5,8 @@
 use std::f64::consts::PI;
 
 use hydrostat::{
-    Arm, Cavity, EnteringSpeed, FlowLaw, FlowSurface, Hydrostatics, LayerMean, Material, Motion, Volume, WettedLength,
+    Arm, Cavity, Displaced, EnteringSpeed, FlowLaw, FlowSurface, Hydrostatics, LayerMean, Material, Motion, Volume,
+    WettedLength,
 };
 
 use crate::curve::Curve;
@@ -405,7 +406,11 @@ impl Model {
 
 /// Volume of the water displaced over that of the straight arm.
 pub(crate) fn displaced(arm: &Arm, nu: f64) -> f64 {
-    nu * beta(arm.readings.volume, nu)[0].powi(2)
+    match (arm.readings.displaced, arm.readings.volume) {
+        (Displaced::Section, volume) => nu * beta(volume, nu)[0].powi(2),
+        (Displaced::Volume, Volume::None) => nu,
+        (Displaced::Volume, _) => 1.0,
+    }
 }
 
 fn unit(theta: f64, along: f64, across: f64) -> Pair {
