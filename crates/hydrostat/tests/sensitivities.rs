@@ -221,8 +221,10 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
             }
             // What solves to 1e-12 leave is magnified where a step moves the arm by little.
             let noise = 1e-12 / scale(parameter, parameter.of(&arm).unwrap());
+            // alpha comes from beta', which rounding at a thin tip moves by some 1e-11 rad.
+            let noise_at = |k: usize| if [3, 3 + 4 + 2 * cables].contains(&k) { 10.0 * noise } else { noise };
             let off = |(k, (want, exact)): (usize, (&f64, &f64))| {
-                ((want - exact).abs() - noise).max(0.0) / sizes[kind(k, cables)]
+                ((want - exact).abs() - noise_at(k)).max(0.0) / sizes[kind(k, cables)]
             };
             let worst = want.iter().zip(exact).enumerate().map(off).fold(0.0, f64::max);
             println!("{name} {parameter}: {worst:.1e} of {sizes:?}");
