@@ -84,6 +84,7 @@ impl Ramp<'_> {
             self.stepper.orientation = -self.stepper.orientation;
             here.rise = -here.rise;
         }
+        self.stepper.begin(&mut here);
         let first = if self.stepper.engine.in_a_hurry { 0.2 } else { 0.1_f64.min(pace.longest) };
         let mut step = first;
         // A point before this one whose tangent climbed clearly more.
@@ -137,6 +138,7 @@ impl Ramp<'_> {
                     } else if here.rise < next.rise {
                         steeper = (next.fraction, next.rise);
                     }
+                    self.stepper.went(&here, &mut next);
                     here = next;
                     step = (step * self.stepper.pace_up(true)).min(pace.longest);
                 }

@@ -349,6 +349,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             self.stepper.orientation = -self.stepper.orientation;
             here.rise = -here.rise;
         }
+        self.stepper.begin(&mut here);
         let mut points = Vec::new();
         let end = self.collect(here, &mut points);
         Branch { points, end, switched_at }
@@ -412,6 +413,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             if let Some(end) = end {
                 return end;
             }
+            self.stepper.went(&here, &mut next);
             here = next;
             step = (step * 1.6).min(self.pace.longest);
         }

@@ -11,6 +11,9 @@ use crate::verdict::Phase;
 /// The largest correction (rad) of a prediction that leads to the same branch.
 const MOVED: f64 = 0.15;
 
+/// The least change of theta (rad) that counts as much as the whole load: arms that turn less are straight, as far as anybody can see.
+const FINE_SCALE: f64 = 1e-3;
+
 /// Corrections (rad) after which, but for second order, nothing is left to correct.
 const CLOSE: f64 = 3e-5;
 
@@ -50,9 +53,23 @@ impl Point {
         })
     }
 
+    /// The turn (rad, root mean square along the arm) by the whole load at the rate here, in a metric whose scale of theta is `scale`.
+    fn turn_by_load(&self, scale: f64) -> f64 {
+        scale * (self.rise.powi(-2) - 1.0).max(0.0).sqrt()
+    }
+
     pub(super) fn is_symmetric(&self) -> bool {
         (self.rise * self.response.largest(0)).abs() < SYMMETRIC
     }
+}
+
+/// How far a branch has gone.
+#[derive(Debug, Clone, Copy, Default)]
+struct Travelled {
+    /// The sum of the turns of all steps, rad (root mean square along the arm).
+    turn: f64,
+    /// The sum of the changes of the fraction.
+    climb: f64,
 }
 
 /// The fraction of a path, and whether corrections may change it.
@@ -96,6 +113,10 @@ pub(super) struct Stepper<'e> {
     pub(super) crossings_welcome: bool,
     /// The last estimate of the tip's error over L.
     pub(super) error: f64,
+    /// The change of theta (rad, root mean square along the arm) that counts as much as the whole of the load in the metric of the path.
+    scale: f64,
+    /// Where the branch began, and how far its shape has turned and its fraction has climbed since.
+    travelled: Travelled,
     /// How much of what a step may bend the path the last one did, over all of it: of the second order in the step.
     stretch: f64,
     /// Whether the last linearisation is that of the solution, but for a correction that is as good as none.
@@ -123,6 +144,8 @@ impl<'e> Stepper<'e> {
             opposite: None,
             crossings_welcome: false,
             error: LOOSE,
+            scale: 1.0,
+            travelled: Travelled::default(),
             stretch: 0.0,
             current: false,
         }
@@ -163,17 +186,45 @@ impl<'e> Stepper<'e> {
         self.engine.linearise_held(true, &mut self.round)
     }
 
-    /// Length of theta's change in the metric of the path: its root mean square along the arm.
+    /// Weights of the squares of theta's change at the nodes in the metric of the path: its root mean square along the arm over
+    /// [`Stepper::scale`].
     pub(super) fn weights(&self) -> Vec<f64> {
         let mesh = &self.engine.solution.mesh;
         let n = mesh.elements();
+        let square = self.scale * self.scale;
         (0..=n)
             .map(|i| {
                 let left = if i > 0 { mesh.step(i - 1) } else { 0.0 };
                 let right = if i < n { mesh.step(i) } else { 0.0 };
-                0.5 * (left + right)
+                0.5 * (left + right) / square
             })
             .collect()
+    }
+
+    /// Takes `start` for the start of a branch, and its response for the scale of theta.
+    pub(super) fn begin(&mut self, start: &mut Point) {
+        self.travelled = Travelled::default();
+        self.rescale(start, start.turn_by_load(self.scale));
+    }
+
+    /// Fits the scale of theta to the way from `here` to `next`, which becomes the next point to start from: the path must not be long in the load
+    /// alone, or a shape that changes little, as that of an arm which hardly leans to either side, would turn back and forth within a step.
+    pub(super) fn went(&mut self, here: &Point, next: &mut Point) {
+        let way = self.distance(here, next);
+        let climb = next.fraction - here.fraction;
+        self.travelled.turn += self.scale * (way * way - climb * climb).max(0.0).sqrt();
+        self.travelled.climb += climb.abs();
+        self.rescale(next, self.travelled.turn / self.travelled.climb);
+    }
+
+    /// Widens the scale of theta to `wanted` (rad a whole load), and gives `point` the tangent of the metric that follows.
+    fn rescale(&mut self, point: &mut Point, wanted: f64) {
+        let first = self.travelled.turn == 0.0;
+        let least = if first { FINE_SCALE } else { self.scale };
+        let scale = if wanted.is_finite() { wanted.clamp(least, 1.0) } else { 1.0 };
+        let turn = point.turn_by_load(self.scale) / scale;
+        self.scale = scale;
+        point.rise = point.rise.signum() / turn.hypot(1.0);
     }
 
     /// The point here. Its tangent is oriented by the determinant, whose sign times that of the climb is
@@ -229,7 +280,7 @@ impl<'e> Stepper<'e> {
         self.predict(here, step);
         self.set(fraction);
         let from = self.engine.solution.clone();
-        roughly(self.engine.newton(1e-6, 9))?;
+        roughly(self.engine.newton(1e-6 * self.scale, 9))?;
         let (end, turn) = self.arrive(here, &from, Fraction::Fixed(fraction), step, pace)?;
         if turn == Turn::None && end.rise * here.rise < 0.0 {
             return Err(Trouble::Stalled(step));
@@ -242,7 +293,7 @@ impl<'e> Stepper<'e> {
         let normal: Vec<f64> =
             here.tangent_on(&self.engine.solution.mesh).zip(self.weights()).map(|(t, w)| t * w).collect();
         // In a hurry, when the next one would be none.
-        let close = if self.engine.in_a_hurry { CLOSE } else { 1e-6 };
+        let close = self.scale * if self.engine.in_a_hurry { CLOSE } else { 1e-6 };
         let mut before = f64::INFINITY;
         for round in 0..12 {
             self.set(*fraction);
@@ -271,7 +322,7 @@ impl<'e> Stepper<'e> {
                 break;
             }
         }
-        self.current = self.engine.in_a_hurry && before < CLOSE;
+        self.current = self.engine.in_a_hurry && before < self.scale * CLOSE;
         self.set(*fraction);
         // Across a kink corrections can hop between two points that are nearer than a path needs.
         if before > HOP { Err(Trouble::Stalled(before)) } else { Ok(()) }
@@ -293,7 +344,7 @@ impl<'e> Stepper<'e> {
             return Err(Trouble::Stalled(moved));
         }
         // What the mesh is off by must not be mistaken for a turn of the path.
-        let accuracy = (0.02 * step.abs()).max(FINEST).min(pace.accuracy);
+        let accuracy = (0.02 * step.abs() * self.scale).max(FINEST).min(pace.accuracy);
         self.keep_accuracy(Some(here), &mut fraction, [accuracy, pace.accuracy])?;
         self.engine.ends_fine()?;
         let fraction = fraction.value();
