@@ -12,7 +12,7 @@ use crate::verdict::Phase;
 const MOVED: f64 = 0.15;
 
 /// The least change of theta (rad) that counts as much as the whole load: arms that turn less are straight, as far as anybody can see.
-const FINE_SCALE: f64 = 1e-3;
+const FINE_SCALE: f64 = 0.01;
 
 /// Corrections (rad) after which, but for second order, nothing is left to correct.
 const CLOSE: f64 = 3e-5;
