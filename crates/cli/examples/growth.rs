@@ -139,7 +139,7 @@ fn over(
 
 /// Microseconds, evaluations and elements of a solve from nothing.
 fn cold(arm: &Arm, tol: f64) -> Result<[f64; 3], SolveError> {
-    taken((), |()| Ok(()), |()| Ok(Solver::new(arm, Options { tol })?.solve()?.statistics))
+    taken((), |()| Ok(()), |()| Ok(Solver::new(arm, Options::with_tol(tol))?.solve()?.statistics))
 }
 
 /// The same from 1 % less tension.
@@ -154,7 +154,7 @@ fn warm(arm: &Arm, tol: f64) -> Result<[f64; 3], SolveError> {
         solver.set_tensions(&tensions)?;
         Ok(solver.resolve()?.statistics)
     };
-    taken(Solver::new(arm, Options { tol })?, back, solve)
+    taken(Solver::new(arm, Options::with_tol(tol))?, back, solve)
 }
 
 fn taken<S: Clone>(

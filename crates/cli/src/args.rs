@@ -7,6 +7,7 @@ mod picture;
 mod plot;
 mod reach;
 mod serve;
+mod snaps;
 mod sweep;
 mod validate;
 
@@ -21,6 +22,7 @@ pub(crate) use picture::{Form, PageArgs, PictureArgs, form, picture};
 pub(crate) use plot::PlotArgs;
 pub(crate) use reach::{By, Point, ReachArgs};
 pub(crate) use serve::ServeArgs;
+pub(crate) use snaps::SnapArgs;
 pub(crate) use sweep::SweepArgs;
 pub(crate) use validate::ValidateArgs;
 
@@ -111,6 +113,8 @@ pub(crate) struct SolveArgs {
     /// Error of the tip position over the length that is asked for, from 1e-12 to 1e-2
     #[arg(long, value_name = "TOL", default_value = "1e-8", allow_hyphen_values = true)]
     pub(crate) tol: f64,
+    #[command(flatten)]
+    pub(crate) snaps: SnapArgs,
     /// Report N equally spaced stations (at least 2) in place of the nodes of the mesh
     #[arg(long, value_name = "N", value_parser = stations)]
     pub(crate) stations: Option<usize>,

@@ -118,7 +118,7 @@ fn samples(found: &Boundary, slack: &Configuration) -> Vec<[f64; 2]> {
     let points = || found.pieces.iter().flat_map(|piece| &piece.points);
     let count = points().map(|point| point.tensions.len()).min().unwrap_or(0);
     let most: Vec<f64> = (0..count).map(|c| points().map(|point| point.tensions[c]).fold(0.0, f64::max)).collect();
-    let Ok(mut solver) = Solver::new(&slack.arm, Options { tol: TOL }) else { return Vec::new() };
+    let Ok(mut solver) = Solver::new(&slack.arm, Options::with_tol(TOL)) else { return Vec::new() };
     // With one cable the tip moves on a line.
     if count < 2 || count != slack.cables.len() {
         return Vec::new();

@@ -3,7 +3,7 @@
 //! Numbers are written with the fewest digits that read back as the same number. What is not
 //! finite is `null` in JSON and an empty field in CSV.
 
-use hydrostat::{CableState, Configuration, NoEquilibrium, Stability, Stations, Tip, Verdict, Warning, Wrench};
+use hydrostat::{CableState, Configuration, NoEquilibrium, Snap, Stability, Stations, Tip, Verdict, Warning, Wrench};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
@@ -21,6 +21,7 @@ pub struct SolutionDocument<'a> {
     converged: bool,
     stable: Option<bool>,
     warnings: &'a [Note],
+    snaps: Vec<SnapOut>,
     tip: TipOut,
     stations: StationsOut<'a>,
     cables: Vec<CableOut<'a>>,
@@ -39,7 +40,7 @@ pub struct FailureDocument<'a> {
     schema: u32,
     version: &'static str,
     converged: bool,
-    verdict: VerdictOut,
+    verdict: VerdictOut<'a>,
     last_good: Option<SolutionDocument<'a>>,
 }
 
@@ -134,8 +135,34 @@ struct StatisticsOut {
     evaluations: usize,
 }
 
+/// A snap, with the phase and load fraction at which the arm leaves its path.
 #[derive(Debug, Clone, Serialize)]
-struct VerdictOut {
+pub(crate) struct SnapOut {
+    phase: &'static str,
+    load_fraction: f64,
+    before: TipOut,
+    after: TipOut,
+    /// m
+    distance: f64,
+    /// rad
+    angle: f64,
+}
+
+impl From<&Snap> for SnapOut {
+    fn from(snap: &Snap) -> Self {
+        Self {
+            phase: snap.phase.name(),
+            load_fraction: snap.load_fraction,
+            before: snap.before.into(),
+            after: snap.after.into(),
+            distance: snap.distance(),
+            angle: snap.angle(),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct VerdictOut<'a> {
     kind: &'static str,
     phase: &'static str,
     load_fraction: f64,
@@ -144,6 +171,9 @@ struct VerdictOut {
     message: String,
     advice: String,
     other_equilibria: Option<Others>,
+    snaps: Vec<SnapOut>,
+    after_snap: Option<SolutionDocument<'a>>,
+    at_full_loads: Option<SolutionDocument<'a>>,
 }
 
 impl TipOut {
@@ -177,7 +207,7 @@ impl From<Wrench> for WrenchOut {
     }
 }
 
-impl From<&Verdict> for VerdictOut {
+impl From<&Verdict> for VerdictOut<'_> {
     fn from(v: &Verdict) -> Self {
         Self {
             kind: v.kind.name(),
@@ -188,6 +218,9 @@ impl From<&Verdict> for VerdictOut {
             message: v.message(),
             advice: v.advice().to_string(),
             other_equilibria: None,
+            snaps: Vec::new(),
+            after_snap: None,
+            at_full_loads: None,
         }
     }
 }
@@ -204,6 +237,7 @@ impl<'a> SolutionDocument<'a> {
             converged: true,
             stable,
             warnings: notes,
+            snaps: configuration.snaps.iter().map(SnapOut::from).collect(),
             tip: TipOut::new(configuration),
             stations: StationsOut {
                 s: &s.s,
@@ -246,11 +280,18 @@ impl<'a> FailureDocument<'a> {
     /// Of a verdict, with the fold margin of its last good configuration and the notes on it (not used
     /// if there is none).
     pub fn new(failure: &'a NoEquilibrium, fold_margin: f64, notes: &'a [Note]) -> Self {
+        let shape = |c: &'a Configuration| SolutionDocument::new(c, c.fold_margin().value, &[]);
+        let verdict = VerdictOut {
+            snaps: failure.snaps.iter().map(SnapOut::from).collect(),
+            after_snap: failure.after_snap.as_ref().map(shape),
+            at_full_loads: failure.at_full_loads.as_ref().map(shape),
+            ..(&failure.verdict).into()
+        };
         Self {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             converged: false,
-            verdict: (&failure.verdict).into(),
+            verdict,
             last_good: failure.last_good.as_ref().map(|c| SolutionDocument::new(c, fold_margin, notes)),
         }
     }

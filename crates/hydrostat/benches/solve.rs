@@ -19,12 +19,12 @@ fn paper() -> Arm {
 }
 
 fn solve(arm: &Arm, tol: f64) -> Result<Configuration, SolveError> {
-    Solver::new(arm, Options { tol })?.solve()
+    Solver::new(arm, Options::with_tol(tol))?.solve()
 }
 
 /// What a solve from the answer at 1 % more or less tension does, by turns.
 fn warm<R>(b: &mut criterion::Bencher<'_>, tol: f64, mut again: impl FnMut(&mut Solver) -> Result<R, SolveError>) {
-    let mut solver = Solver::new(&paper(), Options { tol }).expect("an arm");
+    let mut solver = Solver::new(&paper(), Options::with_tol(tol)).expect("an arm");
     solver.solve().expect("solves");
     let mut more = false;
     b.iter(|| {

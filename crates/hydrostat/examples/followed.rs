@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             (tensions[0], tensions[last]) = (most * (0.25 + 0.1 * angle.cos()), most * (0.2 + 0.1 * angle.sin()));
             tensions
         };
-        let mut solver = Solver::new(&arm, Options { tol: 1e-9 })?;
+        let mut solver = Solver::new(&arm, Options::with_tol(1e-9))?;
         let mut targets = Vec::new();
         for k in 0..=POINTS {
             solver.set_tensions(&pulls(k))?;

@@ -53,7 +53,7 @@ fn main() -> Result<(), Failure> {
     }
     row(&format!("limit point, {} arms", limits.len()), "10 ms", &middle(&limits));
 
-    let loose = Options { tol: 1e-4 };
+    let loose = Options::with_tol(1e-4);
     let [loose_warm, loose_update] = warm(&paper, loose)?;
     for (name, tight, loose) in [
         ("cold", tight_cold, cold(&paper, loose, REPEATS)?),

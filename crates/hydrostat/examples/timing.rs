@@ -29,7 +29,7 @@ fn main() -> Result<(), Failure> {
     };
     let tensions = numbers(tensions)?;
     let arm = pulled(name, &tensions, speed.parse()?)?;
-    let options = Options { tol: tol.parse()? };
+    let options = Options::with_tol(tol.parse()?);
     let repeats: usize = repeats.parse()?;
     if repeats == 0 {
         return Err("REPEATS: at least one".into());

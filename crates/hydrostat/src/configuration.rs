@@ -7,6 +7,7 @@ use crate::equilibrium::{Measured, SectionFailure, Units};
 use crate::flow::layer_profile;
 use crate::loads::stream_along;
 use crate::readings::Support;
+use crate::snap::Snap;
 
 /// The largest tangential drag coefficient that is published for such arms.
 const PUBLISHED_CT: f64 = 0.03;
@@ -30,6 +31,8 @@ pub struct Configuration {
     /// What the solve came to know on its way: `Some(false)` where the path passed a bifurcation or the determinant says
     /// that an odd number of directions is unstable, else `None`. [`Configuration::stability`] establishes it.
     pub stable: Option<bool>,
+    /// The snaps that the arm makes as its loads grow from nothing to these, in their order.
+    pub snaps: Vec<Snap>,
     /// What the solve took.
     pub statistics: Statistics,
     extremes: Extremes,
@@ -204,6 +207,8 @@ pub enum Warning {
     },
     /// A sealed cavity, whose outside pressure is left out.
     SealedCavity,
+    /// The arm snaps on the way to its loads, no further than [`crate::Options::snaps`] lets it.
+    Snap(Snap),
     /// The answer hangs on the tangential load of the source's momentum law.
     TangentialLoad {
         /// C_t that the law corresponds to along the stream: 4/9, or 8/15 with [`crate::LayerMean::Momentum`].
@@ -222,6 +227,7 @@ impl Warning {
             Self::StrainRange { .. } => "strain_range",
             Self::TensionAboveMax { .. } => "tension_above_max",
             Self::SealedCavity => "sealed_cavity",
+            Self::Snap(_) => "snap",
             Self::TangentialLoad { .. } => "tangential_load",
         }
     }
@@ -244,6 +250,7 @@ impl Warning {
                 "the cavity is sealed: the pressure of the water outside, which would load the wall, is left out"
                     .to_owned()
             }
+            Self::Snap(snap) => snap.message(),
             Self::TangentialLoad { ct, tip_shift } => format!(
                 "the shape hangs on the tangential load of the momentum law (C_t = {ct:.3} along the stream; published arms have \
                  0.005 to {PUBLISHED_CT}): at {PUBLISHED_CT}/{ct:.3} of that load the tip would move by about {tip_shift:.3} of the length"
@@ -368,6 +375,7 @@ impl Configuration {
             unmet,
             error_estimate,
             stable: None,
+            snaps: Vec::new(),
             statistics,
             extremes,
             energy: energy * force,
@@ -482,7 +490,7 @@ impl Configuration {
     /// What should be known about this answer. Whether it is as good as was asked for is no part of that: compare
     /// [`Configuration::error_estimate`] with the tolerance; results in files note `tolerance_missed`.
     pub fn warnings(&self) -> Vec<Warning> {
-        let mut out = Vec::new();
+        let mut out: Vec<Warning> = self.snaps.iter().copied().map(Warning::Snap).collect();
         let Extremes { fold, nu, nu_at } = self.extremes;
         if fold.value <= 0.0 {
             out.push(Warning::SurfaceFold { margin: fold.value, s: fold.s });

@@ -87,7 +87,7 @@
 //! arm.readings = Readings { volume: Volume::Circular, ..Readings::default() };
 //!
 //! // Another tolerance: error of the tip over L, from 1e-12 to 1e-2.
-//! let shape = Solver::new(&arm, Options { tol: 1e-6 })?.solve()?;
+//! let shape = Solver::new(&arm, Options::with_tol(1e-6))?.solve()?;
 //! // The support carries the weight less the buoyancy less the tip load. A circular section keeps
 //! // its volume, so that the buoyancy is that of the unloaded cone.
 //! let volume = std::f64::consts::PI * 0.2 / 3.0 * (0.010_f64.powi(2) + 0.010 * 0.002 + 0.002_f64.powi(2));
@@ -153,6 +153,7 @@ mod rubbing;
 mod section;
 pub mod sensitivity;
 mod sincos;
+pub mod snap;
 pub mod solve;
 pub mod stability;
 mod strokes;
@@ -180,6 +181,7 @@ pub use readings::{
 pub use sensitivity::{
     Ellipse, PoseChange, SensitiveStation, Sensitivities, SensitivityError, SensitivityMethod, SensitivityOptions,
 };
+pub use snap::{Snap, SnapBounds};
 pub use solve::{Answer, Options, Solver};
 pub use stability::{Growth, Stability};
 pub use verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};

@@ -12,6 +12,7 @@ use crate::engine::{Engine, First, Guess};
 use crate::equilibrium::Measured;
 use crate::path::Travelled;
 use crate::readings::Support;
+use crate::snap::{Snap, SnapBounds};
 use crate::solve::{Options, Solver};
 use crate::stability::Stability;
 use crate::verdict::{Phase, SolveError, Verdict};
@@ -42,13 +43,15 @@ pub struct ManyOptions {
     pub tol: f64,
     /// Rows a tile, at least one: the first is solved from nothing, each other one from the row before where that is safe.
     pub tile: usize,
+    /// How far an arm may snap on its way to its loads.
+    pub snaps: SnapBounds,
     /// What is asked of every row.
     pub wanted: Wanted,
 }
 
 impl Default for ManyOptions {
     fn default() -> Self {
-        Self { tol: 1e-6, tile: 256, wanted: Wanted::default() }
+        Self { tol: 1e-6, tile: 256, snaps: SnapBounds::default(), wanted: Wanted::default() }
     }
 }
 
@@ -71,6 +74,8 @@ pub struct Row {
     pub stability: Option<Stability>,
     /// What should be known about the answer; empty unless asked for.
     pub warnings: Vec<Warning>,
+    /// The snaps that the arm makes as its loads grow from nothing to these.
+    pub snaps: Vec<Snap>,
     /// Empty unless asked for.
     pub stations: Stations,
 }
@@ -89,11 +94,11 @@ pub enum NoRow {
 /// Rows that are solved one after the other.
 ///
 /// ```
-/// use hydrostat::{Arm, Cable, Profile, Tile, Wanted};
+/// use hydrostat::{Arm, Cable, Options, Profile, Tile, Wanted};
 ///
 /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
 /// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
-/// let mut tile = Tile::new(1e-6, Wanted { strokes: true, ..Wanted::default() })?;
+/// let mut tile = Tile::new(Options::with_tol(1e-6), Wanted { strokes: true, ..Wanted::default() })?;
 /// let mut last = 0.0;
 /// for step in 0..5 {
 ///     arm.cables[0].tension = 0.05 * f64::from(step); // N
@@ -123,9 +128,8 @@ impl Tile {
     /// No rows yet.
     ///
     /// # Errors
-    /// [`SolveError::Option`] for a tolerance out of [1e-12, 1e-2].
-    pub fn new(tol: f64, wanted: Wanted) -> Result<Self, SolveError> {
-        let options = Options { tol };
+    /// [`SolveError::Option`] for a tolerance out of [1e-12, 1e-2] and bounds of snaps below 0.
+    pub fn new(options: Options, wanted: Wanted) -> Result<Self, SolveError> {
         options.check()?;
         Ok(Self { options, wanted, solver: None, before: None })
     }
@@ -210,6 +214,7 @@ impl Tile {
             fold_margin: None,
             stability: None,
             warnings: Vec::new(),
+            snaps: Vec::new(),
             stations: Stations::default(),
         })
     }
@@ -227,6 +232,7 @@ impl Tile {
             fold_margin: fold_margin.then(|| configuration.fold_margin()),
             stability: if stability { configuration.stability() } else { None },
             warnings: if warnings { configuration.warnings() } else { Vec::new() },
+            snaps: configuration.snaps.clone(),
             stations: if stations < 2 { Stations::default() } else { configuration.resampled(stations) },
         }
     }
@@ -292,7 +298,7 @@ pub fn solve_many(arms: &[Arm], options: &ManyOptions) -> Result<Vec<Result<Row,
     if options.tile == 0 {
         return Err(SolveError::Option { option: "tile", value: 0.0, expected: "at least 1" });
     }
-    let start = Tile::new(options.tol, options.wanted)?;
+    let start = Tile::new(Options { tol: options.tol, snaps: options.snaps }, options.wanted)?;
     let tile = |arms: &[Arm]| -> Vec<Result<Row, NoRow>> {
         let mut tile = start.clone();
         arms.iter().map(|arm| tile.solve(arm)).collect()

@@ -13,8 +13,10 @@ mod stepper;
 
 pub use circle::{Equilibria, Equilibrium};
 pub(crate) use limits::name_limit;
-pub(crate) use ramp::{follow, follow_strokes};
+pub(crate) use ramp::{Stopped, follow, follow_strokes};
 pub use range::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
+
+use crate::snap::Snap;
 
 /// Fractions start here rather than at zero, where a tangent by the fraction is not defined. What an arm
 /// in line with the stream does below is beyond the accuracy that its angles to the stream are known to.
@@ -60,11 +62,13 @@ impl Pace {
 }
 
 /// What a path met.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Travelled {
     pub(crate) steps: usize,
-    /// Times the determinant changed sign while the load went on rising: bifurcations passed.
+    /// Times the determinant changed sign while the load went on rising: bifurcations passed since the last snap.
     pub(crate) crossings: usize,
+    /// The snaps that the arm makes on its way.
+    pub(crate) snaps: Vec<Snap>,
     /// Whether it ended on a branch that nothing but the load moves along.
     pub(crate) symmetric: bool,
 }

@@ -36,7 +36,11 @@ impl Solver {
         self.engine.set_grip(None);
         let commanded = self.engine.equations.arm().is_commanded();
         match self.solve_smooth() {
-            Ok(_) => self.raise_friction().map_err(|verdict| self.no_equilibrium(verdict)),
+            Ok(smooth) => {
+                let mut rubbing = self.raise_friction().map_err(|verdict| self.no_equilibrium(verdict))?;
+                rubbing.snaps = smooth.snaps;
+                Ok(rubbing)
+            }
             Err(SolveError::NoEquilibrium(no)) if no.verdict.phase == Phase::Tension && !commanded => {
                 // Friction spares the tip, which may carry more with it.
                 let kept = self.engine.state();

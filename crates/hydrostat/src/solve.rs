@@ -2,8 +2,9 @@
 
 use crate::arm::Arm;
 use crate::configuration::{Configuration, Statistics, Tip};
-use crate::engine::{Engine, First, Trouble, WORK};
-use crate::path::{LOOSE, Pace, Travelled, follow};
+use crate::engine::{Engine, First, State, Trouble, WORK};
+use crate::path::{LOOSE, Pace, Stopped, Travelled, follow};
+use crate::snap::SnapBounds;
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
 
 /// Tips (over L) that are this near belong to the same shape on two meshes.
@@ -14,11 +15,13 @@ pub(crate) const SAME: f64 = 1e-6;
 pub struct Options {
     /// Error of the tip position over L that is asked for, in [1e-12, 1e-2].
     pub tol: f64,
+    /// How far the arm may snap on its way to the loads.
+    pub snaps: SnapBounds,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tol: 1e-8 }
+        Self::with_tol(1e-8)
     }
 }
 
@@ -34,9 +37,25 @@ pub struct Answer {
 }
 
 impl Options {
+    /// The default options at another tolerance.
+    ///
+    /// ```
+    /// use hydrostat::Options;
+    ///
+    /// assert_eq!(Options::with_tol(1e-8), Options::default());
+    /// ```
+    pub const fn with_tol(tol: f64) -> Self {
+        Self { tol, snaps: SnapBounds::SMALL }
+    }
+
     pub(crate) fn check(self) -> Result<(), SolveError> {
         if !(self.tol >= 1e-12 && self.tol <= 1e-2) {
             return Err(SolveError::Option { option: "tol", value: self.tol, expected: "in [1e-12, 1e-2]" });
+        }
+        for (option, value) in [("snap_distance", self.snaps.distance), ("snap_angle", self.snaps.angle)] {
+            if value.is_nan() || value < 0.0 {
+                return Err(SolveError::Option { option, value, expected: "at least 0" });
+            }
         }
         Ok(())
     }
@@ -321,10 +340,7 @@ impl Solver {
 
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
     pub(crate) fn solve_along_the_path(&mut self, pace: Pace) -> Result<Configuration, SolveError> {
-        let travelled = match follow(&mut self.engine, pace) {
-            Ok(travelled) => travelled,
-            Err(verdict) => return Err(self.no_equilibrium(verdict)),
-        };
+        let travelled = follow(&mut self.engine, pace, self.options.snaps).map_err(|at| self.no_equilibrium(at))?;
         let before = self.engine.tip;
         let sign = self.engine.system.determinant().sign;
         let settled = self.engine.settle(self.options.tol, First::Rough);
@@ -334,14 +350,16 @@ impl Solver {
         let sign = self.engine.system.determinant().sign;
         match settled {
             Ok(estimate) if moved < 0.05 && same => {
+                let crossings = travelled.crossings;
                 let Ok(mut configuration) = self.read(estimate, travelled) else {
                     let verdict = self.last_verdict(Some(1.0));
                     return Err(self.no_equilibrium(verdict));
                 };
-                if travelled.crossings > 0 || sign < 0.0 {
+                if crossings > 0 || sign < 0.0 {
                     configuration.stable = Some(false);
                 }
-                self.settled = true;
+                // After a snap the way back is another one: what was solved is no start.
+                self.settled = configuration.snaps.is_empty();
                 self.sign = sign;
                 Ok(configuration)
             }
@@ -372,7 +390,8 @@ impl Solver {
     }
 
     /// The verdict with the last good point, which the engine holds, settled and read.
-    pub(crate) fn no_equilibrium(&mut self, verdict: Verdict) -> SolveError {
+    pub(crate) fn no_equilibrium(&mut self, stopped: impl Into<Stopped>) -> SolveError {
+        let Stopped { verdict, snaps, after_snap, at_full_loads } = stopped.into();
         let kept = self.engine.state();
         // Right at a limit the tangent is singular, and a finer mesh, or a place between stations, may
         // already be past it.
@@ -397,14 +416,25 @@ impl Solver {
             self.engine.restore(&kept);
             last_good = self.engine.measure().ok().and_then(|()| self.read(LOOSE, Travelled::default()).ok());
         }
-        SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good }))
+        let [after_snap, at_full_loads] = [after_snap, at_full_loads].map(|state| self.read_state(&state?));
+        SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good, snaps, after_snap, at_full_loads }))
+    }
+
+    /// The shape of a state that the path came through.
+    fn read_state(&mut self, state: &State) -> Option<Configuration> {
+        self.engine.restore(state);
+        let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
+        self.read(estimate, Travelled::default()).ok()
     }
 
     pub(crate) fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<Configuration, Trouble> {
         self.estimate = Some(estimate);
         let statistics = self.engine.statistics(travelled.steps);
         let length = self.engine.equations.units.length;
-        Configuration::read(&mut self.engine, estimate * length, statistics).map_err(Trouble::Section)
+        let mut read =
+            Configuration::read(&mut self.engine, estimate * length, statistics).map_err(Trouble::Section)?;
+        read.snaps = travelled.snaps;
+        Ok(read)
     }
 }
 

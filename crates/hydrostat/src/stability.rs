@@ -363,7 +363,7 @@ mod tests {
             if arm.cables[0].tension == 0.0 {
                 continue;
             }
-            let mut solver = Solver::new(&arm, Options { tol: 1e-10 }).unwrap();
+            let mut solver = Solver::new(&arm, Options::with_tol(1e-10)).unwrap();
             let Ok(shape) = solver.solve() else { continue };
             let mut dense = shape.dense().clone();
             let mut commanded = arm.clone();
@@ -417,7 +417,7 @@ mod tests {
             pairs += usize::from(count > 0 && found.rates[0][1] != 0.0);
             wrong.extend(disagreement(dense, &found, level).map(|what| format!("{case}: {what}")));
             if case < 100
-                && let Ok(sharp) = Solver::new(&arm, Options { tol: 1e-11 }).unwrap().solve()
+                && let Ok(sharp) = Solver::new(&arm, Options::with_tol(1e-11)).unwrap().solve()
             {
                 let sharp = sharp.growth().unwrap().rates[0];
                 let off = (sharp[0] - found.rates[0][0]).abs() / sharp[0].abs().max(1.0);

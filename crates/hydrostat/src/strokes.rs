@@ -27,7 +27,7 @@
 use crate::arm::Arm;
 use crate::configuration::Configuration;
 use crate::engine::{First, Trouble};
-use crate::path::{Pace, Travelled, follow_strokes};
+use crate::path::{Pace, Stopped, Travelled, follow_strokes};
 use crate::solve::{SAME, Solver};
 use crate::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
@@ -74,22 +74,32 @@ impl Solver {
     fn solve_strokes_from(&mut self, start: &Arm) -> Result<Configuration, SolveError> {
         self.engine.equations.let_go();
         self.engine.set_loads(start);
-        self.solve_tensions()?;
+        let mut snaps = self.solve_tensions()?.snaps;
         self.forget();
         let travelled = match self.follow_strokes_from_here(Pace::BRISK) {
             Ok(travelled) => travelled,
-            Err(verdict) => return Err(self.no_equilibrium(verdict)),
+            Err(mut stopped) => {
+                snaps.append(&mut stopped.snaps);
+                return Err(self.no_equilibrium(Stopped { snaps, ..stopped }));
+            }
         };
+        let crossings = travelled.crossings;
         let settled = self.engine.settle(self.options.tol, First::Rough);
         let Ok(mut configuration) = settled.and_then(|estimate| self.read(estimate, travelled)) else {
             let verdict = Verdict { phase: Phase::Stroke, ..self.last_verdict(Some(1.0)) };
             return Err(self.no_equilibrium(verdict));
         };
         let sign = self.engine.determinant().sign;
-        if travelled.crossings > 0 || sign < 0.0 {
+        snaps.append(&mut configuration.snaps);
+        configuration.snaps = snaps;
+        if crossings > 0 || sign < 0.0 {
             configuration.stable = Some(false);
         }
         self.keep(sign);
+        if !configuration.snaps.is_empty() {
+            // After a snap the way back is another one: what was solved is no start.
+            self.forget();
+        }
         Ok(configuration)
     }
 
@@ -152,7 +162,8 @@ impl Solver {
     }
 
     /// The phase of strokes, from the engine's equilibrium, in which the commanded cables are slack or hardly pulled.
-    fn follow_strokes_from_here(&mut self, pace: Pace) -> Result<Travelled, Verdict> {
+    fn follow_strokes_from_here(&mut self, pace: Pace) -> Result<Travelled, Stopped> {
+        let bounds = self.options.snaps;
         let engine = &mut self.engine;
         engine.equations.hold_strokes();
         engine.set_phase(Phase::Stroke, 1.0);
@@ -168,7 +179,7 @@ impl Solver {
             }
             engine.equations.start_strokes_from(strokes);
         }
-        follow_strokes(engine, pace)
+        follow_strokes(engine, pace, bounds)
     }
 
     /// Tensions (N) of the cables that their commanded strokes take in a straight arm, and those given: with the strokes
@@ -244,10 +255,10 @@ mod tests {
             for speed in [0.0, 0.1, 0.3] {
                 for direction in [0.0, 1.2, 2.4, 3.0] {
                     let arm = arm(strokes, speed, direction);
-                    let mut solver = Solver::new(&arm, Options { tol: 1e-9 }).unwrap();
+                    let mut solver = Solver::new(&arm, Options::with_tol(1e-9)).unwrap();
                     let Ok(one) = solver.solve_strokes_directly(&arm) else { continue };
                     direct += 1;
-                    let mut other = Solver::new(&arm, Options { tol: 1e-9 }).unwrap();
+                    let mut other = Solver::new(&arm, Options::with_tol(1e-9)).unwrap();
                     other.engine = Engine::new(&with_tensions(&arm, |_| 0.0));
                     other.solve_tensions().unwrap();
                     let pace = Pace { longest: 0.1, straightness: 0.99, most: 2000, accuracy: 1e-6 };

@@ -1,6 +1,7 @@
 //! Why there is no answer, with numbers.
 
 use crate::configuration::Configuration;
+use crate::snap::Snap;
 
 /// Which physical limit was met on the way from the unloaded arm to the loads asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -71,6 +72,16 @@ impl Phase {
             Self::Friction => "friction",
         }
     }
+
+    /// What is carried at a load fraction, in a phrase.
+    pub(crate) fn load_at(self, fraction: f64) -> String {
+        match self {
+            Self::Loads => format!("{fraction:.6} of the stream, weight, tip and distributed loads (cables slack)"),
+            Self::Tension => format!("{fraction:.6} of the tensions (all other loads whole)"),
+            Self::Stroke => format!("{fraction:.6} of the way from the slack cables' strokes to those commanded"),
+            Self::Friction => format!("{fraction:.6} of the friction of the cables"),
+        }
+    }
 }
 
 /// Why there is no equilibrium, or why none was found.
@@ -96,16 +107,7 @@ impl Verdict {
     /// What happened, in a sentence with its numbers.
     pub fn message(&self) -> String {
         let place = self.s.map_or_else(String::new, |s| format!(" at s = {s:.4} m"));
-        let load = match self.phase {
-            Phase::Loads => {
-                format!("{:.6} of the stream, weight, tip and distributed loads (cables slack)", self.load_fraction)
-            }
-            Phase::Tension => format!("{:.6} of the tensions (all other loads whole)", self.load_fraction),
-            Phase::Stroke => {
-                format!("{:.6} of the way from the slack cables' strokes to those commanded", self.load_fraction)
-            }
-            Phase::Friction => format!("{:.6} of the friction of the cables", self.load_fraction),
-        };
+        let load = self.phase.load_at(self.load_fraction);
         if let Some(spent) = self.spent {
             return format!(
                 "no equilibrium was found past {load} in {spent} evaluations of the section law, which is all that a solve may take \
@@ -146,7 +148,9 @@ impl Verdict {
             VerdictKind::NoSectionSolution => {
                 "lower the stream or the pull, or stiffen the section: the law softens in tension (planar: peak at nu = 2)"
             }
-            VerdictKind::LimitPoint => "stay below that load; `hydrostat path` and `equilibria` show the shapes beyond",
+            VerdictKind::LimitPoint => {
+                "stay below that load, or ask for the shape after the snap (`--follow-snaps`); `hydrostat path` and `equilibria` show the shapes beyond"
+            }
             VerdictKind::LoadJump => {
                 "use `flow_surface = \"centreline\"` and `entering_speed = \"tangential\"`, the smooth readings"
             }
@@ -185,4 +189,11 @@ pub struct NoEquilibrium {
     /// `None` only when not even the first step off the unloaded arm could be solved, or where a section at its limit, at an end of the arm, lets no
     /// shape be read out.
     pub last_good: Option<Configuration>,
+    /// The snaps that the arm makes on the way, the last of them the one that goes too far where the verdict is
+    /// [`VerdictKind::LimitPoint`] and the path leads on beyond it.
+    pub snaps: Vec<Snap>,
+    /// With such a verdict: the shape that the arm snaps to, at the loads of the limit point.
+    pub after_snap: Option<Configuration>,
+    /// With such a verdict: the shape at whole loads, if the path leads there. [`crate::Options::snaps`] without bounds gives it as an answer.
+    pub at_full_loads: Option<Configuration>,
 }

@@ -17,7 +17,7 @@ fn a_second_mesh_at_a_coarse_tolerance_panicked() {
     for (name, curvature) in [("silicone", 342.66), ("octopus", 203.0), ("multi-bending", 687.0)] {
         let mut arm = ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap();
         arm.reference.mu = curvature.into();
-        let found = Solver::new(&arm, Options { tol: 1e-3 }).unwrap().solve().unwrap();
+        let found = Solver::new(&arm, Options::with_tol(1e-3)).unwrap().solve().unwrap();
         assert!(found.statistics.meshes > 2, "{name}: one mesh was enough, {:?}", found.statistics);
         assert!(found.error_estimate <= 1e-3 * arm.length, "{name}: {:e} m", found.error_estimate);
     }
@@ -30,7 +30,7 @@ fn an_arm_wound_up_in_a_stream_took_a_gigabyte() {
     arm.reference.mu = 656_211.0.into();
     arm.reference.nu = 0.086.into();
     arm.flow.speed = 0.5;
-    match Solver::new(&arm, Options { tol: 1e-3 }).unwrap().solve() {
+    match Solver::new(&arm, Options::with_tol(1e-3)).unwrap().solve() {
         Ok(found) => assert!(found.statistics.elements <= 3000, "{:?}", found.statistics),
         Err(SolveError::NoEquilibrium(no)) => {
             assert_eq!(no.verdict.kind, VerdictKind::NotFound);

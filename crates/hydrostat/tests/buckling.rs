@@ -6,7 +6,7 @@ use hydrostat::cases::{HEAVY_COLUMN, column, column_buckling_load, heavy_column,
 use hydrostat::{Arm, Configuration, Options, Solver};
 
 fn solve(arm: &Arm) -> Configuration {
-    let mut solver = Solver::new(arm, Options { tol: 1e-9 }).unwrap();
+    let mut solver = Solver::new(arm, Options::with_tol(1e-9)).unwrap();
     solver.solve().unwrap_or_else(|e| panic!("{} {:?}: {e}", arm.name, arm.tip))
 }
 

@@ -4,7 +4,7 @@ use hydrostat::cases::{self, Case, Measure, uniform_arm};
 use hydrostat::{Arm, Configuration, Options, Solver, Volume};
 
 fn solve(arm: &Arm) -> Configuration {
-    let mut solver = Solver::new(arm, Options { tol: 1e-11 }).unwrap();
+    let mut solver = Solver::new(arm, Options::with_tol(1e-11)).unwrap();
     solver.solve().unwrap_or_else(|e| panic!("{}: {e}", arm.name))
 }
 

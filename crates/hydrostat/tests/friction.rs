@@ -5,7 +5,7 @@ use hydrostat::{Arm, Cable, Configuration, Motion, Options, Phase, Profile, Solv
 use hydrostat_files::{ArmFile, shipped};
 
 fn solve(arm: &Arm, tol: f64) -> Configuration {
-    Solver::new(arm, Options { tol }).unwrap().solve().unwrap_or_else(|e| panic!("{e}"))
+    Solver::new(arm, Options::with_tol(tol)).unwrap().solve().unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// An inextensible arm with one cable beside it bends by mu = T y/EI, and the cable turns as the arm does:

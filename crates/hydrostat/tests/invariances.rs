@@ -17,7 +17,7 @@ fn config() -> ProptestConfig {
 const TOL: f64 = 1e-8;
 
 fn solve(arm: &Arm) -> Result<Configuration, SolveError> {
-    Solver::new(arm, Options { tol: TOL }).unwrap().solve()
+    Solver::new(arm, Options::with_tol(TOL)).unwrap().solve()
 }
 
 prop_compose! {

@@ -20,13 +20,13 @@ fn grid(arm: &Arm, tension: f64, speed: f64, count: u32) -> Vec<Arm> {
 }
 
 fn own(arm: &Arm, tol: f64) -> Result<hydrostat::Configuration, SolveError> {
-    Solver::new(arm, Options { tol }).unwrap().solve()
+    Solver::new(arm, Options::with_tol(tol)).unwrap().solve()
 }
 
 /// Rows against solves of their own; how many of them have an answer.
 fn compare(arms: &[Arm], every: usize, tol: f64) -> usize {
     let wanted = Wanted { strokes: true, ..Wanted::default() };
-    let rows = solve_many(arms, &ManyOptions { tol, tile: 64, wanted }).unwrap();
+    let rows = solve_many(arms, &ManyOptions { tol, tile: 64, wanted, ..ManyOptions::default() }).unwrap();
     let mut answered = 0;
     for (arm, row) in arms.iter().zip(&rows).step_by(every) {
         match (own(arm, tol), row) {
@@ -81,12 +81,12 @@ fn threads_do_not_matter() {
     for wanted in [Wanted::default(), wanted] {
         let solve = |threads: usize, tile: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| solve_many(&arms, &ManyOptions { tol: 1e-6, tile, wanted }).unwrap())
+            pool.install(|| solve_many(&arms, &ManyOptions { tile, wanted, ..ManyOptions::default() }).unwrap())
         };
         let (one, three) = (solve(1, 20), solve(3, 20));
         assert_eq!(one, three);
         // A tile depends on its own rows alone.
-        let part = solve_many(&arms[40..80], &ManyOptions { tol: 1e-6, tile: 20, wanted }).unwrap();
+        let part = solve_many(&arms[40..80], &ManyOptions { tile: 20, wanted, ..ManyOptions::default() }).unwrap();
         assert_eq!(one[40..80], part[..]);
     }
 }

@@ -9,7 +9,7 @@ use hydrostat::{
 };
 
 fn solve(arm: &Arm) -> Configuration {
-    let mut solver = Solver::new(arm, Options { tol: 1e-10 }).unwrap();
+    let mut solver = Solver::new(arm, Options::with_tol(1e-10)).unwrap();
     solver.solve().unwrap_or_else(|e| panic!("{}: {e}", arm.name))
 }
 

@@ -152,7 +152,7 @@ fn effort(tensions: &[f64]) -> f64 {
 
 /// Newton by differences on two of three tensions, from some; that of cable `given` stays.
 fn with_given(arm: &Arm, target: Target, start: [f64; 3], given: usize) -> Option<Vec<f64>> {
-    let mut solver = Solver::new(arm, Options { tol: 1e-9 }).ok()?;
+    let mut solver = Solver::new(arm, Options::with_tol(1e-9)).ok()?;
     let [a, b] = [(given + 1) % 3, (given + 2) % 3];
     let mut tip = |t: [f64; 3]| {
         solver.set_tensions(&t).ok()?;

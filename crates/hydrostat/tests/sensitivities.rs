@@ -6,7 +6,7 @@ use hydrostat::{
 };
 
 /// Tolerance of the solves that are differenced.
-const TIGHT: Options = Options { tol: 1e-12 };
+const TIGHT: Options = Options::with_tol(1e-12);
 
 fn cone() -> Arm {
     let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.4);
@@ -249,7 +249,7 @@ fn squeezed() -> Arm {
 fn sensitivities_of_squeezed_arms_match_differences() {
     let arm = squeezed();
     let s = 0.9 * arm.length;
-    let exact = sensitivities(&arm, Options { tol: 1e-10 }, s, SensitivityMethod::Best);
+    let exact = sensitivities(&arm, Options::with_tol(1e-10), s, SensitivityMethod::Best);
     for (parameter, exact) in Parameter::all_of(&arm).into_iter().zip(&exact) {
         if !matches!(parameter, Parameter::Tension(_)) {
             continue;
@@ -367,7 +367,7 @@ fn derivatives_are_as_good_as_the_solve() {
     let s = 0.6 * arm.length;
     let exact = sensitivities(&arm, TIGHT, s, SensitivityMethod::Best);
     for (tol, bound) in [(1e-8, 3e-6), (1e-6, 1e-4)] {
-        let found = sensitivities(&arm, Options { tol }, s, SensitivityMethod::Best);
+        let found = sensitivities(&arm, Options::with_tol(tol), s, SensitivityMethod::Best);
         let mut worst = 0.0_f64;
         for (found, exact) in found.iter().zip(&exact) {
             let size = exact.iter().fold(1e-12_f64, |m, v| m.max(v.abs()));

@@ -23,7 +23,7 @@ fn paper(tensions: [f64; 2]) -> Arm {
 }
 
 fn solve(arm: &Arm, tol: f64) -> Configuration {
-    Solver::new(arm, Options { tol }).unwrap().solve().unwrap()
+    Solver::new(arm, Options::with_tol(tol)).unwrap().solve().unwrap()
 }
 
 fn linear([base, tip]: [f64; 2], s: f64) -> f64 {

@@ -17,7 +17,7 @@ fn paper() -> Arm {
 }
 
 fn solve(arm: &Arm) -> Configuration {
-    let mut solver = Solver::new(arm, Options { tol: 1e-10 }).unwrap();
+    let mut solver = Solver::new(arm, Options::with_tol(1e-10)).unwrap();
     solver.solve().unwrap_or_else(|e| panic!("{:?}: {e}", arm.cables.iter().map(|c| c.stroke).collect::<Vec<_>>()))
 }
 
@@ -62,7 +62,7 @@ fn strokes_of_known_tensions_give_these_tensions_back() {
                 let mut pulled = arm.clone();
                 pulled.flow.speed = speed;
                 pulled.set_tensions(&[left, right]).unwrap();
-                let Ok(given) = Solver::new(&pulled, Options { tol: 1e-10 }).unwrap().solve() else { continue };
+                let Ok(given) = Solver::new(&pulled, Options::with_tol(1e-10)).unwrap().solve() else { continue };
                 let found = solve(&commanded(&given));
                 for (one, other) in given.cables.iter().zip(&found.cables) {
                     let off = (one.stroke - other.stroke).abs() / arm.length;

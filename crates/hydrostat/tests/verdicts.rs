@@ -25,7 +25,7 @@ impl Case {
 
     fn verdict(&self, tol: f64) -> NoEquilibrium {
         let name = &self.name;
-        let no = match Solver::new(&self.arm, Options { tol }).unwrap().solve() {
+        let no = match Solver::new(&self.arm, Options::with_tol(tol)).unwrap().solve() {
             Err(SolveError::NoEquilibrium(no)) => *no,
             Err(error) => panic!("{name}, tol {tol:e}: {error}"),
             Ok(solved) => panic!("{name}, tol {tol:e}: solved, tip {:?}", solved.tip()),

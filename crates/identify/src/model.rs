@@ -72,7 +72,7 @@ impl Observed {
             }
         }
         let case = Case { arm, ..case.clone() };
-        Ok(Self { case, kept, stations, options: Options { tol }, solver: None })
+        Ok(Self { case, kept, stations, options: Options::with_tol(tol), solver: None })
     }
 
     /// The arm at these values of the parameters.

@@ -7,7 +7,7 @@ mod common;
 use common::{loads, markers, silicone};
 
 fn value(arm: &Arm, quantity: Quantity) -> f64 {
-    value_of(&Solver::new(arm, Options { tol: 1e-12 }).unwrap().solve().unwrap(), quantity)
+    value_of(&Solver::new(arm, Options::with_tol(1e-12)).unwrap().solve().unwrap(), quantity)
 }
 
 /// d value / d parameter by central differences, extrapolated once.

@@ -106,7 +106,7 @@ impl Arm {
         if let Some(speed) = flow_speed {
             arm.flow.speed = speed;
         }
-        py.detach(|| hydrostat::Solver::new(&arm, hydrostat::Options { tol })?.solve())
+        py.detach(|| hydrostat::Solver::new(&arm, hydrostat::Options::with_tol(tol))?.solve())
             .map(|configuration| Solution::new(configuration, tol))
             .map_err(|error| solve_error(py, error, tol))
     }

@@ -160,7 +160,7 @@ impl Request<'_> {
             .as_mut()
             .is_some_and(|solver| solver.set_arm(arm).is_ok() && solver.update().is_ok_and(|answer| near(answer.tip)));
         if !warm {
-            let mut solver = Solver::new(arm, Options { tol: self.tol }).ok()?;
+            let mut solver = Solver::new(arm, Options::with_tol(self.tol)).ok()?;
             solver.solve().ok()?;
             *kept = Some(solver);
         }

@@ -270,7 +270,7 @@ impl Follower {
             if let Some(found) = warm {
                 return Ok(Some(found));
             }
-            let mut solver = Solver::new(arm, Options { tol: SHAPE })?;
+            let mut solver = Solver::new(arm, Options::with_tol(SHAPE))?;
             let found = solver.solve()?;
             *kept = Some(solver);
             Ok(is_it(&found).then_some(found))

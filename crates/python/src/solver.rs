@@ -21,7 +21,7 @@ pub(crate) struct Solver {
 impl Solver {
     #[new]
     fn new(py: Python<'_>, arm: &Arm, tol: f64) -> PyResult<Self> {
-        let solver = hydrostat::Solver::new(&arm.given, hydrostat::Options { tol });
+        let solver = hydrostat::Solver::new(&arm.given, hydrostat::Options::with_tol(tol));
         Ok(Self { solver: solver.map_err(|error| solve_error(py, error, tol))?, tol })
     }
 

@@ -99,7 +99,7 @@ pub(crate) fn solve(request: &SolveRequest, deadline: Deadline) -> Result<Answer
     let arm = request.arm()?;
     let stations = stations(request.stations.clone())?;
     let tol = request.tol.unwrap_or(Options::default().tol);
-    let mut solver = Solver::new(&arm, Options { tol })?;
+    let mut solver = Solver::new(&arm, Options::with_tol(tol))?;
     match solver.solve() {
         Ok(mut configuration) => {
             let notes = Note::all(&configuration, tol);

@@ -138,7 +138,7 @@ impl Silhouette {
     /// Of the arm without its loads; `None` where even that has no shape.
     pub(crate) fn unloaded(arm: &Arm, count: usize) -> Option<Self> {
         let bare = arm.unloaded();
-        let shape = Solver::new(&bare, Options { tol: 1e-6 }).and_then(|mut solver| solver.solve()).ok()?;
+        let shape = Solver::new(&bare, Options::with_tol(1e-6)).and_then(|mut solver| solver.solve()).ok()?;
         Some(Self::new(&shape, count))
     }
 }

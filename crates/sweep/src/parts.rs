@@ -187,6 +187,8 @@ pub(crate) fn difference(found: &str, plan: &str) -> &'static str {
         ("sample", "sample"),
         ("seed", "seed"),
         ("tol", "tolerance"),
+        ("snap_distance", "bound of snaps"),
+        ("snap_angle", "bound of snaps"),
         ("columns", "list of columns"),
         ("shapes", "number of stations"),
         ("shard", "shard"),

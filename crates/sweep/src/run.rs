@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use hydrostat::{NoRow, Tile};
+use hydrostat::{NoRow, Options, SnapBounds, Tile};
 use hydrostat_files::{ArmFile, arm_to_toml, write_whole, write_whole_with};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -69,6 +69,8 @@ pub struct Shard {
 pub struct SweepOptions {
     /// Error of the tip position over the length, in [1e-12, 1e-2].
     pub tol: f64,
+    /// How far an arm may snap on its way to its loads.
+    pub snaps: SnapBounds,
     /// What is written of every row.
     pub outputs: Vec<Output>,
     /// So many equally spaced stations of every row; none below two.
@@ -79,7 +81,7 @@ pub struct SweepOptions {
 
 impl Default for SweepOptions {
     fn default() -> Self {
-        Self { tol: 1e-6, outputs: Output::DEFAULT.to_vec(), stations: 0, shard: None }
+        Self { tol: 1e-6, snaps: SnapBounds::default(), outputs: Output::DEFAULT.to_vec(), stations: 0, shard: None }
     }
 }
 
@@ -136,6 +138,8 @@ struct Note<'a> {
     sample: String,
     seed: u64,
     tol: f64,
+    snap_distance: Option<f64>,
+    snap_angle: Option<f64>,
     columns: Vec<&'static str>,
     shapes: usize,
     shard: Option<String>,
@@ -159,7 +163,7 @@ impl Sweep {
     pub fn new(file: &ArmFile, plan: Plan, options: &SweepOptions) -> Result<Self, SweepError> {
         let arms = Arms::new(file, plan.axes())?;
         let layout = Layout::new(&options.outputs, arms.base().cables.len(), options.stations);
-        let start = Tile::new(options.tol, layout.wanted())?;
+        let start = Tile::new(Options { tol: options.tol, snaps: options.snaps }, layout.wanted())?;
         let tiles = match options.shard {
             None => 0..plan.tiles(),
             Some(Shard { index, of }) => {
@@ -502,6 +506,9 @@ fn note(plan: &Plan, arms: &Arms, layout: &Layout, options: &SweepOptions, tiles
         sample: plan.sample().to_string(),
         seed: plan.seed(),
         tol: options.tol,
+        // Without bounds these are null.
+        snap_distance: Some(options.snaps.distance).filter(|bound| bound.is_finite()),
+        snap_angle: Some(options.snaps.angle).filter(|bound| bound.is_finite()),
         columns: layout.outputs().iter().map(|output| output.name()).collect(),
         shapes: options.stations,
         shard: options.shard.map(|shard| format!("{}/{}", shard.index, shard.of)),

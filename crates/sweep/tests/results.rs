@@ -49,7 +49,7 @@ fn rows_are_the_arms_own_solves() {
             let unit = if at == "_rad" { " rad" } else { "" };
             file.set(key, &format!("{value:?}{unit}")).unwrap();
         }
-        let own = Solver::new(&file.arm().unwrap(), Options { tol: 1e-6 }).unwrap().solve().unwrap();
+        let own = Solver::new(&file.arm().unwrap(), Options::with_tol(1e-6)).unwrap().solve().unwrap();
         let close = |name: &str, want: f64| {
             let found = column(name)[row];
             assert!((found - want).abs() <= 1e-5 * want.abs().max(0.01), "{name} of row {row}: {found} {want}");

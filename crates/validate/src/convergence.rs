@@ -199,7 +199,7 @@ pub(crate) fn section() -> Section {
 /// What an arm's solves at several tolerances have: elements, and the error of the tip over L.
 fn tolerances(arm: &Arm) -> Vec<[f64; 2]> {
     let solve = |tol: f64| -> Option<Configuration> {
-        Solver::new(arm, Options { tol }).and_then(|mut solver| solver.solve()).ok()
+        Solver::new(arm, Options::with_tol(tol)).and_then(|mut solver| solver.solve()).ok()
     };
     let Some(best) = solve(1e-12) else { return Vec::new() };
     (3..=11)

@@ -151,7 +151,7 @@ fn has_knots(arm: &Arm) -> bool {
 
 /// Distance of the tip from that of an answer at a tolerance of 1e-11, over L.
 fn from_sharp(arm: &Arm, solved: &Configuration) -> f64 {
-    let sharp = Solver::new(arm, Options { tol: 1e-11 }).and_then(|mut solver| solver.solve());
+    let sharp = Solver::new(arm, Options::with_tol(1e-11)).and_then(|mut solver| solver.solve());
     sharp.map_or(f64::INFINITY, |sharp| {
         (solved.tip().x - sharp.tip().x).hypot(solved.tip().y - sharp.tip().y) / arm.length
     })
@@ -316,7 +316,8 @@ const FLOOR: f64 = 5e-12;
 fn against_tolerances(section: &mut Section, scope: Scope) {
     let digits: Vec<i32> = if scope == Scope::Quick { vec![5, 8] } else { (4..=10).collect() };
     let arms = arms();
-    let solve = |arm: &Arm, tol: f64| Solver::new(arm, Options { tol }).and_then(|mut solver| solver.solve()).ok();
+    let solve =
+        |arm: &Arm, tol: f64| Solver::new(arm, Options::with_tol(tol)).and_then(|mut solver| solver.solve()).ok();
     let rows: Vec<Vec<Row>> = arms
         .par_iter()
         .map(|arm| {

@@ -10,7 +10,7 @@ use crate::report::{Check, Row, Section, Table};
 const TOL: f64 = 1e-11;
 
 fn solve(arm: &Arm) -> Option<Configuration> {
-    Solver::new(arm, Options { tol: TOL }).and_then(|mut solver| solver.solve()).ok()
+    Solver::new(arm, Options::with_tol(TOL)).and_then(|mut solver| solver.solve()).ok()
 }
 
 fn name(measure: Measure) -> &'static str {

@@ -86,7 +86,7 @@ impl Entry {
     /// The tip as found here, over L.
     fn own(&self) -> Option<[f64; 2]> {
         let arm = self.arm()?;
-        let tip = Solver::new(&arm, Options { tol: 1e-12 }).and_then(|mut solver| solver.solve()).ok()?.tip();
+        let tip = Solver::new(&arm, Options::with_tol(1e-12)).and_then(|mut solver| solver.solve()).ok()?.tip();
         Some([tip.x / arm.length, tip.y / arm.length])
     }
 }

@@ -27,7 +27,7 @@ fn drag(solved: &Configuration) -> f64 {
 
 /// Cauchy number, drag over EI/L^2, tip angle from the stream in degrees; what could not be solved is not a number.
 fn at(ca: f64) -> [f64; 3] {
-    let solved = blade(ca).and_then(|arm| Solver::new(&arm, Options { tol: 1e-9 }).and_then(|mut s| s.solve()).ok());
+    let solved = blade(ca).and_then(|arm| Solver::new(&arm, Options::with_tol(1e-9)).and_then(|mut s| s.solve()).ok());
     solved.map_or([ca, f64::NAN, f64::NAN], |solved| [ca, drag(&solved), solved.tip().theta.to_degrees()])
 }
 

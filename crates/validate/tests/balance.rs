@@ -132,7 +132,7 @@ fn the_balance_across_a_jump_is_off_by_its_gap_alone() {
     (arm.cables[0].tension, arm.cables[1].tension) = (0.3, 0.0);
     arm.readings = Readings::LITERAL;
     for tol in [1e-8, 1e-10] {
-        let off = residuals(&Solver::new(&arm, Options { tol }).unwrap().solve().unwrap());
+        let off = residuals(&Solver::new(&arm, Options::with_tol(tol)).unwrap().solve().unwrap());
         println!("{tol:e}: {off:?}");
         assert!(off.whole < 1.5e-6 && off.parts < 1.5e-6 && off.law < 1e-9, "{tol:e}: {off:?}");
     }

@@ -4,7 +4,7 @@ use hydrostat::{Arm, Cable, Configuration, Options, Profile, Solver};
 use hydrostat_validate::convergence::arms;
 
 fn solve(arm: &Arm, tol: f64) -> Configuration {
-    let mut solver = Solver::new(arm, Options { tol }).unwrap();
+    let mut solver = Solver::new(arm, Options::with_tol(tol)).unwrap();
     solver.solve().unwrap_or_else(|e| panic!("{} at {tol:e}: {e}", arm.name))
 }
 
@@ -97,10 +97,10 @@ fn warm_estimates_are_as_honest_as_cold_ones() {
                     arm
                 };
                 let (before, after) = (arm(pulled), arm(1.01 * pulled));
-                let sharp = |arm: &Arm| Solver::new(arm, Options { tol: 1e-12 }).unwrap().solve().ok();
+                let sharp = |arm: &Arm| Solver::new(arm, Options::with_tol(1e-12)).unwrap().solve().ok();
                 let (Some(first), Some(second)) = (sharp(&before), sharp(&after)) else { continue };
                 for tol in [1e-6, 1e-8, 1e-10] {
-                    let mut solver = Solver::new(&before, Options { tol }).unwrap();
+                    let mut solver = Solver::new(&before, Options::with_tol(tol)).unwrap();
                     let cold = solver.solve().unwrap();
                     solver.set_tensions(&[1.01 * pulled, 0.0]).unwrap();
                     let warm = solver.resolve().unwrap();

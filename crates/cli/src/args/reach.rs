@@ -116,7 +116,7 @@ fn length(text: &str) -> Result<f64, String> {
     quantity(Dimension::Length, text)
 }
 
-fn angle(text: &str) -> Result<f64, String> {
+pub(super) fn angle(text: &str) -> Result<f64, String> {
     quantity(Dimension::Angle, text)
 }
 

@@ -7,7 +7,7 @@ use clap::Args as ClapArgs;
 use hydrostat_files::Axis;
 use hydrostat_sweep::{Format, Output, Sample, Shard};
 
-use super::{ArmArgs, count};
+use super::{ArmArgs, SnapArgs, count};
 
 const EXIT: &str = "\
 Exit status:
@@ -57,6 +57,8 @@ pub(crate) struct SweepArgs {
     /// Error of the tip position over the length that is asked for, from 1e-12 to 1e-2
     #[arg(long, value_name = "TOL", default_value = "1e-6", allow_hyphen_values = true)]
     pub(crate) tol: f64,
+    #[command(flatten)]
+    pub(crate) snaps: SnapArgs,
     /// Solve share I of N only, from 1
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub(crate) shard: Option<Shard>,

@@ -81,7 +81,7 @@ fn solve(bare: &Arm, group: &[usize], tension: f64) -> Result<(), SolveError> {
         arm.cables[*cable].tension = tension;
     }
     // The limit is wanted to a few digits; a coarse mesh finds it sooner.
-    Solver::new(&arm, Options { tol: 1e-5 })?.solve().map(|_| ())
+    Solver::new(&arm, Options::with_tol(1e-5))?.solve().map(|_| ())
 }
 
 fn why(kind: VerdictKind) -> Option<&'static str> {

@@ -11,7 +11,7 @@ use crate::request;
 
 pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
     let arm = request::arm(&args.arm)?;
-    let mut solver = Solver::new(&arm, Options { tol: args.tol })?;
+    let mut solver = Solver::new(&arm, Options { tol: args.tol, snaps: args.snaps.bounds() })?;
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
@@ -20,6 +20,9 @@ pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
         Err(SolveError::NoEquilibrium(failure)) => {
             let others = others(&arm, args.tol, failure.verdict.kind);
             report_failure(args, *failure.clone(), others)?;
+            if let Some(message) = beyond(&failure) {
+                eprintln!("note: {message}");
+            }
             if let Some(others) = others {
                 eprintln!("note: {}", others_message(others));
             }
@@ -43,7 +46,9 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
     };
     output::put(args.output.as_deref(), &text)?;
     for note in &notes {
-        eprintln!("warning: {}", note.message);
+        // A snap within its bounds is known to be harmless.
+        let word = if note.kind == "snap" { "note" } else { "warning" };
+        eprintln!("{word}: {}", note.message);
     }
     if configuration.stability().map_or(configuration.stable, Stability::is_stable) == Some(false) {
         eprintln!("warning: this equilibrium is unstable: the arm would leave it at the slightest push");
@@ -72,6 +77,22 @@ fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium, others: Option<O
         output::put(args.output.as_deref(), &text)?;
     }
     Ok(())
+}
+
+/// What lies beyond the snap that was refused.
+fn beyond(failure: &NoEquilibrium) -> Option<String> {
+    let (snap, _) = (failure.snaps.last()?, failure.after_snap.as_ref()?);
+    let leads = match &failure.at_full_loads {
+        Some(shape) => {
+            let tip = shape.tip();
+            let place = format!("x {:.4} mm, y {:.4} mm", 1e3 * tip.x, 1e3 * tip.y);
+            format!(
+                "the path leads on to the full loads, with the tip at {place}: --follow-snaps answers with that shape"
+            )
+        }
+        None => "the path does not lead on to the full loads".to_owned(),
+    };
+    Some(format!("{}; {leads}", snap.message()))
 }
 
 /// The equilibria that the path does not lead to, where it turns back: looked for with no finer tolerance than a count needs.

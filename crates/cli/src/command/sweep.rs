@@ -18,6 +18,7 @@ pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
         Plan::new(args.vary.clone(), args.sample.unwrap_or(Sample::Grid), args.seed).map_err(SweepError::from)?;
     let options = SweepOptions {
         tol: args.tol,
+        snaps: args.snaps.bounds(),
         outputs: args.columns.clone(),
         stations: args.shapes.unwrap_or(0),
         shard: args.shard,

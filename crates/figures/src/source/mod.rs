@@ -203,7 +203,7 @@ fn loaded(arm: &Arm, tension: f64, speed: f64) -> Arm {
 }
 
 fn solved(arm: &Arm, tension: f64, speed: f64) -> Result<Configuration, StudyError> {
-    Solver::new(&loaded(arm, tension, speed), Options { tol: TOL })
+    Solver::new(&loaded(arm, tension, speed), Options::with_tol(TOL))
         .and_then(|mut solver| solver.solve())
         .map_err(|source| StudyError::Solve { tension, speed, source: Box::new(source) })
 }

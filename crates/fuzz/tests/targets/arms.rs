@@ -74,7 +74,7 @@ fn arms() {
             let _ = file.set(key, value);
         }
         let Ok(arm) = file.arm() else { return Ok(()) };
-        match Solver::new(&arm, Options { tol }).and_then(|mut solver| solver.solve()) {
+        match Solver::new(&arm, Options::with_tol(tol)).and_then(|mut solver| solver.solve()) {
             Ok(solved) => {
                 let tip = solved.tip();
                 let fine = [tip.x, tip.y, tip.theta, solved.error_estimate].iter().all(|v| v.is_finite());

@@ -16,6 +16,7 @@ use crate::configuration::Configuration;
 use crate::engine::{Engine, First, Trouble};
 use crate::parameter::Parameter;
 use crate::path::{PathEnd, PathError};
+use crate::snap::SnapBounds;
 use crate::solve::{Options, Solver};
 use crate::stability::Stability;
 use crate::verdict::{SolveError, VerdictKind};
@@ -151,7 +152,8 @@ fn start(arm: &Arm) -> Result<(Solver, f64), PathError> {
     for turned in STARTS {
         let mut held = arm.clone();
         held.base.angle += TAU * turned;
-        let solved = Solver::new(&held, Options::default()).and_then(|mut solver| solver.solve().map(|_| solver));
+        let solved = Solver::new(&held, Options { snaps: SnapBounds::NONE, ..Options::default() })
+            .and_then(|mut solver| solver.solve().map(|_| solver));
         match solved {
             Ok(solver) => return Ok((solver, turned)),
             Err(error @ SolveError::NoEquilibrium(_)) => first = first.or(Some(error)),

@@ -4,7 +4,10 @@
 use super::contact::Contact;
 use super::stepper::{Along, Fraction, Point, Stepper, Turn};
 use super::{LOOSE, MEET, Pace, START, Travelled};
-use crate::engine::{Engine, First, Trouble, roughly};
+use crate::configuration::{Configuration, Tip};
+use crate::engine::{Engine, First, State, Trouble, roughly};
+use crate::snap::{Snap, SnapBounds};
+use crate::stability::Stability;
 use crate::verdict::{Phase, Verdict, VerdictKind};
 
 /// The tolerance (tip position over L) of the mesh on which a path ends.
@@ -16,30 +19,60 @@ const HASTE: f64 = 1e-6;
 /// Margins of cables (as in `contact`) within which a coarse mesh may have mistaken which of them changes.
 const CONTACT: f64 = 1e-6;
 
+/// Attempts at steps beyond a limit point, by which the path has to lead on.
+const BEYOND: usize = 400;
+
 /// The first step on that mesh.
 const SHARP_STEP: f64 = 1e-3;
 
+/// Where a path ends without an answer. The engine is at the last good point.
+#[derive(Debug, Clone)]
+pub(crate) struct Stopped {
+    pub(crate) verdict: Verdict,
+    /// The snaps on the way, with the one that is refused.
+    pub(crate) snaps: Vec<Snap>,
+    /// Where the arm lands after the refused snap.
+    pub(crate) after_snap: Option<State>,
+    /// The end of the path beyond that snap, at whole loads.
+    pub(crate) at_full_loads: Option<State>,
+}
+
+impl From<Verdict> for Stopped {
+    fn from(verdict: Verdict) -> Self {
+        Self { verdict, snaps: Vec::new(), after_snap: None, at_full_loads: None }
+    }
+}
+
+/// A snap that goes too far, after which the path is followed for what lies beyond.
+#[derive(Debug, Clone)]
+struct Refused {
+    verdict: Verdict,
+    /// At the limit point.
+    before: State,
+    after: State,
+}
+
 /// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
-pub(crate) fn follow(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdict> {
-    let mut outcome = follow_at(engine, pace, pace.accuracy >= LOOSE);
-    if let Err(verdict) = &outcome
+pub(crate) fn follow(engine: &mut Engine, pace: Pace, bounds: SnapBounds) -> Result<Travelled, Stopped> {
+    let mut outcome = follow_at(engine, pace, bounds, pace.accuracy >= LOOSE);
+    if let Err(Stopped { verdict, .. }) = &outcome
         && engine.in_a_hurry
         && verdict.spent.is_none()
         && (verdict.kind == VerdictKind::NotFound || verdict.load_fraction < HASTE)
     {
         // Nothing that has physics behind it: it may be the haste.
-        outcome = follow_at(engine, pace, false);
+        outcome = follow_at(engine, pace, bounds, false);
     }
     engine.in_a_hurry = false;
     outcome
 }
 
 /// [`follow`], in a hurry or with care.
-fn follow_at(engine: &mut Engine, mut pace: Pace, hurry: bool) -> Result<Travelled, Verdict> {
+fn follow_at(engine: &mut Engine, mut pace: Pace, bounds: SnapBounds, hurry: bool) -> Result<Travelled, Stopped> {
     if hurry {
         pace.longest *= 1.5;
     }
-    let mut travelled = Travelled::default();
+    let mut way = Way::new(bounds);
     engine.in_a_hurry = hurry;
     engine.set_phase(Phase::Loads, START);
     engine.start_unloaded(10);
@@ -49,35 +82,83 @@ fn follow_at(engine: &mut Engine, mut pace: Pace, hurry: bool) -> Result<Travell
             Phase::Tension => engine.equations.has_tension(),
             Phase::Stroke | Phase::Friction => false,
         };
-        if moves {
-            let stepper = Stepper::new(engine, Along::Phase(phase), [f64::NEG_INFINITY, 1.0]);
-            Ramp { stepper, phase }.follow(pace, &mut travelled)?;
+        if moves && let Err(verdict) = way.along(engine, phase, pace) {
+            return Err(way.stopped(engine, verdict));
         }
         engine.set_phase(phase, 1.0);
     }
-    Ok(travelled)
+    way.whole(engine)
 }
 
 /// Follows the strokes to those commanded, or to a verdict, from the engine's equilibrium without them.
-pub(crate) fn follow_strokes(engine: &mut Engine, pace: Pace) -> Result<Travelled, Verdict> {
-    let mut travelled = Travelled::default();
+pub(crate) fn follow_strokes(engine: &mut Engine, pace: Pace, bounds: SnapBounds) -> Result<Travelled, Stopped> {
     let phase = Phase::Stroke;
-    let stepper = Stepper::new(engine, Along::Phase(phase), [f64::NEG_INFINITY, 1.0]);
-    let outcome = Ramp { stepper, phase }.follow(pace, &mut travelled);
+    let mut way = Way::new(bounds);
+    let outcome = way.along(engine, phase, pace);
     engine.equations.let_cables_switch(true);
-    outcome?;
+    if let Err(verdict) = outcome {
+        return Err(way.stopped(engine, verdict));
+    }
     engine.set_phase(phase, 1.0);
-    Ok(travelled)
+    way.whole(engine)
+}
+
+/// What the path has met so far.
+struct Way {
+    bounds: SnapBounds,
+    travelled: Travelled,
+    refused: Option<Refused>,
+}
+
+impl Way {
+    fn new(bounds: SnapBounds) -> Self {
+        Self { bounds, travelled: Travelled::default(), refused: None }
+    }
+
+    /// One phase of the path.
+    fn along(&mut self, engine: &mut Engine, phase: Phase, pace: Pace) -> Result<(), Verdict> {
+        let stepper = Stepper::new(engine, Along::Phase(phase), [f64::NEG_INFINITY, 1.0]);
+        Ramp { stepper, phase, way: self, turned_back: None }.follow(pace)
+    }
+
+    /// The end of the path at whole loads.
+    fn whole(self, engine: &mut Engine) -> Result<Travelled, Stopped> {
+        let Some(refused) = self.refused else { return Ok(self.travelled) };
+        let end = engine.state();
+        engine.restore(&refused.before);
+        let Refused { verdict, after, .. } = refused;
+        Err(Stopped { verdict, snaps: self.travelled.snaps, after_snap: Some(after), at_full_loads: Some(end) })
+    }
+
+    /// The end of the path before that, for the reason that `verdict` gives.
+    fn stopped(self, engine: &mut Engine, verdict: Verdict) -> Stopped {
+        let snaps = self.travelled.snaps;
+        let Some(Refused { verdict, before, after }) = self.refused else {
+            return Stopped { snaps, ..verdict.into() };
+        };
+        engine.restore(&before);
+        Stopped { verdict, snaps, after_snap: Some(after), at_full_loads: None }
+    }
+}
+
+/// A limit point at which the path turned back, and past whose load it has not come again.
+struct TurnedBack {
+    fraction: f64,
+    state: State,
+    /// `None` where the section at the tip is at its limit.
+    tip: Option<Tip>,
 }
 
 /// One phase of the path.
-struct Ramp<'e> {
+struct Ramp<'e, 'w> {
     stepper: Stepper<'e>,
     phase: Phase,
+    way: &'w mut Way,
+    turned_back: Option<TurnedBack>,
 }
 
-impl Ramp<'_> {
-    fn follow(&mut self, pace: Pace, travelled: &mut Travelled) -> Result<(), Verdict> {
+impl Ramp<'_, '_> {
+    fn follow(&mut self, pace: Pace) -> Result<(), Verdict> {
         let mut here = self.start_or_verdict()?;
         // Which side of zero the determinant is on is a matter of the branch, which way is up is not.
         if here.rise < 0.0 {
@@ -90,12 +171,17 @@ impl Ramp<'_> {
         // A point before this one whose tangent climbed clearly more.
         let mut steeper = (here.fraction, here.rise);
         let mut sharpened = false;
-        for attempt in 0.. {
+        let mut most = pace.most;
+        let mut attempt = 0;
+        loop {
             if self.stepper.engine.spent().is_some() {
                 self.stepper.engine.restore(&here.state);
-                return Err(self.end(VerdictKind::NotFound, here.fraction, None));
+                return Err(self.end_of_way(VerdictKind::NotFound, here.fraction));
             }
-            if attempt >= pace.most || step < 1e-8 {
+            if attempt >= most || step < 1e-8 {
+                if let Some(verdict) = self.does_not_lead_on() {
+                    return Err(verdict);
+                }
                 if !sharpened && let Some(point) = self.sharpen(&here) {
                     sharpened = true;
                     here = point;
@@ -105,24 +191,36 @@ impl Ramp<'_> {
                 }
                 return Err(self.stuck(&here, steeper));
             }
+            attempt += 1;
             match self.stepper.advance_to_contact(&here, step, pace) {
                 Ok((mut next, turn, contact)) => {
                     if turn == Turn::Crossing {
                         // The branch goes straight on through a bifurcation.
                         self.stepper.orientation = -self.stepper.orientation;
                         next.rise = -next.rise;
-                        travelled.crossings += 1;
+                        self.way.travelled.crossings += 1;
                     }
-                    if next.rise < 0.0 {
+                    if self.turned_back.is_some() {
+                        if next.fraction <= 0.0 {
+                            return Err(self.does_not_lead_on().unwrap_or_else(|| self.stuck(&here, steeper)));
+                        }
+                        if self.comes_past(&here, &next) && !self.land(&here, pace) {
+                            // The step goes round the next limit point, too.
+                            step *= 0.4;
+                            continue;
+                        }
+                    } else if next.rise < 0.0 {
                         let (_, limit) = self.stepper.limit_point(&here, &next, step, pace);
-                        return Err(self.end(VerdictKind::LimitPoint, limit.clamp(0.0, 1.0), None));
+                        self.turn_back(limit.clamp(0.0, 1.0));
+                        most = attempt + BEYOND;
                     }
-                    travelled.steps += 1;
+                    self.way.travelled.steps += 1;
                     if let Some(Contact { after, .. }) = contact {
-                        if after.rise < 0.0 {
+                        if after.rise < 0.0 && self.turned_back.is_none() {
                             // Where a cable goes slack or taut the path turns back in a corner.
                             self.stepper.engine.restore(&next.state);
-                            return Err(self.end(VerdictKind::LimitPoint, next.fraction, None));
+                            self.turn_back(next.fraction);
+                            most = attempt + BEYOND;
                         }
                         here = after;
                         steeper = (here.fraction, here.rise);
@@ -130,7 +228,10 @@ impl Ramp<'_> {
                         continue;
                     }
                     if next.fraction == 1.0 {
-                        travelled.symmetric = next.is_symmetric();
+                        if let Some(verdict) = self.does_not_lead_on() {
+                            return Err(verdict);
+                        }
+                        self.way.travelled.symmetric = next.is_symmetric();
                         return Ok(());
                     }
                     if here.rise > 1.3 * next.rise {
@@ -149,7 +250,75 @@ impl Ramp<'_> {
                 }
             }
         }
-        unreachable!("the loop returns when its attempts are used up")
+    }
+
+    /// Notes the limit point that the engine is at.
+    fn turn_back(&mut self, fraction: f64) {
+        let engine = &self.stepper.engine;
+        self.turned_back = Some(TurnedBack { fraction, state: engine.state(), tip: engine.read_tip().ok() });
+        self.stepper.bounds[0] = 0.0;
+    }
+
+    /// Whether a step leads past the load of the limit point again, upwards.
+    fn comes_past(&self, here: &Point, next: &Point) -> bool {
+        self.turned_back.as_ref().is_some_and(|limit| here.fraction < limit.fraction && next.fraction >= limit.fraction)
+    }
+
+    /// The arm lands where a step from `here` comes past the load of the limit point, if that shape is stable. Whether the path is known
+    /// that far.
+    fn land(&mut self, here: &Point, pace: Pace) -> bool {
+        let Some(limit) = self.turned_back.take() else { return true };
+        let kept = (self.stepper.engine.state(), self.stepper.orientation);
+        // From before the second limit point no tangent leads there.
+        let landed =
+            here.rise > 0.0 && self.stepper.land(here, limit.fraction, Pace { straightness: -1.0, ..pace }).is_ok();
+        let snap = if landed { self.landing(&limit) } else { None };
+        let after = self.stepper.engine.state();
+        self.stepper.engine.restore(&kept.0);
+        self.stepper.orientation = kept.1;
+        let Some((snap, stable)) = snap else {
+            self.turned_back = Some(limit);
+            return false;
+        };
+        if !stable {
+            // The arm does not stay there: the path may come past this load once more.
+            self.turned_back = Some(limit);
+            return true;
+        }
+        self.stepper.bounds[0] = f64::NEG_INFINITY;
+        self.way.travelled.crossings = 0;
+        if self.way.refused.is_some() {
+            return true;
+        }
+        self.way.travelled.snaps.push(snap);
+        if !self.way.bounds.allow(&snap, self.stepper.engine.equations.units.length) {
+            let verdict = self.end(VerdictKind::LimitPoint, limit.fraction, None);
+            self.way.refused = Some(Refused { verdict, before: limit.state, after });
+        }
+        true
+    }
+
+    /// The snap from a limit point to the engine's shape, and whether that is stable.
+    fn landing(&mut self, limit: &TurnedBack) -> Option<(Snap, bool)> {
+        let engine = &mut *self.stepper.engine;
+        let estimate = engine.settle(SHARP_TOLERANCE, First::Warm).ok()?;
+        let (before, after) = (limit.tip?, engine.read_tip().ok()?);
+        let statistics = engine.statistics(0);
+        let read = Configuration::read(engine, estimate, statistics).ok()?;
+        let stable = matches!(read.stability(), Some(Stability::Stable) | None);
+        Some((Snap { phase: self.phase, load_fraction: limit.fraction, before, after }, stable))
+    }
+
+    /// Why a path that turned back has not come past the limit point again; the engine is at that.
+    fn does_not_lead_on(&mut self) -> Option<Verdict> {
+        let limit = self.turned_back.take()?;
+        self.stepper.engine.restore(&limit.state);
+        Some(self.end(VerdictKind::LimitPoint, limit.fraction, None))
+    }
+
+    /// Why the path ends where work is over: a limit point that was met before says more.
+    fn end_of_way(&mut self, kind: VerdictKind, fraction: f64) -> Verdict {
+        self.does_not_lead_on().unwrap_or_else(|| self.end(kind, fraction, None))
     }
 
     /// [`Ramp::start`], or why there is no such point.

@@ -265,7 +265,7 @@ impl Arm {
         parameter.checked(self, range[1]).map_err(|e| value_error(range[1], e))?;
         self.has_a_path()?;
         let start_error = |source| PathError::Start { parameter, value: range[0], source };
-        let mut solver = Solver::new(&first, Options { tol: options.tol.min(1e-8) }).map_err(start_error)?;
+        let mut solver = Solver::new(&first, Options::with_tol(options.tol.min(1e-8))).map_err(start_error)?;
         solver.solve().map_err(start_error)?;
 
         let engine = solver.engine_mut();

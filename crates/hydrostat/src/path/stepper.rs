@@ -65,7 +65,7 @@ impl Point {
 
 /// How far a branch has gone.
 #[derive(Debug, Clone, Copy, Default)]
-struct Travelled {
+struct Progress {
     /// The sum of the turns of all steps, rad (root mean square along the arm).
     turn: f64,
     /// The sum of the changes of the fraction.
@@ -116,7 +116,7 @@ pub(super) struct Stepper<'e> {
     /// The change of theta (rad, root mean square along the arm) that counts as much as the whole of the load in the metric of the path.
     scale: f64,
     /// Where the branch began, and how far its shape has turned and its fraction has climbed since.
-    travelled: Travelled,
+    progress: Progress,
     /// How much of what a step may bend the path the last one did, over all of it: of the second order in the step.
     stretch: f64,
     /// Whether the last linearisation is that of the solution, but for a correction that is as good as none.
@@ -145,7 +145,7 @@ impl<'e> Stepper<'e> {
             crossings_welcome: false,
             error: LOOSE,
             scale: 1.0,
-            travelled: Travelled::default(),
+            progress: Progress::default(),
             stretch: 0.0,
             current: false,
         }
@@ -203,7 +203,7 @@ impl<'e> Stepper<'e> {
 
     /// Takes `start` for the start of a branch, and its response for the scale of theta.
     pub(super) fn begin(&mut self, start: &mut Point) {
-        self.travelled = Travelled::default();
+        self.progress = Progress::default();
         self.rescale(start, start.turn_by_load(self.scale));
     }
 
@@ -212,14 +212,14 @@ impl<'e> Stepper<'e> {
     pub(super) fn went(&mut self, here: &Point, next: &mut Point) {
         let way = self.distance(here, next);
         let climb = next.fraction - here.fraction;
-        self.travelled.turn += self.scale * (way * way - climb * climb).max(0.0).sqrt();
-        self.travelled.climb += climb.abs();
-        self.rescale(next, self.travelled.turn / self.travelled.climb);
+        self.progress.turn += self.scale * (way * way - climb * climb).max(0.0).sqrt();
+        self.progress.climb += climb.abs();
+        self.rescale(next, self.progress.turn / self.progress.climb);
     }
 
     /// Widens the scale of theta to `wanted` (rad a whole load), and gives `point` the tangent of the metric that follows.
     fn rescale(&mut self, point: &mut Point, wanted: f64) {
-        let first = self.travelled.turn == 0.0;
+        let first = self.progress.turn == 0.0;
         let least = if first { FINE_SCALE } else { self.scale };
         let scale = if wanted.is_finite() { wanted.clamp(least, 1.0) } else { 1.0 };
         let turn = point.turn_by_load(self.scale) / scale;

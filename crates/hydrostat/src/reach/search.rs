@@ -197,7 +197,7 @@ impl Search {
     pub(super) fn at(&self, tensions: &[f64]) -> Result<State, ReachError> {
         let mut arm = self.arm.clone();
         arm.set_tensions(tensions).map_err(SolveError::from)?;
-        let mut solver = Solver::new(&arm, Options { tol: (SOLVED * self.tol).clamp(1e-11, 1e-6) })?;
+        let mut solver = Solver::new(&arm, Options::with_tol((SOLVED * self.tol).clamp(1e-11, 1e-6)))?;
         solver.update()?;
         let places: Vec<f64> = self.goal.stations().map(|s| s / self.arm.length).collect();
         if solver.engine.watch(&places, solver.options.tol).is_err() {

@@ -30,7 +30,7 @@ fn the_equilibrium_beside_the_s_turn_is_the_known_one() {
 fn a_cable_that_turns_both_ways_leaves_the_tip_where_it_is_known() {
     let arm = s_turn();
     for tol in [1e-6, 1e-8, 1e-10] {
-        let solved = Solver::new(&arm, Options { tol }).unwrap().solve().unwrap();
+        let solved = Solver::new(&arm, Options::with_tol(tol)).unwrap().solve().unwrap();
         let off = (solved.tip().x - S_TURN[0]).hypot(solved.tip().y - S_TURN[1]);
         assert!(off < 3.0 * solved.error_estimate + 5e-10, "{tol:e}: {off:e} m, estimate {:e}", solved.error_estimate);
         assert!(solved.error_estimate < tol * arm.length, "{tol:e}: {:e}", solved.error_estimate);

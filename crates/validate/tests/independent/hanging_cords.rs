@@ -166,7 +166,8 @@ fn a_cord_hangs_at_any_tolerance() {
     arm.length = 0.3;
     let [x, y, _] = Cord::new(&arm).tip();
     for tol in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11] {
-        let solved = Solver::new(&arm, Options { tol }).unwrap().solve().unwrap_or_else(|e| panic!("{tol:e}: {e}"));
+        let solved =
+            Solver::new(&arm, Options::with_tol(tol)).unwrap().solve().unwrap_or_else(|e| panic!("{tol:e}: {e}"));
         let off = (solved.tip().x - x).hypot(solved.tip().y - y) / arm.length;
         assert!(off < 10.0 * tol, "{tol:e}: off by {off:.1e} L");
         assert_ne!(solved.stable, Some(false), "{tol:e}: a hanging cord is stable");

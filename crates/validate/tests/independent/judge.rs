@@ -45,7 +45,7 @@ impl Judged {
 }
 
 pub(crate) fn judge(arm: &Arm, tol: f64) -> Outcome {
-    match Solver::new(arm, Options { tol }).and_then(|mut solver| solver.solve()) {
+    match Solver::new(arm, Options::with_tol(tol)).and_then(|mut solver| solver.solve()) {
         Ok(solved) => {
             let (model, length, tip) = (Model::new(&solved.arm), arm.length, solved.tip());
             let beside = equilibrium_beside(&model, &solved).ok();
