@@ -136,7 +136,13 @@ fn the_document_of_a_verdict() {
         residual: f64::INFINITY,
         spent: None,
     };
-    let failure = NoEquilibrium { verdict: verdict.clone(), last_good: Some(configuration()) };
+    let failure = NoEquilibrium {
+        verdict: verdict.clone(),
+        last_good: Some(configuration()),
+        snaps: Vec::new(),
+        after_snap: None,
+        at_full_loads: None,
+    };
     let text = FailureDocument::new(&failure, 0.5, &[]).to_json();
     let got: Value = serde_json::from_str(&text).unwrap();
     assert_eq!((&got["schema"], &got["converged"]), (&json!(1), &json!(false)));
@@ -155,7 +161,7 @@ fn the_document_of_a_verdict() {
     let with = serde_json::to_value(FailureDocument::new(&failure, 0.5, &[]).with_others(Some(others))).unwrap();
     assert_eq!(with["verdict"]["other_equilibria"], json!({ "count": 9, "stable": 2, "complete": true }));
 
-    let nothing = NoEquilibrium { verdict, last_good: None };
+    let nothing = NoEquilibrium { verdict, last_good: None, snaps: Vec::new(), after_snap: None, at_full_loads: None };
     assert_eq!(serde_json::to_value(FailureDocument::new(&nothing, 0.0, &[])).unwrap()["last_good"], Value::Null);
 }
 

@@ -27,6 +27,12 @@ const STARTS: [f64; 8] = [0.0, 0.07, -0.07, 0.18, -0.18, 0.31, -0.31, 0.46];
 /// Most points of the curve.
 const MOST: usize = 5000;
 
+/// Halvings of a step of the curve that may be needed to know how often the base comes to the angle asked for.
+const HALVINGS: usize = 24;
+
+/// Points by which an extreme of the angle of the base is found.
+const EXTREMES: usize = 40;
+
 /// How finely the curve is followed.
 const PACE: Pace = Pace { longest: 0.25, straightness: 0.96, most: usize::MAX, accuracy: 1e-6 };
 
@@ -180,7 +186,7 @@ fn follow(
     let begun =
         stepper.keep_accuracy(None, &mut Fraction::Fixed(0.0), [PACE.accuracy; 2]).and_then(|()| stepper.point(0.0));
     let Ok(mut here) = begun else { return Some(PathEnd::Limit { kind: VerdictKind::NotFound, s: None }) };
-    let first = tip_angle(&here);
+    let first = here.tip_angle();
     if side > 0.0 {
         out.tip_angles = [first; 2];
         if let Some(found) = at_whole_turns(&mut stepper, asked, &here, None) {
@@ -195,7 +201,7 @@ fn follow(
     while step >= 1e-8 {
         let advanced = stepper.advance(&here, step, PACE);
         // Along the curve the angle of the tip only grows: what falls back has left it.
-        let grown = |next: &Point| side * (tip_angle(next) - tip_angle(&here)) > -1e-9;
+        let grown = |next: &Point| side * (next.tip_angle() - here.tip_angle()) > -1e-9;
         let next = match advanced {
             Ok((next, Turn::None)) if grown(&next) => next,
             Ok(_) => {
@@ -209,11 +215,16 @@ fn follow(
             }
         };
         out.steps += 1;
-        let full = side * (tip_angle(&next) - first) >= TAU;
-        let within = |point: &Point| side * (tip_angle(point) - first) < TAU - 1e-6;
-        find_between(&mut stepper, asked, [&here, &next], step, within, &mut out.found);
+        let full = side * (next.tip_angle() - first) >= TAU;
+        let within = &|point: &Point| side * (point.tip_angle() - first) < TAU - 1e-6;
+        let mut points = vec![here.clone()];
+        fill_in(&mut stepper, asked, [&here, &next], HALVINGS, &mut points);
+        points.push(next.clone());
+        for pair in points.windows(2) {
+            find_between(&mut stepper, asked, [&pair[0], &pair[1]], within, &mut out.found);
+        }
         let end = usize::from(side > 0.0);
-        out.tip_angles[end] = tip_angle(&next);
+        out.tip_angles[end] = next.tip_angle();
         out.base_angles[end] = stepper.engine.equations.value_at(next.fraction);
         if full {
             return None;
@@ -230,16 +241,132 @@ fn follow(
     Some(stepper.end_at(&here))
 }
 
-/// The equilibria between two points a `step` apart: the base angle rises or falls there, or does both about an extreme.
+/// Points of the curve between two, as many as it takes to know how often the base comes to the angle asked for between them.
+///
+/// Along the curve the angle of the base is a function of that of the tip, whose slope is known at each point. Between two points it is taken to
+/// be the cubic of both values and slopes if that meets a third point, halfway, in value and slope, and rises or falls all the way. Where it
+/// does not, and may come to the angle asked for, the same is asked of both halves. What is less than [`HALVINGS`] halvings of a step wide may
+/// be missed.
+fn fill_in(stepper: &mut Stepper<'_>, asked: &Asked, [a, b]: [&Point; 2], halvings: usize, out: &mut Vec<Point>) {
+    let cubic = Cubic::between(a, b);
+    if halvings == 0 || !cubic.comes_near_whole_turns(asked.turned) {
+        return;
+    }
+    let Some(middle) = inside(stepper, [a, b], 0.5) else { return };
+    if cubic.meets(&middle) {
+        return;
+    }
+    fill_in(stepper, asked, [a, &middle], halvings - 1, out);
+    out.push(middle.clone());
+    fill_in(stepper, asked, [&middle, b], halvings - 1, out);
+}
+
+/// A point of the curve between two, at the share `x` of the way between the angles of their tips, or nearer to one of them where no such
+/// tangent leads.
+fn inside(stepper: &mut Stepper<'_>, [a, b]: [&Point; 2], x: f64) -> Option<Point> {
+    let way = b.tip_angle() - a.tip_angle();
+    for part in [1.0, 0.3, 0.1, 0.03, 0.01] {
+        let mut from = [(a, part * x * way), (b, -part * (1.0 - x) * way)];
+        if x > 0.5 {
+            from.swap(0, 1);
+        }
+        let point =
+            from.into_iter().find_map(|(from, by)| stepper.at_tip_angle(from, from.tip_angle() + by, PACE).ok());
+        if point.is_some() {
+            return point;
+        }
+    }
+    None
+}
+
+/// The point of the curve between two, on both sides of it, at which the angle of the base is extreme.
+fn extreme_between(stepper: &mut Stepper<'_>, a: &Point, b: &Point) -> Option<Point> {
+    let (mut low, mut high) = (a.clone(), b.clone());
+    let mut best = None;
+    for k in 0..EXTREMES {
+        // The zero of the slope by its values at both ends, or, at every third time, halfway, so that both come in.
+        let share = if k % 3 == 2 { 0.5 } else { low.slope() / (low.slope() - high.slope()) };
+        let share = if share.is_finite() { share.clamp(0.05, 0.95) } else { 0.5 };
+        let point = inside(stepper, [&low, &high], share)?;
+        let side = point.slope() * low.slope() > 0.0;
+        best = Some(point.clone());
+        if side {
+            low = point
+        } else {
+            high = point
+        }
+        if (high.tip_angle() - low.tip_angle()).abs() < 1e-7 {
+            break;
+        }
+    }
+    best
+}
+
+/// The angle of the base, in turns, as a cubic of the angle of the tip between two points of the curve.
+struct Cubic {
+    /// At both ends: the angle of the tip (rad), that of the base, and the slope of the latter.
+    ends: [[f64; 3]; 2],
+}
+
+impl Cubic {
+    /// Places between the ends at which values and slopes are looked at.
+    const LOOKS: u32 = 8;
+
+    fn between(a: &Point, b: &Point) -> Self {
+        Self { ends: [a, b].map(|point| [point.tip_angle(), point.fraction, point.slope()]) }
+    }
+
+    /// Value and slope at the share `x` of the way.
+    fn at(&self, x: f64) -> [f64; 2] {
+        let [[p, f, s], [q, g, t]] = self.ends;
+        let (width, y) = (q - p, 1.0 - x);
+        let (s, t) = (s * width, t * width);
+        let value = y * y * (1.0 + 2.0 * x) * f + x * x * (1.0 + 2.0 * y) * g + x * y * (y * s - x * t);
+        let slope = 6.0 * x * y * (g - f) + y * (1.0 - 3.0 * x) * s + x * (3.0 * x - 2.0) * t;
+        [value, slope / width]
+    }
+
+    fn looks(&self) -> impl Iterator<Item = [f64; 2]> {
+        (0..=Self::LOOKS).map(|k| self.at(f64::from(k) / f64::from(Self::LOOKS)))
+    }
+
+    /// Least and largest value.
+    fn range(&self) -> [f64; 2] {
+        self.looks().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [v, _]| [low.min(v), high.max(v)])
+    }
+
+    /// Whether a whole number of turns from where the curve starts, `turned` off the angle asked for, is in reach.
+    fn comes_near_whole_turns(&self, turned: f64) -> bool {
+        let [low, high] = self.range();
+        let margin = 0.1 * (high - low);
+        (high + margin + turned).floor() >= low - margin + turned
+    }
+
+    /// Whether a point on the way is where the cubic has it, and the cubic rises or falls without pause.
+    fn meets(&self, point: &Point) -> bool {
+        let [[p, f, _], [q, g, _]] = self.ends;
+        let x = (point.tip_angle() - p) / (q - p);
+        let ([value, along], [low, high]) = (self.at(x), self.range());
+        let mean = (g - f) / (q - p);
+        let steepest = self.looks().fold(0.0_f64, |most, [_, slope]| most.max(slope.abs()));
+        (point.fraction - value).abs() <= 0.01 * (high - low)
+            && (point.slope() - along).abs() <= 0.1 * steepest
+            && self.looks().all(|[_, slope]| slope * mean.signum() >= 0.2 * mean.abs())
+    }
+}
+
+/// The equilibria between two points: the base angle rises or falls there, or does both about an extreme.
 fn find_between(
     stepper: &mut Stepper<'_>,
     asked: &Asked,
     [here, next]: [&Point; 2],
-    step: f64,
-    within: impl Fn(&Point) -> bool,
+    within: &impl Fn(&Point) -> bool,
     out: &mut Vec<Equilibrium>,
 ) {
-    let extreme = (next.rise * here.rise < 0.0).then(|| stepper.limit_point(here, next, step, PACE).0);
+    if !Cubic::between(here, next).comes_near_whole_turns(asked.turned) {
+        return;
+    }
+    let extreme = if here.slope() * next.slope() < 0.0 { extreme_between(stepper, here, next) } else { None };
     let legs = match &extreme {
         Some(extreme) => vec![[here, extreme], [extreme, next]],
         None => vec![[here, next]],
@@ -254,10 +381,6 @@ fn find_between(
             }
         }
     }
-}
-
-fn tip_angle(point: &Point) -> f64 {
-    point.state.solution.nodes.last().map_or(0.0, |z| z[0])
 }
 
 /// Turns of the base from the angle asked for, whole ones, that lie between two points.
@@ -287,15 +410,14 @@ fn between(stepper: &mut Stepper<'_>, a: &Point, b: &Point, fraction: f64) -> Op
     for _ in 0..40 {
         let near = if (low.fraction - fraction).abs() < (high.fraction - fraction).abs() { &low } else { &high };
         if let Ok((point, Turn::None)) = stepper.land(near, fraction, Pace { straightness: -1.0, ..PACE }) {
-            let angle = tip_angle(&point);
-            let (least, most) = (tip_angle(&low), tip_angle(&high));
+            let angle = point.tip_angle();
+            let (least, most) = (low.tip_angle(), high.tip_angle());
             if (angle - least) * (angle - most) <= 1e-12 {
                 return Some(point);
             }
         }
         // Near an extreme a tangent does not lead there: halve the way, by the angle of the tip.
-        let step = 0.5 * stepper.distance(&low, &high);
-        let (middle, _) = stepper.advance(&low, step, Pace { straightness: -1.0, ..PACE }).ok()?;
+        let middle = inside(stepper, [&low, &high], 0.5)?;
         if (middle.fraction - fraction) * (low.fraction - fraction) > 0.0 {
             low = middle;
         } else {

@@ -53,6 +53,16 @@ impl Point {
         })
     }
 
+    /// theta at the tip, rad.
+    pub(super) fn tip_angle(&self) -> f64 {
+        self.state.solution.nodes.last().map_or(0.0, |z| z[0])
+    }
+
+    /// The change of the fraction by that of the angle of the tip (rad) along the branch.
+    pub(super) fn slope(&self) -> f64 {
+        self.response.nodes.last().map_or(f64::INFINITY, |z| 1.0 / z[0])
+    }
+
     /// The turn (rad, root mean square along the arm) by the whole load at the rate here, in a metric whose scale of theta is `scale`.
     fn turn_by_load(&self, scale: f64) -> f64 {
         scale * (self.rise.powi(-2) - 1.0).max(0.0).sqrt()
@@ -77,12 +87,14 @@ struct Progress {
 pub(super) enum Fraction {
     Fixed(f64),
     Free(f64),
+    /// Free, while the angle of the tip stays.
+    AtTip(f64),
 }
 
 impl Fraction {
     fn value(self) -> f64 {
         match self {
-            Self::Fixed(fraction) | Self::Free(fraction) => fraction,
+            Self::Fixed(fraction) | Self::Free(fraction) | Self::AtTip(fraction) => fraction,
         }
     }
 }
@@ -288,10 +300,41 @@ impl<'e> Stepper<'e> {
         Ok((end, turn))
     }
 
+    /// The point of the branch at which the tip has a given angle, from one nearby. There is one wherever that angle alone decides the
+    /// shape, round sharp folds, too, of which no tangent at a distance knows.
+    pub(super) fn at_tip_angle(&mut self, here: &Point, angle: f64, pace: Pace) -> Result<Point, Trouble> {
+        let climb = (angle - here.tip_angle()) * here.slope();
+        let mut fraction = self.predict(here, climb / here.rise);
+        let from = self.engine.solution.clone();
+        self.correct_at_tip(&mut fraction)?;
+        let moved = largest_turn(&from, &self.engine.solution);
+        if moved > MOVED {
+            return Err(Trouble::Stalled(moved));
+        }
+        let mut fraction = Fraction::AtTip(fraction);
+        self.keep_accuracy(None, &mut fraction, [pace.accuracy; 2])?;
+        self.engine.ends_fine()?;
+        self.point(fraction.value())
+    }
+
     /// Newton on the plane through the present state that the tangent at `here` is normal to.
     pub(super) fn correct(&mut self, here: &Point, fraction: &mut f64) -> Result<(), Trouble> {
         let normal: Vec<f64> =
             here.tangent_on(&self.engine.solution.mesh).zip(self.weights()).map(|(t, w)| t * w).collect();
+        self.correct_on(&normal, here.rise, fraction)
+    }
+
+    /// Newton with the angle of the tip as it is.
+    fn correct_at_tip(&mut self, fraction: &mut f64) -> Result<(), Trouble> {
+        let mut normal = vec![0.0; self.engine.solution.nodes.len()];
+        if let Some(tip) = normal.last_mut() {
+            *tip = 1.0;
+        }
+        self.correct_on(&normal, 0.0, fraction)
+    }
+
+    /// Newton on the plane through the present state with the normal `normal`, over theta at the nodes, and `climb`, over the fraction.
+    fn correct_on(&mut self, normal: &[f64], climb: f64, fraction: &mut f64) -> Result<(), Trouble> {
         // In a hurry, when the next one would be none.
         let close = self.scale * if self.engine.in_a_hurry { CLOSE } else { 1e-6 };
         let mut before = f64::INFINITY;
@@ -299,7 +342,7 @@ impl<'e> Stepper<'e> {
             self.set(*fraction);
             self.linearise()?;
             let dot = |c: &Correction<N, M, Q, L>| -> f64 { normal.iter().zip(&c.nodes).map(|(n, z)| n * z[0]).sum() };
-            let slide = -dot(&self.round.rest) / (dot(&self.round.response) + here.rise);
+            let slide = -dot(&self.round.rest) / (dot(&self.round.response) + climb);
             self.engine.system.quadratures(&mut self.engine.spans);
             self.engine.tip = [0.0; Q];
             for (i, span) in self.engine.spans.iter_mut().enumerate() {
@@ -449,6 +492,7 @@ impl<'e> Stepper<'e> {
         self.current = false;
         match (fraction, here) {
             (Fraction::Free(fraction), Some(here)) => self.correct(here, fraction),
+            (Fraction::AtTip(fraction), _) => self.correct_at_tip(fraction),
             _ => roughly(self.engine.newton(1e-6, 12)),
         }
     }

@@ -11,7 +11,6 @@ fn leaning(tension: f64) -> Arm {
 
 /// Tip x, y of each of 40 tensions up to 3e-4 N, each solved by itself: there is a snap of 0.5 mm and 0.17 deg on the way, and no more.
 #[test]
-#[ignore = "3e-4 N is refused with a limit point at 0.0826 of it, where all tensions below are answered"]
 fn forty_tensions_in_order_give_forty_tips_in_order() {
     let tips: Vec<_> = (1..=40)
         .map(|k| {
@@ -29,7 +28,6 @@ fn forty_tensions_in_order_give_forty_tips_in_order() {
 
 /// What is answered does not depend on the way: raised in steps, the tensions give the same tips.
 #[test]
-#[ignore = "3e-4 N is refused with a limit point at 0.0826 of it, where all tensions below are answered"]
 fn tensions_raised_in_steps_give_the_tips_of_tensions_solved_by_themselves() {
     let mut solver = Solver::new(&leaning(0.0), Options::default()).unwrap();
     solver.solve().unwrap();
@@ -43,7 +41,6 @@ fn tensions_raised_in_steps_give_the_tips_of_tensions_solved_by_themselves() {
 }
 
 #[test]
-#[ignore = "one of three is found, and said to be all"]
 fn three_equilibria_are_found_between_the_limit_points() {
     let all = leaning(2.3e-5).equilibria(1e-8).unwrap();
     let mut tips: Vec<f64> = all.found.iter().map(|own| own.configuration.tip().theta.to_degrees()).collect();
@@ -56,7 +53,6 @@ fn three_equilibria_are_found_between_the_limit_points() {
 }
 
 #[test]
-#[ignore = "the path steps over both"]
 fn the_path_meets_both_limit_points() {
     for longest in [PathOptions::default().longest, 0.02] {
         let options = PathOptions { longest, ..PathOptions::default() };
