@@ -58,6 +58,7 @@ fn the_document_of_an_answer() {
         "converged",
         "stable",
         "warnings",
+        "snaps",
         "tip",
         "stations",
         "cables",
@@ -69,7 +70,7 @@ fn the_document_of_an_answer() {
     ] {
         assert!(keys.contains(&key), "{key}");
     }
-    assert_eq!(keys.len(), 13, "{keys:?}");
+    assert_eq!(keys.len(), 14, "{keys:?}");
     assert_eq!((&got["converged"], &got["stable"], &got["fold_margin"]), (&json!(true), &json!(true), &json!(0.75)));
     assert_eq!(got["warnings"][0]["kind"], "sealed_cavity");
     assert_eq!(got["cables"], json!([{ "name": "left", "tension": 0.1, "length": 0.19, "stroke": 0.01 }]));

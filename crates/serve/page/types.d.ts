@@ -30,13 +30,17 @@ export interface Inputs {
 }
 
 export interface Solution {
-  converged: true; stable: boolean | null; warnings: Note[]; tip: Tip; stations: Stations; cables: CableState[]; base: Wrench;
+  converged: true; stable: boolean | null; warnings: Note[]; snaps: Snap[]; tip: Tip; stations: Stations; cables: CableState[]; base: Wrench;
   unmet?: Wrench; error_estimate: number; fold_margin: number; inputs: Inputs; statistics: Record<string, number>;
 }
+
+/** A jump of the tip: distance in m, angle in rad. */
+export interface Snap { phase: string; load_fraction: number; before: Tip; after: Tip; distance: number; angle: number }
 
 export interface Verdict {
   kind: string; phase: string; load_fraction: number; s: number | null; message: string; advice: string;
   other_equilibria: { count: number; stable: number; complete: boolean } | null;
+  snaps: Snap[]; after_snap: Solution | null; at_full_loads: Solution | null;
 }
 
 export interface Failure { converged: false; verdict: Verdict; last_good: Solution | null }

@@ -18,6 +18,10 @@ export function wordsOf(answer, drawing) {
   if (!answer.converged) {
     const { verdict, last_good: shape } = answer;
     const lines = [sentence(verdict.message), `Try: ${verdict.advice}.`];
+    const snap = verdict.snaps.at(-1);
+    if (snap && verdict.after_snap) {
+      lines.push(`At that load the tip would jump by ${fixed(1e3 * snap.distance, 1)} mm and turn by ${fixed((180 / Math.PI) * snap.angle, 1)} deg.`);
+    }
     if (shape) {
       lines.push(`Shown is the last good shape, at load fraction ${number(verdict.load_fraction, 4)} of the phase \u201c${verdict.phase}\u201d: not the loads asked for.`);
       lines.push(...shape.warnings.map((note) => sentence(note.message)));

@@ -41,7 +41,7 @@ pub fn write(folder: &Path, drawn: &[Found], scopes: &[Vec<Found>; 2]) -> anyhow
             let tension = best.outcome.map_or(0.0, |judged| judged.tension);
             let mut arm = best.set.arm(tension, SPEEDS[0]);
             arm.name = format!("best at {name} tension");
-            let shape = Solver::new(&arm, Options { tol: TOL })?.solve()?;
+            let shape = Solver::new(&arm, Options::with_tol(TOL))?.solve()?;
             write_whole(
                 folder.join(format!("shape-{name}.svg")),
                 arm_figure(&shape, None, &Page::default()).svg().as_bytes(),
@@ -190,7 +190,7 @@ fn curves(file: &Path, best: &Found) -> anyhow::Result<()> {
     let tension = best.outcome.map_or(0.0, |judged| judged.tension);
     let mut lines = [Vec::new(), Vec::new()];
     for speed in [0.0, SPEEDS[0], SPEEDS[1]] {
-        let shape = Solver::new(&best.set.arm(tension, speed), Options { tol: TOL })?.solve()?;
+        let shape = Solver::new(&best.set.arm(tension, speed), Options::with_tol(TOL))?.solve()?;
         let angles = alphas(&shape);
         let step = (angles.len() - 1) / (STATIONS - 1);
         let at = |k: usize| LENGTH * 1e3 * (k * step) as f64 / (angles.len() - 1) as f64;

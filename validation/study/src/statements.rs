@@ -262,7 +262,7 @@ impl Bench<'_> {
             // The statements are asked wherever the tension leads.
             cable.max_tension = None;
         }
-        let found = Solver::new(&arm, Options { tol: self.tol }).and_then(|mut s| s.solve());
+        let found = Solver::new(&arm, Options::with_tol(self.tol)).and_then(|mut s| s.solve());
         found.map_err(|error| match error {
             SolveError::NoEquilibrium(no) => {
                 let angle = no.last_good.as_ref().map_or(0.0, tip_angle);

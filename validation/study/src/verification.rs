@@ -23,7 +23,7 @@ pub fn verification(set: &Set, highest: f64) -> String {
     for share in SHARES {
         let tension = share * highest;
         let shape = |speed: &f64| -> Option<Configuration> {
-            Solver::new(&set.arm(tension, *speed), Options { tol: TOL }).and_then(|mut solver| solver.solve()).ok()
+            Solver::new(&set.arm(tension, *speed), Options::with_tol(TOL)).and_then(|mut solver| solver.solve()).ok()
         };
         let shapes: Vec<Option<Configuration>> = SPEEDS.iter().map(shape).collect();
         for (pair, speeds) in shapes.windows(2).zip(SPEEDS.windows(2)) {

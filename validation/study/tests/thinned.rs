@@ -68,7 +68,7 @@ fn the_shipped_arm_satisfies_all_statements_at_the_highest_tension() {
     let shape = |speed: f64| {
         let mut arm = arm.clone();
         (arm.flow.speed, arm.cables[0].tension) = (speed, judged.tension);
-        Solver::new(&arm, Options { tol: 1e-9 }).unwrap().solve().unwrap()
+        Solver::new(&arm, Options::with_tol(1e-9)).unwrap().solve().unwrap()
     };
     for (statement, margin) in compare(&shape(0.0), &shape(0.5)) {
         assert!(margin > 0.0, "{statement:?}: {margin}");
