@@ -212,7 +212,7 @@ fn nothing_was_last_good_where_tensions_did_not_start() {
     arm.set_tensions(&[tension, 0.0]).unwrap();
     arm.flow.speed = 0.841_468_984_200_415_4;
     let Err(SolveError::NoEquilibrium(no)) = arm.solve() else { panic!("there is none") };
-    assert_eq!((no.verdict.kind, no.verdict.phase), (LimitPoint, Phase::Tension), "{}", no.verdict.message());
+    assert_eq!((no.verdict.kind, no.verdict.phase), (NoSectionSolution, Phase::Tension), "{}", no.verdict.message());
     let last = no.last_good.unwrap();
     let reached = last.arm.cables[0].tension / tension;
     assert_eq!(last.arm.flow.speed, arm.flow.speed);

@@ -340,12 +340,14 @@ impl Ramp<'_, '_> {
     fn stuck(&mut self, here: &Point, steeper: (f64, f64)) -> Verdict {
         let residual = self.stepper.engine.last;
         self.stepper.engine.restore(&here.state);
+        let (kind, s) = self.stepper.name_limit(here.fraction, residual);
         // Two branches of opposite orientation end where they meet: the path turns back in a corner
-        // that the load's kinks make.
-        if self.stepper.opposite.is_some_and(|fraction| (fraction - here.fraction).abs() < MEET) {
+        // that the load's kinks make. Where sections end it, branches beyond are none.
+        let of_sections =
+            kind != VerdictKind::NotFound && matches!(self.stepper.last_trouble, Some(Trouble::Section(_)));
+        if !of_sections && self.stepper.opposite.is_some_and(|fraction| (fraction - here.fraction).abs() < MEET) {
             return self.end(VerdictKind::LimitPoint, here.fraction, None);
         }
-        let (kind, s) = self.stepper.name_limit(here.fraction, residual);
         let end = self.end(kind, here.fraction, s);
         // Towards a fold the square of the climb falls to zero linearly in the load.
         let fall = steeper.1.powi(2) - here.rise.powi(2);
