@@ -11,7 +11,7 @@
 # ---
 
 # %% [markdown]
-# # Design: a shape that is asked for
+# # Design for a given shape
 #
 # Where should a cable run, and how thick should the arm be, so that it takes a given shape while a stream pushes against it? The
 # shape follows from 13 numbers. Their gradient comes from one adjoint solve of the converged equations, and SciPy does the rest.
@@ -34,7 +34,7 @@ length = arm.length
 # %% [markdown]
 # ## The shape
 #
-# A hook: straight out of the base, then a bend of 40 mm radius round a pipe. The centreline is to lie on it at 24 places.
+# A hook: straight from the base, then a bend of 40 mm radius around a pipe. The centreline should lie on it at 24 places.
 
 # %%
 bend = 0.040
@@ -58,8 +58,8 @@ target_x, target_y = hook(places)
 # %% [markdown]
 # ## The design
 #
-# The left cable's tension, the radius at six points, and the cable's offset there as a share of the radius. The right cable is its mirror
-# image and hangs slack. In between, radius and offset are the smooth tables of the arm file.
+# The design has the left cable's tension, the radius at six points, and the cable's offset there as a fraction of the radius. The right cable
+# is its mirror image and slack. Between the points, radius and offset are the smooth tables of the arm file.
 
 # %%
 points = np.linspace(0.0, length, 6)
@@ -88,8 +88,8 @@ def designed(design: Numbers) -> hs.Arm:
 # %% [markdown]
 # ## Objective and gradient
 #
-# The mean square of the distances, over the square of a millimetre, and a little for offsets that wind. `gradient` wants the derivatives of
-# the objective by x and y of the places, and gives those by all parameters.
+# The objective is the mean square of the distances, in mm², plus a small penalty for offsets that oscillate. `gradient` takes the derivatives of
+# the objective by x and y of the places, and returns those by all parameters.
 
 # %%
 MM = 1e-3
@@ -118,8 +118,8 @@ def objective(design: Numbers) -> tuple[float, Numbers]:
 # %% [markdown]
 # ## Is the gradient right?
 #
-# Against central differences, at steps that shrink. They come nearer with the square of the step until the rounding of
-# solves outweighs it; the gradient itself has no step.
+# We compare it with central differences at decreasing steps. The difference falls with the square of the step until the rounding of the
+# solves dominates; the gradient itself has no step.
 
 # %%
 value, exact = objective(first)
@@ -217,7 +217,7 @@ ax.legend(frameon=False, fontsize=9, loc="lower right")
 plt.show()
 
 # %% [markdown]
-# How it got there, and what it became: thick where the hook is straight, thin where it bends, with a cable that comes in towards the centreline.
+# The course of the search, and its result: thick where the hook is straight, thin where it bends, with a cable that approaches the centreline.
 
 # %%
 fig, (left, right) = plt.subplots(1, 2, figsize=(9.6, 3.6), layout="constrained")
@@ -238,7 +238,8 @@ right.grid(alpha=0.25)
 plt.show()
 
 # %% [markdown]
-# The design is for one stream. How does it hold in others? Slower ones are forgiven; from 0.15 m/s on the stream bends the arm the other way.
+# The design is for one stream. How does it perform in others? In slower ones it still fits; from 0.15 m/s on, the stream bends the arm the other
+# way.
 
 # %%
 fig, ax = plt.subplots(figsize=(7.6, 4.6), layout="constrained")

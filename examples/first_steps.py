@@ -13,8 +13,8 @@
 # %% [markdown]
 # # First steps
 #
-# A silicone arm of 245 mm with two cables, in water: solve it, look at it, pull too hard, command lengths in place of tensions, and
-# turn it against the stream until it snaps.
+# A silicone arm of 245 mm with two cables, in water: solve it, look at it, pull too hard, command strokes in place of tensions, and turn it
+# against the stream until it snaps.
 
 # %%
 import warnings
@@ -33,8 +33,8 @@ arm
 # Tensions are in N, speeds in m/s, lengths in m, angles of results in rad.
 
 #
-# What should be known about an answer is in `sol.warnings`, and a Python warning of the class `hs.ModelWarning`: here the shape hangs on the
-# tangential load of the source's law of drag, which is far larger than what was measured of such arms. Having read that, we let it be.
+# `sol.warnings` has the warnings about a solution; each is also a Python warning of the class `hs.ModelWarning`. Here the shape depends
+# strongly on the tangential load of the source's flow law, which is far above measured values. We have read that, and silence it.
 
 # %%
 warnings.filterwarnings("ignore", category=hs.ModelWarning)
@@ -50,13 +50,13 @@ sol.plot()
 plt.show()
 
 # %% [markdown]
-# The fields along the arm are NumPy arrays that share the solution's memory; `to_xarray` and `to_pandas` take them further.
+# The fields along the arm are NumPy arrays that share the solution's memory; `to_xarray` and `to_pandas` convert them.
 
 # %%
 sol.to_xarray()
 
 # %% [markdown]
-# ## More pull
+# ## More tension
 #
 # The same arm under six tensions. The tip curls first: it is the thinnest.
 
@@ -76,10 +76,10 @@ for pull in [0.04, 0.08, 0.12]:
 plt.show()
 
 # %% [markdown]
-# ## Too much
+# ## Too much tension
 #
-# Not every arm has an equilibrium. The exception says which limit was met, at which share of the loads and where, and holds the last good
-# shape.
+# Not every arm has an equilibrium. The exception says which limit was met, at which fraction of the loads and where. It also has the last
+# good shape.
 
 # %%
 try:
@@ -94,9 +94,9 @@ last_good.plot(sections=60)
 plt.show()
 
 # %% [markdown]
-# ## Lengths in place of tensions
+# ## Strokes in place of tensions
 #
-# A motor commands how far a cable is reeled in; the tension follows, and a cable that would have to push hangs slack.
+# A motor commands the stroke of a cable, that is, how far it is reeled in; the tension follows. A cable that would have to push is slack.
 
 # %%
 strokes = np.linspace(0.0, 0.02, 9)
@@ -112,10 +112,10 @@ shapes[-1].plot(right)
 plt.show()
 
 # %% [markdown]
-# ## A place in place of tensions
+# ## Inverse kinematics
 #
-# Which tensions bring the tip to a place? `reach` finds them, within bounds; and near a shape, exact derivatives say what each cable does. The
-# ellipse holds all that a change of the two tensions of the given size can do.
+# Which tensions bring the tip to a target? `reach` finds them, within bounds. Near a shape, exact derivatives give the effect of each cable.
+# The ellipse encloses all displacements of the tip that a change of the two tensions of the given size can cause.
 
 # %%
 reached = arm.reach((0.19, 0.07), max_tension=0.6)
@@ -130,8 +130,8 @@ at.to_xarray()
 # %% [markdown]
 # ## Snapping
 #
-# The arm lies down a stream that comes towards its base, and the base is turned through it. At limit points the shape has no neighbour:
-# the arm snaps.
+# The stream comes towards the base. The base is turned, so that the arm passes from one side of the stream to the other. At a limit point the
+# path turns back: the arm snaps.
 
 # %%
 facing = arm.replace(flow_speed=0.2, flow_direction=180)
@@ -150,7 +150,7 @@ found.plot()
 plt.show()
 
 # %% [markdown]
-# The library draws figures of its own, too, as SVG and PNG.
+# The library also has its own figures, as SVG, PDF and PNG.
 
 # %%
 hs.arm_figure(sol)

@@ -25,7 +25,7 @@ import pandas as pd
 
 import hydrostat as hs
 
-# How much hangs on the tangential load, of which each of these solves warns, is what this notebook is about.
+# This notebook shows how much depends on the tangential load, about which each of these solves warns.
 warnings.filterwarnings("ignore", category=hs.ModelWarning)
 
 arm = hs.Arm.load("paper").replace(tensions=[40, 0], flow_speed=0.5)

@@ -1,10 +1,10 @@
 """The static shape of soft arms under water.
 
-An arm is a planar Cosserat rod: it bends, shears and stretches, its section widens where it is compressed so that its volume is
-kept, cables inside it pull, and a stream, weight and buoyancy act on it.
+An arm is a planar Cosserat rod: it bends, shears and stretches. Its section widens under compression, so that the
+volume is kept. Cables, a stream, weight and buoyancy act on it.
 
-SI units throughout, results in radians; numbers that stand at a key of the arm file (`Arm`, `Arm.replace`, `Arm.path`, `sweep`) are read
-as the file reads them: bare angles in degrees, strings with units.
+SI units throughout, results in radians. Numbers given at a key of the arm file (`Arm`, `Arm.replace`, `Arm.path`, `sweep`) are read
+as in the file: bare angles in degrees, strings with units.
 
 >>> import hydrostat as hs
 >>> arm = hs.Arm.load("silicone")

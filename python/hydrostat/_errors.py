@@ -10,9 +10,9 @@ if TYPE_CHECKING:
 
 
 class ModelWarning(UserWarning):
-    """Something that should be known about an answer: its shape folds over itself, hangs on a load that is in doubt, and so on.
+    """A warning about a solution: its surface folds, its shape depends strongly on an uncertain load, and so on.
 
-    Raised by `Arm.solve` and `Solver.solve`, once a place of the program and kind with Python's usual filters;
+    Raised by `Arm.solve` and `Solver.solve`, once per kind and place of the program with Python's usual filters;
     ``warnings.filterwarnings("ignore", category=hydrostat.ModelWarning)`` ends that. `Solution.warnings` has them with their numbers.
 
     Attributes
@@ -33,7 +33,7 @@ class ModelWarning(UserWarning):
 
 
 class ArmError(ValueError):
-    """What is given makes no arm.
+    """The input does not describe an arm.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class ArmError(ValueError):
 
 
 class MeasurementsError(ValueError):
-    """A table of measured numbers is none.
+    """A table of measurements is invalid.
 
     Attributes
     ----------
@@ -85,17 +85,17 @@ class NoEquilibriumError(RuntimeError):
         The limit: ``"cable_fold"``, ``"section_crushed"``, ``"no_section_solution"``, ``"limit_point"``, ``"load_jump"``
         or ``"not_found"``.
     phase : str
-        What was being raised: ``"loads"`` (all but the cables), ``"tension"``, ``"stroke"`` or ``"friction"``.
+        The loads that were being raised: ``"loads"`` (all but the cables), ``"tension"``, ``"stroke"`` or ``"friction"``.
     load_fraction : float
-        The share of that phase's loads at which the limit was met, 0 to 1.
+        The fraction of that phase's loads at which the limit was met, 0 to 1.
     where : float or None
-        Where along the arm, m, if the limit is local.
+        The place along the arm, m, if the limit is local.
     residual : float
         The last Newton correction when the solver stopped, the largest change of an angle, rad; no residual of the equations.
     message, advice : str
-        The verdict in a sentence, and what to try.
+        The verdict in a sentence, and advice.
     last_good : Solution or None
-        The last good shape on the way, with the loads that it balances.
+        The last good shape on the path, with its loads.
     """
 
     kind: str
@@ -134,7 +134,7 @@ class NoEquilibriumError(RuntimeError):
 
 
 class CableFoldError(NoEquilibriumError):
-    """A cable folds its side of the arm shut."""
+    """A cable compresses its side of the arm to length zero."""
 
 
 class SectionCrushedError(NoEquilibriumError):
@@ -158,7 +158,7 @@ class NotFoundError(NoEquilibriumError):
 
 
 class NoDerivativeError(ArithmeticError):
-    """The equilibrium has no derivative: it is at a limit point or a bifurcation, or could not be settled closely enough."""
+    """The equilibrium has no derivative: it is at a limit point or a bifurcation, or did not converge closely enough."""
 
 
 _KINDS: dict[str, type[NoEquilibriumError]] = {

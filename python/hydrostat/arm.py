@@ -1,4 +1,4 @@
-"""Arms: what is given."""
+"""Arms: geometry, material, cables and loads."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ def arms() -> dict[str, str]:
 
 
 class Arm:
-    """A soft arm and everything that acts on it; it does not change.
+    """A soft arm and everything that acts on it; immutable.
 
     The keyword arguments are the tables of the arm file, with its keys. Numbers are in SI units, bare angles in degrees, and a
-    string with a unit (``"8 mm"``) stands for a number anywhere.
+    string with a unit (``"8 mm"``) may replace any number.
 
     Parameters
     ----------
@@ -49,14 +49,14 @@ class Arm:
     cable : sequence of mapping
         Each with ``name``, ``offset``, ``tension`` or ``stroke``, ``friction``, ``end`` and so on.
     reference, flow, gravity, tip, distributed, model : mapping
-        Further tables; left out, their defaults.
+        Further tables; defaults if left out.
     name : str
-        For people.
+        A name for people.
 
     Raises
     ------
     ArmError
-        A `ValueError` whose ``key`` says what is wrong.
+        A `ValueError`; its ``key`` is the key that is wrong.
 
     Examples
     --------
@@ -119,14 +119,14 @@ class Arm:
         ----------
         arm : str or path
             ``"paper"``, ``"paper-statements"``, ``"silicone"``, ``"multi-bending"``, ``"octopus"``, or a TOML file. A file
-            of a shipped arm's name wins.
+            with the name of a shipped arm takes precedence.
 
         Raises
         ------
         FileNotFoundError
             Neither a file nor a shipped arm.
         ArmError
-            The file is no arm; the message has its line, its key, what was expected and what was found.
+            The file does not describe an arm; the message has the line, the key, what was expected and what was found.
         """
         path = FilePath(fspath(arm))
         shipped = None if path.is_file() else _native.shipped(str(arm))
@@ -145,12 +145,12 @@ class Arm:
 
     @classmethod
     def from_toml(cls, text: str, name: str = "arm") -> Arm:
-        """The arm that the text of an arm file means."""
+        """Make an arm from the text of an arm file."""
         return cls._of(_native.Arm(text, name))
 
     @classmethod
     def from_dict(cls, tables: Table) -> Arm:
-        """The arm that the tables of an arm file mean: what `to_dict` gives, or a file read by ``tomllib``."""
+        """Make an arm from the tables of an arm file: the output of `to_dict`, or a file read by ``tomllib``."""
         unknown = [key for key in tables if key not in _TABLES]
         if unknown:
             from hydrostat._errors import ArmError
@@ -210,7 +210,7 @@ class Arm:
         flow_speed: float | str | None = None,
         flow_direction: float | str | None = None,
     ) -> Arm:
-        """This arm with other values.
+        """Return this arm with other values.
 
         Parameters
         ----------
@@ -218,9 +218,9 @@ class Arm:
             Values by the dotted keys of the arm file, such as ``{"cable[0].friction": 0.1, "model.volume": "none"}``. A table's
             other keys stay as they are: ``{"flow": {"speed": 0.1}}`` is ``{"flow.speed": 0.1}``.
         tensions : sequence of float, optional
-            One a cable, N; strokes are not commanded any more.
+            One per cable, N; strokes are then no longer commanded.
         strokes : sequence of float or None, optional
-            One a cable, m, in place of its tension; None leaves a cable as it is.
+            One per cable, m, in place of its tension; None leaves a cable as it is.
         flow_speed : float or str, optional
             m/s.
         flow_direction : float or str, optional
@@ -229,7 +229,7 @@ class Arm:
         Raises
         ------
         ArmError
-            A key that the arm file does not have, or a value that makes no arm.
+            The arm file does not have that key, or the value does not make an arm.
         """
         given: dict[str, object] = {}
         for key, value in _inputs.mapping("changes", changes or {}, '{"flow.speed": 0.1}').items():
@@ -255,28 +255,28 @@ class Arm:
         flow_speed: float | None = None,
         tol: float = 1e-8,
     ) -> Solution:
-        """The static shape under the arm's loads, or under these.
+        """Solve for the static shape under the arm's loads, or under the given ones.
 
-        Among several equilibria it is the end of the path on which first all loads but the cables, then the tensions rise from
-        zero. Other threads run meanwhile.
+        Several equilibria may exist. The answer is the end of the path on which first all loads but the cables', then the tensions
+        rise from zero. Other threads run meanwhile.
 
         Parameters
         ----------
         tensions : array_like, shape (cables,), optional
-            N, in place of the arm's own.
+            N, in place of the arm's.
         strokes : sequence of float or None, optional
-            What is reeled in of each cable, m, in place of its tension; None leaves a cable as it is.
+            Stroke of each cable (reeled in), m, in place of its tension; None leaves a cable as it is.
         flow_speed : float, optional
-            m/s, in place of the arm's own.
+            m/s, in place of the arm's.
         tol : float
-            Error of the tip position over the length that is asked for, in [1e-12, 1e-2].
+            Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
 
         Raises
         ------
         NoEquilibriumError
-            With the verdict's fields.
+            There is no equilibrium; the exception has the fields of the verdict.
         ValueError
-            An argument that cannot be meant, named.
+            An argument is invalid; the message names it.
         """
         pulled = None if tensions is None else _inputs.numbers("tensions", tensions, 1)
         speed = None if flow_speed is None else _inputs.number("flow_speed", flow_speed, negative=False)
@@ -299,7 +299,7 @@ class Arm:
         most: int = 1000,
         branches: bool = False,
     ) -> EquilibriumPath:
-        """The equilibria while one number of the arm runs from `start` towards `stop`, through limit points and bifurcations.
+        """Follow the equilibria while one number of the arm goes from `start` to `stop`, through limit points and bifurcations.
 
         Ctrl-C interrupts it.
 
@@ -308,21 +308,21 @@ class Arm:
         parameter : str
             A key of the arm file, such as ``"arm.base.angle"``, ``"flow.speed"`` or ``"cable[0].tension"``.
         start, stop : float or str
-            The range: numbers in SI units and degrees, or strings with units. Of two strings the second's unit holds for both
-            where the first has none.
+            The range: numbers in SI units and degrees, or strings with units. The unit of the second
+            string holds for both if the first has none.
         tol : float
-            Error of the tip position over the length at every point, in [1e-7, 1e-3].
+            Tolerance on the tip position at every point, relative to the arm's length, in [1e-7, 1e-3].
         longest : float
-            Longest step, in [0.001, 0.4].
+            Largest step, in [0.001, 0.4].
         most : int
-            Most points.
+            Largest number of points.
         branches : bool
             Whether to follow the branches that cross at bifurcations, too.
 
         Raises
         ------
         NoEquilibriumError
-            There is none to start from.
+            There is no equilibrium at the start.
         """
         from hydrostat.paths import EquilibriumPath
 
@@ -333,16 +333,16 @@ class Arm:
         return EquilibriumPath(_native.path(self._inner, *asked), self._origin("path", asked))
 
     def equilibria(self, *, tol: float = 1e-8, time_limit: float | None = None) -> Equilibria:
-        """All equilibria under the arm's loads, each with its stability, whether `solve` leads to them or not.
+        """Find all equilibria under the arm's loads, each with its stability, whether `solve` gives them or not.
 
         Ctrl-C interrupts it.
 
         Parameters
         ----------
         tol : float
-            Error of the tip position over the length, in [1e-12, 1e-3].
+            Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-3].
         time_limit : float, optional
-            Seconds after which the search is given up, with what was found so far.
+            Seconds after which the search stops and returns what it has found.
 
         Returns
         -------
@@ -365,36 +365,38 @@ class Arm:
         tol: float = 1e-8,
         all: bool = True,
     ) -> Reach:
-        """Tensions, from 0 to their largest, that bring the arm to targets; the arm's own tensions and strokes do not count.
+        """Inverse kinematics: find tensions, from 0 to their largest, that bring the arm to targets.
+
+        The arm's own tensions and strokes are ignored.
 
         Ctrl-C interrupts it.
 
         Parameters
         ----------
         targets : Target, sequence of Target, or (x, y)
-            Where places of the arm are to be, m and rad; (x, y) is for the tip.
+            Targets for places of the arm, m and rad; (x, y) is a target for the tip.
         by : str
-            ``"tensions"``, or ``"strokes"``: the lengths are then commanded that the tensions make, and stability is that with
-            lengths held.
+            ``"tensions"``, or ``"strokes"``: then the strokes that belong to the tensions are commanded, and stability is that with
+            cable lengths held.
         max_tension : float, optional
-            The largest tension of every cable, N; of this and the cable's own the smaller counts.
+            The largest tension of every cable, N; a smaller one of the cable itself holds.
         max_stroke : float, optional
-            The largest stroke of every cable that pulls, m: how far it can be wound in.
+            The largest stroke of every taut cable, m: how much can be reeled in.
         tol : float
-            Distance over the length at which a target is reached, in [1e-10, 1e-2].
+            Tolerance on the distance to a target, relative to the arm's length, in [1e-10, 1e-2].
         all : bool
-            Whether to look from all starts; else the first that reaches the targets ends the search.
+            Whether to search from all starts; otherwise the first solution ends the search.
 
         Returns
         -------
         Reach
-            A sequence of different solutions, least effort first; where nothing reaches the targets it is empty, and ``closest`` is the
-            nearest that was found, with the bounds that its tensions lie on.
+            A sequence of different solutions, least effort first. If the targets are not reached it is empty, and ``closest`` is the
+            nearest shape found, with its active bounds.
 
         Raises
         ------
         ValueError
-            An argument that cannot be meant, named.
+            An argument is invalid; the message names it.
 
         Examples
         --------
@@ -415,16 +417,16 @@ class Arm:
         return Reach(_native.reach(self._inner, *asked), tuple(goals), self._origin("reach", asked))
 
     def reachable(self, *, max_tension: float | None = None, spacing: float = 0.01, tol: float = 1e-7) -> Boundary:
-        """What bounds the places that the tip reaches with tensions from 0 to their largest.
+        """Trace the boundary of the workspace: of the places that the tip reaches with tensions from 0 to their largest.
 
         Parameters
         ----------
         max_tension : float, optional
-            The largest tension of every cable, N; of this and the cable's own the smaller counts.
+            The largest tension of every cable, N; a smaller one of the cable itself holds.
         spacing : float
-            Distance of points over the length, in [1e-3, 0.1].
+            Distance between points, relative to the arm's length, in [1e-3, 0.1].
         tol : float
-            Error of tips over the length, in [1e-9, 1e-3].
+            Tolerance on the tips, relative to the arm's length, in [1e-9, 1e-3].
 
         Examples
         --------
@@ -447,7 +449,7 @@ class Arm:
         method: str = "best",
         tol: float = 1e-8,
     ) -> Sensitivities:
-        """Exact derivatives of the shape that `solve` gives; see `Solver.sensitivities`.
+        """Return exact derivatives of the shape that `solve` gives; see `Solver.sensitivities`.
 
         Examples
         --------
@@ -462,7 +464,7 @@ class Arm:
         return Solver(self, tol).sensitivities(parameters, stations=stations, method=method)
 
     def measurements_template(self) -> str:
-        """A CSV table to fill in with what was measured of this arm, for `identify`; it explains itself."""
+        """Return a CSV table to fill in with measurements of this arm, for `identify`; its comments explain it."""
         from hydrostat.identification import measurements_template
 
         return measurements_template(self)
@@ -480,30 +482,30 @@ class Arm:
         tol: float = 1e-8,
         progress: bool | None = None,
     ) -> Fit:
-        """The parameters that make this arm agree best with what was measured, and how well the data know them.
+        """Fit parameters of this arm to measurements, with intervals and identifiability.
 
         Ctrl-C interrupts it.
 
         Parameters
         ----------
         data : path, mapping or DataFrame
-            A CSV file, or its columns by their heads, such as ``{"case": ..., "s [mm]": ..., "x [mm]": ...}``; NaN and None are not
+            A CSV file, or its columns by their heads, such as ``{"case": ..., "s [mm]": ..., "x [mm]": ...}``; NaN and None mean not
             measured. `measurements_template` has the columns.
         fit : str, sequence of str, or mapping
             Keys of the arm file, or their last parts (``"young"``), with or without a start and bounds: ``"young=80 kPa:50 kPa:200 kPa"``, or
             ``{"young": ("80 kPa", "50 kPa", "200 kPa")}``.
         prior : sequence of str, or mapping
-            What was known before: ``["flow.cn=2.5±0.5"]`` or ``{"flow.cn": (2.5, 0.5)}``.
+            Prior knowledge: ``["flow.cn=2.5±0.5"]`` or ``{"flow.cn": (2.5, 0.5)}``.
         sd : str or sequence of str
-            Standard deviations of what has none in the data, with their units: ``"0.5 mm"``.
+            Standard deviations of quantities that have none in the data, with units: ``"0.5 mm"``.
         loss : str
-            ``"none"``, ``"huber"`` or ``"cauchy"``: how far-out numbers count.
+            Outlier loss: ``"none"`` (squares), ``"huber"`` (linear tails) or ``"cauchy"`` (nearly ignored).
         rescale : bool
             Whether standard deviations are known up to a common factor only.
         cross_validate : bool
             Whether to fit again without each load case, of at most 200.
         tol : float
-            Error of the tip position over the length that every solve is asked for.
+            Tolerance on the tip position in every solve, relative to the arm's length.
         progress : bool, optional
             Whether a line on standard error says how far the search is; by default on a terminal.
 
@@ -512,9 +514,9 @@ class Arm:
         MeasurementsError
             A `ValueError` that names file, row and column.
         NoEquilibriumError
-            A load case has none where the search starts; a note names it.
+            A load case has no equilibrium at the start of the search; a note names it.
         ValueError
-            An argument that cannot be meant, named.
+            An argument is invalid; the message names it.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""Figures as the library draws them: to scale, as SVG, PDF and PNG, without matplotlib."""
+"""The library's own figures: to scale, as SVG, PDF and PNG, without matplotlib."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def curve_figure(dataset: xr.Dataset, quantity: str = "tip_y", title: str = "a s
 def source_figures(
     arm: Arm, *, at_highest: bool = False, faster: Sequence[float] = (1.0, 2.0)
 ) -> tuple[dict[str, Figure], list[tuple[str, str, str]]]:
-    """The source's Fig. 1a, 1b and 1c for `arm`, and what its text says about them held against the numbers.
+    """The source's Fig. 1a, 1b and 1c for `arm`, and the statements of its text compared with the numbers.
 
     Parameters
     ----------

@@ -25,8 +25,8 @@ _LOST = 5.0
 
 
 class ReachEnv(gymnasium.Env):  # type: ignore[misc]
-    """Pull the cables so that the tip follows a target that goes round; each step is a shape in equilibrium. The target goes where tensions that
-    rise and fall, drawn anew at every reset, bring the tip: all of its course can be reached.
+    """Pull the cables so that the tip follows a moving target; each step is an equilibrium. The target moves along the tips of tensions that
+    rise and fall, drawn at every reset, so that its whole course can be reached.
 
     An observation is, for an arm of c cables: the tip's x and y, the sine and cosine of its turn, the target's x and y and its change in a
     step (places over the length), then the c tensions over the most, all float64. An action is the change of every tension, from -1 to 1:
@@ -105,7 +105,7 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
         return self._observed(tip), self._about(tip)
 
     def step(self, action: NDArray[np.float64]) -> tuple[NDArray[np.float64], SupportsFloat, bool, bool, dict[str, Any]]:
-        """Change the tensions, and see where that leads."""
+        """Change the tensions and solve."""
         change = np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0)
         self._step += 1
         before = self._tensions

@@ -1,4 +1,4 @@
-"""Parameters of an arm from measured shapes: estimates, intervals, and what the data cannot tell apart."""
+"""Parameters of an arm from measured shapes: estimates, intervals, and identifiability."""
 
 from __future__ import annotations
 
@@ -48,17 +48,17 @@ class Estimate(NamedTuple):
     value : float
         The estimate.
     sd : float or None
-        Standard deviation; None where a bound holds the parameter or the data know nothing of it.
+        Standard deviation; None if the parameter is at a bound or the data do not determine it.
     interval : tuple of float, or None
-        95 %, cut off at the bounds; infinite where the data know nothing, None where a bound holds it.
+        95 %, cut off at the bounds; infinite if the data do not determine it, None if it is at a bound.
     start : float
         Where the search began.
     bounds : tuple of float
         Lower and upper.
     held_by : str or None
-        ``"lower"`` or ``"upper"``, if that bound holds it.
+        ``"lower"`` or ``"upper"`` if the estimate is at that bound.
     prior : tuple of float, or None
-        Mean and standard deviation that were known before.
+        Mean and standard deviation of the prior.
     """
 
     key: str
@@ -73,7 +73,7 @@ class Estimate(NamedTuple):
 
 
 class LeftOut(NamedTuple):
-    """A load case as the others predict it.
+    """Cross-validation of one load case: how the others predict it.
 
     Attributes
     ----------
@@ -82,9 +82,9 @@ class LeftOut(NamedTuple):
     within : float
         Root of the mean square of its residuals in the fit of all cases, in standard deviations.
     predicted : float or None
-        The same where the fit did not know it; None where that has no answer, and `message` says why.
+        The same in a fit without this case; None if there is no answer, and `message` says why.
     shifts : ndarray, shape (p,)
-        By how much each parameter differs without it, in its standard deviations.
+        Change of each parameter without this case, in its standard deviations.
     message : str or None
         Why there is no prediction.
     """
@@ -97,7 +97,7 @@ class LeftOut(NamedTuple):
 
 
 class Fit(Result):
-    """What measured numbers say about p parameters; see `Arm.identify`.
+    """The result of a fit of p parameters; see `Arm.identify`.
 
     Attributes
     ----------
@@ -106,13 +106,13 @@ class Fit(Result):
     values : ndarray, shape (p,)
         Their estimates.
     covariance, correlation : ndarray, shape (p, p)
-        Of the estimates; NaN where the data know nothing.
+        Of the estimates; NaN where the data do not determine them.
     singular_values : ndarray, shape (p,)
-        How many standard deviations all measured numbers move by a unit of each of the `directions`, the least known first.
+        By how many standard deviations the measured numbers move per unit of each of the `directions`, the least determined first.
     directions : ndarray, shape (p, p)
-        Combinations of the parameters over their sizes, a row each.
+        Combinations of the parameters relative to their sizes, one per row.
     verdict : tuple of str
-        Which parameters the data cannot tell apart, in sentences.
+        Which parameters the data do not determine, in sentences.
     misfit : str or None
         Whether residuals are as large as their standard deviations say.
     chi_square : float
@@ -122,9 +122,9 @@ class Fit(Result):
     spread : float
         The factor on standard deviations; 1 unless `rescale` was asked for.
     cross_validation : tuple of LeftOut
-        Every load case as the others predict it; empty for one case, or if not asked for.
+        Cross-validation of every load case; empty for one case, or if not requested.
     converged : bool
-        Whether the search came to its end, in `rounds` steps and `evaluations` solves of all load cases.
+        Whether the search converged, in `rounds` steps and `evaluations` solves of all load cases.
     """
 
     def __init__(self, native: _native.Fit, origin: Origin) -> None:
@@ -173,7 +173,7 @@ class Fit(Result):
     @cached_property
     def residuals(self) -> dict[str, NDArray[Any]]:
         """Every measured number beside the fit, columns by name: ``case``, ``quantity``, ``s`` (m, NaN for what has no place), ``unit``,
-        ``measured``, ``sd``, ``fitted``, ``residual`` (fitted less measured, over sd), ``weight`` (what the loss leaves of its pull) and
+        ``measured``, ``sd``, ``fitted``, ``residual`` (fitted minus measured, over sd), ``weight`` (its weight under the loss) and
         ``row`` (of the file)."""
         types: dict[str, Any] = {"case": object, "quantity": object, "unit": object, "row": np.int64}
         rows = self._found["residuals"]

@@ -28,7 +28,7 @@ def function(arm: Arm | str | PathLike[str], keys: Sequence[str], *, tol: float 
     keys : sequence of str
         What the numbers are: p keys as in `solve_many`, in SI units, angles in degrees.
     tol : float
-        Error of the tip position over the length, in [1e-12, 1e-2].
+        Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Many arms that differ in a few numbers."""
+"""Many solves of one arm with different numbers."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
 
     @property
     def stroke(self) -> NDArray[np.float64]:
-        """How far each cable is reeled in, m, of `shape` and (cables,)."""
+        """The stroke of each cable, m, of `shape` and (cables,)."""
         return self._number("stroke")
 
     @property
@@ -226,8 +226,8 @@ def solve_many(
 ) -> Many | xr.Dataset:
     """Solve an arm at many values at once, on all processors.
 
-    Inputs broadcast together as NumPy's do; xarray's DataArrays by their dimensions, with single numbers beside them. Rows are solved in an order in which each is near the one before, and rows that are alike
-    once; they come in the order asked for. Ctrl-C interrupts it.
+    Inputs broadcast together as NumPy's do; xarray's DataArrays by their dimensions, together with single numbers. Rows are solved in an order in which
+    neighbours are similar, equal rows once; the results keep the order of the inputs. Ctrl-C interrupts it.
 
     Parameters
     ----------
@@ -241,23 +241,23 @@ def solve_many(
         Other numbers, by the keys that a path can vary: ``"flow.direction"`` (degrees), ``"cable[0].stroke"`` (m),
         ``"tip.force[1]"`` (N), ``"material.young"`` (Pa) and so on.
     tol : float
-        Error of the tip position over the length, in [1e-12, 1e-2].
+        Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
     tile : int
-        Rows that follow from one another; a row starts from the one before where only loads differ, and where that cannot lead to
-        another branch. The rows do not depend on the number of processors.
+        Number of rows that are solved after one another. A row starts warm from the one before if only loads differ and this cannot
+        lead to another branch. The rows do not depend on the number of processors.
     fold_margin, stability : bool
-        Whether these are answered, too.
+        Whether these are computed, too.
     stations : int
-        So many equally spaced stations of each row, none below 2, at most 10000.
+        Number of equally spaced stations of each row, at most 10000; none below 2.
     gradients : bool or sequence of str
         Derivatives of tip and strokes by these parameters (see `Solver.sensitivities`); by the tensions (strokes, where they are
         commanded) and by what `vary` varies, if true.
     nan : str
-        What a row with NaN, or a number that is masked or NA, is: ``"row"``, one without an answer, or ``"refuse"``, a `ValueError`.
+        How a row with NaN, or with a masked or NA number, is treated: ``"row"``, a row without an answer, or ``"refuse"``, a `ValueError`.
     threads : int
-        0 for as many as the machine has.
+        0 for all processors.
     progress : bool, optional
-        Whether a bar is drawn on standard error; None for on a terminal.
+        Whether to show a bar on standard error; by default on a terminal.
 
     Returns
     -------
@@ -271,7 +271,7 @@ def solve_many(
     MemoryError
         The rows do not fit in memory; nothing was solved.
     ValueError
-        Shapes that do not broadcast, dtypes that are no numbers, negative tensions or speeds; the argument is named.
+        Shapes do not broadcast, a dtype is not numeric, or a tension or speed is negative; the message names the argument.
 
     Examples
     --------

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Event(NamedTuple):
-    """What is special about a point of a branch: its index, ``"limit_point"``, ``"bifurcation"``, ``"slack"`` or ``"taut"``, the
+    """An event at a point of a branch: its index, ``"limit_point"``, ``"bifurcation"``, ``"slack"`` or ``"taut"``, the
     parameter there, and the cable that goes slack or taut."""
 
     point: int
@@ -29,7 +29,7 @@ class Event(NamedTuple):
 
 
 class Branch(Result, Sequence[Solution]):
-    """Equilibria in the order in which a path meets them, as a sequence of solutions.
+    """One branch of a path: equilibria in order, as a sequence of solutions.
 
     Attributes
     ----------
@@ -44,11 +44,11 @@ class Branch(Result, Sequence[Solution]):
     events : tuple of Event
         Limit points and so on, in their order.
     end : str
-        Why it ends: ``"reached_end"``, ``"reached_start"``, ``"most_points"``, or the limit that no equilibrium goes past.
+        Why the branch ends: ``"reached_end"``, ``"reached_start"``, ``"most_points"``, or the limit beyond which there is no equilibrium.
     message : str
         The same in a sentence.
     switched_at : float or None
-        Value at the bifurcation from which this branch starts.
+        Value at the bifurcation where this branch starts.
     """
 
     values: NDArray[np.float64]
@@ -115,18 +115,18 @@ def _branch(path: EquilibriumPath, index: int) -> Branch:
 
 
 class EquilibriumPath(Result):
-    """Equilibria over the range of one number of the arm; see `Arm.path`.
+    """Equilibria over a range of one parameter (continuation); see `Arm.path`.
 
     Attributes
     ----------
     parameter : str
-        What varies.
+        The parameter that varies.
     unit : str
         The unit of its values.
     range : tuple of float
         From and to.
     branches : tuple of Branch
-        The branch that the solve at the start is on, then those switched to.
+        The branch of the solve at the start, then those switched to.
     """
 
     def __init__(self, native: _native.Path, origin: Origin) -> None:
@@ -200,7 +200,7 @@ class Equilibria(Result, Sequence[Solution]):
     Attributes
     ----------
     complete : bool
-        Whether these are all: the curve of equilibria was followed once round.
+        Whether these are all: the closed curve of equilibria was followed completely.
     tip_angles, base_angles : tuple of float
         Angles over which the curve was followed, rad.
     stability : tuple of str or None

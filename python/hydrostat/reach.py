@@ -1,4 +1,4 @@
-"""Inverse kinetics: the tensions that bring an arm to a place, and along a path of places."""
+"""Inverse kinematics: tensions that bring an arm to targets, and along a path of targets."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
 
 
 class Target(NamedTuple):
-    """Where a place of the arm is to be.
+    """A target for one place of the arm.
 
     Attributes
     ----------
     x, y : float
-        The place, m.
+        The target, m.
     s : float or None
-        Which place of the arm, m along it; None for the tip.
+        The place of the arm, m along it; None for the tip.
     angle : float or None
-        Angle of the section from e1, rad, if it matters: in a distance, a radian counts as one arm's length.
+        Angle of the section from e1, rad, if it matters. In distances, one radian counts as one length of the arm.
     weight : float
-        Of its distance among those of several targets.
+        Weight of its distance among several targets.
     """
 
     x: float
@@ -57,7 +57,7 @@ class Bound(NamedTuple):
 
 
 class Reached(Result):
-    """Tensions, and the shape that they lead to.
+    """Tensions and their shape.
 
     Attributes
     ----------
@@ -66,15 +66,15 @@ class Reached(Result):
     effort : float
         Sum of their squares, N^2.
     distance : float
-        Root of the weighted sum of squared distances to the targets, over the length.
+        Root of the weighted sum of squared distances to the targets, relative to the arm's length.
     bounds : tuple of Bound
         The bounds that its tensions lie on.
     on_the_path : bool
-        Whether `Arm.solve` at these tensions leads to this shape.
+        Whether `Arm.solve` gives this shape at these tensions.
     stability : str or None
-        ``"stable"``, ``"unstable"``, ``"marginal"``, or None where it is not established.
+        ``"stable"``, ``"unstable"``, ``"marginal"``, or None if not established.
     unstable_directions : int or None
-        In how many directions small motions grow.
+        Number of directions in which small motions grow.
     """
 
     tensions: NDArray[np.float64]
@@ -120,12 +120,12 @@ class Reached(Result):
 
 
 class BoundaryPiece(NamedTuple):
-    """Places of the tip on its boundary, one after the other.
+    """One piece of the boundary: places of the tip in order.
 
     Attributes
     ----------
     kind : str
-        ``"edge"``: all cables but one are at a bound; ``"fold"``: two move the tip along the same line; ``"limit"``: two pulled further
+        ``"edge"``: all cables but one are at a bound; ``"fold"``: a singularity, two cables move the tip along the same line; ``"limit"``: two pulled further
         have no equilibrium.
     cables : tuple of int
         The cables that are between their bounds.
@@ -201,14 +201,14 @@ def _piece(one: dict[str, Any]) -> BoundaryPiece:
 
 
 class Reach(Result, Sequence[Reached]):
-    """Different tensions that reach the targets, least effort first, as a sequence; see `Arm.reach`.
+    """The solutions of an inverse-kinematics search, least effort first, as a sequence; see `Arm.reach`.
 
     Attributes
     ----------
     targets : tuple of Target
-        What was asked for.
+        The targets.
     closest : Reached or None
-        Where nothing reaches them, the nearest that was found.
+        If nothing reaches them, the nearest shape found.
     """
 
     def __init__(self, native: _native.Reach, targets: tuple[Target, ...], origin: Origin) -> None:
@@ -284,7 +284,7 @@ def _boundary(version: int, writer: str, state: dict[str, Any]) -> Boundary:
 
 
 class Followed(NamedTuple):
-    """Where a follower got to.
+    """The result of one step of a follower.
 
     Attributes
     ----------
@@ -293,13 +293,13 @@ class Followed(NamedTuple):
     tip : Tip
         m and rad.
     distance : float
-        Root of the weighted sum of squared distances to the targets, over the length.
+        Root of the weighted sum of squared distances to the targets, relative to the arm's length.
     reached : bool
-        Whether that is within the tolerance.
+        Whether the distance is within the tolerance.
     jumped : bool
-        Whether the arm went to another branch of its equilibria on the way.
+        Whether the arm jumped to another branch of equilibria.
     solves : int
-        Solves that it took.
+        Number of solves.
     """
 
     tensions: NDArray[np.float64]
@@ -311,10 +311,10 @@ class Followed(NamedTuple):
 
 
 class Follower:
-    """Follows a path of targets, each from the tensions of the last, for control loops.
+    """Follows a path of targets with warm starts, for control loops.
 
-    It starts from the tensions of the arm, or, where they do not reach the first targets, from the least effort that does. A copy goes on
-    from the same shape, by itself.
+    It starts from the tensions of the arm if they reach the first targets, otherwise from the solution of least effort. A copy
+    continues from the same shape, independently.
 
     Parameters
     ----------
@@ -323,18 +323,18 @@ class Follower:
     targets : Target, sequence of Target, or (x, y)
         The first targets, m and rad.
     max_tension : float, optional
-        The largest tension of every cable, N; of this and the cable's own `max_tension` the smaller counts.
+        The largest tension of every cable, N; a smaller `max_tension` of the cable itself holds.
     max_stroke : float, optional
-        The largest stroke of every cable that pulls, m: how far it can be wound in.
+        The largest stroke of every taut cable, m: how much can be reeled in.
     tol : float
-        Distance over the length at which a target is reached, in [1e-10, 1e-2].
+        Tolerance on the distance to a target, relative to the arm's length, in [1e-10, 1e-2].
 
     Raises
     ------
     NoEquilibriumError
         The arm has no equilibrium to start from.
     ValueError
-        An argument that cannot be meant, named.
+        An argument is invalid; the message names it.
 
     Examples
     --------
@@ -371,9 +371,9 @@ class Follower:
         return self.__copy__()
 
     def follow(self, targets: Targets) -> Followed:
-        """Go to the next targets, which have to be for the same places as the first.
+        """Go to the next targets. They must be for the same places of the arm as the first ones.
 
-        Where they cannot be reached the arm stays as near as it came, and ``reached`` is false.
+        If they cannot be reached, the arm stays at the nearest shape, and ``reached`` is false.
 
         Parameters
         ----------
@@ -386,36 +386,36 @@ class Follower:
 
     @property
     def tensions(self) -> NDArray[np.float64]:
-        """The tensions that it is at, N, shape (cables,)."""
+        """The present tensions, N, shape (cables,)."""
         return self._inner.tensions
 
     @property
     def strokes(self) -> NDArray[np.float64]:
-        """How far each cable is reeled in there, m, shape (cables,)."""
+        """The stroke of each cable there, m, shape (cables,)."""
         return np.array([cable.stroke for cable in self.solution().cables])
 
     def solution(self) -> Solution:
-        """The whole shape that it is at.
+        """The present shape in full.
 
         Raises
         ------
         RuntimeError
-            It went to a branch that no solve leads to.
+            The follower is on a branch that `Arm.solve` does not give.
         """
         return Solution(self._inner.solution())
 
     def set_flow_speed(self, flow_speed: float) -> None:
-        """Another speed of the stream, m/s: the tensions stay, and the arm gives way; the next targets are followed from there.
+        """Set another speed of the stream, m/s. The tensions stay, the shape changes; the next targets are followed from there.
 
         Raises
         ------
         NoEquilibriumError
-            The arm has none in that stream; it stays as it was.
+            The arm has no equilibrium in that stream; nothing changes.
         """
         self._inner.set_flow_speed(_inputs.number("flow_speed", flow_speed, negative=False))
 
     def set_bounds(self, *, max_tension: float | None = None, max_stroke: float | None = None) -> None:
-        """Other bounds, N and m, from where it is; None for the cables' own alone."""
+        """Set other bounds, N and m, at the present shape; None leaves the cables' own bounds only."""
         self._inner.set_bounds(most_of(max_tension, max_stroke))
 
 

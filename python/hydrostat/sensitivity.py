@@ -1,4 +1,4 @@
-"""Exact derivatives of an equilibrium by what is given."""
+"""Exact derivatives of an equilibrium by parameters of the arm and its loads."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _POSE = {"x": "m", "y": "m", "theta": "rad", "alpha": "rad"}
 
 
 class PoseChange(NamedTuple):
-    """Changes of `x`, `y` (m), `theta` and `alpha` (rad) a unit of each parameter; the last dimension is the parameters'."""
+    """Changes of `x`, `y` (m), `theta` and `alpha` (rad) per unit of each parameter; the last dimension is the parameters."""
 
     x: NDArray[np.float64]
     y: NDArray[np.float64]
@@ -29,12 +29,12 @@ class PoseChange(NamedTuple):
 
 
 class Ellipse(NamedTuple):
-    """Where the tip goes with a unit of effort: the image of the unit circle (or ball) of what it is by.
+    """Manipulability ellipse: how the tip moves per unit of effort, the image of the unit circle (or ball) of tensions or strokes.
 
     Attributes
     ----------
     half_axes : tuple of float
-        The longer first, m a unit of the parameters.
+        The longer first, m per unit of the parameters.
     direction : float
         The direction of the longer one from e1, rad, in (-pi/2, pi/2].
     """
@@ -60,26 +60,26 @@ class Ellipse(NamedTuple):
 
 
 class Sensitivities(Result):
-    """Derivatives of a shape by parameters, in SI units and radians a unit of each parameter.
+    """Derivatives of a shape by parameters, in SI units and radians per unit of each parameter.
 
     They come from the converged equations (implicit function theorem), not from differences; see `Solver.sensitivities`.
 
     Attributes
     ----------
     parameters : tuple of str
-        What they are by: p keys of the arm file.
+        The p parameters, as keys of the arm file.
     units : tuple of str
         The units of these, in radians for angles, empty for plain numbers.
     solution : Solution
-        The shape that they are about.
+        The shape at which they hold.
     tip : PoseChange
         Of the tip, arrays of shape (p,).
     strokes : ndarray, shape (cables, p)
         Of the stroke of every cable, m.
     tensions : ndarray, shape (cables, p)
-        Of the tension of every cable, N: zero but where a stroke is commanded, and one by itself.
+        Of the tension of every cable, N: zero unless a stroke is commanded; one by its own tension.
     stations : ndarray, shape (n,)
-        The places along the arm that were asked for, m.
+        The requested places along the arm, m.
     poses : PoseChange
         Of these places, arrays of shape (n, p).
     """
@@ -163,12 +163,12 @@ class Sensitivities(Result):
 
     def compliance(self) -> NDArray[np.float64] | None:
         """Compliance of the tip, shape (3, 3): rows x (m), y (m), theta (rad); columns the dead forces along e1 and e2 (N), the moment
-        (N m). None where ``"tip.force[0]"``, ``"tip.force[1]"`` or ``"tip.moment"`` was not asked for."""
+        (N m). None if ``"tip.force[0]"``, ``"tip.force[1]"`` or ``"tip.moment"`` is not among the parameters."""
         rows = self._inner.compliance()
         return None if rows is None else np.array(rows)
 
     def manipulability(self) -> Ellipse | None:
-        """The ellipse of the tip by the tensions (m/N) or strokes (m/m) that were asked for; None where none was."""
+        """The ellipse of the tip by the tensions (m/N) or strokes (m/m) among the parameters; None if there are none."""
         found = self._inner.manipulability()
         return None if found is None else Ellipse((found[0][0], found[0][1]), found[1])
 
@@ -206,15 +206,15 @@ class Sensitivities(Result):
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Where; a new figure's without it.
+            Axis to draw on; by default that of a new figure.
         effort : float, optional
-            How large a change the ellipse stands for, N (m of strokes): root of the sum of squares. Without it, one that makes the
-            ellipse a fifth of the arm long.
+            The change that the ellipse represents, N (m for strokes): root of the sum of squares. By default, such that the ellipse is a
+            fifth of the arm long.
 
         Raises
         ------
         ValueError
-            No tension or stroke was asked for.
+            No tension or stroke is among the parameters.
         """
         from hydrostat.plotting import plot_manipulability
 

@@ -1,4 +1,4 @@
-"""Answers: shapes with what they carry."""
+"""Solutions: shapes with their internal forces."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Wrench(NamedTuple):
 
 
 class Command(NamedTuple):
-    """What was commanded of a cable: its `stroke`, m, the `length` that this leaves, m, and whether it hangs `slack`."""
+    """The command to a cable: its `stroke`, m, the remaining unstretched `length`, m, and whether it is `slack`."""
 
     stroke: float
     length: float
@@ -70,7 +70,7 @@ class Command(NamedTuple):
 
 
 class CableState(NamedTuple):
-    """A cable in a shape: `tension` at the base in N, `length` and `stroke` (positive when reeled in) in m."""
+    """The state of a cable: `tension` at the base in N, `length` and `stroke` (positive when reeled in) in m."""
 
     name: str
     tension: float
@@ -87,7 +87,7 @@ class FoldMargin(NamedTuple):
 
 
 class Note(NamedTuple):
-    """Something that should be known about an answer: its `kind`, such as ``"surface_fold"``, and the `message`."""
+    """A warning about a solution: its `kind`, such as ``"surface_fold"``, and the `message`."""
 
     kind: str
     message: str
@@ -108,8 +108,8 @@ class Result:
 class Stations(Result):
     """States along an arm, base to tip: twelve read-only arrays of shape (n,), which share memory with what solved them.
 
-    They stay valid when this object is gone, and keep what solved them in memory (45 kB or so for an arm of two cables);
-    `copy_arrays` gives arrays of their own.
+    They stay valid after this object is deleted, and keep the solution in memory (about 45 kB for an arm with two cables).
+    `copy_arrays` returns independent arrays.
     """
 
     __slots__ = ("_inner",)
@@ -197,7 +197,7 @@ class Stations(Result):
         return f"<Stations: {len(self)}, from {self.s[0]:g} to {self.s[-1]:g} m>" if len(self) else "<Stations: none>"
 
     def copy_arrays(self) -> dict[str, NDArray[np.float64]]:
-        """The twelve fields by name, as arrays of their own that can be changed and keep nothing else in memory."""
+        """Return the twelve fields by name, as independent arrays that can be changed."""
         return {name: self._inner.field(name).copy() for name in FIELDS}
 
     def to_pandas(self) -> pd.DataFrame:
@@ -222,7 +222,7 @@ def _attributes(name: str) -> dict[str, str]:
 
 
 class Solution(Stations):
-    """An arm in equilibrium: its stations are the nodes of the solver's mesh, closer where the shape changes fast.
+    """An arm in equilibrium: its stations are the nodes of the solver's mesh, denser where the shape changes quickly.
 
     The end of a cable appears twice, with the values on either side. `Arm.solve` makes solutions.
 
@@ -281,9 +281,9 @@ class Solution(Stations):
         return _restored, (_saved.FORMAT, _native.__version__, self._state())
 
     def save(self, path: str | PathLike[str]) -> FilePath:
-        """Write this to a netCDF file, `path`, whose name ends in ``.nc``, from which `hydrostat.load` gives it back bit by bit.
+        """Write this to a netCDF file, `path`, whose name ends in ``.nc``, from which `hydrostat.load` restores it bit by bit.
 
-        The file is that of `to_xarray`, and can be opened as such; what else there is stands in one attribute. Needs xarray and one of
+        The file is that of `to_xarray` and can be opened as such; everything else is in one attribute. Needs xarray and one of
         h5netcdf, netCDF4 and SciPy.
 
         Examples
@@ -301,7 +301,7 @@ class Solution(Stations):
 
     @cached_property
     def arm(self) -> Arm:
-        """The arm with the loads that this shape balances."""
+        """The arm with the loads of this solution."""
         from hydrostat.arm import Arm
 
         return Arm._of(self._inner.arm)
@@ -313,7 +313,7 @@ class Solution(Stations):
 
     @property
     def cables(self) -> tuple[CableState, ...]:
-        """One entry a cable, in the arm's order."""
+        """One entry per cable, in the arm's order."""
         return tuple(
             CableState(name, tension, length, stroke, None if command is None else Command(*command))
             for name, tension, length, stroke, command in self._inner.cables
@@ -321,12 +321,12 @@ class Solution(Stations):
 
     @property
     def base_reaction(self) -> Wrench:
-        """What support and cable anchors exert on the arm at the base, N and N m."""
+        """Force and moment of the support and the cable anchors on the arm at the base, N and N m."""
         return _wrench(*self._inner.base_reaction)
 
     @property
     def unmet(self) -> Wrench | None:
-        """With ``support = "unstrained-base"``, what the balance of the tip lacks, N and N m."""
+        """With ``support = "unstrained-base"``, the unbalanced force and moment at the tip, N and N m."""
         unmet = self._inner.unmet
         return None if unmet is None else _wrench(*unmet)
 
@@ -337,7 +337,7 @@ class Solution(Stations):
 
     @property
     def fold_margin(self) -> FoldMargin:
-        """How far the surface is from folding over itself."""
+        """Margin of the surface against folding over itself."""
         return FoldMargin(*self._inner.fold_margin)
 
     @property
@@ -347,7 +347,7 @@ class Solution(Stations):
 
     @cached_property
     def warnings(self) -> tuple[Note, ...]:
-        """What should be known about this answer; empty when all is well."""
+        """The warnings of this solution; empty if there are none."""
         return tuple(Note(kind, message) for kind, message in self._inner.warnings())
 
     @cached_property
@@ -356,20 +356,20 @@ class Solution(Stations):
 
     @property
     def stability(self) -> str | None:
-        """``"stable"``, ``"unstable"``, ``"marginal"``, or None where it is not established.
+        """``"stable"``, ``"unstable"``, ``"marginal"``, or None if not established.
 
-        Against static divergence, with overdamped motion. Computed when first asked for, in one to two milliseconds.
+        Static divergence under overdamped motion. Computed on first use, in one to two milliseconds.
         """
         return self._stability[0]
 
     @property
     def unstable_directions(self) -> int | None:
-        """In how many directions small motions grow."""
+        """Number of directions in which small motions grow."""
         return self._stability[1]
 
     @property
     def stable(self) -> bool | None:
-        """Whether it is stable; None where that is not known."""
+        """Whether it is stable; None if not established."""
         state, _, known = self._stability
         return {"stable": True, "unstable": False, "marginal": None}[state] if state is not None else known
 
@@ -380,11 +380,11 @@ class Solution(Stations):
 
     @property
     def statistics(self) -> dict[str, int]:
-        """What the solve took: elements, stages, Newton rounds, meshes, load steps, evaluations."""
+        """The work of the solve: elements, stages, Newton rounds, meshes, load steps, evaluations."""
         return dict(self._inner.statistics)
 
     def at(self, s: ArrayLike) -> Stations:
-        """States anywhere along the arm, to the accuracy of the nodes.
+        """Evaluate the solution at any places along the arm, as accurately as at the nodes.
 
         Parameters
         ----------
@@ -413,7 +413,7 @@ class Solution(Stations):
         return self._inner.layer_speed(_inputs.number("s", s), _inputs.number("y", y))
 
     def to_json(self) -> str:
-        """The document that ``hydrostat solve --format json`` prints, one line."""
+        """Return the document of ``hydrostat solve --format json``, on one line."""
         return self._inner.to_json()
 
     def to_csv(self) -> str:
@@ -469,7 +469,7 @@ class Solution(Stations):
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Where; a new figure's without it.
+            Axis to draw on; by default that of a new figure.
         color : color
             Of the body.
         sections : int
@@ -479,7 +479,7 @@ class Solution(Stations):
         label : str, optional
             For the legend.
         unit : str, optional
-            ``"mm"``, ``"cm"`` or ``"m"``; without it that of what was drawn on these axes before, or mm.
+            ``"mm"``, ``"cm"`` or ``"m"``; by default that of earlier drawings on these axes, or mm.
 
         Returns
         -------
@@ -489,7 +489,7 @@ class Solution(Stations):
         Raises
         ------
         ValueError
-            Another unit than that of what was drawn on these axes before.
+            The unit differs from that of earlier drawings on these axes.
         """
         from hydrostat.plotting import plot_shape
 
@@ -503,7 +503,7 @@ class Solution(Stations):
         label : str, optional
             For the legend.
         figure : matplotlib.figure.Figure, optional
-            What an earlier call returned, to draw into.
+            A figure returned by an earlier call, to draw into.
         """
         from hydrostat.plotting import plot_strains
 
@@ -518,16 +518,16 @@ def animate(
     unit: str = "mm",
     sections: int = 25,
 ) -> FuncAnimation | FilePath:
-    """Show shapes one after the other, to scale. Needs matplotlib.
+    """Animate shapes, to scale. Needs matplotlib.
 
     Parameters
     ----------
     solutions : iterable of Solution
-        A picture each: a list, a branch of a path and so on.
+        One frame each: a list, a branch of a path and so on.
     output : path, optional
         A file ``.gif``, ``.mp4`` (needs ffmpeg) or ``.html``.
     fps : float
-        Pictures a second.
+        Frames per second.
     unit : str
         ``"mm"``, ``"cm"`` or ``"m"``.
     sections : int
@@ -551,7 +551,7 @@ _WARNINGS = {
     "strain_range": "the stretch is beyond what a linear law can mean",
     "tension_above_max": "a commanded stroke takes more tension than the cable's max_tension",
     "sealed_cavity": "the cavity is sealed, and the outside pressure on its wall is left out",
-    "tangential_load": "the shape hangs on the tangential load of the momentum law",
+    "tangential_load": "the shape depends strongly on the tangential load of the momentum law",
     "tolerance_missed": "the estimated error is above the tolerance",
 }
 

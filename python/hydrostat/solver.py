@@ -1,4 +1,4 @@
-"""One arm, again and again as its loads change."""
+"""Repeated solves of one arm as its loads change."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ class Answer(NamedTuple):
 
 
 class Solver:
-    """Solves an arm anew from its last shape, for control loops: a small change of loads takes a few Newton rounds.
+    """Solves an arm repeatedly, starting from its last shape: for control loops. A small change of loads takes a few Newton rounds.
 
     Parameters
     ----------
     arm : Arm, str or path
         The arm, or the name or file of one.
     tol : float
-        Error of the tip position over the length, in [1e-12, 1e-2].
+        Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
 
-    A copy goes on from the same shape, by itself.
+    A copy continues from the same shape, independently.
 
     Examples
     --------
@@ -63,7 +63,7 @@ class Solver:
 
     @property
     def tensions(self) -> NDArray[np.float64]:
-        """The tensions that were set last, N, shape (cables,); those of cables whose strokes are commanded are in `solution`."""
+        """The tensions that were set last, N, shape (cables,). For cables with a commanded stroke, see `solution`."""
         return np.array(self._inner.tensions)
 
     def set_tensions(self, tensions: ArrayLike) -> None:
@@ -83,51 +83,51 @@ class Solver:
         return warn(Solution(self._inner.solve()), 2)
 
     def resolve(self) -> Solution:
-        """Solve from the last shape, or from the unloaded arm where the arm moved too far."""
+        """Solve from the last shape (warm start), or from the unloaded arm if the arm moved too far."""
         return Solution(self._inner.resolve())
 
     def update(self) -> Answer:
-        """Where the tip is now: `resolve` that reads nothing else out."""
+        """Solve as `resolve` does, and return the tip only."""
         x, y, theta, alpha, error_estimate = self._inner.update()
         return Answer(Tip(x, y, theta, alpha), error_estimate)
 
     def solution(self) -> Solution:
-        """Everything about the last `update`."""
+        """The full solution of the last `update`."""
         return Solution(self._inner.configuration())
 
     def sensitivities(
         self, parameters: Sequence[str] | None = None, *, stations: ArrayLike = (), method: str = "best"
     ) -> Sensitivities:
-        """Exact derivatives of tip, strokes and stations about the shape under the present loads.
+        """Return exact derivatives of tip, strokes and stations at the shape under the present loads.
 
-        They are those of the converged equations; nothing is differenced. At a kink of the load that lies on a station, at a limit
-        point and where a cable just goes slack there is no derivative.
+        They follow from the converged equations, without finite differences. There is no derivative at a limit point, at a kink of
+        the load that lies on a station, and where a cable just becomes slack.
 
         Parameters
         ----------
         parameters : sequence of str, optional
             Keys of the arm file: ``"cable[0].tension"`` (``"cable[0].stroke"`` of a cable whose stroke is commanded), ``"flow.speed"``,
             ``"tip.force[1]"``, ``"material.young"``, ``"cable[0].offset.base"``, ``"arm.radius.tip"``, the third point of a table
-            ``"cable[0].offset[2][1]"`` and so on; all that the arm has without it.
+            ``"cable[0].offset[2][1]"`` and so on. By default, all that the arm has.
         stations : array_like, shape (n,)
             Further places along the arm, m, whose poses are differentiated.
         method : str
-            ``"forward"`` solves once a parameter, ``"adjoint"`` once a quantity, ``"best"`` whichever are fewer. All give the same
-            numbers to rounding.
+            ``"forward"`` solves once per parameter, ``"adjoint"`` once per quantity, ``"best"`` takes the cheaper one. All agree to
+            rounding.
 
         Returns
         -------
         Sensitivities
-            Arrays by quantity, a column a parameter, in SI units and radians.
+            Arrays by quantity, one column per parameter, in SI units and radians.
 
         Raises
         ------
         NoDerivativeError
             At a limit point or a bifurcation.
         NoEquilibriumError
-            There is no shape.
+            There is no equilibrium.
         ValueError
-            An argument that cannot be meant, named.
+            An argument is invalid; the message names it.
         """
         from hydrostat.sensitivity import Sensitivities
 
@@ -148,32 +148,32 @@ class Solver:
         theta: ArrayLike = 0.0,
         alpha: ArrayLike = 0.0,
     ) -> NDArray[np.float64]:
-        """The gradient of one number that follows the shape, such as an objective, by one adjoint solve.
+        """Return the gradient of one number that depends on the shape, such as an objective, from one adjoint solve.
 
-        What it costs does not grow with the number of stations, and little with that of the parameters.
+        The cost does not grow with the number of stations, and little with the number of parameters.
 
         Parameters
         ----------
         parameters : sequence of str
-            As of `sensitivities`.
+            As in `sensitivities`.
         stations : array_like, shape (n,)
             Places along the arm, m; the tip is at its length.
         x, y, theta, alpha : array_like, shape (n,) or ()
-            The number's own derivatives by these at the stations, a metre or a radian.
+            Derivatives of the number by these quantities at the stations, per metre or radian.
 
         Returns
         -------
         ndarray, shape (p,)
-            Its derivatives, a unit of each parameter.
+            The derivatives, per unit of each parameter.
 
         Raises
         ------
         NoDerivativeError
             At a limit point or a bifurcation.
         NoEquilibriumError
-            There is no shape.
+            There is no equilibrium.
         ValueError
-            An argument that cannot be meant, named.
+            An argument is invalid; the message names it.
 
         Examples
         --------

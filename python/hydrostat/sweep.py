@@ -117,7 +117,7 @@ def sweep(
     retries: int = 3,
     progress: bool | None = None,
 ) -> xr.Dataset | FilePath:
-    """Solve an arm over every combination of values of some keys, or over a sample of them.
+    """Solve an arm over all combinations of values of some keys, or over a sample.
 
     The rows are those of ``hydrostat sweep``, to the last bit, wherever they are solved. Rows without an equilibrium have NaN
     and a verdict. Ctrl-C interrupts it.
@@ -133,44 +133,44 @@ def sweep(
     sample : str, optional
         ``"lhs:N"`` or ``"sobol:N"``: N rows in place of all combinations.
     seed : int
-        Of a sample.
+        Seed of the sample.
     tol : float
-        Error of the tip position over the length, in [1e-12, 1e-2].
+        Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
     columns : sequence of str, optional
-        What is answered: some of ``tip``, ``alpha``, ``strokes``, ``tensions``, ``base``, ``fold``, ``stability``, ``error``,
+        The outputs: some of ``tip``, ``alpha``, ``strokes``, ``tensions``, ``base``, ``fold``, ``stability``, ``error``,
         ``warnings``, ``verdict``.
     shapes : int
-        So many equally spaced stations of every row; none below 2.
+        Number of equally spaced stations of every row; none below 2.
     output : path, optional
-        Without a client, a file ``.parquet`` or ``.csv``, written by parts, from which `resume` goes on; a part that was cut
-        or changed since is solved again, with a warning. With a client, a new directory that all workers see, which becomes a Parquet dataset.
+        Without a client, a file ``.parquet`` or ``.csv``, written in parts, so that `resume` can continue it; a damaged part
+        is solved again, with a warning. With a client, a new directory that all workers see, which becomes a Parquet dataset.
     resume : bool
-        Whether to go on with an output that was begun; not with a client.
+        Whether to resume an interrupted sweep; not with a client.
     threads : int
-        0 for as many as the machine has; not with a client, whose workers solve a chunk a thread.
+        0 for all processors; not with a client, whose workers solve one chunk per thread.
     client : distributed.Client, optional
-        Solve on its cluster. Rows of lost workers are solved again.
+        Solve on this cluster. Rows of lost workers are solved again.
     chunk_seconds : float
-        About how long a task of the cluster takes; its rows follow from what some of them are seen to cost.
+        Approximate time of one task on the cluster; the number of rows per task follows from measured costs.
     retries : int
-        How often a chunk is tried again whose workers died.
+        How often a chunk is tried again if its workers died.
     progress : bool, optional
-        Whether a bar is drawn on standard error; by default on a terminal.
+        Whether to show a bar on standard error; by default on a terminal.
 
     Returns
     -------
     xarray.Dataset
-        A dimension a key (``row`` with a sample), with the values as coordinates in the units that they were given in. With a
+        One dimension per key (``row`` with a sample), with the values as coordinates in their given units. With a
         client its variables are Dask arrays, whose chunks are in the workers' memory. Needs xarray.
     pathlib.Path
-        `output`, where that is given.
+        `output`, if given.
 
     Raises
     ------
     MemoryError
-        Without `output` and client, rows that do not fit in memory; nothing was solved.
+        Without `output` and client: the rows do not fit in memory; nothing was solved.
     ValueError, TypeError
-        An argument that cannot be meant, named.
+        An argument is invalid; the message names it.
 
     Examples
     --------

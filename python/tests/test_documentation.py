@@ -1,15 +1,16 @@
-"""The Python in the documents runs, but for what needs a cluster of its own, which compiles."""
+"""The Python in the documents runs, but for what needs a cluster of its own, which compiles; the README prints what it shows."""
 
 from __future__ import annotations
 
 import re
+import shlex
 import subprocess
 import sys
 import textwrap
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, Program
 
 BLOCK = re.compile(r"```python\n(.*?)```", re.DOTALL)
 ELSEWHERE = ("SLURMCluster", "KubeCluster")
@@ -30,3 +31,28 @@ def test_blocks(tmp_path: Path, name: str) -> None:
     script.write_text("if __name__ == '__main__':\n" + textwrap.indent(here, "    "), encoding="utf-8")
     done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=False, timeout=120, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
+
+
+def steady(text: str) -> list[str]:
+    """The lines that are the same on every processor: not what a solve took, nor its error."""
+    return [line.rstrip() for line in text.splitlines() if not line.startswith(("work ", "tip error "))]
+
+
+def test_readme_shows_what_the_program_prints(tmp_path: Path, program: Program) -> None:
+    page = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```console\n\$ hydrostat (.*)\n([^`]*)```", page)
+    assert blocks
+    for command, shown in blocks:
+        words = [str(tmp_path / word) if word.endswith(".png") else word for word in shlex.split(command)]
+        status, printed = program(*words)
+        assert status == 0, command
+        assert steady(printed) == steady(shown), command
+
+
+def test_readme_shows_what_python_prints() -> None:
+    page = (ROOT / "README.md").read_text(encoding="utf-8")
+    pairs = re.findall(r"```python\n([^`]*)```\n\n```text\n([^`]*)```", page)
+    assert pairs
+    for code, shown in pairs:
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=120)
+        assert done.stdout == shown, done.stderr
