@@ -28,8 +28,8 @@ pub struct Configuration {
     pub unmet: Option<Wrench>,
     /// Estimated error of the tip position, m.
     pub error_estimate: f64,
-    /// What the solve came to know on its way: `Some(false)` where the path passed a bifurcation or the determinant says
-    /// that an odd number of directions is unstable, else `None`. [`Configuration::stability`] establishes it.
+    /// What the solve came to know on its way: `Some(false)` where the determinant says that an odd number of directions is unstable, or where
+    /// the path passed bifurcations and a count finds unstable directions, else `None`. [`Configuration::stability`] establishes it.
     pub stable: Option<bool>,
     /// The snaps that the arm makes as its loads grow from nothing to these, in their order.
     pub snaps: Vec<Snap>,

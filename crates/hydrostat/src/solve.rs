@@ -5,6 +5,7 @@ use crate::configuration::{Configuration, Statistics, Tip};
 use crate::engine::{Engine, First, State, Trouble, WORK};
 use crate::path::{LOOSE, Pace, Stopped, Travelled, follow};
 use crate::snap::SnapBounds;
+use crate::stability::Stability;
 use crate::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
 
 /// Tips (over L) that are this near belong to the same shape on two meshes.
@@ -355,9 +356,7 @@ impl Solver {
                     let verdict = self.last_verdict(Some(1.0));
                     return Err(self.no_equilibrium(verdict));
                 };
-                if crossings > 0 || sign < 0.0 {
-                    configuration.stable = Some(false);
-                }
+                configuration.stable = known_on_the_way(&configuration, crossings, sign);
                 // After a snap the way back is another one: what was solved is no start.
                 self.settled = configuration.snaps.is_empty();
                 self.sign = sign;
@@ -435,6 +434,17 @@ impl Solver {
             Configuration::read(&mut self.engine, estimate * length, statistics).map_err(Trouble::Section)?;
         read.snaps = travelled.snaps;
         Ok(read)
+    }
+}
+
+/// What a path knows of the stability of its end, from the bifurcations that it passed and the determinant's sign. An odd number of
+/// unstable directions has a negative sign; an even one, after two bifurcations, is counted.
+pub(crate) fn known_on_the_way(configuration: &Configuration, crossings: usize, sign: f64) -> Option<bool> {
+    let counted = || configuration.stability().and_then(Stability::is_stable).filter(|stable| !stable);
+    match (crossings, sign < 0.0) {
+        (_, true) => Some(false),
+        (0, false) => None,
+        (_, false) => counted(),
     }
 }
 

@@ -130,7 +130,8 @@ impl Configuration {
     /// Taut cables whose stroke is commanded hold their lengths, whichever way the arm moves.
     ///
     /// Computed when asked for, in one to two milliseconds. `None` with [`Support::UnstrainedBase`], whose arm is
-    /// no equilibrium at the tip, and where the number of growing motions does not settle as they are resolved more finely.
+    /// no equilibrium at the tip, with friction of cables, whose tensions would change along them as the arm moves, in a way that depends on which way
+    /// each place slides, and where the number of growing motions does not settle as they are resolved more finely.
     pub fn growth(&self) -> Option<Growth> {
         growth(self.dense()).map(|(growth, _)| growth)
     }
@@ -144,7 +145,7 @@ fn growing(rates: &[[f64; 2]]) -> usize {
 /// The growth, and how many times it was resolved more finely.
 fn growth(dense: &Dense) -> Option<(Growth, usize)> {
     let arm = dense.equations.arm();
-    if arm.readings.support == Support::UnstrainedBase {
+    if arm.readings.support == Support::UnstrainedBase || arm.rubs() {
         return None;
     }
     for (level, functions) in POLYNOMIALS.into_iter().enumerate() {

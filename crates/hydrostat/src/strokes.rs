@@ -28,7 +28,7 @@ use crate::arm::Arm;
 use crate::configuration::Configuration;
 use crate::engine::{First, Trouble};
 use crate::path::{Pace, Stopped, Travelled, follow_strokes};
-use crate::solve::{SAME, Solver};
+use crate::solve::{SAME, Solver, known_on_the_way};
 use crate::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
 /// Shares of the tensions of a straight arm from which the path of strokes may start: slack, unless that is in line with the
@@ -92,9 +92,7 @@ impl Solver {
         let sign = self.engine.determinant().sign;
         snaps.append(&mut configuration.snaps);
         configuration.snaps = snaps;
-        if crossings > 0 || sign < 0.0 {
-            configuration.stable = Some(false);
-        }
+        configuration.stable = known_on_the_way(&configuration, crossings, sign);
         self.keep(sign);
         if !configuration.snaps.is_empty() {
             // After a snap the way back is another one: what was solved is no start.

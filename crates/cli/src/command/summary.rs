@@ -13,6 +13,9 @@ pub(super) fn stability(c: &Configuration) -> Option<String> {
         (Some(Stability::Unstable(count)), _) => Some(format!("UNSTABLE in {count} directions")),
         (Some(Stability::Marginal), _) => Some("marginal: neither stable nor unstable".to_owned()),
         (None, Some(false)) => Some("UNSTABLE".to_owned()),
+        (None, _) if c.arm.cables.iter().any(|cable| cable.friction > 0.0) => {
+            Some("stability is not established with friction".to_owned())
+        }
         (None, _) => None,
     }
 }
