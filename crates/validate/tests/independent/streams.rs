@@ -119,7 +119,6 @@ fn a_blade_in_quadratic_drag_bends_steadily_with_the_speed() {
 
 /// Where its tip lies along the stream the load's kink moves with it.
 #[test]
-#[ignore = "refused at some speeds near 0.0518 m/s"]
 fn a_blade_bends_steadily_with_the_speed_by_the_momentum_law() {
     let mut arm = blade();
     arm.flow.law = FlowLaw::Momentum;
