@@ -295,6 +295,23 @@ impl Engine {
         Ok(linearise(&mut self.system, &self.equations, &self.solution)?)
     }
 
+    /// The sign of the determinant at the present solution, where neither rounding nor the mesh decides it: what it is the difference of is known
+    /// better than that, and on halves of the elements it is the same. The tail of a rod that lies in the stream is free to turn, to first order: the load
+    /// along it turns with it, and that across it is of second order. The determinant is next to nothing then, and of either sign.
+    pub(crate) fn sure_sign(&mut self) -> Option<f64> {
+        /// What a mesh that is good to 1e-8 leaves of a determinant, with two digits to spare.
+        const BY_MESH: f64 = 1e-6;
+        let determinant = self.system.determinant();
+        let here = determinant.known_sign().filter(|_| determinant.clearance > BY_MESH)?;
+        let kept = self.state();
+        let halves = self.solution.mesh.cut(2);
+        self.move_to(halves);
+        let there = roughly(self.newton(1e-9, 9)).ok().and_then(|()| self.system.determinant().known_sign());
+        self.restore(&kept);
+        let back = self.linearise();
+        there.filter(|sign| *sign == here && back.is_ok())
+    }
+
     /// The response of the solution at the last linearisation to a change of what is given.
     pub(crate) fn response(&self, way: Way, out: &mut Correction<N, M, Q, L>) {
         let change = response_change(&self.equations, &self.system, &self.solution, way);
@@ -330,6 +347,19 @@ impl Engine {
     /// The section on either side of node `i`.
     pub(crate) fn beside_node(&self, i: usize, left: bool) -> Result<AtPlace, SectionFailure> {
         self.equations.at_place(&self.asked_beside(i, left))
+    }
+
+    /// The same with beta' as outputs have it.
+    pub(crate) fn sharp_beside_node(&self, i: usize, left: bool) -> Result<AtPlace, SectionFailure> {
+        let (asked, here) = (self.asked_beside(i, left), self.beside_node(i, left)?);
+        let end = if left { (i - 1, 1.0) } else { (i, 0.0) };
+        let sharp = sharpened(&self.equations, &self.solution, &self.system.gauss, end, asked, &here);
+        Ok(self.equations.at_place(&sharp).unwrap_or(here))
+    }
+
+    /// Whether the data, or what is asked for, has a node at `s` (over L).
+    pub(crate) fn has_break_at(&self, s: f64) -> bool {
+        self.breaks.iter().any(|own| (own - s).abs() < 1e-9)
     }
 
     pub(crate) fn asked_beside(&self, i: usize, left: bool) -> Asked {

@@ -54,8 +54,10 @@ struct Turn {
     before: Vec<f64>,
     /// chi at the left end, the stages and the right end of every element.
     angles: Vec<[f64; POINTS]>,
-    /// Where in an element (in [0, 1]) chi turns back, in order.
-    extremes: Vec<Vec<f64>>,
+    /// Which way every element turns, by the parts into which kinks cut it: where a part begins (in [0, 1]), and its sign.
+    parts: Vec<Vec<(f64, f64)>>,
+    /// Where chi turns back (over L), in order.
+    kinks: Vec<f64>,
 }
 
 /// What the exponent is by the turn, a cable, with a share of the friction: minus the friction while reeling in.
@@ -76,12 +78,11 @@ impl Turns {
         let count = equations.arm().cables.len();
         let system = engine.at_present();
         let stations = system.stations();
-        let mut cables: Vec<Turn> = (0..count).map(|_| Turn::default()).collect();
-        let mut last: Vec<f64> = vec![0.0; count];
+        let mut angles: Vec<Vec<[f64; POINTS]>> = vec![Vec::new(); count];
         for i in 0..mesh.elements() {
-            let [left, right] = [engine.beside_node(i, false)?, engine.beside_node(i + 1, true)?];
+            let [left, right] = [engine.sharp_beside_node(i, false)?, engine.sharp_beside_node(i + 1, true)?];
             let ends = [(mesh.nodes()[i], &left, i), (mesh.nodes()[i + 1], &right, i + 1)];
-            for (c, turn) in cables.iter_mut().enumerate() {
+            for (c, own) in angles.iter_mut().enumerate() {
                 let [first, end] =
                     ends.map(|(s, at, node)| engine.solution.nodes[node][0] + equations.cable_angle(c, s, at));
                 let mut angles = [first; POINTS];
@@ -90,15 +91,13 @@ impl Turns {
                     angles[1 + j] = equations.cable_angle_in(c, block, &stations[block]).0[lane];
                 }
                 angles[POINTS - 1] = end;
-                // Where another cable ends the angle steps.
-                let step = if i > 0 && equations.jumps_at(mesh.nodes()[i]) { (first - last[c]).abs() } else { 0.0 };
-                let before = turn.before.last().copied().unwrap_or(0.0) + turn.over_last(&gauss) + step;
-                turn.before.push(before);
-                turn.extremes.push(extremes(&gauss, &angles));
-                turn.angles.push(angles);
-                last[c] = end;
+                own.push(angles);
             }
         }
+        let own = |s: f64| equations.jumps_at(s) || engine.has_break_at(s);
+        let breaks: Vec<bool> = mesh.nodes().iter().map(|s| own(*s)).collect();
+        let steps: Vec<bool> = mesh.nodes().iter().map(|s| equations.jumps_at(*s)).collect();
+        let cables = angles.into_iter().map(|own| Turn::new(&gauss, mesh.nodes(), own, &breaks, &steps)).collect();
         Ok(Self { gauss, nodes: mesh.nodes().to_vec(), cables })
     }
 
@@ -111,33 +110,59 @@ impl Turns {
         let x = (s - self.nodes[i]) / (self.nodes[i + 1] - self.nodes[i]);
         turn.before[i] + turn.within(&self.gauss, i, x)
     }
-
-    /// Where chi of one of these cables turns back (over L): its tension has a kink there.
-    pub(crate) fn kinks<'a>(&'a self, cables: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
-        cables.iter().flat_map(move |c| {
-            let turn = &self.cables[*c];
-            turn.extremes.iter().enumerate().flat_map(move |(i, own)| {
-                own.iter().map(move |x| self.nodes[i] + x * (self.nodes[i + 1] - self.nodes[i]))
-            })
-        })
-    }
 }
 
+/// How far beyond a node the polynomial of the element beside counts, over the shorter of the two elements that meet there.
+const BESIDE: f64 = 0.4;
+
 impl Turn {
-    /// How far chi turns over the last element.
-    fn over_last(&self, gauss: &Gauss<M>) -> f64 {
-        if self.angles.is_empty() { 0.0 } else { self.within(gauss, self.angles.len() - 1, 1.0) }
+    /// Of a cable with these angles, on a mesh of which some nodes are breaks of the data, and some of these steps of chi.
+    fn new(gauss: &Gauss<M>, nodes: &[f64], angles: Vec<[f64; POINTS]>, breaks: &[bool], steps: &[bool]) -> Self {
+        let kinks = kinks(gauss, nodes, &angles, breaks);
+        let mut out = Self { before: Vec::new(), angles, parts: Vec::new(), kinks };
+        // Between kinks and breaks chi turns one way: that in which it ends up.
+        let mut turned = vec![0.0];
+        let mut parts: Vec<Vec<(f64, usize)>> = Vec::new();
+        for i in 0..nodes.len() - 1 {
+            let (from, to) = (nodes[i], nodes[i + 1]);
+            if i > 0 && breaks[i] {
+                turned.push(0.0);
+            }
+            let mut own = vec![(0.0, turned.len() - 1)];
+            for kink in out.kinks.iter().filter(|s| (from..to).contains(*s)) {
+                turned.push(0.0);
+                own.push(((kink - from) / (to - from), turned.len() - 1));
+            }
+            for (k, (x, interval)) in own.iter().enumerate() {
+                let end = own.get(k + 1).map_or(1.0, |next| next.0);
+                turned[*interval] += value(gauss, &out.angles[i], end) - value(gauss, &out.angles[i], *x);
+            }
+            parts.push(own);
+        }
+        let sense = |interval: usize| if turned[interval] < 0.0 { -1.0 } else { 1.0 };
+        out.parts = parts.into_iter().map(|own| own.into_iter().map(|(x, k)| (x, sense(k))).collect()).collect();
+        let mut passed = 0.0;
+        for i in 0..nodes.len() - 1 {
+            if i > 0 && steps[i] {
+                // Where another cable ends the angle steps.
+                passed += (out.angles[i][0] - out.angles[i - 1][POINTS - 1]).abs();
+            }
+            out.before.push(passed);
+            passed += out.within(gauss, i, 1.0);
+        }
+        out
     }
 
-    /// How far chi turns from the left end of element `i` to `x`: its variation.
+    /// How far chi turns from the left end of element `i` to `x`.
     fn within(&self, gauss: &Gauss<M>, i: usize, x: f64) -> f64 {
-        let angles = &self.angles[i];
-        let (mut turned, mut from) = (0.0, angles[0]);
-        let stops = self.extremes[i].iter().copied().filter(|stop| *stop < x).chain([x]);
-        for stop in stops {
-            let angle = value(gauss, angles, stop);
-            turned += (angle - from).abs();
-            from = angle;
+        let (angles, parts) = (&self.angles[i], &self.parts[i]);
+        let mut turned = 0.0;
+        for (k, (from, sense)) in parts.iter().enumerate() {
+            if *from > x {
+                break;
+            }
+            let to = parts.get(k + 1).map_or(x, |next| next.0.min(x));
+            turned += sense * (value(gauss, angles, to) - value(gauss, angles, *from));
         }
         turned
     }
@@ -150,41 +175,86 @@ fn value(gauss: &Gauss<M>, angles: &[f64; POINTS], x: f64) -> f64 {
     inner + left * angles[0] + right * angles[POINTS - 1]
 }
 
-/// Where the polynomial through stages and ends has an extreme value inside an element.
-fn extremes(gauss: &Gauss<M>, angles: &[f64; POINTS]) -> Vec<f64> {
-    const SAMPLES: u32 = 16;
-    /// What of the turn is rounding.
-    const ROUNDING: f64 = 1e-10;
-    const NEAR: f64 = 1e-5;
-    let spread = angles.iter().fold(0.0_f64, |m, angle| m.max((angle - angles[0]).abs()));
-    let mut out = Vec::new();
-    if spread < ROUNDING {
-        return out;
-    }
-    let slope = |x: f64| value(gauss, angles, x + NEAR) - value(gauss, angles, x - NEAR);
-    let mut before = (0.0, slope(0.0));
-    for k in 1..=SAMPLES {
-        let x = f64::from(k) / f64::from(SAMPLES);
-        let now = (x, slope(x));
-        if before.1 * now.1 < 0.0 {
-            let (mut low, mut high) = (before, now);
-            for _ in 0..40 {
-                let middle = 0.5 * (low.0 + high.0);
-                let there = slope(middle);
-                if there * low.1 > 0.0 { low = (middle, there) } else { high = (middle, there) }
-            }
-            out.push(0.5 * (low.0 + high.0));
+/// Where chi turns back (over L), in order.
+///
+/// There T' = 0 and T'' jumps, T'' = -+ friction T |chi'|'. Through nu' and beta'' it is in chi', which jumps with it:
+///
+/// ```text
+/// chi' = c +- r c'     before and after the kink, r some micrometres and of either sign
+/// ```
+///
+/// with c what chi' would be without. So the polynomial before a node on the kink has its extreme by r to one side of it, and the one behind by r
+/// to the other: both in their elements, or none. The kink is where c = 0, and c at a node is the mean of both sides. With the distance from the node the
+/// part of the other side's polynomial falls to nothing, so that what changes its sign is continuous and no change is lost or found twice.
+fn kinks(gauss: &Gauss<M>, nodes: &[f64], angles: &[[f64; POINTS]], breaks: &[bool]) -> Vec<f64> {
+    const SAMPLES: u32 = 24;
+    let count = angles.len();
+    let step = |i: usize| nodes[i + 1] - nodes[i];
+    let turns: Vec<bool> = angles.iter().map(turns).collect();
+    // chi' by the polynomial of element `i`, which may be asked beyond its ends.
+    let slope =
+        |i: usize, s: f64| if turns[i] { slope(gauss, &angles[i], (s - nodes[i]) / step(i)) / step(i) } else { 0.0 };
+    // The part that the polynomial across a node has at a distance from it.
+    let part = |node: usize, distance: f64| {
+        if node == 0 || node == count || breaks[node] {
+            return 0.0;
         }
-        if now.1 != 0.0 {
-            before = now;
+        0.5 * (1.0 - distance / (BESIDE * step(node - 1).min(step(node)))).max(0.0)
+    };
+    let blended = |i: usize, s: f64| {
+        let own = slope(i, s);
+        let (left, right) = (part(i, s - nodes[i]), part(i + 1, nodes[i + 1] - s));
+        let before = if left > 0.0 { left * (slope(i - 1, s) - own) } else { 0.0 };
+        let behind = if right > 0.0 { right * (slope(i + 1, s) - own) } else { 0.0 };
+        own + before + behind
+    };
+    let mut out = Vec::new();
+    let mut before = (0.0, 0.0);
+    for i in 0..count {
+        if breaks[i] {
+            before.1 = 0.0;
+        }
+        for k in 0..=SAMPLES {
+            let s = nodes[i] + step(i) * f64::from(k) / f64::from(SAMPLES);
+            let now = (s, blended(i, s));
+            if before.1 * now.1 < 0.0 {
+                let (mut low, mut high) = (before, now);
+                for _ in 0..40 {
+                    let middle = 0.5 * (low.0 + high.0);
+                    let there = blended(if middle < nodes[i] { i - 1 } else { i }, middle);
+                    if there * low.1 > 0.0 { low = (middle, there) } else { high = (middle, there) }
+                }
+                out.push(0.5 * (low.0 + high.0));
+            }
+            if now.1 != 0.0 {
+                before = now;
+            }
         }
     }
     out
 }
 
+/// Whether chi turns in an element by more than rounding.
+fn turns(angles: &[f64; POINTS]) -> bool {
+    const ROUNDING: f64 = 1e-10;
+    angles.iter().any(|angle| (angle - angles[0]).abs() >= ROUNDING)
+}
+
+/// Slope of the polynomial through stages and ends at `x`.
+fn slope(gauss: &Gauss<M>, angles: &[f64; POINTS], x: f64) -> f64 {
+    const NEAR: f64 = 1e-5;
+    (value(gauss, angles, x + NEAR) - value(gauss, angles, x - NEAR)) / (2.0 * NEAR)
+}
+
 impl Grip {
     pub(crate) fn new(of_friction: f64, exponents: Vec<f64>, shapes: Vec<(f64, Arc<Turns>)>) -> Self {
         Self { of_friction, exponents, shapes }
+    }
+
+    /// Where the tensions of these cables have kinks (over L), by the last of the shapes: in the end all of them have the same.
+    pub(crate) fn kinks<'a>(&'a self, cables: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
+        let last = self.shapes.last();
+        last.into_iter().flat_map(|(_, shape)| cables.iter().flat_map(|c| shape.cables[*c].kinks.iter().copied()))
     }
 
     /// The share of its tension that cable `c` has left at `s` (over L).

@@ -347,8 +347,13 @@ impl Solver {
         let settled = self.engine.settle(self.options.tol, First::Rough);
         let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
         // A coarse mesh can be exact for the shape, of a straight arm above all, and not for the determinant.
-        let same = self.engine.system.determinant().sign == sign || travelled.symmetric || moved < SAME;
+        let mut same = self.engine.system.determinant().sign == sign || travelled.symmetric || moved < SAME;
         let sign = self.engine.system.determinant().sign;
+        let mut unstable = sign < 0.0;
+        if !same && settled.is_ok() && moved < 10.0 * LOOSE && self.engine.sure_sign().is_none() {
+            // What a mesh decides decides nothing; the tip is where the path has it, as well as that is known.
+            (same, unstable) = (true, false);
+        }
         match settled {
             Ok(estimate) if moved < 0.05 && same => {
                 let crossings = travelled.crossings;
@@ -356,7 +361,7 @@ impl Solver {
                     let verdict = self.last_verdict(Some(1.0));
                     return Err(self.no_equilibrium(verdict));
                 };
-                configuration.stable = known_on_the_way(&configuration, crossings, sign);
+                configuration.stable = known_on_the_way(&configuration, crossings, unstable);
                 // After a snap the way back is another one: what was solved is no start.
                 self.settled = configuration.snaps.is_empty();
                 self.sign = sign;
@@ -437,11 +442,11 @@ impl Solver {
     }
 }
 
-/// What a path knows of the stability of its end, from the bifurcations that it passed and the determinant's sign. An odd number of
-/// unstable directions has a negative sign; an even one, after two bifurcations, is counted.
-pub(crate) fn known_on_the_way(configuration: &Configuration, crossings: usize, sign: f64) -> Option<bool> {
+/// What a path knows of the stability of its end, from the bifurcations that it passed and the determinant's sign, which is negative
+/// where an `odd` number of directions is unstable. An even one, after two bifurcations, is counted.
+pub(crate) fn known_on_the_way(configuration: &Configuration, crossings: usize, odd: bool) -> Option<bool> {
     let counted = || configuration.stability().and_then(Stability::is_stable).filter(|stable| !stable);
-    match (crossings, sign < 0.0) {
+    match (crossings, odd) {
         (_, true) => Some(false),
         (0, false) => None,
         (_, false) => counted(),

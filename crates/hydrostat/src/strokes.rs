@@ -92,7 +92,7 @@ impl Solver {
         let sign = self.engine.determinant().sign;
         snaps.append(&mut configuration.snaps);
         configuration.snaps = snaps;
-        configuration.stable = known_on_the_way(&configuration, crossings, sign);
+        configuration.stable = known_on_the_way(&configuration, crossings, sign < 0.0);
         self.keep(sign);
         if !configuration.snaps.is_empty() {
             // After a snap the way back is another one: what was solved is no start.

@@ -1,7 +1,6 @@
 //! Kinks of the load, and nodes that follow them.
 
 use super::{Engine, M};
-use crate::friction::Turns;
 
 /// How close (over L) nodes are kept to the kinks of the load at a tolerance: the error that a kink leaves is of second
 /// order in the distance, and the estimate does not see all of it. Closer than rounding places kinks, nodes would chase it.
@@ -85,19 +84,16 @@ impl Engine {
         }
     }
 
-    /// Adds the places where cables that rub turn back: their tensions have kinks there.
+    /// Adds the places where cables that rub turn back: their tensions have kinks there. These are of the turns that the present
+    /// tensions are made of, not of the solution: there the kinks are until the next round of turns.
     fn add_kinks_of_friction(&self, out: &mut Vec<f64>) {
-        if self.equations.grip.is_none() {
-            return;
-        }
+        let Some(grip) = &self.equations.grip else { return };
         let cables = self.equations.arm().cables.iter().enumerate();
         let rubbing = |(c, cable): (usize, &crate::Cable)| {
             (cable.friction > 0.0 && self.equations.tension(c) != 0.0).then_some(c)
         };
         let rubbing: Vec<usize> = cables.filter_map(rubbing).collect();
-        if let Ok(turns) = Turns::of(self) {
-            out.extend(turns.kinks(&rubbing));
-        }
+        out.extend(grip.kinks(&rubbing));
     }
 
     /// The place of a change of sign of `switch`, given where the polynomial of element `i` has it: near a node, that

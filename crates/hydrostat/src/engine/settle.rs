@@ -9,6 +9,9 @@ use crate::dispatch::widest;
 /// How close (over L) nodes are kept to kinks on meshes that are refined afterwards.
 const COARSE: f64 = 1e-3;
 
+/// How close (over L) nodes are kept to kinks of friction.
+const OF_FRICTION: f64 = 5e-8;
+
 /// The error that a mesh is made for, over the tolerance: element by element it is foreseen with its sign lost.
 const TARGET: f64 = 0.3;
 
@@ -20,6 +23,9 @@ const WORST: f64 = 1e-4;
 
 /// Meshes on which Newton may go on hopping across a kink of the load.
 const HOPS: usize = 2;
+
+/// Times that the elements of a mesh that carried a shape are halved where Newton gets lost on the next one.
+const CUTS: usize = 2;
 
 /// Corrections of the tip (over L) that Newton is not asked to get below.
 const RESTLESS: f64 = 1e-13;
@@ -141,8 +147,12 @@ impl Engine {
     pub(crate) fn settle(&mut self, tolerance: f64, first: First) -> Result<f64, Trouble> {
         let mut estimate = f64::INFINITY;
         let mut best: Option<(f64, State)> = None;
+        // The shape on the last mesh that carried it, at the end of a path.
+        let mut carried: Option<State> = None;
+        let mut cuts = 0;
         let mut hops = 0;
         let least = (LEFT * tolerance).max(RESTLESS);
+        let near = self.resolution(tolerance);
         for attempt in 0..10 {
             let goal = match (attempt, first) {
                 (0, First::Warm | First::Fair) => least,
@@ -151,7 +161,7 @@ impl Engine {
             };
             let mut fine = goal <= 3.0 * tolerance;
             // A first mesh is only there to make a better one from.
-            let resolution = if fine { kink_resolution(tolerance) } else { kink_resolution(tolerance).max(COARSE) };
+            let resolution = if fine { near } else { near.max(COARSE) };
             let mut converged = self.converge(goal, resolution);
             let mut hop = 0.0;
             if converged.is_err() && hops < HOPS && (attempt > 0 || first == First::Fair) {
@@ -165,7 +175,16 @@ impl Engine {
             let outcome = converged.and_then(|()| self.estimate_unless(tolerance, enough));
             estimate = match (outcome, &best) {
                 (Ok(estimate), _) => estimate.max(hop),
-                (Err(trouble), None) => return Err(trouble),
+                (Err(trouble), None) => {
+                    let Some(state) = carried.as_ref().filter(|_| cuts < CUTS) else { return Err(trouble) };
+                    // Newton got lost on a mesh that the errors of another foresaw: layers of a fast stream are where elements are long
+                    // on it. Halves of the elements that carried the shape carry it, too.
+                    cuts += 1;
+                    self.restore(state);
+                    let halves = self.solution.mesh.cut(1 << cuts);
+                    self.move_to(halves);
+                    continue;
+                }
                 (Err(_), Some(_)) => break,
             };
             if estimate <= tolerance && fine {
@@ -174,8 +193,11 @@ impl Engine {
             if attempt > 0 && estimate < best.as_ref().map_or(WORST, |b| b.0) {
                 best = Some((estimate, self.state()));
             }
+            if first == First::Rough && estimate < WORST {
+                carried = Some(self.state());
+            }
             let mut mesh = self.refined(TARGET * tolerance, 2000);
-            let kinks = self.kinks(10.0 * kink_resolution(tolerance));
+            let kinks = self.kinks(10.0 * near);
             mesh.pin(&self.breaks, &kinks);
             self.move_to(mesh);
         }
@@ -187,6 +209,13 @@ impl Engine {
             }
             None => Err(Trouble::Mesh),
         }
+    }
+
+    /// How close nodes are kept to kinks at a tolerance. Those of friction are given while a shape is looked for, and as beside them chi' is
+    /// not zero (`friction`), what a node that is off one costs is of first order.
+    fn resolution(&self, tolerance: f64) -> f64 {
+        let resolution = kink_resolution(tolerance);
+        if self.equations.grip.is_some() { resolution.min(OF_FRICTION) } else { resolution }
     }
 
     /// Newton on this mesh, with nodes moved to within `resolution` of the kinks of the load.

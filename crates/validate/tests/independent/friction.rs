@@ -26,7 +26,6 @@ fn the_equilibrium_beside_the_s_turn_is_the_known_one() {
 }
 
 #[test]
-#[ignore = "at 1e-6 friction is not raised past 0.066 of it; 1e-8 and 1e-10 are right to 1e-10"]
 fn a_cable_that_turns_both_ways_leaves_the_tip_where_it_is_known() {
     let arm = s_turn();
     for tol in [1e-6, 1e-8, 1e-10] {
@@ -61,7 +60,7 @@ fn s_shaped(seed: u64) -> Arm {
 
 /// On 200 S-shaped arms the error is within three times the estimate in 95 of 100, and never above ten times.
 #[test]
-#[ignore = "some are not answered: friction is not raised to the end"]
+#[ignore = "19 of 200 are not answered, 10 have no equilibrium beside them that is found; of 171 errors 127 are within 3 estimates"]
 fn estimates_hold_where_cables_turn_both_ways() {
     let cases: Vec<(u64, Judged)> = (0..200_u64)
         .into_par_iter()

@@ -119,7 +119,6 @@ fn a_blade_in_quadratic_drag_bends_steadily_with_the_speed() {
 
 /// Where its tip lies along the stream the load's kink moves with it.
 #[test]
-#[ignore = "refused at some speeds near 0.0518 m/s"]
 fn a_blade_bends_steadily_with_the_speed_by_the_momentum_law() {
     let mut arm = blade();
     arm.flow.law = FlowLaw::Momentum;
@@ -136,13 +135,13 @@ fn a_blade_bends_steadily_with_the_speed_by_the_momentum_law() {
 }
 
 #[test]
-#[ignore = "some are refused"]
+#[ignore = "none is refused; 3 of 1600 are 1.9e-5 to 2.3e-5 L from the equilibrium followed here, by 1e-5 allowed"]
 fn rods_bend_steadily_with_the_speed() {
     none_wrong(&rods());
 }
 
 #[test]
-#[ignore = "some are refused"]
+#[ignore = "none is refused; 11 of 800 are 1.1e-5 to 3.5e-3 L from the equilibrium followed here, by 1e-5 allowed"]
 fn rods_bend_steadily_with_the_speed_by_the_other_mean() {
     let rods: Vec<Arm> = rods()
         .into_iter()
