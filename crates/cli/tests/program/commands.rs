@@ -155,7 +155,7 @@ fn help_teaches() {
             assert!(help.contains(words), "{command}: {words}");
         }
     }
-    for command in ["figures", "arms", "check"] {
+    for command in ["figures", "arms", "check", "init", "workspace", "completions", "man"] {
         solved(&[command, "--help"]);
     }
     let version = solved(&["--version"]).out;
@@ -195,7 +195,9 @@ fn serve_and_validate_were_not_documented() {
     let fits = include_str!("../../../../docs/identification.md");
     let listed = |help: &str, heading: &str| -> Vec<String> {
         let part = help.split_once(heading).unwrap_or_else(|| panic!("no {heading} in {help}")).1;
-        part.split("\n\nEx").next().unwrap().lines().map(|line| line.trim().to_owned()).collect()
+        // What goes on in a second line is further in.
+        let begins = |line: &&str| line.starts_with("  ") && !line.starts_with("         ");
+        part.split("\n\nEx").next().unwrap().lines().filter(begins).map(|line| line.trim().to_owned()).collect()
     };
     let help = hydrostat(&["--help"]).out;
     let commands: Vec<String> = listed(help.split("\nOptions:").next().unwrap(), "Commands:\n")

@@ -46,7 +46,7 @@ fn what_is_out_of_reach_ends_with_status_3_and_the_closest() {
     let run = hydrostat(&reach("0.3,0", &["--format", "json"]));
     assert_eq!(run.code, 3, "{}", run.err);
     assert!(
-        run.err.starts_with("error: the target is not reached: the closest that was found is off by "),
+        run.err.starts_with("error: the target is not reached: the closest shape that was found misses it by "),
         "{}",
         run.err
     );
@@ -247,7 +247,7 @@ fn a_cable_is_wound_in_no_further_than_it_may_be() {
     assert!(stroke(&free["solutions"][0]) > 0.015, "{free}");
     let run = hydrostat(&reach(target, &["--max-stroke", "10 mm", "--format", "json"]));
     assert_eq!(run.code, 3, "{}", run.err);
-    assert!(run.err.contains("cable left is wound in as far as it can be"), "{}", run.err);
+    assert!(run.err.contains("cable left is at its largest stroke"), "{}", run.err);
     let closest = &json(&run.out)["closest"];
     assert!((stroke(closest) - 0.010).abs() < 1e-8, "{closest}");
     assert_eq!(closest["bounds"][0]["kind"], "stroke");
