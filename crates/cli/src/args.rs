@@ -51,7 +51,7 @@ Examples:
   hydrostat path silicone --vary 'cable[0].tension=0:0.9'   follow the shapes as a tension rises
   hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
                                                             all shapes under the same loads
-  hydrostat reach silicone --target 0.182,0.078             inverse kinematics: tensions for a tip position
+  hydrostat reach silicone --target 0.182,0.078             inverse kinematics
   hydrostat identify silicone data.csv --fit young          fit parameters to measured shapes
   hydrostat sweep silicone --vary flow.speed=0:0.4:21 --vary 'cable[0].tension=0:0.9:31' -o out.csv
   hydrostat serve silicone --open                           drag an arm in the browser
@@ -68,41 +68,40 @@ pub(crate) struct Args {
     pub(crate) command: Option<Command>,
 }
 
+// The line of each in the list of commands. As a doc comment it would take the place of the whole description, which its arguments have.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Solve one arm: shape, forces and cable strokes
+    #[command(about = "Solve one arm: shape, forces and cable strokes")]
     Solve(SolveArgs),
-    /// Follow equilibria while one parameter varies (continuation)
-    #[command(visible_alias = "continue")]
+    #[command(about = "Follow equilibria while one parameter varies (continuation)", visible_alias = "continue")]
     Path(PathArgs),
-    /// Find all equilibria under the same loads, with stability
+    #[command(about = "Find all equilibria under the same loads, with stability")]
     Equilibria(EquilibriaArgs),
-    /// Find the tensions for a tip position or a tip path (inverse kinematics)
-    #[command(visible_alias = "inverse")]
+    #[command(about = "Find tensions for tip positions (inverse kinematics)", visible_alias = "inverse")]
     Reach(ReachArgs),
-    /// Trace the boundary of the tip's workspace
+    #[command(about = "Trace the boundary of the tip's workspace")]
     Workspace(WorkspaceArgs),
-    /// Fit parameters to measured shapes, with confidence intervals
+    #[command(about = "Fit parameters to measured shapes, with confidence intervals")]
     Identify(Box<IdentifyArgs>),
-    /// Solve grids, lists or samples of parameters into a Parquet or CSV table
+    #[command(about = "Solve grids, lists or samples of parameters into a Parquet or CSV table")]
     Sweep(SweepArgs),
-    /// Draw a sweep: a map over two keys, and the tip positions
+    #[command(about = "Draw a sweep: a map over two keys, and the tip positions")]
     Plot(PlotArgs),
-    /// Show an arm in the browser and drag it
+    #[command(about = "Show an arm in the browser and drag it")]
     Serve(ServeArgs),
-    /// Reproduce Fig. 1 of the source as SVG, PDF, PNG and CSV
+    #[command(about = "Reproduce Fig. 1 of the source as SVG, PDF, PNG and CSV")]
     Figures(FiguresArgs),
-    /// Write a commented arm file to start from
+    #[command(about = "Write a commented arm file to start from")]
     Init(InitArgs),
-    /// List the shipped arms, or print one
+    #[command(about = "List the shipped arms, or print one")]
     Arms(ArmsArgs),
-    /// Show what an arm file means: units, defaults, tension limits
+    #[command(about = "Show what an arm file means: units, defaults, tension limits")]
     Check(CheckArgs),
-    /// Run all validation checks and write a report
+    #[command(about = "Run all validation checks and write a report")]
     Validate(ValidateArgs),
-    /// Print shell completions
+    #[command(about = "Print shell completions")]
     Completions(CompletionsArgs),
-    /// Print a manual page, or write all pages
+    #[command(about = "Print a manual page, or write all pages")]
     Man(ManArgs),
 }
 

@@ -78,7 +78,7 @@ fn advice(error: &anyhow::Error) -> Option<&str> {
     if let Cause::Study(StudyError::NoTension { .. }) = cause {
         return Some(
             "this figure needs an arm whose tip section turns that far, such as `paper` and `paper-statements`; \
-             `hydrostat path ARM --vary cable[0].tension=FROM:TO --plot-shapes FILE` draws any arm under a rising tension",
+             `hydrostat path ARM --vary cable.0.tension=FROM:TO --plot-shapes FILE` draws any arm under a rising tension",
         );
     }
     match cause.solve()? {

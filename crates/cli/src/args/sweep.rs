@@ -27,7 +27,7 @@ Exit status:
 Examples:
   hydrostat sweep paper --vary flow.speed=0:1:101 --vary 'cable[0].tension=0:80:101' -o out.parquet
   hydrostat sweep silicone --vary 'material.young=80:150 kPa' --sample lhs:500 -o out.csv
-  hydrostat sweep paper --vary model.volume=planar,circular,none --vary cable.0.tension=0:80:81 -o out.csv
+  hydrostat sweep paper --vary model.volume=planar,none --vary cable.0.tension=0:80:81 -o out.csv
   hydrostat sweep my.toml --vary cable.0.tension=0:2:1001 --shard 3/16 --resume -o part-3.parquet
 
 {EXIT}"))]

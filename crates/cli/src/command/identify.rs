@@ -193,7 +193,7 @@ fn together(found: &Fit) -> String {
         rows.push(cells);
     }
     out.push_str(&table(&rows, 0));
-    out.push_str("\nsingular value: standard deviations that all numbers move by a unit of the combination below (parameters over their scales)\n");
+    out.push_str("\nsingular value: change of all measured values, in standard deviations, for a unit of the combination beside it (parameters relative to their scales)\n");
     let mut head = vec!["value".to_owned()];
     head.extend(names);
     let mut rows = vec![head];
@@ -211,7 +211,7 @@ fn predictions(cases: &[Case], found: &Fit) -> String {
         return String::new();
     }
     let mut out =
-        "\nresiduals of each load case, root mean square in sd: in the fit, and as the other cases predict it\n"
+        "\nresiduals of each load case, root mean square in standard deviations: in the fit, and predicted from the other cases\n"
             .to_owned();
     let mut head = ["case", "fit", "predicted"].map(str::to_owned).to_vec();
     head.extend(found.estimates.iter().map(|one| format!("{} moves (sd)", one.fitted.parameter)));
@@ -235,7 +235,7 @@ fn far_out(cases: &[Case], found: &Fit) -> String {
     far.sort_by(|a, b| b.standardised.abs().total_cmp(&a.standardised.abs()));
     let mut out = String::new();
     if !far.is_empty() {
-        let _ = writeln!(out, "\n{} numbers are more than {FAR} sd off", far.len());
+        let _ = writeln!(out, "\n{} values deviate by more than {FAR} standard deviations", far.len());
     }
     for one in far.iter().take(MOST_NAMED) {
         let measurement = one.measurement;

@@ -149,6 +149,13 @@ fn help_teaches() {
     for words in ["--tension", "--flow-speed", "--set", "--tol", "--stations", "--format", "--plot", "Exit status"] {
         assert!(help.contains(words), "{words}");
     }
+    // The whole description, which was lost behind the line that the list of commands has.
+    for (command, words) in
+        [("solve", "unless they carry a unit"), ("reach", "sum of the squared tensions"), ("sweep", "last bit")]
+    {
+        let text = solved(&[command, "--help"]).out.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains(words), "{command}: {text}");
+    }
     for (command, option) in [("path", "--vary"), ("equilibria", "--over")] {
         let help = solved(&[command, "--help"]).out;
         for words in [option, "--quantity", "--flow-speed", "against static divergence", "Flutter", "Exit status"] {

@@ -59,8 +59,8 @@ fn inputs_were_replaced_by_outputs() {
     ] {
         let run = hydrostat_in(here, args);
         assert_eq!((run.code, run.out.as_str()), (2, ""), "{args:?}: {}", run.err);
-        let said = run.err.starts_with(&format!("error: {option} "))
-            && run.err.contains("inputs are never overwritten");
+        let said =
+            run.err.starts_with(&format!("error: {option} ")) && run.err.contains("inputs are never overwritten");
         assert!(said, "{args:?}: {}", run.err);
         assert!(contents(here) == before, "{args:?}");
     }

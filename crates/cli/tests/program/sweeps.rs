@@ -86,7 +86,7 @@ fn sweeps_that_cannot_be_meant() {
     assert!(with(&["--sample", "lhs:0"]).contains("--sample"));
     assert!(with(&["--columns", "tip,tap"]).contains("expected some of tip, alpha"));
     assert!(with(&["--shard", "3/2"]).contains("expected I/N"));
-    assert!(with(&["--shard", "1/9"]).contains("at most 5 shards, because the sweep has 5 rows"));
+    assert!(with(&["--shard", "1/21"]).contains("at most 20 shards, because the sweep has 20 rows"));
     assert!(with(&["--tol", "1"]).contains("--tol: expected a number in [1e-12, 1e-2], found 1"));
     assert!(with(&["--threads", "0"]).contains("--threads"));
     assert!(with(&["--shapes", "1"]).contains("from 2 to 1000"));
@@ -258,7 +258,9 @@ fn ctrl_c_said_nothing() {
     assert!(sent.success());
     let ended = child.wait_with_output().unwrap();
     let said = String::from_utf8(ended.stderr).unwrap();
-    assert_eq!((ended.status.code(), said.trim()), (Some(130), "stopped: resume with the same command and --resume"));
+    // On a slow machine lines of progress come before.
+    let last = said.lines().last();
+    assert_eq!((ended.status.code(), last), (Some(130), Some("stopped: resume with the same command and --resume")));
 }
 
 /// One was told to remove the directory in which another sweep was at work.
