@@ -28,7 +28,7 @@ Examples:
   hydrostat reach paper --target 0.1,0.03 --station 0.15 --flow-speed 0.2
   hydrostat reach multi-bending --target 0.3,0.15 --angle '60 deg'
   hydrostat reach silicone --target 0.182,0.078 --by strokes --max-stroke '20 mm'
-  hydrostat reach silicone --target 0.182,0.078 --max-stroke '12 mm'
+  hydrostat reach silicone --target 0.182,0.078 --max-stroke '12 mm'    not reached
   hydrostat reach silicone --path targets.csv --max-tension '0.6 N' --format csv -o followed.csv
   hydrostat reach silicone --boundary --max-tension '0.6 N' --plot boundary.svg
 

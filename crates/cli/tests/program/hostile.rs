@@ -64,7 +64,9 @@ fn run_on(name: &str, bytes: &[u8], args: &[&str]) -> (i32, String) {
     );
     assert!([0, 2, 3].contains(&code), "{name}, {args:?}: {code}, {said}");
     assert!(!said.contains("panicked"), "{name}, {args:?}: {said}");
-    assert!(said.len() < 5000, "{name}, {args:?}: {} bytes on standard error", said.len());
+    // All errors of an arm file are told, up to 50.
+    let short = said.len() < 30_000 && said.lines().all(|line| line.len() < 5000);
+    assert!(short, "{name}, {args:?}: {} bytes on standard error", said.len());
     (code, said)
 }
 
