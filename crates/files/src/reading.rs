@@ -42,10 +42,13 @@ pub(crate) enum Value {
 /// The most that is said of one file: who has more mends these first.
 pub(crate) const MOST_FAULTS: usize = 50;
 
+/// What is asked of several keys of a table at once.
+type Check = fn(&Values) -> Result<(), Fault>;
+
 /// All values of a file by dotted key, where they were written, and what is wrong with the others.
 #[derive(Debug, Default)]
 pub(crate) struct Values {
-    values: HashMap<String, (Value, Origin)>,
+    found: HashMap<String, (Value, Origin)>,
     faults: Vec<Fault>,
     /// How many cables there are.
     pub(crate) cables: usize,
@@ -57,7 +60,7 @@ impl Values {
         let mut values = Self::default();
         values.table("", format::FILE, &resolved(fields), Origin::Text(0));
         // What a key of a table should be is open while another is wrong.
-        let checks: [(&str, fn(&Self) -> Result<(), Fault>); 3] =
+        let checks: [(&str, Check); 3] =
             [("material", Self::check_material), ("flow", Self::check_drag), ("cable", Self::check_pull)];
         for (table, check) in checks {
             if !values.is_faulty(table)
@@ -94,7 +97,7 @@ impl Values {
             if needed(key) {
                 return false;
             }
-            match self.values.get_mut(key) {
+            match self.found.get_mut(key) {
                 Some((Value::Group, _)) => return false,
                 // The default of an offset need not be inside the section.
                 Some((Value::Profile(profile), _)) => {
@@ -102,18 +105,13 @@ impl Values {
                     *profile = Profile::Constant(0.0);
                     return changed;
                 }
-                Some(_) => return self.values.remove(key).is_some(),
+                Some(_) => return self.found.remove(key).is_some(),
                 None => match key.rfind(['.', '[']) {
                     Some(end) => key = &key[..end],
                     None => return false,
                 },
             }
         }
-    }
-
-    /// A number, where it is one.
-    pub(crate) fn quantity_at(&mut self, dimension: Dimension, entry: &Entry) -> Option<f64> {
-        quantity("", dimension, entry).ok()
     }
 
     /// A profile, where it is one.
@@ -125,7 +123,7 @@ impl Values {
     pub(crate) fn origin(&self, key: &str) -> Origin {
         let mut key = key;
         loop {
-            if let Some((_, origin)) = self.values.get(key) {
+            if let Some((_, origin)) = self.found.get(key) {
                 return *origin;
             }
             match key.rfind(['.', '[']) {
@@ -136,46 +134,46 @@ impl Values {
     }
 
     pub(crate) fn has(&self, key: &str) -> bool {
-        self.values.contains_key(key)
+        self.found.contains_key(key)
     }
 
     pub(crate) fn text(&self, key: &str) -> Option<String> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Text(text), _)) => Some(text.clone()),
             _ => None,
         }
     }
 
     pub(crate) fn word(&self, key: &str) -> Option<&'static str> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Word(word), _)) => Some(word),
             _ => None,
         }
     }
 
     pub(crate) fn number(&self, key: &str) -> Option<f64> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Number(value), _)) => Some(*value),
             _ => None,
         }
     }
 
     pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Pair(pair), _)) => Some(*pair),
             _ => None,
         }
     }
 
     pub(crate) fn profile(&self, key: &str) -> Option<Profile> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Profile(profile), _)) => Some(profile.clone()),
             _ => None,
         }
     }
 
     pub(crate) fn profiles(&self, key: &str) -> Option<[Profile; 2]> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Profiles(profiles), _)) => Some(profiles.clone()),
             _ => None,
         }
@@ -257,14 +255,14 @@ impl Values {
                         continue;
                     };
                     self.table(&here, keys, fields, element.origin);
-                    self.values.insert(here, (Value::Group, element.origin));
+                    self.found.insert(here, (Value::Group, element.origin));
                 }
                 self.cables = entries.len();
                 Value::Group
             }
             _ => return Err(refuse(path, kind, entry)),
         };
-        self.values.insert(path.to_owned(), (value, entry.origin));
+        self.found.insert(path.to_owned(), (value, entry.origin));
         Ok(())
     }
 
@@ -303,7 +301,7 @@ impl Values {
             _ => return Err(refuse(path, kind, entry)),
         };
         // Under its own key as well, because the core names the two profiles of a pair one by one.
-        self.values.insert(path.to_owned(), (Value::Profile(profile.clone()), entry.origin));
+        self.found.insert(path.to_owned(), (Value::Profile(profile.clone()), entry.origin));
         Ok(profile)
     }
 
@@ -457,6 +455,11 @@ pub(crate) fn value_fault(key: &str, origin: Origin, expected: String, found: St
 
 fn refuse(path: &str, kind: Kind, entry: &Entry) -> Fault {
     value_fault(path, entry.origin, kind.expected(), entry.node.describe())
+}
+
+/// A number, where it is one.
+pub(crate) fn quantity_at(dimension: Dimension, entry: &Entry) -> Option<f64> {
+    quantity("", dimension, entry).ok()
 }
 
 fn quantity(path: &str, dimension: Dimension, entry: &Entry) -> Result<f64, Fault> {

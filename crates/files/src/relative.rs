@@ -8,7 +8,7 @@ use hydrostat::{Join, Profile};
 use crate::document::{Entry, Field, Node};
 use crate::format::{ENDS, JOINED};
 use crate::quantity::{Dimension, percent};
-use crate::reading::Values;
+use crate::reading::{Values, quantity_at};
 
 /// The fields with plain numbers in place of what is relative. What cannot be told, for want of a length or radius, stays as it is if it
 /// is wrong by itself, and is none where only that is missing, which is said once.
@@ -50,7 +50,7 @@ fn size(fields: &[Field]) -> (Option<f64>, Option<Profile>) {
     let Some(Node::Table(keys)) = arm.map(|arm| &arm.entry.node) else { return (None, None) };
     let of = |name: &str| keys.iter().find(|key| key.name == name).map(|key| &key.entry);
     let mut values = Values::default();
-    let length = of("length").and_then(|entry| values.quantity_at(Dimension::Length, entry));
+    let length = of("length").and_then(|entry| quantity_at(Dimension::Length, entry));
     (length, of("radius").and_then(|entry| values.profile_of(Dimension::Length, entry)))
 }
 
@@ -115,7 +115,7 @@ fn shares_at(points: &mut [Entry], length: f64, radius: &Profile) {
     for point in points {
         let Node::Array(pair) = &mut point.node else { continue };
         let [place, value] = pair.as_mut_slice() else { continue };
-        if let Some(s) = Values::default().quantity_at(Dimension::Length, place) {
+        if let Some(s) = quantity_at(Dimension::Length, place) {
             share_at(&mut value.node, s, length, radius);
         }
     }
