@@ -533,7 +533,7 @@ class Arm:
         >>> round(found.values[0])
         110000
         >>> found.verdict
-        ('the data tell all parameters apart',)
+        ('the data determine all parameters',)
         """
         from hydrostat.identification import identify
 

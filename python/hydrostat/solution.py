@@ -548,9 +548,9 @@ def animate(
 #: What a Python warning says of each kind; the same each time, so that Python's filters show it once.
 _WARNINGS = {
     "surface_fold": "the surface folds over itself",
-    "strain_range": "the stretch is beyond what a linear law can mean",
+    "strain_range": "the stretch is outside the range of a linear section law",
     "tension_above_max": "a commanded stroke takes more tension than the cable's max_tension",
-    "sealed_cavity": "the cavity is sealed, and the outside pressure on its wall is left out",
+    "sealed_cavity": "the cavity is sealed, and the pressure of the outside water on its wall is left out",
     "tangential_load": "the shape depends strongly on the tangential load of the momentum law",
     "tolerance_missed": "the estimated error is above the tolerance",
 }

@@ -2,14 +2,17 @@
 
 mod equilibria;
 mod identify;
+mod init;
 mod path;
 mod picture;
 mod plot;
 mod reach;
 mod serve;
+mod shell;
 mod snaps;
 mod sweep;
 mod validate;
+mod workspace;
 
 use std::path::PathBuf;
 
@@ -17,111 +20,122 @@ use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 pub(crate) use equilibria::{EquilibriaArgs, Over};
 pub(crate) use identify::IdentifyArgs;
+pub(crate) use init::InitArgs;
 pub(crate) use path::PathArgs;
 pub(crate) use picture::{Form, PageArgs, PictureArgs, form, picture};
 pub(crate) use plot::PlotArgs;
 pub(crate) use reach::{By, Point, ReachArgs};
 pub(crate) use serve::ServeArgs;
+pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use snaps::SnapArgs;
 pub(crate) use sweep::SweepArgs;
 pub(crate) use validate::ValidateArgs;
+pub(crate) use workspace::WorkspaceArgs;
 
 const EXIT: &str = "\
 Exit status:
   0  solved
-  2  the request is wrong: arguments, arm file, an output path that cannot be written
-  3  the arm has no such equilibrium, or it was not found; standard error says why
-  1  anything else";
+  2  wrong request: arguments, arm file, or an output that cannot be written
+  3  there is no such equilibrium, or none was found; standard error says why
+  1  any other error";
 
 /// What `stable` means wherever it is said.
 const STABLE: &str = "\
-Stable means: against static divergence, with motions that water resists and inertia does not bear
-on (docs/model.md, section 7). Flutter, which takes inertia, is beyond statics and is not seen.";
+Stable means stable against static divergence, for overdamped motion (docs/model.md, section 7).
+Flutter is a dynamic instability and is not checked.";
 
 const EXAMPLES: &str = "\
 Examples:
-  hydrostat                                             remake the source's figure in ./figures
-  hydrostat solve paper --plot paper.svg                solve a shipped arm and draw it
-  hydrostat solve silicone --tension 0.5,0 --flow-speed 0.2
-  hydrostat arms silicone > my.toml                     start an arm file of your own
-  hydrostat check my.toml                               see what it means
-  hydrostat path silicone --vary cable[0].tension=0:1   follow the shapes as a tension rises
-  hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
-                                                        all shapes under the same loads
-  hydrostat reach silicone --target 0.182,0.078         the tensions that bring the tip there
-  hydrostat identify silicone data.csv --fit young      parameters from measured shapes
-  hydrostat sweep paper --vary flow.speed=0:1:101 --vary cable[0].tension=0:80:101 -o out.parquet
-  hydrostat serve silicone --open                       pull on an arm in the browser
+  hydrostat solve silicone --tension 0.5,0 --plot arm.svg   solve a shipped arm and draw it
+  hydrostat init my.toml                                    start an arm file of your own
+  hydrostat check my.toml                                   show units, defaults and tension limits
   hydrostat solve my.toml --format csv --stations 101 -o my.csv
-  hydrostat validate -o report                          every check again, with numbers and plots";
+  hydrostat path silicone --vary 'cable[0].tension=0:0.9'   follow the shapes as a tension rises
+  hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
+                                                            all shapes under the same loads
+  hydrostat reach silicone --target 0.182,0.078             inverse kinematics
+  hydrostat identify silicone data.csv --fit young          fit parameters to measured shapes
+  hydrostat sweep silicone --vary flow.speed=0:0.4:21 --vary 'cable[0].tension=0:0.9:31' -o out.csv
+  hydrostat serve silicone --open                           drag an arm in the browser
+  hydrostat help solve                                      the help of a command";
 
-/// The static shape of a soft arm under water: driven by cables, keeping its volume, in a stream.
+/// Computes static shapes of soft, cable-driven arms under water.
 ///
-/// Without a command, solves the arm of the source's figure, prints what its text claims beside
-/// what the numbers say, and writes the figure into ./figures.
+/// Without a command, it solves the arm of the source's figure, compares the statements of the source with the
+/// numbers, and writes the figure into ./figures.
 #[derive(Debug, Parser)]
-#[command(name = "hydrostat", version, after_help = format!("{EXAMPLES}\n\n{EXIT}"), disable_help_subcommand = true)]
+#[command(name = "hydrostat", version, after_help = format!("{EXAMPLES}\n\n{EXIT}"), max_term_width = 120)]
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
 }
 
+// The line of each in the list of commands. As a doc comment it would take the place of the whole description, which its arguments have.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Solve an arm: shape, forces, cable strokes
+    #[command(about = "Solve one arm: shape, forces and cable strokes")]
     Solve(SolveArgs),
-    /// Follow the equilibria over a range of one parameter, through limit points and bifurcations
+    #[command(about = "Follow equilibria while one parameter varies (continuation)", visible_alias = "continue")]
     Path(PathArgs),
-    /// Find all equilibria under the same loads, with their stability
+    #[command(about = "Find all equilibria under the same loads, with stability")]
     Equilibria(EquilibriaArgs),
-    /// Find the tensions that bring the tip to a place or along a path, or what bounds the places it reaches
+    #[command(about = "Find tensions for tip positions (inverse kinematics)", visible_alias = "inverse")]
     Reach(ReachArgs),
-    /// Find parameters of an arm from measured shapes, with intervals and what the data cannot tell
+    #[command(about = "Trace the boundary of the tip's workspace")]
+    Workspace(WorkspaceArgs),
+    #[command(about = "Fit parameters to measured shapes, with confidence intervals")]
     Identify(Box<IdentifyArgs>),
-    /// Solve an arm over grids, lists or samples of any keys of its file, into Parquet or CSV
+    #[command(about = "Solve grids, lists or samples of parameters into a Parquet or CSV table")]
     Sweep(SweepArgs),
-    /// Draw a sweep: a map over two keys, and where the tip goes
+    #[command(about = "Draw a sweep: a map over two keys, and the tip positions")]
     Plot(PlotArgs),
-    /// Show an arm in the browser, to pull on
+    #[command(about = "Show an arm in the browser and drag it")]
     Serve(ServeArgs),
-    /// Remake the source's Fig. 1a, 1b and 1c as SVG, PDF, PNG and CSV
+    #[command(about = "Reproduce Fig. 1 of the source as SVG, PDF, PNG and CSV")]
     Figures(FiguresArgs),
-    /// List the arms that ship with the program, or print one as TOML
+    #[command(about = "Write a commented arm file to start from")]
+    Init(InitArgs),
+    #[command(about = "List the shipped arms, or print one")]
     Arms(ArmsArgs),
-    /// Read an arm file and say what it means: units, defaults, Cauchy number, tension limits
+    #[command(about = "Show what an arm file means: units, defaults, tension limits")]
     Check(CheckArgs),
-    /// Run every check behind the program's claims again, and write a report with numbers and plots
+    #[command(about = "Run all validation checks and write a report")]
     Validate(ValidateArgs),
+    #[command(about = "Print shell completions")]
+    Completions(CompletionsArgs),
+    #[command(about = "Print a manual page, or write all pages")]
+    Man(ManArgs),
 }
 
-/// Solves the arm under its loads and prints tip, cables, base reaction and margins.
+/// Solves the arm under its loads and prints the tip, the cables, the base reaction and the margins.
 ///
-/// Results go to standard output, warnings to standard error. Numbers in --tension, --flow-speed
-/// and --set are in SI units (angles in degrees), or have a unit: "20 N", "0.5 m/s", "8 mm".
+/// Results go to standard output, warnings to standard error. Numbers in --tension, --flow-speed and --set are in SI
+/// units (angles in degrees) unless they carry a unit: "20 N", "0.5 m/s", "8 mm".
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\
 Examples:
   hydrostat solve paper --tension 20,0
-  hydrostat solve paper --tension \"20 N,0\" --flow-speed \"50 cm/s\" --plot arm.png
-  hydrostat solve octopus --set flow.law=quadratic-drag --set flow.direction=\"90 deg\" --flow-speed 0.1
-  hydrostat solve my.toml --set cable[1].tension=0.4 --set model.volume=circular --format json
+  hydrostat solve paper --tension '20 N,0' --flow-speed '50 cm/s' --plot arm.png
+  hydrostat solve octopus --set flow.law=quadratic-drag --set 'flow.direction=90 deg' --flow-speed 0.1
+  hydrostat solve my.toml --set cable.1.tension=0.4 --set model.volume=circular --format json
+  hydrostat init - | hydrostat solve -
 
 {EXIT}"))]
 pub(crate) struct SolveArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
-    /// Error of the tip position over the length that is asked for, from 1e-12 to 1e-2
+    /// Tolerance on the tip position, relative to the arm's length, from 1e-12 to 1e-2
     #[arg(long, value_name = "TOL", default_value = "1e-8", allow_hyphen_values = true)]
     pub(crate) tol: f64,
     #[command(flatten)]
     pub(crate) snaps: SnapArgs,
-    /// Report N equally spaced stations (at least 2) in place of the nodes of the mesh
+    /// Report N equally spaced stations, at least 2, instead of the mesh nodes
     #[arg(long, value_name = "N", value_parser = stations)]
     pub(crate) stations: Option<usize>,
-    /// text: a summary; json: everything; csv: the stations
+    /// text: a summary; json: all results; csv: one row per station
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) format: Format,
-    /// Write the result to FILE in place of standard output
+    /// Write the result to FILE instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Draw the arm to scale; FILE ends in .svg, .pdf or .png
@@ -134,16 +148,16 @@ pub(crate) struct SolveArgs {
 // An arm and what is to be different from its file. As a doc comment this would replace the help of each command.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct ArmArgs {
-    /// An arm file, or the name of a shipped arm (see `hydrostat arms`)
+    /// Arm file, name of a shipped arm (see `hydrostat arms`), or - for standard input
     #[arg(value_name = "ARM")]
     pub(crate) file: String,
-    /// Tensions of all cables, in their order, N; as in 20,0
+    /// Tensions of all cables in their order, N, such as 20,0
     #[arg(long, value_name = "T,T,...", value_delimiter = ',', allow_hyphen_values = true)]
     pub(crate) tension: Option<Vec<String>>,
     /// Speed of the stream, m/s
     #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
     pub(crate) flow_speed: Option<String>,
-    /// Override a value of the arm file: a dotted path and its value, as in `cable[0].tension="20 N"`
+    /// Override a value of the arm file, such as 'cable[0].tension=20 N' or cable.0.tension=20. Repeatable
     #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
     pub(crate) set: Vec<String>,
 }
@@ -156,47 +170,48 @@ pub(crate) enum Format {
     Csv,
 }
 
-/// Remakes the source's Fig. 1a, 1b and 1c: twelve files, each part as SVG, PDF, PNG and CSV. Prints what the
-/// source says about them beside the numbers.
+/// Reproduces Fig. 1a, 1b and 1c of the source, each as SVG, PDF, PNG and CSV, and compares the source's statements
+/// about them with the numbers.
 ///
-/// Of the figure's parameters only the speed of the stream, 0.5 m/s, and alpha(L) = 72.25 deg at
-/// the highest tension are published; the rest was found by trial. Tensions below the highest are
-/// sixteenths, eighths, quarters and halves of it, to one digit. The arm has to turn its tip section by that
-/// angle: of the shipped arms `paper` and `paper-statements` do.
+/// The source publishes only the flow speed, 0.5 m/s, and alpha(L) = 72.25 deg at the highest tension; the other
+/// parameters were found by trial. The lower tensions are 1/16, 1/8, 1/4 and 1/2 of the highest, to one digit. The arm must
+/// be able to turn its tip section by that angle: the shipped arms `paper` and `paper-statements` are.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "\
 Examples:
   hydrostat figures
   hydrostat figures paper-statements --at-highest --faster 1    all statements hold")]
 pub(crate) struct FiguresArgs {
-    /// An arm file, or the name of a shipped arm. Its first cable is pulled, the others are slack
+    /// Arm file, or name of a shipped arm. The first cable is pulled, the others are slack
     #[arg(value_name = "ARM", default_value = "paper")]
     pub(crate) arm: String,
-    /// Compare streams at the highest tension alone, not at half of it, too
+    /// Compare flow speeds at the highest tension only, not also at half of it
     #[arg(long)]
     pub(crate) at_highest: bool,
-    /// The streams beside still water and 0.5 m/s, m/s, rising
+    /// Further flow speeds, m/s, above 0.5 m/s and in rising order
     #[arg(long, value_name = "SPEED,...", value_delimiter = ',', default_value = "1,2")]
     pub(crate) faster: Vec<f64>,
-    /// The directory, made if it is not there
+    /// Output directory, created if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "figures")]
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) page: PageArgs,
 }
 
-/// Lists the arms that ship with the program. With a name, prints that arm as TOML, to start from.
+/// Lists the arms that ship with the program. With a name, prints the file of that arm.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct ArmsArgs {
-    /// The arm to print
+    /// Arm to print
     pub(crate) name: Option<String>,
 }
 
-/// Reads an arm file and prints what it means: units resolved, defaults filled in, the Cauchy
-/// number of its stream, and the tension at which each cable ends what a section can carry.
+/// Reads an arm file and prints what it means: SI units, defaults, the Cauchy number of the stream, and the largest
+/// tension of each cable.
+///
+/// Numbers that look like a wrong unit get a warning.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct CheckArgs {
-    /// An arm file, or the name of a shipped arm
+    /// Arm file, name of a shipped arm, or - for standard input
     pub(crate) arm: String,
 }
 

@@ -1,10 +1,14 @@
 //! The program `hydrostat`: the static shape of a soft arm under water.
 
 mod args;
+mod cause;
 mod command;
 mod exit;
+mod input;
 mod output;
 mod progress;
+mod question;
+mod rate;
 mod request;
 
 use std::process::ExitCode;
@@ -30,14 +34,18 @@ fn main() -> ExitCode {
         Some(Command::Path(args)) => command::path::run(&args),
         Some(Command::Equilibria(args)) => command::equilibria::run(&args),
         Some(Command::Reach(args)) => command::reach::run(&args),
+        Some(Command::Workspace(args)) => command::reach::run(&args.into()),
         Some(Command::Identify(args)) => command::identify::run(&args),
         Some(Command::Sweep(args)) => command::sweep::run(&args),
         Some(Command::Plot(args)) => command::plot::run(&args),
         Some(Command::Serve(args)) => command::serve::run(&args),
         Some(Command::Figures(args)) => command::figures::run(&args),
+        Some(Command::Init(args)) => command::init::run(&args),
         Some(Command::Arms(args)) => command::arms::run(&args),
         Some(Command::Check(args)) => command::check::run(&args),
         Some(Command::Validate(args)) => command::validate::run(&args),
+        Some(Command::Completions(args)) => command::shell::completions(&args),
+        Some(Command::Man(args)) => command::shell::man(&args),
     });
     match outcome {
         Ok(result) => exit::of(result),

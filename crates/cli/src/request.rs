@@ -4,10 +4,10 @@ use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 use hydrostat::parameter::Unfit;
 use hydrostat::{Arm, ArmError};
-use hydrostat_files::{ArmFile, Dimension, PartialUnit, is_same_file, shared_unit, shipped};
+use hydrostat_files::{ArmFile, Dimension, FileError, PartialUnit, is_same_file, shared_unit, shipped, unit_slips};
 
 use crate::args::{ArmArgs, PictureArgs};
-use crate::output;
+use crate::{input, output};
 
 /// A request that cannot be meant.
 #[derive(Debug)]
@@ -50,6 +50,18 @@ pub(crate) enum WrongRequest {
     NothingMeasured(PathBuf),
     /// An option of pictures without one, and the options that ask for one.
     NothingDrawn(&'static str, String),
+    /// More work than was meant.
+    Declined,
+    /// Everything that is wrong with an arm file, where that is more than one thing.
+    File(Vec<FileError>),
+    /// What standard input brought is not what was asked for.
+    Input(String),
+    /// Standard input for two files.
+    InputTwice([&'static str; 2]),
+    /// A file that is written only where there is none yet.
+    Exists(PathBuf),
+    /// No command of the program, and those that there are.
+    NoCommand(String, Vec<String>),
 }
 
 impl std::fmt::Display for WrongRequest {
@@ -76,12 +88,11 @@ impl std::fmt::Display for WrongRequest {
             }
             Self::Overwrites { option, path, input } => write!(
                 f,
-                "{option} {}: the same file is read as {input}, and nothing that is read is written over; give the output another name",
+                "{option} {}: this file is also read, as {input}, and inputs are never overwritten; choose another output",
                 path.display()
             ),
             Self::TensionsAreFound => f.write_str(
-                "--tension: reach finds the tensions itself, so that those given would not count; --max-tension bounds them, and with \
-                 --path --tension says from which the first target is looked for",
+                "--tension: reach finds the tensions itself; use --max-tension to bound them, or --path, which starts from those of --tension",
             ),
             Self::Unfit(option, error) => write!(f, "{option} {error}"),
             Self::Value(at, error) => write!(f, "{at}: {error}"),
@@ -90,31 +101,44 @@ impl std::fmt::Display for WrongRequest {
             }
             Self::NothingToDraw(path, None) => write!(
                 f,
-                "{}: no row has an answer, so that there is nothing to draw; the column `verdict` says why",
+                "{}: no row has an equilibrium, so there is nothing to draw; see the column `verdict`",
                 path.display()
             ),
             Self::NothingToDraw(path, Some(column)) => {
-                write!(f, "{}: no row has a value of {column}, so that there is nothing to draw", path.display())
+                write!(f, "{}: no row has a value of {column}, so there is nothing to draw", path.display())
             }
             Self::NotInSweep(option, needed) => write!(f, "{option}: expected {needed} in the sweep, found none"),
             Self::Over(keys) => {
                 write!(f, "--over: expected one or two different keys of those that were varied, {}", keys.join(", "))
             }
-            Self::Words(key) => write!(f, "--over: {key} has words for values, which a map has no axis for"),
+            Self::Words(key) => write!(f, "--over: the values of {key} are words, and an axis needs numbers"),
             Self::Peers(path, why) => write!(f, "--peers {}: {why}", path.display()),
             Self::Unbounded(cable) => {
                 write!(
                     f,
-                    "--boundary: cable {cable} has no largest tension; give --max-tension, or `max_tension` in its table of the file"
+                    "--boundary: cable {cable} has no largest tension; give --max-tension, or set `max_tension` in the arm file"
                 )
             }
             Self::NoCable { asked, cables } => {
                 write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")
             }
+            Self::File(errors) => {
+                for (k, error) in errors.iter().enumerate() {
+                    write!(f, "{}{error}", if k == 0 { "" } else { "\nerror: " })?;
+                }
+                Ok(())
+            }
+            Self::Input(why) => write!(f, "{}: {why}", input::NAME),
+            Self::InputTwice([a, b]) => {
+                write!(f, "{a} and {b} are both -, and {} is read only once; name a file for one of them", input::NAME)
+            }
+            Self::Exists(path) => write!(f, "{} exists; remove it or choose another name", path.display()),
+            Self::NoCommand(name, all) => write!(f, "`{name}` is not a command; the commands are {}", all.join(", ")),
+            Self::Declined => f.write_str("nothing was solved"),
             Self::NothingDrawn(option, pictures) => write!(f, "{option}: nothing is drawn; give {pictures}"),
             Self::NothingMeasured(path) => {
                 let path = path.display();
-                write!(f, "{path}: there is no measured number; fill in x and y, or another quantity that was measured")
+                write!(f, "{path}: there is no measured value; fill in x and y, or another measured quantity")
             }
         }
     }
@@ -129,8 +153,11 @@ fn nearest(name: &str) -> Option<&'static str> {
 
 /// The arm file that `arm` names: a file if there is one or if it looks like a path, else an arm
 /// that ships with the program. A file of the name of a shipped arm wins, as a file's contents are
-/// the user's.
+/// the user's. `-` is standard input.
 pub(crate) fn arm_file(arm: &str) -> anyhow::Result<ArmFile> {
+    if input::is_standard(arm) {
+        return Ok(ArmFile::parse_bytes(&input::bytes()?, input::NAME)?);
+    }
     if is_file(arm) { Ok(ArmFile::read(Path::new(arm))?) } else { shipped_file(arm) }
 }
 
@@ -142,7 +169,8 @@ fn is_file(arm: &str) -> bool {
     looks_like_path || path.is_file()
 }
 
-fn shipped_file(name: &str) -> anyhow::Result<ArmFile> {
+/// The file of an arm that ships with the program.
+pub(crate) fn shipped_file(name: &str) -> anyhow::Result<ArmFile> {
     match shipped::get(name) {
         Some(text) => Ok(ArmFile::parse(text, name)?),
         None => Err(WrongRequest::UnknownArm(name.to_owned()).into()),
@@ -156,7 +184,22 @@ pub(crate) fn shipped_arm(name: &str) -> anyhow::Result<Arm> {
 
 /// The arm that is asked for: a file, then what overrides it.
 pub(crate) fn arm(args: &ArmArgs) -> anyhow::Result<Arm> {
-    Ok(overridden(args)?.arm()?)
+    arm_of(&overridden(args)?)
+}
+
+/// The arm that a file means. Numbers that look like a slip of the unit are named on standard error.
+pub(crate) fn arm_of(file: &ArmFile) -> anyhow::Result<Arm> {
+    let arm = file.arm().map_err(|first| wrong(file, first))?;
+    for slip in unit_slips(&arm) {
+        eprintln!("warning: {slip}");
+    }
+    Ok(arm)
+}
+
+/// Everything that is wrong with a file, whose `first` error is known.
+fn wrong(file: &ArmFile, first: FileError) -> anyhow::Error {
+    let all = file.errors();
+    if all.len() > 1 { WrongRequest::File(all).into() } else { first.into() }
 }
 
 /// The file that is asked for with what overrides it.
@@ -175,7 +218,7 @@ pub(crate) fn overridden(args: &ArmArgs) -> anyhow::Result<ArmFile> {
         let cables = cables(&file);
         if tensions.len() != cables {
             // An arm that is wrong without them is the first thing to mend.
-            file.arm()?;
+            file.arm().map_err(|first| wrong(&file, first))?;
             let error = ArmError::TensionCount { cables, given: tensions.len() };
             return Err(WrongRequest::Tensions(error).into());
         }
@@ -194,7 +237,7 @@ pub(crate) type Input<'a> = (&'static str, &'a Path);
 
 /// The file of an arm, if it is read from one.
 pub(crate) fn arm_input(arm: &str) -> Option<Input<'_>> {
-    is_file(arm).then_some(("ARM", Path::new(arm)))
+    (!input::is_standard(arm) && is_file(arm)).then_some(("ARM", Path::new(arm)))
 }
 
 /// Refuses outputs that could not be written, and those that are files that are read, before the work: each option that names one, with

@@ -39,7 +39,8 @@ impl FromStr for Quantity {
     type Err = UnknownQuantity;
 
     fn from_str(name: &str) -> Result<Self, UnknownQuantity> {
-        let stroke = || name.strip_prefix("stroke[")?.strip_suffix(']')?.parse().ok();
+        let bracketed = || name.strip_prefix("stroke[")?.strip_suffix(']');
+        let stroke = || bracketed().or_else(|| name.strip_prefix("stroke."))?.parse().ok();
         match name {
             "tip.x" => Ok(Self::TipX),
             "tip.y" => Ok(Self::TipY),

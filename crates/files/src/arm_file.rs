@@ -12,8 +12,9 @@ use hydrostat::{
 use crate::document::{self, Field, Origin};
 use crate::error::{FileError, Place, shortened};
 use crate::format::MAX_BYTES;
-use crate::reading::{Fault, FaultKind, Values};
+use crate::reading::{Fault, FaultKind, MOST_FAULTS, Values};
 use crate::setting;
+use crate::syntax_hint::hint;
 
 /// Keys of the format are shorter by far.
 const LONGEST_KEY: usize = 200;
@@ -100,7 +101,8 @@ impl ArmFile {
                 let key = if whole || key.is_empty() { key } else { crate::reading::join(&key, what) };
                 return FileError::Duplicate { place, key };
             }
-            FileError::Syntax { place, key, message: error.message }
+            let message = format!("{}{}", error.message, hint(text, error.at));
+            FileError::Syntax { place, key, message }
         })?;
         Ok(Self { path: path.to_owned(), text: text.to_owned(), fields, settings: Vec::new() })
     }
@@ -150,16 +152,58 @@ impl ArmFile {
     /// The arm that this file with its overrides means, checked.
     ///
     /// # Errors
-    /// [`FileError`] for the first thing that is wrong, with its place.
+    /// [`FileError`] for the first thing that is wrong, with its place. [`ArmFile::errors`] has all.
     pub fn arm(&self) -> Result<Arm, FileError> {
-        let values = Values::read(&self.fields).map_err(|fault| self.error(fault))?;
-        let stem = Path::new(&self.path).file_stem().map(|s| s.to_string_lossy().into_owned());
-        let arm = build(&values, stem.unwrap_or_else(|| self.path.clone()));
+        let mut values = Values::read(&self.fields);
+        if let Some(fault) = values.take_first_fault() {
+            return Err(self.error(fault));
+        }
+        let arm = self.built(&values);
         arm.check().map_err(|source| {
             let key = source.key().to_owned();
             self.error(Fault { origin: values.origin(&key), key, kind: FaultKind::Arm(source) })
         })?;
         Ok(arm)
+    }
+
+    /// Everything that is wrong with the file and its overrides, as far as it can be told at once, each with its place; nothing where
+    /// [`ArmFile::arm`] is an arm.
+    ///
+    /// ```
+    /// use hydrostat_files::ArmFile;
+    ///
+    /// let text = "[arm]\nlength = \"2 kg\"\nradus = 0.01\n[material]\nE = 1e5\n";
+    /// let errors = ArmFile::parse(text, "arm.toml").unwrap().errors();
+    /// let keys: Vec<_> = errors.iter().filter_map(|error| error.key()).collect();
+    /// assert_eq!(keys, ["arm.length", "arm.radus", "material.E"]);
+    /// ```
+    pub fn errors(&self) -> Vec<FileError> {
+        let mut values = Values::read(&self.fields);
+        let mut refused: Vec<Fault> = Vec::new();
+        // Numbers are held against each other only where those that most others depend on are right.
+        if !["arm", "material"].iter().any(|table| values.is_faulty(table)) {
+            while refused.len() < MOST_FAULTS
+                && let Err(source) = self.built(&values).check()
+            {
+                let key = source.key().to_owned();
+                let origin = values.origin(&key);
+                let is_old = values.is_faulty(&key) || refused.iter().any(|fault| fault.key == key);
+                let goes_on = values.set_aside(&key);
+                if !is_old {
+                    refused.push(Fault { origin, key, kind: FaultKind::Arm(source) });
+                }
+                if !goes_on {
+                    break;
+                }
+            }
+        }
+        let all = values.into_faults().into_iter().chain(refused).take(MOST_FAULTS);
+        all.map(|fault| self.error(fault)).collect()
+    }
+
+    fn built(&self, values: &Values) -> Arm {
+        let stem = Path::new(&self.path).file_stem().map(|s| s.to_string_lossy().into_owned());
+        build(values, stem.unwrap_or_else(|| self.path.clone()))
     }
 
     fn error(&self, fault: Fault) -> FileError {

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use hydrostat::parameter::names;
 
 use crate::error::shortened;
-use crate::format::{dimension_at, home_of, is_key, nearest};
+use crate::format::{bracketed, dimension_at, home_of, is_key, nearest, synonym};
 use crate::heads::head_of;
 use crate::quantity::{Dimension, WrongValue};
 use crate::shared_unit::{PartialUnit, bare, shared_unit};
@@ -159,7 +159,7 @@ impl FromStr for Axis {
 
     fn from_str(text: &str) -> Result<Self, AxisError> {
         let (key, given) = text.split_once('=').ok_or_else(|| AxisError::Form { text: text.to_owned() })?;
-        let (key, given) = (key.trim().to_owned(), given.trim().trim_matches('"'));
+        let (key, given) = (bracketed(key.trim()), given.trim().trim_matches('"'));
         if key.is_empty() {
             return Err(AxisError::Form { text: text.to_owned() });
         }
@@ -170,7 +170,8 @@ impl FromStr for Axis {
         let Some(dimension) = dimension_at(&key) else {
             if !is_key(&key) {
                 let last = key.rsplit('.').next().unwrap_or(&key);
-                let slip = nearest(&key, names().iter().map(String::as_str)).map(str::to_owned);
+                let near = || nearest(&key, names().iter().map(String::as_str)).map(str::to_owned);
+                let slip = synonym(last).map(str::to_owned).or_else(near);
                 return Err(AxisError::Unknown { suggestion: slip.or_else(|| home_of(last)), key });
             }
             if given.contains(':') {

@@ -7,7 +7,7 @@ use hydrostat::{Arm, Parameter};
 use hydrostat_identify::{Fitted, Prior};
 
 use crate::error::shortened;
-use crate::format::{dimension_at, is_key, nearest};
+use crate::format::{bracketed, dimension_at, is_key, nearest, synonym};
 use crate::quantity::{Dimension, WrongValue};
 use crate::shared_unit::{PartialUnit, shared_unit};
 use crate::varied::hint;
@@ -90,6 +90,8 @@ pub enum FitKeyError {
 
 /// The parameter of a key, or of its last part where that says enough: `c1` for `material.c1`.
 pub(crate) fn parameter(key: &str) -> Result<Parameter, FitKeyError> {
+    let key = bracketed(key);
+    let key = key.as_str();
     if let Ok(parameter) = key.parse() {
         return Ok(parameter);
     }
@@ -104,7 +106,8 @@ pub(crate) fn parameter(key: &str) -> Result<Parameter, FitKeyError> {
     if is_key(key) && key.contains('.') {
         return Err(FitKeyError::NoDerivative { key: key.to_owned() });
     }
-    let suggestion = nearest(key, known.iter().map(String::as_str)).map(str::to_owned);
+    let meant = synonym(key.rsplit('.').next().unwrap_or(key)).filter(|meant| known.iter().any(|name| name == meant));
+    let suggestion = meant.or_else(|| nearest(key, known.iter().map(String::as_str))).map(str::to_owned);
     Err(FitKeyError::Unknown { key: key.to_owned(), suggestion })
 }
 

@@ -19,6 +19,10 @@ pub(crate) enum Kind {
     Profile(Dimension),
     /// Two profiles, `[_, _]`.
     ProfilePair(Dimension),
+    /// A profile, or shares of the radius.
+    Offset(Dimension),
+    /// A fraction of the length, or a length.
+    Part,
     /// A table.
     Table(&'static [Key]),
     /// An array of tables.
@@ -58,16 +62,16 @@ const fn default(name: &'static str, kind: Kind, default: &'static str, doc: &'s
 }
 
 use Dimension as D;
-use Kind::{Choice, Pair, Profile, ProfilePair, Quantity, Table, Tables, Text};
+use Kind::{Choice, Offset, Pair, Part, Profile, ProfilePair, Quantity, Table, Tables, Text};
 
 pub(crate) const FILE: &[Key] = &[
-    optional("name", Text, "A name for people. Default: the file's name."),
-    required("arm", Table(ARM), "Geometry and place."),
-    required("material", Table(MATERIAL), "Stiffness: young, poisson, shear_factor, or c1, c2, c3."),
+    optional("name", Text, "Name of the arm. Default: the name of the file."),
+    required("arm", Table(ARM), "Geometry and position."),
+    required("material", Table(MATERIAL), "Stiffness: young, poisson and shear_factor, or c1, c2 and c3."),
     optional("reference", Table(REFERENCE), "Strains of the unloaded arm."),
-    optional("cable", Tables(CABLE), "The cables."),
-    optional("flow", Table(FLOW), "The stream. Left out: still water of 1000 kg/m3."),
-    optional("gravity", Table(GRAVITY), "Gravity in the plane. Left out: none."),
+    optional("cable", Tables(CABLE), "Cables, one table each."),
+    optional("flow", Table(FLOW), "Stream. Default: still water of 1000 kg/m3."),
+    optional("gravity", Table(GRAVITY), "Gravity in the plane. Default: none."),
     optional("tip", Table(TIP), "Loads on the tip."),
     optional("distributed", Table(DISTRIBUTED), "Dead loads along the arm, per metre of undeformed length."),
     optional("model", Table(MODEL), "Options of the model."),
@@ -75,11 +79,11 @@ pub(crate) const FILE: &[Key] = &[
 
 const ARM: &[Key] = &[
     required("length", Quantity(D::Length), "Undeformed length L."),
-    required("radius", Profile(D::Length), "Undeformed radius R(s), above zero."),
-    default("inner_radius", Profile(D::Length), "0", "Radius of the cavity R_in(s), below the radius; 0 is solid."),
-    default("cavity", Choice(&["flooded", "sealed"]), "\"flooded\"", "What is inside a hollow arm: water, or nothing."),
+    required("radius", Profile(D::Length), "Undeformed radius R(s)."),
+    default("inner_radius", Profile(D::Length), "0", "Radius R_in(s) of the cavity; 0 is solid."),
+    default("cavity", Choice(&["flooded", "sealed"]), "\"flooded\"", "Content of a hollow arm: water, or nothing."),
     default("density", Quantity(D::Density), "1000", "Density of the wall."),
-    default("base", Table(BASE), "{ x = 0, y = 0, angle = 0 }", "Place and angle of the section at s = 0."),
+    default("base", Table(BASE), "{ x = 0, y = 0, angle = 0 }", "Position and angle of the section at s = 0."),
 ];
 
 const BASE: &[Key] = &[
@@ -94,7 +98,7 @@ pub(crate) const HOMOGENEOUS: [&str; 3] = ["young", "poisson", "shear_factor"];
 pub(crate) const COEFFICIENTS: [&str; 3] = ["c1", "c2", "c3"];
 
 const MATERIAL: &[Key] = &[
-    optional("young", Quantity(D::Pressure), "Young's modulus E. Required unless c1, c2 and c3 are given."),
+    optional("young", Quantity(D::Pressure), "Young's modulus E."),
     default("poisson", Quantity(D::Number), "0.5", "Poisson's ratio."),
     default("shear_factor", Quantity(D::Number), "1.0", "Timoshenko's shear correction."),
     optional("c1", Profile(D::Pressure), "Stiffness against stretch."),
@@ -109,29 +113,20 @@ const REFERENCE: &[Key] = &[
 ];
 
 const CABLE: &[Key] = &[
-    optional("name", Text, "A name for people. Default: its index."),
+    optional("name", Text, "Name of the cable. Default: its index."),
     default(
         "offset",
-        Profile(D::Length),
+        Offset(D::Length),
         "{ base = 0.005, tip = 0.001 }",
-        "Signed offset in the straight arm, positive is left; inside the section as far as the cable runs.",
+        "Offset from the centreline, left positive, or a share of the radius: \"70 %\".",
     ),
-    default("tension", Quantity(D::Force), "0", "Tension at the base, not negative; or stroke."),
-    optional(
-        "stroke",
-        Quantity(D::Length),
-        "In place of the tension: the length that is reeled in, of the cable's length in the unloaded arm; negative is paid out.",
-    ),
-    optional("stiffness", Quantity(D::Force), "EA of an elastic cable, with a stroke. Left out: it does not stretch."),
-    default("friction", Quantity(D::Number), "0", "Coefficient of friction against its channel, at most 2."),
-    default(
-        "motion",
-        Choice(&["in", "out"]),
-        "\"in\"",
-        "Which way it slid last, with friction: reeled in or paid out.",
-    ),
-    optional("max_tension", Quantity(D::Force), "The largest tension that makes sense."),
-    default("end", Quantity(D::Number), "1.0", "Where it is anchored, as a fraction of the length in (0, 1]."),
+    default("tension", Quantity(D::Force), "0", "Tension at the base. Either this or stroke."),
+    optional("stroke", Quantity(D::Length), "Length reeled in, measured from the unloaded arm; negative: paid out."),
+    optional("stiffness", Quantity(D::Force), "EA of an elastic cable with a stroke. Default: it does not stretch."),
+    default("friction", Quantity(D::Number), "0", "Friction coefficient in its channel, at most 2."),
+    default("motion", Choice(&["in", "out"]), "\"in\"", "With friction: direction of the last sliding."),
+    optional("max_tension", Quantity(D::Force), "Largest tension; more is refused."),
+    default("end", Part, "1.0", "Anchor: a fraction of the length in (0, 1], or a length: \"98 mm\"."),
 ];
 
 /// Either of them, not both.
@@ -145,14 +140,14 @@ const FLOW: &[Key] = &[
     default("direction", Quantity(D::Angle), "0", "Direction of the free stream, from e1."),
     default("density", Quantity(D::Density), "1000", "Density of the water; 0 is a vacuum."),
     default("layer_thickness", Quantity(D::Length), "0.005", "Thickness of the boundary layer h_inf."),
-    default("law", Choice(&["momentum", "quadratic-drag"]), "\"momentum\"", "How the stream loads the arm."),
-    optional("cn", Quantity(D::Number), "Normal drag coefficient. Required by quadratic-drag, unused otherwise."),
-    optional("ct", Quantity(D::Number), "Tangential drag coefficient. Required by quadratic-drag, unused otherwise."),
+    default("law", Choice(&["momentum", "quadratic-drag"]), "\"momentum\"", "Law of the load of the stream."),
+    optional("cn", Quantity(D::Number), "Normal drag coefficient, of quadratic-drag only."),
+    optional("ct", Quantity(D::Number), "Tangential drag coefficient, of quadratic-drag only."),
 ];
 
 const GRAVITY: &[Key] = &[
     default("acceleration", Quantity(D::Acceleration), "9.81", "Acceleration of gravity in the plane."),
-    default("direction", Quantity(D::Angle), "-90", "Its direction, from e1."),
+    default("direction", Quantity(D::Angle), "-90", "Direction, from e1."),
 ];
 
 const TIP: &[Key] = &[
@@ -167,20 +162,15 @@ const DISTRIBUTED: &[Key] = &[
 ];
 
 const MODEL: &[Key] = &[
-    default(
-        "closure",
-        Choice(&["default", "literal"]),
-        "\"default\"",
-        "All readings together, but `displaced`: `literal` has those closest to the source's words.",
-    ),
-    optional("volume", Choice(&Volume::NAMES), "How a section swells."),
-    optional("flow_surface", Choice(&FlowSurface::NAMES), "The surface that directs the loads of the stream."),
-    optional("entering_speed", Choice(&EnteringSpeed::NAMES), "The speed that enters the layer."),
-    optional("layer_mean", Choice(&LayerMean::NAMES), "The mean over the layer's profile."),
-    optional("wetted_length", Choice(&WettedLength::NAMES), "The length on which the stream acts."),
-    optional("displaced", Choice(&Displaced::NAMES), "The water that a section displaces."),
-    optional("hydrostatics", Choice(&Hydrostatics::NAMES), "The part of weight and buoyancy that acts."),
-    optional("support", Choice(&Support::NAMES), "The conditions at the base."),
+    default("closure", Choice(&["default", "literal"]), "\"default\"", "All options below together, except `displaced`."),
+    optional("volume", Choice(&Volume::NAMES), "Volume law: how a section widens under compression."),
+    optional("flow_surface", Choice(&FlowSurface::NAMES), "Surface that gives the direction of the load."),
+    optional("entering_speed", Choice(&EnteringSpeed::NAMES), "Speed that enters the boundary layer."),
+    optional("layer_mean", Choice(&LayerMean::NAMES), "Mean over the profile of the boundary layer."),
+    optional("wetted_length", Choice(&WettedLength::NAMES), "Length on which the stream acts."),
+    optional("displaced", Choice(&Displaced::NAMES), "Water that a section displaces."),
+    optional("hydrostatics", Choice(&Hydrostatics::NAMES), "Weight and buoyancy: in full, or normal to the arm."),
+    optional("support", Choice(&Support::NAMES), "Conditions at the base."),
 ];
 
 /// The keys of a profile given at both ends.
@@ -206,6 +196,11 @@ impl Kind {
                 )
             }
             ProfilePair(_) => "two profiles [_, _]".to_owned(),
+            Offset(dimension) => {
+                format!("{}; or a share of the radius, such as \"70 %\"", Profile(dimension).expected())
+            }
+            Part => "a fraction of the length (a number, or a string such as \"40 %\"), or a length such as \"98 mm\""
+                .to_owned(),
             Table(keys) => format!("a table with {}", names(keys)),
             Tables(keys) => format!("[[cable]] tables, each with {}", names(keys)),
         }
@@ -247,9 +242,9 @@ pub(crate) fn dimension_at(key: &str) -> Option<Dimension> {
         match keys.iter().find(|key| key.name == name)?.kind {
             Table(inner) | Tables(inner) if !last => keys = inner,
             Quantity(dimension) | Pair(dimension) if last && !end => found = Some(dimension),
-            Profile(dimension) | ProfilePair(dimension) if last => {
-                let place =
-                    matches!(keys.iter().find(|key| key.name == name)?.kind, Profile(_)) && indices.ends_with("][0]");
+            Part if last && !end => found = Some(Dimension::Number),
+            kind @ (Profile(dimension) | Offset(dimension) | ProfilePair(dimension)) if last => {
+                let place = !matches!(kind, ProfilePair(_)) && indices.ends_with("][0]");
                 found = Some(if place { Dimension::Length } else { dimension });
             }
             _ => return None,
@@ -289,6 +284,61 @@ pub(crate) fn home_of(name: &str) -> Option<String> {
         })
     }
     search(FILE, name, "")
+}
+
+/// Names that people look for, and the keys that they mean.
+const SYNONYMS: [(&str, &str); 31] = [
+    ("e", "material.young"),
+    ("youngs_modulus", "material.young"),
+    ("young_modulus", "material.young"),
+    ("young's_modulus", "material.young"),
+    ("elastic_modulus", "material.young"),
+    ("modulus", "material.young"),
+    ("stiffness", "material.young"),
+    ("poisson_ratio", "material.poisson"),
+    ("poissons_ratio", "material.poisson"),
+    ("base_radius", "arm.radius.base"),
+    ("radius_base", "arm.radius.base"),
+    ("tip_radius", "arm.radius.tip"),
+    ("radius_tip", "arm.radius.tip"),
+    ("r", "arm.radius"),
+    ("diameter", "arm.radius"),
+    ("l", "arm.length"),
+    ("arm_length", "arm.length"),
+    ("rho", "arm.density"),
+    ("velocity", "flow.speed"),
+    ("flow_speed", "flow.speed"),
+    ("u", "flow.speed"),
+    ("v", "flow.speed"),
+    ("cd", "flow.cn"),
+    ("c_n", "flow.cn"),
+    ("c_t", "flow.ct"),
+    ("fluid", "flow"),
+    ("water", "flow"),
+    ("cables", "cable"),
+    ("tendon", "cable"),
+    ("tendons", "cable"),
+    ("g", "gravity.acceleration"),
+];
+
+/// The key that is meant by a name that people look for.
+pub(crate) fn synonym(name: &str) -> Option<&'static str> {
+    let plain = name.to_lowercase().replace(['-', ' '], "_");
+    SYNONYMS.iter().find(|(own, _)| *own == plain).map(|(_, key)| *key)
+}
+
+/// A key with its indices in brackets: `cable.0.tension` is `cable[0].tension`.
+pub(crate) fn bracketed(key: &str) -> String {
+    let mut out = String::with_capacity(key.len() + 2);
+    for (k, step) in key.split('.').enumerate() {
+        let is_index = k > 0 && !step.is_empty() && step.bytes().all(|byte| byte.is_ascii_digit());
+        match (is_index, k) {
+            (true, _) => out.extend(["[", step, "]"]),
+            (false, 0) => out.push_str(step),
+            (false, _) => out.extend([".", step]),
+        }
+    }
+    out
 }
 
 /// The name of `candidates` that `name` is most likely a slip of.

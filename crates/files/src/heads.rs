@@ -105,14 +105,16 @@ fn key_in(keys: &[Key], text: &str) -> Option<String> {
         let rest = text.strip_prefix(key.name)?;
         let rest = if rest.is_empty() { None } else { Some(rest.strip_prefix('_')?) };
         match key.kind {
-            Kind::Text | Kind::Choice(_) | Kind::Quantity(_) => rest.is_none().then(|| key.name.to_owned()),
+            Kind::Text | Kind::Choice(_) | Kind::Quantity(_) | Kind::Part => {
+                rest.is_none().then(|| key.name.to_owned())
+            }
             Kind::Table(inner) => Some(format!("{}.{}", key.name, key_in(inner, rest?)?)),
             Kind::Tables(inner) => {
                 let (index, rest) = rest?.split_once('_')?;
                 Some(format!("{}[{}].{}", key.name, number(index)?, key_in(inner, rest)?))
             }
             Kind::Pair(_) => Some(format!("{}[{}]", key.name, number(rest?)?)),
-            Kind::Profile(_) => in_profile(key.name.to_owned(), rest),
+            Kind::Profile(_) | Kind::Offset(_) => in_profile(key.name.to_owned(), rest),
             Kind::ProfilePair(_) => {
                 let (index, rest) = rest?.split_once('_').map_or((rest?, None), |(index, rest)| (index, Some(rest)));
                 in_profile(format!("{}[{}]", key.name, number(index)?), rest)
@@ -146,11 +148,11 @@ mod tests {
         for key in keys {
             let here = if path.is_empty() { key.name.to_owned() } else { format!("{path}.{}", key.name) };
             match key.kind {
-                Kind::Text | Kind::Choice(_) | Kind::Quantity(_) => out.push(here),
+                Kind::Text | Kind::Choice(_) | Kind::Quantity(_) | Kind::Part => out.push(here),
                 Kind::Table(inner) => self::keys(inner, &here, out),
                 Kind::Tables(inner) => self::keys(inner, &format!("{here}[12]"), out),
                 Kind::Pair(_) => out.push(format!("{here}[1]")),
-                Kind::Profile(_) => {
+                Kind::Profile(_) | Kind::Offset(_) => {
                     out.extend(["", ".base", ".tip", "[3][0]", "[3][1]"].map(|end| format!("{here}{end}")));
                 }
                 Kind::ProfilePair(_) => out.extend(["[0]", "[1].tip", "[1][2][1]"].map(|end| format!("{here}{end}"))),

@@ -368,6 +368,20 @@ impl DecimalText<'_> {
     }
 }
 
+/// What a share such as "70 %" is of one.
+pub(crate) fn percent(text: &str) -> Option<f64> {
+    let (number, unit) = split(text.trim())?;
+    if unit == "%" { number.in_si(Decimal(-2)) } else { None }
+}
+
+/// The number that a text is, without a unit.
+pub(crate) fn bare_number(text: &str) -> Option<f64> {
+    match split(text.trim())? {
+        (number, "") => number.in_si(Decimal(0)),
+        _ => None,
+    }
+}
+
 /// The number at the start of `text`, `None` where it is too large, and what stands behind it.
 pub(crate) fn parted(text: &str) -> Option<(Option<f64>, &str)> {
     split(text.trim()).map(|(number, unit)| (number.in_si(Decimal(0)), unit))

@@ -8,6 +8,7 @@ use hydrostat::{ArmError, Join, Profile};
 use crate::document::{Entry, Field, Node, Origin, segment};
 use crate::format::{self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, JOINED, Key, Kind, MAX_CABLES, MAX_POINTS, PULL};
 use crate::quantity::Dimension;
+use crate::relative::resolved;
 
 /// What is wrong, without the names of files.
 #[derive(Debug)]
@@ -38,30 +39,91 @@ pub(crate) enum Value {
     Group,
 }
 
-/// All values of a file by dotted key, and where they were written.
+/// The most that is said of one file: who has more mends these first.
+pub(crate) const MOST_FAULTS: usize = 50;
+
+/// What is asked of several keys of a table at once.
+type Check = fn(&Values) -> Result<(), Fault>;
+
+/// All values of a file by dotted key, where they were written, and what is wrong with the others.
 #[derive(Debug, Default)]
 pub(crate) struct Values {
-    values: HashMap<String, (Value, Origin)>,
+    found: HashMap<String, (Value, Origin)>,
+    faults: Vec<Fault>,
     /// How many cables there are.
     pub(crate) cables: usize,
 }
 
 impl Values {
     /// Reads a file's fields.
-    pub(crate) fn read(fields: &[Field]) -> Result<Self, Fault> {
+    pub(crate) fn read(fields: &[Field]) -> Self {
         let mut values = Self::default();
-        values.table("", format::FILE, fields, Origin::Text(0))?;
-        values.check_material()?;
-        values.check_drag()?;
-        values.check_pull()?;
-        Ok(values)
+        values.table("", format::FILE, &resolved(fields), Origin::Text(0));
+        // What a key of a table should be is open while another is wrong.
+        let checks: [(&str, Check); 3] =
+            [("material", Self::check_material), ("flow", Self::check_drag), ("cable", Self::check_pull)];
+        for (table, check) in checks {
+            if !values.is_faulty(table)
+                && let Err(fault) = check(&values)
+            {
+                values.faults.push(fault);
+            }
+        }
+        values
+    }
+
+    /// What is wrong, in the order in which it was met.
+    pub(crate) fn into_faults(self) -> Vec<Fault> {
+        self.faults
+    }
+
+    /// What was wrong first, if anything was.
+    pub(crate) fn take_first_fault(&mut self) -> Option<Fault> {
+        (!self.faults.is_empty()).then(|| self.faults.swap_remove(0))
+    }
+
+    /// Whether a key, or one below it, is wrong.
+    pub(crate) fn is_faulty(&self, key: &str) -> bool {
+        self.faults.iter().any(|fault| {
+            fault.key.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        })
+    }
+
+    /// Takes a value out that the core refuses, so that it can be asked about the others; false where an arm needs it.
+    pub(crate) fn set_aside(&mut self, key: &str) -> bool {
+        let needed = |key: &str| ["arm.length", "arm.radius"].contains(&key) || key.starts_with("material");
+        let mut key = key;
+        loop {
+            if needed(key) {
+                return false;
+            }
+            match self.found.get_mut(key) {
+                Some((Value::Group, _)) => return false,
+                // The default of an offset need not be inside the section.
+                Some((Value::Profile(profile), _)) => {
+                    let changed = *profile != Profile::Constant(0.0);
+                    *profile = Profile::Constant(0.0);
+                    return changed;
+                }
+                Some(_) => return self.found.remove(key).is_some(),
+                None => match key.rfind(['.', '[']) {
+                    Some(end) => key = &key[..end],
+                    None => return false,
+                },
+            }
+        }
+    }
+
+    /// A profile, where it is one.
+    pub(crate) fn profile_of(&mut self, dimension: Dimension, entry: &Entry) -> Option<Profile> {
+        self.profile_at("", Kind::Profile(dimension), dimension, entry).ok()
     }
 
     /// Where `key` was written, or else the nearest table around it.
     pub(crate) fn origin(&self, key: &str) -> Origin {
         let mut key = key;
         loop {
-            if let Some((_, origin)) = self.values.get(key) {
+            if let Some((_, origin)) = self.found.get(key) {
                 return *origin;
             }
             match key.rfind(['.', '[']) {
@@ -72,66 +134,78 @@ impl Values {
     }
 
     pub(crate) fn has(&self, key: &str) -> bool {
-        self.values.contains_key(key)
+        self.found.contains_key(key)
     }
 
     pub(crate) fn text(&self, key: &str) -> Option<String> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Text(text), _)) => Some(text.clone()),
             _ => None,
         }
     }
 
     pub(crate) fn word(&self, key: &str) -> Option<&'static str> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Word(word), _)) => Some(word),
             _ => None,
         }
     }
 
     pub(crate) fn number(&self, key: &str) -> Option<f64> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Number(value), _)) => Some(*value),
             _ => None,
         }
     }
 
     pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Pair(pair), _)) => Some(*pair),
             _ => None,
         }
     }
 
     pub(crate) fn profile(&self, key: &str) -> Option<Profile> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Profile(profile), _)) => Some(profile.clone()),
             _ => None,
         }
     }
 
     pub(crate) fn profiles(&self, key: &str) -> Option<[Profile; 2]> {
-        match self.values.get(key) {
+        match self.found.get(key) {
             Some((Value::Profiles(profiles), _)) => Some(profiles.clone()),
             _ => None,
         }
     }
 
-    fn table(&mut self, path: &str, keys: &'static [Key], fields: &[Field], at: Origin) -> Result<(), Fault> {
+    fn table(&mut self, path: &str, keys: &'static [Key], fields: &[Field], at: Origin) {
+        let mut meant: Vec<String> = Vec::new();
         for field in fields {
+            if self.faults.len() >= MOST_FAULTS {
+                return;
+            }
             let here = join(path, &field.name);
-            let Some(key) = keys.iter().find(|k| k.name == field.name) else {
-                return Err(unknown(field.origin, here, &field.name, keys));
+            let read = match keys.iter().find(|k| k.name == field.name) {
+                Some(key) => self.value(&here, key.kind, &field.entry),
+                None => Err(unknown(field.origin, here, &field.name, keys)),
             };
-            self.value(&here, key.kind, &field.entry)?;
-        }
-        for key in keys.iter().filter(|k| k.required) {
-            if !fields.iter().any(|f| f.name == key.name) {
-                let expected = key.kind.expected();
-                return Err(Fault { origin: at, key: join(path, key.name), kind: FaultKind::Missing { expected } });
+            if let Err(fault) = read {
+                if let FaultKind::Unknown { suggestion: Some(suggestion), .. } = &fault.kind {
+                    meant.push(suggestion.clone());
+                }
+                self.faults.push(fault);
             }
         }
-        Ok(())
+        for key in keys.iter().filter(|k| k.required) {
+            let here = join(path, key.name);
+            // A key that is there under a wrong name is not missing as well.
+            let is_meant = meant.iter().any(|one| one == key.name || one.starts_with(&here));
+            if !is_meant && !fields.iter().any(|f| f.name == key.name) {
+                let expected = key.kind.expected();
+                self.faults.push(Fault { origin: at, key: here, kind: FaultKind::Missing { expected } });
+            }
+        }
     }
 
     fn value(&mut self, path: &str, kind: Kind, entry: &Entry) -> Result<(), Fault> {
@@ -149,16 +223,24 @@ impl Values {
                 ]),
                 _ => return Err(refuse(path, kind, entry)),
             },
-            (Kind::Profile(dimension), _) => Value::Profile(self.profile_at(path, dimension, entry)?),
+            (Kind::Part, Node::Number(_)) => Value::Number(quantity(path, Dimension::Number, entry)?),
+            (Kind::Part, Node::Text(text)) => {
+                let tip = if text.trim() == "tip" { "; at the tip it is 1.0" } else { "" };
+                let found = format!("{}{tip}", entry.node.describe());
+                return Err(value_fault(path, entry.origin, kind.expected(), found));
+            }
+            (Kind::Profile(dimension) | Kind::Offset(dimension), _) => {
+                Value::Profile(self.profile_at(path, kind, dimension, entry)?)
+            }
             (Kind::ProfilePair(dimension), Node::Array(entries)) => match entries.as_slice() {
                 [a, b] => Value::Profiles([
-                    self.profile_at(&format!("{path}[0]"), dimension, a)?,
-                    self.profile_at(&format!("{path}[1]"), dimension, b)?,
+                    self.profile_at(&format!("{path}[0]"), Kind::Profile(dimension), dimension, a)?,
+                    self.profile_at(&format!("{path}[1]"), Kind::Profile(dimension), dimension, b)?,
                 ]),
                 _ => return Err(refuse(path, kind, entry)),
             },
             (Kind::Table(keys), Node::Table(fields)) => {
-                self.table(path, keys, fields, entry.origin)?;
+                self.table(path, keys, fields, entry.origin);
                 Value::Group
             }
             (Kind::Tables(keys), Node::Array(entries)) => {
@@ -169,21 +251,23 @@ impl Values {
                 for (i, element) in entries.iter().enumerate() {
                     let here = format!("{path}[{i}]");
                     let Node::Table(fields) = &element.node else {
-                        return Err(refuse(&here, Kind::Table(keys), element));
+                        self.faults.push(refuse(&here, Kind::Table(keys), element));
+                        continue;
                     };
-                    self.table(&here, keys, fields, element.origin)?;
-                    self.values.insert(here, (Value::Group, element.origin));
+                    self.table(&here, keys, fields, element.origin);
+                    self.found.insert(here, (Value::Group, element.origin));
                 }
                 self.cables = entries.len();
                 Value::Group
             }
             _ => return Err(refuse(path, kind, entry)),
         };
-        self.values.insert(path.to_owned(), (value, entry.origin));
+        self.found.insert(path.to_owned(), (value, entry.origin));
         Ok(())
     }
 
-    fn profile_at(&mut self, path: &str, dimension: Dimension, entry: &Entry) -> Result<Profile, Fault> {
+    /// `kind` is that of the profile, whose values are of `dimension`.
+    fn profile_at(&mut self, path: &str, kind: Kind, dimension: Dimension, entry: &Entry) -> Result<Profile, Fault> {
         let profile = match &entry.node {
             Node::Table(fields) if fields.iter().any(|field| JOINED.contains(&field.name.as_str())) => {
                 joined(path, dimension, entry, fields)?
@@ -210,16 +294,14 @@ impl Values {
             Node::Array(points) => profile_table(path, dimension, entry, points, Join::Cubic)?,
             Node::Number(_) | Node::Text(_) => {
                 quantity(path, dimension, entry).map(Profile::Constant).map_err(|fault| match fault.kind {
-                    FaultKind::Value { found, .. } => {
-                        value_fault(path, entry.origin, Kind::Profile(dimension).expected(), found)
-                    }
+                    FaultKind::Value { found, .. } => value_fault(path, entry.origin, kind.expected(), found),
                     _ => fault,
                 })?
             }
-            _ => return Err(refuse(path, Kind::Profile(dimension), entry)),
+            _ => return Err(refuse(path, kind, entry)),
         };
         // Under its own key as well, because the core names the two profiles of a pair one by one.
-        self.values.insert(path.to_owned(), (Value::Profile(profile.clone()), entry.origin));
+        self.found.insert(path.to_owned(), (Value::Profile(profile.clone()), entry.origin));
         Ok(profile)
     }
 
@@ -361,8 +443,8 @@ pub(crate) fn join(path: &str, name: &str) -> String {
 
 /// A key that is not in `keys`, with the one that was probably meant.
 pub(crate) fn unknown(origin: Origin, path: String, name: &str, keys: &'static [Key]) -> Fault {
-    let near = format::nearest(name, keys.iter().map(|k| k.name));
-    let suggestion = near.map(str::to_owned).or_else(|| format::home_of(name));
+    let near = || format::nearest(name, keys.iter().map(|k| k.name));
+    let suggestion = format::synonym(name).or_else(near).map(str::to_owned).or_else(|| format::home_of(name));
     let expected = format!("one of {}", format::names(keys));
     Fault { origin, key: path, kind: FaultKind::Unknown { expected, suggestion } }
 }
@@ -373,6 +455,11 @@ pub(crate) fn value_fault(key: &str, origin: Origin, expected: String, found: St
 
 fn refuse(path: &str, kind: Kind, entry: &Entry) -> Fault {
     value_fault(path, entry.origin, kind.expected(), entry.node.describe())
+}
+
+/// A number, where it is one.
+pub(crate) fn quantity_at(dimension: Dimension, entry: &Entry) -> Option<f64> {
+    quantity("", dimension, entry).ok()
 }
 
 fn quantity(path: &str, dimension: Dimension, entry: &Entry) -> Result<f64, Fault> {

@@ -99,6 +99,13 @@ fn kind(kind: Kind) -> Value {
         Kind::Pair(d) => pair(id("quantity", d)),
         Kind::Profile(d) => json!({ "$ref": format!("#/$defs/{}", id("profile", d)) }),
         Kind::ProfilePair(d) => pair(id("profile", d)),
+        Kind::Offset(d) => along(&json!({
+            "anyOf": [{ "$ref": format!("#/$defs/{}", id("quantity", d)) }, { "type": "string", "pattern": with_unit(&["%"]) }],
+        })),
+        Kind::Part => {
+            let units: Vec<&str> = Dimension::Length.spellings().chain(["%"]).collect();
+            json!({ "anyOf": [{ "type": "number" }, { "type": "string", "pattern": with_unit(&units) }] })
+        }
         Kind::Table(keys) => table(keys),
         Kind::Tables(keys) => json!({ "type": "array", "maxItems": MAX_CABLES, "items": table(keys) }),
     }
@@ -113,13 +120,18 @@ fn quantity(dimension: Dimension) -> Value {
     if dimension == Dimension::Number {
         return json!({ "type": "number" });
     }
-    let units: Vec<String> = dimension.spellings().map(escaped).collect();
-    // White space around and between is that of the parser; `\s` differs between engines.
-    let pattern = format!(r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*({})\s*$", units.join("|"));
+    let pattern = with_unit(&dimension.spellings().collect::<Vec<_>>());
     json!({
         "description": format!("{}; a bare number is in {}", dimension.name(), dimension.bare_unit()),
         "anyOf": [{ "type": "number" }, { "type": "string", "pattern": pattern }],
     })
+}
+
+/// A number with one of these units.
+fn with_unit(units: &[&str]) -> String {
+    let units: Vec<String> = units.iter().map(|unit| escaped(unit)).collect();
+    // White space around and between is that of the parser; `\s` differs between engines.
+    format!(r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*({})\s*$", units.join("|"))
 }
 
 fn escaped(unit: &str) -> String {
@@ -127,7 +139,11 @@ fn escaped(unit: &str) -> String {
 }
 
 fn profile(dimension: Dimension) -> Value {
-    let value = json!({ "$ref": format!("#/$defs/{}", id("quantity", dimension)) });
+    along(&json!({ "$ref": format!("#/$defs/{}", id("quantity", dimension)) }))
+}
+
+/// Such a value along the arm.
+fn along(value: &Value) -> Value {
     let place = json!({ "$ref": format!("#/$defs/{}", id("quantity", Dimension::Length)) });
     let points = json!({
         "type": "array",

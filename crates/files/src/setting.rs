@@ -4,6 +4,7 @@ use hydrostat::Join;
 
 use crate::document::{Entry, Field, Node, Origin, parse_setting};
 use crate::format::{self, JOINED, Key, Kind};
+use crate::quantity::{Dimension, bare_number};
 use crate::reading::{Fault, join, unknown, value_fault};
 
 /// One step of a dotted path.
@@ -17,7 +18,7 @@ enum Step {
 /// number of the override.
 pub(crate) fn apply(fields: &mut Vec<Field>, key: &str, value: &str, index: usize) -> Result<(), Fault> {
     let origin = Origin::Setting(index);
-    let steps = path(key).ok_or_else(|| {
+    let steps = path(&format::bracketed(key.trim())).ok_or_else(|| {
         let expected = "a dotted key such as flow.speed or cable[0].tension".to_owned();
         value_fault("KEY", origin, expected, format!("\"{}\"", crate::error::shortened(key)))
     })?;
@@ -33,7 +34,9 @@ struct Target<'a> {
 impl Target<'_> {
     fn node(&self, kind: Kind) -> Node {
         match (kind, parse_setting(self.value, self.index)) {
-            (_, text @ Node::Text(_)) => text,
+            // What TOML does not take for a number may be one: .1, 0., 5.e-2.
+            (Kind::Text | Kind::Choice(_), text @ Node::Text(_)) => text,
+            (_, text @ Node::Text(_)) => bare_number(self.value).map_or(text, Node::Number),
             // A name may look like a number.
             (Kind::Text, _) => Node::Text(self.value.to_owned()),
             (_, node) => node,
@@ -83,6 +86,11 @@ fn into_value(entry: &mut Entry, path: &str, kind: Kind, steps: &[Step], target:
     let [step, rest @ ..] = steps else {
         *entry = Entry { node: target.node(kind), origin: target.origin };
         return Ok(());
+    };
+    let kind = match kind {
+        Kind::Offset(dimension) => Kind::Profile(dimension),
+        Kind::Part => Kind::Quantity(Dimension::Number),
+        other => other,
     };
     let whole = |entry: &Entry, what: &str| {
         target.refuse(path, format!("{what}; set {path} as a whole"), entry.node.describe())
@@ -155,7 +163,7 @@ fn into_value(entry: &mut Entry, path: &str, kind: Kind, steps: &[Step], target:
         (Kind::Table(_) | Kind::Tables(_) | Kind::Pair(_) | Kind::ProfilePair(_), _, _) => {
             Err(target.refuse(path, kind.expected(), entry.node.describe()))
         }
-        (Kind::Text | Kind::Choice(_) | Kind::Quantity(_), ..) => {
+        (Kind::Text | Kind::Choice(_) | Kind::Quantity(_) | Kind::Offset(_) | Kind::Part, ..) => {
             Err(target.refuse(path, "the end of the key", "more of it"))
         }
     }

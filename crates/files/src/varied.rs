@@ -7,9 +7,9 @@ use hydrostat::parameter::{UnknownParameter, names};
 
 use crate::digits::number;
 use crate::error::shortened;
-use crate::format::{dimension_at, home_of, nearest};
+use crate::format::{bracketed, dimension_at, home_of, nearest, synonym};
 use crate::heads::head_of;
-use crate::quantity::{Dimension, WrongValue};
+use crate::quantity::{Dimension, WrongValue, parted};
 use crate::shared_unit::{PartialUnit, bare, shared_unit};
 
 /// One quantity of an arm and the range over which it is to vary.
@@ -59,6 +59,19 @@ pub enum VariedError {
     /// A unit behind one end.
     #[error(transparent)]
     Unit(#[from] PartialUnit),
+    /// A number of values, where there are as many as it takes.
+    #[error(
+        "{}: expected {}=FROM:TO, found a COUNT behind the range: a path has as many points as it needs; for equally spaced values see \
+         `hydrostat sweep --vary` and `hydrostat equilibria --over`",
+        shortened(.text),
+        shortened(.key)
+    )]
+    Count {
+        /// The quantity.
+        key: String,
+        /// What was given.
+        text: String,
+    },
     /// A range without length.
     #[error("{}: expected a range with two different ends, found \"{}\" twice", shortened(.key), shortened(.text))]
     Empty {
@@ -82,6 +95,10 @@ impl FromStr for Varied {
         let parameter = parameter(key.trim())?;
         let (from, to) = range.split_once(':').ok_or_else(form)?;
         let key = parameter.to_string();
+        let parts = to.split(':').map(|part| part.trim().trim_matches('"'));
+        if to.contains(':') && parts.clone().all(|part| parted(part).is_some()) {
+            return Err(VariedError::Count { key, text: text.to_owned() });
+        }
         let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
         let texts = shared_unit(dimension, &key, &[from, to], ":")?;
         let ends = [dimension.value_of(&key, &texts[0])?, dimension.value_of(&key, &texts[1])?];
@@ -95,11 +112,13 @@ impl FromStr for Varied {
 }
 
 fn parameter(key: &str) -> Result<Parameter, VariedError> {
-    key.parse().map_err(|source| {
+    bracketed(key).parse().map_err(|source| {
         let known = names();
-        let slip = nearest(key, known.iter().map(String::as_str)).map(str::to_owned);
-        let last = || home_of(key.rsplit('.').next().unwrap_or(key)).filter(|home| known.contains(home));
-        VariedError::Unknown { suggestion: slip.or_else(last), source }
+        let last = key.rsplit('.').next().unwrap_or(key);
+        let meant = synonym(last).map(str::to_owned).filter(|meant| known.contains(meant));
+        let slip = || nearest(key, known.iter().map(String::as_str)).map(str::to_owned);
+        let home = || home_of(last).filter(|home| known.contains(home));
+        VariedError::Unknown { suggestion: meant.or_else(slip).or_else(home), source }
     })
 }
 
@@ -153,6 +172,7 @@ mod tests {
         let half = std::f64::consts::FRAC_PI_2;
         for (text, range, unit) in [
             ("cable[0].tension=0:100", [0.0, 100.0], "N"),
+            ("cable.0.tension=0:100", [0.0, 100.0], "N"),
             ("cable[1].tension = 0 N : 1 kN", [0.0, 1000.0], "N"),
             ("cable[0].tension=\"0:200 mN\"", [0.0, 0.2], "mN"),
             ("flow.speed=0:36 km/h", [0.0, 10.0], "km/h"),
@@ -196,6 +216,8 @@ mod tests {
             assert!(error(text).contains("expected KEY=FROM:TO"), "{text}");
         }
         assert!(error("flow.sped=0:1").ends_with("did you mean `flow.speed`?"));
+        assert!(error("E=0:1").ends_with("did you mean `material.young`?"));
+        assert!(error("flow.speed=0:1:20").contains("found a COUNT behind the range"));
         assert!(error("tension=0:1").ends_with("did you mean `cable[0].tension`?"));
         assert!(error("arm.length=0:1").contains("those are cable[0].tension, cable[0].stroke, flow.speed"));
         assert!(error("flow.speed=0:1 N").contains("expected a speed"));

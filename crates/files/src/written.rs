@@ -14,7 +14,7 @@ pub struct Inputs(Tree);
 impl Inputs {
     /// Of this arm.
     pub fn new(arm: &Arm) -> Self {
-        Self(tree(arm, &|rad| Tree::Number(nearest_degrees(rad))))
+        Self(plain_tree(arm))
     }
 }
 
@@ -82,7 +82,7 @@ fn assign(out: &mut String, name: &str, value: &Tree) {
 
 /// Values in the order in which they are written.
 #[derive(Debug, Clone, PartialEq)]
-enum Tree {
+pub(crate) enum Tree {
     Text(String),
     Number(f64),
     Array(Vec<Tree>),
@@ -116,7 +116,7 @@ impl Tree {
         }
     }
 
-    fn write_toml(&self, out: &mut String) {
+    pub(crate) fn write_toml(&self, out: &mut String) {
         match self {
             Self::Text(text) => write_string(out, text),
             Self::Number(value) => {
@@ -184,6 +184,11 @@ fn nearest_degrees(rad: f64) -> f64 {
     let rounded: Option<f64> = format!("{degrees:.14e}").parse().ok();
     let candidates = [rounded.unwrap_or(degrees), degrees, degrees.next_down(), degrees.next_up()];
     candidates.into_iter().find(|d| d.to_radians().to_bits() == rad.to_bits()).unwrap_or(degrees)
+}
+
+/// An arm as values, angles in degrees.
+pub(crate) fn plain_tree(arm: &Arm) -> Tree {
+    tree(arm, &|rad| Tree::Number(nearest_degrees(rad)))
 }
 
 fn tree(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
@@ -300,7 +305,8 @@ fn flow(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
     Tree::Table(keys)
 }
 
-fn model(r: Readings) -> Tree {
+/// The readings by their words.
+pub(crate) fn model(r: Readings) -> Tree {
     let words = [
         ("volume", r.volume.name()),
         ("flow_surface", r.flow_surface.name()),

@@ -84,7 +84,12 @@ fn added_keys_types_and_units() {
         ("[flow]\nspeed = \"0.5 mph\"", 7, "flow.speed", &["the unit `mph` is not known"]),
         ("[flow]\ndirection = \"1 m\"", 7, "flow.direction", &["an angle (a number in degrees", "deg, rad"]),
         ("[gravity]\nacceleration = \"9.81 m/s\"", 7, "gravity.acceleration", &["an acceleration", "m/s2", "a speed"]),
-        ("[[cable]]\nend = \"50 mm\"", 7, "cable[0].end", &["a number without unit", "a length"]),
+        (
+            "[[cable]]\nend = \"50 kg\"",
+            7,
+            "cable[0].end",
+            &["a fraction of the length", "a length such as", "\"50 kg\""],
+        ),
         ("poisson = \"0.5\"", 6, "material.poisson", &["a number without unit", "found \"0.5\""]),
     ];
     check_added(cases);

@@ -239,21 +239,20 @@ impl Warning {
                 format!("the surface folds over itself at s = {s:.4} m: (nu - beta R |mu|)/nu is {margin:.3} there")
             }
             Self::StrainRange { nu, s } => format!(
-                "the stretch nu = {nu:.3} at s = {s:.4} m is outside [0.5, 1.5], beyond what a linear law can mean"
+                "the stretch nu = {nu:.3} at s = {s:.4} m is outside [0.5, 1.5], the range of a linear section law"
             ),
             Self::TensionAboveMax { cable, tension, max } => {
                 format!(
-                    "the stroke commanded of cable `{cable}` takes {tension:.4} N, more than its max_tension of {max} N"
+                    "the commanded stroke of cable `{cable}` needs {tension:.4} N, more than its max_tension of {max} N"
                 )
             }
             Self::SealedCavity => {
-                "the cavity is sealed: the pressure of the water outside, which would load the wall, is left out"
-                    .to_owned()
+                "the cavity is sealed: the pressure of the outside water on the wall is left out".to_owned()
             }
             Self::Snap(snap) => snap.message(),
             Self::TangentialLoad { ct, tip_shift } => format!(
-                "the shape hangs on the tangential load of the momentum law (C_t = {ct:.3} along the stream; published arms have \
-                 0.005 to {PUBLISHED_CT}): at {PUBLISHED_CT}/{ct:.3} of that load the tip would move by about {tip_shift:.3} of the length"
+                "the shape depends strongly on the tangential load of the momentum law (C_t = {ct:.3} along the stream; published values for \
+                 arms are 0.005 to {PUBLISHED_CT}): with C_t = {PUBLISHED_CT} the tip would move by about {tip_shift:.3} of the arm's length"
             ),
         }
     }

@@ -42,7 +42,7 @@ impl VerdictKind {
             Self::NoSectionSolution => "no section strains carry the contact force",
             Self::LimitPoint => "the equilibrium ends in a limit point",
             Self::LoadJump => "the load of the stream jumps against the motion",
-            Self::NotFound => "no further equilibrium was found and no physical limit established",
+            Self::NotFound => "no further equilibrium was found, and no physical limit was identified",
         }
     }
 }
@@ -73,13 +73,14 @@ impl Phase {
         }
     }
 
-    /// What is carried at a load fraction, in a phrase.
+    /// The loads that are applied at a load fraction, in a phrase.
     pub(crate) fn load_at(self, fraction: f64) -> String {
+        let share = percent(fraction);
         match self {
-            Self::Loads => format!("{fraction:.6} of the stream, weight, tip and distributed loads (cables slack)"),
-            Self::Tension => format!("{fraction:.6} of the tensions (all other loads whole)"),
-            Self::Stroke => format!("{fraction:.6} of the way from the slack cables' strokes to those commanded"),
-            Self::Friction => format!("{fraction:.6} of the friction of the cables"),
+            Self::Loads => format!("{share} of the stream, weight, tip and distributed loads, cables slack"),
+            Self::Tension => format!("{share} of the requested tensions, other loads fully applied"),
+            Self::Stroke => format!("{share} of the way from the strokes of slack cables to the requested strokes"),
+            Self::Friction => format!("{share} of the friction coefficients of the cables"),
         }
     }
 }
@@ -110,7 +111,7 @@ impl Verdict {
         let load = self.phase.load_at(self.load_fraction);
         if let Some(spent) = self.spent {
             return format!(
-                "no equilibrium was found past {load} in {spent} evaluations of the section law, which is all that a solve may take \
+                "no equilibrium was found beyond {load}, within {spent} evaluations of the section law, the most that one solve may make \
                  (last correction {:.1e} rad)",
                 self.residual
             );
@@ -123,7 +124,7 @@ impl Verdict {
             VerdictKind::LimitPoint => format!("{phrase} at {load}: the arm would snap to another shape"),
             VerdictKind::LoadJump => format!("{phrase}{place}, at {load}: no shape balances it in this reading"),
             VerdictKind::NotFound => format!(
-                "no equilibrium was found past {load}, and no physical limit was established (last correction {:.1e} rad)",
+                "no equilibrium was found beyond {load}, and no physical limit was identified (last correction {:.1e} rad)",
                 self.residual
             ),
         }
@@ -132,31 +133,47 @@ impl Verdict {
     /// What to try.
     pub fn advice(&self) -> &'static str {
         if self.spent.is_some() {
-            return "look at what `check` says of the file: sizes, units, or loads that are far beyond what the arm carries";
+            return "run `hydrostat check` on the file and look for a wrong unit, or for loads far beyond what the arm carries";
         }
         match self.kind {
             VerdictKind::CableFold if self.phase == Phase::Stroke => {
                 "wind in less, move the cable towards the centreline near that place, or stiffen the section there"
             }
             VerdictKind::SectionCrushed if self.phase == Phase::Stroke => {
-                "wind in less or stiffen the section; `none` keeps no volume"
+                "wind in less or stiffen the section; the volume law `none` does not conserve volume"
             }
             VerdictKind::CableFold => {
                 "lower the tension, move the cable towards the centreline near that place, or stiffen the section there"
             }
-            VerdictKind::SectionCrushed => "lower the tensions or stiffen the section; `none` keeps no volume",
+            VerdictKind::SectionCrushed => {
+                "lower the tensions or stiffen the section; the volume law `none` does not conserve volume"
+            }
             VerdictKind::NoSectionSolution => {
-                "lower the stream or the pull, or stiffen the section: the law softens in tension (planar: peak at nu = 2)"
+                "lower the flow speed or the axial load, or stiffen the section: the section law softens in tension (`planar` peaks at a stretch of 2)"
             }
             VerdictKind::LimitPoint => {
-                "stay below that load, or ask for the shape after the snap (`--follow-snaps`); `hydrostat path` and `equilibria` show the shapes beyond"
+                "stay below that load, or ask for the shape after the snap (`--follow-snaps`); `hydrostat path` and `hydrostat equilibria` show the shapes beyond it"
             }
             VerdictKind::LoadJump => {
-                "use `flow_surface = \"centreline\"` and `entering_speed = \"tangential\"`, the smooth readings"
+                "set `flow_surface = \"centreline\"` and `entering_speed = \"tangential\"`, with which the load is continuous"
             }
-            VerdictKind::NotFound => "loosen the tolerance, or lower the loads and raise them in steps",
+            VerdictKind::NotFound => "check the units, loosen the tolerance, or apply the loads in smaller steps",
         }
     }
+}
+
+/// A fraction as a percentage with three digits. What is below the whole is not rounded to it.
+fn percent(fraction: f64) -> String {
+    let percent = 100.0 * fraction;
+    if percent == 0.0 || !percent.is_finite() {
+        return format!("{percent} %");
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 12")]
+    let decimals = (2.0 - percent.abs().log10().floor()).clamp(0.0, 12.0) as usize;
+    let text = (decimals..12)
+        .map(|digits| format!("{percent:.digits$}"))
+        .find(|text| fraction == 1.0 || text.parse() != Ok(100.0));
+    format!("{} %", text.unwrap_or_else(|| percent.to_string()))
 }
 
 /// Why a solve gives no configuration at the loads asked for.
@@ -196,4 +213,24 @@ pub struct NoEquilibrium {
     pub after_snap: Option<Configuration>,
     /// With such a verdict: the shape at whole loads, if the path leads there. [`crate::Options::snaps`] without bounds gives it as an answer.
     pub at_full_loads: Option<Configuration>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::percent;
+
+    #[test]
+    fn percentages_have_three_digits() {
+        for (fraction, text) in [
+            (0.628_841, "62.9 %"),
+            (0.0, "0 %"),
+            (1.0, "100 %"),
+            (0.05, "5.00 %"),
+            (1.234e-6, "0.000123 %"),
+            (0.999_7, "99.97 %"),
+            (0.999_999_99, "99.999999 %"),
+        ] {
+            assert_eq!(percent(fraction), text);
+        }
+    }
 }

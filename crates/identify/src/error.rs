@@ -9,10 +9,10 @@ use crate::data::Quantity;
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum IdentifyError {
     /// Nothing to find.
-    #[error("no parameter is given to be fitted")]
+    #[error("no parameter to fit was given")]
     NoParameter,
     /// Nothing was measured.
-    #[error("there is no measured number")]
+    #[error("there is no measured value")]
     NoData,
     /// A parameter twice.
     #[error("`{0}` is given twice")]
@@ -60,7 +60,7 @@ pub enum IdentifyError {
         source: Unfit,
     },
     /// A case has no answer where the search starts.
-    #[error("case {case} has no answer where the search starts: {source}")]
+    #[error("case {case} has no equilibrium at the start values: {source}")]
     Start {
         /// The load case.
         case: String,
@@ -68,7 +68,7 @@ pub enum IdentifyError {
         source: Box<Trial>,
     },
     /// More to find than was measured, with `rescale`.
-    #[error("{measured} measured numbers for {parameters} parameters say nothing about the size of their errors")]
+    #[error("{measured} measured values do not determine {parameters} parameters and the size of the errors")]
     Freedom {
         /// Numbers measured.
         measured: usize,

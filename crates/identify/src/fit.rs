@@ -196,7 +196,7 @@ impl Fit {
 /// let young = Fitted { start: 80e3, ..Fitted::new(Parameter::Young, &arm).expect("a cone is homogeneous") };
 /// let found = fit(&cases, &[young], &FitOptions::default(), |_| true).expect("these can be solved");
 /// assert!((found.estimates[0].value / 110e3 - 1.0).abs() < 1e-6);
-/// assert_eq!(found.verdict(), ["the data tell all parameters apart"]);
+/// assert_eq!(found.verdict(), ["the data determine all parameters"]);
 /// # Ok::<(), hydrostat::SolveError>(())
 /// ```
 ///

@@ -114,16 +114,16 @@ fn joined(words: &[String], last: &str) -> String {
 impl Finding {
     /// In a sentence or two. `scale` has those of the parameters that were fitted.
     pub fn words(&self, scale: impl Fn(Parameter) -> Scale) -> String {
-        const HELP: &str = "Fix one of them, give a prior, or measure a case in which they act apart";
+        const HELP: &str = "Fix one of them, add a prior, or measure a case in which their effects differ";
         let sds = |moves: f64| match short(0.1 * moves).as_str() {
-            _ if moves < 1e-6 => "the measured numbers by nothing that rounding would not do".to_owned(),
-            text => format!("the measured numbers by {text} standard deviations in all"),
+            _ if moves < 1e-6 => "the measured values by no more than rounding".to_owned(),
+            text => format!("the measured values by {text} standard deviations in total"),
         };
         match self {
             Self::Silent { parameter, moves } => {
                 let size = step(*parameter, scale(*parameter), 1.0);
                 format!(
-                    "the data say next to nothing about {parameter}: {size} moves {}. Fix it, give a prior, or measure a case in which it acts",
+                    "the data hardly constrain {parameter}: {size} changes {}. Fix it, add a prior, or measure a case that depends on it",
                     sds(*moves)
                 )
             }
@@ -131,14 +131,14 @@ impl Finding {
                 let names: Vec<String> = parameters.iter().map(|(parameter, _)| parameter.to_string()).collect();
                 let steps: Vec<String> = parameters.iter().map(|(p, share)| step(*p, scale(*p), *share)).collect();
                 format!(
-                    "the data cannot tell {} apart: {} moves {}. {HELP}",
+                    "the data do not separate {}: {} changes {}. {HELP}",
                     joined(&names, "and"),
                     joined(&steps, "with"),
                     sds(*moves)
                 )
             }
             Self::Close { parameters: [a, b], correlation } => format!(
-                "the data hardly tell {a} and {b} apart: their estimates are correlated by {correlation:.3}, and a combination of them is \
+                "the data hardly separate {a} and {b}: their estimates have a correlation of {correlation:.3}, and a combination of them is \
                  known much better than either. {HELP}"
             ),
         }
@@ -148,7 +148,7 @@ impl Finding {
 /// The whole verdict: its sentences, or that there is nothing to say.
 pub(crate) fn verdict(findings: &[Finding], scale: impl Fn(Parameter) -> Scale) -> Vec<String> {
     if findings.is_empty() {
-        return vec!["the data tell all parameters apart".to_owned()];
+        return vec!["the data determine all parameters".to_owned()];
     }
     findings.iter().map(|finding| finding.words(&scale)).collect()
 }

@@ -82,7 +82,7 @@ fn a_pair_that_cannot_be_told_apart_is_called_so() {
     };
     assert!(fit.findings.iter().any(pair), "{:?}", fit.findings);
     let words = fit.verdict().join("\n");
-    assert!(words.contains("the data cannot tell flow.density and flow.cn apart: flow.density "), "{words}");
+    assert!(words.contains("the data do not separate flow.density and flow.cn: flow.density "), "{words}");
     assert!(words.contains("Fix one of them, give a prior"), "{words}");
     // A prior on one of them makes the other known.
     wanted[1].prior = Some(Prior { mean: 1022.0, sd: 2.0 });
@@ -109,7 +109,7 @@ fn a_parameter_that_does_not_act_is_called_so() {
         "{:?}",
         fit.findings
     );
-    assert!(fit.verdict()[0].starts_with("the data say next to nothing about flow.cn"), "{:?}", fit.verdict());
+    assert!(fit.verdict()[0].starts_with("the data hardly constrain flow.cn"), "{:?}", fit.verdict());
     assert_eq!(fit.estimates[1].value, 2.5, "it stays where it was");
     assert_eq!(fit.estimates[1].sd, Some(f64::INFINITY));
     assert!(fit.estimates[0].sd.unwrap().is_finite());
@@ -183,7 +183,7 @@ fn the_silicone_arm_is_recovered_from_its_shapes() {
         one.start = start;
     }
     let fit = found(&cases, &wanted, &FitOptions::default());
-    assert_eq!(fit.verdict(), ["the data tell all parameters apart"]);
+    assert_eq!(fit.verdict(), ["the data determine all parameters"]);
     for (one, (truth, within)) in fit.estimates.iter().zip([(110e3, 0.01), (2.5, 0.02), (1080.0, 0.01)]) {
         println!("{} {} ± {} for {truth}", one.fitted.parameter, one.value, one.sd.unwrap());
         assert!((one.value / truth - 1.0).abs() < within, "{one:?}");

@@ -23,14 +23,16 @@ pub enum SweepError {
     #[error(transparent)]
     Option(#[from] SolveError),
     /// A share of the sweep that is none.
-    #[error("--shard {index}/{of}: expected a number from 1 to {of}, and at most {tiles} shards of this sweep")]
+    #[error(
+        "--shard {index}/{of}: expected a number from 1 to {of}, and at most {rows} shards, because the sweep has {rows} rows"
+    )]
     Shard {
         /// Which.
         index: u64,
         /// Of how many.
         of: u64,
-        /// Tiles of the sweep, the least that a shard has.
-        tiles: u64,
+        /// Rows of the sweep, the most shards that it has.
+        rows: u64,
     },
     /// The output is there already.
     #[error("{} exists; remove it or choose another name", .path.display())]
@@ -39,13 +41,13 @@ pub enum SweepError {
         path: PathBuf,
     },
     /// A sweep into this output was begun and not ended.
-    #[error("{} holds the parts of a sweep that was not ended; --resume goes on with it, or remove that directory", .directory.display())]
+    #[error("{} holds the parts of an interrupted sweep; resume it with --resume, or remove that directory", .directory.display())]
     Begun {
         /// Where its parts are.
         directory: PathBuf,
     },
     /// Parts or output of another sweep.
-    #[error("{} is of another sweep: its {what} is not that of this one; remove it, or ask for the same sweep", .path.display())]
+    #[error("{} belongs to another sweep: its {what} differs; remove it, or request the same sweep", .path.display())]
     Other {
         /// The parts' directory or the output.
         path: PathBuf,
@@ -53,7 +55,7 @@ pub enum SweepError {
         what: &'static str,
     },
     /// A second sweep into the same output.
-    #[error("another sweep is at work on {}; wait until it has ended, or choose another name", .path.display())]
+    #[error("another sweep is writing {}; wait until it ends, or choose another name", .path.display())]
     Locked {
         /// The output.
         path: PathBuf,
@@ -70,13 +72,13 @@ pub enum SweepError {
         message: String,
     },
     /// A part whose bytes changed after it was written.
-    #[error("{} is not as it was written; --resume solves its rows again", .path.display())]
+    #[error("{} was changed after it was written; --resume solves its rows again", .path.display())]
     Damaged {
         /// The part.
         path: PathBuf,
     },
     /// Whoever watched it ended it. Whole parts stay where they are, to go on from.
-    #[error("the sweep was stopped before its end")]
+    #[error("the sweep was interrupted")]
     Stopped,
     /// Threads that could not be started.
     #[error("{0}")]

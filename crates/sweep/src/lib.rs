@@ -14,6 +14,7 @@ mod parquet_file;
 mod parts;
 mod plan;
 mod run;
+mod shard;
 mod sobol;
 mod table;
 
@@ -22,6 +23,7 @@ pub use column::{Column, Data, NO_ARM, Output};
 pub use csv_file::beside as note_beside;
 pub use error::SweepError;
 pub use plan::{Plan, PlanError, Sample};
-pub use run::{Format, NOTE, Shard, Summary, Sweep, SweepOptions};
+pub use run::{Format, NOTE, Summary, Sweep, SweepOptions};
+pub use shard::Shard;
 pub use sobol::Sobol;
 pub use table::{Table, VariedKey, names, varied_keys};

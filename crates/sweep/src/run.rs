@@ -16,6 +16,7 @@ use crate::error::{SweepError, parquet_error};
 use crate::parquet_file::Reader;
 use crate::parts::{Part, Parts, difference};
 use crate::plan::Plan;
+use crate::shard::{Shard, common, rows_of, share};
 use crate::{csv_file, parquet_file};
 
 /// About so many parts of a sweep, within the bounds below.
@@ -53,15 +54,6 @@ impl Format {
             Self::Csv => "csv",
         }
     }
-}
-
-/// One of several equal shares of a sweep.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shard {
-    /// Which, from 1.
-    pub index: u64,
-    /// Of how many.
-    pub of: u64,
 }
 
 /// What is asked of a sweep beyond its plan.
@@ -124,6 +116,8 @@ pub struct Sweep {
     layout: Layout,
     start: Tile,
     tiles: Range<u64>,
+    /// The rows of these tiles that are wanted: all but where there are more shards than tiles.
+    rows: Range<u64>,
     tol: f64,
     name: String,
     note: String,
@@ -164,20 +158,13 @@ impl Sweep {
         let arms = Arms::new(file, plan.axes())?;
         let layout = Layout::new(&options.outputs, arms.base().cables.len(), options.stations);
         let start = Tile::new(Options { tol: options.tol, snaps: options.snaps }, layout.wanted())?;
-        let tiles = match options.shard {
-            None => 0..plan.tiles(),
-            Some(Shard { index, of }) => {
-                let tiles = plan.tiles();
-                if index == 0 || index > of || of > tiles {
-                    return Err(SweepError::Shard { index, of, tiles });
-                }
-                let at = |share: u64| u64::try_from(u128::from(tiles) * u128::from(share) / u128::from(of));
-                at(index - 1).unwrap_or(tiles)..at(index).unwrap_or(tiles)
-            }
+        let (tiles, rows) = match options.shard {
+            None => (0..plan.tiles(), 0..plan.rows()),
+            Some(shard) => share(&plan, shard)?,
         };
-        let note = note(&plan, &arms, &layout, options, &tiles);
+        let note = note(&plan, &arms, &layout, options, &rows);
         let name = arms.base().name.clone();
-        Ok(Self { plan, arms, layout, start, tiles, tol: options.tol, name, note })
+        Ok(Self { plan, arms, layout, start, tiles, rows, tol: options.tol, name, note })
     }
 
     /// The name of the arm.
@@ -192,7 +179,12 @@ impl Sweep {
 
     /// The rows of this sweep, or of this shard of it.
     pub fn rows(&self) -> Range<u64> {
-        rows_of(&self.plan, &self.tiles)
+        self.rows.clone()
+    }
+
+    /// The rows of some tiles that are wanted.
+    fn rows_of(&self, tiles: &Range<u64>) -> Range<u64> {
+        common(&self.rows, &rows_of(&self.plan, tiles))
     }
 
     /// The tiles of this sweep, or of this shard of it. Rows of different tiles do not depend on each other.
@@ -251,7 +243,7 @@ impl Sweep {
         let tiles = self.parts();
         let (present, damaged) = parts.present(tiles.len())?;
         let resumed = present.iter().zip(&tiles).filter(|(part, _)| part.is_some()).map(|(_, tiles)| {
-            let rows = rows_of(&self.plan, tiles);
+            let rows = self.rows_of(tiles);
             rows.end - rows.start
         });
         let resumed: u64 = resumed.sum();
@@ -372,7 +364,8 @@ impl Sweep {
                 return (0..0, Vec::new());
             }
             let (rows, answers) = self.tile(tile);
-            if !go_on(rows.end - rows.start) {
+            let wanted = common(&self.rows, &rows);
+            if !go_on(wanted.end - wanted.start) {
                 stopped.store(true, Ordering::Relaxed);
             }
             (rows, answers)
@@ -380,7 +373,7 @@ impl Sweep {
         let solved: Vec<(Range<u64>, Vec<Answered>)> = tiles.clone().into_par_iter().map(solve).collect();
         let mut columns: Vec<Column> = self.layout.columns(self.plan.axes());
         for (rows, answers) in solved {
-            for (row, answer) in rows.zip(&answers) {
+            for (row, answer) in rows.zip(&answers).filter(|(row, _)| self.rows.contains(row)) {
                 self.layout.add(&mut columns, row, &self.plan.values(row), answer);
             }
         }
@@ -411,7 +404,7 @@ impl Sweep {
         go_on: &(dyn Fn(u64) -> bool + Sync),
     ) -> Result<Vec<Column>, SweepError> {
         let columns = self.columns(tiles, go_on);
-        let rows = rows_of(&self.plan, tiles);
+        let rows = self.rows_of(tiles);
         let whole = columns.iter().all(|column| column.data.len() as u64 == rows.end - rows.start);
         if whole { Ok(columns) } else { Err(SweepError::Stopped) }
     }
@@ -444,10 +437,6 @@ pub(crate) fn noted(output: &Path, format: Format) -> Result<Option<String>, Swe
         Format::Parquet => Ok(Reader::open(output)?.note(NOTE)),
         Format::Csv => csv_file::note(output),
     }
-}
-
-fn rows_of(plan: &Plan, tiles: &Range<u64>) -> Range<u64> {
-    plan.tile(tiles.start).start..plan.tile(tiles.end.saturating_sub(1)).end
 }
 
 /// How many rows have an answer.
@@ -491,7 +480,7 @@ fn count_kinds(rows: &[Option<String>], counts: &mut BTreeMap<String, u64>) {
     }
 }
 
-fn note(plan: &Plan, arms: &Arms, layout: &Layout, options: &SweepOptions, tiles: &Range<u64>) -> String {
+fn note(plan: &Plan, arms: &Arms, layout: &Layout, options: &SweepOptions, rows: &Range<u64>) -> String {
     let vary = plan.axes().iter().map(|axis| Varied {
         key: &axis.key,
         column: axis.column(),
@@ -512,7 +501,7 @@ fn note(plan: &Plan, arms: &Arms, layout: &Layout, options: &SweepOptions, tiles
         columns: layout.outputs().iter().map(|output| output.name()).collect(),
         shapes: options.stations,
         shard: options.shard.map(|shard| format!("{}/{}", shard.index, shard.of)),
-        rows: rows_of(plan, tiles),
+        rows: rows.clone(),
     };
     // A structure of plain fields always becomes JSON.
     serde_json::to_string_pretty(&note).unwrap_or_default()

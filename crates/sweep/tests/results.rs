@@ -90,6 +90,18 @@ fn threads_and_shards_do_not_matter() {
         joined.push_str(if index == 1 { &text } else { text.split_once('\n').unwrap().1 });
     }
     assert_eq!(joined, std::fs::read_to_string(at("whole.csv")).unwrap());
+    // More shards than tiles: their rows are those of the whole sweep, too.
+    let (mut joined, of) = (String::new(), whole.tiles().end + 3);
+    for index in 1..=of {
+        let part = tempfile::tempdir().unwrap();
+        let path = part.path().join("part.csv");
+        let shard = sweep_of(Some(Shard { index, of }));
+        let summary = shard.run(&path, false, 1, &|_| {}).unwrap();
+        assert_eq!(summary.rows, shard.rows().end - shard.rows().start);
+        let text = std::fs::read_to_string(&path).unwrap();
+        joined.push_str(if index == 1 { &text } else { text.split_once('\n').unwrap().1 });
+    }
+    assert_eq!(joined, std::fs::read_to_string(at("whole.csv")).unwrap());
     // Nothing is left but the outputs.
     let mut left: Vec<_> =
         std::fs::read_dir(directory.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();

@@ -13,14 +13,14 @@ use super::{ArmArgs, Format, PictureArgs, STABLE, picture};
 const EXIT: &str = "\
 Exit status:
   0  at least one equilibrium was found
-  2  the request is wrong: arguments, arm file, an output path that cannot be written
+  2  wrong request: arguments, arm file, or an output that cannot be written
   3  none was found; standard error says why
-  1  anything else";
+  1  any other error";
 
-/// Finds all equilibria under the same loads, whether the path of `solve` leads to them or not.
+/// Finds all equilibria under the same loads, including those that `solve` does not lead to.
 ///
-/// The equilibria for all angles of the base lie on one curve that closes after a full turn of the
-/// tip. The search follows it once round and says whether it came round: then there are no others.
+/// The equilibria for all base angles form one curve that closes after a full turn of the tip. The search follows this
+/// curve. If the result says "complete", the curve was closed and there are no other equilibria.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\
 Examples:
@@ -33,28 +33,28 @@ Examples:
 pub(crate) struct EquilibriaArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
-    /// Error of the tip position over the length that is asked for, from 1e-12 to 1e-3
+    /// Tolerance on the tip position, relative to the arm's length, from 1e-12 to 1e-3
     #[arg(long, value_name = "TOL", default_value = "1e-8", allow_hyphen_values = true)]
     pub(crate) tol: f64,
-    /// Give a search up after so many seconds and say what it covered until then; with --over, at each value
+    /// Stop a search after this many seconds and report the part that it covered; with --over, at each value
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) time_limit: Option<Duration>,
-    /// text: a summary; json: everything but the shapes; csv: a row an equilibrium
+    /// text: a summary; json: all results except shapes; csv: one row per equilibrium
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) format: Format,
-    /// Write the result to FILE in place of standard output
+    /// Write the result to FILE instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Draw all shapes to scale; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "over")]
     pub(crate) plot: Option<PathBuf>,
-    /// Search at COUNT equally spaced values of a parameter, as in `flow.speed=0:0.5:26`
+    /// Search at COUNT equally spaced values of a parameter, such as flow.speed=0:0.5:26
     #[arg(long, value_name = "KEY=FROM:TO:COUNT", allow_hyphen_values = true)]
     pub(crate) over: Option<Over>,
-    /// Draw a quantity of all equilibria over that parameter; FILE ends in .svg, .pdf or .png
+    /// Plot a quantity of all equilibria against that parameter; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture, requires = "over")]
     pub(crate) plot_over: Option<PathBuf>,
-    /// What --plot-over shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, `stroke[0]`
+    /// Quantity of --plot-over: tip.x, tip.y, tip.theta, tip.alpha, or the stroke of a cable, stroke.0
     #[arg(long, value_name = "NAME", default_value = "tip.y")]
     pub(crate) quantity: Quantity,
     #[command(flatten)]

@@ -10,23 +10,23 @@ use super::{ArmArgs, Format, PictureArgs, STABLE, count, picture};
 
 const EXIT: &str = "\
 Exit status:
-  0  the path reached an end of the range, or has as many points as allowed
-  2  the request is wrong: arguments, arm file, an output path that cannot be written
-  3  no equilibrium at the start, or a limit of the arm inside the range ends the path (what was
-     found before it is written all the same); standard error says why and where
-  1  anything else";
+  0  the path reached an end of the range, or the largest number of points
+  2  wrong request: arguments, arm file, or an output that cannot be written
+  3  no equilibrium at the start, or the path ends at a limit of the arm inside the range (the points
+     before it are written); standard error says why and where
+  1  any other error";
 
-/// Follows the equilibria while one parameter runs over a range: round limit points, where the
-/// parameter turns back, and past bifurcations, where other branches cross.
+/// Follows equilibria while one parameter varies: around limit points, where the parameter turns back, and past
+/// bifurcations, where other branches cross.
 ///
-/// The path starts at the shape that `solve` gives at the start of the range. It ends at either end
-/// of the range, at a limit of the arm, or after the most points.
+/// The path starts at the shape that `solve` finds at the start of the range. It ends at either end of the range, at a
+/// limit of the arm, or at the largest number of points.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\
 Examples:
-  hydrostat path paper --vary cable[0].tension=0:100 --plot path.svg --plot-shapes shapes.svg
-  hydrostat path silicone --flow-speed 0.2 --set flow.direction=180 --vary \"arm.base.angle=90 deg:-90 deg\"
-  hydrostat path silicone --vary \"cable[0].tension=0:900 mN\" --quantity stroke[0] --plot stroke.png
+  hydrostat path silicone --vary 'cable[0].tension=0:900 mN' --plot path.svg --plot-shapes shapes.svg
+  hydrostat path silicone --vary cable.0.tension=0:0.9 --quantity stroke.0 --plot stroke.png
+  hydrostat path silicone --flow-speed 0.2 --set flow.direction=180 --vary 'arm.base.angle=90:-90'
   hydrostat path my.toml --vary flow.speed=0:0.5 --branches --format csv -o path.csv
 
 {STABLE}
@@ -35,34 +35,34 @@ Examples:
 pub(crate) struct PathArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
-    /// What varies and over which range, as in `cable[0].tension=0:20` or `"flow.direction=0 deg:180 deg"`
+    /// Parameter and range, such as 'cable[0].tension=0:20' or 'flow.direction=0:180 deg'
     #[arg(long, value_name = "KEY=FROM:TO", allow_hyphen_values = true)]
     pub(crate) vary: Varied,
-    /// Error of the tip position over the length that is kept along the path, from 1e-7 to 1e-3
+    /// Tolerance on the tip position along the path, relative to the arm's length, from 1e-7 to 1e-3
     #[arg(long, value_name = "TOL", default_value = "1e-6", allow_hyphen_values = true)]
     pub(crate) tol: f64,
-    /// Most points, on all branches together
+    /// Largest number of points, all branches together
     #[arg(long, value_name = "N", default_value = "1000", value_parser = points)]
     pub(crate) max_points: usize,
-    /// Longest step: change of the arm's angle (rad, root mean square) and of the parameter over its range, from 0.001 to 0.4
+    /// Largest step: change of the angle along the arm (rad, root mean square) combined with the change of the parameter relative to its range, from 0.001 to 0.4
     #[arg(long, value_name = "X", default_value = "0.2", allow_hyphen_values = true)]
     pub(crate) max_step: f64,
-    /// Follow the branches that cross at bifurcations, too
+    /// Also follow the branches that cross at bifurcations
     #[arg(long)]
     pub(crate) branches: bool,
-    /// text: ends and events; json: everything but the shapes; csv: a row a point
+    /// text: ends and events; json: all results except shapes; csv: one row per point
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) format: Format,
-    /// Write the result to FILE in place of standard output
+    /// Write the result to FILE instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw a quantity over the parameter; FILE ends in .svg, .pdf or .png
+    /// Plot a quantity against the parameter; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot: Option<PathBuf>,
     /// Draw shapes along the path to scale; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot_shapes: Option<PathBuf>,
-    /// What --plot shows: tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable, `stroke[0]`
+    /// Quantity of --plot: tip.x, tip.y, tip.theta, tip.alpha, or the stroke of a cable, stroke.0
     #[arg(long, value_name = "NAME", default_value = "tip.y")]
     pub(crate) quantity: Quantity,
     #[command(flatten)]

@@ -34,10 +34,10 @@ pub(crate) fn picture(text: &str) -> Result<PathBuf, String> {
 // How wide a picture is and how it is written. As a doc comment this would replace the help of each command.
 #[derive(Debug, Clone, Default, ClapArgs)]
 pub(crate) struct PageArgs {
-    /// Width of the picture, "70 mm" to "1000 mm" (by default 159 mm); text keeps its size
+    /// Width of the picture, from '70 mm' to '1000 mm' [default: 159 mm]; the text size does not change
     #[arg(long, value_name = "WIDTH", value_parser = width, allow_hyphen_values = true)]
     width: Option<Page>,
-    /// In SVG, write text as text, to edit it, in place of outlines
+    /// In SVG, write text as editable text instead of outlines
     #[arg(long)]
     pub(crate) svg_text: bool,
 }
@@ -45,7 +45,7 @@ pub(crate) struct PageArgs {
 // The same, with the title.
 #[derive(Debug, Clone, ClapArgs)]
 pub(crate) struct PictureArgs {
-    /// Title of the picture in place of its own; "" leaves it out
+    /// Title of the picture; "" for none
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     title: Option<String>,
     #[command(flatten)]

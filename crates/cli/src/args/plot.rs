@@ -10,12 +10,12 @@ use super::{PictureArgs, picture};
 const EXIT: &str = "\
 Exit status:
   0  drawn
-  2  the request is wrong: arguments, a file that is no result of a sweep, a picture that cannot be written
-  1  anything else";
+  2  wrong request: arguments, a file that is not a sweep, or a picture that cannot be written
+  1  any other error";
 
-/// Draws the result of a sweep: a column over two of the keys that were varied, and the places of the tip, coloured by that column.
+/// Draws a sweep: a column against one or two of the keys that were varied, and the tip positions coloured by that column.
 ///
-/// Without --map and --workspace, writes both, as SVG and PNG, beside the sweep's file, and says their names.
+/// Without --map and --workspace, both are written as SVG and PNG next to the sweep, and their names are printed.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\
 Examples:
@@ -25,19 +25,19 @@ Examples:
 
 {EXIT}"))]
 pub(crate) struct PlotArgs {
-    /// The result of a sweep, .parquet or .csv
+    /// Table of a sweep, .parquet or .csv
     #[arg(value_name = "SWEEP", value_parser = table)]
     pub(crate) sweep: PathBuf,
-    /// The column that gives colours [default: tip_alpha_rad where it varies by 10 deg, else the coordinate of the tip that varies most, else another that varies]
+    /// Column that gives the colours [default: tip_alpha_rad if it varies by 10 deg or more, else the tip coordinate that varies most, else another column that varies]
     #[arg(long, value_name = "COLUMN")]
     pub(crate) quantity: Option<String>,
-    /// The two keys of the map, across and up; needed where more than two were varied
+    /// Keys of the map, across and up; required if more than two were varied
     #[arg(long, value_name = "KEY,KEY", value_delimiter = ',')]
     pub(crate) over: Vec<String>,
-    /// Draw the column over two keys; FILE ends in .svg, .pdf or .png
+    /// Draw the column against the keys; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) map: Option<PathBuf>,
-    /// Draw the places of the tip to scale; FILE ends in .svg, .pdf or .png
+    /// Draw the tip positions to scale; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) workspace: Option<PathBuf>,
     #[command(flatten)]

@@ -10,28 +10,27 @@ use super::{ArmArgs, Format, PictureArgs, STABLE, picture};
 
 const EXIT: &str = "\
 Exit status:
-  0  reached (with --path every target; with --boundary always)
-  2  the request is wrong: arguments, arm file, an output path that cannot be written
-  3  not reached: the closest that was found is written
-  1  anything else";
+  0  reached (with --path, every target; with --boundary, always)
+  2  wrong request: arguments, arm file, or an output that cannot be written
+  3  not reached; the closest shape that was found is written
+  1  any other error";
 
-/// Finds the tensions that bring the tip, or another station, to a place, or along a path of places; or what bounds the
-/// places that the tip reaches.
+/// Inverse kinematics: finds the tensions that bring the tip, or another station, to a target or along a path of targets.
 ///
-/// Every cable is pulled, with 0 to its largest tension; tensions and strokes of the arm file do not count. Several
-/// solutions are listed by effort, the sum of the squares of the tensions. With three or more cables each is the one of least
-/// effort nearby. A path is followed from target to target, from the tensions of the last.
+/// Each cable has a tension between 0 and its largest; tensions and strokes in the arm file are ignored. Solutions are
+/// listed by effort, the sum of the squared tensions. With three or more cables, each solution has the least effort nearby. A path
+/// is followed from target to target, starting from the previous tensions. --boundary traces the boundary of the workspace.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\
 Examples:
-  hydrostat reach silicone --target 0.182,0.078 --max-tension \"0.6 N\"
-  hydrostat reach silicone --target \"182 mm,-78 mm\" --plot reached.svg
+  hydrostat reach silicone --target 0.182,0.078 --max-tension '0.6 N'
+  hydrostat reach silicone --target '182,-78 mm' --plot reached.svg
   hydrostat reach paper --target 0.1,0.03 --station 0.15 --flow-speed 0.2
-  hydrostat reach multi-bending --target 0.3,0.15 --angle \"60 deg\"
-  hydrostat reach silicone --target 0.182,0.078 --by strokes --max-stroke \"20 mm\"
-  hydrostat reach silicone --target 0.182,0.078 --max-stroke \"12 mm\"    not reached: which bound is in the way
-  hydrostat reach silicone --path targets.csv --max-tension \"0.6 N\" --format csv -o followed.csv
-  hydrostat reach silicone --boundary --max-tension \"0.6 N\" --plot boundary.svg --format csv -o boundary.csv
+  hydrostat reach multi-bending --target 0.3,0.15 --angle '60 deg'
+  hydrostat reach silicone --target 0.182,0.078 --by strokes --max-stroke '20 mm'
+  hydrostat reach silicone --target 0.182,0.078 --max-stroke '12 mm'    not reached
+  hydrostat reach silicone --path targets.csv --max-tension '0.6 N' --format csv -o followed.csv
+  hydrostat reach silicone --boundary --max-tension '0.6 N' --plot boundary.svg
 
 {STABLE}
 
@@ -39,43 +38,43 @@ Examples:
 pub(crate) struct ReachArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
-    /// Where the place of the arm is to be, m; as in 0.12,0.05 or "120,50 mm"
+    /// Target position, m, such as 0.12,0.05 or '120,50 mm'
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, group = "what", required_unless_present_any = ["path", "boundary"])]
     pub(crate) target: Option<Point>,
-    /// Follow targets one after the other: a CSV file with columns x_m,y_m (or x_mm,y_mm) and, if it matters, angle_deg
+    /// Follow the targets of a CSV file with columns x_m,y_m (or x_mm,y_mm) and optionally angle_deg; - is standard input
     #[arg(long, value_name = "FILE", group = "what")]
     pub(crate) path: Option<PathBuf>,
-    /// Trace what bounds the places of the tip: tensions at their bounds, folds, and tensions without equilibrium
+    /// Trace the boundary of the tip's workspace: tensions at their bounds, folds, and tensions without equilibrium
     #[arg(long, group = "what")]
     pub(crate) boundary: bool,
-    /// Angle of the section there from e1, deg, if it matters
+    /// Target angle of the section, from e1, deg [default: any]
     #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true, requires = "target")]
     pub(crate) angle: Option<f64>,
-    /// Which place, m along the arm, in place of the tip
+    /// Station that is to reach the target, m along the arm [default: the tip]
     #[arg(long, value_name = "S", value_parser = length, allow_hyphen_values = true, conflicts_with = "boundary")]
     pub(crate) station: Option<f64>,
-    /// What holds the cables of what is found: their tensions, or the strokes that these make
+    /// Control of the cables: by their tensions, or by the strokes that these tensions give
     #[arg(long, value_name = "WHAT", value_enum, default_value_t, requires = "target")]
     pub(crate) by: By,
-    /// The largest tension of every cable, N; those of the arm file hold too
+    /// Largest tension of every cable, N; limits in the arm file also apply
     #[arg(long, value_name = "T", value_parser = force, allow_hyphen_values = true)]
     pub(crate) max_tension: Option<f64>,
-    /// The largest stroke of every cable that pulls, m: how far it can be wound in
+    /// Largest stroke of every taut cable, m
     #[arg(long, value_name = "S", value_parser = length, allow_hyphen_values = true, conflicts_with = "boundary")]
     pub(crate) max_stroke: Option<f64>,
-    /// Distance over the length at which a target is reached, from 1e-10 to 1e-2; with --boundary the error of tips, from 1e-9 to 1e-3
+    /// Tolerance on the distance to the target, relative to the arm's length, from 1e-10 to 1e-2 [default: 1e-8]; with --boundary, on tip positions, from 1e-9 to 1e-3 [default: 1e-7]
     #[arg(long, value_name = "TOL", allow_hyphen_values = true)]
     pub(crate) tol: Option<f64>,
-    /// Distance of the points of a boundary over the length, from 0.001 to 0.1
+    /// Distance between points of the boundary, relative to the arm's length, from 0.001 to 0.1 [default: 0.01]
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, requires = "boundary")]
     pub(crate) spacing: Option<f64>,
-    /// text: a table; json: everything but the shapes; csv: a row a solution, a target or a point
+    /// text: a table; json: all results except shapes; csv: one row per solution, target or point
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) format: Format,
-    /// Write the result to FILE in place of standard output
+    /// Write the result to FILE instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw the arm at the first solution, or at the closest, with the target; or the boundary. FILE ends in .svg, .pdf or .png
+    /// Draw the arm at the first solution, or at the closest shape, with the target; or the boundary. FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "path")]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
@@ -120,6 +119,6 @@ pub(super) fn angle(text: &str) -> Result<f64, String> {
     quantity(Dimension::Angle, text)
 }
 
-fn force(text: &str) -> Result<f64, String> {
+pub(super) fn force(text: &str) -> Result<f64, String> {
     quantity(Dimension::Force, text)
 }

@@ -7,12 +7,12 @@ use clap::Args as ClapArgs;
 const EXIT: &str = "\
 Exit status:
   0  interrupted (Ctrl-C)
-  2  the request is wrong: arguments, arm file, a port that cannot be had
-  1  anything else";
+  2  wrong request: arguments, arm file, or a port that is not available
+  1  any other error";
 
-/// Shows an arm in the browser: drag its tip, move its loads, and see the shape, what it carries and what the solver says of it.
+/// Shows an arm in the browser: drag its tip, change its loads, and see the shape, the forces and the verdict.
 ///
-/// Everything is inside the program and no network is needed. Only this machine sees the viewer, unless --host says otherwise.
+/// The viewer is part of the program and needs no network. Only this machine can open it, unless --host says otherwise.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\
 Examples:
@@ -22,19 +22,19 @@ Examples:
 
 {EXIT}"))]
 pub(crate) struct ServeArgs {
-    /// An arm file, or the name of a shipped arm, to start with
+    /// Arm file, or name of a shipped arm, to start with
     #[arg(value_name = "ARM", default_value = "paper")]
     pub(crate) arm: String,
-    /// The port; 0 takes any that is free
+    /// Port; 0 takes any free one
     #[arg(long, value_name = "PORT", default_value = "8080")]
     pub(crate) port: u16,
     /// Open the page in the browser
     #[arg(long)]
     pub(crate) open: bool,
-    /// The address to listen on; 0.0.0.0 is seen from other machines
+    /// Address to listen on; with 0.0.0.0 other machines can connect
     #[arg(long, value_name = "ADDRESS", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     pub(crate) host: IpAddr,
-    /// A name, beside localhost, by which browsers may address the server
+    /// Host name, besides localhost, under which browsers may address the server. Repeatable
     #[arg(long, value_name = "NAME")]
     pub(crate) allow_host: Vec<String>,
 }

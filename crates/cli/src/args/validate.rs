@@ -6,15 +6,16 @@ use clap::Args as ClapArgs;
 
 const EXIT: &str = "\
 Exit status:
-  0  every check holds
-  1  a check does not hold; the report says which, and is written all the same
-  2  the request is wrong: arguments, a directory that cannot be written, a file of other programs' numbers that is none";
+  0  all checks hold
+  1  a check fails; the report is written and names it
+  2  wrong request: arguments, a directory that cannot be written, or a --peers file that cannot be read";
 
-/// Runs every check behind the program's claims again and writes a report with numbers and plots.
+/// Runs all validation checks and writes a report with numbers and plots.
 ///
-/// Closed forms and tables, orders of convergence, error estimates against true errors, balances, a grid of arms with a map of its
-/// verdicts, what the source says about its figure, the readings of the source side by side, the drag of a flexible blade, and the numbers of
-/// other programs. Writes index.html, one file that needs no network, and report.md with its figures. Takes some minutes, with --quick some seconds.
+/// The checks are closed-form solutions and published tables, orders of convergence, error estimates against true errors, force
+/// balances, a grid of arms with a map of verdicts, the statements of the source about its figure, the readings of the source compared,
+/// the drag of a flexible blade, and comparisons with other programs. The report is index.html, which needs no network, and
+/// report.md with its figures. It takes minutes; with --quick, seconds.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\
 Examples:
@@ -23,13 +24,13 @@ Examples:
 
 {EXIT}"))]
 pub(crate) struct ValidateArgs {
-    /// The directory of the report, made if it is not there
+    /// Directory of the report, created if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "report")]
     pub(crate) output: PathBuf,
-    /// The same checks on fewer cases
+    /// Run the same checks on fewer cases
     #[arg(long)]
     pub(crate) quick: bool,
-    /// Numbers of other programs as `validation/peers/tips.py` wrote them, in place of those that came with this program
+    /// Results of other programs, written by `validation/peers/tips.py` [default: those included in this program]
     #[arg(long, value_name = "FILE")]
     pub(crate) peers: Option<PathBuf>,
 }

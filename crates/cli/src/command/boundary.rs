@@ -50,10 +50,10 @@ fn summary(arm: &Arm, found: &Boundary) -> String {
         let (low, high) = all().map(value).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         format!("{:.3} to {:.3} mm", 1e3 * low, 1e3 * high)
     };
-    let head = ["pieces", "points", "what bounds"].map(str::to_owned).to_vec();
+    let head = ["pieces", "points", "kind of boundary"].map(str::to_owned).to_vec();
     let mut rows = vec![head];
     for (kind, words) in [
-        (BoundaryKind::Edge(0), "all cables but one at a bound"),
+        (BoundaryKind::Edge(0), "all cables except one at a bound"),
         (BoundaryKind::Fold([0; 2]), "two cables move the tip along the same line"),
         (BoundaryKind::Limit([0; 2]), "no equilibrium beyond"),
     ] {

@@ -51,17 +51,20 @@ fn at_loads(args: &EquilibriaArgs, arm: &Arm) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The equilibria of `arm` that are found within the time limit.
-fn within(arm: &Arm, args: &EquilibriaArgs) -> Result<Equilibria, PathError> {
+/// The equilibria of `arm` that are found within the time limit. `place` says where the search is among others.
+fn within(arm: &Arm, args: &EquilibriaArgs, progress: &mut Progress, place: &str) -> Result<Equilibria, PathError> {
     let start = Instant::now();
-    arm.equilibria_while(args.tol, |_| args.time_limit.is_none_or(|limit| start.elapsed() < limit))
+    arm.equilibria_while(args.tol, |points| {
+        progress.say(|| format!("{place}{points} points of the curve of equilibria"));
+        args.time_limit.is_none_or(|limit| start.elapsed() < limit)
+    })
 }
 
 /// The equilibria of `arm`; an error says what a solve at its own base angle says.
 fn search(arm: &Arm, args: &EquilibriaArgs) -> anyhow::Result<Equilibria> {
-    within(arm, args).map_err(|error| match error {
+    within(arm, args, &mut Progress::new(), "").map_err(|error| match error {
         PathError::Start { source, .. } => {
-            let message = format!("no equilibrium was found at any angle of the base; as it is held, {source}");
+            let message = format!("no equilibrium was found at any base angle; at the angle of the arm, {source}");
             anyhow::Error::new(source).context(message)
         }
         PathError::Option { option, value, expected } => {
@@ -109,11 +112,11 @@ fn searches(
     let mut out = Vec::new();
     for (index, value) in varied.values(count).into_iter().enumerate() {
         let at = || format!("at {} = {}", varied.parameter, varied.with_unit(value));
-        progress.say(|| format!("{index} of {count} values, {}", at()));
+        let place = format!("value {} of {count}, {}, ", index + 1, at());
         let mut there = arm.clone();
         varied.parameter.set(&mut there, value).map_err(|e| WrongRequest::Unfit("--over", e))?;
         there.check().map_err(|e| WrongRequest::Value(at(), e))?;
-        let found = match within(&there, args) {
+        let found = match within(&there, args, &mut progress, &place) {
             Ok(all) => Ok(all),
             Err(PathError::Start { source, .. }) => Err(source.to_string()),
             Err(other) => return Err(other).with_context(at),
@@ -153,11 +156,11 @@ fn extent(all: &Equilibria) -> String {
     let range = |[from, to]: [f64; 2]| format!("{} to {} deg", angle(from), angle(to));
     let angles = format!("tip at {}, base at {}", range(all.tip_angles), range(all.base_angles));
     if all.complete {
-        return format!("complete: the curve of equilibria was followed once round\n({angles})");
+        return format!("complete: the curve of equilibria was followed all the way around\n({angles})");
     }
     let ends: Vec<String> =
         (0..2).filter_map(|side| all.ends[side].map(|end| side_message(end, all.base_angles[side]))).collect();
-    format!("not complete: the curve of equilibria was followed for a part\n({angles}),\nthen {}", ends.join("; and "))
+    format!("not complete: the curve of equilibria was followed in part\n({angles}),\nthen {}", ends.join("; and "))
 }
 
 fn over_summary(arm: &Arm, varied: &Varied, searches: &[(f64, Result<Equilibria, String>)]) -> String {

@@ -3,17 +3,22 @@
 use std::path::Path;
 
 use hydrostat::{Arm, Followed, Follower, Target};
-use hydrostat_files::{FollowedDocument, followed_csv, number, read_targets};
+use hydrostat_files::{FollowedDocument, followed_csv, number, parse_targets, read_targets};
 
 use super::reach::{far_off, options};
 use super::table::table;
 use super::{Advised, NoAnswer};
 use crate::args::{Format, ReachArgs};
+use crate::input;
 use crate::output;
 use crate::progress::Progress;
 
 pub(super) fn run(arm: &Arm, path: &Path, args: &ReachArgs) -> anyhow::Result<()> {
-    let targets = read_targets(path, args.station)?;
+    let targets = if input::is_standard(path) {
+        parse_targets(&input::text()?, input::NAME, args.station)?
+    } else {
+        read_targets(path, args.station)?
+    };
     let mut follower = Follower::new(arm, &targets[..1], &options(args))?;
     let mut progress = Progress::new();
     let mut rows: Vec<(Target, Followed)> = Vec::with_capacity(targets.len());
@@ -38,7 +43,7 @@ pub(super) fn run(arm: &Arm, path: &Path, args: &ReachArgs) -> anyhow::Result<()
             let off = number(1e3 * farthest * arm.length);
             let count = format!("{} of {} targets are not reached", missed.len(), rows.len());
             let error =
-                NoAnswer(format!("{count}, the first is target {}; the farthest is off by {off} mm", first + 1));
+                NoAnswer(format!("{count}, the first is target {}; the largest distance is {off} mm", first + 1));
             Err(Advised::with(error, far_off(arm, &rows[*first].0)))
         }
         None => Ok(()),

@@ -3,8 +3,8 @@
 use hydrostat::{Arm, Parameter, SensitivityError};
 use hydrostat_figures::fit_figure;
 use hydrostat_files::{
-    Deviations, IdentificationDocument, arm_to_toml, fitted, measurements_template, number, read_measurements,
-    residuals_csv,
+    Deviations, IdentificationDocument, arm_to_toml, fitted, measurements_template, number, parse_measurements,
+    read_measurements, residuals_csv,
 };
 use hydrostat_identify::{Case, Fit, FitOptions, fit};
 use std::fmt::Write as _;
@@ -12,6 +12,7 @@ use std::fmt::Write as _;
 use super::NoAnswer;
 use super::table::table;
 use crate::args::{Format, IdentifyArgs};
+use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
@@ -22,13 +23,17 @@ const FAR: f64 = 4.0;
 const MOST_NAMED: usize = 10;
 
 pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
+    if input::is_standard(&args.arm.file) && args.data.as_ref().is_some_and(input::is_standard) {
+        return Err(WrongRequest::InputTwice(["ARM", "DATA"]).into());
+    }
     let file = request::overridden(&args.arm)?;
-    let arm = file.arm()?;
+    let arm = request::arm_of(&file)?;
     // Told before anything is measured.
     if let Some(cable) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
         return Err(SensitivityError::Rubbing(cable).into());
     }
-    let outputs = [("-o", args.output.as_deref()), ("--out", args.out.as_deref()), ("--plot", args.plot.as_deref())];
+    let outputs =
+        [("-o", args.output.as_deref()), ("--fitted", args.fitted.as_deref()), ("--plot", args.plot.as_deref())];
     let inputs = [request::arm_input(&args.arm.file), args.data.as_deref().map(|data| ("DATA", data))];
     request::check_outputs(&inputs, &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
@@ -41,7 +46,11 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     }
     let wanted = fitted(&arm, &args.fit, &args.prior)?;
     let parameters: Vec<Parameter> = wanted.iter().map(|one| one.parameter).collect();
-    let cases = read_measurements(data, &file, &deviations, &parameters)?;
+    let cases = if input::is_standard(data) {
+        parse_measurements(&input::text()?, input::NAME, &file, &deviations, &parameters)?
+    } else {
+        read_measurements(data, &file, &deviations, &parameters)?
+    };
     if cases.iter().all(|case| case.measurements.is_empty()) {
         return Err(WrongRequest::NothingMeasured(data.clone()).into());
     }
@@ -63,7 +72,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     for one in &found.estimates {
         one.fitted.parameter.set(&mut best, one.value)?;
     }
-    if let Some(path) = &args.out {
+    if let Some(path) = &args.fitted {
         output::put(Some(path), &arm_to_toml(&best))?;
     }
     if let Some(path) = &args.plot {
@@ -80,11 +89,11 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     if found.converged {
         return Ok(());
     }
-    let mut words = format!("the search did not come to its end in {} steps", found.rounds);
+    let mut words = format!("the fit did not converge in {} steps", found.rounds);
     if let Some(one) = found.no_answer.first() {
         let _ = write!(
             words,
-            "; load case {} had no answer at {} trial values: {}",
+            "; load case {} had no equilibrium at {} trial values: {}",
             cases[one.case].name, one.trials, one.why
         );
     }
@@ -107,7 +116,7 @@ fn named(parameter: Parameter) -> String {
 fn report(arm: &Arm, cases: &[Case], found: &Fit) -> String {
     let count = found.residuals.len();
     let mut out =
-        format!("{}: {} load cases, {count} measured numbers, {} steps\n\n", arm.name, found.load_cases, found.rounds);
+        format!("{}: {} load cases, {count} measured values, {} steps\n\n", arm.name, found.load_cases, found.rounds);
     out.push_str(&estimates(found));
     out.push('\n');
     for sentence in found.verdict() {
@@ -136,7 +145,7 @@ fn report(arm: &Arm, cases: &[Case], found: &Fit) -> String {
             .collect();
         let _ = writeln!(
             out,
-            "\nload case {} had no answer at {} of {} trials, the last at {}: {}",
+            "\nload case {} had no equilibrium at {} of {} trials, the last at {}: {}",
             cases[one.case].name,
             one.trials,
             found.evaluations,
@@ -155,7 +164,7 @@ fn estimates(found: &Fit) -> String {
         let shown = |value: f64| if value.is_finite() { shown(parameter, value) } else { "unknown".to_owned() };
         let side = |side: usize| if side == 0 { "lower" } else { "upper" };
         let note = match (one.held, one.fitted.prior) {
-            (Some(held), _) => format!("held by its {} bound", side(held)),
+            (Some(held), _) => format!("at its {} bound", side(held)),
             (None, Some(prior)) => format!("prior {} ± {}", shown(prior.mean), shown(prior.sd)),
             (None, None) => String::new(),
         };
@@ -184,7 +193,7 @@ fn together(found: &Fit) -> String {
         rows.push(cells);
     }
     out.push_str(&table(&rows, 0));
-    out.push_str("\nsingular value: standard deviations that all numbers move by a unit of the combination below (parameters over their scales)\n");
+    out.push_str("\nsingular value: change of all measured values, in standard deviations, for a unit of the combination beside it (parameters relative to their scales)\n");
     let mut head = vec!["value".to_owned()];
     head.extend(names);
     let mut rows = vec![head];
@@ -202,7 +211,7 @@ fn predictions(cases: &[Case], found: &Fit) -> String {
         return String::new();
     }
     let mut out =
-        "\nresiduals of each load case, root mean square in sd: in the fit, and as the other cases predict it\n"
+        "\nresiduals of each load case, root mean square in standard deviations: in the fit, and predicted from the other cases\n"
             .to_owned();
     let mut head = ["case", "fit", "predicted"].map(str::to_owned).to_vec();
     head.extend(found.estimates.iter().map(|one| format!("{} moves (sd)", one.fitted.parameter)));
@@ -226,7 +235,7 @@ fn far_out(cases: &[Case], found: &Fit) -> String {
     far.sort_by(|a, b| b.standardised.abs().total_cmp(&a.standardised.abs()));
     let mut out = String::new();
     if !far.is_empty() {
-        let _ = writeln!(out, "\n{} numbers are more than {FAR} sd off", far.len());
+        let _ = writeln!(out, "\n{} values deviate by more than {FAR} standard deviations", far.len());
     }
     for one in far.iter().take(MOST_NAMED) {
         let measurement = one.measurement;

@@ -137,11 +137,11 @@ fn counted(count: usize, one: &str, many: &str) -> String {
 fn stability_along(branch: &Branch) -> &'static str {
     let regular = || branch.points.iter().filter(|p| p.event.is_none());
     if regular().all(|p| p.stability == Some(Stability::Stable)) {
-        "stable all along"
+        "stable throughout"
     } else if regular().any(|p| p.stability == Some(Stability::Stable)) {
         "stable in part"
     } else {
-        "nowhere known to be stable"
+        "not known to be stable anywhere"
     }
 }
 

@@ -8,12 +8,16 @@ use super::table::{TIP, place_cells, stability_words, table, tip_cells};
 use super::{Advised, NoAnswer};
 use super::{boundary, follow};
 use crate::args::{By, Format, Point, ReachArgs};
+use crate::input;
 use crate::output;
 use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
     if args.arm.tension.is_some() && args.path.is_none() {
         return Err(WrongRequest::TensionsAreFound.into());
+    }
+    if input::is_standard(&args.arm.file) && args.path.as_ref().is_some_and(input::is_standard) {
+        return Err(WrongRequest::InputTwice(["ARM", "--path"]).into());
     }
     let arm = request::arm(&args.arm)?;
     let inputs = [request::arm_input(&args.arm.file), args.path.as_deref().map(|path| ("--path", path))];
@@ -47,7 +51,7 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
         Some(closest) => {
             let bounds: Vec<String> = closest.bounds.iter().map(|bound| bound_words(&arm, *bound)).collect();
             let why = if bounds.is_empty() { String::new() } else { format!("; {}", bounds.join(", ")) };
-            let fixed = if args.station.is_some_and(|s| s <= 0.0) { "; the base does not move" } else { "" };
+            let fixed = if args.station.is_some_and(|s| s <= 0.0) { "; the base cannot move" } else { "" };
             let error = NoAnswer(format!("the target is not reached: {}{why}{fixed}", miss(&arm, closest)));
             Err(Advised::with(error, far_off(&arm, &target).or_else(|| just_missed(closest))))
         }
@@ -66,7 +70,7 @@ pub(super) fn options(args: &ReachArgs) -> ReachOptions {
 
 /// By how much the closest misses.
 fn miss(arm: &Arm, closest: &Reached) -> String {
-    format!("the closest that was found is off by {} mm", number(1e3 * closest.distance * arm.length))
+    format!("the closest shape that was found misses it by {} mm", number(1e3 * closest.distance * arm.length))
 }
 
 /// Targets that are further from the base than this, over L, were hardly meant in m: an arm stretches, but not that far.
@@ -92,7 +96,7 @@ fn just_missed(closest: &Reached) -> Option<String> {
     let missed = closest.distance;
     (missed <= ROUNDED).then(|| {
         format!(
-            "--tol 1e{:.0}: the target is missed by {missed:.1e} of the length (where an angle was asked for, a radian counts as one length)",
+            "--tol 1e{:.0}: the target is missed by {missed:.1e} of the length (for a target angle, one radian counts as one length)",
             missed.log10().ceil()
         )
     })
@@ -106,15 +110,15 @@ fn stroke(cable: &CableState) -> f64 {
 fn bound_words(arm: &Arm, bound: Bound) -> String {
     match bound {
         Bound::Slack(c) => format!("cable {} is slack and cannot push", arm.cables[c].name),
-        Bound::Most(c) => format!("cable {} has its largest tension", arm.cables[c].name),
-        Bound::Stroke(c) => format!("cable {} is wound in as far as it can be", arm.cables[c].name),
+        Bound::Most(c) => format!("cable {} is at its largest tension", arm.cables[c].name),
+        Bound::Stroke(c) => format!("cable {} is at its largest stroke", arm.cables[c].name),
     }
 }
 
 fn summary(arm: &Arm, found: &Reach, station: Option<f64>, by: By) -> String {
-    let place = station.map_or_else(String::new, |s| format!(" for the place at s = {} mm", number(1e3 * s)));
+    let place = station.map_or_else(String::new, |s| format!(" for the station at s = {} mm", number(1e3 * s)));
     let mut out = match found.solutions.len() {
-        0 => format!("{}: not reached{place}, the closest is\n\n", arm.name),
+        0 => format!("{}: not reached{place}; the closest shape is\n\n", arm.name),
         1 => format!("{}: 1 solution{place}\n\n", arm.name),
         count => format!("{}: {count} solutions{place}, least effort first\n\n", arm.name),
     };

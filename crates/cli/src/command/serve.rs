@@ -12,7 +12,7 @@ use crate::request;
 pub(crate) fn run(args: &ServeArgs) -> anyhow::Result<()> {
     let file = request::arm_file(&args.arm)?;
     // A file that is wrong is better said here than in the page.
-    file.arm()?;
+    request::arm_of(&file)?;
     let name = Path::new(file.path()).file_name().map_or(args.arm.clone(), |name| name.to_string_lossy().into_owned());
     let given = Some(Given { name, text: file.text().to_owned() });
     let options = Options { address: args.host, port: args.port, names: args.allow_host.clone(), given };
@@ -21,11 +21,11 @@ pub(crate) fn run(args: &ServeArgs) -> anyhow::Result<()> {
         let server = Server::bind(options).await?;
         let page = format!("http://{}/", seen_from_here(server.address()));
         output::print(&format!("{page}\n"))?;
-        eprintln!("the viewer is there until Ctrl-C");
+        eprintln!("the viewer runs until Ctrl-C");
         if args.open
             && let Err(error) = open::that_detached(&page)
         {
-            eprintln!("note: no browser could be opened ({error}); open {page} yourself");
+            eprintln!("note: no browser could be opened ({error}); open {page} by hand");
         }
         Ok(server.run().await?)
     })

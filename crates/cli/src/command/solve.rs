@@ -2,8 +2,9 @@
 
 use hydrostat::{Arm, Configuration, NoEquilibrium, Options, SolveError, Solver, Stability, VerdictKind};
 use hydrostat_figures::{arm_figure, last_good_note};
-use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, stations_csv};
+use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, likeliest_slip, stations_csv};
 
+use super::Advised;
 use super::summary::summary;
 use crate::args::{Format, SolveArgs};
 use crate::output;
@@ -26,7 +27,8 @@ pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
             if let Some(others) = others {
                 eprintln!("note: {}", others_message(others));
             }
-            Err(SolveError::NoEquilibrium(failure).into())
+            let advice = slip(&arm, failure.verdict.kind);
+            Err(Advised::with(SolveError::NoEquilibrium(failure), advice))
         }
         Err(error) => Err(error.into()),
     }
@@ -51,7 +53,7 @@ fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<
         eprintln!("{word}: {}", note.message);
     }
     if configuration.stability().map_or(configuration.stable, Stability::is_stable) == Some(false) {
-        eprintln!("warning: this equilibrium is unstable: the arm would leave it at the slightest push");
+        eprintln!("warning: this equilibrium is unstable: the slightest disturbance would move the arm away from it");
     }
     Ok(())
 }
@@ -63,7 +65,7 @@ fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium, others: Option<O
             let note = last_good_note(&failure.verdict);
             output::draw(&arm_figure(last_good, Some(&note), &args.picture.page()), plot, &args.picture.page)?;
         }
-        (Some(plot), None) => eprintln!("warning: no good shape on the way, {} is not drawn", plot.display()),
+        (Some(plot), None) => eprintln!("warning: no shape was found on the way, so {} is not drawn", plot.display()),
         (None, _) => {}
     }
     if args.format == Format::Json {
@@ -95,6 +97,14 @@ fn beyond(failure: &NoEquilibrium) -> Option<String> {
     Some(format!("{}; {leads}", snap.message()))
 }
 
+/// What to look at where no limit of the arm was established: more often than not, a number is not in its unit.
+fn slip(arm: &Arm, kind: VerdictKind) -> Option<String> {
+    if kind != VerdictKind::NotFound {
+        return None;
+    }
+    likeliest_slip(arm).map(|slip| format!("look at the units first: {slip}"))
+}
+
 /// The equilibria that the path does not lead to, where it turns back: looked for with no finer tolerance than a count needs.
 fn others(arm: &Arm, tol: f64, kind: VerdictKind) -> Option<Others> {
     const COARSE: f64 = 1e-6;
@@ -107,7 +117,7 @@ fn others(arm: &Arm, tol: f64, kind: VerdictKind) -> Option<Others> {
 fn others_message(others: Others) -> String {
     match (others.count, others.complete) {
         (0, true) => "no other equilibrium exists at these loads".to_owned(),
-        (0, false) => "no other equilibrium was found at these loads, but the search was not complete".to_owned(),
+        (0, false) => "no other equilibrium was found at these loads, but the search is not complete".to_owned(),
         (count, complete) => format!(
             "{count} other equilibri{} at these loads, {} of them stable: see `hydrostat equilibria`",
             match (count, complete) {

@@ -20,7 +20,7 @@ fn nine<'a>(command: &'a str, more: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn text_says_how_many_and_whether_these_are_all() {
     let run = solved(&FIVE);
-    assert!(run.out.starts_with("silicone: 5 equilibria, 3 of them stable\ncomplete: the curve of equilibria was followed once round\n(tip at "), "{}", run.out);
+    assert!(run.out.starts_with("silicone: 5 equilibria, 3 of them stable\ncomplete: the curve of equilibria was followed all the way around\n(tip at "), "{}", run.out);
     let words = |word: &str| run.out.lines().skip(1).filter(|line| line.ends_with(word)).count();
     assert_eq!((words(" stable"), words("unstable (1)")), (3, 2));
     assert_eq!(run.err, "");
@@ -132,7 +132,7 @@ fn no_equilibrium_is_a_verdict() {
     let args = ["equilibria", "paper", "--set", "model.volume=none", "-o", "all.txt", "--plot", "all.svg"];
     let run = hydrostat_in(directory.path(), &args);
     assert_eq!((run.code, run.out.as_str()), (3, ""));
-    assert!(run.err.starts_with("error: no equilibrium was found at any angle of the base; "), "{}", run.err);
+    assert!(run.err.starts_with("error: no equilibrium was found at any base angle; "), "{}", run.err);
     assert!(run.err.contains("\ntry: "), "{}", run.err);
     assert!(files(directory.path()).is_empty());
     let over = ["equilibria", "paper", "--set", "model.volume=none", "--over", "cable[0].tension=30:40:2"];

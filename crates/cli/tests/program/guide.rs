@@ -105,7 +105,7 @@ fn steady(text: &str) -> Vec<String> {
         if rounding { "0".to_owned() } else { word.to_owned() }
     };
     let line = |line: &str| {
-        let kept = line.split_once(" with an answer, ").map_or(line, |(rows, _)| rows);
+        let kept = line.split_once(" with an equilibrium, ").map_or(line, |(rows, _)| rows);
         kept.split_whitespace().map(word).collect::<Vec<_>>().join(" ")
     };
     let took = |line: &&str| !line.starts_with("work ") && !line.starts_with("tip error ");

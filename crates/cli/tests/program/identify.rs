@@ -58,7 +58,7 @@ fn parameters_are_found_written_and_drawn() {
         let [from, to] = [0, 1].map(|k| one["interval"][k].as_f64().unwrap());
         assert!(from < truth && truth < to && to - from < 0.2 * truth, "{one}");
     }
-    assert_eq!(document["verdict"][0], "the data tell all parameters apart");
+    assert_eq!(document["verdict"][0], "the data determine all parameters");
     assert_eq!(document["residuals"].as_array().unwrap().len(), 30);
     assert_eq!(document["residuals"][0]["row"], 2);
     assert_eq!(document["cross_validation"].as_array().unwrap().len(), 3);
@@ -72,7 +72,7 @@ fn parameters_are_found_written_and_drawn() {
     let (names, rows) = columns(&run.out);
     assert_eq!((names[0], names[7], rows.len()), ("case", "residual_sd", 30));
     let report = hydrostat_in(here.path(), &identify("young,cn", &[]));
-    for part in ["material.young (Pa)", "verdict: the data tell", "correlation", "singular value", "predicted"] {
+    for part in ["material.young (Pa)", "verdict: the data determine", "correlation", "singular value", "predicted"] {
         assert!(report.out.contains(part), "{part}: {}", report.out);
     }
 }
@@ -85,8 +85,8 @@ fn what_cannot_be_told_apart_is_said_in_words() {
     let wide = ["--prior", "flow.density=1022±400", "--no-cross-validation"];
     let run = hydrostat_in(here.path(), &identify("young,cn,flow.density", &wide));
     assert_eq!(run.code, 0, "{}", run.err);
-    assert!(run.out.contains("verdict: the data cannot tell"), "{}", run.out);
-    assert!(run.out.contains("flow.density") && run.out.contains("Fix one of them, give a prior"), "{}", run.out);
+    assert!(run.out.contains("verdict: the data do not separate"), "{}", run.out);
+    assert!(run.out.contains("flow.density") && run.out.contains("Fix one of them, add a prior"), "{}", run.out);
     let prior = ["--prior", "flow.density=1022±5", "--loss", "huber", "--rescale"];
     let run = hydrostat_in(here.path(), &identify("young,cn,flow.density", &prior));
     assert_eq!(run.code, 0, "{}", run.err);
@@ -99,8 +99,7 @@ fn a_template_can_be_filled_in() {
     let run = hydrostat_in(here.path(), &["identify", "silicone", "--template", "-o", "data.csv"]);
     assert_eq!((run.code, run.out.as_str()), (0, ""), "{}", run.err);
     let run = hydrostat_in(here.path(), &["identify", "silicone", "data.csv", "--fit", "young"]);
-    let words =
-        "error: data.csv: there is no measured number; fill in x and y, or another quantity that was measured\n";
+    let words = "error: data.csv: there is no measured value; fill in x and y, or another measured quantity\n";
     assert_eq!((run.code, run.err.as_str()), (2, words));
     let template = std::fs::read_to_string(here.path().join("data.csv")).unwrap();
     let filled = template.replacen("a,0,0,0,61.25,,,,", "a,0.1,0,0,61.25,61,2,,", 1);
@@ -139,7 +138,7 @@ fn a_start_without_equilibrium_ends_with_status_3() {
     measure(here.path());
     let run = hydrostat_in(here.path(), &identify("young=10 kPa", &[]));
     assert_eq!((run.code, run.out.as_str()), (3, ""), "{}", run.err);
-    assert!(run.err.contains("case pulled has no answer where the search starts: a cable folds"), "{}", run.err);
+    assert!(run.err.contains("case pulled has no equilibrium at the start values: a cable folds"), "{}", run.err);
 }
 
 /// The words of a command, with those in quotes as one.

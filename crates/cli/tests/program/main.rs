@@ -12,8 +12,12 @@ mod paths;
 mod reach;
 mod refusals;
 mod serve;
+mod shell;
+mod slips;
 mod sweeps;
 mod tables;
+#[cfg(unix)]
+mod terminal;
 mod units;
 mod validate;
 mod verdicts;

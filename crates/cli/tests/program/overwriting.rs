@@ -53,14 +53,14 @@ fn inputs_were_replaced_by_outputs() {
         (&["reach", "my.toml", "--path", "targets.csv", "-o", "my.toml"], "-o"),
         (&[&identify[..], &["-o", "data.csv"]].concat(), "-o"),
         (&[&identify[..], &["-o", "my.toml"]].concat(), "-o"),
-        (&[&identify[..], &["--out", "my.toml"]].concat(), "--out"),
+        (&[&identify[..], &["--fitted", "my.toml"]].concat(), "--fitted"),
         (&[&identify[..], &["--plot", soft]].concat(), "--plot"),
         (&["identify", "my.toml", "--template", "-o", "my.toml"], "-o"),
     ] {
         let run = hydrostat_in(here, args);
         assert_eq!((run.code, run.out.as_str()), (2, ""), "{args:?}: {}", run.err);
-        let said = run.err.starts_with(&format!("error: {option} "))
-            && run.err.contains("nothing that is read is written over");
+        let said =
+            run.err.starts_with(&format!("error: {option} ")) && run.err.contains("inputs are never overwritten");
         assert!(said, "{args:?}: {}", run.err);
         assert!(contents(here) == before, "{args:?}");
     }
@@ -80,7 +80,7 @@ fn figures_sweeps_and_plots_keep_what_they_read() {
         let before = contents(here);
         let run = hydrostat_in(here, args);
         assert_eq!((run.code, run.out.as_str()), (2, ""), "{args:?}: {}", run.err);
-        assert!(run.err.contains("nothing that is read is written over"), "{args:?}: {}", run.err);
+        assert!(run.err.contains("inputs are never overwritten"), "{args:?}: {}", run.err);
         assert!(contents(here) == before, "{args:?}");
     };
     fs::copy(here.join("my.toml"), here.join("fig1a.csv")).unwrap();

@@ -20,7 +20,8 @@ fn text_has_ends_events_and_a_summary() {
     assert!(run.out.starts_with("path   paper, cable[0].tension from 0 N to 100 N\n"), "{}", run.out);
     assert_eq!(run.out.lines().filter(|l| l.ends_with("start") || l.ends_with("end")).count(), 2);
     assert!(
-        run.out.contains("no limit points, no bifurcations; stable all along; the end of the range was reached, 100 N")
+        run.out
+            .contains("no limit points, no bifurcations; stable throughout; the end of the range was reached, 100 N")
     );
     assert_eq!(run.err, "");
 

@@ -46,7 +46,7 @@ fn what_is_out_of_reach_ends_with_status_3_and_the_closest() {
     let run = hydrostat(&reach("0.3,0", &["--format", "json"]));
     assert_eq!(run.code, 3, "{}", run.err);
     assert!(
-        run.err.starts_with("error: the target is not reached: the closest that was found is off by "),
+        run.err.starts_with("error: the target is not reached: the closest shape that was found misses it by "),
         "{}",
         run.err
     );
@@ -84,7 +84,7 @@ fn the_place_asked_for_was_not_said() {
     assert!((rows[0][5].parse::<f64>().unwrap() - wanted_x).abs() < 1e-8, "{text}");
 
     let run = solved(&args);
-    assert!(run.out.starts_with("silicone: 1 solution for the place at s = 150 mm\n"), "{}", run.out);
+    assert!(run.out.starts_with("silicone: 1 solution for the station at s = 150 mm\n"), "{}", run.out);
     let head = run.out.lines().nth(2).unwrap();
     for name in ["place x (mm)", "place alpha (deg)", "tip x (mm)", "tip turned (deg)"] {
         assert!(head.contains(name), "{head}");
@@ -127,11 +127,11 @@ fn what_to_try_was_not_said() {
     assert_eq!(advice(&reach("0.3,0", &[])), "", "a little too far is no slip of units");
     let rounded = ["reach", "silicone", "--target", "0.182,0.078", "--angle", "161.665", "--max-tension", "0.6"];
     let near = advice(&rounded);
-    assert!(near.starts_with("--tol 1e-") && near.contains("a radian counts as one length"), "{near}");
+    assert!(near.starts_with("--tol 1e-") && near.contains("one radian counts as one length"), "{near}");
     let tol = near.split(':').next().unwrap().strip_prefix("--tol ").unwrap();
     solved(&[&rounded[..], &["--tol", tol]].concat());
     let base = hydrostat(&reach("0.1,0", &["--station", "0"]));
-    assert!(base.err.trim_end().ends_with("; the base does not move"), "{}", base.err);
+    assert!(base.err.trim_end().ends_with("; the base cannot move"), "{}", base.err);
 
     let here = directory();
     std::fs::write(here.path().join("far.csv"), "x_m,y_m\n0.24,0.01\n182,78\n").unwrap();
@@ -247,7 +247,7 @@ fn a_cable_is_wound_in_no_further_than_it_may_be() {
     assert!(stroke(&free["solutions"][0]) > 0.015, "{free}");
     let run = hydrostat(&reach(target, &["--max-stroke", "10 mm", "--format", "json"]));
     assert_eq!(run.code, 3, "{}", run.err);
-    assert!(run.err.contains("cable left is wound in as far as it can be"), "{}", run.err);
+    assert!(run.err.contains("cable left is at its largest stroke"), "{}", run.err);
     let closest = &json(&run.out)["closest"];
     assert!((stroke(closest) - 0.010).abs() < 1e-8, "{closest}");
     assert_eq!(closest["bounds"][0]["kind"], "stroke");

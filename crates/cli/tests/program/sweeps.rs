@@ -18,7 +18,7 @@ fn a_sweep_is_a_table_and_its_pictures() {
     let directory = directory();
     let run = hydrostat_in(directory.path(), &sweep(&["-o", "out.csv", "--columns", "tip,fold", "--threads", "2"]));
     assert_eq!((run.code, run.out.as_str()), (0, ""), "{}", run.err);
-    assert!(run.err.starts_with("out.csv: 20 rows of paper, 20 with an answer"), "{}", run.err);
+    assert!(run.err.starts_with("out.csv: 20 rows of paper, 20 with an equilibrium"), "{}", run.err);
     let text = std::fs::read_to_string(directory.path().join("out.csv")).unwrap();
     let (names, rows) = columns(&text);
     assert_eq!(names[..4], ["row", "flow_speed_m_s", "cable_0_tension_N", "tip_x_m"]);
@@ -51,7 +51,7 @@ fn rows_without_an_equilibrium_are_rows() {
     let directory = directory();
     let args = ["sweep", "silicone", "--vary", "cable[0].tension=0.5,1.5", "-o", "out.csv"];
     let run = hydrostat_in(directory.path(), &args);
-    assert!(run.code == 0 && run.err.contains("2 rows of silicone, 1 with an answer"), "{}", run.err);
+    assert!(run.code == 0 && run.err.contains("2 rows of silicone, 1 with an equilibrium"), "{}", run.err);
     let text = std::fs::read_to_string(directory.path().join("out.csv")).unwrap();
     let (names, rows) = columns(&text);
     let verdict = names.iter().position(|name| *name == "verdict").unwrap();
@@ -59,7 +59,7 @@ fn rows_without_an_equilibrium_are_rows() {
     let run =
         hydrostat_in(directory.path(), &["sweep", "silicone", "--vary", "cable[0].tension=1.2,1.4", "-o", "none.csv"]);
     assert_eq!((run.code, run.out.as_str()), (3, ""));
-    assert!(run.err.contains("none.csv: 2 rows of silicone, 0 with an answer"), "{}", run.err);
+    assert!(run.err.contains("none.csv: 2 rows of silicone, 0 with an equilibrium"), "{}", run.err);
     assert_eq!(files(directory.path()), ["none.csv", "none.csv.json", "out.csv", "out.csv.json"]);
 }
 
@@ -86,7 +86,7 @@ fn sweeps_that_cannot_be_meant() {
     assert!(with(&["--sample", "lhs:0"]).contains("--sample"));
     assert!(with(&["--columns", "tip,tap"]).contains("expected some of tip, alpha"));
     assert!(with(&["--shard", "3/2"]).contains("expected I/N"));
-    assert!(with(&["--shard", "1/9"]).contains("at most 1 shards of this sweep"));
+    assert!(with(&["--shard", "1/21"]).contains("at most 20 shards, because the sweep has 20 rows"));
     assert!(with(&["--tol", "1"]).contains("--tol: expected a number in [1e-12, 1e-2], found 1"));
     assert!(with(&["--threads", "0"]).contains("--threads"));
     assert!(with(&["--shapes", "1"]).contains("from 2 to 1000"));
@@ -258,7 +258,9 @@ fn ctrl_c_said_nothing() {
     assert!(sent.success());
     let ended = child.wait_with_output().unwrap();
     let said = String::from_utf8(ended.stderr).unwrap();
-    assert_eq!((ended.status.code(), said.trim()), (Some(130), "stopped: the same command with --resume goes on"));
+    // On a slow machine lines of progress come before.
+    let last = said.lines().last();
+    assert_eq!((ended.status.code(), last), (Some(130), Some("stopped: resume with the same command and --resume")));
 }
 
 /// One was told to remove the directory in which another sweep was at work.
@@ -280,13 +282,13 @@ fn a_second_sweep_was_told_to_remove_the_first() {
     }
     for more in [&[][..], &["--resume"]] {
         let run = hydrostat_in(here, &[&sweep[..], more].concat());
-        let said = "error: another sweep is at work on out.parquet; wait until it has ended, or choose another name\n";
+        let said = "error: another sweep is writing out.parquet; wait until it ends, or choose another name\n";
         assert_eq!((run.code, run.err.as_str()), (2, said), "{more:?}");
     }
     first.kill().unwrap();
     first.wait().unwrap();
     let run = hydrostat_in(here, &sweep);
-    assert!(run.code == 2 && run.err.contains("a sweep that was not ended; --resume goes on with it"), "{}", run.err);
+    assert!(run.code == 2 && run.err.contains("an interrupted sweep; resume it with --resume"), "{}", run.err);
 }
 
 /// A part that was cut was joined as it was, and its rows were missing.

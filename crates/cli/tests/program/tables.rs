@@ -193,7 +193,7 @@ fn colours_were_those_of_what_does_not_vary() {
     assert_eq!(hydrostat_in(here, &none).code, 3);
     let run = hydrostat_in(here, &["plot", "none.csv"]);
     assert_eq!((run.code, run.out.as_str()), (2, ""));
-    assert!(run.err.starts_with("error: none.csv: no row has an answer"), "{}", run.err);
+    assert!(run.err.starts_with("error: none.csv: no row has an equilibrium"), "{}", run.err);
     let run = hydrostat_in(here, &["plot", "none.csv", "--quantity", "tip_x_m", "--map", "none.svg"]);
     assert!(run.code == 2 && run.err.contains("no row has a value of tip_x_m"), "{}", run.err);
     assert!(!here.join("none.svg").exists() && !here.join("none.map.svg").exists());

@@ -18,8 +18,10 @@ fn text_and_csv_have_nothing_to_say() {
         assert_eq!((run.code, run.out.as_str()), (3, ""));
         assert!(run.err.starts_with("error: "), "{}", run.err);
         assert!(run.err.contains("\ntry: "), "{}", run.err);
-        let fraction = run.err.split_whitespace().find_map(|word| word.parse::<f64>().ok().filter(|f| *f > 0.0));
-        assert!(fraction.is_some_and(|f| f < 1.0), "no load fraction in: {}", run.err);
+        let words: Vec<&str> = run.err.split_whitespace().collect();
+        let percent = words.windows(2).find(|pair| pair[1] == "%").and_then(|pair| pair[0].parse::<f64>().ok());
+        assert!(percent.is_some_and(|p| p > 0.0 && p < 100.0), "no percentage in: {}", run.err);
+        assert!(run.err.contains(" % of the requested tensions, other loads fully applied"), "{}", run.err);
     }
 }
 

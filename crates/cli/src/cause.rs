@@ -1,0 +1,204 @@
+//! What a command can fail with, as one enum.
+
+use std::error::Error;
+
+use hydrostat::{PathError, ReachError, SensitivityError, SolveError};
+use hydrostat_figures::source::StudyError;
+use hydrostat_files::{FileError, FitKeyError, MeasurementsError, TargetsError, WriteError};
+use hydrostat_identify::{IdentifyError, Trial};
+use hydrostat_serve::ServeError;
+use hydrostat_sweep::SweepError;
+
+use crate::command::NoAnswer;
+use crate::request::WrongRequest;
+
+/// Who is to blame, which is what exit codes tell apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Blame {
+    /// The request: arguments, arm file, data, or an output path.
+    Request,
+    /// The arm, which has no such equilibrium, or the search, which did not find it.
+    Arm,
+    /// The user, who did not want it after all.
+    User,
+    /// Anything else.
+    Other,
+}
+
+/// An error of a library or of the program.
+pub(crate) enum Cause<'a> {
+    Solve(&'a SolveError),
+    Path(&'a PathError),
+    Sensitivity(&'a SensitivityError),
+    Reach(&'a ReachError),
+    Sweep(&'a SweepError),
+    Identify(&'a IdentifyError),
+    Study(&'a StudyError),
+    Serve(&'a ServeError),
+    Measurements,
+    FitKey,
+    Targets,
+    File,
+    Write,
+    Request(&'a WrongRequest),
+    NoAnswer,
+}
+
+impl<'a> Cause<'a> {
+    /// Of one error of a chain; `None` for those that say nothing here, such as a failure to print.
+    pub(crate) fn of(error: &'a (dyn Error + 'static)) -> Option<Self> {
+        let found = error.downcast_ref().map(Self::Solve);
+        let found = found.or_else(|| error.downcast_ref().map(Self::Path));
+        let found = found.or_else(|| error.downcast_ref().map(Self::Sensitivity));
+        let found = found.or_else(|| error.downcast_ref().map(Self::Reach));
+        let found = found.or_else(|| error.downcast_ref().map(Self::Sweep));
+        let found = found.or_else(|| error.downcast_ref().map(Self::Identify));
+        let found = found.or_else(|| error.downcast_ref().map(Self::Study));
+        let found = found.or_else(|| error.downcast_ref().map(Self::Serve));
+        let found = found.or_else(|| error.is::<MeasurementsError>().then_some(Self::Measurements));
+        let found = found.or_else(|| error.is::<FitKeyError>().then_some(Self::FitKey));
+        let found = found.or_else(|| error.is::<TargetsError>().then_some(Self::Targets));
+        let found = found.or_else(|| error.is::<FileError>().then_some(Self::File));
+        let found = found.or_else(|| error.is::<WriteError>().then_some(Self::Write));
+        let found = found.or_else(|| error.downcast_ref().map(Self::Request));
+        found.or_else(|| error.is::<NoAnswer>().then_some(Self::NoAnswer))
+    }
+
+    /// The first of a chain that says something.
+    pub(crate) fn behind(error: &'a anyhow::Error) -> Option<Self> {
+        error.chain().find_map(Self::of)
+    }
+
+    /// Every error has its line here: one that is new does not compile until it has one, too.
+    pub(crate) fn blame(&self) -> Blame {
+        match self {
+            Self::Solve(error) => solve(error),
+            Self::Path(error) => path(error),
+            Self::Sensitivity(error) => sensitivity(error),
+            Self::Reach(error) => reach(error),
+            Self::Sweep(error) => sweep(error),
+            Self::Identify(error) => identify(error),
+            Self::Study(error) => study(error),
+            Self::Serve(ServeError::Bind { .. }) => Blame::Request,
+            Self::Serve(ServeError::Run(_)) => Blame::Other,
+            Self::Measurements | Self::FitKey | Self::Targets | Self::File | Self::Write => Blame::Request,
+            Self::Request(WrongRequest::Declined) => Blame::User,
+            Self::Request(_) => Blame::Request,
+            Self::NoAnswer => Blame::Arm,
+        }
+    }
+
+    /// The failed solve behind it, if that is what it is.
+    pub(crate) fn solve(&self) -> Option<&'a SolveError> {
+        match self {
+            Self::Solve(error) => Some(error),
+            Self::Path(PathError::Start { source, .. }) => Some(source),
+            Self::Reach(error) => solve_of_reach(error),
+            Self::Study(StudyError::Solve { source, .. }) => Some(source),
+            Self::Study(StudyError::Reach(error)) => solve_of_reach(error),
+            Self::Path(_)
+            | Self::Sensitivity(_)
+            | Self::Sweep(_)
+            | Self::Identify(_)
+            | Self::Study(_)
+            | Self::Serve(_)
+            | Self::Measurements
+            | Self::FitKey
+            | Self::Targets
+            | Self::File
+            | Self::Write
+            | Self::Request(_)
+            | Self::NoAnswer => None,
+        }
+    }
+}
+
+fn solve_of_reach(error: &ReachError) -> Option<&SolveError> {
+    match error {
+        ReachError::Solve(source) | ReachError::Sensitivity(SensitivityError::Solve(source)) => Some(source),
+        ReachError::Sensitivity(_) | ReachError::NoCables | ReachError::Target | ReachError::Option { .. } => None,
+    }
+}
+
+fn solve(error: &SolveError) -> Blame {
+    match error {
+        SolveError::Arm(_) | SolveError::Option { .. } => Blame::Request,
+        SolveError::NoEquilibrium(_) => Blame::Arm,
+    }
+}
+
+fn path(error: &PathError) -> Blame {
+    match error {
+        PathError::Value { .. }
+        | PathError::Option { .. }
+        | PathError::Support
+        | PathError::Stroke { .. }
+        | PathError::Friction { .. } => Blame::Request,
+        PathError::Start { source, .. } => solve(source),
+    }
+}
+
+fn sensitivity(error: &SensitivityError) -> Blame {
+    match error {
+        SensitivityError::Solve(source) => solve(source),
+        SensitivityError::Singular | SensitivityError::Unsettled(_) => Blame::Arm,
+        SensitivityError::Unfit(_)
+        | SensitivityError::Commanded(_)
+        | SensitivityError::NotCommanded(_)
+        | SensitivityError::Station { .. }
+        | SensitivityError::Rubbing(_)
+        | SensitivityError::Support => Blame::Request,
+    }
+}
+
+fn reach(error: &ReachError) -> Blame {
+    match error {
+        ReachError::Solve(source) => solve(source),
+        ReachError::Sensitivity(source) => sensitivity(source),
+        ReachError::NoCables | ReachError::Target | ReachError::Option { .. } => Blame::Request,
+    }
+}
+
+fn sweep(error: &SweepError) -> Blame {
+    match error {
+        SweepError::Plan(_)
+        | SweepError::Value(_)
+        | SweepError::Option(_)
+        | SweepError::Shard { .. }
+        | SweepError::Exists { .. }
+        | SweepError::Begun { .. }
+        | SweepError::Other { .. }
+        | SweepError::Locked { .. }
+        | SweepError::Write(_)
+        | SweepError::Read { .. }
+        | SweepError::Damaged { .. }
+        | SweepError::Stopped => Blame::Request,
+        SweepError::Threads(_) => Blame::Other,
+    }
+}
+
+/// Where a search cannot start for want of an equilibrium there is none; all else is wrong with the request.
+fn identify(error: &IdentifyError) -> Blame {
+    match error {
+        IdentifyError::Start { source, .. } => match source.as_ref() {
+            Trial::Sensitivity(source) => sensitivity(source),
+            Trial::Arm(_) => Blame::Request,
+        },
+        IdentifyError::NoParameter
+        | IdentifyError::NoData
+        | IdentifyError::Twice(_)
+        | IdentifyError::Range { .. }
+        | IdentifyError::Measurement { .. }
+        | IdentifyError::Quantity { .. }
+        | IdentifyError::Unfit { .. }
+        | IdentifyError::Freedom { .. } => Blame::Request,
+    }
+}
+
+fn study(error: &StudyError) -> Blame {
+    match error {
+        StudyError::NoCable { .. } | StudyError::Faster { .. } | StudyError::NoTension { .. } => Blame::Request,
+        StudyError::Solve { source, .. } => solve(source),
+        StudyError::Reach(source) => reach(source),
+    }
+}

@@ -1,0 +1,39 @@
+//! Standard input in place of a file, asked for as `-`.
+
+use std::io::{self, Read};
+use std::path::Path;
+
+use crate::request::WrongRequest;
+
+/// What messages call it.
+pub(crate) const NAME: &str = "standard input";
+
+/// The most that is read, in bytes: as much as of the largest kind of file.
+const MOST: u64 = 64 << 20;
+
+/// Whether a path asks for standard input.
+pub(crate) fn is_standard(path: impl AsRef<Path>) -> bool {
+    path.as_ref() == Path::new("-")
+}
+
+/// All of it.
+pub(crate) fn bytes() -> Result<Vec<u8>, WrongRequest> {
+    let mut bytes = Vec::new();
+    io::stdin()
+        .lock()
+        .take(MOST + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| WrongRequest::Input(error.to_string()))?;
+    if bytes.len() as u64 > MOST {
+        return Err(WrongRequest::Input(format!("expected at most {MOST} bytes, found more")));
+    }
+    Ok(bytes)
+}
+
+/// All of it as text.
+pub(crate) fn text() -> Result<String, WrongRequest> {
+    String::from_utf8(bytes()?).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        WrongRequest::Input(format!("expected UTF-8 text, found something else at byte {at}"))
+    })
+}
