@@ -162,7 +162,12 @@ const DISTRIBUTED: &[Key] = &[
 ];
 
 const MODEL: &[Key] = &[
-    default("closure", Choice(&["default", "literal"]), "\"default\"", "All options below together, except `displaced`."),
+    default(
+        "closure",
+        Choice(&["default", "literal"]),
+        "\"default\"",
+        "All options below together, except `displaced`.",
+    ),
     optional("volume", Choice(&Volume::NAMES), "Volume law: how a section widens under compression."),
     optional("flow_surface", Choice(&FlowSurface::NAMES), "Surface that gives the direction of the load."),
     optional("entering_speed", Choice(&EnteringSpeed::NAMES), "Speed that enters the boundary layer."),
