@@ -79,10 +79,11 @@ pub(crate) fn duration(seconds: f64) -> String {
     let Some((smaller, part)) = UNITS.get(largest + 1) else {
         return format!("{:.0} {name}", (seconds / size).round());
     };
-    let parts = (seconds / part).round();
-    let each = (size / part).round();
-    let whole = (parts / each).floor();
-    let rest = parts - whole * each;
+    let mut whole = (seconds / size).floor();
+    let mut rest = ((seconds - whole * size) / part).round();
+    if rest >= (size / part).round() {
+        (whole, rest) = (whole + 1.0, 0.0);
+    }
     let named = |count: f64, name: &str| {
         let one = count == 1.0 && name.len() > 3;
         format!("{count:.0} {}", if one { name.trim_end_matches('s') } else { name })

@@ -420,7 +420,7 @@ impl Solver {
             self.engine.restore(&kept);
             last_good = self.engine.measure().ok().and_then(|()| self.read(LOOSE, Travelled::default()).ok());
         }
-        let [after_snap, at_full_loads] = [after_snap, at_full_loads].map(|state| self.read_state(&state?));
+        let [after_snap, at_full_loads] = [after_snap, at_full_loads].map(|state| self.read_state(state?.as_ref()));
         SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good, snaps, after_snap, at_full_loads }))
     }
 

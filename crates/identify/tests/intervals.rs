@@ -83,7 +83,7 @@ fn a_pair_that_cannot_be_told_apart_is_called_so() {
     assert!(fit.findings.iter().any(pair), "{:?}", fit.findings);
     let words = fit.verdict().join("\n");
     assert!(words.contains("the data do not separate flow.density and flow.cn: flow.density "), "{words}");
-    assert!(words.contains("Fix one of them, give a prior"), "{words}");
+    assert!(words.contains("Fix one of them, add a prior"), "{words}");
     // A prior on one of them makes the other known.
     wanted[1].prior = Some(Prior { mean: 1022.0, sd: 2.0 });
     let fit = found(&cases, &wanted, &QUICK);
@@ -231,7 +231,7 @@ fn trials_without_an_equilibrium_are_survived_and_named() {
     assert!(refused.case == 0 && refused.trials > 0 && refused.at[0] < 110e3, "{refused:?}");
     wanted[0].start = 40e3;
     let error = fit_error(&cases, &wanted);
-    assert!(error.starts_with("case hard pull has no answer where the search starts: a cable folds"), "{error}");
+    assert!(error.starts_with("case hard pull has no equilibrium at the start values: a cable folds"), "{error}");
 }
 
 /// What is told how far the search is can end it, and gets what was found until there.
@@ -263,8 +263,8 @@ fn fit_error(cases: &[Case], wanted: &[Fitted]) -> String {
 fn wrong_requests_are_refused() {
     let cases = exact(&loads()[..1], &markers(1), |_| 1e-3);
     let young = wanted(&[Parameter::Young])[0];
-    assert_eq!(fit_error(&cases, &[]), "no parameter is given to be fitted");
-    assert_eq!(fit_error(&[], &[young]), "there is no measured number");
+    assert_eq!(fit_error(&cases, &[]), "no parameter to fit was given");
+    assert_eq!(fit_error(&[], &[young]), "there is no measured value");
     assert_eq!(fit_error(&cases, &[young, young]), "`material.young` is given twice");
     let within = Fitted { start: 1e5, bounds: [2e5, 3e5], ..young };
     assert_eq!(fit_error(&cases, &[within]), "`material.young`: expected a start within the bounds, found 100000");

@@ -291,9 +291,9 @@ fn extreme_between(stepper: &mut Stepper<'_>, a: &Point, b: &Point) -> Option<Po
         let side = point.slope() * low.slope() > 0.0;
         best = Some(point.clone());
         if side {
-            low = point
+            low = point;
         } else {
-            high = point
+            high = point;
         }
         if (high.tip_angle() - low.tip_angle()).abs() < 1e-7 {
             break;

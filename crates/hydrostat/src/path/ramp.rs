@@ -32,9 +32,9 @@ pub(crate) struct Stopped {
     /// The snaps on the way, with the one that is refused.
     pub(crate) snaps: Vec<Snap>,
     /// Where the arm lands after the refused snap.
-    pub(crate) after_snap: Option<State>,
+    pub(crate) after_snap: Option<Box<State>>,
     /// The end of the path beyond that snap, at whole loads.
-    pub(crate) at_full_loads: Option<State>,
+    pub(crate) at_full_loads: Option<Box<State>>,
 }
 
 impl From<Verdict> for Stopped {
@@ -127,7 +127,12 @@ impl Way {
         let end = engine.state();
         engine.restore(&refused.before);
         let Refused { verdict, after, .. } = refused;
-        Err(Stopped { verdict, snaps: self.travelled.snaps, after_snap: Some(after), at_full_loads: Some(end) })
+        Err(Stopped {
+            verdict,
+            snaps: self.travelled.snaps,
+            after_snap: Some(after.into()),
+            at_full_loads: Some(end.into()),
+        })
     }
 
     /// The end of the path before that, for the reason that `verdict` gives.
@@ -137,7 +142,7 @@ impl Way {
             return Stopped { snaps, ..verdict.into() };
         };
         engine.restore(&before);
-        Stopped { verdict, snaps, after_snap: Some(after), at_full_loads: None }
+        Stopped { verdict, snaps, after_snap: Some(after.into()), at_full_loads: None }
     }
 }
 
