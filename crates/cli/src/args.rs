@@ -157,8 +157,13 @@ pub(crate) struct ArmArgs {
     /// Speed of the stream, m/s
     #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
     pub(crate) flow_speed: Option<String>,
-    /// Override a value of the arm file, such as 'cable[0].tension=20 N' or cable.0.tension=20. Repeatable
-    #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
+    // A doc comment would take [0] for a link.
+    #[arg(
+        long,
+        value_name = "KEY=VALUE",
+        allow_hyphen_values = true,
+        help = "Override a value of the arm file, such as 'cable[0].tension=20 N' or cable.0.tension=20. Repeatable"
+    )]
     pub(crate) set: Vec<String>,
 }
 

@@ -79,11 +79,15 @@ impl<'a> Cause<'a> {
             Self::Sweep(error) => sweep(error),
             Self::Identify(error) => identify(error),
             Self::Study(error) => study(error),
-            Self::Serve(ServeError::Bind { .. }) => Blame::Request,
             Self::Serve(ServeError::Run(_)) => Blame::Other,
-            Self::Measurements | Self::FitKey | Self::Targets | Self::File | Self::Write => Blame::Request,
             Self::Request(WrongRequest::Declined) => Blame::User,
-            Self::Request(_) => Blame::Request,
+            Self::Serve(ServeError::Bind { .. })
+            | Self::Measurements
+            | Self::FitKey
+            | Self::Targets
+            | Self::File
+            | Self::Write
+            | Self::Request(_) => Blame::Request,
             Self::NoAnswer => Blame::Arm,
         }
     }

@@ -35,8 +35,13 @@ Examples:
 pub(crate) struct PathArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
-    /// Parameter and range, such as 'cable[0].tension=0:20' or 'flow.direction=0:180 deg'
-    #[arg(long, value_name = "KEY=FROM:TO", allow_hyphen_values = true)]
+    // A doc comment would take [0] for a link.
+    #[arg(
+        long,
+        value_name = "KEY=FROM:TO",
+        allow_hyphen_values = true,
+        help = "Parameter and range, such as 'cable[0].tension=0:20' or 'flow.direction=0:180 deg'"
+    )]
     pub(crate) vary: Varied,
     /// Tolerance on the tip position along the path, relative to the arm's length, from 1e-7 to 1e-3
     #[arg(long, value_name = "TOL", default_value = "1e-6", allow_hyphen_values = true)]

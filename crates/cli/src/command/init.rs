@@ -38,6 +38,6 @@ fn start() -> anyhow::Result<Arm> {
         file.set(key, value)?;
     }
     let mut arm = file.arm()?;
-    arm.name = "arm".to_owned();
+    "arm".clone_into(&mut arm.name);
     Ok(arm)
 }
