@@ -59,7 +59,7 @@ from hydrostat.many import Many, solve_many
 from hydrostat.paths import Branch, Equilibria, EquilibriumPath, Event, Path
 from hydrostat.reach import Bound, Boundary, BoundaryPiece, Followed, Follower, Reach, Reached, Target
 from hydrostat.sensitivity import Ellipse, PoseChange, Sensitivities
-from hydrostat.solution import CableState, Command, FoldMargin, Note, Solution, Stations, Tip, Wrench, animate
+from hydrostat.solution import CableState, Command, FoldMargin, Note, Snap, Solution, Stations, Tip, Wrench, animate
 from hydrostat.solver import Answer, Solver
 from hydrostat.sweep import sweep
 
@@ -109,6 +109,7 @@ __all__ = [
     "SectionCrushed",
     "SectionCrushedError",
     "Sensitivities",
+    "Snap",
     "Solution",
     "Solver",
     "Stations",

@@ -254,11 +254,14 @@ class Arm:
         strokes: Sequence[float | None] | None = None,
         flow_speed: float | None = None,
         tol: float = 1e-8,
+        snap_distance: float = 0.01,
+        snap_angle: float | str = 2.0,
+        follow_snaps: bool = False,
     ) -> Solution:
         """The static shape under the arm's loads, or under these.
 
         Among several equilibria it is the end of the path on which first all loads but the cables, then the tensions rise from
-        zero. Other threads run meanwhile.
+        zero, through small snaps, which are in `Solution.snaps`. Other threads run meanwhile.
 
         Parameters
         ----------
@@ -270,6 +273,12 @@ class Arm:
             m/s, in place of the arm's own.
         tol : float
             Error of the tip position over the length that is asked for, in [1e-12, 1e-2].
+        snap_distance : float
+            How far the tip may jump at a snap on the way to the loads, over the length; an arm that snaps further has no answer.
+        snap_angle : float or str
+            How far it may turn there: degrees, or a string with a unit.
+        follow_snaps : bool
+            Whether every snap is followed, however far.
 
         Raises
         ------
@@ -282,11 +291,12 @@ class Arm:
         speed = None if flow_speed is None else _inputs.number("flow_speed", flow_speed, negative=False)
         reeled = None if strokes is None else _strokes(strokes)
         within = _inputs.number("tol", tol)
+        snaps = _inputs.snaps(snap_distance, snap_angle, follow_snaps)
 
         def origin() -> Origin:
-            return Origin("solve", (self._inner.parts(), None if pulled is None else pulled.tolist(), reeled, speed, within))
+            return Origin("solve", (self._inner.parts(), None if pulled is None else pulled.tolist(), reeled, speed, within, snaps))
 
-        return warn(Solution(self._inner.solve(pulled, reeled, speed, within), origin), 2)
+        return warn(Solution(self._inner.solve(pulled, reeled, speed, within, snaps), origin), 2)
 
     def path(
         self,

@@ -165,6 +165,9 @@ def solve_many(
     flow_speed: xr.DataArray | float | None = ...,
     vary: Mapping[str, xr.DataArray | float] | None = ...,
     tol: float = ...,
+    snap_distance: float = ...,
+    snap_angle: float | str = ...,
+    follow_snaps: bool = ...,
     tile: int = ...,
     fold_margin: bool = ...,
     stability: bool = ...,
@@ -182,6 +185,9 @@ def solve_many(
     flow_speed: xr.DataArray,
     vary: Mapping[str, xr.DataArray | float] | None = ...,
     tol: float = ...,
+    snap_distance: float = ...,
+    snap_angle: float | str = ...,
+    follow_snaps: bool = ...,
     tile: int = ...,
     fold_margin: bool = ...,
     stability: bool = ...,
@@ -199,6 +205,9 @@ def solve_many(
     flow_speed: ArrayLike | None = ...,
     vary: Mapping[str, ArrayLike] | None = ...,
     tol: float = ...,
+    snap_distance: float = ...,
+    snap_angle: float | str = ...,
+    follow_snaps: bool = ...,
     tile: int = ...,
     fold_margin: bool = ...,
     stability: bool = ...,
@@ -215,6 +224,9 @@ def solve_many(
     flow_speed: ArrayLike | xr.DataArray | None = None,
     vary: Mapping[str, ArrayLike] | Mapping[str, xr.DataArray | float] | None = None,
     tol: float = 1e-6,
+    snap_distance: float = 0.01,
+    snap_angle: float | str = 2.0,
+    follow_snaps: bool = False,
     tile: int = 256,
     fold_margin: bool = False,
     stability: bool = False,
@@ -242,6 +254,12 @@ def solve_many(
         ``"tip.force[1]"`` (N), ``"material.young"`` (Pa) and so on.
     tol : float
         Error of the tip position over the length, in [1e-12, 1e-2].
+    snap_distance : float
+        How far the tip may jump at a snap on the way to the loads, over the length; an arm that snaps further has no answer.
+    snap_angle : float or str
+        How far it may turn there: degrees, or a string with a unit.
+    follow_snaps : bool
+        Whether every snap is followed, however far.
     tile : int
         Rows that follow from one another; a row starts from the one before where only loads differ, and where that cannot lead to
         another branch. The rows do not depend on the number of processors.
@@ -294,7 +312,8 @@ def solve_many(
     labelled = _labelled(tensions, flow_speed, vary)
     if labelled is not None:
         tensions, flow_speed, vary, like = labelled
-        options: dict[str, Any] = {"tol": tol, "tile": tile, "fold_margin": fold_margin, "stability": stability, "stations": stations}
+        options: dict[str, Any] = {"snap_distance": snap_distance, "snap_angle": snap_angle, "follow_snaps": follow_snaps}
+        options |= {"tol": tol, "tile": tile, "fold_margin": fold_margin, "stability": stability, "stations": stations}
         options |= {"gradients": gradients, "nan": nan, "threads": threads, "progress": progress}
         many = solve_many(arm, tensions=tensions, flow_speed=flow_speed, vary=vary, **options)
         return many.to_xarray(*like.dims).assign_coords(like.coords)
@@ -319,10 +338,12 @@ def solve_many(
             columns,
             rows,
             _inputs.number("tol", tol),
+            _inputs.snaps(snap_distance, snap_angle, follow_snaps),
             _inputs.count("tile", tile),
             True,
             fold_margin,
             stability,
+            False,
             places,
             by,
             _inputs.count("threads", threads),

@@ -34,6 +34,12 @@ class Solver:
         The arm, or the name or file of one.
     tol : float
         Error of the tip position over the length, in [1e-12, 1e-2].
+    snap_distance : float
+        How far the tip may jump at a snap on the way to the loads, over the length; an arm that snaps further has no answer.
+    snap_angle : float or str
+        How far it may turn there: degrees, or a string with a unit.
+    follow_snaps : bool
+        Whether every snap is followed, however far.
 
     A copy goes on from the same shape, by itself.
 
@@ -50,8 +56,17 @@ class Solver:
 
     __slots__ = ("_inner",)
 
-    def __init__(self, arm: Arm | str | PathLike[str], tol: float = 1e-8) -> None:
-        self._inner = _native.Solver(arm_of(arm)._inner, _inputs.number("tol", tol))
+    def __init__(
+        self,
+        arm: Arm | str | PathLike[str],
+        tol: float = 1e-8,
+        *,
+        snap_distance: float = 0.01,
+        snap_angle: float | str = 2.0,
+        follow_snaps: bool = False,
+    ) -> None:
+        snaps = _inputs.snaps(snap_distance, snap_angle, follow_snaps)
+        self._inner = _native.Solver(arm_of(arm)._inner, _inputs.number("tol", tol), snaps)
 
     def __copy__(self) -> Solver:
         out = Solver.__new__(Solver)
