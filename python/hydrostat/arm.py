@@ -15,7 +15,7 @@ from hydrostat._saved import Origin
 from hydrostat.solution import Solution, warn
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from hydrostat.identification import Fit, Keys, Measured, Priors
     from hydrostat.paths import Equilibria, EquilibriumPath
@@ -205,8 +205,8 @@ class Arm:
         self,
         changes: Mapping[str, object] | None = None,
         *,
-        tensions: Sequence[float] | None = None,
-        strokes: Sequence[float | None] | None = None,
+        tensions: Sequence[float | str] | NDArray[Any] | None = None,
+        strokes: Sequence[float | str | None] | NDArray[Any] | None = None,
         flow_speed: float | str | None = None,
         flow_direction: float | str | None = None,
     ) -> Arm:
@@ -217,10 +217,10 @@ class Arm:
         changes : mapping, optional
             Values by the dotted keys of the arm file, such as ``{"cable[0].friction": 0.1, "model.volume": "none"}``. A table's
             other keys stay as they are: ``{"flow": {"speed": 0.1}}`` is ``{"flow.speed": 0.1}``.
-        tensions : sequence of float, optional
-            One a cable, N; strokes are not commanded any more.
-        strokes : sequence of float or None, optional
-            One a cable, m, in place of its tension; None leaves a cable as it is.
+        tensions : sequence of float or str, or ndarray, optional
+            One a cable, N, or with a unit; strokes are not commanded any more.
+        strokes : sequence of float, str or None, or ndarray, optional
+            One a cable, m, or with a unit, in place of its tension; None leaves a cable as it is.
         flow_speed : float or str, optional
             m/s.
         flow_direction : float or str, optional
@@ -251,7 +251,7 @@ class Arm:
         self,
         *,
         tensions: ArrayLike | None = None,
-        strokes: Sequence[float | None] | None = None,
+        strokes: Sequence[float | None] | NDArray[Any] | None = None,
         flow_speed: float | None = None,
         tol: float = 1e-8,
         snap_distance: float = 0.01,
@@ -572,6 +572,6 @@ def _dotted(key: str, value: object) -> dict[str, object]:
     return out
 
 
-def _strokes(strokes: Sequence[float | None]) -> list[float | None]:
+def _strokes(strokes: Sequence[float | None] | NDArray[Any]) -> list[float | None]:
     each = _inputs.items("strokes", strokes, "numbers, one a cable")
     return [None if stroke is None else _inputs.number(f"strokes[{i}]", stroke) for i, stroke in enumerate(each)]

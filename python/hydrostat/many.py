@@ -61,10 +61,12 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         cables: tuple[str, ...],
         columns: dict[str, NDArray[np.generic]],
         parameters: tuple[str, ...] = (),
+        length: float = float("nan"),
     ) -> None:
         self.shape = shape
         self.cables = cables
         self.parameters = parameters
+        self.length = length
         self._columns = columns
 
     def __getitem__(self, name: str) -> NDArray[np.generic]:
@@ -86,7 +88,7 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         return hash((self.shape, self.cables, self.parameters))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        state = (self.shape, self.cables, self._columns, self.parameters)
+        state = (self.shape, self.cables, self._columns, self.parameters, self.length)
         return _many, (_saved.FORMAT, _native.__version__, state)
 
     def __repr__(self) -> str:
@@ -136,7 +138,8 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         return self._columns[name].astype(np.float64, copy=False)
 
     def to_xarray(self, *dims: Hashable) -> xr.Dataset:
-        """The answers as a dataset over `dims` (``dim_0`` and so on without them), ``cable`` and ``station``. Needs xarray."""
+        """The answers as a dataset over `dims` (``dim_0`` and so on without them), ``cable``, ``station`` (with its
+        place ``s``, m) and ``parameter``. Needs xarray."""
         import xarray as xr
 
         own = dims or tuple(f"dim_{k}" for k in range(len(self.shape)))
@@ -146,9 +149,12 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         for name, column in self._columns.items():
             attributes = {"units": _UNITS[name]} if name in _UNITS else {}
             variables[name] = ((*own, *_DIMS.get(name, ())), column, attributes)
-        coordinates = {"cable": ("cable", list(self.cables))}
+        coordinates: dict[str, Any] = {"cable": ("cable", list(self.cables))}
         if self.parameters:
             coordinates["parameter"] = ("parameter", list(self.parameters))
+        if "x" in self._columns:
+            places = np.linspace(0.0, self.length, self._columns["x"].shape[-1])
+            coordinates["s"] = ("station", places, {"units": "m", "long_name": "length along the undeformed arm"})
         return xr.Dataset(variables, coords=coordinates)
 
 
@@ -356,7 +362,7 @@ def solve_many(
             out[name] = np.array(column, dtype=np.str_).reshape(shape)
         else:
             out[name] = column.reshape(shape + tuple(sizes[dim] for dim in _DIMS.get(name, ())))
-    return Many(shape, cables, out, tuple(by))
+    return Many(shape, cables, out, tuple(by), arm.length)
 
 
 def _labelled(tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, Any, xr.DataArray] | None:
