@@ -18,6 +18,9 @@ as in the file: bare angles in degrees, strings with units.
 cable_fold 0.6288 0.245
 """
 
+from sys import modules as _modules
+from types import ModuleType as _ModuleType
+
 from hydrostat._errors import (
     ArmError,
     CableFold,
@@ -59,7 +62,7 @@ from hydrostat.many import Many, solve_many
 from hydrostat.paths import Branch, Equilibria, EquilibriumPath, Event, Path
 from hydrostat.reach import Bound, Boundary, BoundaryPiece, Followed, Follower, Reach, Reached, Target
 from hydrostat.sensitivity import Ellipse, PoseChange, Sensitivities
-from hydrostat.solution import CableState, Command, FoldMargin, Note, Solution, Stations, Tip, Wrench, animate
+from hydrostat.solution import CableState, Command, FoldMargin, Note, Snap, Solution, Stations, Tip, Wrench, animate
 from hydrostat.solver import Answer, Solver
 from hydrostat.sweep import sweep
 
@@ -109,6 +112,7 @@ __all__ = [
     "SectionCrushed",
     "SectionCrushedError",
     "Sensitivities",
+    "Snap",
     "Solution",
     "Solver",
     "Stations",
@@ -131,3 +135,31 @@ __all__ = [
     "sweep",
     "workspace_figure",
 ]
+
+
+class _Module(_ModuleType):
+    """A module that says what was meant when it is called."""
+
+    def __call__(self, *_: object, **__: object) -> None:
+        name = self.__name__.rpartition(".")[2]
+        raise TypeError(f"hydrostat.{name} is a module; expected a call of {_MEANT[name]}")
+
+
+#: What stands for modules of the same name.
+_MEANT = {
+    "arm": "`hydrostat.Arm(...)` or `hydrostat.Arm.load(...)`",
+    "identification": "`hydrostat.Arm.identify(...)`",
+    "many": "`hydrostat.solve_many(...)`",
+    "paths": "`hydrostat.Arm.path(...)` or `hydrostat.Arm.equilibria(...)`",
+    "reach": "`hydrostat.Arm.reach(...)`",
+    "sensitivity": "`hydrostat.Arm.sensitivities(...)`",
+    "solution": "`hydrostat.Arm.solve(...)`",
+    "solver": "`hydrostat.Solver(...)`",
+}
+
+for _name in _MEANT:
+    _modules[f"{__name__}.{_name}"].__class__ = _Module
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hydrostat import _native
-    from hydrostat.solution import Solution
+    from hydrostat.solution import Snap, Solution
 
 
 class ModelWarning(UserWarning):
@@ -19,7 +19,7 @@ class ModelWarning(UserWarning):
     ----------
     kind : str
         ``"surface_fold"``, ``"strain_range"``, ``"tension_above_max"``, ``"sealed_cavity"``, ``"tangential_load"`` or
-        ``"tolerance_missed"``.
+        ``"tolerance_missed"``. A snap is none: it is within the bounds that were asked for.
     """
 
     kind: str
@@ -96,6 +96,12 @@ class NoEquilibriumError(RuntimeError):
         The verdict in a sentence, and advice.
     last_good : Solution or None
         The last good shape on the path, with its loads.
+    snaps : tuple of Snap
+        The snaps on the way; where the arm snaps too far, that snap is the last.
+    after_snap : Solution or None
+        The shape after such a snap, with the loads of that moment.
+    at_full_loads : Solution or None
+        The shape at the full loads, if the path leads there after such a snap: the answer with ``follow_snaps=True``.
     """
 
     kind: str
@@ -106,6 +112,9 @@ class NoEquilibriumError(RuntimeError):
     message: str
     advice: str
     last_good: Solution | None
+    snaps: tuple[Snap, ...]
+    after_snap: Solution | None
+    at_full_loads: Solution | None
 
     def __init__(
         self,
@@ -117,6 +126,9 @@ class NoEquilibriumError(RuntimeError):
         message: str,
         advice: str,
         last_good: Solution | None = None,
+        snaps: tuple[Snap, ...] = (),
+        after_snap: Solution | None = None,
+        at_full_loads: Solution | None = None,
     ) -> None:
         super().__init__(f"{message}; {advice}")
         self.kind = kind
@@ -127,10 +139,13 @@ class NoEquilibriumError(RuntimeError):
         self.message = message
         self.advice = advice
         self.last_good = last_good
+        self.snaps = snaps
+        self.after_snap = after_snap
+        self.at_full_loads = at_full_loads
 
     def __reduce__(self) -> tuple[type[NoEquilibriumError], tuple[object, ...]]:
         fields = (self.kind, self.phase, self.load_fraction, self.where, self.residual, self.message, self.advice)
-        return type(self), (*fields, self.last_good)
+        return type(self), (*fields, self.last_good, self.snaps, self.after_snap, self.at_full_loads)
 
 
 class CableFoldError(NoEquilibriumError):
@@ -180,12 +195,16 @@ def no_equilibrium(
     message: str,
     advice: str,
     last_good: _native.Solution | None,
+    snaps: list[Any],
+    after_snap: _native.Solution | None,
+    at_full_loads: _native.Solution | None,
 ) -> NoEquilibriumError:
     """The exception of a verdict; called by the extension module."""
-    from hydrostat.solution import Solution
+    from hydrostat.solution import Solution, snaps_of
 
-    shape = None if last_good is None else Solution(last_good)
-    return _KINDS.get(kind, NoEquilibriumError)(kind, phase, load_fraction, where, residual, message, advice, shape)
+    good, after, full = (None if shape is None else Solution(shape) for shape in (last_good, after_snap, at_full_loads))
+    make = _KINDS.get(kind, NoEquilibriumError)
+    return make(kind, phase, load_fraction, where, residual, message, advice, good, snaps_of(snaps), after, full)
 
 
 # The names of version 0.1, kept for a version.

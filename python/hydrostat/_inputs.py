@@ -18,6 +18,9 @@ T = TypeVar("T")
 K = TypeVar("K")
 V = TypeVar("V")
 
+#: How far the tip may jump, over the length, and turn, rad, at a snap unless something else is asked for.
+SNAPS = (0.01, _native.angle("2 deg"))
+
 _ESCAPES = {ord('"'): '\\"', ord("\\"): "\\\\", **{code: f"\\u{code:04x}" for code in [*range(32), 127]}}
 
 
@@ -78,6 +81,24 @@ def number(name: str, value: float, *, negative: bool = True) -> float:
     if out < 0.0 and not negative:
         raise ValueError(f"{name}: expected a number that is not negative, found {out}")
     return out
+
+
+def snaps(distance: float, angle: float | str, follow: bool) -> tuple[float, float]:
+    """How far the tip may jump, over the length, and turn, rad, at a snap: no end where every snap is followed."""
+    if distance == 0.01 and angle == 2.0:
+        return (math.inf, math.inf) if follow else SNAPS
+    if follow:
+        raise ValueError("follow_snaps: expected it without snap_distance and snap_angle, which bound the snaps that are followed")
+    if isinstance(angle, str):
+        try:
+            turn = _native.angle(angle)
+        except ValueError as error:
+            raise ValueError(f"snap_angle: {error}") from error
+        number("snap_angle", turn, negative=False)
+    else:
+        own = number("snap_angle", angle, negative=False)
+        turn = SNAPS[1] if own == 2.0 else _native.angle(repr(own))
+    return number("snap_distance", distance, negative=False), turn
 
 
 def count(name: str, value: int) -> int:

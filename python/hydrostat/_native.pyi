@@ -10,6 +10,9 @@ __version__: str
 
 _Array = NDArray[np.float64]
 _Setting = tuple[str, str, str]
+_Bounds = tuple[float, float]
+_Tip = tuple[float, float, float, float]
+_Snap = tuple[str, float, _Tip, _Tip, float, float]
 _Axis = tuple[str, str, float]
 _Goal = tuple[float, float, float | None, float | None, float]
 _Most = tuple[float | None, float | None]
@@ -30,7 +33,12 @@ class Arm:
     def commanded(self) -> list[bool]: ...
     def same(self, other: Arm) -> bool: ...
     def solve(
-        self, tensions: _Array | None, strokes: Sequence[float | None] | None, flow_speed: float | None, tol: float
+        self,
+        tensions: _Array | None,
+        strokes: Sequence[float | None] | None,
+        flow_speed: float | None,
+        tol: float,
+        snaps: _Bounds,
     ) -> Solution: ...
 
 class Stations:
@@ -43,7 +51,11 @@ class Solution:
     @property
     def tol(self) -> float: ...
     @property
-    def tip(self) -> tuple[float, float, float, float]: ...
+    def bounds(self) -> _Bounds: ...
+    @property
+    def snaps(self) -> list[_Snap]: ...
+    @property
+    def tip(self) -> _Tip: ...
     @property
     def cables(self) -> list[tuple[str, float, float, float, tuple[float, float, bool] | None]]: ...
     @property
@@ -71,7 +83,7 @@ class Solution:
     def figure(self, note: str | None) -> Figure: ...
 
 class Solver:
-    def __new__(cls, arm: Arm, tol: float) -> Solver: ...
+    def __new__(cls, arm: Arm, tol: float, snaps: _Bounds) -> Solver: ...
     def copy(self) -> Solver: ...
     @property
     def tensions(self) -> list[float]: ...
@@ -178,6 +190,7 @@ class Sweep:
         sample: str | None,
         seed: int,
         tol: float,
+        snaps: _Bounds,
         columns: Sequence[str] | None,
         shapes: int,
     ) -> Sweep: ...
@@ -205,6 +218,7 @@ class Sweep:
         self, output: str | PathLike[str], resume: bool, threads: int, progress: Callable[[int], None] | None
     ) -> tuple[int, int, int, int]: ...
 
+def angle(text: str) -> float: ...
 def bare_unit(key: str) -> str | None: ...
 def shipped(name: str) -> str | None: ...
 def shipped_names() -> list[tuple[str, str]]: ...
@@ -215,10 +229,12 @@ def solve_many(
     columns: Sequence[_Array],
     rows: int,
     tol: float,
+    snaps: _Bounds,
     tile: int,
     strokes: bool,
     fold_margin: bool,
     stability: bool,
+    warnings: bool,
     stations: int,
     gradients: Sequence[str],
     threads: int,

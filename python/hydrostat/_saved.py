@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 #: The version of what pickles and files hold. Others are refused by name.
-FORMAT = 1
+FORMAT = 2
 
 #: How far (over the length) a tip that was made again may be from the one that was saved and still be of the same shape.
 _SAME = 1e-6
@@ -76,7 +76,10 @@ class SavedStations(Saved):
 class SavedSolution(SavedStations):
     """An equilibrium."""
 
-    _plain = ("tol", "cables", "base_reaction", "unmet", "error_estimate", "strain_energy", "fold_margin", "statistics")
+    _plain: tuple[str, ...] = (
+        *("tol", "bounds", "cables", "base_reaction", "unmet", "error_estimate", "strain_energy", "fold_margin", "statistics"),
+        "snaps",
+    )
 
     @property
     def arm(self) -> _native.Arm:
@@ -128,7 +131,7 @@ def solution_of(state: Mapping[str, Any]) -> SavedSolution:
 
 def own_origin(native: Any, tol: float) -> Origin:
     """A solve of the arm that a shape balances."""
-    return Origin("solve", (native.arm.parts(), None, None, None, tol))
+    return Origin("solve", (native.arm.parts(), None, None, None, tol, native.bounds))
 
 
 class SavedPath(Saved):
@@ -362,9 +365,11 @@ def _arm(parts: tuple[Any, ...]) -> _native.Arm:
     return _native.Arm(*parts)
 
 
-def _solve(arm: tuple[Any, ...], tensions: Any, strokes: Any, flow_speed: float | None, tol: float) -> _native.Solution:
+def _solve(
+    arm: tuple[Any, ...], tensions: Any, strokes: Any, flow_speed: float | None, tol: float, snaps: Sequence[float]
+) -> _native.Solution:
     pulled = None if tensions is None else np.asarray(tensions, dtype=np.float64)
-    return _arm(arm).solve(pulled, strokes, flow_speed, tol)
+    return _arm(arm).solve(pulled, strokes, flow_speed, tol, (snaps[0], snaps[1]))
 
 
 def _of_arm(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -15,7 +15,7 @@ from hydrostat._saved import Origin
 from hydrostat.solution import Solution, warn
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from hydrostat.identification import Fit, Keys, Measured, Priors
     from hydrostat.paths import Equilibria, EquilibriumPath
@@ -205,8 +205,8 @@ class Arm:
         self,
         changes: Mapping[str, object] | None = None,
         *,
-        tensions: Sequence[float] | None = None,
-        strokes: Sequence[float | None] | None = None,
+        tensions: Sequence[float | str] | NDArray[Any] | None = None,
+        strokes: Sequence[float | str | None] | NDArray[Any] | None = None,
         flow_speed: float | str | None = None,
         flow_direction: float | str | None = None,
     ) -> Arm:
@@ -217,10 +217,10 @@ class Arm:
         changes : mapping, optional
             Values by the dotted keys of the arm file, such as ``{"cable[0].friction": 0.1, "model.volume": "none"}``. A table's
             other keys stay as they are: ``{"flow": {"speed": 0.1}}`` is ``{"flow.speed": 0.1}``.
-        tensions : sequence of float, optional
-            One per cable, N; strokes are then no longer commanded.
-        strokes : sequence of float or None, optional
-            One per cable, m, in place of its tension; None leaves a cable as it is.
+        tensions : sequence of float or str, or ndarray, optional
+            One per cable, N, or with a unit; strokes are then no longer commanded.
+        strokes : sequence of float, str or None, or ndarray, optional
+            One per cable, m, or with a unit, in place of its tension; None leaves a cable as it is.
         flow_speed : float or str, optional
             m/s.
         flow_direction : float or str, optional
@@ -251,14 +251,17 @@ class Arm:
         self,
         *,
         tensions: ArrayLike | None = None,
-        strokes: Sequence[float | None] | None = None,
+        strokes: Sequence[float | None] | NDArray[Any] | None = None,
         flow_speed: float | None = None,
         tol: float = 1e-8,
+        snap_distance: float = 0.01,
+        snap_angle: float | str = 2.0,
+        follow_snaps: bool = False,
     ) -> Solution:
         """Solve for the static shape under the arm's loads, or under the given ones.
 
         Several equilibria may exist. The answer is the end of the path on which first all loads but the cables', then the tensions
-        rise from zero. Other threads run meanwhile.
+        rise from zero, through small snaps, which are in `Solution.snaps`. Other threads run meanwhile.
 
         Parameters
         ----------
@@ -270,6 +273,12 @@ class Arm:
             m/s, in place of the arm's.
         tol : float
             Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
+        snap_distance : float
+            Largest jump of the tip at a snap, relative to the arm's length; an arm that snaps further has no answer.
+        snap_angle : float or str
+            Largest turn of the tip at a snap: degrees, or a string with a unit.
+        follow_snaps : bool
+            Whether to follow every snap, however far.
 
         Raises
         ------
@@ -282,11 +291,12 @@ class Arm:
         speed = None if flow_speed is None else _inputs.number("flow_speed", flow_speed, negative=False)
         reeled = None if strokes is None else _strokes(strokes)
         within = _inputs.number("tol", tol)
+        snaps = _inputs.snaps(snap_distance, snap_angle, follow_snaps)
 
         def origin() -> Origin:
-            return Origin("solve", (self._inner.parts(), None if pulled is None else pulled.tolist(), reeled, speed, within))
+            return Origin("solve", (self._inner.parts(), None if pulled is None else pulled.tolist(), reeled, speed, within, snaps))
 
-        return warn(Solution(self._inner.solve(pulled, reeled, speed, within), origin), 2)
+        return warn(Solution(self._inner.solve(pulled, reeled, speed, within, snaps), origin), 2)
 
     def path(
         self,
@@ -564,6 +574,6 @@ def _dotted(key: str, value: object) -> dict[str, object]:
     return out
 
 
-def _strokes(strokes: Sequence[float | None]) -> list[float | None]:
+def _strokes(strokes: Sequence[float | None] | NDArray[Any]) -> list[float | None]:
     each = _inputs.items("strokes", strokes, "numbers, one a cable")
     return [None if stroke is None else _inputs.number(f"strokes[{i}]", stroke) for i, stroke in enumerate(each)]

@@ -61,10 +61,12 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         cables: tuple[str, ...],
         columns: dict[str, NDArray[np.generic]],
         parameters: tuple[str, ...] = (),
+        length: float = float("nan"),
     ) -> None:
         self.shape = shape
         self.cables = cables
         self.parameters = parameters
+        self.length = length
         self._columns = columns
 
     def __getitem__(self, name: str) -> NDArray[np.generic]:
@@ -86,7 +88,7 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         return hash((self.shape, self.cables, self.parameters))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        state = (self.shape, self.cables, self._columns, self.parameters)
+        state = (self.shape, self.cables, self._columns, self.parameters, self.length)
         return _many, (_saved.FORMAT, _native.__version__, state)
 
     def __repr__(self) -> str:
@@ -136,7 +138,8 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         return self._columns[name].astype(np.float64, copy=False)
 
     def to_xarray(self, *dims: Hashable) -> xr.Dataset:
-        """The answers as a dataset over `dims` (``dim_0`` and so on without them), ``cable`` and ``station``. Needs xarray."""
+        """The answers as a dataset over `dims` (``dim_0`` and so on without them), ``cable``, ``station`` (with its
+        place ``s``, m) and ``parameter``. Needs xarray."""
         import xarray as xr
 
         own = dims or tuple(f"dim_{k}" for k in range(len(self.shape)))
@@ -146,9 +149,12 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         for name, column in self._columns.items():
             attributes = {"units": _UNITS[name]} if name in _UNITS else {}
             variables[name] = ((*own, *_DIMS.get(name, ())), column, attributes)
-        coordinates = {"cable": ("cable", list(self.cables))}
+        coordinates: dict[str, Any] = {"cable": ("cable", list(self.cables))}
         if self.parameters:
             coordinates["parameter"] = ("parameter", list(self.parameters))
+        if "x" in self._columns:
+            places = np.linspace(0.0, self.length, self._columns["x"].shape[-1])
+            coordinates["s"] = ("station", places, {"units": "m", "long_name": "length along the undeformed arm"})
         return xr.Dataset(variables, coords=coordinates)
 
 
@@ -165,6 +171,9 @@ def solve_many(
     flow_speed: xr.DataArray | float | None = ...,
     vary: Mapping[str, xr.DataArray | float] | None = ...,
     tol: float = ...,
+    snap_distance: float = ...,
+    snap_angle: float | str = ...,
+    follow_snaps: bool = ...,
     tile: int = ...,
     fold_margin: bool = ...,
     stability: bool = ...,
@@ -182,6 +191,9 @@ def solve_many(
     flow_speed: xr.DataArray,
     vary: Mapping[str, xr.DataArray | float] | None = ...,
     tol: float = ...,
+    snap_distance: float = ...,
+    snap_angle: float | str = ...,
+    follow_snaps: bool = ...,
     tile: int = ...,
     fold_margin: bool = ...,
     stability: bool = ...,
@@ -199,6 +211,9 @@ def solve_many(
     flow_speed: ArrayLike | None = ...,
     vary: Mapping[str, ArrayLike] | None = ...,
     tol: float = ...,
+    snap_distance: float = ...,
+    snap_angle: float | str = ...,
+    follow_snaps: bool = ...,
     tile: int = ...,
     fold_margin: bool = ...,
     stability: bool = ...,
@@ -215,6 +230,9 @@ def solve_many(
     flow_speed: ArrayLike | xr.DataArray | None = None,
     vary: Mapping[str, ArrayLike] | Mapping[str, xr.DataArray | float] | None = None,
     tol: float = 1e-6,
+    snap_distance: float = 0.01,
+    snap_angle: float | str = 2.0,
+    follow_snaps: bool = False,
     tile: int = 256,
     fold_margin: bool = False,
     stability: bool = False,
@@ -242,6 +260,12 @@ def solve_many(
         ``"tip.force[1]"`` (N), ``"material.young"`` (Pa) and so on.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
+    snap_distance : float
+        Largest jump of the tip at a snap, relative to the arm's length; an arm that snaps further has no answer.
+    snap_angle : float or str
+        Largest turn of the tip at a snap: degrees, or a string with a unit.
+    follow_snaps : bool
+        Whether to follow every snap, however far.
     tile : int
         Number of rows that are solved after one another. A row starts warm from the one before if only loads differ and this cannot
         lead to another branch. The rows do not depend on the number of processors.
@@ -294,7 +318,8 @@ def solve_many(
     labelled = _labelled(tensions, flow_speed, vary)
     if labelled is not None:
         tensions, flow_speed, vary, like = labelled
-        options: dict[str, Any] = {"tol": tol, "tile": tile, "fold_margin": fold_margin, "stability": stability, "stations": stations}
+        options: dict[str, Any] = {"snap_distance": snap_distance, "snap_angle": snap_angle, "follow_snaps": follow_snaps}
+        options |= {"tol": tol, "tile": tile, "fold_margin": fold_margin, "stability": stability, "stations": stations}
         options |= {"gradients": gradients, "nan": nan, "threads": threads, "progress": progress}
         many = solve_many(arm, tensions=tensions, flow_speed=flow_speed, vary=vary, **options)
         return many.to_xarray(*like.dims).assign_coords(like.coords)
@@ -319,10 +344,12 @@ def solve_many(
             columns,
             rows,
             _inputs.number("tol", tol),
+            _inputs.snaps(snap_distance, snap_angle, follow_snaps),
             _inputs.count("tile", tile),
             True,
             fold_margin,
             stability,
+            False,
             places,
             by,
             _inputs.count("threads", threads),
@@ -335,7 +362,7 @@ def solve_many(
             out[name] = np.array(column, dtype=np.str_).reshape(shape)
         else:
             out[name] = column.reshape(shape + tuple(sizes[dim] for dim in _DIMS.get(name, ())))
-    return Many(shape, cables, out, tuple(by))
+    return Many(shape, cables, out, tuple(by), arm.length)
 
 
 def _labelled(tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, Any, xr.DataArray] | None:

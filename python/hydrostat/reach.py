@@ -44,8 +44,8 @@ class Target(NamedTuple):
     weight: float = 1.0
 
 
-#: One target, several, or the tip's ``(x, y)``, m.
-Targets = Union[Target, tuple[float, float], Sequence[Target]]
+#: One target, several, or the tip's ``(x, y)``, m, a pair or an array of two.
+Targets = Union[Target, tuple[float, float], Sequence[Target], "NDArray[Any]"]
 
 
 class Bound(NamedTuple):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import html
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path as FilePath
@@ -77,6 +78,38 @@ class CableState(NamedTuple):
     length: float
     stroke: float
     command: Command | None
+
+
+@dataclass(frozen=True, slots=True)
+class Snap:
+    """A jump that the arm makes as its loads grow slowly, where the path of its equilibria turns back and then leads on.
+
+    Attributes
+    ----------
+    phase : str
+        What was being raised: ``"loads"`` (all but the cables), ``"tension"``, ``"stroke"`` or ``"friction"``.
+    load_fraction : float
+        The share of that phase's loads at the snap, 0 to 1.
+    before, after : Tip
+        The tip, m and rad, before the snap and where the arm lands.
+    distance, angle : float
+        How far the tip jumps, m, and turns, rad.
+    """
+
+    phase: str
+    load_fraction: float
+    before: Tip
+    after: Tip
+    distance: float
+    angle: float
+
+
+def snaps_of(fields: Iterable[Sequence[Any]]) -> tuple[Snap, ...]:
+    """Snaps of what the extension module, a pickle or a file has of them."""
+    return tuple(
+        Snap(phase, load_fraction, Tip(*before), Tip(*after), distance, angle)
+        for phase, load_fraction, before, after, distance, angle in fields
+    )
 
 
 class FoldMargin(NamedTuple):
@@ -320,6 +353,20 @@ class Solution(Stations):
         )
 
     @property
+    def snaps(self) -> tuple[Snap, ...]:
+        """The snaps that the arm makes as its loads grow from nothing to these, in their order; mostly none.
+
+        Examples
+        --------
+        >>> import hydrostat as hs
+        >>> arm = hs.Arm.load("silicone").replace({"model.displaced": "section"}, flow_speed=0.7, flow_direction=90)
+        >>> arm = arm.replace({"flow.density": 1022, "gravity": {"acceleration": 9.80665, "direction": -90}})
+        >>> [(snap.phase, round(1e3 * snap.distance, 2)) for snap in arm.solve(tensions=[3e-4, 0]).snaps]  # mm
+        [('tension', 0.87)]
+        """
+        return snaps_of(self._inner.snaps)
+
+    @property
     def base_reaction(self) -> Wrench:
         """Force and moment of the support and the cable anchors on the arm at the base, N and N m."""
         return _wrench(*self._inner.base_reaction)
@@ -427,7 +474,9 @@ class Solution(Stations):
         -------
         xarray.Dataset
             The fields over ``s``; ``tension``, ``cable_length`` and ``stroke`` over ``cable``; ``warnings`` over their kinds,
-            ``warning``; the rest as attributes.
+            ``warning``; ``snap_phase``, ``snap_load_fraction``, ``snap_distance``, ``snap_angle`` over ``snap``, and the tip's ``snap_x``,
+            ``snap_y``, ``snap_theta``, ``snap_alpha`` over ``snap`` and ``side`` (before, after), if the arm snaps on its way; the rest
+            as attributes.
         """
         out = super().to_xarray()
         cables = self.cables
@@ -438,6 +487,8 @@ class Solution(Stations):
         out = out.assign_coords(warning=("warning", np.array([note.kind for note in self.warnings], dtype=np.str_)))
         messages = np.array([note.message for note in self.warnings], dtype=np.str_)
         out["warnings"] = ("warning", messages, {"long_name": "what should be known about this answer"})
+        if self.snaps:
+            out = _with_snaps(out, self.snaps)
         base = self.base_reaction
         out.attrs = {
             "arm": self.arm.name,
@@ -559,16 +610,31 @@ _WARNINGS = {
 def warn(solution: Solution, depth: int) -> Solution:
     """Raise a Python warning for each kind of note on an answer, of the caller `depth` calls up."""
     for note in solution.warnings:
+        if note.kind == "snap":
+            # Within the bounds that were asked for.
+            continue
         words = _WARNINGS.get(note.kind, "see its message")
         text = f"{note.kind}: {words}; `Solution.warnings` has the numbers"
         warnings.warn(ModelWarning(text, note.kind), stacklevel=depth + 1)
     return solution
 
 
+def _with_snaps(dataset: xr.Dataset, snaps: tuple[Snap, ...]) -> xr.Dataset:
+    units = {"load_fraction": "1", "distance": "m", "angle": "rad"}
+    out = dataset.assign_coords(side=("side", ["before", "after"]))
+    out["snap_phase"] = ("snap", np.array([snap.phase for snap in snaps], dtype=np.str_))
+    for name, unit in units.items():
+        out[f"snap_{name}"] = ("snap", np.array([getattr(snap, name) for snap in snaps]), {"units": unit})
+    for name in Tip._fields:
+        sides = np.array([[getattr(snap.before, name), getattr(snap.after, name)] for snap in snaps])
+        out[f"snap_{name}"] = (("snap", "side"), sides, {"units": FIELDS[name][0]})
+    return out
+
+
 def _numbers(solution: Solution) -> tuple[Any, ...]:
     inner = solution._inner
     fields = [inner.field(name) for name in FIELDS]
-    return inner.tol, inner.cables, inner.base_reaction, inner.error_estimate, fields
+    return inner.tol, inner.cables, inner.base_reaction, inner.error_estimate, inner.snaps, fields
 
 
 def _stations(version: int, writer: str, fields: Mapping[str, NDArray[np.float64]]) -> Stations:

@@ -34,6 +34,12 @@ class Solver:
         The arm, or the name or file of one.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
+    snap_distance : float
+        Largest jump of the tip at a snap, relative to the arm's length; an arm that snaps further has no answer.
+    snap_angle : float or str
+        Largest turn of the tip at a snap: degrees, or a string with a unit.
+    follow_snaps : bool
+        Whether to follow every snap, however far.
 
     A copy continues from the same shape, independently.
 
@@ -50,8 +56,17 @@ class Solver:
 
     __slots__ = ("_inner",)
 
-    def __init__(self, arm: Arm | str | PathLike[str], tol: float = 1e-8) -> None:
-        self._inner = _native.Solver(arm_of(arm)._inner, _inputs.number("tol", tol))
+    def __init__(
+        self,
+        arm: Arm | str | PathLike[str],
+        tol: float = 1e-8,
+        *,
+        snap_distance: float = 0.01,
+        snap_angle: float | str = 2.0,
+        follow_snaps: bool = False,
+    ) -> None:
+        snaps = _inputs.snaps(snap_distance, snap_angle, follow_snaps)
+        self._inner = _native.Solver(arm_of(arm)._inner, _inputs.number("tol", tol), snaps)
 
     def __copy__(self) -> Solver:
         out = Solver.__new__(Solver)

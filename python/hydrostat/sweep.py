@@ -39,6 +39,7 @@ class Plan(NamedTuple):
     sample: str | None
     seed: int
     tol: float
+    snaps: tuple[float, float]
     columns: tuple[str, ...] | None
     shapes: int
 
@@ -72,6 +73,9 @@ def sweep(
     sample: str | None = ...,
     seed: int = ...,
     tol: float = ...,
+    snap_distance: float = ...,
+    snap_angle: float | str = ...,
+    follow_snaps: bool = ...,
     columns: Sequence[str] | None = ...,
     shapes: int = ...,
     output: None = ...,
@@ -90,6 +94,9 @@ def sweep(
     sample: str | None = ...,
     seed: int = ...,
     tol: float = ...,
+    snap_distance: float = ...,
+    snap_angle: float | str = ...,
+    follow_snaps: bool = ...,
     columns: Sequence[str] | None = ...,
     shapes: int = ...,
     output: str | PathLike[str],
@@ -107,6 +114,9 @@ def sweep(
     sample: str | None = None,
     seed: int = 0,
     tol: float = 1e-6,
+    snap_distance: float = 0.01,
+    snap_angle: float | str = 2.0,
+    follow_snaps: bool = False,
     columns: Sequence[str] | None = None,
     shapes: int = 0,
     output: str | PathLike[str] | None = None,
@@ -136,6 +146,12 @@ def sweep(
         Seed of the sample.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
+    snap_distance : float
+        Largest jump of the tip at a snap, relative to the arm's length; an arm that snaps further has no answer.
+    snap_angle : float or str
+        Largest turn of the tip at a snap: degrees, or a string with a unit.
+    follow_snaps : bool
+        Whether to follow every snap, however far.
     columns : sequence of str, optional
         The outputs: some of ``tip``, ``alpha``, ``strokes``, ``tensions``, ``base``, ``fold``, ``stability``, ``error``,
         ``warnings``, ``verdict``.
@@ -191,6 +207,7 @@ def sweep(
         None if sample is None else _inputs.text("sample", sample, "lhs:50"),
         _inputs.count("seed", seed),
         _inputs.number("tol", tol),
+        _inputs.snaps(snap_distance, snap_angle, follow_snaps),
         names,
         _memory.stations("shapes", _inputs.count("shapes", shapes)),
     )
@@ -318,6 +335,8 @@ def dataset(
         "arm": plan.arm.to_toml(),
         "vary": [key for key, *_ in axes],
         "tol": plan.tol,
+        "snap_distance": plan.snaps[0],
+        "snap_angle": plan.snaps[1],
         "hydrostat": _native.__version__,
     }
     return xr.Dataset(out, coords=kept, attrs=about)

@@ -166,6 +166,24 @@ def test_calls(silicone: hs.Arm, call: Callable[[hs.Arm], object], words: str) -
         call(silicone)
 
 
+def test_modules_say_what_was_meant(silicone: hs.Arm) -> None:
+    with pytest.raises(TypeError, match=r"^hydrostat.reach is a module; expected a call of `hydrostat.Arm.reach"):
+        hs.reach((0.1, 0.1))  # type: ignore[operator]
+    assert not {"many", "reach", "paths", "cluster"} & set(dir(hs))
+    assert set(hs.__all__) == set(dir(hs)) and all(hasattr(hs, name) for name in hs.__all__)
+
+
+def test_arrays_are_taken_where_lists_are(silicone: hs.Arm) -> None:
+    pulls = np.array([0.2, 0.05])
+    arm = silicone.replace(tensions=pulls)
+    assert arm == silicone.replace(tensions=[0.2, 0.05]) == silicone.replace(tensions=["200 mN", 0.05])
+    tip = arm.solve().tip
+    found = silicone.reach(np.array([tip.x, tip.y]), max_tension=0.9)
+    assert len(found)
+    strokes = np.array([0.012, -0.03])
+    assert silicone.solve(strokes=strokes) == silicone.solve(strokes=[0.012, -0.03])
+
+
 def test_an_arms_name_is_an_arm(silicone: hs.Arm, tmp_path: Path) -> None:
     file = tmp_path / "own.toml"
     file.write_text(silicone.to_toml(), encoding="utf-8")

@@ -108,6 +108,14 @@ def test_gradients_are_those_of_the_solver(silicone: hs.Arm) -> None:
         hs.solve_many(arm, gradients="flow.speed")
 
 
+def test_stations_have_their_places(silicone: hs.Arm) -> None:
+    dataset = hs.solve_many(silicone, tensions=[[0.1, 0.0], [0.2, 0.0]], stations=6).to_xarray("pull")
+    assert dataset.x.dims == ("pull", "station") and dataset.s.dims == ("station",)
+    shape = silicone.solve(tensions=[0.2, 0.0]).resampled(6)
+    assert np.allclose(dataset.s, shape.s) and np.allclose(dataset.y[1], shape.y, rtol=0, atol=1e-6)
+    assert dataset.s.attrs["units"] == dataset.x.attrs["units"] == "m"
+
+
 def test_a_bar_is_drawn_where_it_is_asked_for(silicone: hs.Arm, capsys: pytest.CaptureFixture[str]) -> None:
     hs.solve_many(silicone, flow_speed=np.linspace(0.0, 0.1, 30), progress=True)
     assert "30 of 30 rows" in capsys.readouterr().err

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::finite;
 use crate::errors::{file_error, solve_error, wrong};
-use crate::solution::Solution;
+use crate::solution::{Solution, options};
 
 /// An override: the name that messages have for where it comes from, the key, the value.
 type Setting = (String, String, String);
@@ -79,8 +79,9 @@ impl Arm {
         self.given == other.given
     }
 
-    /// Solves under these loads; NaN among the strokes leaves a cable its tension.
-    #[pyo3(signature = (tensions, strokes, flow_speed, tol))]
+    /// Solves under these loads; `None` among the strokes leaves a cable its tension. `snaps` is how far the tip may jump (over the length) and
+    /// turn (rad) at a snap.
+    #[pyo3(signature = (tensions, strokes, flow_speed, tol, snaps))]
     fn solve(
         &self,
         py: Python<'_>,
@@ -88,6 +89,7 @@ impl Arm {
         strokes: Option<Vec<Option<f64>>>,
         flow_speed: Option<f64>,
         tol: f64,
+        snaps: (f64, f64),
     ) -> PyResult<Solution> {
         let mut arm = self.given.clone();
         if let Some(tensions) = tensions {
@@ -106,9 +108,10 @@ impl Arm {
         if let Some(speed) = flow_speed {
             arm.flow.speed = speed;
         }
-        py.detach(|| hydrostat::Solver::new(&arm, hydrostat::Options::with_tol(tol))?.solve())
-            .map(|configuration| Solution::new(configuration, tol))
-            .map_err(|error| solve_error(py, error, tol))
+        let options = options(tol, snaps);
+        py.detach(|| hydrostat::Solver::new(&arm, options)?.solve())
+            .map(|configuration| Solution::new(configuration, options))
+            .map_err(|error| solve_error(py, error, options))
     }
 }
 

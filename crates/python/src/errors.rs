@@ -1,7 +1,9 @@
 //! Errors of the library as Python's exceptions: a wrong request is a `ValueError`, no equilibrium is `hydrostat.NoEquilibrium` with
 //! the verdict's fields.
 
-use hydrostat::{NoEquilibrium, PathError, ReachError, SensitivityError, SolveError};
+use hydrostat::{
+    Configuration, NoEquilibrium, Options, PathError, ReachError, SensitivityError, SnapBounds, SolveError,
+};
 use hydrostat_files::{FileError, MeasurementsError};
 use hydrostat_identify::{IdentifyError, Trial};
 use hydrostat_sweep::SweepError;
@@ -10,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyAny;
 
-use crate::solution::Solution;
+use crate::solution::{Solution, snaps};
 
 /// A request that cannot be meant, in words.
 pub(crate) fn wrong(error: impl std::fmt::Display) -> PyErr {
@@ -31,26 +33,26 @@ pub(crate) fn file_error(py: Python<'_>, error: FileError) -> PyErr {
 }
 
 /// What a solve ends with.
-pub(crate) fn solve_error(py: Python<'_>, error: SolveError, tol: f64) -> PyErr {
+pub(crate) fn solve_error(py: Python<'_>, error: SolveError, options: Options) -> PyErr {
     match error {
-        SolveError::NoEquilibrium(no) => no_equilibrium(py, *no, tol),
+        SolveError::NoEquilibrium(no) => no_equilibrium(py, *no, options),
         other => wrong(other),
     }
 }
 
 /// What a path or a search for equilibria ends with.
-pub(crate) fn path_error(py: Python<'_>, error: PathError, tol: f64) -> PyErr {
+pub(crate) fn path_error(py: Python<'_>, error: PathError, options: Options) -> PyErr {
     match error {
-        PathError::Start { source: SolveError::NoEquilibrium(no), .. } => no_equilibrium(py, *no, tol),
+        PathError::Start { source: SolveError::NoEquilibrium(no), .. } => no_equilibrium(py, *no, options),
         other => wrong(other),
     }
 }
 
 /// What derivatives end with.
-pub(crate) fn sensitivity_error(py: Python<'_>, error: SensitivityError, tol: f64) -> PyErr {
+pub(crate) fn sensitivity_error(py: Python<'_>, error: SensitivityError, options: Options) -> PyErr {
     static NO_DERIVATIVE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     match error {
-        SensitivityError::Solve(error) => solve_error(py, error, tol),
+        SensitivityError::Solve(error) => solve_error(py, error, options),
         SensitivityError::Station { .. } => wrong(format!("stations: {error}")),
         SensitivityError::Unfit(_) | SensitivityError::Commanded(_) | SensitivityError::NotCommanded(_) => {
             wrong(format!("parameters: {error}"))
@@ -63,11 +65,11 @@ pub(crate) fn sensitivity_error(py: Python<'_>, error: SensitivityError, tol: f6
 }
 
 /// What a search for tensions ends with.
-pub(crate) fn reach_error(py: Python<'_>, error: ReachError, tol: f64) -> PyErr {
+pub(crate) fn reach_error(py: Python<'_>, error: ReachError, options: Options) -> PyErr {
     match error {
-        ReachError::Solve(error) => solve_error(py, error, tol),
+        ReachError::Solve(error) => solve_error(py, error, options),
         ReachError::Sensitivity(error @ SensitivityError::Station { .. }) => wrong(format!("targets: {error}")),
-        ReachError::Sensitivity(error) => sensitivity_error(py, error, tol),
+        ReachError::Sensitivity(error) => sensitivity_error(py, error, options),
         ReachError::NoCables => wrong(format!("arm: {error}")),
         ReachError::Target => wrong(format!("targets: {error}")),
         // Its words begin with the argument.
@@ -83,11 +85,11 @@ pub(crate) fn measurements_error(py: Python<'_>, error: MeasurementsError) -> Py
 }
 
 /// What a fit ends with.
-pub(crate) fn identify_error(py: Python<'_>, error: IdentifyError, tol: f64) -> PyErr {
+pub(crate) fn identify_error(py: Python<'_>, error: IdentifyError, options: Options) -> PyErr {
     let words = error.to_string();
     let IdentifyError::Start { case, source } = error else { return wrong(words) };
     let Trial::Sensitivity(source) = *source else { return wrong(words) };
-    let found = sensitivity_error(py, source, tol);
+    let found = sensitivity_error(py, source, options);
     let note = format!("load case {case} has no answer where the search starts");
     match found.value(py).call_method1("add_note", (note,)) {
         Ok(_) => found,
@@ -108,11 +110,19 @@ pub(crate) fn sweep_error(error: SweepError) -> PyErr {
     }
 }
 
-fn no_equilibrium(py: Python<'_>, no: NoEquilibrium, tol: f64) -> PyErr {
+fn no_equilibrium(py: Python<'_>, no: NoEquilibrium, options: Options) -> PyErr {
     static NO_EQUILIBRIUM: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let verdict = no.verdict;
-    let last_good = match no.last_good.map(|configuration| Py::new(py, Solution::new(configuration, tol))).transpose() {
-        Ok(last_good) => last_good,
+    let shape = |found: Option<Configuration>, options| -> PyResult<Option<Py<Solution>>> {
+        found.map(|configuration| Py::new(py, Solution::new(configuration, options))).transpose()
+    };
+    // Beyond the snap are shapes that a solve has which follows every one.
+    let followed = Options { snaps: SnapBounds::NONE, ..options };
+    let shapes = || -> PyResult<_> {
+        Ok((shape(no.last_good, options)?, shape(no.after_snap, followed)?, shape(no.at_full_loads, followed)?))
+    };
+    let (last_good, after_snap, at_full_loads) = match shapes() {
+        Ok(shapes) => shapes,
         Err(error) => return error,
     };
     let fields = (
@@ -124,6 +134,9 @@ fn no_equilibrium(py: Python<'_>, no: NoEquilibrium, tol: f64) -> PyErr {
         verdict.message(),
         verdict.advice(),
         last_good,
+        snaps(&no.snaps),
+        after_snap,
+        at_full_loads,
     );
     made(py, &NO_EQUILIBRIUM, "no_equilibrium", fields)
 }

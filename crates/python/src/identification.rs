@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 
-use hydrostat::Parameter;
+use hydrostat::{Options, Parameter};
 use hydrostat_figures::{Page, fit_figure};
 use hydrostat_files::{
     Deviations, FitKey, FitKeyError, IdentificationDocument, PriorKey, arm_to_toml, fitted, parse_measurements,
@@ -81,7 +81,7 @@ pub(crate) fn identify(
             })
         },
     )?;
-    let found = found.map_err(|error| identify_error(py, error, tol))?;
+    let found = found.map_err(|error| identify_error(py, error, Options::with_tol(tol)))?;
     let mut best = arm.given.clone();
     for one in &found.estimates {
         one.fitted.parameter.set(&mut best, one.value).map_err(wrong)?;
@@ -122,7 +122,9 @@ impl Fit {
     fn shapes(&self) -> Vec<(String, Solution)> {
         let shapes = self.found.shapes.iter();
         let name = |case: usize| self.cases.get(case).map(|case| case.name.clone()).unwrap_or_default();
-        shapes.map(|(case, shape)| (name(*case), Solution::new(shape.clone(), self.options.tol))).collect()
+        shapes
+            .map(|(case, shape)| (name(*case), Solution::new(shape.clone(), Options::with_tol(self.options.tol))))
+            .collect()
     }
 
     /// Shapes with markers, residuals and correlations.

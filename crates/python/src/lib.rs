@@ -38,7 +38,7 @@ mod _native {
     #[pymodule_export]
     use super::sensitivity::{Sensitivities, ellipse};
     #[pymodule_export]
-    use super::solution::{Solution, Stations};
+    use super::solution::{Solution, Stations, angle};
     #[pymodule_export]
     use super::solver::Solver;
     #[pymodule_export]

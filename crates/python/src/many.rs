@@ -3,8 +3,10 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hydrostat::parameter::names;
-use hydrostat::{NoRow, Options, Parameter, PoseChange, Row, SensitivityOptions, SolveError, Solver, Tile, Wanted};
-use hydrostat_files::Dimension;
+use hydrostat::{
+    NoRow, Options, Parameter, PoseChange, Row, SensitivityOptions, SolveError, Solver, Tile, Wanted, Warning,
+};
+use hydrostat_files::{Dimension, TOLERANCE_MISSED};
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -16,7 +18,7 @@ use crate::arrays::given;
 use crate::errors::wrong;
 use crate::interrupt::interruptible;
 use crate::order::order;
-use crate::solution::words;
+use crate::solution::{options, words};
 use crate::sweep::say;
 
 /// Rows that are ordered at a time: some tens of milliseconds, in which Ctrl-C is not heard.
@@ -29,7 +31,8 @@ type Gradients = Vec<Vec<f64>>;
 
 /// What a row is answered with.
 enum Answer {
-    Row(Box<Row>, Option<Gradients>),
+    /// With the kinds of its warnings.
+    Row(Box<Row>, Option<Gradients>, String),
     No(NoRow),
 }
 
@@ -37,7 +40,7 @@ enum Answer {
 struct Request<'a> {
     base: &'a hydrostat::Arm,
     varied: Vec<(Parameter, Vec<f64>)>,
-    tol: f64,
+    options: Options,
     tile: usize,
     wanted: Wanted,
     gradients: Vec<Parameter>,
@@ -52,7 +55,7 @@ pub(crate) fn parameter_names() -> Vec<String> {
 /// Solves `arm` with the values of `keys`, a column each (angles in degrees), row by row; rows with NaN are none. So many `threads`, 0 for
 /// as many as the machine has; `progress` hears rows that are done.
 #[pyfunction]
-#[pyo3(signature = (arm, keys, columns, rows, tol, tile, strokes, fold_margin, stability, stations, gradients, threads, progress))]
+#[pyo3(signature = (arm, keys, columns, rows, tol, snaps, tile, strokes, fold_margin, stability, warnings, stations, gradients, threads, progress))]
 #[expect(clippy::too_many_arguments, reason = "one call of a private function")]
 pub(crate) fn solve_many<'py>(
     py: Python<'py>,
@@ -61,10 +64,12 @@ pub(crate) fn solve_many<'py>(
     columns: Vec<PyReadonlyArray1<'py, f64>>,
     rows: usize,
     tol: f64,
+    snaps: (f64, f64),
     tile: usize,
     strokes: bool,
     fold_margin: bool,
     stability: bool,
+    warnings: bool,
     stations: usize,
     gradients: Vec<String>,
     threads: usize,
@@ -83,11 +88,12 @@ pub(crate) fn solve_many<'py>(
         parameter.of(&arm.given).map_err(|error| of_gradients(&error))?;
         Ok(parameter)
     };
-    let wanted = Wanted { strokes, fold_margin, stability, warnings: false, stations };
+    let wanted = Wanted { strokes, fold_margin, stability, warnings, stations };
     let gradients = gradients.iter().map(by).collect::<PyResult<_>>()?;
-    let request = Request { base: &arm.given, varied, tol, tile, wanted, gradients };
+    let options = options(tol, snaps);
+    let request = Request { base: &arm.given, varied, options, tile, wanted, gradients };
     // Options are looked at whatever the rows.
-    let start = Tile::new(tol, wanted).map_err(wrong)?;
+    let start = Tile::new(options, wanted).map_err(wrong)?;
     if tile == 0 {
         return Err(wrong(SolveError::Option { option: "tile", value: 0.0, expected: "at least 1" }));
     }
@@ -125,7 +131,12 @@ impl Request<'_> {
                 out.push(match tile.solve(&arm) {
                     Ok(found) => {
                         let gradients = self.gradients(&mut differentiated, &arm, &found);
-                        Answer::Row(Box::new(found), gradients)
+                        let kinds = if self.wanted.warnings {
+                            kinds(&found, self.options.tol * arm.length)
+                        } else {
+                            String::new()
+                        };
+                        Answer::Row(Box::new(found), gradients, kinds)
                     }
                     Err(no) => Answer::No(no),
                 });
@@ -153,14 +164,14 @@ impl Request<'_> {
             return None;
         }
         let near = |tip: hydrostat::Tip| {
-            (tip.x - found.tip.x).hypot(tip.y - found.tip.y) <= (1e-6 + 10.0 * self.tol) * arm.length
+            (tip.x - found.tip.x).hypot(tip.y - found.tip.y) <= (1e-6 + 10.0 * self.options.tol) * arm.length
         };
         // From the row before where that leads to the shape that the row has.
         let warm = kept
             .as_mut()
             .is_some_and(|solver| solver.set_arm(arm).is_ok() && solver.update().is_ok_and(|answer| near(answer.tip)));
         if !warm {
-            let mut solver = Solver::new(arm, Options::with_tol(self.tol)).ok()?;
+            let mut solver = Solver::new(arm, self.options).ok()?;
             solver.solve().ok()?;
             *kept = Some(solver);
         }
@@ -216,6 +227,13 @@ impl Request<'_> {
             let state = |row: Option<&Row>| row.and_then(|row| words(row.stability).0).unwrap_or_default();
             out.set_item("stability", answers.rows().map(state).collect::<Vec<_>>())?;
         }
+        if wanted.warnings {
+            let words = |answer: Option<&'_ Answer>| match answer {
+                Some(Answer::Row(_, _, kinds)) => kinds.clone(),
+                _ => String::new(),
+            };
+            out.set_item("warnings", answers.all().map(words).collect::<Vec<_>>())?;
+        }
         let verdict = |answer: Option<&Answer>| match answer {
             None => NOT_A_NUMBER,
             Some(Answer::Row(..)) => "",
@@ -243,6 +261,16 @@ impl Request<'_> {
     }
 }
 
+/// The kinds of the warnings of a row with blanks between, each once, as in the files of a sweep. `asked` is the error that was asked for, m.
+fn kinds(row: &Row, asked: f64) -> String {
+    let mut out: Vec<&str> = row.warnings.iter().map(Warning::kind).collect();
+    out.dedup();
+    if row.error_estimate > asked {
+        out.push(TOLERANCE_MISSED);
+    }
+    out.join(" ")
+}
+
 /// Answers of the rows that were solved, and the place of each row's among them.
 struct Answers {
     solved: Vec<Answer>,
@@ -256,7 +284,7 @@ impl Answers {
 
     fn rows(&self) -> impl Iterator<Item = Option<&Row>> {
         self.all().map(|answer| match answer {
-            Some(Answer::Row(row, _)) => Some(row.as_ref()),
+            Some(Answer::Row(row, ..)) => Some(row.as_ref()),
             _ => None,
         })
     }
@@ -266,7 +294,7 @@ impl Answers {
         let mut out = Vec::with_capacity(self.places.len() * count * parameters);
         for answer in self.all() {
             match answer {
-                Some(Answer::Row(_, Some(gradients))) => {
+                Some(Answer::Row(_, Some(gradients), _)) => {
                     out.extend(gradients[first..first + count].iter().flatten());
                 }
                 _ => out.resize(out.len() + count * parameters, f64::NAN),

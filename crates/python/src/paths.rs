@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use hydrostat::{Configuration, Event, PathOptions, Stability};
+use hydrostat::{Configuration, Event, Options, PathOptions, Stability};
 use hydrostat_figures::Page;
 use hydrostat_files::{EquilibriaDocument, PathDocument, Varied, end_message, equilibria_csv, path_csv};
 use numpy::PyArray1;
@@ -68,7 +68,8 @@ pub(crate) fn path(
     let follow = |stop: &std::sync::atomic::AtomicBool| {
         arm.given.path_with(varied.parameter, varied.range, &options, |_| !stop.load(Ordering::Relaxed))
     };
-    let found = interruptible(py, |_| Ok(()), follow)?.map_err(|error| path_error(py, error, tol))?;
+    let found =
+        interruptible(py, |_| Ok(()), follow)?.map_err(|error| path_error(py, error, Options::with_tol(tol)))?;
     Ok(Path { found, varied, tol })
 }
 
@@ -120,7 +121,7 @@ impl Path {
     fn solution(&self, branch: usize, point: usize) -> PyResult<Solution> {
         let points = &self.branch(branch)?.points;
         let point = points.get(point).ok_or_else(|| PyIndexError::new_err("point: the branch has no such point"))?;
-        Ok(Solution::new(point.configuration.clone(), self.tol))
+        Ok(Solution::new(point.configuration.clone(), Options::with_tol(self.tol)))
     }
 
     fn figure(&self, asked: &str, title: &str) -> PyResult<Figure> {
@@ -168,7 +169,7 @@ pub(crate) fn equilibria(py: Python<'_>, arm: &Arm, tol: f64, time_limit: Option
             arm.given.equilibria_while(tol, |_| in_time() && !stop.load(Ordering::Relaxed))
         },
     )?;
-    let all = all.map_err(|error| path_error(py, error, tol))?;
+    let all = all.map_err(|error| path_error(py, error, Options::with_tol(tol)))?;
     Ok(Equilibria { all, arm: arm.given.clone(), tol })
 }
 
@@ -201,7 +202,7 @@ impl Equilibria {
 
     fn solution(&self, index: usize) -> PyResult<Solution> {
         let one = self.all.found.get(index).ok_or_else(|| PyIndexError::new_err("there is no such equilibrium"))?;
-        Ok(Solution::new(one.configuration.clone(), self.tol))
+        Ok(Solution::new(one.configuration.clone(), Options::with_tol(self.tol)))
     }
 
     fn figure(&self, title: &str) -> Figure {

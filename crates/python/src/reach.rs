@@ -82,7 +82,8 @@ pub(crate) fn reach(
             arm.given.reach_while(&targets, &options, go_on)
         }
     };
-    let found = interruptible(py, |_| Ok(()), search)?.map_err(|error| reach_error(py, error, tol))?;
+    let found =
+        interruptible(py, |_| Ok(()), search)?.map_err(|error| reach_error(py, error, Options::with_tol(tol)))?;
     Ok(Reach { found, arm: arm.given.clone(), targets, tol })
 }
 
@@ -110,7 +111,7 @@ pub(crate) fn reachable(
         Ok((arm.given.reachable_while(&options, go_on)?, arm.given.slackened().solve()?))
     };
     let found = interruptible(py, |_| Ok(()), trace)?;
-    let (found, slack) = found.map_err(|error| reach_error(py, error, tol))?;
+    let (found, slack) = found.map_err(|error| reach_error(py, error, Options::with_tol(tol)))?;
     Ok(Boundary { found, arm: arm.given.clone(), slack })
 }
 
@@ -158,7 +159,7 @@ impl Reach {
     }
 
     fn solution(&self, index: usize) -> PyResult<Solution> {
-        Ok(Solution::new(self.one(index)?.configuration.clone(), self.tol))
+        Ok(Solution::new(self.one(index)?.configuration.clone(), Options::with_tol(self.tol)))
     }
 
     /// The shape with the targets.
@@ -205,7 +206,7 @@ impl Follower {
 
     /// The whole shape.
     fn solution(&mut self, py: Python<'_>) -> PyResult<Solution> {
-        self.shape(py).map(|found| Solution::new(found, SHAPE))
+        self.shape(py).map(|found| Solution::new(found, Options::with_tol(SHAPE)))
     }
 
     /// Another speed of the stream (m/s): the tensions stay, and the arm gives way.
@@ -233,13 +234,14 @@ const SHAPE: f64 = 1e-8;
 impl Follower {
     fn start(py: Python<'_>, arm: hydrostat::Arm, targets: Vec<Target>, options: ReachOptions) -> PyResult<Self> {
         let inner = py.detach(|| hydrostat::Follower::new(&arm, &targets, &options));
-        let inner = inner.map_err(|error| reach_error(py, error, options.tol))?;
+        let inner = inner.map_err(|error| reach_error(py, error, Options::with_tol(options.tol)))?;
         Ok(Self { inner, arm, options, targets, last: None, solver: None })
     }
 
     fn go(&mut self, py: Python<'_>, targets: Vec<Target>) -> PyResult<Followed> {
         let (inner, tol) = (&mut self.inner, self.options.tol);
-        let found = py.detach(|| inner.follow(&targets)).map_err(|error| reach_error(py, error, tol))?;
+        let found =
+            py.detach(|| inner.follow(&targets)).map_err(|error| reach_error(py, error, Options::with_tol(tol)))?;
         self.targets = targets;
         self.last = Some(found.clone());
         Ok(found)
@@ -275,7 +277,7 @@ impl Follower {
             *kept = Some(solver);
             Ok(is_it(&found).then_some(found))
         });
-        let found = solved.map_err(|error| solve_error(py, error, SHAPE))?;
+        let found = solved.map_err(|error| solve_error(py, error, Options::with_tol(SHAPE)))?;
         found.ok_or_else(|| {
             PyRuntimeError::new_err("the follower is at a shape that no solve from the unloaded arm leads to")
         })
@@ -289,7 +291,7 @@ impl Follower {
             moved.set_arm(&arm)?;
             moved.resolve()
         });
-        let found = found.map_err(|error| solve_error(py, error, SHAPE))?;
+        let found = found.map_err(|error| solve_error(py, error, Options::with_tol(SHAPE)))?;
         let length = arm.length;
         let target = |old: &Target| {
             let at = found.at(old.s.unwrap_or(length));

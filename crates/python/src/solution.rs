@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hydrostat::{Configuration, Stability, Wrench};
-use hydrostat_files::{Note, stations_csv};
+use hydrostat::{Configuration, Options, Snap, SnapBounds, Stability, Tip, Wrench};
+use hydrostat_files::{Dimension, Note, stations_csv};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -20,11 +20,11 @@ const MANY: usize = 10_000;
 /// A point, or NaN where there is none.
 type Point = [f64; 2];
 
-/// A configuration and the tolerance that it was asked for with.
+/// A configuration and the options that it was asked for with.
 #[pyclass(frozen, module = "hydrostat._native")]
 pub(crate) struct Solution {
     pub(crate) configuration: Configuration,
-    tol: f64,
+    options: Options,
 }
 
 /// Stations along an arm.
@@ -54,9 +54,36 @@ fn wrench(wrench: Wrench) -> (Point, f64) {
 /// Name, tension, length, stroke, and where it was commanded that stroke, the length it leaves and whether the cable is slack.
 type CableFields<'a> = (&'a str, f64, f64, f64, Option<(f64, f64, bool)>);
 
+/// x, y, theta and alpha.
+type TipFields = (f64, f64, f64, f64);
+
+/// Phase, load fraction, the tip before and after, distance and angle.
+pub(crate) type SnapFields = (&'static str, f64, TipFields, TipFields, f64, f64);
+
+/// What Python's `Snap` is made of.
+pub(crate) fn snaps(all: &[Snap]) -> Vec<SnapFields> {
+    let fields = |s: &Snap| (s.phase.name(), s.load_fraction, tip(s.before), tip(s.after), s.distance(), s.angle());
+    all.iter().map(fields).collect()
+}
+
+fn tip(Tip { x, y, theta, alpha }: Tip) -> TipFields {
+    (x, y, theta, alpha)
+}
+
+/// Options of a solve: its tolerance, and how far the tip may jump (over the length) and turn (rad) at a snap.
+pub(crate) fn options(tol: f64, (distance, angle): (f64, f64)) -> Options {
+    Options { tol, snaps: SnapBounds { distance, angle } }
+}
+
+/// An angle of a string, in rad; a bare number is in degrees.
+#[pyfunction]
+pub(crate) fn angle(text: &str) -> PyResult<f64> {
+    Dimension::Angle.read(text).map(|(value, _)| value).map_err(wrong)
+}
+
 impl Solution {
-    pub(crate) fn new(configuration: Configuration, tol: f64) -> Self {
-        Self { configuration, tol }
+    pub(crate) fn new(configuration: Configuration, options: Options) -> Self {
+        Self { configuration, options }
     }
 }
 
@@ -71,7 +98,18 @@ impl Solution {
     /// The tolerance that was asked for.
     #[getter]
     fn tol(&self) -> f64 {
-        self.tol
+        self.options.tol
+    }
+
+    /// How far the tip was allowed to jump (over the length) and turn (rad) at a snap.
+    #[getter]
+    fn bounds(&self) -> (f64, f64) {
+        (self.options.snaps.distance, self.options.snaps.angle)
+    }
+
+    #[getter]
+    fn snaps(&self) -> Vec<SnapFields> {
+        snaps(&self.configuration.snaps)
     }
 
     /// The arm with the loads that are balanced.
@@ -82,9 +120,8 @@ impl Solution {
 
     /// x, y, theta and alpha at the tip.
     #[getter]
-    fn tip(&self) -> (f64, f64, f64, f64) {
-        let tip = self.configuration.tip();
-        (tip.x, tip.y, tip.theta, tip.alpha)
+    fn tip(&self) -> TipFields {
+        tip(self.configuration.tip())
     }
 
     #[getter]
@@ -126,7 +163,7 @@ impl Solution {
 
     /// Kind and message of each note on the answer.
     fn warnings(&self) -> Vec<(&'static str, String)> {
-        Note::all(&self.configuration, self.tol).into_iter().map(|note| (note.kind, note.message)).collect()
+        Note::all(&self.configuration, self.options.tol).into_iter().map(|note| (note.kind, note.message)).collect()
     }
 
     /// State, count of unstable directions, and what the solve knows without looking further.
@@ -203,7 +240,7 @@ impl Solution {
 
     /// The document of `hydrostat solve --format json`.
     fn to_json(&self) -> String {
-        let notes = Note::all(&self.configuration, self.tol);
+        let notes = Note::all(&self.configuration, self.options.tol);
         let margin = self.configuration.fold_margin().value;
         hydrostat_files::SolutionDocument::new(&self.configuration, margin, &notes).to_json()
     }

@@ -1,6 +1,6 @@
 //! One arm, again and again as its loads change.
 
-use hydrostat::{PoseChange, SensitivityOptions};
+use hydrostat::{Options, PoseChange, SensitivityOptions};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -8,26 +8,27 @@ use crate::arm::Arm;
 use crate::arrays::{finite, given};
 use crate::errors::{sensitivity_error, solve_error, wrong};
 use crate::sensitivity::{Sensitivities, method, parameters};
-use crate::solution::Solution;
+use crate::solution::{Solution, options};
 
 /// A solver that keeps its last configuration to start from.
 #[pyclass(module = "hydrostat._native")]
 pub(crate) struct Solver {
     solver: hydrostat::Solver,
-    tol: f64,
+    options: Options,
 }
 
 #[pymethods]
 impl Solver {
     #[new]
-    fn new(py: Python<'_>, arm: &Arm, tol: f64) -> PyResult<Self> {
-        let solver = hydrostat::Solver::new(&arm.given, hydrostat::Options::with_tol(tol));
-        Ok(Self { solver: solver.map_err(|error| solve_error(py, error, tol))?, tol })
+    fn new(py: Python<'_>, arm: &Arm, tol: f64, snaps: (f64, f64)) -> PyResult<Self> {
+        let options = options(tol, snaps);
+        let solver = hydrostat::Solver::new(&arm.given, options);
+        Ok(Self { solver: solver.map_err(|error| solve_error(py, error, options))?, options })
     }
 
     /// A solver of its own that goes on from the same shape.
     fn copy(&self) -> Self {
-        Self { solver: self.solver.clone(), tol: self.tol }
+        Self { solver: self.solver.clone(), options: self.options }
     }
 
     /// Tensions that were set last, N; those of commanded cables are what the last solve began with.
@@ -63,8 +64,8 @@ impl Solver {
 
     /// x, y, theta and alpha at the tip, and the estimated error.
     fn update(&mut self, py: Python<'_>) -> PyResult<(f64, f64, f64, f64, f64)> {
-        let (solver, tol) = (&mut self.solver, self.tol);
-        let answer = py.detach(|| solver.update()).map_err(|error| solve_error(py, error, tol))?;
+        let (solver, options) = (&mut self.solver, self.options);
+        let answer = py.detach(|| solver.update()).map_err(|error| solve_error(py, error, options))?;
         let tip = answer.tip;
         Ok((tip.x, tip.y, tip.theta, tip.alpha, answer.error_estimate))
     }
@@ -79,9 +80,9 @@ impl Solver {
     ) -> PyResult<(Sensitivities, Solution)> {
         let wanted = SensitivityOptions { stations: finite("stations", &stations, true)?, method: method(way)? };
         let parameters = parameters(names, self.solver.arm())?;
-        let (solver, tol) = (&mut self.solver, self.tol);
+        let (solver, options) = (&mut self.solver, self.options);
         let found = py.detach(|| solver.sensitivities_with(&parameters, &wanted));
-        let found = found.map_err(|error| sensitivity_error(py, error, tol))?;
+        let found = found.map_err(|error| sensitivity_error(py, error, options))?;
         Ok((Sensitivities::new(found), self.configuration(py)?))
     }
 
@@ -98,9 +99,9 @@ impl Solver {
         let by = |k: usize| PoseChange { x: x[k], y: y[k], theta: theta[k], alpha: alpha[k] };
         let weights: Vec<(f64, PoseChange)> = stations.iter().enumerate().map(|(k, s)| (*s, by(k))).collect();
         let parameters = parameters(Some(names), self.solver.arm())?;
-        let (solver, tol) = (&mut self.solver, self.tol);
+        let (solver, options) = (&mut self.solver, self.options);
         let found = py.detach(|| solver.gradient(&parameters, &weights));
-        Ok(given(py, found.map_err(|error| sensitivity_error(py, error, tol))?))
+        Ok(given(py, found.map_err(|error| sensitivity_error(py, error, options))?))
     }
 }
 
@@ -110,8 +111,8 @@ impl Solver {
         py: Python<'_>,
         solve: impl FnOnce(&mut hydrostat::Solver) -> Result<hydrostat::Configuration, hydrostat::SolveError> + Send,
     ) -> PyResult<Solution> {
-        let (solver, tol) = (&mut self.solver, self.tol);
+        let (solver, options) = (&mut self.solver, self.options);
         let solved = py.detach(|| solve(solver));
-        solved.map(|found| Solution::new(found, tol)).map_err(|error| solve_error(py, error, tol))
+        solved.map(|found| Solution::new(found, options)).map_err(|error| solve_error(py, error, options))
     }
 }

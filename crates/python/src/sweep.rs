@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use hydrostat::SnapBounds;
 use hydrostat_files::{Axis, AxisValue, AxisValues};
 use hydrostat_sweep::{Column, Data, Output, Plan, Sample, SweepError, SweepOptions};
 use numpy::PyArray1;
@@ -30,6 +31,7 @@ impl Sweep {
         sample: Option<&str>,
         seed: u64,
         tol: f64,
+        snaps: (f64, f64),
         columns: Option<Vec<String>>,
         shapes: usize,
     ) -> PyResult<Self> {
@@ -39,7 +41,8 @@ impl Sweep {
             Some(text) => text.parse().map_err(|error| wrong(format!("sample: {error}")))?,
         };
         let plan = Plan::new(axes, sample, seed).map_err(|error| wrong(format!("vary: {error}")))?;
-        let mut options = SweepOptions { tol, stations: shapes, ..SweepOptions::default() };
+        let snaps = SnapBounds { distance: snaps.0, angle: snaps.1 };
+        let mut options = SweepOptions { tol, snaps, stations: shapes, ..SweepOptions::default() };
         if let Some(names) = columns {
             let read = |name: &String| name.parse().map_err(|error| wrong(format!("columns: {error}")));
             options.outputs = names.iter().map(read).collect::<PyResult<Vec<Output>>>()?;
