@@ -56,7 +56,7 @@ pub(crate) fn parameter_names() -> Vec<String> {
 /// as many as the machine has; `progress` hears rows that are done.
 #[pyfunction]
 #[pyo3(signature = (arm, keys, columns, rows, tol, snaps, tile, strokes, fold_margin, stability, warnings, stations, gradients, threads, progress))]
-#[expect(clippy::too_many_arguments, reason = "one call of a private function")]
+#[expect(clippy::too_many_arguments, clippy::fn_params_excessive_bools, reason = "one call of a private function")]
 pub(crate) fn solve_many<'py>(
     py: Python<'py>,
     arm: &Arm,

@@ -25,6 +25,7 @@ pub(crate) struct Sweep {
 impl Sweep {
     /// Of an arm over `KEY=VALUES`, as on the command line.
     #[new]
+    #[expect(clippy::too_many_arguments, reason = "one call of a private function")]
     fn new(
         arm: &Arm,
         vary: Vec<String>,
