@@ -9,7 +9,9 @@ import textwrap
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, needs_checkout
+
+pytestmark = needs_checkout
 
 BLOCK = re.compile(r"```python\n(.*?)```", re.DOTALL)
 ELSEWHERE = ("SLURMCluster", "KubeCluster")
