@@ -188,7 +188,7 @@ def solve_many(
 def solve_many(
     arm: Arm | str | PathLike[str],
     *,
-    tensions: None = ...,
+    tensions: ArrayLike | None = ...,
     flow_speed: xr.DataArray,
     vary: Mapping[str, xr.DataArray | float] | None = ...,
     tol: float = ...,

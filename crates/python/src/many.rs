@@ -57,6 +57,7 @@ pub(crate) fn parameter_names() -> Vec<String> {
 #[pyfunction]
 #[pyo3(signature = (arm, keys, columns, rows, tol, snaps, tile, strokes, fold_margin, stability, warnings, stations, gradients, threads, progress))]
 #[expect(clippy::too_many_arguments, reason = "one call of a private function")]
+#[allow(clippy::fn_params_excessive_bools, reason = "each is asked for by itself")]
 pub(crate) fn solve_many<'py>(
     py: Python<'py>,
     arm: &Arm,

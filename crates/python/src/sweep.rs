@@ -25,6 +25,7 @@ pub(crate) struct Sweep {
 impl Sweep {
     /// Of an arm over `KEY=VALUES`, as on the command line.
     #[new]
+    #[allow(clippy::too_many_arguments, reason = "one call of a private class")]
     fn new(
         arm: &Arm,
         vary: Vec<String>,
