@@ -54,7 +54,7 @@ class Batch:
             if key.endswith(("tension", ".speed", ".density")):
                 vary[key] = np.where(vary[key] >= 0.0, vary[key], np.nan)
         by = self.keys if gradients else False
-        return solve_many(self.arm, vary=vary, tol=self.tol, gradients=by)
+        return solve_many(self.arm, vary=vary, tol=self.tol, gradients=by, warnings=False)
 
 
 def _stacked(found: Many) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ from distributed.scheduler import KilledWorker
 
 from hydrostat import _inputs
 from hydrostat._progress import Progress
-from hydrostat.sweep import Columns, Plan, Values, Variable, assembled, dataset, variables
+from hydrostat.sweep import Columns, Plan, Values, Variable, assembled, columns_of, dataset, variables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,7 +42,7 @@ def _cost(plan: Plan, tile: int) -> float:
 
 def _columns(plan: Plan, tiles: Tiles) -> Columns:
     """The rows of some tiles, on a worker."""
-    return plan.native().columns(tiles, 1, None)
+    return columns_of(plan, tiles, 1, None)
 
 
 def _written(plan: Plan, tiles: Tiles, output: str) -> tuple[int, int]:
@@ -66,7 +66,7 @@ class Run:
         self._retries = retries
         self._progress = progress
         self._token = uuid4().hex[:12]
-        self._probe = self._sweep.columns((0, 1), 1, None)
+        self._probe = columns_of(plan, (0, 1), 1, None)
 
     def dataset(self, vary: dict[str, Values]) -> xr.Dataset:
         """All rows in the workers' memory, as Dask arrays."""

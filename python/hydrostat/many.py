@@ -49,7 +49,7 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
     ``error_estimate`` (m) and ``load_fraction`` have this shape; ``tension`` (N) and ``stroke`` (m) one more dimension, a cable each;
     ``x``, ``y``, ``theta`` one more, a station each. Rows without an equilibrium have NaN, and the verdict's kind in ``verdict``, which is
     the empty string elsewhere (``no_arm`` where the row's numbers make none, ``not_a_number`` where one is NaN); ``reason`` says it in a
-    sentence.
+    sentence. ``warnings`` has the kinds of `Solution.warnings` with blanks between, as in a sweep.
 
     With `gradients`, ``d_tip_x``, ``d_tip_y``, ``d_tip_theta`` and ``d_tip_alpha`` have one more dimension, and ``d_stroke`` two, a cable
     and a parameter: derivatives by `parameters`, a unit of each (SI, angles in radians); NaN at a limit point.
@@ -177,6 +177,7 @@ def solve_many(
     tile: int = ...,
     fold_margin: bool = ...,
     stability: bool = ...,
+    warnings: bool = ...,
     stations: int = ...,
     gradients: bool | Sequence[str] = ...,
     nan: str = ...,
@@ -187,7 +188,7 @@ def solve_many(
 def solve_many(
     arm: Arm | str | PathLike[str],
     *,
-    tensions: None = ...,
+    tensions: ArrayLike | None = ...,
     flow_speed: xr.DataArray,
     vary: Mapping[str, xr.DataArray | float] | None = ...,
     tol: float = ...,
@@ -197,6 +198,7 @@ def solve_many(
     tile: int = ...,
     fold_margin: bool = ...,
     stability: bool = ...,
+    warnings: bool = ...,
     stations: int = ...,
     gradients: bool | Sequence[str] = ...,
     nan: str = ...,
@@ -217,6 +219,7 @@ def solve_many(
     tile: int = ...,
     fold_margin: bool = ...,
     stability: bool = ...,
+    warnings: bool = ...,
     stations: int = ...,
     gradients: bool | Sequence[str] = ...,
     nan: str = ...,
@@ -236,6 +239,7 @@ def solve_many(
     tile: int = 256,
     fold_margin: bool = False,
     stability: bool = False,
+    warnings: bool = True,
     stations: int = 0,
     gradients: bool | Sequence[str] = False,
     nan: str = "row",
@@ -271,6 +275,8 @@ def solve_many(
         lead to another branch. The rows do not depend on the number of processors.
     fold_margin, stability : bool
         Whether these are computed, too.
+    warnings : bool
+        Whether the kinds of warnings are computed; this reads the whole shape of each row.
     stations : int
         Number of equally spaced stations of each row, at most 10000; none below 2.
     gradients : bool or sequence of str
@@ -319,7 +325,7 @@ def solve_many(
     if labelled is not None:
         tensions, flow_speed, vary, like = labelled
         options: dict[str, Any] = {"snap_distance": snap_distance, "snap_angle": snap_angle, "follow_snaps": follow_snaps}
-        options |= {"tol": tol, "tile": tile, "fold_margin": fold_margin, "stability": stability, "stations": stations}
+        options |= {"tol": tol, "tile": tile, "fold_margin": fold_margin, "stability": stability, "warnings": warnings, "stations": stations}
         options |= {"gradients": gradients, "nan": nan, "threads": threads, "progress": progress}
         many = solve_many(arm, tensions=tensions, flow_speed=flow_speed, vary=vary, **options)
         return many.to_xarray(*like.dims).assign_coords(like.coords)
@@ -349,7 +355,7 @@ def solve_many(
             True,
             fold_margin,
             stability,
-            False,
+            warnings,
             places,
             by,
             _inputs.count("threads", threads),

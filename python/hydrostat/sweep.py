@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from os import PathLike
 from pathlib import Path as FilePath
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union, overload
 import numpy as np
 
 from hydrostat import _inputs, _memory, _native
+from hydrostat._errors import ArmError
 from hydrostat._progress import Progress
 from hydrostat.arm import Arm, arm_of
 
@@ -29,6 +30,8 @@ _UNITS = {"Nm": "N m"}
 #: Numbers of a row that are not of cables or stations, all columns together.
 _NUMBERS = 18
 _ENDINGS = (".parquet", ".csv")
+#: The verdict of a row whose values make no arm.
+_NO_ARM = "no_arm"
 
 
 class Plan(NamedTuple):
@@ -176,7 +179,8 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        One dimension per key (``row`` with a sample), with the values as coordinates in their given units. With a
+        One dimension per key (``row`` with a sample), with the values as coordinates in their given units; ``reason`` says why
+        the values of a row make no arm (the verdict ``no_arm``). With a
         client its variables are Dask arrays, whose chunks are in the workers' memory. Needs xarray.
     pathlib.Path
         `output`, if given.
@@ -236,7 +240,7 @@ def sweep(
                 parts = "a part" if damaged == 1 else f"{damaged} parts"
                 warnings.warn(f"{output}: {parts} of an earlier run had changed since; solved again", stacklevel=2)
             return FilePath(output)
-        found = native.columns((0, native.tiles), threads, bar)
+        found = columns_of(plan, (0, native.tiles), threads, bar)
     values = {variable: assembled(found, variable) for variable in variables(native, found)}
     return dataset(plan, given, values, {axis[1]: assembled(found, _key(axis[1], found)) for axis in native.axes})
 
@@ -258,6 +262,32 @@ def _values(key: str, values: Values) -> str:
 
 
 Columns = Mapping[str, Any]
+
+
+def columns_of(plan: Plan, tiles: tuple[int, int], threads: int, progress: Callable[[int], None] | None) -> Columns:
+    """The columns of some tiles, and beside them in words why the values of a row make no arm."""
+    native = plan.native()
+    found = native.columns(tiles, threads, progress)
+    verdicts, words = found["verdict"]
+    place = np.full(len(verdicts), -1)
+    reasons: list[str] = []
+    if _NO_ARM in words:
+        for row in np.flatnonzero(np.asarray(verdicts) == list(words).index(_NO_ARM)):
+            place[row] = len(reasons)
+            reasons.append(_reason(plan, native, found, int(row)))
+    return {**found, "reason": (place, reasons)}
+
+
+def _reason(plan: Plan, native: _native.Sweep, found: Columns, row: int) -> str:
+    values: dict[str, object] = {}
+    for key, column, unit, per_si in native.axes:
+        own = found[column]
+        values[key] = own[1][own[0][row]] if isinstance(own, tuple) else f"{float(own[row] * per_si)!r} {unit}".strip()
+    try:
+        plan.arm.replace(values)
+    except ArmError as error:
+        return str(error).removeprefix("replace ")
+    return ""
 
 
 def variables(native: _native.Sweep, found: Columns) -> list[Variable]:

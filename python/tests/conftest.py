@@ -21,6 +21,10 @@ settings.load_profile("same")
 
 ROOT = Path(__file__).resolve().parents[2]
 
+CHECKOUT = (ROOT / "crates/python").is_dir()
+#: What reads documents and examples; the tests of a wheel run without them.
+needs_checkout = pytest.mark.skipif(not CHECKOUT, reason="needs the documents and examples of a checkout")
+
 #: Runs the program with arguments: exit status and standard output.
 Program = Callable[..., tuple[int, str]]
 
@@ -30,6 +34,8 @@ def program() -> Program:
     """The program `hydrostat` that was built beside the package; `HYDROSTAT_PROGRAM` says where it is."""
     path = os.environ.get("HYDROSTAT_PROGRAM")
     if not path:
+        if not CHECKOUT:
+            pytest.skip("needs the program `hydrostat`: its path in HYDROSTAT_PROGRAM")
         pytest.fail("HYDROSTAT_PROGRAM: expected the path of the program `hydrostat`, found nothing; `./test` sets it")
 
     def run(*arguments: str) -> tuple[int, str]:

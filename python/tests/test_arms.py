@@ -8,13 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import ROOT, needs_checkout
 from hypothesis import given
 from hypothesis import strategies as st
 
 import hydrostat as hs
 
 
+@needs_checkout
 @pytest.mark.parametrize("name", sorted(hs.arms()))
 def test_one_arm_in_five_ways(tmp_path: Path, name: str) -> None:
     shipped = hs.Arm.load(name)

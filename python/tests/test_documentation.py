@@ -10,7 +10,9 @@ import textwrap
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, Program
+from conftest import ROOT, Program, needs_checkout
+
+pytestmark = needs_checkout
 
 BLOCK = re.compile(r"```python\n(.*?)```", re.DOTALL)
 ELSEWHERE = ("SLURMCluster", "KubeCluster")

@@ -10,7 +10,9 @@ from pathlib import Path
 import jupytext
 import nbclient
 import pytest
-from conftest import ROOT
+from conftest import ROOT, needs_checkout
+
+pytestmark = needs_checkout
 
 #: How many pictures each shows.
 PICTURES = {"design": 4, "first_steps": 9, "workspace_and_flow": 4, "readings": 6}

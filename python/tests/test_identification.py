@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
-from conftest import ROOT, Program
+from conftest import ROOT, Program, needs_checkout
 
 import hydrostat as hs
 
@@ -26,6 +26,7 @@ def tips(arm: hs.Arm) -> dict[str, list[object]]:
     }
 
 
+@needs_checkout
 def test_the_document_is_the_programs(program: Program, silicone: hs.Arm) -> None:
     data = ROOT / "docs" / "identification.csv"
     words = ["identify", "silicone", str(data), "--set", "flow.law=quadratic-drag", "--fit", "young=80 kPa,cn=1"]
@@ -37,6 +38,7 @@ def test_the_document_is_the_programs(program: Program, silicone: hs.Arm) -> Non
     assert fit.to_csv() == program(*words, "--format", "csv")[1]
 
 
+@needs_checkout
 def test_every_way_to_give_the_data_is_the_same(silicone: hs.Arm, tmp_path: Path) -> None:
     arm = silicone.replace({"flow.law": "quadratic-drag"})
     path = ROOT / "docs" / "identification.csv"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import warnings
 from typing import Any
 
 import numpy as np
@@ -81,6 +82,29 @@ def test_one_mistake_has_its_reason_in_a_row(silicone: hs.Arm) -> None:
     many = hs.solve_many(weak, tensions=[[0.2, 0.0], [0.5, 0.0]])
     assert many.verdict.tolist() == ["", "no_arm"]
     assert "`cable[0].tension` is 0.5 N, above its max_tension of 0.3 N" in many.reason[1]
+    vary = {"cable[0].max_tension": [0.1, 0.3], "cable[0].tension": [0.0, 0.2], "flow.direction": [0.0, 90.0]}
+    swept = hs.sweep(silicone, vary)
+    assert swept.verdict.values.tolist() == [[["", ""], ["no_arm", "no_arm"]], [["", ""], ["", ""]]]
+    words = 'cable[0].tension="0.2 N": cable[0].tension: expected at most its max_tension of 0.1 N, found 0.2 N'
+    assert swept.reason.values[0, 1].tolist() == [words, words] and not swept.reason.values[1].any()
+    with pytest.raises(ValueError, match="cable.0..tension: expected at most its max_tension of 0.3 N, found 0.5 N"):
+        hs.sweep(weak, {"cable[0].tension": [0.2, 0.5]})
+
+
+def test_warnings_are_those_of_the_rows(silicone: hs.Arm) -> None:
+    speed = np.array([0.0, 0.05, 0.1, 0.2])
+    many = hs.solve_many(silicone, tensions=[0.2, 0.0], flow_speed=speed, tol=TIGHT)
+    for k, own in enumerate(speed):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", hs.ModelWarning)
+            alone = silicone.solve(tensions=[0.2, 0.0], flow_speed=own, tol=TIGHT)
+        assert many["warnings"][k].split() == [note.kind for note in alone.warnings]
+    assert "tangential_load" in many["warnings"]
+    swept = hs.sweep(silicone, {"cable[0].tension": [0.2, 1.4], "flow.speed": speed})
+    both = hs.solve_many(silicone, tensions=[[[0.2, 0.0]], [[1.4, 0.0]]], flow_speed=speed).to_xarray("pull", "speed")
+    assert both.warnings.values.tolist() == swept.warnings.values.tolist()
+    plain = hs.solve_many(silicone, tensions=[0.2, 0.0], flow_speed=speed, tol=TIGHT, warnings=False)
+    assert "warnings" not in plain and plain.tip_x == pytest.approx(many.tip_x, abs=1e-12)
 
 
 def test_gradients_are_those_of_the_solver(silicone: hs.Arm) -> None:
