@@ -236,10 +236,8 @@ impl Engine {
 
     /// Where the tip is, after Newton has converged.
     pub(crate) fn read_tip(&self) -> Result<Tip, SectionFailure> {
-        let (n, here) = (self.solution.mesh.elements(), self.at_end(true)?);
-        let asked = self.asked_beside(n, true);
-        let sharp = sharpened(&self.equations, &self.solution, &self.system.gauss, (n - 1, 1.0), asked, &here);
-        let [nu, eta, _] = self.equations.at_place(&sharp)?.strain;
+        let here = self.at_end(true)?;
+        let [nu, eta, _] = self.sharp_beside(self.solution.mesh.elements(), true, &here)?.strain;
         let (base, length) = (self.equations.arm().base, self.equations.units.length);
         let [x, y] = self.tip;
         Ok(Tip { x: base.x + length * x, y: base.y + length * y, theta: self.tip_angle(), alpha: eta.atan2(nu) })
@@ -349,17 +347,17 @@ impl Engine {
         self.equations.at_place(&self.asked_beside(i, left))
     }
 
-    /// The same with beta' as outputs have it.
+    /// The same with beta' as outputs have it, or as it is where the section has no strains with that.
     pub(crate) fn sharp_beside_node(&self, i: usize, left: bool) -> Result<AtPlace, SectionFailure> {
-        let (asked, here) = (self.asked_beside(i, left), self.beside_node(i, left)?);
-        let end = if left { (i - 1, 1.0) } else { (i, 0.0) };
-        let sharp = sharpened(&self.equations, &self.solution, &self.system.gauss, end, asked, &here);
-        Ok(self.equations.at_place(&sharp).unwrap_or(here))
+        let here = self.beside_node(i, left)?;
+        Ok(self.sharp_beside(i, left, &here).unwrap_or(here))
     }
 
-    /// Whether the data, or what is asked for, has a node at `s` (over L).
-    pub(crate) fn has_break_at(&self, s: f64) -> bool {
-        self.breaks.iter().any(|own| (own - s).abs() < 1e-9)
+    /// The section on either side of node `i` with beta' as outputs have it, given that with the beta' of the polynomial.
+    fn sharp_beside(&self, i: usize, left: bool, here: &AtPlace) -> Result<AtPlace, SectionFailure> {
+        let end = if left { (i - 1, 1.0) } else { (i, 0.0) };
+        let asked = self.asked_beside(i, left);
+        self.equations.at_place(&sharpened(&self.equations, &self.solution, &self.system.gauss, end, asked, here))
     }
 
     pub(crate) fn asked_beside(&self, i: usize, left: bool) -> Asked {

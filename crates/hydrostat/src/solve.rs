@@ -145,9 +145,10 @@ impl Solver {
         self.engine.reset_statistics();
     }
 
-    /// Keeps the engine's configuration to start from, with the sign of its determinant.
-    pub(crate) fn keep(&mut self, sign: f64) {
-        self.settled = true;
+    /// Keeps the engine's solution, read as `configuration`, to start from, with the sign of its determinant. After a snap the way back is another
+    /// one: it is no start.
+    pub(crate) fn keep(&mut self, configuration: &Configuration, sign: f64) {
+        self.settled = configuration.snaps.is_empty();
         self.sign = sign;
     }
 
@@ -349,10 +350,10 @@ impl Solver {
         // A coarse mesh can be exact for the shape, of a straight arm above all, and not for the determinant.
         let mut same = self.engine.system.determinant().sign == sign || travelled.symmetric || moved < SAME;
         let sign = self.engine.system.determinant().sign;
-        let mut unstable = sign < 0.0;
+        let mut odd = sign < 0.0;
         if !same && settled.is_ok() && moved < 10.0 * LOOSE && self.engine.sure_sign().is_none() {
             // What a mesh decides decides nothing; the tip is where the path has it, as well as that is known.
-            (same, unstable) = (true, false);
+            (same, odd) = (true, false);
         }
         match settled {
             Ok(estimate) if moved < 0.05 && same => {
@@ -361,10 +362,8 @@ impl Solver {
                     let verdict = self.last_verdict(Some(1.0));
                     return Err(self.no_equilibrium(verdict));
                 };
-                configuration.stable = known_on_the_way(&configuration, crossings, unstable);
-                // After a snap the way back is another one: what was solved is no start.
-                self.settled = configuration.snaps.is_empty();
-                self.sign = sign;
+                configuration.stable = known_on_the_way(&configuration, crossings, odd);
+                self.keep(&configuration, sign);
                 Ok(configuration)
             }
             _ => {

@@ -93,11 +93,7 @@ impl Solver {
         snaps.append(&mut configuration.snaps);
         configuration.snaps = snaps;
         configuration.stable = known_on_the_way(&configuration, crossings, sign < 0.0);
-        self.keep(sign);
-        if !configuration.snaps.is_empty() {
-            // After a snap the way back is another one: what was solved is no start.
-            self.forget();
-        }
+        self.keep(&configuration, sign);
         Ok(configuration)
     }
 
@@ -155,7 +151,7 @@ impl Solver {
 
     fn read_strokes(&mut self, estimate: f64) -> Result<Configuration, Trouble> {
         let configuration = self.read(estimate, Travelled::default())?;
-        self.keep(1.0);
+        self.keep(&configuration, 1.0);
         Ok(configuration)
     }
 

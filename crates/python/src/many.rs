@@ -3,10 +3,8 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hydrostat::parameter::names;
-use hydrostat::{
-    NoRow, Options, Parameter, PoseChange, Row, SensitivityOptions, SolveError, Solver, Tile, Wanted, Warning,
-};
-use hydrostat_files::{Dimension, TOLERANCE_MISSED};
+use hydrostat::{NoRow, Options, Parameter, PoseChange, Row, SensitivityOptions, SolveError, Solver, Tile, Wanted};
+use hydrostat_files::Dimension;
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -132,7 +130,7 @@ impl Request<'_> {
                     Ok(found) => {
                         let gradients = self.gradients(&mut differentiated, &arm, &found);
                         let kinds = if self.wanted.warnings {
-                            kinds(&found, self.options.tol * arm.length)
+                            hydrostat_sweep::warning_kinds(&found, self.options.tol * arm.length)
                         } else {
                             String::new()
                         };
@@ -259,16 +257,6 @@ impl Request<'_> {
         let own = self.varied.iter().find(|(_, values)| values[row].is_nan());
         own.map_or_else(String::new, |(parameter, _)| format!("`{parameter}` is not a number"))
     }
-}
-
-/// The kinds of the warnings of a row with blanks between, each once, as in the files of a sweep. `asked` is the error that was asked for, m.
-fn kinds(row: &Row, asked: f64) -> String {
-    let mut out: Vec<&str> = row.warnings.iter().map(Warning::kind).collect();
-    out.dedup();
-    if row.error_estimate > asked {
-        out.push(TOLERANCE_MISSED);
-    }
-    out.join(" ")
 }
 
 /// Answers of the rows that were solved, and the place of each row's among them.

@@ -132,8 +132,9 @@ pub(crate) struct Answered {
 /// The column of warnings.
 pub(crate) const WARNINGS: &str = "warnings";
 
-/// The kinds of the warnings of a row with blanks between, each once.
-fn kinds(row: &Row, asked: f64) -> String {
+/// The kinds of the warnings of a row with blanks between, each once, as the column of warnings has them. `asked` is the error of the tip that was
+/// asked for, m.
+pub fn kinds(row: &Row, asked: f64) -> String {
     let mut out: Vec<&str> = row.warnings.iter().map(Warning::kind).collect();
     out.dedup();
     if row.error_estimate > asked {

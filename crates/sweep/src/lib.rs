@@ -19,7 +19,7 @@ mod sobol;
 mod table;
 
 pub use arms::ValueError;
-pub use column::{Column, Data, NO_ARM, Output};
+pub use column::{Column, Data, NO_ARM, Output, kinds as warning_kinds};
 pub use csv_file::beside as note_beside;
 pub use error::SweepError;
 pub use plan::{Plan, PlanError, Sample};

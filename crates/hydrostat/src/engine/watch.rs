@@ -7,6 +7,11 @@ use super::{Engine, First, Trouble};
 const SAME: f64 = 1e-9;
 
 impl Engine {
+    /// Whether the data, or what is asked for, has a node at `s` (over L).
+    pub(crate) fn has_break_at(&self, s: f64) -> bool {
+        self.breaks.iter().any(|own| (own - s).abs() < SAME)
+    }
+
     /// The node at `s` (over L), if there is one.
     pub(crate) fn node_at(&self, s: f64) -> Option<usize> {
         self.solution.mesh.nodes().iter().position(|node| (node - s).abs() < SAME)
@@ -27,7 +32,7 @@ impl Engine {
     pub(crate) fn watch(&mut self, places: &[f64], tolerance: f64) -> Result<(), Trouble> {
         let new: Vec<f64> = places.iter().copied().filter(|s| self.node_at(*s).is_none()).collect();
         for s in places.iter().filter(|s| **s > SAME && **s < 1.0 - SAME) {
-            if !self.breaks.iter().any(|b| (b - s).abs() < SAME) {
+            if !self.has_break_at(*s) {
                 self.breaks.push(*s);
             }
         }

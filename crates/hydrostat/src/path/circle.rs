@@ -217,11 +217,11 @@ fn follow(
         out.steps += 1;
         let full = side * (next.tip_angle() - first) >= TAU;
         let within = &|point: &Point| side * (point.tip_angle() - first) < TAU - 1e-6;
-        let mut points = vec![here.clone()];
-        fill_in(&mut stepper, asked, [&here, &next], HALVINGS, &mut points);
-        points.push(next.clone());
+        let mut inner = Vec::new();
+        fill_in(&mut stepper, asked, [&here, &next], HALVINGS, &mut inner);
+        let points: Vec<&Point> = std::iter::once(&here).chain(&inner).chain([&next]).collect();
         for pair in points.windows(2) {
-            find_between(&mut stepper, asked, [&pair[0], &pair[1]], within, &mut out.found);
+            find_between(&mut stepper, asked, [pair[0], pair[1]], within, &mut out.found);
         }
         let end = usize::from(side > 0.0);
         out.tip_angles[end] = next.tip_angle();

@@ -181,7 +181,9 @@ impl Ramp<'_, '_> {
         loop {
             if self.stepper.engine.spent().is_some() {
                 self.stepper.engine.restore(&here.state);
-                return Err(self.end_of_way(VerdictKind::NotFound, here.fraction));
+                // A limit point that was met before says more.
+                let turned_back = self.does_not_lead_on();
+                return Err(turned_back.unwrap_or_else(|| self.end(VerdictKind::NotFound, here.fraction, None)));
             }
             if attempt >= most || step < 1e-8 {
                 if let Some(verdict) = self.does_not_lead_on() {
@@ -206,8 +208,10 @@ impl Ramp<'_, '_> {
                         self.way.travelled.crossings += 1;
                     }
                     if self.turned_back.is_some() {
-                        if next.fraction <= 0.0 {
-                            return Err(self.does_not_lead_on().unwrap_or_else(|| self.stuck(&here, steeper)));
+                        if next.fraction <= 0.0
+                            && let Some(verdict) = self.does_not_lead_on()
+                        {
+                            return Err(verdict);
                         }
                         if self.comes_past(&here, &next) && !self.land(&here, pace) {
                             // The step goes round the next limit point, too.
@@ -217,7 +221,7 @@ impl Ramp<'_, '_> {
                     } else if next.rise < 0.0 {
                         let (_, limit) = self.stepper.limit_point(&here, &next, step, pace);
                         self.turn_back(limit.clamp(0.0, 1.0));
-                        most = attempt + BEYOND;
+                        most = most.max(attempt + BEYOND);
                     }
                     self.way.travelled.steps += 1;
                     if let Some(Contact { after, .. }) = contact {
@@ -225,7 +229,7 @@ impl Ramp<'_, '_> {
                             // Where a cable goes slack or taut the path turns back in a corner.
                             self.stepper.engine.restore(&next.state);
                             self.turn_back(next.fraction);
-                            most = attempt + BEYOND;
+                            most = most.max(attempt + BEYOND);
                         }
                         here = after;
                         steeper = (here.fraction, here.rise);
@@ -319,11 +323,6 @@ impl Ramp<'_, '_> {
         let limit = self.turned_back.take()?;
         self.stepper.engine.restore(&limit.state);
         Some(self.end(VerdictKind::LimitPoint, limit.fraction, None))
-    }
-
-    /// Why the path ends where work is over: a limit point that was met before says more.
-    fn end_of_way(&mut self, kind: VerdictKind, fraction: f64) -> Verdict {
-        self.does_not_lead_on().unwrap_or_else(|| self.end(kind, fraction, None))
     }
 
     /// [`Ramp::start`], or why there is no such point.
