@@ -54,7 +54,7 @@ struct Turn {
     before: Vec<f64>,
     /// chi at the left end, the stages and the right end of every element.
     angles: Vec<[f64; POINTS]>,
-    /// Which way every element turns, by the parts into which kinks cut it: where a part begins (in [0, 1]), and its sign.
+    /// Which way every element turns, see [`parts`].
     parts: Vec<Vec<(f64, f64)>>,
     /// Where chi turns back (over L), in order.
     kinks: Vec<f64>,
@@ -110,7 +110,39 @@ impl Turns {
         let x = (s - self.nodes[i]) / (self.nodes[i + 1] - self.nodes[i]);
         turn.before[i] + turn.within(&self.gauss, i, x)
     }
+
+    /// What kinks inside of elements cost at most (tip over L, to first order), for cables with these exponents by the turn.
+    ///
+    /// Beside a kink chi' = c' x. A polynomial across it, at the distance d from the node, misses c' d^2 of the turn, which changes the tension by the
+    /// exponent times that, and the direction of the tip by what the cable turns times that. Beside a node on the kink d is the thickness of the layers
+    /// (see [`parts`]), and what is missed is of third order.
+    pub(crate) fn off_nodes(&self, exponents: &[f64]) -> f64 {
+        let of_cable = |(c, exponent): (usize, &f64)| {
+            if *exponent == 0.0 {
+                return 0.0;
+            }
+            let turn = &self.cables[c];
+            let missed: f64 = turn
+                .kinks_inside()
+                .map(|(i, x)| {
+                    let step = self.nodes[i + 1] - self.nodes[i];
+                    let (distance, node) = if x < 0.5 { (x, self.nodes[i]) } else { (1.0 - x, self.nodes[i + 1]) };
+                    let nearest =
+                        turn.kinks.iter().map(|kink| (kink - node).abs() / step).fold(f64::INFINITY, f64::min);
+                    let layers = nearest < 0.5 * distance;
+                    let missed = if layers { distance.powi(3) * step + nearest * nearest } else { distance * distance };
+                    curvature(&self.gauss, &turn.angles[i], x).abs() * missed
+                })
+                .sum();
+            exponent.abs() * missed * self.at(c, 1.0, true)
+        };
+        exponents.iter().enumerate().map(of_cable).sum()
+    }
 }
+
+/// Kinks nearer to each other (over L) are one: no element is to be shorter than the layers beside kinks, where chi' is no polynomial.
+/// The turn in between is of third order in their distance, what a node beside a kink costs of second.
+const APART: f64 = 5e-5;
 
 /// How far beyond a node the polynomial of the element beside counts, over the shorter of the two elements that meet there.
 const BESIDE: f64 = 0.4;
@@ -120,37 +152,24 @@ impl Turn {
     fn new(gauss: &Gauss<M>, nodes: &[f64], angles: Vec<[f64; POINTS]>, breaks: &[bool], steps: &[bool]) -> Self {
         let kinks = kinks(gauss, nodes, &angles, breaks);
         let mut out = Self { before: Vec::new(), angles, parts: Vec::new(), kinks };
-        // Between kinks and breaks chi turns one way: that in which it ends up.
-        let mut turned = vec![0.0];
-        let mut parts: Vec<Vec<(f64, usize)>> = Vec::new();
-        for i in 0..nodes.len() - 1 {
-            let (from, to) = (nodes[i], nodes[i + 1]);
-            if i > 0 && breaks[i] {
-                turned.push(0.0);
-            }
-            let mut own = vec![(0.0, turned.len() - 1)];
-            for kink in out.kinks.iter().filter(|s| (from..to).contains(*s)) {
-                turned.push(0.0);
-                own.push(((kink - from) / (to - from), turned.len() - 1));
-            }
-            for (k, (x, interval)) in own.iter().enumerate() {
-                let end = own.get(k + 1).map_or(1.0, |next| next.0);
-                turned[*interval] += value(gauss, &out.angles[i], end) - value(gauss, &out.angles[i], *x);
-            }
-            parts.push(own);
-        }
-        let sense = |interval: usize| if turned[interval] < 0.0 { -1.0 } else { 1.0 };
-        out.parts = parts.into_iter().map(|own| own.into_iter().map(|(x, k)| (x, sense(k))).collect()).collect();
+        out.parts = out.angles.iter().map(|angles| parts(gauss, angles)).collect();
         let mut passed = 0.0;
         for i in 0..nodes.len() - 1 {
-            if i > 0 && steps[i] {
-                // Where another cable ends the angle steps.
-                passed += (out.angles[i][0] - out.angles[i - 1][POINTS - 1]).abs();
+            if i > 0 {
+                // Where another cable ends the angle steps; elsewhere a step is a layer thinner than any element, which turns as its
+                // surroundings do.
+                let step = out.angles[i][0] - out.angles[i - 1][POINTS - 1];
+                passed += if steps[i] { step.abs() } else { step * out.parts[i][0].1 };
             }
             out.before.push(passed);
             passed += out.within(gauss, i, 1.0);
         }
         out
+    }
+
+    /// Elements, and where in them chi turns back.
+    fn kinks_inside(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.parts.iter().enumerate().flat_map(|(i, parts)| parts[1..].iter().map(move |(x, _)| (i, *x)))
     }
 
     /// How far chi turns from the left end of element `i` to `x`.
@@ -231,7 +250,50 @@ fn kinks(gauss: &Gauss<M>, nodes: &[f64], angles: &[[f64; POINTS]], breaks: &[bo
             }
         }
     }
-    out
+    merged(&out, |count| count % 2 == 1)
+}
+
+/// Changes of sign in order, those nearer to each other than [`APART`] as one in their middle, if their number counts.
+pub(crate) fn merged(places: &[f64], counts: impl Fn(usize) -> bool) -> Vec<f64> {
+    let clusters = places.chunk_by(|a, b| b - a < APART);
+    clusters.filter(|own| counts(own.len())).map(|own| 0.5 * (own[0] + own[own.len() - 1])).collect()
+}
+
+/// The parts of an element in which chi turns one way: where each begins (in [0, 1]), and its sign.
+///
+/// Beside a kink at a node chi' = c +- r c' (see [`kinks`]). For r > 0 this is the solution outside of layers of the thickness r on both sides,
+/// in which |chi'| = c' (|x| - r + r exp(-|x|/r)): these turn by c' r^2 more each, as the absolute value of the polynomials does.
+fn parts(gauss: &Gauss<M>, angles: &[f64; POINTS]) -> Vec<(f64, f64)> {
+    const SAMPLES: u32 = 24;
+    let mut begins = vec![0.0];
+    if turns(angles) {
+        let mut before = (0.0, slope(gauss, angles, 0.0));
+        for k in 1..=SAMPLES {
+            let x = f64::from(k) / f64::from(SAMPLES);
+            let now = (x, slope(gauss, angles, x));
+            if before.1 * now.1 < 0.0 {
+                let (mut low, mut high) = (before.0, now.0);
+                for _ in 0..40 {
+                    let middle = 0.5 * (low + high);
+                    if slope(gauss, angles, middle) * before.1 > 0.0 { low = middle } else { high = middle }
+                }
+                begins.push(0.5 * (low + high));
+            }
+            before = now;
+        }
+    }
+    let sense = |k: usize| {
+        let (from, to) = (begins[k], begins.get(k + 1).copied().unwrap_or(1.0));
+        if value(gauss, angles, to) < value(gauss, angles, from) { -1.0 } else { 1.0 }
+    };
+    (0..begins.len()).map(|k| (begins[k], sense(k))).collect()
+}
+
+/// Second derivative of the polynomial through stages and ends at `x`.
+fn curvature(gauss: &Gauss<M>, angles: &[f64; POINTS], x: f64) -> f64 {
+    const NEAR: f64 = 1e-2;
+    let [before, here, behind] = [x - NEAR, x, x + NEAR].map(|x| value(gauss, angles, x));
+    (before - 2.0 * here + behind) / (NEAR * NEAR)
 }
 
 /// Whether chi turns in an element by more than rounding.

@@ -26,7 +26,7 @@ const LEAST: f64 = 1e-6;
 /// Halvings of elements that confirm the turns.
 const CUTS: usize = 4;
 /// The part of what halving elements moves that is taken to be left.
-const FINER: f64 = 0.25;
+const FINER: f64 = 1.0;
 /// Intervals at whose ends turns are compared.
 const INTERVALS: u32 = 32;
 
@@ -171,7 +171,8 @@ impl Solver {
             let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
             let turned = (self.engine.tip_angle() - angle).abs();
             if moved.max(0.1 * turned) <= 0.2 * ease * tol {
-                return Ok(estimate + moved);
+                let inside = rounds.shapes.last().map_or(0.0, |shape| shape.off_nodes(&rounds.exponents));
+                return Ok(estimate + moved + inside);
             }
         }
         Err(Trouble::Stalled(f64::INFINITY))

@@ -1,6 +1,7 @@
 //! Kinks of the load, and nodes that follow them.
 
 use super::{Engine, M};
+use crate::friction::merged;
 
 /// How close (over L) nodes are kept to the kinks of the load at a tolerance: the error that a kink leaves is of second
 /// order in the distance, and the estimate does not see all of it. Closer than rounding places kinks, nodes would chase it.
@@ -93,7 +94,9 @@ impl Engine {
             (cable.friction > 0.0 && self.equations.tension(c) != 0.0).then_some(c)
         };
         let rubbing: Vec<usize> = cables.filter_map(rubbing).collect();
-        out.extend(grip.kinks(&rubbing));
+        let mut kinks: Vec<f64> = grip.kinks(&rubbing).collect();
+        kinks.sort_by(f64::total_cmp);
+        out.extend(merged(&kinks, |_| true));
     }
 
     /// The place of a change of sign of `switch`, given where the polynomial of element `i` has it: near a node, that

@@ -8,7 +8,7 @@ use hydrostat::{FlowSurface, Volume};
 use crate::banded::{Banded, Factors};
 use crate::mechanics::{Model, NoStrains, State, directors};
 use crate::polynomials::Points;
-use crate::shape::Element;
+use crate::shape::{Element, turned_to};
 
 /// How strains follow states: `by_state[i][j]` is d strains at point i / d state at point j.
 pub(crate) struct Response {
@@ -185,9 +185,9 @@ impl Element {
         for cable in 0..self.start.len() {
             let grip = model.grip(cable);
             let turns = (grip != 0.0 && self.start[cable] != 0.0).then(|| self.directions(model, cable)).flatten();
-            let begin = turns.as_ref().map(|chi| points.value(chi, 0.0));
             for j in 0..self.places.len() {
-                let turned = turns.as_ref().zip(begin).map_or(0.0, |(chi, begin)| self.sense[cable] * (chi[j] - begin));
+                let turned =
+                    turns.as_ref().map_or(0.0, |chi| turned_to(points, chi, &self.senses[cable], points.at[j]));
                 self.tensions[j][cable] = self.start[cable] * (grip * turned).exp();
             }
         }

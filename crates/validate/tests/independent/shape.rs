@@ -13,10 +13,10 @@ pub(crate) const POINTS: usize = 8;
 const LOOKS: usize = 12;
 
 /// Nodes are no closer than this, over L: slopes of polynomials on short elements are rounding.
-const CLOSEST: f64 = 1e-4;
+const CLOSEST: f64 = 3e-4;
 
 /// Kinks this near each other, over L, are one: slopes of beta' have rounding, and may jump there.
-const APART: f64 = 1e-3;
+const APART: f64 = 3e-4;
 
 /// Nodes this near a kink, over the shorter element beside them, give way to it.
 const BESIDE: f64 = 0.25;
@@ -46,8 +46,8 @@ pub(crate) struct Element {
     pub(crate) start: Vec<f64>,
     /// The same at the points.
     pub(crate) tensions: Vec<Vec<f64>>,
-    /// Which way each cable with friction turns: between nodes it goes one way.
-    pub(crate) sense: Vec<f64>,
+    /// Where in the element each cable with friction begins to turn another way, and which way.
+    pub(crate) senses: Vec<Vec<(f64, f64)>>,
 }
 
 impl Element {
@@ -63,7 +63,7 @@ impl Element {
             beta_slope: vec![0.0; count],
             start: Vec::new(),
             tensions: Vec::new(),
-            sense: Vec::new(),
+            senses: Vec::new(),
         }
     }
 
@@ -159,14 +159,13 @@ impl<'a> Shape<'a> {
         let closest = CLOSEST * self.model.arm.length;
         for element in &mut self.elements {
             element.start.clone_from(&self.tensions);
-            element.sense = vec![1.0; self.tensions.len()];
+            element.senses = vec![vec![(0.0, 1.0)]; self.tensions.len()];
         }
         for cable in 0..self.tensions.len() {
             let grip = self.model.grip(cable);
             if grip == 0.0 {
                 continue;
             }
-            // Between nodes chi goes one way: what it turns is the difference of its ends.
             let (mut turned, mut before) = (0.0, None);
             for element in &mut self.elements {
                 let Some(chi) = element.directions(self.model, cable) else { break };
@@ -175,8 +174,8 @@ impl<'a> Shape<'a> {
                 let steps = self.breaks.iter().any(|s| (s - element.from).abs() <= closest);
                 turned += before.filter(|_| steps).map_or(0.0, |before: f64| whole_turns_off(start - before).abs());
                 element.start[cable] *= (grip * turned).exp();
-                turned += (end - start).abs();
-                element.sense[cable] = if end < start { -1.0 } else { 1.0 };
+                element.senses[cable] = senses_of(self.points, &chi);
+                turned += turned_to(self.points, &chi, &element.senses[cable], 1.0);
                 before = Some(end);
             }
         }
@@ -238,22 +237,10 @@ impl<'a> Shape<'a> {
     }
 
     /// Where the polynomial through `values` changes its sign, by x in the element.
-    fn changes(&self, element: &Element, values: &[f64], [from, to]: [f64; 2], out: &mut Vec<f64>) {
-        let at = |x: f64| self.points.value(values, x);
-        let looks: Vec<f64> = (0..=LOOKS).map(|k| from + (to - from) * k as f64 / LOOKS as f64).collect();
-        for ends in looks.windows(2) {
-            let (mut low, mut high) = (ends[0], ends[1]);
-            let sign = at(low);
-            if sign * at(high) >= 0.0 {
-                continue;
-            }
-            for _ in 0..50 {
-                let middle = 0.5 * (low + high);
-                let same = at(middle) * sign > 0.0;
-                if same { low = middle } else { high = middle }
-            }
-            out.push(element.from + element.step * high);
-        }
+    fn changes(&self, element: &Element, values: &[f64], within: [f64; 2], out: &mut Vec<f64>) {
+        let first = out.len();
+        changes_of(self.points, values, within, out);
+        out[first..].iter_mut().for_each(|x| *x = element.from + element.step * *x);
     }
 
     /// State at the points of element `k` that its strains carry.
@@ -317,6 +304,50 @@ impl<'a> Shape<'a> {
         let along = |k: usize| self.integral(|element, j| advance(element.theta[j], element.strains[j])[k]);
         [self.model.arm.base.x + along(0), self.model.arm.base.y + along(1)]
     }
+}
+
+/// Where the polynomial through `values` changes its sign, by x.
+fn changes_of(points: &Points, values: &[f64], [from, to]: [f64; 2], out: &mut Vec<f64>) {
+    let at = |x: f64| points.value(values, x);
+    let looks: Vec<f64> = (0..=LOOKS).map(|k| from + (to - from) * k as f64 / LOOKS as f64).collect();
+    for ends in looks.windows(2) {
+        let (mut low, mut high) = (ends[0], ends[1]);
+        let sign = at(low);
+        if sign * at(high) >= 0.0 {
+            continue;
+        }
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            let same = at(middle) * sign > 0.0;
+            if same { low = middle } else { high = middle }
+        }
+        out.push(high);
+    }
+}
+
+/// Where in an element chi turns back, and which way it goes from there on.
+fn senses_of(points: &Points, chi: &[f64]) -> Vec<(f64, f64)> {
+    let slopes = points.slopes(chi);
+    let mut begins = vec![0.0];
+    if slopes.iter().any(|slope| slope.abs() >= 1e-10) {
+        changes_of(points, &slopes, [0.0, 1.0], &mut begins);
+    }
+    let along = |k: usize| {
+        let to = begins.get(k + 1).copied().unwrap_or(1.0);
+        points.value(chi, to) - points.value(chi, begins[k])
+    };
+    (0..begins.len()).map(|k| (begins[k], along(k).signum())).collect()
+}
+
+/// How far chi turns from the start of an element to `x`, one way and the other.
+pub(crate) fn turned_to(points: &Points, chi: &[f64], senses: &[(f64, f64)], x: f64) -> f64 {
+    let parts = senses.iter().enumerate().filter(|(_, (from, _))| *from <= x);
+    parts
+        .map(|(k, (from, sense))| {
+            let to = senses.get(k + 1).map_or(x, |next| next.0.min(x));
+            sense * (points.value(chi, to) - points.value(chi, *from))
+        })
+        .sum()
 }
 
 fn whole_turns_off(angle: f64) -> f64 {
