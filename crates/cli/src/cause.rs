@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use hydrostat::{PathError, ReachError, SensitivityError, SolveError};
+use hydrostat::{PathError, ReachError, SensitivityError, SolveError, SpatialError};
 use hydrostat_figures::source::StudyError;
 use hydrostat_files::{FileError, FitKeyError, MeasurementsError, TargetsError, WriteError};
 use hydrostat_identify::{IdentifyError, Trial};
@@ -28,6 +28,7 @@ pub(crate) enum Blame {
 /// An error of a library or of the program.
 pub(crate) enum Cause<'a> {
     Solve(&'a SolveError),
+    Spatial(&'a SpatialError),
     Path(&'a PathError),
     Sensitivity(&'a SensitivityError),
     Reach(&'a ReachError),
@@ -48,6 +49,7 @@ impl<'a> Cause<'a> {
     /// Of one error of a chain; `None` for those that say nothing here, such as a failure to print.
     pub(crate) fn of(error: &'a (dyn Error + 'static)) -> Option<Self> {
         let found = error.downcast_ref().map(Self::Solve);
+        let found = found.or_else(|| error.downcast_ref().map(Self::Spatial));
         let found = found.or_else(|| error.downcast_ref().map(Self::Path));
         let found = found.or_else(|| error.downcast_ref().map(Self::Sensitivity));
         let found = found.or_else(|| error.downcast_ref().map(Self::Reach));
@@ -73,6 +75,8 @@ impl<'a> Cause<'a> {
     pub(crate) fn blame(&self) -> Blame {
         match self {
             Self::Solve(error) => solve(error),
+            Self::Spatial(SpatialError::NoEquilibrium(_)) => Blame::Arm,
+            Self::Spatial(SpatialError::Arm(_) | SpatialError::Option { .. }) => Blame::Request,
             Self::Path(error) => path(error),
             Self::Sensitivity(error) => sensitivity(error),
             Self::Reach(error) => reach(error),

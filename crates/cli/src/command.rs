@@ -16,6 +16,7 @@ pub(crate) mod reach;
 pub(crate) mod serve;
 pub(crate) mod shell;
 pub(crate) mod solve;
+mod solve_spatial;
 mod summary;
 pub(crate) mod sweep;
 mod table;

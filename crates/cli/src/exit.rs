@@ -3,7 +3,7 @@
 use std::io;
 use std::process::ExitCode;
 
-use hydrostat::{SolveError, VerdictKind};
+use hydrostat::{SolveError, SpatialError, VerdictKind};
 use hydrostat_figures::source::StudyError;
 use hydrostat_files::WriteError;
 
@@ -80,6 +80,9 @@ fn advice(error: &anyhow::Error) -> Option<&str> {
             "this figure needs an arm whose tip section turns that far, such as `paper` and `paper-statements`; \
              `hydrostat path ARM --vary cable.0.tension=FROM:TO --plot-shapes FILE` draws any arm under a rising tension",
         );
+    }
+    if let Cause::Spatial(SpatialError::NoEquilibrium(failure)) = cause {
+        return Some(failure.verdict.advice());
     }
     match cause.solve()? {
         SolveError::NoEquilibrium(failure) => Some(failure.verdict.advice()),

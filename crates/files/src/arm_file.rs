@@ -5,8 +5,9 @@ use std::io::Read;
 use std::path::Path;
 
 use hydrostat::{
-    Arm, Base, Cable, Cavity, Displaced, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity,
-    Hydrostatics, LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
+    Arm, Base, BaseDirections, Cable, Cavity, Displaced, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface,
+    Gravity, Hydrostatics, LayerMean, Material, Motion, Profile, Readings, Reference, Space, Support, TipLoad, Volume,
+    WettedLength,
 };
 
 use crate::document::{self, Field, Origin};
@@ -264,15 +265,51 @@ fn build(v: &Values, name: String) -> Arm {
             }
         }),
         tip: TipLoad {
-            force: v.pair("tip.force").unwrap_or_default(),
-            moment: v.number("tip.moment").unwrap_or_default(),
-            follower: v.pair("tip.follower").unwrap_or_default(),
+            force: in_plane(v.triple("tip.force")),
+            moment: v.number("tip.moment").or(v.triple("tip.moment").map(|m| m[2])).unwrap_or_default(),
+            follower: in_plane(v.triple("tip.follower")),
         },
         distributed: DistributedLoad {
-            force: v.profiles("distributed.force").unwrap_or_else(|| [zero(), zero()]),
-            couple: v.profile("distributed.couple").unwrap_or_else(zero),
+            force: match v.three("distributed.force") {
+                Some([x, y, _]) => [x, y],
+                None => v.profiles("distributed.force").unwrap_or_else(|| [zero(), zero()]),
+            },
+            couple: match v.three("distributed.couple") {
+                Some([_, _, z]) => z,
+                None => v.profile("distributed.couple").unwrap_or_else(zero),
+            },
         },
         readings: readings(v),
+        space: v.is_spatial().then(|| space(v)),
+    }
+}
+
+/// The components along e1 and e2.
+fn in_plane(vector: Option<[f64; 3]>) -> [f64; 2] {
+    vector.map_or([0.0; 2], |[x, y, _]| [x, y])
+}
+
+/// What takes the arm out of the plane.
+fn space(v: &Values) -> Space {
+    let zero = || Profile::Constant(0.0);
+    let third = |key: &str| v.triple(key).map_or(0.0, |vector| vector[2]);
+    let profile = |key: &str| v.profile(key).unwrap_or_else(zero);
+    Space {
+        z: v.number("arm.base.z").unwrap_or_default(),
+        base: v
+            .triple("arm.base.direction")
+            .map(|direction| BaseDirections { direction, section: v.triple("arm.base.section") }),
+        stream: v.triple("flow.direction"),
+        gravity: v.triple("gravity.direction"),
+        tip_force: third("tip.force"),
+        tip_follower: third("tip.follower"),
+        tip_moment: in_plane(v.triple("tip.moment")),
+        force: v.three("distributed.force").map_or_else(zero, |[_, _, z]| z),
+        couple: v.three("distributed.couple").map_or_else(|| [zero(), zero()], |[x, y, _]| [x, y]),
+        zeta: profile("reference.zeta"),
+        tau: profile("reference.tau"),
+        kappa: profile("reference.kappa"),
+        c4: v.profile("material.c4"),
     }
 }
 
@@ -302,6 +339,7 @@ fn cable(v: &Values, index: usize) -> Cable {
     Cable {
         name: v.text(&key("name")).unwrap_or_else(|| index.to_string()),
         offset: v.profile(&key("offset")).unwrap_or(Profile::Linear { base: 0.005, tip: 0.001 }),
+        angle: v.profile(&key("angle")).unwrap_or(Profile::Constant(0.0)),
         tension: v.number(&key("tension")).filter(|_| !v.has_stroke(index)).unwrap_or_default(),
         stroke: v.number(&key("stroke")).filter(|_| v.has_stroke(index)),
         stiffness: v.number(&key("stiffness")),

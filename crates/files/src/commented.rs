@@ -120,18 +120,30 @@ fn same(a: &Node, b: &Node) -> bool {
 
 /// A value as people write it.
 fn text(value: &Tree, kind: Kind) -> String {
-    let each = |parts: &[Tree], kinds: [Kind; 2]| -> String {
+    let each = |parts: &[Tree], kinds: [Kind; 3]| -> String {
         let parts: Vec<String> = parts.iter().zip(kinds).map(|(part, kind)| text(part, kind)).collect();
         format!("[{}]", parts.join(", "))
     };
     match (value, kind) {
-        (Tree::Number(number), Kind::Quantity(dimension) | Kind::Profile(dimension) | Kind::Offset(dimension)) => {
-            in_unit(*number, dimension)
+        (
+            Tree::Number(number),
+            Kind::Quantity(dimension)
+            | Kind::Axial(dimension)
+            | Kind::Profile(dimension)
+            | Kind::AxialProfile(dimension)
+            | Kind::Offset(dimension),
+        ) => in_unit(*number, dimension),
+        (Tree::Number(number), Kind::Heading) => in_unit(*number, Dimension::Angle),
+        (Tree::Array(parts), Kind::Pair(dimension) | Kind::Axial(dimension)) => {
+            each(parts, [Kind::Quantity(dimension); 3])
         }
-        (Tree::Array(pair), Kind::Pair(dimension)) => each(pair, [Kind::Quantity(dimension); 2]),
-        (Tree::Array(pair), Kind::ProfilePair(dimension)) => each(pair, [Kind::Profile(dimension); 2]),
-        (Tree::Array(points), Kind::Profile(dimension) | Kind::Offset(dimension)) => {
-            let kinds = [Kind::Quantity(Dimension::Length), Kind::Quantity(dimension)];
+        (Tree::Array(parts), Kind::Heading | Kind::Direction) => each(parts, [Kind::Quantity(Dimension::Number); 3]),
+        (Tree::Array(parts), Kind::AxialProfile(dimension)) if parts.len() == 3 && !is_points(parts) => {
+            each(parts, [Kind::Profile(dimension); 3])
+        }
+        (Tree::Array(pair), Kind::ProfilePair(dimension)) => each(pair, [Kind::Profile(dimension); 3]),
+        (Tree::Array(points), Kind::Profile(dimension) | Kind::AxialProfile(dimension) | Kind::Offset(dimension)) => {
+            let kinds = [Kind::Quantity(Dimension::Length), Kind::Quantity(dimension), Kind::Quantity(dimension)];
             let point = |point: &Tree| match point {
                 Tree::Array(pair) => each(pair, kinds),
                 other => text(other, kind),
@@ -149,6 +161,14 @@ fn text(value: &Tree, kind: Kind) -> String {
             text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
         }
     }
+}
+
+/// Whether all of an array are points [s, value], not profiles.
+fn is_points(parts: &[Tree]) -> bool {
+    parts.iter().all(|part| match part {
+        Tree::Array(pair) => pair.len() == 2 && pair.iter().all(|v| matches!(v, Tree::Number(_))),
+        _ => false,
+    })
 }
 
 /// A number in the unit in which such sizes are usually told, where that reads as the same number; else in the SI unit.

@@ -13,12 +13,20 @@ pub(crate) enum Kind {
     Choice(&'static [&'static str]),
     /// One number.
     Quantity(Dimension),
-    /// Two numbers, `[_, _]`.
+    /// Two numbers, `[_, _]`, or three in space.
     Pair(Dimension),
+    /// One number, or three in space, `[_, _, _]`.
+    Axial(Dimension),
+    /// An angle, or three numbers in space, `[_, _, _]`.
+    Heading,
+    /// Three numbers, `[_, _, _]`, of any size.
+    Direction,
     /// A quantity along the arm: a number, `{ base, tip }`, `[[s, value], ...]` or `{ points, join }`.
     Profile(Dimension),
-    /// Two profiles, `[_, _]`.
+    /// Two profiles, `[_, _]`, or three in space.
     ProfilePair(Dimension),
+    /// One profile, or three in space, `[_, _, _]`.
+    AxialProfile(Dimension),
     /// A profile, or shares of the radius.
     Offset(Dimension),
     /// A fraction of the length, or a length.
@@ -62,7 +70,10 @@ const fn default(name: &'static str, kind: Kind, default: &'static str, doc: &'s
 }
 
 use Dimension as D;
-use Kind::{Choice, Offset, Pair, Part, Profile, ProfilePair, Quantity, Table, Tables, Text};
+use Kind::{
+    Axial, AxialProfile, Choice, Direction, Heading, Offset, Pair, Part, Profile, ProfilePair, Quantity, Table, Tables,
+    Text,
+};
 
 pub(crate) const FILE: &[Key] = &[
     optional("name", Text, "Name of the arm. Default: the name of the file."),
@@ -78,6 +89,7 @@ pub(crate) const FILE: &[Key] = &[
 ];
 
 const ARM: &[Key] = &[
+    default("space", Choice(&SPACES), "\"planar\"", "Whether the arm stays in the plane e1-e2."),
     required("length", Quantity(D::Length), "Undeformed length L."),
     required("radius", Profile(D::Length), "Undeformed radius R(s)."),
     default("inner_radius", Profile(D::Length), "0", "Radius R_in(s) of the cavity; 0 is solid."),
@@ -89,8 +101,18 @@ const ARM: &[Key] = &[
 const BASE: &[Key] = &[
     default("x", Quantity(D::Length), "0", "Along e1."),
     default("y", Quantity(D::Length), "0", "Along e2."),
-    default("angle", Quantity(D::Angle), "0", "From e1."),
+    default("angle", Quantity(D::Angle), "0", "From e1. In space: of a in the plane e1-e2; not with direction."),
+    optional("z", Quantity(D::Length), "Along e3, in space. Default: 0."),
+    optional("direction", Direction, "Direction of a, normal to the section, in space."),
+    optional(
+        "section",
+        Direction,
+        "Direction that b is projected from, in space. Default: e3 x a, or e2 where a is along e3.",
+    ),
 ];
+
+/// The words of `arm.space`.
+pub(crate) const SPACES: [&str; 2] = ["planar", "spatial"];
 
 /// Required unless [`COEFFICIENTS`] are given.
 pub(crate) const HOMOGENEOUS: [&str; 3] = ["young", "poisson", "shear_factor"];
@@ -104,12 +126,20 @@ const MATERIAL: &[Key] = &[
     optional("c1", Profile(D::Pressure), "Stiffness against stretch."),
     optional("c2", Profile(D::Pressure), "Stiffness against shear."),
     optional("c3", Profile(D::Force), "Stiffness against bending."),
+    optional(
+        "c4",
+        Profile(D::Force),
+        "Stiffness against twist, in space, with c1 to c3. Default: that of one isotropic round section.",
+    ),
 ];
 
 const REFERENCE: &[Key] = &[
     default("nu", Profile(D::Number), "1", "Stretch of the unloaded arm."),
     default("eta", Profile(D::Number), "0", "Shear strain of the unloaded arm."),
-    default("mu", Profile(D::Curvature), "0", "Bending strain of the unloaded arm."),
+    default("mu", Profile(D::Curvature), "0", "Bending strain of the unloaded arm; in space about c."),
+    optional("zeta", Profile(D::Number), "Shear strain along c of the unloaded arm, in space. Default: 0."),
+    optional("tau", Profile(D::Curvature), "Twist of the unloaded arm, in space. Default: 0."),
+    optional("kappa", Profile(D::Curvature), "Bending strain about b of the unloaded arm, in space. Default: 0."),
 ];
 
 const CABLE: &[Key] = &[
@@ -120,6 +150,7 @@ const CABLE: &[Key] = &[
         "{ base = 0.005, tip = 0.001 }",
         "Offset from the centreline, left positive, or a share of the radius: \"70 %\".",
     ),
+    optional("angle", Profile(D::Angle), "Angle of the offset in the section, from b towards c, in space. Default: 0."),
     default("tension", Quantity(D::Force), "0", "Tension at the base. Either this or stroke."),
     optional("stroke", Quantity(D::Length), "Length reeled in, measured from the unloaded arm; negative: paid out."),
     optional("stiffness", Quantity(D::Force), "EA of an elastic cable with a stroke. Default: it does not stretch."),
@@ -137,7 +168,7 @@ pub(crate) const DRAG: [&str; 2] = ["cn", "ct"];
 
 const FLOW: &[Key] = &[
     default("speed", Quantity(D::Speed), "0", "Speed of the free stream."),
-    default("direction", Quantity(D::Angle), "0", "Direction of the free stream, from e1."),
+    default("direction", Heading, "0", "Direction of the free stream, from e1; in space also [_, _, _]."),
     default("density", Quantity(D::Density), "1000", "Density of the water; 0 is a vacuum."),
     default("layer_thickness", Quantity(D::Length), "0.005", "Thickness of the boundary layer h_inf."),
     default("law", Choice(&["momentum", "quadratic-drag"]), "\"momentum\"", "Law of the load of the stream."),
@@ -147,18 +178,23 @@ const FLOW: &[Key] = &[
 
 const GRAVITY: &[Key] = &[
     default("acceleration", Quantity(D::Acceleration), "9.81", "Acceleration of gravity in the plane."),
-    default("direction", Quantity(D::Angle), "-90", "Direction, from e1."),
+    default("direction", Heading, "-90", "Direction, from e1; in space also [_, _, _]."),
 ];
 
 const TIP: &[Key] = &[
     default("force", Pair(D::Force), "[0.0, 0.0]", "Dead force, fixed in space."),
-    default("moment", Quantity(D::Moment), "0.0", "Moment, counterclockwise."),
+    default("moment", Axial(D::Moment), "0.0", "Moment, counterclockwise; in space about e3, or [_, _, _]."),
     default("follower", Pair(D::Force), "[0.0, 0.0]", "Force along a(L), b(L), which turns with the tip."),
 ];
 
 const DISTRIBUTED: &[Key] = &[
     default("force", ProfilePair(D::ForcePerLength), "[0.0, 0.0]", "Force along e1 and e2."),
-    default("couple", Profile(D::MomentPerLength), "0.0", "Couple, counterclockwise."),
+    default(
+        "couple",
+        AxialProfile(D::MomentPerLength),
+        "0.0",
+        "Couple, counterclockwise; in space about e3, or [_, _, _].",
+    ),
 ];
 
 const MODEL: &[Key] = &[
@@ -193,14 +229,22 @@ impl Kind {
                 quoted.join(" or ")
             }
             Quantity(dimension) => dimension.expected(),
-            Pair(dimension) => format!("two values [_, _], each {}", dimension.expected()),
+            Pair(dimension) => {
+                format!("two values [_, _], each {}; in space also three", dimension.expected())
+            }
+            Axial(dimension) => format!("{}; in space also three of them, [_, _, _]", dimension.expected()),
+            Heading => format!("{}; in space also three numbers, [_, _, _]", D::Angle.expected()),
+            Direction => "three numbers, [_, _, _]".to_owned(),
             Profile(dimension) => {
                 format!(
                     "{}, as one value, {{ base = _, tip = _ }}, [[s, value], ...] or {{ points = [[s, value], ...], join = \"linear\" }}",
                     dimension.expected()
                 )
             }
-            ProfilePair(_) => "two profiles [_, _]".to_owned(),
+            ProfilePair(_) => "two profiles [_, _], in space also three".to_owned(),
+            AxialProfile(dimension) => {
+                format!("{}; in space also three profiles, [_, _, _]", Profile(dimension).expected())
+            }
             Offset(dimension) => {
                 format!("{}; or a share of the radius, such as \"70 %\"", Profile(dimension).expected())
             }
@@ -246,9 +290,15 @@ pub(crate) fn dimension_at(key: &str) -> Option<Dimension> {
         let last = k + 1 == steps.len();
         match keys.iter().find(|key| key.name == name)?.kind {
             Table(inner) | Tables(inner) if !last => keys = inner,
-            Quantity(dimension) | Pair(dimension) if last && !end => found = Some(dimension),
+            Quantity(dimension) | Pair(dimension) | Axial(dimension) if last && !end => found = Some(dimension),
+            Heading if last && !end => {
+                found = Some(if indices.is_empty() { Dimension::Angle } else { Dimension::Number })
+            }
+            Direction if last && !end => found = Some(Dimension::Number),
             Part if last && !end => found = Some(Dimension::Number),
-            kind @ (Profile(dimension) | Offset(dimension) | ProfilePair(dimension)) if last => {
+            kind @ (Profile(dimension) | Offset(dimension) | ProfilePair(dimension) | AxialProfile(dimension))
+                if last =>
+            {
                 let place = !matches!(kind, ProfilePair(_)) && indices.ends_with("][0]");
                 found = Some(if place { Dimension::Length } else { dimension });
             }

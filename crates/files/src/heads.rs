@@ -108,13 +108,17 @@ fn key_in(keys: &[Key], text: &str) -> Option<String> {
             Kind::Text | Kind::Choice(_) | Kind::Quantity(_) | Kind::Part => {
                 rest.is_none().then(|| key.name.to_owned())
             }
+            Kind::Axial(_) | Kind::Heading => match rest {
+                None => Some(key.name.to_owned()),
+                Some(index) => Some(format!("{}[{}]", key.name, number(index)?)),
+            },
             Kind::Table(inner) => Some(format!("{}.{}", key.name, key_in(inner, rest?)?)),
             Kind::Tables(inner) => {
                 let (index, rest) = rest?.split_once('_')?;
                 Some(format!("{}[{}].{}", key.name, number(index)?, key_in(inner, rest)?))
             }
-            Kind::Pair(_) => Some(format!("{}[{}]", key.name, number(rest?)?)),
-            Kind::Profile(_) | Kind::Offset(_) => in_profile(key.name.to_owned(), rest),
+            Kind::Pair(_) | Kind::Direction => Some(format!("{}[{}]", key.name, number(rest?)?)),
+            Kind::Profile(_) | Kind::Offset(_) | Kind::AxialProfile(_) => in_profile(key.name.to_owned(), rest),
             Kind::ProfilePair(_) => {
                 let (index, rest) = rest?.split_once('_').map_or((rest?, None), |(index, rest)| (index, Some(rest)));
                 in_profile(format!("{}[{}]", key.name, number(index)?), rest)
@@ -149,10 +153,11 @@ mod tests {
             let here = if path.is_empty() { key.name.to_owned() } else { format!("{path}.{}", key.name) };
             match key.kind {
                 Kind::Text | Kind::Choice(_) | Kind::Quantity(_) | Kind::Part => out.push(here),
+                Kind::Axial(_) | Kind::Heading => out.extend(["", "[2]"].map(|end| format!("{here}{end}"))),
                 Kind::Table(inner) => self::keys(inner, &here, out),
                 Kind::Tables(inner) => self::keys(inner, &format!("{here}[12]"), out),
-                Kind::Pair(_) => out.push(format!("{here}[1]")),
-                Kind::Profile(_) | Kind::Offset(_) => {
+                Kind::Pair(_) | Kind::Direction => out.push(format!("{here}[1]")),
+                Kind::Profile(_) | Kind::Offset(_) | Kind::AxialProfile(_) => {
                     out.extend(["", ".base", ".tip", "[3][0]", "[3][1]"].map(|end| format!("{here}{end}")));
                 }
                 Kind::ProfilePair(_) => out.extend(["[0]", "[1].tip", "[1][2][1]"].map(|end| format!("{here}{end}"))),

@@ -6,7 +6,9 @@ use hydrostat::profile::TableError;
 use hydrostat::{ArmError, Join, Profile};
 
 use crate::document::{Entry, Field, Node, Origin, segment};
-use crate::format::{self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, JOINED, Key, Kind, MAX_CABLES, MAX_POINTS, PULL};
+use crate::format::{
+    self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, JOINED, Key, Kind, MAX_CABLES, MAX_POINTS, PULL, SPACES,
+};
 use crate::quantity::Dimension;
 use crate::relative::resolved;
 
@@ -33,8 +35,10 @@ pub(crate) enum Value {
     Word(&'static str),
     Number(f64),
     Pair([f64; 2]),
+    Triple([f64; 3]),
     Profile(Profile),
     Profiles([Profile; 2]),
+    ThreeProfiles(Box<[Profile; 3]>),
     /// A table that is there.
     Group,
 }
@@ -60,8 +64,13 @@ impl Values {
         let mut values = Self::default();
         values.table("", format::FILE, &resolved(fields), Origin::Text(0));
         // What a key of a table should be is open while another is wrong.
-        let checks: [(&str, Check); 3] =
-            [("material", Self::check_material), ("flow", Self::check_drag), ("cable", Self::check_pull)];
+        let checks: [(&str, Check); 5] = [
+            ("material", Self::check_material),
+            ("flow", Self::check_drag),
+            ("cable", Self::check_pull),
+            ("arm", Self::check_base),
+            ("arm.space", Self::check_space),
+        ];
         for (table, check) in checks {
             if !values.is_faulty(table)
                 && let Err(fault) = check(&values)
@@ -216,6 +225,16 @@ impl Values {
                 None => return Err(refuse(path, kind, entry)),
             },
             (Kind::Quantity(dimension), _) => Value::Number(quantity(path, dimension, entry)?),
+            (Kind::Axial(dimension), Node::Number(_) | Node::Text(_)) => {
+                Value::Number(quantity(path, dimension, entry)?)
+            }
+            (Kind::Heading, Node::Number(_) | Node::Text(_)) => Value::Number(quantity(path, Dimension::Angle, entry)?),
+            (Kind::Pair(dimension) | Kind::Axial(dimension), Node::Array(entries)) if entries.len() == 3 => {
+                Value::Triple(triple(path, dimension, entries)?)
+            }
+            (Kind::Heading | Kind::Direction, Node::Array(entries)) if entries.len() == 3 => {
+                Value::Triple(triple(path, Dimension::Number, entries)?)
+            }
             (Kind::Pair(dimension), Node::Array(entries)) => match entries.as_slice() {
                 [a, b] => Value::Pair([
                     quantity(&format!("{path}[0]"), dimension, a)?,
@@ -231,6 +250,15 @@ impl Values {
             }
             (Kind::Profile(dimension) | Kind::Offset(dimension), _) => {
                 Value::Profile(self.profile_at(path, kind, dimension, entry)?)
+            }
+            (Kind::AxialProfile(dimension), Node::Array(entries))
+                if entries.len() == 3 && !entries.iter().all(is_point) =>
+            {
+                Value::ThreeProfiles(Box::new(self.three_profiles(path, dimension, entries)?))
+            }
+            (Kind::AxialProfile(dimension), _) => Value::Profile(self.profile_at(path, kind, dimension, entry)?),
+            (Kind::ProfilePair(dimension), Node::Array(entries)) if entries.len() == 3 => {
+                Value::ThreeProfiles(Box::new(self.three_profiles(path, dimension, entries)?))
             }
             (Kind::ProfilePair(dimension), Node::Array(entries)) => match entries.as_slice() {
                 [a, b] => Value::Profiles([
@@ -264,6 +292,14 @@ impl Values {
         };
         self.found.insert(path.to_owned(), (value, entry.origin));
         Ok(())
+    }
+
+    fn three_profiles(&mut self, path: &str, dimension: Dimension, entries: &[Entry]) -> Result<[Profile; 3], Fault> {
+        let mut out = [0.0, 0.0, 0.0].map(Profile::Constant);
+        for (k, (out, entry)) in out.iter_mut().zip(entries).enumerate() {
+            *out = self.profile_at(&format!("{path}[{k}]"), Kind::Profile(dimension), dimension, entry)?;
+        }
+        Ok(out)
     }
 
     /// `kind` is that of the profile, whose values are of `dimension`.
@@ -303,6 +339,68 @@ impl Values {
         // Under its own key as well, because the core names the two profiles of a pair one by one.
         self.found.insert(path.to_owned(), (Value::Profile(profile.clone()), entry.origin));
         Ok(profile)
+    }
+
+    /// Three numbers in space; of two the third is zero.
+    pub(crate) fn triple(&self, key: &str) -> Option<[f64; 3]> {
+        match self.found.get(key) {
+            Some((Value::Triple(triple), _)) => Some(*triple),
+            Some((Value::Pair([x, y]), _)) => Some([*x, *y, 0.0]),
+            _ => None,
+        }
+    }
+
+    /// Three profiles in space.
+    pub(crate) fn three(&self, key: &str) -> Option<[Profile; 3]> {
+        match self.found.get(key) {
+            Some((Value::ThreeProfiles(three), _)) => Some((**three).clone()),
+            _ => None,
+        }
+    }
+
+    /// Whether the arm may leave the plane.
+    pub(crate) fn is_spatial(&self) -> bool {
+        self.word("arm.space") == Some(SPACES[1])
+    }
+
+    /// One way to give the directions of the base, and C4 with the other coefficients.
+    fn check_base(&self) -> Result<(), Fault> {
+        let angle = "arm.base.angle";
+        let directions = ["arm.base.direction", "arm.base.section"];
+        if self.has(angle)
+            && let Some(key) = directions.into_iter().find(|key| self.has(key))
+        {
+            let expected = "either angle or direction and section".to_owned();
+            return Err(value_fault(key, self.origin(key), expected, "both".to_owned()));
+        }
+        if self.has(directions[1]) && !self.has(directions[0]) {
+            let kind = FaultKind::Missing { expected: "the direction of a, with section".to_owned() };
+            return Err(Fault { origin: self.origin(directions[1]), key: directions[0].to_owned(), kind });
+        }
+        if self.has("material.c4") && !self.has("material.c1") {
+            let expected = "c4 with c1, c2 and c3 (from young and poisson it follows)".to_owned();
+            return Err(value_fault("material.c4", self.origin("material.c4"), expected, "it without them".to_owned()));
+        }
+        Ok(())
+    }
+
+    /// Nothing leaves the plane of an arm in the plane.
+    fn check_space(&self) -> Result<(), Fault> {
+        if self.is_spatial() {
+            return Ok(());
+        }
+        let leaves = |key: &str, value: &Value| {
+            matches!(value, Value::Triple(_) | Value::ThreeProfiles(_))
+                || OUT_OF_PLANE.contains(&key)
+                || (key.starts_with("cable[") && key.ends_with("].angle"))
+        };
+        let mut keys: Vec<&String> =
+            self.found.iter().filter(|(key, (value, _))| leaves(key, value)).map(|(key, _)| key).collect();
+        keys.sort();
+        keys.first().map_or(Ok(()), |key| {
+            let source = ArmError::OutOfPlane { key: (*key).clone() };
+            Err(Fault { origin: self.origin(key), key: (*key).clone(), kind: FaultKind::Arm(source) })
+        })
     }
 
     /// One way to give the stiffness, and the whole of it.
@@ -369,6 +467,34 @@ impl Values {
             let expected = format!("{} with law = \"quadratic-drag\"", Dimension::Number.expected());
             Err(Fault { origin: self.origin("flow.law"), key, kind: FaultKind::Missing { expected } })
         })
+    }
+}
+
+/// Keys that only arms in space have.
+const OUT_OF_PLANE: [&str; 7] = [
+    "arm.base.direction",
+    "arm.base.section",
+    "arm.base.z",
+    "material.c4",
+    "reference.kappa",
+    "reference.tau",
+    "reference.zeta",
+];
+
+/// Three numbers.
+fn triple(path: &str, dimension: Dimension, entries: &[Entry]) -> Result<[f64; 3], Fault> {
+    let mut out = [0.0; 3];
+    for (k, (out, entry)) in out.iter_mut().zip(entries).enumerate() {
+        *out = quantity(&format!("{path}[{k}]"), dimension, entry)?;
+    }
+    Ok(out)
+}
+
+/// Whether an entry is a point [s, value] of a table, not a profile.
+fn is_point(entry: &Entry) -> bool {
+    match &entry.node {
+        Node::Array(pair) => pair.len() == 2 && pair.iter().all(|e| matches!(e.node, Node::Number(_) | Node::Text(_))),
+        _ => false,
     }
 }
 

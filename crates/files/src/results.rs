@@ -3,7 +3,9 @@
 //! Numbers are written with the fewest digits that read back as the same number. What is not
 //! finite is `null` in JSON and an empty field in CSV.
 
-use hydrostat::{CableState, Configuration, NoEquilibrium, Snap, Stability, Stations, Tip, Verdict, Warning, Wrench};
+use hydrostat::{
+    CableState, Configuration, NoEquilibrium, Snap, Stability, Stations, Statistics, Tip, Verdict, Warning, Wrench,
+};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
@@ -126,7 +128,7 @@ struct WrenchOut {
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct StatisticsOut {
+pub(crate) struct StatisticsOut {
     elements: usize,
     stages: usize,
     newton_rounds: usize,
@@ -161,8 +163,9 @@ impl From<&Snap> for SnapOut {
     }
 }
 
+/// What every verdict says.
 #[derive(Debug, Clone, Serialize)]
-struct VerdictOut<'a> {
+pub(crate) struct VerdictHead {
     kind: &'static str,
     phase: &'static str,
     load_fraction: f64,
@@ -170,6 +173,12 @@ struct VerdictOut<'a> {
     residual: f64,
     message: String,
     advice: String,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct VerdictOut<'a> {
+    #[serde(flatten)]
+    head: VerdictHead,
     other_equilibria: Option<Others>,
     snaps: Vec<SnapOut>,
     after_snap: Option<SolutionDocument<'a>>,
@@ -190,6 +199,10 @@ impl From<Tip> for TipOut {
 
 impl<'a> CableOut<'a> {
     pub(crate) fn all(configuration: &'a Configuration) -> Vec<Self> {
+        Self::of(&configuration.cables)
+    }
+
+    pub(crate) fn of(cables: &'a [CableState]) -> Vec<Self> {
         let out = |c: &'a CableState| Self {
             name: &c.name,
             tension: c.tension,
@@ -197,7 +210,7 @@ impl<'a> CableOut<'a> {
             stroke: c.stroke,
             command: c.command.map(|c| CommandOut { stroke: c.stroke, length: c.length, slack: c.slack }),
         };
-        configuration.cables.iter().map(out).collect()
+        cables.iter().map(out).collect()
     }
 }
 
@@ -207,7 +220,7 @@ impl From<Wrench> for WrenchOut {
     }
 }
 
-impl From<&Verdict> for VerdictOut<'_> {
+impl From<&Verdict> for VerdictHead {
     fn from(v: &Verdict) -> Self {
         Self {
             kind: v.kind.name(),
@@ -217,11 +230,14 @@ impl From<&Verdict> for VerdictOut<'_> {
             residual: v.residual,
             message: v.message(),
             advice: v.advice().to_string(),
-            other_equilibria: None,
-            snaps: Vec::new(),
-            after_snap: None,
-            at_full_loads: None,
         }
+    }
+}
+
+impl From<Statistics> for StatisticsOut {
+    fn from(statistics: Statistics) -> Self {
+        let Statistics { elements, stages, newton_rounds, meshes, load_steps, evaluations } = statistics;
+        Self { elements, stages, newton_rounds, meshes, load_steps, evaluations }
     }
 }
 
@@ -259,14 +275,7 @@ impl<'a> SolutionDocument<'a> {
             error_estimate: *error_estimate,
             fold_margin,
             inputs: Inputs::new(arm),
-            statistics: StatisticsOut {
-                elements: statistics.elements,
-                stages: statistics.stages,
-                newton_rounds: statistics.newton_rounds,
-                meshes: statistics.meshes,
-                load_steps: statistics.load_steps,
-                evaluations: statistics.evaluations,
-            },
+            statistics: (*statistics).into(),
         }
     }
 
@@ -282,10 +291,11 @@ impl<'a> FailureDocument<'a> {
     pub fn new(failure: &'a NoEquilibrium, fold_margin: f64, notes: &'a [Note]) -> Self {
         let shape = |c: &'a Configuration| SolutionDocument::new(c, c.fold_margin().value, &[]);
         let verdict = VerdictOut {
+            head: (&failure.verdict).into(),
+            other_equilibria: None,
             snaps: failure.snaps.iter().map(SnapOut::from).collect(),
             after_snap: failure.after_snap.as_ref().map(shape),
             at_full_loads: failure.at_full_loads.as_ref().map(shape),
-            ..(&failure.verdict).into()
         };
         Self {
             schema: SCHEMA,

@@ -88,17 +88,23 @@ fn default_value(default: &str) -> Value {
 }
 
 fn kind(kind: Kind) -> Value {
-    let pair = |id: String| {
-        let reference = json!({ "$ref": format!("#/$defs/{id}") });
-        json!({ "type": "array", "prefixItems": [reference, reference], "minItems": 2, "maxItems": 2 })
+    let one = |id: String| json!({ "$ref": format!("#/$defs/{id}") });
+    let parts = |part: Value, fewest: usize| {
+        let all = vec![part; 3];
+        json!({ "type": "array", "prefixItems": all, "minItems": fewest, "maxItems": 3 })
     };
+    let number = || json!({ "type": "number" });
     match kind {
         Kind::Text => json!({ "type": "string", "maxLength": MAX_NAME }),
         Kind::Choice(words) => json!({ "enum": words }),
         Kind::Quantity(d) => json!({ "$ref": format!("#/$defs/{}", id("quantity", d)) }),
-        Kind::Pair(d) => pair(id("quantity", d)),
+        Kind::Pair(d) => parts(one(id("quantity", d)), 2),
+        Kind::Axial(d) => json!({ "anyOf": [one(id("quantity", d)), parts(one(id("quantity", d)), 3)] }),
+        Kind::Heading => json!({ "anyOf": [one(id("quantity", Dimension::Angle)), parts(number(), 3)] }),
+        Kind::Direction => parts(number(), 3),
         Kind::Profile(d) => json!({ "$ref": format!("#/$defs/{}", id("profile", d)) }),
-        Kind::ProfilePair(d) => pair(id("profile", d)),
+        Kind::ProfilePair(d) => parts(one(id("profile", d)), 2),
+        Kind::AxialProfile(d) => json!({ "anyOf": [one(id("profile", d)), parts(one(id("profile", d)), 3)] }),
         Kind::Offset(d) => along(&json!({
             "anyOf": [{ "$ref": format!("#/$defs/{}", id("quantity", d)) }, { "type": "string", "pattern": with_unit(&["%"]) }],
         })),

@@ -78,6 +78,11 @@ fn empty(kind: Kind) -> Node {
             let zero = Entry { node: Node::Number(0.0), origin: Origin::Text(0) };
             Node::Array(vec![zero.clone(), zero])
         }
+        Kind::Axial(_) => Node::Number(0.0),
+        Kind::Direction => {
+            let zero = Entry { node: Node::Number(0.0), origin: Origin::Text(0) };
+            Node::Array(vec![zero.clone(), zero.clone(), zero])
+        }
         _ => Node::Table(Vec::new()),
     }
 }
@@ -152,17 +157,48 @@ fn into_value(entry: &mut Entry, path: &str, kind: Kind, steps: &[Step], target:
             }
         }
         (Kind::Profile(_), Step::Index(_), _) => Err(whole(entry, "[[s, value], ...]")),
-        (Kind::Pair(d), Step::Index(i), Node::Array(entries)) => match entries.get_mut(*i) {
+        // The third component, in space.
+        (Kind::Pair(_) | Kind::ProfilePair(_), Step::Index(2), Node::Array(entries)) if entries.len() == 2 => {
+            entries.push(Entry { node: Node::Number(0.0), origin: entry.origin });
+            into_value(entry, path, kind, steps, target)
+        }
+        (Kind::Pair(d) | Kind::Axial(d), Step::Index(i), Node::Array(entries)) => match entries.get_mut(*i) {
             Some(part) => into_value(part, &format!("{path}[{i}]"), Kind::Quantity(d), rest, target),
-            None => Err(target.refuse(path, "the index 0 or 1", format!("{i}"))),
+            None => Err(target.refuse(path, "the index 0, 1 or 2", format!("{i}"))),
         },
+        (Kind::Heading | Kind::Direction, Step::Index(i), Node::Array(entries)) => match entries.get_mut(*i) {
+            Some(part) => into_value(part, &format!("{path}[{i}]"), Kind::Quantity(Dimension::Number), rest, target),
+            None => Err(target.refuse(path, "the index 0, 1 or 2", format!("{i}"))),
+        },
+        // A number is the component along e3.
+        (Kind::Axial(_), Step::Index(_), Node::Number(own)) => {
+            let (own, origin) = (*own, entry.origin);
+            let part = |value: f64| Entry { node: Node::Number(value), origin };
+            entry.node = Node::Array(vec![part(0.0), part(0.0), part(own)]);
+            into_value(entry, path, kind, steps, target)
+        }
+        (Kind::AxialProfile(d), Step::Index(i), Node::Array(entries)) if entries.len() == 3 => {
+            match entries.get_mut(*i) {
+                Some(part) => into_value(part, &format!("{path}[{i}]"), Kind::Profile(d), rest, target),
+                None => Err(target.refuse(path, "the index 0, 1 or 2", format!("{i}"))),
+            }
+        }
+        (Kind::AxialProfile(d), ..) => into_value(entry, path, Kind::Profile(d), steps, target),
         (Kind::ProfilePair(d), Step::Index(i), Node::Array(entries)) => match entries.get_mut(*i) {
             Some(part) => into_value(part, &format!("{path}[{i}]"), Kind::Profile(d), rest, target),
-            None => Err(target.refuse(path, "the index 0 or 1", format!("{i}"))),
+            None => Err(target.refuse(path, "the index 0, 1 or 2", format!("{i}"))),
         },
-        (Kind::Table(_) | Kind::Tables(_) | Kind::Pair(_) | Kind::ProfilePair(_), _, _) => {
-            Err(target.refuse(path, kind.expected(), entry.node.describe()))
-        }
+        (
+            Kind::Table(_)
+            | Kind::Tables(_)
+            | Kind::Pair(_)
+            | Kind::ProfilePair(_)
+            | Kind::Axial(_)
+            | Kind::Heading
+            | Kind::Direction,
+            _,
+            _,
+        ) => Err(target.refuse(path, kind.expected(), entry.node.describe())),
         (Kind::Text | Kind::Choice(_) | Kind::Quantity(_) | Kind::Offset(_) | Kind::Part, ..) => {
             Err(target.refuse(path, "the end of the key", "more of it"))
         }

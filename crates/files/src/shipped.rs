@@ -34,7 +34,26 @@ const ARMS: [Shipped; 5] = [
     },
 ];
 
-/// Their names.
+/// Arms in space.
+const SPATIAL: [Shipped; 2] = [
+    Shipped {
+        name: "octopus-spatial",
+        description: "the octopus arm in space, four cables at 90 degrees",
+        text: include_str!("../../../arms/octopus-spatial.toml"),
+    },
+    Shipped {
+        name: "silicone-spatial",
+        description: "the silicone cone in space, three cables at 120 degrees",
+        text: include_str!("../../../arms/silicone-spatial.toml"),
+    },
+];
+
+/// The names of those in space: what all commands but `solve` and `check` refuse.
+pub fn spatial_names() -> impl Iterator<Item = &'static str> {
+    SPATIAL.iter().map(|arm| arm.name)
+}
+
+/// The names of those in the plane.
 pub fn names() -> impl Iterator<Item = &'static str> {
     ARMS.iter().map(|arm| arm.name)
 }
@@ -48,10 +67,10 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// assert_eq!(file.arm().unwrap().length, 0.2);
 /// ```
 pub fn get(name: &str) -> Option<&'static str> {
-    ARMS.iter().find(|arm| arm.name == name).map(|arm| arm.text)
+    ARMS.iter().chain(&SPATIAL).find(|arm| arm.name == name).map(|arm| arm.text)
 }
 
 /// What an arm is, in a line.
 pub fn description(name: &str) -> Option<&'static str> {
-    ARMS.iter().find(|arm| arm.name == name).map(|arm| arm.description)
+    ARMS.iter().chain(&SPATIAL).find(|arm| arm.name == name).map(|arm| arm.description)
 }

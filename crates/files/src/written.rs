@@ -94,6 +94,10 @@ impl Tree {
         Self::Text(word.to_owned())
     }
 
+    fn triple(triple: [f64; 3]) -> Self {
+        Self::Array(triple.into_iter().map(Self::Number).collect())
+    }
+
     fn pair(pair: [f64; 2]) -> Self {
         Self::Array(pair.into_iter().map(Self::Number).collect())
     }
@@ -194,61 +198,87 @@ pub(crate) fn plain_tree(arm: &Arm) -> Tree {
 fn tree(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
     let number = Tree::Number;
     let mut file = vec![("name", Tree::Text(arm.name.clone()))];
-    file.push((
-        "arm",
-        Tree::Table(vec![
-            ("length", number(arm.length)),
-            ("radius", Tree::profile(&arm.radius)),
-            ("inner_radius", Tree::profile(&arm.inner_radius)),
-            (
-                "cavity",
-                Tree::word(match arm.cavity {
-                    Cavity::Flooded => "flooded",
-                    Cavity::Sealed => "sealed",
-                }),
-            ),
-            ("density", number(arm.density)),
-            (
-                "base",
-                Tree::Table(vec![
-                    ("x", number(arm.base.x)),
-                    ("y", number(arm.base.y)),
-                    ("angle", angle(arm.base.angle)),
-                ]),
-            ),
-        ]),
-    ));
-    file.push(("material", material(&arm.material)));
-    file.push((
-        "reference",
-        Tree::Table(vec![
-            ("nu", Tree::profile(&arm.reference.nu)),
-            ("eta", Tree::profile(&arm.reference.eta)),
-            ("mu", Tree::profile(&arm.reference.mu)),
-        ]),
-    ));
+    let space = arm.space.as_ref();
+    let mut geometry = match space {
+        Some(_) => vec![("space", Tree::word("spatial"))],
+        None => Vec::new(),
+    };
+    geometry.extend([
+        ("length", number(arm.length)),
+        ("radius", Tree::profile(&arm.radius)),
+        ("inner_radius", Tree::profile(&arm.inner_radius)),
+        (
+            "cavity",
+            Tree::word(match arm.cavity {
+                Cavity::Flooded => "flooded",
+                Cavity::Sealed => "sealed",
+            }),
+        ),
+        ("density", number(arm.density)),
+        ("base", base(arm, angle)),
+    ]);
+    file.push(("arm", Tree::Table(geometry)));
+    let mut stiffness = material(&arm.material);
+    if let (Tree::Table(keys), Some(c4)) = (&mut stiffness, space.and_then(|space| space.c4.as_ref())) {
+        keys.push(("c4", Tree::profile(c4)));
+    }
+    file.push(("material", stiffness));
+    let mut reference = vec![
+        ("nu", Tree::profile(&arm.reference.nu)),
+        ("eta", Tree::profile(&arm.reference.eta)),
+        ("mu", Tree::profile(&arm.reference.mu)),
+    ];
+    if let Some(space) = space {
+        reference.extend([
+            ("zeta", Tree::profile(&space.zeta)),
+            ("tau", Tree::profile(&space.tau)),
+            ("kappa", Tree::profile(&space.kappa)),
+        ]);
+    }
+    file.push(("reference", Tree::Table(reference)));
     if !arm.cables.is_empty() {
-        file.push(("cable", Tree::Array(arm.cables.iter().map(cable).collect())));
+        file.push(("cable", Tree::Array(arm.cables.iter().map(|c| cable(c, angle)).collect())));
     }
     file.push(("flow", flow(arm, angle)));
     if let Some(gravity) = &arm.gravity {
-        let keys = vec![("acceleration", number(gravity.acceleration)), ("direction", angle(gravity.direction))];
+        let direction = space.and_then(|space| space.gravity).map_or_else(|| angle(gravity.direction), Tree::triple);
+        let keys = vec![("acceleration", number(gravity.acceleration)), ("direction", direction)];
         file.push(("gravity", Tree::Table(keys)));
     }
-    file.push((
-        "tip",
-        Tree::Table(vec![
-            ("force", Tree::pair(arm.tip.force)),
-            ("moment", number(arm.tip.moment)),
-            ("follower", Tree::pair(arm.tip.follower)),
-        ]),
-    ));
+    let [f1, f2] = arm.tip.force;
+    let [a, b] = arm.tip.follower;
     let [e1, e2] = &arm.distributed.force;
-    let keys = vec![
-        ("force", Tree::Array(vec![Tree::profile(e1), Tree::profile(e2)])),
-        ("couple", Tree::profile(&arm.distributed.couple)),
-    ];
-    file.push(("distributed", Tree::Table(keys)));
+    let (tip, distributed) = match space {
+        None => (
+            vec![
+                ("force", Tree::pair(arm.tip.force)),
+                ("moment", number(arm.tip.moment)),
+                ("follower", Tree::pair(arm.tip.follower)),
+            ],
+            vec![
+                ("force", Tree::Array(vec![Tree::profile(e1), Tree::profile(e2)])),
+                ("couple", Tree::profile(&arm.distributed.couple)),
+            ],
+        ),
+        Some(space) => (
+            vec![
+                ("force", Tree::triple([f1, f2, space.tip_force])),
+                ("moment", Tree::triple([space.tip_moment[0], space.tip_moment[1], arm.tip.moment])),
+                ("follower", Tree::triple([a, b, space.tip_follower])),
+            ],
+            vec![
+                ("force", Tree::Array([e1, e2, &space.force].map(Tree::profile).to_vec())),
+                (
+                    "couple",
+                    Tree::Array(
+                        [&space.couple[0], &space.couple[1], &arm.distributed.couple].map(Tree::profile).to_vec(),
+                    ),
+                ),
+            ],
+        ),
+    };
+    file.push(("tip", Tree::Table(tip)));
+    file.push(("distributed", Tree::Table(distributed)));
     file.push(("model", model(arm.readings)));
     Tree::Table(file)
 }
@@ -266,8 +296,11 @@ fn material(material: &Material) -> Tree {
     })
 }
 
-fn cable(cable: &hydrostat::Cable) -> Tree {
+fn cable(cable: &hydrostat::Cable, angle: &dyn Fn(f64) -> Tree) -> Tree {
     let mut keys = vec![("name", Tree::Text(cable.name.clone())), ("offset", Tree::profile(&cable.offset))];
+    if !cable.angle.is_zero() {
+        keys.push(("angle", angle_profile(&cable.angle, angle)));
+    }
     match cable.stroke {
         Some(stroke) => keys.push(("stroke", Tree::Number(stroke))),
         None => keys.push(("tension", Tree::Number(cable.tension))),
@@ -289,10 +322,47 @@ fn cable(cable: &hydrostat::Cable) -> Tree {
     Tree::Table(keys)
 }
 
+/// A profile of angles.
+fn angle_profile(profile: &Profile, angle: &dyn Fn(f64) -> Tree) -> Tree {
+    match profile {
+        Profile::Constant(value) => angle(*value),
+        Profile::Linear { base, tip } => Tree::Table(vec![("base", angle(*base)), ("tip", angle(*tip))]),
+        Profile::Table(table) => {
+            let points = table.points().map(|[s, value]| Tree::Array(vec![Tree::Number(s), angle(value)])).collect();
+            match table.join() {
+                Join::Cubic => Tree::Array(points),
+                join @ Join::Linear => {
+                    Tree::Table(vec![("points", Tree::Array(points)), ("join", Tree::Text(join.name().to_owned()))])
+                }
+            }
+        }
+    }
+}
+
+fn base(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
+    let mut keys = vec![("x", Tree::Number(arm.base.x)), ("y", Tree::Number(arm.base.y))];
+    let Some(space) = &arm.space else {
+        keys.push(("angle", angle(arm.base.angle)));
+        return Tree::Table(keys);
+    };
+    keys.push(("z", Tree::Number(space.z)));
+    match space.base {
+        Some(base) => {
+            keys.push(("direction", Tree::triple(base.direction)));
+            keys.extend(base.section.map(|section| ("section", Tree::triple(section))));
+        }
+        None => keys.push(("angle", angle(arm.base.angle))),
+    }
+    Tree::Table(keys)
+}
+
 fn flow(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
     let mut keys = vec![
         ("speed", Tree::Number(arm.flow.speed)),
-        ("direction", angle(arm.flow.direction)),
+        (
+            "direction",
+            arm.space.as_ref().and_then(|space| space.stream).map_or_else(|| angle(arm.flow.direction), Tree::triple),
+        ),
         ("density", Tree::Number(arm.flow.density)),
         ("layer_thickness", Tree::Number(arm.flow.layer_thickness)),
     ];

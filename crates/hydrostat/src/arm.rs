@@ -6,12 +6,14 @@
 mod breaks;
 mod cable;
 mod check;
+mod space;
 
 use crate::profile::Profile;
 use crate::readings::Readings;
 
 pub use self::cable::{Cable, Motion};
 pub use self::check::ArmError;
+pub use self::space::{BaseDirections, Space};
 
 /// A soft arm and everything that acts on it.
 ///
@@ -55,6 +57,8 @@ pub struct Arm {
     pub distributed: DistributedLoad,
     /// Options of the model.
     pub readings: Readings,
+    /// What takes the arm out of the plane; `None` for an arm in the plane.
+    pub space: Option<Space>,
 }
 
 /// What is inside a hollow arm.
@@ -216,6 +220,7 @@ impl Arm {
             tip: TipLoad::default(),
             distributed: DistributedLoad::default(),
             readings: Readings::default(),
+            space: None,
         }
     }
 
@@ -242,8 +247,13 @@ impl Arm {
             && self.cavity == other.cavity
             && self.reference == other.reference
             && self.readings == other.readings
+            && self.space == other.space
             && self.cables.len() == other.cables.len()
-            && self.cables.iter().zip(&other.cables).all(|(a, b)| a.offset == b.offset && a.end == b.end)
+            && self
+                .cables
+                .iter()
+                .zip(&other.cables)
+                .all(|(a, b)| a.offset == b.offset && a.angle == b.angle && a.end == b.end)
     }
 
     /// The arm with slack cables: no tension, and no stroke commanded.
@@ -283,6 +293,9 @@ impl Arm {
         out.gravity = None;
         out.tip = TipLoad::default();
         out.distributed = DistributedLoad::default();
+        if let Some(space) = &mut out.space {
+            space.unload();
+        }
         out
     }
 

@@ -140,7 +140,12 @@ impl Basis {
     }
 
     fn value(&self, k: usize, block: usize) -> Lanes {
-        self.values[k * self.blocks + block][0]
+        self.both(k, block)[0]
+    }
+
+    /// Polynomial `k` in a block of stations, and its integral from there to the tip.
+    pub(crate) fn both(&self, k: usize, block: usize) -> [Lanes; 2] {
+        self.values[k * self.blocks + block]
     }
 }
 
@@ -171,7 +176,7 @@ pub(crate) fn project(
             weight.0[lane] = system.steps()[g].0[lane] * system.gauss.b[j];
         }
         for k in 0..basis.functions {
-            let [value, rest] = basis.values[k * basis.blocks + block];
+            let [value, rest] = basis.both(k, block);
             for f in 0..FIELDS {
                 // What x' adds at a place, x has from there to the tip.
                 let by = weight * moved[f] * if f < 2 { rest } else { value };

@@ -155,13 +155,15 @@ pub mod sensitivity;
 mod sincos;
 pub mod snap;
 pub mod solve;
+pub mod spatial;
 pub mod stability;
 mod strokes;
 mod swelling;
 pub mod verdict;
 
 pub use arm::{
-    Arm, ArmError, Base, Cable, Cavity, DistributedLoad, Flow, FlowLaw, Gravity, Material, Motion, Reference, TipLoad,
+    Arm, ArmError, Base, BaseDirections, Cable, Cavity, DistributedLoad, Flow, FlowLaw, Gravity, Material, Motion,
+    Reference, Space, TipLoad,
 };
 pub use configuration::{
     CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,
@@ -183,5 +185,9 @@ pub use sensitivity::{
 };
 pub use snap::{Snap, SnapBounds};
 pub use solve::{Answer, Options, Solver};
+pub use spatial::{
+    NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialSnap, SpatialSolver, SpatialStation,
+    SpatialStations, SpatialTip, SpatialWrench,
+};
 pub use stability::{Growth, Stability};
 pub use verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};

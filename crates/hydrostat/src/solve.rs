@@ -1,6 +1,6 @@
 //! The direct solve, else the path; verdicts.
 
-use crate::arm::Arm;
+use crate::arm::{Arm, ArmError};
 use crate::configuration::{Configuration, Statistics, Tip};
 use crate::engine::{Engine, First, State, Trouble, WORK};
 use crate::path::{LOOSE, Pace, Stopped, Travelled, follow};
@@ -83,6 +83,9 @@ impl Solver {
     pub fn new(arm: &Arm, options: Options) -> Result<Self, SolveError> {
         arm.check()?;
         options.check()?;
+        if arm.space.is_some() {
+            return Err(ArmError::OnlyInPlane { what: "this" }.into());
+        }
         Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, estimate: None })
     }
 

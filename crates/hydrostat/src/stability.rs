@@ -42,17 +42,17 @@ use crate::verdict::Phase;
 /// Near a buckling load the scaled rate is about the share of the load that is missing or too much. A straight column at its
 /// exact load comes out below 1e-9. Of a hundred random arms, most of them bent, the first rate moves by up to 2e-6 of the
 /// larger of one and itself between solves to 1e-8 and to 1e-11, growing ones left out.
-const MARGIN: f64 = 1e-6;
+pub(crate) const MARGIN: f64 = 1e-6;
 
 /// Rates this many times the smallest one are rounding: an eigenvalue of the compliance has no digit left there.
-const ROUNDING: f64 = 1e12;
+pub(crate) const ROUNDING: f64 = 1e12;
 
 /// The same where lengths are held: what loads a cable alone could make moves nothing, which polynomials meet no better than
 /// that, with eigenvalues of either sign.
 const BLURRED: f64 = 1e6;
 
 /// Most rates that are kept when fewer grow.
-const KEPT: usize = 6;
+pub(crate) const KEPT: usize = 6;
 
 /// Polynomials a field, and elements no longer than a part of the arm by as many; more where the count of what grows is not settled.
 const POLYNOMIALS: [usize; 3] = [16, 24, 36];
@@ -138,7 +138,7 @@ impl Configuration {
 }
 
 /// How many of `rates` grow.
-fn growing(rates: &[[f64; 2]]) -> usize {
+pub(crate) fn growing(rates: &[[f64; 2]]) -> usize {
     rates.iter().filter(|rate| rate[0] > MARGIN).count()
 }
 
@@ -168,7 +168,12 @@ fn growth(dense: &Dense) -> Option<(Growth, usize)> {
 fn scaled_rates(compliance: &Compliance, functions: usize, unit: f64) -> Option<Vec<[f64; 2]>> {
     let least = if compliance.held { BLURRED } else { ROUNDING };
     let size = FIELDS * functions;
-    let matrix = DMatrix::from_fn(size, size, |i, j| compliance.entry(i, j));
+    rates_of(DMatrix::from_fn(size, size, |i, j| compliance.entry(i, j)), unit, least)
+}
+
+/// The rates -1/kappa over `unit` of the eigenvalues kappa of a compliance, largest real part first, without those `least` times the smallest.
+pub(crate) fn rates_of(matrix: DMatrix<f64>, unit: f64, least: f64) -> Option<Vec<[f64; 2]>> {
+    let size = matrix.nrows();
     if !matrix.iter().all(|v| v.is_finite()) {
         return None;
     }

@@ -8,14 +8,18 @@ use crate::args::ArmsArgs;
 use crate::output;
 use crate::request::WrongRequest;
 
+fn names() -> impl Iterator<Item = &'static str> {
+    shipped::names().chain(shipped::spatial_names())
+}
+
 pub(crate) fn run(args: &ArmsArgs) -> anyhow::Result<()> {
     if let Some(name) = &args.name {
         let text = shipped::get(name).ok_or_else(|| WrongRequest::UnknownArm(name.clone()))?;
         return Ok(output::print(text)?);
     }
-    let widest = shipped::names().map(str::len).max().unwrap_or(0);
+    let widest = names().map(str::len).max().unwrap_or(0);
     let mut out = String::new();
-    for name in shipped::names() {
+    for name in names() {
         let _ = writeln!(out, "{name:widest$}  {}", shipped::description(name).unwrap_or_default());
     }
     Ok(output::print(&out)?)

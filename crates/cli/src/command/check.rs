@@ -18,7 +18,9 @@ pub(crate) fn run(args: &CheckArgs) -> anyhow::Result<()> {
     out.push('\n');
     cauchy(&mut out, &arm);
     weight(&mut out, &arm);
-    tension_limits(&mut out, &arm);
+    if arm.space.is_none() {
+        tension_limits(&mut out, &arm);
+    }
     Ok(output::print(&out)?)
 }
 

@@ -12,6 +12,9 @@ use crate::request;
 
 pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
     let arm = request::arm(&args.arm)?;
+    if arm.space.is_some() {
+        return super::solve_spatial::run(args, &arm);
+    }
     let mut solver = Solver::new(&arm, Options { tol: args.tol, snaps: args.snaps.bounds() })?;
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;

@@ -2,20 +2,24 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{Configuration, Stability, Wrench};
+use hydrostat::{CableState, Configuration, Stability, Wrench};
 use hydrostat_files::number;
 
 /// What is known of the stability of `c`, in words.
 pub(super) fn stability(c: &Configuration) -> Option<String> {
-    match (c.stability(), c.stable) {
+    let rubs = || c.arm.cables.iter().any(|cable| cable.friction > 0.0);
+    stability_in_words(c.stability(), c.stable)
+        .or_else(|| rubs().then(|| "stability is not established with friction".to_owned()))
+}
+
+/// What a count of unstable directions, or else what the solve came to know, says in words.
+pub(super) fn stability_in_words(counted: Option<Stability>, known: Option<bool>) -> Option<String> {
+    match (counted, known) {
         (Some(Stability::Stable), _) => Some("stable".to_owned()),
         (Some(Stability::Unstable(1)), _) => Some("UNSTABLE in 1 direction".to_owned()),
         (Some(Stability::Unstable(count)), _) => Some(format!("UNSTABLE in {count} directions")),
         (Some(Stability::Marginal), _) => Some("marginal: neither stable nor unstable".to_owned()),
         (None, Some(false)) => Some("UNSTABLE".to_owned()),
-        (None, _) if c.arm.cables.iter().any(|cable| cable.friction > 0.0) => {
-            Some("stability is not established with friction".to_owned())
-        }
         (None, _) => None,
     }
 }
@@ -35,19 +39,7 @@ pub(super) fn summary(c: &Configuration) -> String {
     row("arm", &format!("{}, {} mm, {stream}{stability}", arm.name, number(1e3 * arm.length)));
     row("tip", &format!("x {:.4} mm, y {:.4} mm, turned by {}", 1e3 * tip.x, 1e3 * tip.y, degrees(tip.theta)));
     row("tip section", &format!("alpha(L) {}", degrees(tip.alpha)));
-    let widest = c.cables.iter().map(|cable| cable.name.chars().count()).max().unwrap_or(0);
-    for (i, cable) in c.cables.iter().enumerate() {
-        let mut text = format!(
-            "{:widest$}  tension {} N, length {:.3} mm, reeled in by {:.3} mm",
-            cable.name,
-            number(cable.tension),
-            1e3 * cable.length,
-            1e3 * cable.stroke + 0.0
-        );
-        if let Some(command) = cable.command.filter(|command| command.slack) {
-            let _ =
-                write!(text, " (slack: {:.3} mm of cable, for {:.3} mm)", 1e3 * command.length, 1e3 * command.stroke);
-        }
+    for (i, text) in cable_rows(&c.cables).into_iter().enumerate() {
         row(if i == 0 { "cables" } else { "" }, &text);
     }
     row("base reaction", &wrench(&c.base_reaction));
@@ -76,12 +68,32 @@ pub(super) fn summary(c: &Configuration) -> String {
     out
 }
 
+/// A line a cable.
+pub(super) fn cable_rows(cables: &[CableState]) -> Vec<String> {
+    let widest = cables.iter().map(|cable| cable.name.chars().count()).max().unwrap_or(0);
+    let row = |cable: &CableState| {
+        let mut text = format!(
+            "{:widest$}  tension {} N, length {:.3} mm, reeled in by {:.3} mm",
+            cable.name,
+            number(cable.tension),
+            1e3 * cable.length,
+            1e3 * cable.stroke + 0.0
+        );
+        if let Some(command) = cable.command.filter(|command| command.slack) {
+            let _ =
+                write!(text, " (slack: {:.3} mm of cable, for {:.3} mm)", 1e3 * command.length, 1e3 * command.stroke);
+        }
+        text
+    };
+    cables.iter().map(row).collect()
+}
+
 fn wrench(w: &Wrench) -> String {
     format!("force ({}, {}) N, moment {} N m", signed(w.force[0]), signed(w.force[1]), signed(w.moment))
 }
 
 /// Five digits that matter, without the sign of a zero.
-fn signed(value: f64) -> String {
+pub(super) fn signed(value: f64) -> String {
     number(if value.abs() < 1e-12 { 0.0 } else { value })
 }
 

@@ -1,6 +1,6 @@
 //! The places at which something about an arm changes its law. Meshes have a node at each, so that their number is bounded.
 
-use super::{Arm, ArmError, Material};
+use super::{Arm, ArmError, Material, Space};
 use crate::profile::Profile;
 
 /// Cables that make a station about twice as dear as one without.
@@ -62,8 +62,12 @@ impl Arm {
         named("distributed.force[0]", &self.distributed.force[0]);
         named("distributed.force[1]", &self.distributed.force[1]);
         named("distributed.couple", &self.distributed.couple);
+        for (key, profile) in self.space.iter().flat_map(Space::profiles) {
+            named(key, profile);
+        }
         for (i, cable) in self.cables.iter().enumerate() {
             visit(&|| format!("cable[{i}].offset"), &cable.offset);
+            visit(&|| format!("cable[{i}].angle"), &cable.angle);
         }
     }
 }

@@ -7,8 +7,10 @@ use crate::profile::Profile;
 pub struct Cable {
     /// A name for people.
     pub name: String,
-    /// Signed offset y(s) in the straight arm, left positive, m.
+    /// Signed offset y(s) in the straight arm, left positive, m; in space the distance from the centreline along the angle.
     pub offset: Profile,
+    /// Angle of the offset in the section, from b towards c, rad: zero in the plane. A profile that turns along the arm routes a helix.
+    pub angle: Profile,
     /// Tension T >= 0, N. With a commanded stroke it follows from that, and what is given here does not count.
     pub tension: f64,
     /// Commanded stroke, m: the length that is reeled in, of the cable's length at the reference strains; negative when
@@ -42,6 +44,7 @@ impl Cable {
         Self {
             name: name.into(),
             offset: offset.into(),
+            angle: 0.0.into(),
             tension: 0.0,
             stroke: None,
             stiffness: None,
@@ -68,6 +71,12 @@ impl Cable {
     pub fn rubbing(mut self, friction: f64, motion: Motion) -> Self {
         self.friction = friction;
         self.motion = motion;
+        self
+    }
+
+    /// This cable at an angle (rad) in the section, from b towards c, for arms in space.
+    pub fn at_angle(mut self, angle: impl Into<Profile>) -> Self {
+        self.angle = angle.into();
         self
     }
 

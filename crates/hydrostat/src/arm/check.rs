@@ -104,6 +104,34 @@ pub enum ArmError {
         /// The most with as many cables.
         most: usize,
     },
+    /// Something out of the plane on an arm in the plane.
+    #[error("`{key}` takes the arm out of the plane e1-e2: that needs `space = \"spatial\"` in `[arm]`")]
+    OutOfPlane {
+        /// What.
+        key: String,
+    },
+    /// An arm in space where only one in the plane can be worked on.
+    #[error("{what} is for arms in the plane, and this arm has `space = \"spatial\"`")]
+    OnlyInPlane {
+        /// What was asked for.
+        what: &'static str,
+    },
+    /// What arms in space do not have yet, or cannot have.
+    #[error("`{key}` {why} for an arm with `space = \"spatial\"`")]
+    NotInSpace {
+        /// What.
+        key: String,
+        /// Why not, as the rest of a sentence.
+        why: &'static str,
+    },
+    /// A direction without length, or two that are parallel.
+    #[error("`{key}` {why}")]
+    Direction {
+        /// Which direction.
+        key: &'static str,
+        /// What is wrong, as the rest of a sentence.
+        why: &'static str,
+    },
     /// A number of tensions that is not the number of cables.
     #[error(
         "the arm has {cables} cable{}, {given} tension{} given",
@@ -130,7 +158,11 @@ impl ArmError {
             | Self::TensionAboveMax { key, .. }
             | Self::TableDoesNotCover { key, .. }
             | Self::TooManyBreaks { key, .. }
+            | Self::OutOfPlane { key }
+            | Self::NotInSpace { key, .. }
             | Self::Table { key, .. } => key,
+            Self::Direction { key, .. } => key,
+            Self::OnlyInPlane { .. } => "arm.space",
             Self::InnerRadius { .. } => "arm.inner_radius",
             Self::TensionCount { .. } => "cable",
         }
@@ -167,7 +199,8 @@ impl Arm {
         self.check_weight_and_tip()?;
         self.distributed.force[0].check("distributed.force[0]", length)?;
         self.distributed.force[1].check("distributed.force[1]", length)?;
-        self.distributed.couple.check("distributed.couple", length)
+        self.distributed.couple.check("distributed.couple", length)?;
+        self.check_space(length)
     }
 
     /// What [`Arm::set_tensions`] and [`Arm::check`] would say to these tensions, without a word where they are fine.
@@ -220,6 +253,7 @@ impl Arm {
     fn check_cable(&self, index: usize, cable: &Cable, length: f64) -> Result<(), ArmError> {
         let key = |name: &'static str| CableKey { index, name };
         cable.offset.check(key("offset"), length)?;
+        cable.angle.check(key("angle"), length)?;
         not_negative(key("tension"), cable.tension)?;
         if let Some(stroke) = cable.stroke {
             finite(key("stroke"), stroke)?;
@@ -332,7 +366,7 @@ impl fmt::Display for CableKey {
     }
 }
 
-fn finite(key: impl fmt::Display, value: f64) -> Result<f64, ArmError> {
+pub(super) fn finite(key: impl fmt::Display, value: f64) -> Result<f64, ArmError> {
     if value.is_finite() { Ok(value) } else { Err(ArmError::NotFinite { key: key.to_string() }) }
 }
 
@@ -348,7 +382,7 @@ fn not_negative(key: impl fmt::Display, value: f64) -> Result<f64, ArmError> {
     if finite(&key, value)? >= 0.0 { Ok(value) } else { Err(ArmError::Negative { key: key.to_string(), value }) }
 }
 
-fn positive_profile(key: &str, profile: &Profile, length: f64) -> Result<(), ArmError> {
+pub(super) fn positive_profile(key: &str, profile: &Profile, length: f64) -> Result<(), ArmError> {
     profile.check(key, length)?;
     let places = std::iter::once(0.0).chain(profile.knots().iter().copied()).chain(std::iter::once(length));
     for s in places {

@@ -30,7 +30,7 @@ pub(crate) struct Nearness {
 }
 
 impl Nearness {
-    pub(super) const FAR: Self =
+    pub(crate) const FAR: Self =
         Self { openness: (1.0, 0.0), nu: (f64::INFINITY, 0.0), regularity: (f64::INFINITY, 0.0) };
 
     #[inline(always)]

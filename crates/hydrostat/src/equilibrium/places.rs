@@ -2,7 +2,7 @@
 
 use hydrostat_bvp::{Gauss, LANES, Lanes, Real, Side, Solution, each};
 
-use super::{Equations, L, N};
+use super::{Equations, L, N, Units};
 use crate::arm::{Arm, Cavity, Material};
 use crate::cable::Offset;
 use crate::loads::Body;
@@ -11,11 +11,11 @@ use crate::section::{CableAt, Stiffness};
 
 /// One place of the arm as data.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place<R> {
+pub(crate) struct Place<R> {
     /// Over L.
-    pub(super) s: R,
-    pub(super) stiffness: Stiffness<R>,
-    pub(super) body: Body<R>,
+    pub(crate) s: R,
+    pub(crate) stiffness: Stiffness<R>,
+    pub(crate) body: Body<R>,
 }
 
 /// Sections at the ends of four elements.
@@ -69,60 +69,16 @@ impl Equations {
         self.place_with(&self.arm, s, at(&self.arm.radius), at)
     }
 
-    /// The data at `s` (over L) from a radius (m) and its slope that may carry derivatives, and from what all other profiles
-    /// are there, with their slopes.
+    /// [`section_data`] in the units of these equations.
     #[inline(always)]
     pub(super) fn place_with<R: Real>(
         &self,
         arm: &Arm,
         s: R,
-        [r, r_slope]: [R; 2],
+        radius: [R; 2],
         at: impl Fn(&Profile) -> [R; 2],
     ) -> Place<R> {
-        let units = self.units;
-        let length = units.length;
-        let [r_in, _] = at(&arm.inner_radius);
-        let four = R::of(4.0);
-        let pi = std::f64::consts::PI;
-        let area = R::of(pi) * (r * r - r_in * r_in);
-        let c = match &arm.material {
-            Material::Homogeneous { young, poisson, shear_factor } => {
-                // C1 = E, C2 = k G, C3 = E I/A of a ring.
-                let square = r * r + r_in * r_in;
-                let shear = shear_factor * young / (2.0 * (1.0 + poisson));
-                let young = R::of(*young);
-                [young, R::of(shear), young * square / four]
-            }
-            Material::Coefficients { c1, c2, c3 } => [at(c1), at(c2), at(c3)].map(|[value, _]| value),
-        };
-        // Stiffness in the units: C1 A0 / F, C2 A0 / F, C3 A0 / (F L^2).
-        let unit = [1.0 / units.force, 1.0 / units.force, 1.0 / (units.force * length * length)];
-        let reference = [at(&arm.reference.nu), at(&arm.reference.eta), at(&arm.reference.mu)];
-        let per_length = [1.0, 1.0, length];
-        let stiffness = Stiffness {
-            value: each(|k| c[k] * area * R::of(unit[k])),
-            reference: each(|k| reference[k][0] * R::of(per_length[k])),
-            reference_slope: reference[0][1] * R::of(length),
-        };
-        let load_unit = length / units.force;
-        let gravity = arm.gravity.map_or([0.0; 2], |g| {
-            let (sin, cos) = g.direction.sin_cos();
-            [g.acceleration * cos * load_unit, g.acceleration * sin * load_unit]
-        });
-        let outline = match arm.cavity {
-            Cavity::Flooded => area,
-            Cavity::Sealed => R::of(pi) * r * r,
-        };
-        let body = Body {
-            radius: r / R::of(length),
-            radius_slope: r_slope,
-            wetted: R::of(pi * arm.flow.density) * r * R::of(load_unit),
-            weight: gravity.map(|g| R::of(arm.density) * area * R::of(g)),
-            displaced: gravity.map(|g| R::of(arm.flow.density) * outline * R::of(g)),
-            force: each(|k| at(&arm.distributed.force[k])[0] * R::of(load_unit)),
-            couple: at(&arm.distributed.couple)[0] / R::of(units.force),
-        };
-        Place { s, stiffness, body }
+        section_data(arm, self.units, s, radius, at)
     }
 
     pub(crate) fn offset(&self, cable: usize, s: f64) -> Offset<f64> {
@@ -269,6 +225,61 @@ impl Equations {
             }
         }
     }
+}
+
+/// The data at `s` (over L) from a radius (m) and its slope that may carry derivatives, and from what all other profiles
+/// are there, with their slopes.
+#[inline(always)]
+pub(crate) fn section_data<R: Real>(
+    arm: &Arm,
+    units: Units,
+    s: R,
+    [r, r_slope]: [R; 2],
+    at: impl Fn(&Profile) -> [R; 2],
+) -> Place<R> {
+    let length = units.length;
+    let [r_in, _] = at(&arm.inner_radius);
+    let four = R::of(4.0);
+    let pi = std::f64::consts::PI;
+    let area = R::of(pi) * (r * r - r_in * r_in);
+    let c = match &arm.material {
+        Material::Homogeneous { young, poisson, shear_factor } => {
+            // C1 = E, C2 = k G, C3 = E I/A of a ring.
+            let square = r * r + r_in * r_in;
+            let shear = shear_factor * young / (2.0 * (1.0 + poisson));
+            let young = R::of(*young);
+            [young, R::of(shear), young * square / four]
+        }
+        Material::Coefficients { c1, c2, c3 } => [at(c1), at(c2), at(c3)].map(|[value, _]| value),
+    };
+    // Stiffness in the units: C1 A0 / F, C2 A0 / F, C3 A0 / (F L^2).
+    let unit = [1.0 / units.force, 1.0 / units.force, 1.0 / (units.force * length * length)];
+    let reference = [at(&arm.reference.nu), at(&arm.reference.eta), at(&arm.reference.mu)];
+    let per_length = [1.0, 1.0, length];
+    let stiffness = Stiffness {
+        value: each(|k| c[k] * area * R::of(unit[k])),
+        reference: each(|k| reference[k][0] * R::of(per_length[k])),
+        reference_slope: reference[0][1] * R::of(length),
+    };
+    let load_unit = length / units.force;
+    let gravity = arm.gravity.map_or([0.0; 2], |g| {
+        let (sin, cos) = g.direction.sin_cos();
+        [g.acceleration * cos * load_unit, g.acceleration * sin * load_unit]
+    });
+    let outline = match arm.cavity {
+        Cavity::Flooded => area,
+        Cavity::Sealed => R::of(pi) * r * r,
+    };
+    let body = Body {
+        radius: r / R::of(length),
+        radius_slope: r_slope,
+        wetted: R::of(pi * arm.flow.density) * r * R::of(load_unit),
+        weight: gravity.map(|g| R::of(arm.density) * area * R::of(g)),
+        displaced: gravity.map(|g| R::of(arm.flow.density) * outline * R::of(g)),
+        force: each(|k| at(&arm.distributed.force[k])[0] * R::of(load_unit)),
+        couple: at(&arm.distributed.couple)[0] / R::of(units.force),
+    };
+    Place { s, stiffness, body }
 }
 
 #[inline(always)]

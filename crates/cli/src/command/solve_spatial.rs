@@ -1,0 +1,120 @@
+//! `hydrostat solve` of an arm in space.
+
+use std::fmt::Write as _;
+
+use anyhow::bail;
+use hydrostat::{
+    Arm, NoSpatialEquilibrium, Options, SpatialConfiguration, SpatialError, SpatialSolver, SpatialWrench, Stability,
+};
+use hydrostat_files::{Note, SpatialFailureDocument, SpatialSolutionDocument, number, spatial_stations_csv};
+
+use super::summary::{cable_rows, signed, stability_in_words};
+use crate::args::{Format, SolveArgs};
+use crate::output;
+use crate::request;
+
+pub(super) fn run(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
+    if args.plot.is_some() {
+        bail!(
+            "--plot draws arms in the plane, and this arm has `space = \"spatial\"`: write its stations with --format csv"
+        );
+    }
+    let mut solver = SpatialSolver::new(arm, Options { tol: args.tol, snaps: args.snaps.bounds() })?;
+    request::check_outputs(&[request::arm_input(&args.arm.file)], &[("-o", args.output.as_deref())])?;
+    match solver.solve() {
+        Ok(configuration) => report(args, configuration),
+        Err(SpatialError::NoEquilibrium(failure)) => {
+            report_failure(args, *failure.clone())?;
+            Err(SpatialError::NoEquilibrium(failure).into())
+        }
+        Err(error) => Err(error.into()),
+    }
+}
+
+fn report(args: &SolveArgs, mut configuration: SpatialConfiguration) -> anyhow::Result<()> {
+    let notes = Note::all_in_space(&configuration, args.tol);
+    resample(args, &mut configuration);
+    let text = match args.format {
+        Format::Text => summary(&configuration),
+        Format::Csv => spatial_stations_csv(&configuration.stations),
+        Format::Json => output::line(SpatialSolutionDocument::new(&configuration, &notes).to_json()),
+    };
+    output::put(args.output.as_deref(), &text)?;
+    for note in &notes {
+        // A snap within its bounds is known to be harmless.
+        let word = if note.kind == "snap" { "note" } else { "warning" };
+        eprintln!("{word}: {}", note.message);
+    }
+    if configuration.stability().map_or(configuration.stable, Stability::is_stable) == Some(false) {
+        eprintln!("warning: this equilibrium is unstable: the slightest disturbance would move the arm away from it");
+    }
+    Ok(())
+}
+
+/// JSON gets the verdict with the last good shape; text and CSV have nothing to say.
+fn report_failure(args: &SolveArgs, mut failure: NoSpatialEquilibrium) -> anyhow::Result<()> {
+    if args.format != Format::Json {
+        return Ok(());
+    }
+    // A tolerance was asked of the answer, not of the last good shape.
+    let notes = failure.last_good.as_ref().map(|c| Note::all_in_space(c, f64::INFINITY)).unwrap_or_default();
+    if let Some(last_good) = &mut failure.last_good {
+        resample(args, last_good);
+    }
+    let text = output::line(SpatialFailureDocument::new(&failure, &notes).to_json());
+    Ok(output::put(args.output.as_deref(), &text)?)
+}
+
+fn resample(args: &SolveArgs, configuration: &mut SpatialConfiguration) {
+    if let Some(count) = args.stations {
+        configuration.stations = configuration.resampled(count);
+    }
+}
+
+fn summary(c: &SpatialConfiguration) -> String {
+    let arm = &c.arm;
+    let tip = c.tip();
+    let mut out = String::new();
+    let mut row = |name: &str, text: &str| {
+        let _ = writeln!(out, "{name:<15}{text}");
+    };
+    let stability = stability_in_words(c.stability(), c.stable).map_or_else(String::new, |words| format!(", {words}"));
+    let stream = match arm.flow.speed {
+        0.0 => "still water".to_owned(),
+        speed => format!("stream {speed} m/s"),
+    };
+    row("arm", &format!("{}, {} mm, in space, {stream}{stability}", arm.name, number(1e3 * arm.length)));
+    row("tip", &format!("x {:.4} mm, y {:.4} mm, z {:.4} mm", 1e3 * tip.x, 1e3 * tip.y, 1e3 * tip.z));
+    let vector = |v: [f64; 3]| format!("({:.6}, {:.6}, {:.6})", v[0], v[1], v[2]);
+    row(
+        "tip section",
+        &format!("a {}, b {}, alpha(L) {:.4} deg", vector(tip.a), vector(tip.b), tip.alpha.to_degrees()),
+    );
+    for (i, text) in cable_rows(&c.cables).into_iter().enumerate() {
+        row(if i == 0 { "cables" } else { "" }, &text);
+    }
+    row("base reaction", &wrench(&c.base_reaction));
+    if let Some(unmet) = &c.unmet {
+        row("unmet at tip", &wrench(unmet));
+    }
+    let fold = c.fold_margin();
+    row(
+        "fold margin",
+        &format!("{:.3}, least at s = {} mm (the surface folds at 0)", fold.value, number(1e3 * fold.s)),
+    );
+    row("tip error", &format!("about {:.1e} mm", 1e3 * c.error_estimate));
+    let s = &c.statistics;
+    row(
+        "work",
+        &format!(
+            "{} elements of {} stages, {} Newton rounds on {} meshes, {} load steps, {} sections",
+            s.elements, s.stages, s.newton_rounds, s.meshes, s.load_steps, s.evaluations
+        ),
+    );
+    out
+}
+
+fn wrench(w: &SpatialWrench) -> String {
+    let vector = |v: [f64; 3]| format!("({}, {}, {})", signed(v[0]), signed(v[1]), signed(v[2]));
+    format!("force {} N, moment {} N m", vector(w.force), vector(w.moment))
+}

@@ -1,0 +1,254 @@
+//! Results of arms in space as JSON and CSV: the documents of arms in the plane, with three components and directors.
+
+use hydrostat::{
+    NoSpatialEquilibrium, SpatialConfiguration, SpatialSnap, SpatialStations, SpatialTip, SpatialWrench, Verdict,
+};
+use serde::Serialize;
+
+use crate::csv_text::Rows;
+use crate::results::{CableOut, Note, SCHEMA, StatisticsOut, TOLERANCE_MISSED, VerdictHead, cell, json};
+use crate::written::Inputs;
+
+/// The document of an equilibrium in space.
+#[derive(Debug, Clone, Serialize)]
+pub struct SpatialSolutionDocument<'a> {
+    schema: u32,
+    version: &'static str,
+    converged: bool,
+    stable: Option<bool>,
+    warnings: &'a [Note],
+    snaps: Vec<SnapOut>,
+    tip: TipOut,
+    stations: StationsOut<'a>,
+    cables: Vec<CableOut<'a>>,
+    base: WrenchOut,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unmet: Option<WrenchOut>,
+    error_estimate: f64,
+    fold_margin: f64,
+    inputs: Inputs,
+    statistics: StatisticsOut,
+}
+
+/// The document of a solve in space without an answer.
+#[derive(Debug, Clone, Serialize)]
+pub struct SpatialFailureDocument<'a> {
+    schema: u32,
+    version: &'static str,
+    converged: bool,
+    verdict: VerdictOut,
+    last_good: Option<SpatialSolutionDocument<'a>>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct TipOut {
+    x: f64,
+    y: f64,
+    z: f64,
+    a: [f64; 3],
+    b: [f64; 3],
+    c: [f64; 3],
+    alpha: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct StationsOut<'a> {
+    s: &'a [f64],
+    x: &'a [f64],
+    y: &'a [f64],
+    z: &'a [f64],
+    a: &'a [[f64; 3]],
+    b: &'a [[f64; 3]],
+    c: &'a [[f64; 3]],
+    nu: &'a [f64],
+    eta: &'a [f64],
+    zeta: &'a [f64],
+    tau: &'a [f64],
+    kappa: &'a [f64],
+    mu: &'a [f64],
+    beta: &'a [f64],
+    alpha: &'a [f64],
+    n_a: &'a [f64],
+    n_b: &'a [f64],
+    n_c: &'a [f64],
+    m_a: &'a [f64],
+    m_b: &'a [f64],
+    m_c: &'a [f64],
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct WrenchOut {
+    force: [f64; 3],
+    moment: [f64; 3],
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct SnapOut {
+    phase: &'static str,
+    load_fraction: f64,
+    before: TipOut,
+    after: TipOut,
+    /// m
+    distance: f64,
+    /// rad
+    angle: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct VerdictOut {
+    #[serde(flatten)]
+    head: VerdictHead,
+    snaps: Vec<SnapOut>,
+}
+
+impl From<SpatialTip> for TipOut {
+    fn from(SpatialTip { x, y, z, a, b, c, alpha }: SpatialTip) -> Self {
+        Self { x, y, z, a, b, c, alpha }
+    }
+}
+
+impl From<SpatialWrench> for WrenchOut {
+    fn from(SpatialWrench { force, moment }: SpatialWrench) -> Self {
+        Self { force, moment }
+    }
+}
+
+impl From<&SpatialSnap> for SnapOut {
+    fn from(snap: &SpatialSnap) -> Self {
+        Self {
+            phase: snap.phase.name(),
+            load_fraction: snap.load_fraction,
+            before: snap.before.into(),
+            after: snap.after.into(),
+            distance: snap.distance(),
+            angle: snap.angle(),
+        }
+    }
+}
+
+impl Note {
+    /// All notes on a configuration in space, as [`Note::all`].
+    pub fn all_in_space(configuration: &SpatialConfiguration, tol: f64) -> Vec<Self> {
+        let snaps = configuration.snaps.iter().map(|snap| Self { kind: "snap", message: snap.message() });
+        let mut notes: Vec<Self> = snaps.chain(configuration.warnings().iter().map(Self::from)).collect();
+        let asked = tol * configuration.arm.length;
+        if configuration.error_estimate > asked {
+            let [found, asked] = [configuration.error_estimate, asked].map(|metres| 1e3 * metres);
+            let message = format!("the tip error, about {found:.1e} mm, is above the {asked:.1e} mm asked for");
+            notes.push(Self { kind: TOLERANCE_MISSED, message });
+        }
+        notes
+    }
+}
+
+impl<'a> SpatialSolutionDocument<'a> {
+    /// Of a configuration with the notes on it.
+    pub fn new(configuration: &'a SpatialConfiguration, notes: &'a [Note]) -> Self {
+        let SpatialConfiguration { arm, stations: s, base_reaction, unmet, error_estimate, stable, statistics, .. } =
+            configuration;
+        Self {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            converged: true,
+            stable: configuration.stability().map_or(*stable, hydrostat::Stability::is_stable),
+            warnings: notes,
+            snaps: configuration.snaps.iter().map(SnapOut::from).collect(),
+            tip: configuration.tip().into(),
+            stations: StationsOut {
+                s: &s.s,
+                x: &s.x,
+                y: &s.y,
+                z: &s.z,
+                a: &s.a,
+                b: &s.b,
+                c: &s.c,
+                nu: &s.nu,
+                eta: &s.eta,
+                zeta: &s.zeta,
+                tau: &s.tau,
+                kappa: &s.kappa,
+                mu: &s.mu,
+                beta: &s.beta,
+                alpha: &s.alpha,
+                n_a: &s.n_a,
+                n_b: &s.n_b,
+                n_c: &s.n_c,
+                m_a: &s.m_a,
+                m_b: &s.m_b,
+                m_c: &s.m_c,
+            },
+            cables: CableOut::of(&configuration.cables),
+            base: (*base_reaction).into(),
+            unmet: unmet.map(Into::into),
+            error_estimate: *error_estimate,
+            fold_margin: configuration.fold_margin().value,
+            inputs: Inputs::new(arm),
+            statistics: (*statistics).into(),
+        }
+    }
+
+    /// The document, one line.
+    pub fn to_json(&self) -> String {
+        json(self)
+    }
+}
+
+impl<'a> SpatialFailureDocument<'a> {
+    /// Of a verdict, with the notes on its last good configuration (not used if there is none).
+    pub fn new(failure: &'a NoSpatialEquilibrium, notes: &'a [Note]) -> Self {
+        let verdict: &Verdict = &failure.verdict;
+        Self {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            converged: false,
+            verdict: VerdictOut { head: verdict.into(), snaps: failure.snaps.iter().map(SnapOut::from).collect() },
+            last_good: failure.last_good.as_ref().map(|c| SpatialSolutionDocument::new(c, notes)),
+        }
+    }
+
+    /// The document, one line.
+    pub fn to_json(&self) -> String {
+        json(self)
+    }
+}
+
+/// The stations of an arm in space, one row each, with names and units in the first row.
+pub fn spatial_stations_csv(st: &SpatialStations) -> String {
+    let part = |vectors: &[[f64; 3]], k: usize| -> Vec<f64> { vectors.iter().map(|v| v[k]).collect() };
+    let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
+    let mut push = |name: &str, values: Vec<f64>| columns.push((name.to_owned(), values));
+    for (name, values) in [("s_m", &st.s), ("x_m", &st.x), ("y_m", &st.y), ("z_m", &st.z)] {
+        push(name, values.clone());
+    }
+    for (name, vectors) in [("a", &st.a), ("b", &st.b), ("c", &st.c)] {
+        for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
+            push(&format!("{name}_{axis}"), part(vectors, k));
+        }
+    }
+    for (name, values) in [
+        ("nu", &st.nu),
+        ("eta", &st.eta),
+        ("zeta", &st.zeta),
+        ("tau_per_m", &st.tau),
+        ("kappa_per_m", &st.kappa),
+        ("mu_per_m", &st.mu),
+        ("beta", &st.beta),
+        ("alpha_rad", &st.alpha),
+        ("n_a_N", &st.n_a),
+        ("n_b_N", &st.n_b),
+        ("n_c_N", &st.n_c),
+        ("m_a_Nm", &st.m_a),
+        ("m_b_Nm", &st.m_b),
+        ("m_c_Nm", &st.m_c),
+    ] {
+        push(name, values.clone());
+    }
+    let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
+    let mut out = Rows::new(&names);
+    for index in 0..st.len() {
+        let row: Vec<String> =
+            columns.iter().map(|(_, values)| values.get(index).copied().map_or_else(String::new, cell)).collect();
+        out.row(&row);
+    }
+    out.text()
+}

@@ -1,0 +1,26 @@
+//! The arm in space: section law in six strains, loads as vectors, and the solver of their equations (`docs/model.md`, the arm in space).
+//!
+//! What is the same in the plane is taken from there: profiles, sections along the arm, the section stretch, the scalar flow laws, meshes
+//! and their errors, verdicts.
+
+mod adversity;
+mod configuration;
+mod engine;
+mod equations;
+mod kinks;
+mod loads;
+mod mesh;
+mod path;
+mod places;
+mod rotation;
+mod section;
+mod section_solve;
+mod solve;
+mod stability;
+mod start;
+#[cfg(test)]
+mod tests;
+
+pub use self::configuration::{SpatialConfiguration, SpatialStation, SpatialStations, SpatialTip, SpatialWrench};
+pub use self::path::SpatialSnap;
+pub use self::solve::{NoSpatialEquilibrium, SpatialError, SpatialSolver};

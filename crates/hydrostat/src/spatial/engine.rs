@@ -1,0 +1,313 @@
+//! Newton rounds on the equations of one arm in space.
+
+use std::sync::LazyLock;
+
+use hydrostat_bvp::{Collocation, Correction, Gauss, Lanes, Resampling, RoundError, Solution, each};
+
+use super::equations::{Equations, L, N, Q};
+use super::rotation::{Vector, dot, turn};
+use crate::arm::Arm;
+use crate::configuration::Statistics;
+use crate::engine::Trouble;
+use crate::equilibrium::SectionFailure;
+use crate::readings::Support;
+
+/// Stages of the solve, and of the check that estimates its error.
+pub(crate) const M: usize = 4;
+pub(super) const K: usize = M + 1;
+
+pub(crate) type Guess = Solution<N, M, L>;
+
+/// Steps of the section law that the check leaves: its one round has to take up their squares.
+const CHECKED: f64 = 1e-5;
+
+/// What the square of a change of strains leaves to the tip's way (over L).
+const LEFT_BY_STRAINS: f64 = 0.01;
+
+/// Changes of own ends that one call of Newton's method may make.
+const TURNS: usize = 2;
+
+/// Corrections (rad) after which kinks of the load are where they will be, but for second order.
+const SMALL: f64 = 0.1;
+
+/// Rounds of Newton after which nodes are moved onto the kinks before the next.
+const PINS: usize = 2;
+
+/// The methods of solve and check.
+#[derive(Debug)]
+pub(super) struct Methods {
+    solve: Gauss<M>,
+    pub(super) check: Gauss<K>,
+    pub(super) to_check: Resampling<M, K>,
+}
+
+pub(super) static METHODS: LazyLock<Methods> = LazyLock::new(|| {
+    let (solve, check) = (Gauss::new(), Gauss::new());
+    let to_check = Resampling::new(&solve, &check);
+    Methods { solve, check, to_check }
+});
+
+/// [`Collocation::evaluate`]. Not compiled for wide vectors, unlike the planar equations: with ten states that takes minutes.
+#[inline(never)]
+pub(super) fn evaluate(
+    system: &mut Collocation<N, M, Q, L>,
+    equations: &Equations,
+    solution: &Guess,
+) -> Result<(), SectionFailure> {
+    system.evaluate::<_, false>(equations, solution)
+}
+
+/// [`Collocation::linearise`].
+#[inline(never)]
+pub(super) fn linearise<const S: usize>(
+    system: &mut Collocation<N, S, Q, L>,
+    equations: &Equations,
+    solution: &Solution<N, S, L>,
+) -> Result<(), RoundError<SectionFailure>> {
+    system.linearise::<_, false>(equations, solution)
+}
+
+/// [`Collocation::newton`].
+#[inline(never)]
+pub(super) fn correct<const S: usize>(
+    system: &mut Collocation<N, S, Q, L>,
+    solution: &Solution<N, S, L>,
+    out: &mut Correction<N, S, Q, L>,
+) {
+    system.newton::<false>(solution, out);
+}
+
+/// [`Collocation::response`].
+#[inline(never)]
+pub(super) fn respond(
+    system: &Collocation<N, M, Q, L>,
+    change: &hydrostat_bvp::Change<N, Q, L>,
+    out: &mut Correction<N, M, Q, L>,
+) {
+    system.response::<false>(change, out);
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Engine {
+    pub(crate) equations: Equations,
+    pub(super) system: Collocation<N, M, Q, L>,
+    pub(super) check_equations: Equations,
+    pub(super) check: Collocation<N, K, Q, L>,
+    pub(super) solution: Guess,
+    pub(super) correction: Correction<N, M, Q, L>,
+    pub(super) check_correction: Correction<N, K, Q, L>,
+    /// The solution with one more stage, for the check.
+    pub(super) finer: Solution<N, K, L>,
+    /// U_t, and U_p in space, over the stream's speed, at the stations.
+    pub(super) speeds: Vec<(Lanes, Vector<Lanes>)>,
+    /// The solution before it was moved to another mesh.
+    pub(super) before: Guess,
+    pub(super) errors: Vec<f64>,
+    /// r over L that each element adds, at the last round.
+    pub(super) spans: Vec<[f64; Q]>,
+    pub(super) breaks: Vec<f64>,
+    pub(super) rounds: usize,
+    pub(super) meshes: usize,
+    /// The last correction, rad.
+    pub(super) last: f64,
+    /// What the last round leaves to the next (tip over L), by the way rounds fall.
+    pub(super) left_over: f64,
+    /// Tip position over L from the base at the last round.
+    pub(super) tip: [f64; Q],
+    /// The work that may be done, in evaluations of a station.
+    pub(super) allowed: usize,
+}
+
+/// A solution with all that belongs to it, to come back to.
+#[derive(Debug, Clone)]
+pub(super) struct State {
+    pub(super) solution: Guess,
+    pub(super) fraction: [f64; 2],
+    spans: Vec<[f64; Q]>,
+    pub(super) tip: [f64; Q],
+}
+
+impl Engine {
+    pub(crate) fn new(arm: &Arm) -> Self {
+        let methods = &*METHODS;
+        Self {
+            equations: Equations::new(arm, M),
+            check_equations: Equations::new(arm, K).leaving(CHECKED),
+            system: Collocation::with(methods.solve.clone()),
+            check: Collocation::with(methods.check.clone()),
+            solution: Solution::default(),
+            correction: Correction::default(),
+            check_correction: Correction::default(),
+            finer: Solution::default(),
+            speeds: Vec::new(),
+            before: Solution::default(),
+            errors: Vec::new(),
+            spans: Vec::new(),
+            breaks: arm.breaks().iter().map(|s| s / arm.length).collect(),
+            rounds: 0,
+            meshes: 0,
+            last: 0.0,
+            left_over: 0.0,
+            tip: [0.0; Q],
+            allowed: usize::MAX,
+        }
+    }
+
+    pub(super) fn state(&self) -> State {
+        let fraction = self.equations.fraction;
+        State { solution: self.solution.clone(), fraction, spans: self.spans.clone(), tip: self.tip }
+    }
+
+    pub(super) fn restore(&mut self, state: &State) {
+        let same = self.solution.mesh == state.solution.mesh;
+        self.solution.clone_from(&state.solution);
+        self.spans.clone_from(&state.spans);
+        self.tip = state.tip;
+        self.equations.fraction = state.fraction;
+        if same {
+            self.equations.place_ends(&self.solution);
+        } else {
+            self.equations.place_on(&self.system.gauss, &self.solution);
+        }
+    }
+
+    /// What the work so far took.
+    pub(super) fn statistics(&self, load_steps: usize) -> Statistics {
+        Statistics {
+            elements: self.solution.mesh.elements(),
+            stages: M,
+            newton_rounds: self.rounds,
+            meshes: self.meshes,
+            load_steps,
+            evaluations: self.system.evaluations,
+        }
+    }
+
+    /// Work done so far.
+    pub(super) fn work(&self) -> usize {
+        (self.system.evaluations + self.check.evaluations) * self.equations.arm().dearness()
+    }
+
+    /// Refuses to go on where no work is left.
+    pub(super) fn may_go_on(&self) -> Result<(), Trouble> {
+        if self.work() >= self.allowed { Err(Trouble::Spent) } else { Ok(()) }
+    }
+
+    /// Factorises at the present solution.
+    pub(super) fn linearise(&mut self) -> Result<(), Trouble> {
+        self.may_go_on()?;
+        self.rounds += 1;
+        Ok(linearise(&mut self.system, &self.equations, &self.solution)?)
+    }
+
+    /// Newton on the present mesh until what is left of the tip's way is below `tolerance`, by the way rounds fall. Given how close to the
+    /// kinks of the load nodes have to be, they are moved there as soon as corrections are small.
+    pub(super) fn iterate(&mut self, tolerance: f64, most: usize, resolution: Option<f64>) -> Result<(), Trouble> {
+        let clamped = self.equations.arm().readings.support == Support::Clamped;
+        let most = if clamped { most } else { 60 };
+        let (mut applied, mut halvings, mut round) = (0.0, 0, 0);
+        let mut before = f64::INFINITY;
+        let mut pins = if resolution.is_some() { PINS } else { 0 };
+        let mut turns = 0;
+        self.match_closure();
+        loop {
+            self.may_go_on()?;
+            match linearise(&mut self.system, &self.equations, &self.solution) {
+                Ok(()) => {}
+                Err(RoundError::Slopes(failure)) => {
+                    if applied == 0.0 || halvings == 8 {
+                        return Err(Trouble::Section(failure));
+                    }
+                    applied *= 0.5;
+                    halvings += 1;
+                    self.solution.add(&self.correction, -applied);
+                    continue;
+                }
+                Err(singular) => return Err(singular.into()),
+            }
+            self.rounds += 1;
+            if turns < TURNS && self.choose_sides() {
+                turns += 1;
+                applied = 0.0;
+                continue;
+            }
+            round += 1;
+            correct(&mut self.system, &self.solution, &mut self.correction);
+            let size = largest_turn(&self.solution, &self.correction);
+            if !size.is_finite() {
+                return Err(Trouble::Singular);
+            }
+            applied = if size > 1.0 { 1.0 / size } else { 1.0 };
+            halvings = 0;
+            let moved = self.take_correction(applied).max(0.1 * size);
+            let strained = self.correction.largest_inner();
+            let whole = size.max(strained);
+            let rate = if applied < 1.0 { 1.0 } else { (whole / before).min(1.0).max(10.0 * size) };
+            self.left_over = (moved * rate.min(1.0)).max(LEFT_BY_STRAINS * strained * strained);
+            before = whole;
+            self.last = size;
+            let stop = round == most || (clamped && round >= 6 && size > 3.0);
+            if self.left_over <= tolerance || stop {
+                return if self.left_over <= tolerance { Ok(()) } else { Err(Trouble::Stalled(size)) };
+            }
+            if size < SMALL
+                && pins > 0
+                && let Some(resolution) = resolution
+            {
+                pins -= 1;
+                if self.pin_kinks(resolution) {
+                    // The correction belongs to the mesh before.
+                    applied = 0.0;
+                }
+            }
+        }
+    }
+
+    /// Adds `applied` of the correction; how far the whole of it moves the tip, over L.
+    pub(super) fn take_correction(&mut self, applied: f64) -> f64 {
+        let d = self.correction.total;
+        self.system.quadratures(&mut self.spans);
+        self.tip = self.system.totals();
+        for (span, change) in self.spans.iter_mut().zip(&self.correction.by_element) {
+            for q in 0..Q {
+                span[q] += change[q];
+            }
+        }
+        for q in 0..Q {
+            self.tip[q] += d[q];
+        }
+        self.solution.add(&self.correction, applied);
+        dot(&d, &d).sqrt()
+    }
+
+    /// The response of the solution, at its last linearisation, to the fraction of the present phase.
+    pub(super) fn response(&mut self, out: &mut Correction<N, M, Q, L>) -> Result<(), Trouble> {
+        let tip = self.solution.nodes[self.solution.mesh.elements()];
+        let change = self
+            .equations
+            .change_by_fraction(self.system.stations(), self.system.end_stations(), &tip)
+            .map_err(Trouble::Section)?;
+        respond(&self.system, &change, out);
+        Ok(())
+    }
+}
+
+/// The largest turn (rad) of a node by a correction.
+pub(super) fn largest_turn(solution: &Guess, correction: &Correction<N, M, Q, L>) -> f64 {
+    let mut largest = 0.0;
+    for (z, dz) in solution.nodes.iter().zip(&correction.nodes) {
+        let phi = turn_of(z, dz);
+        let size = dot(&phi, &phi).sqrt();
+        if size.is_nan() {
+            return f64::NAN;
+        }
+        largest = f64::max(largest, size);
+    }
+    largest
+}
+
+/// The turn (rad, about the directors) that a change of the state is.
+pub(super) fn turn_of(z: &[f64; N], dz: &[f64; N]) -> Vector<f64> {
+    let turns = turn(&each::<f64, 4>(|k| z[k]));
+    each(|a| (0..4).map(|k| turns[a][k] * dz[k]).sum())
+}

@@ -1,0 +1,468 @@
+//! The path of `docs/model.md`, section 7, in space: loads first, then tensions, by arclength continuation.
+//!
+//! A step predicts along the tangent, corrects normal to it, and is refused where the tangent turns too much. The metric is the turn of
+//! the sections (root mean square along the arm, over a scale) with the fraction of the phase's loads.
+
+use hydrostat_bvp::{Correction, Mesh};
+
+use super::configuration::SpatialTip;
+use super::engine::{Engine, Guess, M, State, correct, linearise, turn_of};
+use super::equations::{L, N, Q};
+use super::rotation::{Vector, dot};
+use crate::engine::{Trouble, roughly};
+use crate::equilibrium::Nearness;
+use crate::readings::Volume;
+use crate::snap::SnapBounds;
+use crate::verdict::{Phase, Verdict, VerdictKind};
+
+/// Fractions start here, where the tangent by the fraction is defined.
+const START: f64 = 1e-7;
+/// Error of the tip over L that is kept along the path.
+pub(super) const LOOSE: f64 = 1e-4;
+/// Longest step of arclength, smallest cosine between the tangents at both ends of a step, most steps of a phase, refused ones included.
+const LONGEST: f64 = 0.4;
+const STRAIGHT: f64 = 0.94;
+const MOST: usize = 400;
+/// The steps that a path has left once it turned back.
+const BEYOND: usize = 200;
+/// Largest correction (rad) of a prediction that leads to the same branch.
+const MOVED: f64 = 0.15;
+/// The least change of rotation (rad) that counts as much as the whole load.
+const FINE_SCALE: f64 = 0.01;
+/// Elements that a path may take to be accurate.
+const MANY: usize = 200;
+
+/// A jump of an arm in space from a limit point to the next part of the same curve at the same loads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpatialSnap {
+    /// In which phase of loading.
+    pub phase: Phase,
+    /// The fraction of the phase's loads at the limit point.
+    pub load_fraction: f64,
+    /// The tip at the limit point.
+    pub before: SpatialTip,
+    /// The tip where the arm lands.
+    pub after: SpatialTip,
+}
+
+impl SpatialSnap {
+    /// How far the tip jumps, m.
+    pub fn distance(&self) -> f64 {
+        let (a, b) = (&self.before, &self.after);
+        (a.x - b.x).hypot(a.y - b.y).hypot(a.z - b.z)
+    }
+
+    /// The angle of the rotation between both tip sections, rad.
+    pub fn angle(&self) -> f64 {
+        let (p, q) = (&self.before, &self.after);
+        let trace = dot(&p.a, &q.a) + dot(&p.b, &q.b) + dot(&p.c, &q.c);
+        (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos()
+    }
+
+    /// What happens, in a phrase with its numbers.
+    pub fn message(&self) -> String {
+        format!(
+            "the arm snaps at {}: its tip jumps by {:.3} mm and turns by {:.3} deg",
+            self.phase.load_at(self.load_fraction),
+            1e3 * self.distance(),
+            self.angle().to_degrees()
+        )
+    }
+
+    fn allowed_by(&self, bounds: &SnapBounds, length: f64) -> bool {
+        self.distance() <= bounds.distance * length && self.angle() <= bounds.angle
+    }
+}
+
+/// What a path met.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Travelled {
+    pub(super) steps: usize,
+    /// Times the determinant changed sign while the load went on rising.
+    pub(super) crossings: usize,
+    pub(super) snaps: Vec<SpatialSnap>,
+}
+
+/// Why a path ended, and what it met.
+#[derive(Debug)]
+pub(super) struct Stopped {
+    pub(super) verdict: Verdict,
+    pub(super) snaps: Vec<SpatialSnap>,
+}
+
+/// A point of the path with its tangent.
+struct Point {
+    state: State,
+    fraction: f64,
+    /// Change a unit of the fraction.
+    response: Correction<N, M, Q, L>,
+    /// The turns (about the directors) of the nodes a unit of the fraction.
+    turns: Vec<Vector<f64>>,
+    /// The fraction's part of the unit tangent: `rise` times `response` is the rest.
+    rise: f64,
+    /// The sign of the determinant, where it is known.
+    sign: Option<f64>,
+}
+
+/// Follows both phases; the engine is at the whole loads then.
+pub(super) fn follow(engine: &mut Engine, bounds: SnapBounds) -> Result<Travelled, Stopped> {
+    let mut travelled = Travelled::default();
+    engine.equations.set_phase(Phase::Loads, 0.0);
+    engine.start_unloaded(8);
+    for phase in [Phase::Loads, Phase::Tension] {
+        let acts = match phase {
+            Phase::Loads => engine.equations.has_loads(),
+            _ => engine.equations.has_tension(),
+        };
+        if !acts {
+            engine.equations.set_phase(phase, 1.0);
+            continue;
+        }
+        let mut ramp = Ramp { engine, phase, scale: 1.0, trouble: None, travelled: &mut travelled, bounds };
+        if let Err(verdict) = ramp.follow() {
+            return Err(Stopped { verdict, snaps: travelled.snaps });
+        }
+    }
+    if !(engine.equations.has_loads() || engine.equations.has_tension()) {
+        // Nothing acts: the unloaded arm.
+        let settled = engine.iterate(1e-10, 14, None);
+        if settled.is_err() {
+            let verdict = verdict(engine, VerdictKind::NotFound, Phase::Loads, 0.0, None);
+            return Err(Stopped { verdict, snaps: Vec::new() });
+        }
+    }
+    Ok(travelled)
+}
+
+/// A verdict at `s`, m.
+pub(super) fn verdict(engine: &Engine, kind: VerdictKind, phase: Phase, fraction: f64, s: Option<f64>) -> Verdict {
+    let load_fraction = if fraction <= START { 0.0 } else { fraction.min(1.0) };
+    let spent = (engine.work() >= engine.allowed).then(|| engine.work()).filter(|_| kind == VerdictKind::NotFound);
+    Verdict { kind, phase, load_fraction, s, residual: engine.last, spent }
+}
+
+/// One phase of the path.
+struct Ramp<'e, 't> {
+    engine: &'e mut Engine,
+    phase: Phase,
+    /// The turn (rad) that counts as much as the whole load.
+    scale: f64,
+    trouble: Option<Trouble>,
+    travelled: &'t mut Travelled,
+    bounds: SnapBounds,
+}
+
+impl Ramp<'_, '_> {
+    fn follow(&mut self) -> Result<(), Verdict> {
+        let mut here = match self.start() {
+            Ok(point) => point,
+            Err(trouble) => {
+                self.trouble = Some(trouble);
+                return Err(self.stuck(START));
+            }
+        };
+        self.begin(&mut here);
+        let mut step = 0.1;
+        let mut most = MOST;
+        let mut attempt = 0;
+        // The limit point that the path turned back at and has not come past yet.
+        let mut limit: Option<(f64, State, Option<SpatialTip>)> = None;
+        loop {
+            let out_of_work = self.engine.may_go_on().is_err();
+            if attempt >= most || step < 1e-7 || out_of_work {
+                if let Some((fraction, state, _)) = limit {
+                    self.engine.restore(&state);
+                    return Err(self.end(VerdictKind::LimitPoint, fraction));
+                }
+                self.engine.restore(&here.state);
+                if out_of_work {
+                    return Err(self.end(VerdictKind::NotFound, here.fraction));
+                }
+                return Err(self.stuck(here.fraction));
+            }
+            attempt += 1;
+            match self.advance(&here, step) {
+                Ok(next) => {
+                    self.travelled.steps += 1;
+                    let crossed = matches!((here.sign, next.sign), (Some(a), Some(b)) if a != b);
+                    if crossed && here.rise * next.rise > 0.0 {
+                        self.travelled.crossings += 1;
+                    }
+                    if limit.is_none() && next.rise < 0.0 {
+                        // The path turns back between both points: steps are halved until its place is known.
+                        if step > 1e-3 && (next.fraction - here.fraction).abs() > 1e-4 {
+                            step *= 0.4;
+                            self.engine.restore(&here.state);
+                            continue;
+                        }
+                        let fraction = here.fraction.max(next.fraction);
+                        let tip = self.engine.read_tip();
+                        limit = Some((fraction, self.engine.state(), tip));
+                        most = most.max(attempt + BEYOND);
+                    }
+                    if let Some((fraction, state, _)) = &limit
+                        && next.fraction <= 0.0
+                    {
+                        let (fraction, state) = (*fraction, state.clone());
+                        self.engine.restore(&state);
+                        return Err(self.end(VerdictKind::LimitPoint, fraction));
+                    }
+                    if let Some((fraction, state, tip)) = &limit
+                        && next.rise > 0.0
+                        && next.fraction >= *fraction
+                    {
+                        let after = self.engine.read_tip();
+                        let stays = next.sign != Some(-1.0);
+                        if let (Some(before), Some(after), true) = (*tip, after, stays) {
+                            let snap = SpatialSnap { phase: self.phase, load_fraction: *fraction, before, after };
+                            self.travelled.snaps.push(snap);
+                            if !snap.allowed_by(&self.bounds, self.engine.equations.units.length) {
+                                let (fraction, state) = (*fraction, state.clone());
+                                self.engine.restore(&state);
+                                return Err(self.end(VerdictKind::LimitPoint, fraction));
+                            }
+                            self.travelled.crossings = 0;
+                            limit = None;
+                        }
+                    }
+                    if next.fraction == 1.0 && limit.is_none() {
+                        return Ok(());
+                    }
+                    here = next;
+                    step = (step * 1.6).min(LONGEST);
+                }
+                Err(trouble) => {
+                    self.trouble = Some(trouble);
+                    step *= 0.4;
+                    self.engine.restore(&here.state);
+                }
+            }
+        }
+    }
+
+    /// The point that the phase starts from.
+    fn start(&mut self) -> Result<Point, Trouble> {
+        self.engine.equations.set_phase(self.phase, START);
+        roughly(self.engine.iterate(1e-6, 14, None))?;
+        self.keep_accuracy()?;
+        self.point(START, None)
+    }
+
+    /// Takes the scale of the metric from the first point.
+    fn begin(&mut self, start: &mut Point) {
+        let turn = self.turn_by_load(start);
+        self.scale = if turn.is_finite() { turn.clamp(FINE_SCALE, 1.0) } else { 1.0 };
+        start.rise = 1.0 / (turn / self.scale).hypot(1.0);
+    }
+
+    /// The turn (rad, root mean square along the arm) a unit of the fraction.
+    fn turn_by_load(&self, point: &Point) -> f64 {
+        let mesh = &point.state.solution.mesh;
+        let squares = weights(mesh).zip(&point.turns).map(|(w, t)| w * dot(t, t));
+        squares.sum::<f64>().sqrt()
+    }
+
+    /// One step from `here`.
+    fn advance(&mut self, here: &Point, step: f64) -> Result<Point, Trouble> {
+        let engine = &mut *self.engine;
+        engine.restore(&here.state);
+        let mut climb = step * here.rise;
+        let lands = here.fraction + climb >= 1.0;
+        if lands {
+            climb = 1.0 - here.fraction;
+        }
+        engine.solution.add(&here.response, climb);
+        let mut fraction = here.fraction + climb;
+        let predicted = engine.solution.nodes.clone();
+        if lands {
+            fraction = 1.0;
+            engine.equations.set_phase(self.phase, 1.0);
+            roughly(engine.iterate(1e-6 * self.scale, 9, None))?;
+        } else {
+            self.correct(here, &mut fraction)?;
+        }
+        let engine = &mut *self.engine;
+        let moved = largest_way(&predicted, &engine.solution);
+        if moved > MOVED.max(0.5 * step) {
+            return Err(Trouble::Stalled(moved));
+        }
+        if engine.correction.largest_inner().is_nan() {
+            return Err(Trouble::Singular);
+        }
+        self.keep_accuracy()?;
+        self.engine.ends_fine()?;
+        let next = self.point(fraction, Some(here))?;
+        // How straight the way was.
+        let cosine = self.cosine(here, &next);
+        if cosine < STRAIGHT {
+            return Err(Trouble::Stalled(cosine));
+        }
+        if lands && next.rise * here.rise < 0.0 {
+            return Err(Trouble::Stalled(step));
+        }
+        Ok(next)
+    }
+
+    /// Newton on the plane through the present state that the tangent at `here` is normal to.
+    fn correct(&mut self, here: &Point, fraction: &mut f64) -> Result<(), Trouble> {
+        let engine = &mut *self.engine;
+        let square = self.scale * self.scale;
+        let normal: Vec<Vector<f64>> = weights(&engine.solution.mesh)
+            .zip(&here.turns)
+            .map(|(w, t)| t.map(|t| w * t * here.rise / square))
+            .collect();
+        let mut response = Correction::default();
+        engine.match_closure();
+        for round in 0..9 {
+            engine.may_go_on()?;
+            engine.equations.set_phase(self.phase, *fraction);
+            linearise(&mut engine.system, &engine.equations, &engine.solution)?;
+            engine.rounds += 1;
+            correct(&mut engine.system, &engine.solution, &mut engine.correction);
+            engine.response(&mut response)?;
+            let along = |c: &Correction<N, M, Q, L>, solution: &Guess| -> f64 {
+                let nodes = normal.iter().zip(&solution.nodes).zip(&c.nodes);
+                nodes.map(|((n, z), dz)| dot(n, &turn_of(z, dz))).sum()
+            };
+            let by_response = along(&response, &engine.solution) + here.rise;
+            let slide = -along(&engine.correction, &engine.solution) / by_response;
+            if !slide.is_finite() {
+                return Err(Trouble::Singular);
+            }
+            engine.correction.add(&response, slide);
+            let size = super::engine::largest_turn(&engine.solution, &engine.correction);
+            engine.last = size;
+            if !size.is_finite() || size > 1.0 {
+                return Err(Trouble::Stalled(size));
+            }
+            engine.take_correction(1.0);
+            *fraction += slide;
+            if size < 1e-6 * self.scale {
+                engine.equations.set_phase(self.phase, *fraction);
+                return Ok(());
+            }
+            if round == 8 && size > 1e-4 {
+                return Err(Trouble::Stalled(size));
+            }
+        }
+        engine.equations.set_phase(self.phase, *fraction);
+        Ok(())
+    }
+
+    /// Refines the mesh at the present fraction where the tip's error is above what a path keeps.
+    fn keep_accuracy(&mut self) -> Result<(), Trouble> {
+        let engine = &mut *self.engine;
+        for _ in 0..4 {
+            let Ok(estimate) = engine.estimate(LOOSE, Some(LOOSE)) else { break };
+            if estimate <= LOOSE {
+                return Ok(());
+            }
+            let mut mesh = engine.refined(0.1 * LOOSE, MANY);
+            let kinks = engine.kinks(1e-3);
+            mesh.pin(&engine.breaks, &kinks);
+            engine.move_to(mesh);
+            roughly(engine.iterate(1e-6, 9, None))?;
+        }
+        Ok(())
+    }
+
+    /// The point here, its tangent on from that of the point before.
+    fn point(&mut self, fraction: f64, before: Option<&Point>) -> Result<Point, Trouble> {
+        let engine = &mut *self.engine;
+        engine.linearise()?;
+        let mut response = Correction::default();
+        engine.response(&mut response)?;
+        let nodes = engine.solution.nodes.iter().zip(&response.nodes);
+        let turns: Vec<Vector<f64>> = nodes.map(|(z, dz)| turn_of(z, dz)).collect();
+        let sign = engine.system.determinant().known_sign();
+        let mut out = Point { state: engine.state(), fraction, response, turns, rise: 1.0, sign };
+        let norm = (self.turn_by_load(&out) / self.scale).hypot(1.0);
+        if !norm.is_finite() {
+            return Err(Trouble::Singular);
+        }
+        out.rise = 1.0 / norm;
+        if let Some(before) = before
+            && self.cosine(before, &out) < 0.0
+        {
+            out.rise = -out.rise;
+        }
+        Ok(out)
+    }
+
+    /// The cosine between two tangents.
+    fn cosine(&self, a: &Point, b: &Point) -> f64 {
+        let (from, mesh) = (&a.state.solution.mesh, &b.state.solution.mesh);
+        let square = self.scale * self.scale;
+        let turned: f64 = weights(mesh)
+            .zip(mesh.nodes())
+            .zip(&b.turns)
+            .map(|((w, s), t)| {
+                let e = from.element_of(*s);
+                let x = (s - from.nodes()[e]) / from.step(e);
+                let own: Vector<f64> = [0, 1, 2].map(|k| a.turns[e][k] + x * (a.turns[e + 1][k] - a.turns[e][k]));
+                w * dot(&own, t)
+            })
+            .sum();
+        a.rise * b.rise * (1.0 + turned / square)
+    }
+
+    /// Why no step leads on from the engine's shape.
+    fn stuck(&mut self, fraction: f64) -> Verdict {
+        let near = self.engine.nearest_limits();
+        let (kind, s) = name_limit(near, self.trouble.as_ref(), self.engine.equations.volume);
+        let length = self.engine.equations.units.length;
+        verdict(self.engine, kind, self.phase, fraction, s.map(|s| s * length))
+    }
+
+    fn end(&self, kind: VerdictKind, fraction: f64) -> Verdict {
+        verdict(self.engine, kind, self.phase, fraction, None)
+    }
+}
+
+/// The root of the sum of squares with these weights is the root mean square along the arm.
+fn weights(mesh: &Mesh) -> impl Iterator<Item = f64> + '_ {
+    let n = mesh.elements();
+    (0..=n).map(move |i| {
+        let left = if i > 0 { mesh.step(i - 1) } else { 0.0 };
+        let right = if i < n { mesh.step(i) } else { 0.0 };
+        0.5 * (left + right)
+    })
+}
+
+/// The largest turn (rad) of a node from where it was.
+fn largest_way(before: &[[f64; N]], solution: &Guess) -> f64 {
+    if before.len() != solution.nodes.len() {
+        return 0.0;
+    }
+    let way = before.iter().zip(&solution.nodes).map(|(old, new)| {
+        let d: [f64; N] = std::array::from_fn(|k| new[k] - old[k]);
+        let phi = turn_of(old, &d);
+        dot(&phi, &phi).sqrt()
+    });
+    way.fold(0.0, f64::max)
+}
+
+/// Names the limit that a shape is at, with its place (over L): as in the plane.
+fn name_limit(near: Nearness, trouble: Option<&Trouble>, volume: Volume) -> (VerdictKind, Option<f64>) {
+    let failed = match trouble {
+        Some(Trouble::Section(failure)) => Some(*failure),
+        _ => None,
+    };
+    let Nearness { mut openness, mut nu, mut regularity } = near;
+    if let Some(f) = failed {
+        for (least, value) in [(&mut openness, f.openness), (&mut nu, f.nu), (&mut regularity, f.regularity)] {
+            if value.abs() < least.0 {
+                *least = (value.abs(), f.s);
+            }
+        }
+    }
+    if openness.0 < 0.1 {
+        (VerdictKind::CableFold, Some(openness.1))
+    } else if volume == Volume::None && nu.0 < 0.1 {
+        (VerdictKind::SectionCrushed, Some(nu.1))
+    } else if regularity.0 < 0.15 {
+        (VerdictKind::NoSectionSolution, Some(regularity.1))
+    } else {
+        (VerdictKind::NotFound, failed.map(|f| f.s))
+    }
+}

@@ -1,0 +1,203 @@
+//! The direct solve of an arm in space, else the path; verdicts.
+
+use super::configuration::SpatialConfiguration;
+use super::engine::{Engine, State};
+use super::mesh::First;
+use super::path::{SpatialSnap, Travelled, follow, verdict};
+use super::rotation::dot;
+use crate::arm::{Arm, ArmError};
+use crate::engine::{Trouble, WORK};
+use crate::solve::Options;
+use crate::verdict::{Phase, Verdict, VerdictKind};
+
+/// Why a solve in space gives no configuration at the loads asked for.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum SpatialError {
+    /// The numbers do not make an arm.
+    #[error(transparent)]
+    Arm(#[from] ArmError),
+    /// An option out of range.
+    #[error("`{option}` must be {expected}, found {value}")]
+    Option {
+        /// Which option.
+        option: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// There is no such equilibrium, or it was not found.
+    #[error("{}", .0.verdict.message())]
+    NoEquilibrium(Box<NoSpatialEquilibrium>),
+}
+
+impl From<crate::verdict::SolveError> for SpatialError {
+    fn from(error: crate::verdict::SolveError) -> Self {
+        use crate::verdict::SolveError;
+        match error {
+            SolveError::Arm(error) => Self::Arm(error),
+            SolveError::Option { option, value, expected } => Self::Option { option, value, expected },
+            SolveError::NoEquilibrium(_) => Self::Arm(ArmError::OnlyInPlane { what: "this" }),
+        }
+    }
+}
+
+/// A verdict with the last configuration before it.
+#[derive(Debug, Clone)]
+pub struct NoSpatialEquilibrium {
+    /// Why.
+    pub verdict: Verdict,
+    /// The last good solution on the way, its `arm` carrying the loads that it balances.
+    pub last_good: Option<SpatialConfiguration>,
+    /// The snaps that the arm makes on the way.
+    pub snaps: Vec<SpatialSnap>,
+}
+
+/// Solves one arm in space, again and again as its tensions change.
+#[derive(Debug, Clone)]
+pub struct SpatialSolver {
+    engine: Engine,
+    options: Options,
+    /// Whether the engine holds a configuration at whole loads.
+    settled: bool,
+    /// Sign of the determinant of the last configuration.
+    sign: f64,
+}
+
+impl SpatialSolver {
+    /// A solver for `arm`; one without [`Arm::space`] may leave its plane.
+    ///
+    /// # Errors
+    /// [`SpatialError::Arm`], [`SpatialError::Option`].
+    pub fn new(arm: &Arm, options: Options) -> Result<Self, SpatialError> {
+        let mut arm = arm.clone();
+        arm.space.get_or_insert_default();
+        arm.check()?;
+        options.check()?;
+        Ok(Self { engine: Engine::new(&arm), options, settled: false, sign: 1.0 })
+    }
+
+    /// The arm, with the tensions that were set last.
+    pub fn arm(&self) -> &Arm {
+        self.engine.equations.arm()
+    }
+
+    /// Solves from the unloaded arm.
+    ///
+    /// # Errors
+    /// [`SpatialError::NoEquilibrium`].
+    pub fn solve(&mut self) -> Result<SpatialConfiguration, SpatialError> {
+        self.settled = false;
+        self.engine.reset_statistics();
+        self.engine.allowed = WORK;
+        self.engine.equations.set_phase(Phase::Tension, 1.0);
+        let tol = self.options.tol;
+        let engine = &mut self.engine;
+        let direct = engine
+            .start_from_cables(8)
+            .and_then(|()| engine.approach(tol))
+            .and_then(|()| engine.settle(tol, First::Fair));
+        if let Ok(estimate) = direct
+            && !self.engine.may_have_left_the_branch()
+            && let Ok(configuration) = self.read(estimate, Travelled::default())
+        {
+            self.settled = true;
+            self.sign = 1.0;
+            return Ok(configuration);
+        }
+        self.solve_along_the_path()
+    }
+
+    /// Sets all tensions (N), in the order of the cables.
+    ///
+    /// # Errors
+    /// [`SpatialError::Arm`] when their number is wrong or one of them is.
+    pub fn set_tensions(&mut self, tensions: &[f64]) -> Result<(), SpatialError> {
+        self.engine.equations.arm().check_tensions(tensions)?;
+        self.engine.equations.take_tensions(tensions);
+        self.engine.check_equations.take_tensions(tensions);
+        Ok(())
+    }
+
+    /// Solves again from the last configuration, after a small change of tensions; falls back to [`SpatialSolver::solve`].
+    ///
+    /// # Errors
+    /// [`SpatialError::NoEquilibrium`].
+    pub fn resolve(&mut self) -> Result<SpatialConfiguration, SpatialError> {
+        if self.settled {
+            self.settled = false;
+            self.engine.reset_statistics();
+            self.engine.allowed = WORK;
+            let before = self.engine.tip;
+            if let Ok(estimate) = self.engine.settle(self.options.tol, First::Warm)
+                && self.engine.system.determinant().sign == self.sign
+                && distance(&before, &self.engine.tip) < 0.2
+                && let Ok(configuration) = self.read(estimate, Travelled::default())
+            {
+                self.settled = true;
+                return Ok(configuration);
+            }
+        }
+        self.solve()
+    }
+
+    /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
+    pub(crate) fn solve_along_the_path(&mut self) -> Result<SpatialConfiguration, SpatialError> {
+        let travelled = match follow(&mut self.engine, self.options.snaps) {
+            Ok(travelled) => travelled,
+            Err(stopped) => return Err(self.no_equilibrium(stopped.verdict, stopped.snaps)),
+        };
+        let before = self.engine.tip;
+        let settled = self.engine.settle(self.options.tol, First::Rough);
+        let moved = distance(&before, &self.engine.tip);
+        let (crossings, snaps) = (travelled.crossings, travelled.snaps.clone());
+        match settled {
+            Ok(estimate) if moved < 0.05 => match self.read(estimate, travelled) {
+                Ok(mut configuration) => {
+                    let sign = self.engine.system.determinant().sign;
+                    if sign < 0.0 {
+                        configuration.stable = Some(false);
+                    }
+                    self.settled = crossings == 0 && snaps.is_empty();
+                    self.sign = sign;
+                    Ok(configuration)
+                }
+                Err(_) => Err(self.last_verdict(snaps)),
+            },
+            _ => Err(self.last_verdict(snaps)),
+        }
+    }
+
+    /// Nothing could be made of the end of the path.
+    fn last_verdict(&mut self, snaps: Vec<SpatialSnap>) -> SpatialError {
+        let verdict = verdict(&self.engine, VerdictKind::NotFound, Phase::Tension, 1.0, None);
+        SpatialError::NoEquilibrium(Box::new(NoSpatialEquilibrium { verdict, last_good: None, snaps }))
+    }
+
+    /// The verdict with the engine's shape, the last good one.
+    fn no_equilibrium(&mut self, verdict: Verdict, snaps: Vec<SpatialSnap>) -> SpatialError {
+        self.engine.allowed = usize::MAX;
+        let state: State = self.engine.state();
+        let last_good = match self.engine.settle(self.options.tol, First::Warm) {
+            Ok(estimate) => self.read(estimate, Travelled::default()).ok(),
+            Err(_) => {
+                self.engine.restore(&state);
+                self.read(super::path::LOOSE, Travelled::default()).ok()
+            }
+        };
+        SpatialError::NoEquilibrium(Box::new(NoSpatialEquilibrium { verdict, last_good, snaps }))
+    }
+
+    fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<SpatialConfiguration, Trouble> {
+        let statistics = self.engine.statistics(travelled.steps);
+        let length = self.engine.equations.units.length;
+        let mut read = SpatialConfiguration::read(&mut self.engine, estimate * length, statistics)?;
+        read.snaps = travelled.snaps;
+        Ok(read)
+    }
+}
+
+fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    let d = [0, 1, 2].map(|k| a[k] - b[k]);
+    dot(&d, &d).sqrt()
+}

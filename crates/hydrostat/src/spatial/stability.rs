@@ -1,0 +1,144 @@
+//! Whether an equilibrium in space is stable against static divergence, and in how many directions it is not: as in the plane
+//! ([`crate::stability`]), with all six motions of a section.
+//!
+//! Two eigenvalues of the compliance may pass together, as those of a straight column do at Euler's load: the determinant's sign does not
+//! change there, and the count does.
+
+use hydrostat_bvp::{Change, Correction, Drift, LANES, Lanes, Real, each};
+use nalgebra::DMatrix;
+
+use super::configuration::SpatialConfiguration;
+use super::engine::{Engine, M, respond};
+use super::equations::{FORCE, MOMENT, N, Q};
+use super::rotation::{Directors, Vector, turn};
+use crate::compliance::Basis;
+use crate::readings::Support;
+use crate::stability::{Growth, KEPT, MARGIN, ROUNDING, Stability, growing, rates_of};
+use crate::verdict::Phase;
+
+/// Fields: the motion in space, and the turn in space.
+const FIELDS: usize = 6;
+
+/// Polynomials a field, and elements no longer than a part of the arm by as many; more where the count of what grows is not settled.
+const POLYNOMIALS: [usize; 2] = [12, 20];
+
+impl SpatialConfiguration {
+    /// Whether this equilibrium is stable against static divergence, see [`SpatialConfiguration::growth`]. `None` where that is not
+    /// established.
+    pub fn stability(&self) -> Option<Stability> {
+        self.growth().map(|growth| growth.stability())
+    }
+
+    /// How fast small overdamped motions about this equilibrium grow or decay: of the velocity of the centreline over L and of the rate of
+    /// turn about any axis, each against a resistance of one along the whole arm. `None` with [`Support::UnstrainedBase`], whose arm is no
+    /// equilibrium at the tip, and where the number of growing motions does not settle as they are resolved more finely.
+    pub fn growth(&self) -> Option<Growth> {
+        if self.arm.readings.support == Support::UnstrainedBase {
+            return None;
+        }
+        for functions in POLYNOMIALS {
+            let mut engine = self.engine().clone();
+            engine.allowed = usize::MAX;
+            let mesh = engine.solution.mesh.cut_to(1.0 / functions as f64);
+            if mesh != engine.solution.mesh {
+                engine.move_to(mesh);
+            }
+            engine.iterate(1e-10, 6, None).ok()?;
+            engine.linearise().ok()?;
+            let sign = engine.system.determinant().known_sign();
+            let unit = slowest_decay(&engine, functions)?;
+            let compliance = compliance(&engine, functions);
+            let rates = |functions: usize| {
+                let size = FIELDS * functions;
+                rates_of(DMatrix::from_fn(size, size, |i, j| compliance[(i, j)]), unit, ROUNDING)
+            };
+            let mut all = rates(functions)?;
+            let fewer = rates(functions - functions / 4)?;
+            let count = growing(&all);
+            let marginal = all.iter().any(|rate| rate[0].abs() <= MARGIN);
+            let parity = sign.is_none_or(|sign| (sign > 0.0) == count.is_multiple_of(2));
+            if count == growing(&fewer) && (marginal || parity) {
+                all.truncate(count.max(KEPT));
+                return Some(Growth { rates: all });
+            }
+        }
+        None
+    }
+}
+
+/// The slowest decay of the arm on the same mesh with no load at all.
+fn slowest_decay(engine: &Engine, functions: usize) -> Option<f64> {
+    let mut unloaded = engine.clone();
+    unloaded.equations.set_phase(Phase::Loads, 0.0);
+    unloaded.start_unloaded_on(engine.solution.mesh.clone());
+    unloaded.linearise().ok()?;
+    let rates = rates_of(compliance(&unloaded, functions), 1.0, ROUNDING)?;
+    rates.first().map(|rate| -rate[0]).filter(|decay| *decay > 0.0)
+}
+
+/// How the arm gives way to loads of the shapes of polynomials along it, about the last linearisation: entry
+/// `[FIELDS k + f, FIELDS l + g]` is the part of polynomial `k` in the motion of field `f` under a load of the shape of polynomial `l` in
+/// field `g`.
+fn compliance(engine: &Engine, functions: usize) -> DMatrix<f64> {
+    let system = &engine.system;
+    let basis = Basis::new(&system.gauss.c, &engine.solution.mesh, functions);
+    let size = FIELDS * functions;
+    let mut out = DMatrix::zeros(size, size);
+    let blocks = system.stations().len();
+    let mut change = Change { stages: vec![Drift::default(); blocks], ..Change::default() };
+    let mut response = Correction::default();
+    for column in 0..size {
+        let (l, g) = (column / FIELDS, column % FIELDS);
+        for (block, drift) in change.stages.iter_mut().enumerate() {
+            drift.slope = [Lanes::default(); N];
+            // (n_f, m_f)' = -load.
+            drift.slope[if g < 3 { FORCE + g } else { MOMENT + g - 3 }] = -basis.both(l, block)[0];
+        }
+        respond(system, &change, &mut response);
+        for (row, moved) in project(engine, &basis, functions, &response).into_iter().enumerate() {
+            out[(row, column)] = moved;
+        }
+    }
+    out
+}
+
+/// Projection of the motion in a response.
+fn project(engine: &Engine, basis: &Basis, functions: usize, response: &Correction<N, M, Q, 6>) -> Vec<f64> {
+    let system = &engine.system;
+    let states = system.moved_states(response);
+    let elements = engine.solution.mesh.elements();
+    let mut out = vec![0.0; FIELDS * functions];
+    for (block, local) in system.locals().iter().enumerate() {
+        let (g, j) = (block / M, block % M);
+        let q: [Lanes; 4] = each(|k| system.stations()[block].z[k]);
+        let turns = turn(&q);
+        let mut moved = [Lanes::of(0.0); FIELDS];
+        for k in 0..Q {
+            moved[k] = local.rate_by_closure[k] * response.stages[block].closure_slope;
+            for a in 0..N {
+                moved[k] += local.rate_gradient[k][a] * states[block][a];
+            }
+        }
+        let mut phi: Vector<Lanes> = [Lanes::of(0.0); 3];
+        for k in 0..3 {
+            for a in 0..4 {
+                phi[k] += turns[k][a] * states[block][a];
+            }
+        }
+        let turned = Directors::of(&q).to_space(&phi);
+        moved[3..].copy_from_slice(&turned);
+        let mut weight = Lanes::default();
+        for lane in 0..LANES.min(elements - g * LANES) {
+            weight.0[lane] = system.steps()[g].0[lane] * system.gauss.b[j];
+        }
+        for k in 0..functions {
+            let [value, rest] = basis.both(k, block);
+            for f in 0..FIELDS {
+                // What x' adds at a place, x has from there to the tip.
+                let by = weight * moved[f] * if f < 3 { rest } else { value };
+                out[FIELDS * k + f] += by.0.iter().sum::<f64>();
+            }
+        }
+    }
+    out
+}
