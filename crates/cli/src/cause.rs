@@ -104,7 +104,8 @@ impl<'a> Cause<'a> {
             Self::Reach(error) => solve_of_reach(error),
             Self::Study(StudyError::Solve { source, .. }) => Some(source),
             Self::Study(StudyError::Reach(error)) => solve_of_reach(error),
-            Self::Path(_)
+            Self::Spatial(_)
+            | Self::Path(_)
             | Self::Sensitivity(_)
             | Self::Sweep(_)
             | Self::Identify(_)

@@ -292,10 +292,9 @@ pub(crate) fn dimension_at(key: &str) -> Option<Dimension> {
             Table(inner) | Tables(inner) if !last => keys = inner,
             Quantity(dimension) | Pair(dimension) | Axial(dimension) if last && !end => found = Some(dimension),
             Heading if last && !end => {
-                found = Some(if indices.is_empty() { Dimension::Angle } else { Dimension::Number })
+                found = Some(if indices.is_empty() { Dimension::Angle } else { Dimension::Number });
             }
-            Direction if last && !end => found = Some(Dimension::Number),
-            Part if last && !end => found = Some(Dimension::Number),
+            Part | Direction if last && !end => found = Some(Dimension::Number),
             kind @ (Profile(dimension) | Offset(dimension) | ProfilePair(dimension) | AxialProfile(dimension))
                 if last =>
             {

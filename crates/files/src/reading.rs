@@ -167,13 +167,6 @@ impl Values {
         }
     }
 
-    pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {
-        match self.found.get(key) {
-            Some((Value::Pair(pair), _)) => Some(*pair),
-            _ => None,
-        }
-    }
-
     pub(crate) fn profile(&self, key: &str) -> Option<Profile> {
         match self.found.get(key) {
             Some((Value::Profile(profile), _)) => Some(profile.clone()),

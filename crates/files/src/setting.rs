@@ -87,6 +87,7 @@ fn empty(kind: Kind) -> Node {
     }
 }
 
+#[allow(clippy::too_many_lines, reason = "one arm a kind of value")]
 fn into_value(entry: &mut Entry, path: &str, kind: Kind, steps: &[Step], target: &Target<'_>) -> Result<(), Fault> {
     let [step, rest @ ..] = steps else {
         *entry = Entry { node: target.node(kind), origin: target.origin };

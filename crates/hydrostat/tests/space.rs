@@ -176,3 +176,226 @@ fn arms_in_a_plane_have_the_planar_solution() {
         }
     }
 }
+
+/// One cable at constant offset that turns uniformly along a uniform arm: the strains are constant in the frame that turns with the
+/// cable, and meet six algebraic equations.
+#[test]
+fn a_uniformly_turning_cable_strains_the_arm_evenly() {
+    for volume in Volume::ALL {
+        let (length, radius, offset, turns, tension) = (0.3, 0.01, 0.006, 4.0, 1.5);
+        let mut arm = Arm::cone(length, radius, radius, 110e3, 0.4);
+        arm.readings.volume = volume;
+        arm.cables.push(Cable::new("helix", offset).pulled(tension).at_angle(Profile::linear(0.2, 0.2 + turns)));
+        let shape = solved(&in_space(&arm), 1e-10);
+        let rate = turns / length;
+        let (young, shear) = (110e3, 110e3 / 2.8);
+        for k in 0..=10 {
+            let st = shape.at(length * f64::from(k) / 10.0);
+            let phi = 0.2 + rate * st.s;
+            let (y, z) = (offset * phi.cos(), offset * phi.sin());
+            let p = [0.0, st.beta * y, st.beta * z];
+            let (v, u) = ([st.nu, st.eta, st.zeta], [st.tau, st.kappa, st.mu]);
+            let cross = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] {
+                std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
+            };
+            let up = cross(u, p);
+            let path: [f64; 3] = std::array::from_fn(|i| v[i] + up[i] + [0.0, -p[2] * rate, p[1] * rate][i]);
+            let size = apart(path, [0.0; 3]);
+            let force = path.map(|t| -tension * t / size);
+            let moment = cross(p, force);
+            let area = PI * radius * radius * st.beta * st.beta;
+            let bending = young * radius * radius / 4.0;
+            let body = [
+                young * (st.nu - 1.0),
+                shear * st.eta,
+                shear * st.zeta,
+                2.0 * bending * (shear / young) * st.tau,
+                bending * st.kappa,
+                bending * st.mu,
+            ];
+            for i in 0..3 {
+                assert!((area * body[i] - force[i]).abs() < 1e-9, "{volume:?} {i} {st:?}");
+                assert!((area * body[3 + i] - moment[i]).abs() < 1e-11, "{volume:?} {i} {st:?}");
+            }
+            let first = shape.at(0.0);
+            assert!((st.nu - first.nu).abs() < 1e-9 && (st.tau - first.tau).abs() < 1e-8);
+            assert!((st.kappa.hypot(st.mu) - first.kappa.hypot(first.mu)).abs() < 1e-7);
+        }
+        assert!(shape.at(0.1).tau.abs() > 0.05, "a cable that turns twists the arm");
+    }
+}
+
+/// Kirchhoff's rod: a uniform arm without distributed loads keeps n_f in space, m . n, and the complement of its strain energy.
+#[test]
+fn first_integrals_hold_along_a_uniform_rod() {
+    let stiffness = [40.0, 15.0, 0.01, 0.008];
+    let mut arm = rod(1.0, stiffness);
+    arm.tip.force = [0.02, 0.03];
+    arm.tip.moment = 0.01;
+    let space = arm.space.as_mut().unwrap();
+    space.tip_force = -0.015;
+    space.tip_moment = [0.02, -0.005];
+    let shape = solved(&arm, 1e-10);
+    let [ea, ga, ei, gj] = stiffness;
+    let integrals = |s: f64| {
+        let st = shape.at(s);
+        let to_space =
+            |v: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| v[0] * st.a[k] + v[1] * st.b[k] + v[2] * st.c[k]) };
+        let (n, m) = (to_space([st.n_a, st.n_b, st.n_c]), to_space([st.m_a, st.m_b, st.m_c]));
+        let complement = 0.5 * (st.m_a.powi(2) / gj + (st.m_b.powi(2) + st.m_c.powi(2)) / ei)
+            + st.n_a
+            + 0.5 * (st.n_a.powi(2) / ea + (st.n_b.powi(2) + st.n_c.powi(2)) / ga);
+        [n[0], n[1], n[2], n[0] * m[0] + n[1] * m[1] + n[2] * m[2], complement]
+    };
+    let first = integrals(0.0);
+    for k in 1..=20 {
+        let here = integrals(f64::from(k) / 20.0);
+        for i in 0..5 {
+            assert!((here[i] - first[i]).abs() < 1e-9, "{k} {i} {} {}", here[i], first[i]);
+        }
+    }
+    let reaction = shape.base_reaction.force;
+    assert!(apart(reaction, [-0.02, -0.03, 0.015]) < 1e-12);
+}
+
+fn three_cables() -> Arm {
+    let mut arm = silicone();
+    arm.cables.clear();
+    for (k, tension) in [0.1, 0.05, 0.0].into_iter().enumerate() {
+        let cable = Cable::new(format!("{k}"), Profile::linear(0.005, 0.001)).pulled(tension);
+        arm.cables.push(cable.at_angle(k as f64 * TAU / 3.0));
+    }
+    arm.flow.speed = 0.1;
+    arm.gravity = Some(Gravity { acceleration: 2.0, direction: 0.0 });
+    arm.space = Some(Space {
+        base: Some(BaseDirections { direction: [1.0, 0.2, 0.1], section: Some([0.0, 1.0, 0.3]) }),
+        stream: Some([0.6, 0.5, -0.7]),
+        gravity: Some([0.1, 0.2, -1.0]),
+        tip_force: 0.0005,
+        tip_moment: [1e-5, 0.0],
+        ..Space::default()
+    });
+    arm
+}
+
+/// `map` of every vector of an arm in space; axial ones (moments) take `sign` too.
+fn mapped(arm: &Arm, map: impl Fn([f64; 3]) -> [f64; 3], sign: f64) -> Arm {
+    let mut out = arm.clone();
+    let space = out.space.as_mut().unwrap();
+    let base = space.base.as_mut().unwrap();
+    base.direction = map(base.direction);
+    base.section = base.section.map(&map);
+    space.stream = space.stream.map(&map);
+    space.gravity = space.gravity.map(&map);
+    let force = map([out.tip.force[0], out.tip.force[1], space.tip_force]);
+    let moment = map([space.tip_moment[0], space.tip_moment[1], out.tip.moment]).map(|m| sign * m);
+    (out.tip.force, space.tip_force) = ([force[0], force[1]], force[2]);
+    (space.tip_moment, out.tip.moment) = ([moment[0], moment[1]], moment[2]);
+    out
+}
+
+#[test]
+fn a_turn_of_everything_a_mirror_and_another_b_leave_the_shape() {
+    let arm = three_cables();
+    let plain = tip(&solved(&arm, 1e-9));
+    let bound = 2e-9 * arm.length;
+    let m = rotation(0.7, -0.4, 1.9);
+    let found = tip(&solved(&mapped(&arm, |v| turned(&m, v), 1.0), 1e-9));
+    assert!(apart(found, turned(&m, plain)) < bound, "{found:?} {plain:?}");
+    // In the plane x-y as a mirror c goes to the other side: angles of cables change sign, and so do moments.
+    let mut mirrored = mapped(&arm, |v| [v[0], v[1], -v[2]], -1.0);
+    for cable in &mut mirrored.cables {
+        cable.angle = cable.angle.scaled(-1.0, 1.0);
+    }
+    let found = tip(&solved(&mirrored, 1e-9));
+    assert!(apart(found, [plain[0], plain[1], -plain[2]]) < bound, "{found:?} {plain:?}");
+    // b turned about a by an angle, and cables against it.
+    let by = 0.8_f64;
+    let mut other = arm.clone();
+    let shape = solved(&arm, 1e-9);
+    let st = shape.at(0.0);
+    let b: [f64; 3] = std::array::from_fn(|k| by.cos() * st.b[k] + by.sin() * st.c[k]);
+    other.space.as_mut().unwrap().base.as_mut().unwrap().section = Some(b);
+    for (k, cable) in other.cables.iter_mut().enumerate() {
+        cable.angle = (k as f64 * TAU / 3.0 - by).into();
+    }
+    let found = tip(&solved(&other, 1e-9));
+    assert!(apart(found, plain) < bound, "{found:?} {plain:?}");
+}
+
+#[test]
+fn two_half_tensions_in_one_place_are_one() {
+    let arm = three_cables();
+    let mut halves = arm.clone();
+    for cable in &mut halves.cables {
+        cable.tension *= 0.5;
+    }
+    halves.cables.extend(halves.cables.clone());
+    // A negative offset is the other side.
+    for cable in &mut halves.cables[3..] {
+        cable.offset = cable.offset.scaled(-1.0, 1.0);
+        let angle = cable.angle.at(0.0, 1.0).value;
+        cable.angle = (angle + PI).into();
+    }
+    assert!(apart(tip(&solved(&arm, 1e-9)), tip(&solved(&halves, 1e-9))) < 1e-9 * arm.length);
+}
+
+/// Euler's column is doubly degenerate in space: the determinant's sign does not change at its load, and two directions are unstable past it.
+#[test]
+fn a_column_past_eulers_load_is_unstable_in_two_directions() {
+    let [ea, ga, ei, gj] = [40.0, 15.0, 0.01, 0.008];
+    let critical = {
+        // P (1 + P (1/GA - 1/EA)) = pi^2 EI/(4 L^2)
+        let (q, c) = (1.0 / ga - 1.0 / ea, PI * PI * ei / 4.0);
+        ((1.0 + 4.0 * q * c).sqrt() - 1.0) / (2.0 * q)
+    };
+    for (share, directions) in [(0.98, 0), (1.02, 2)] {
+        let mut arm = rod(1.0, [ea, ga, ei, gj]);
+        arm.tip.force = [-share * critical, 0.0];
+        let shape = solved(&arm, 1e-9);
+        assert!(shape.tip().y.abs() + shape.tip().z.abs() < 1e-9);
+        assert_eq!(shape.stability().and_then(hydrostat::Stability::directions), Some(directions), "{share}");
+    }
+}
+
+/// What is on one side of a cable folds at the same tension in the plane and in space.
+#[test]
+fn a_fold_is_named_as_in_the_plane() {
+    let mut arm = silicone();
+    arm.cables[0].tension = 1.5;
+    let Err(hydrostat::SolveError::NoEquilibrium(flat)) = arm.solve() else { panic!("1.5 N fold the tip") };
+    let found = SpatialSolver::new(&in_space(&arm), Options::default()).unwrap().solve();
+    let Err(hydrostat::SpatialError::NoEquilibrium(space)) = found else { panic!("1.5 N fold the tip") };
+    assert_eq!((space.verdict.kind, space.verdict.phase), (flat.verdict.kind, flat.verdict.phase));
+    let off = (space.verdict.load_fraction - flat.verdict.load_fraction).abs();
+    assert!(off < 2e-3, "{:?} {:?}", space.verdict, flat.verdict);
+}
+
+#[test]
+fn what_arms_in_space_do_not_have_is_refused_by_its_key() {
+    let mut arm = in_space(&silicone());
+    arm.cables[1].friction = 0.1;
+    assert_eq!(arm.check().unwrap_err().key(), "cable[1].friction");
+    let mut arm = in_space(&silicone());
+    arm.readings = Readings::LITERAL;
+    assert_eq!(arm.check().unwrap_err().key(), "model.flow_surface");
+    let mut arm = silicone();
+    arm.cables[0].angle = 0.3.into();
+    assert_eq!(arm.check().unwrap_err().key(), "cable[0].angle");
+    let refused = in_space(&silicone()).solve().unwrap_err().to_string();
+    assert!(refused.contains("spatial"), "{refused}");
+}
+
+/// A change of tensions is followed from the shape before, to the shape of a cold solve.
+#[test]
+fn warm_solves_are_cold_ones() {
+    let mut arm = three_cables();
+    let mut solver = SpatialSolver::new(&arm, Options::default()).unwrap();
+    solver.solve().unwrap();
+    solver.set_tensions(&[0.101, 0.05, 0.0]).unwrap();
+    let warm = solver.resolve().unwrap();
+    arm.cables[0].tension = 0.101;
+    let cold = solved(&arm, 1e-8);
+    assert!(apart(tip(&warm), tip(&cold)) < 2e-8 * arm.length);
+    assert!(warm.statistics.newton_rounds < cold.statistics.newton_rounds);
+}

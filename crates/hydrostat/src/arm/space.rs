@@ -182,13 +182,12 @@ impl Arm {
     /// The acceleration of gravity in space, m/s2.
     pub(crate) fn gravity_in_space(&self) -> [f64; 3] {
         let Some(gravity) = self.gravity else { return [0.0; 3] };
-        match self.space.as_ref().and_then(|space| space.gravity).map(|d| unit("gravity.direction", d)) {
-            Some(Ok(direction)) => direction.map(|d| gravity.acceleration * d),
-            _ => {
-                let (sin, cos) = gravity.direction.sin_cos();
-                [gravity.acceleration * cos, gravity.acceleration * sin, 0.0]
-            }
+        let given = self.space.as_ref().and_then(|space| space.gravity).map(|d| unit("gravity.direction", d));
+        if let Some(Ok(direction)) = given {
+            return direction.map(|d| gravity.acceleration * d);
         }
+        let (sin, cos) = gravity.direction.sin_cos();
+        [gravity.acceleration * cos, gravity.acceleration * sin, 0.0]
     }
 }
 

@@ -450,14 +450,12 @@ impl SpatialConfiguration {
         let mesh = &self.dense.engine.solution.mesh;
         let element = mesh.element_of(share);
         let x = ((share - mesh.nodes()[element]) / mesh.step(element)).clamp(0.0, 1.0);
-        match self.dense.at(element, x) {
-            Ok((station, _)) => station,
-            Err(_) => {
-                let near = |i: &usize| (self.stations.s[*i] - s).abs();
-                let nearest = (0..self.stations.len()).min_by(|i, j| near(i).total_cmp(&near(j)));
-                nearest.and_then(|i| self.stations.get(i)).unwrap_or_default()
-            }
+        if let Ok((station, _)) = self.dense.at(element, x) {
+            return station;
         }
+        let near = |i: &usize| (self.stations.s[*i] - s).abs();
+        let nearest = (0..self.stations.len()).min_by(|i, j| near(i).total_cmp(&near(j)));
+        nearest.and_then(|i| self.stations.get(i)).unwrap_or_default()
     }
 
     /// `count` (at least two) equally spaced stations from base to tip.

@@ -536,9 +536,7 @@ fn slopes(
     let dq = spin(q, &u);
     let moment = at.directors.to_space(&lever);
     let f = &at.load.force;
-    for k in 0..4 {
-        out.slope[k] = dq[k];
-    }
+    out.slope[..4].copy_from_slice(&dq);
     for k in 0..3 {
         out.slope[FORCE + k] = -f[k];
         out.slope[MOMENT + k] = -moment[k] - at.couple[k];

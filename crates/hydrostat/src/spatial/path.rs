@@ -250,16 +250,9 @@ impl Ramp<'_, '_> {
 
     /// Takes the scale of the metric from the first point.
     fn begin(&mut self, start: &mut Point) {
-        let turn = self.turn_by_load(start);
+        let turn = turn_by_load(start);
         self.scale = if turn.is_finite() { turn.clamp(FINE_SCALE, 1.0) } else { 1.0 };
         start.rise = 1.0 / (turn / self.scale).hypot(1.0);
-    }
-
-    /// The turn (rad, root mean square along the arm) a unit of the fraction.
-    fn turn_by_load(&self, point: &Point) -> f64 {
-        let mesh = &point.state.solution.mesh;
-        let squares = weights(mesh).zip(&point.turns).map(|(w, t)| w * dot(t, t));
-        squares.sum::<f64>().sqrt()
     }
 
     /// One step from `here`.
@@ -376,7 +369,7 @@ impl Ramp<'_, '_> {
         let turns: Vec<Vector<f64>> = nodes.map(|(z, dz)| turn_of(z, dz)).collect();
         let sign = engine.system.determinant().known_sign();
         let mut out = Point { state: engine.state(), fraction, response, turns, rise: 1.0, sign };
-        let norm = (self.turn_by_load(&out) / self.scale).hypot(1.0);
+        let norm = (turn_by_load(&out) / self.scale).hypot(1.0);
         if !norm.is_finite() {
             return Err(Trouble::Singular);
         }
@@ -417,6 +410,12 @@ impl Ramp<'_, '_> {
     fn end(&self, kind: VerdictKind, fraction: f64) -> Verdict {
         verdict(self.engine, kind, self.phase, fraction, None)
     }
+}
+
+/// The turn (rad, root mean square along the arm) a unit of the fraction.
+fn turn_by_load(point: &Point) -> f64 {
+    let squares = weights(&point.state.solution.mesh).zip(&point.turns).map(|(w, t)| w * dot(t, t));
+    squares.sum::<f64>().sqrt()
 }
 
 /// The root of the sum of squares with these weights is the root mean square along the arm.

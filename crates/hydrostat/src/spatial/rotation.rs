@@ -51,13 +51,13 @@ impl<R: Real> Directors<R> {
 
     /// Components along the directors of a vector in space.
     #[inline(always)]
-    pub(crate) fn to_body(&self, v: &Vector<R>) -> Vector<R> {
+    pub(crate) fn to_body(self, v: &Vector<R>) -> Vector<R> {
         [dot(&self.a, v), dot(&self.b, v), dot(&self.c, v)]
     }
 
     /// The vector in space with these components along the directors.
     #[inline(always)]
-    pub(crate) fn to_space(&self, v: &Vector<R>) -> Vector<R> {
+    pub(crate) fn to_space(self, v: &Vector<R>) -> Vector<R> {
         each(|k| self.a[k] * v[0] + self.b[k] * v[1] + self.c[k] * v[2])
     }
 }

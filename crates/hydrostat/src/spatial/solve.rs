@@ -178,13 +178,11 @@ impl SpatialSolver {
     fn no_equilibrium(&mut self, verdict: Verdict, snaps: Vec<SpatialSnap>) -> SpatialError {
         self.engine.allowed = usize::MAX;
         let state: State = self.engine.state();
-        let last_good = match self.engine.settle(self.options.tol, First::Warm) {
-            Ok(estimate) => self.read(estimate, Travelled::default()).ok(),
-            Err(_) => {
-                self.engine.restore(&state);
-                self.read(super::path::LOOSE, Travelled::default()).ok()
-            }
-        };
+        let estimate = self.engine.settle(self.options.tol, First::Warm).unwrap_or_else(|_| {
+            self.engine.restore(&state);
+            super::path::LOOSE
+        });
+        let last_good = self.read(estimate, Travelled::default()).ok();
         SpatialError::NoEquilibrium(Box::new(NoSpatialEquilibrium { verdict, last_good, snaps }))
     }
 

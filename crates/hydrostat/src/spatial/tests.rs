@@ -129,7 +129,8 @@ fn changes_by_the_fraction_of_a_phase_match_differences() {
             let (equations, station) = at(0.6);
             // Where the strains solve the section law.
             let (_, solved) = evaluated(&equations, &station);
-            let ends = vec![solved; 1];
+            // Only equations with a closure have ends.
+            let ends = vec![solved; usize::from(equations.is_closed())];
             let tip: [f64; N] = solved.z.map(|v| v.0[0]);
             let change = equations.change_by_fraction(&vec![solved; M], &ends, &tip).unwrap();
             let [hi, lo] = [STEP, -STEP].map(|h| {
@@ -139,15 +140,14 @@ fn changes_by_the_fraction_of_a_phase_match_differences() {
                 let mut right = left;
                 equations.left(&tip, &mut left);
                 equations.right(&tip, &mut right);
-                let mut end = vec![Inner::default(); 1];
+                let mut end = vec![Inner::default(); ends.len()];
                 let mut stations = ends.clone();
-                if equations.is_closed() {
-                    equations.ends::<false>(&[], &mut stations, &mut end).unwrap();
-                }
-                let own = stations[0].inner.iter().zip(end[0].change).map(|(v, change)| v.0[0] + change.0[0]);
+                equations.ends::<false>(&[], &mut stations, &mut end).unwrap();
                 let mut all = flat(&local, &moved, 2);
                 all.extend(left.iter().chain(&right).map(|condition| condition.residual));
-                all.extend(own);
+                for (station, end) in stations.iter().zip(&end) {
+                    all.extend(station.inner.iter().zip(end.change).map(|(v, change)| v.0[0] + change.0[0]));
+                }
                 all
             });
             let drift = &change.stages[1];
@@ -155,10 +155,7 @@ fn changes_by_the_fraction_of_a_phase_match_differences() {
                 drift.slope.iter().chain(&drift.rate).chain(&drift.inner).map(|v| v.0[2]).collect();
             exact.push(drift.value.0[2]);
             exact.extend(change.left.iter().chain(&change.right));
-            match change.ends.first() {
-                Some((inner, _)) => exact.extend(inner.iter().map(|v| v.0[0])),
-                None => exact.extend([0.0; L]),
-            }
+            exact.extend(change.ends.iter().flat_map(|(inner, _)| inner.iter().map(|v| v.0[0])));
             for (k, exact) in exact.iter().enumerate() {
                 let by = (hi[k] - lo[k]) / (2.0 * STEP);
                 assert!((by - exact).abs() < 2e-7 * exact.abs().max(1.0), "{phase:?} {k}: {by} {exact}");
