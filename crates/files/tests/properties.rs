@@ -141,6 +141,7 @@ fn arm() -> impl Strategy<Value = Arm> {
                     tip,
                     distributed,
                     readings,
+                    space: None,
                 }
             },
         )
