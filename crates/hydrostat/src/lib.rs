@@ -123,7 +123,8 @@
 //!
 //! # What is not in the model
 //!
-//! The arm stays in the plane and moves slowly (quasi-static). The section law is linear in the
+//! The arm moves slowly (quasi-static). It stays in the plane, unless [`Arm::space`] says otherwise: [`SpatialSolver`] solves it then, and all
+//! else is for arms in the plane. The section law is linear in the
 //! strains. Cables act by their tension alone: they do not press into the material. The surface may
 //! touch itself unseen; [`Configuration::fold_margin`] sees only a section that folds. The outside
 //! pressure on the wall of a sealed cavity is left out. The tangential load of the source's flow law

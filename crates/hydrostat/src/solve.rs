@@ -84,7 +84,7 @@ impl Solver {
         arm.check()?;
         options.check()?;
         if arm.space.is_some() {
-            return Err(ArmError::OnlyInPlane { what: "this" }.into());
+            return Err(ArmError::OnlyInPlane { what: "what was asked for" }.into());
         }
         Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, estimate: None })
     }

@@ -37,7 +37,7 @@ impl From<crate::verdict::SolveError> for SpatialError {
         match error {
             SolveError::Arm(error) => Self::Arm(error),
             SolveError::Option { option, value, expected } => Self::Option { option, value, expected },
-            SolveError::NoEquilibrium(_) => Self::Arm(ArmError::OnlyInPlane { what: "this" }),
+            SolveError::NoEquilibrium(_) => Self::Arm(ArmError::OnlyInPlane { what: "a planar solve" }),
         }
     }
 }
