@@ -3,7 +3,7 @@
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 use hydrostat::parameter::Unfit;
-use hydrostat::{Arm, ArmError};
+use hydrostat::{Arm, ArmError, SolveError};
 use hydrostat_files::{ArmFile, Dimension, FileError, PartialUnit, is_same_file, shared_unit, shipped, unit_slips};
 
 use crate::args::{ArmArgs, PictureArgs};
@@ -187,8 +187,22 @@ pub(crate) fn arm(args: &ArmArgs) -> anyhow::Result<Arm> {
     arm_of(&overridden(args)?)
 }
 
+/// The same, in the plane or in space.
+pub(crate) fn arm_in_space(args: &ArmArgs) -> anyhow::Result<Arm> {
+    arm_anywhere(&overridden(args)?)
+}
+
 /// The arm that a file means. Numbers that look like a slip of the unit are named on standard error.
 pub(crate) fn arm_of(file: &ArmFile) -> anyhow::Result<Arm> {
+    let arm = arm_anywhere(file)?;
+    if arm.space.is_some() {
+        return Err(SolveError::Arm(ArmError::OnlyInPlane { what: "this command" }).into());
+    }
+    Ok(arm)
+}
+
+/// The arm of a file, in the plane or in space.
+pub(crate) fn arm_anywhere(file: &ArmFile) -> anyhow::Result<Arm> {
     let arm = file.arm().map_err(|first| wrong(file, first))?;
     for slip in unit_slips(&arm) {
         eprintln!("warning: {slip}");

@@ -6,7 +6,7 @@
 use hydrostat::Join;
 use serde_json::{Map, Value, json};
 
-use crate::format::{self, COEFFICIENTS, DRAG, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_NAME, MAX_POINTS, PULL};
+use crate::format::{self, COEFFICIENTS, DRAG, HOMOGENEOUS, Key, Kind, MAX_CABLES, MAX_NAME, MAX_POINTS, PULL, SPACES};
 use crate::quantity::Dimension;
 
 /// The JSON Schema (draft 2020-12) of the arm file.
@@ -25,12 +25,40 @@ pub fn arm_schema() -> Value {
             definitions.insert(name, definition);
         }
     }
+    schema["if"] = json!({
+        "required": ["arm"],
+        "properties": { "arm": { "required": ["space"], "properties": { "space": { "const": SPACES[1] } } } },
+    });
+    schema["else"] = in_the_plane();
     if let Some(root) = schema.as_object_mut() {
         root.insert("$schema".to_owned(), json!("https://json-schema.org/draft/2020-12/schema"));
         root.insert("title".to_owned(), json!("Hydrostat arm file"));
         root.insert("$defs".to_owned(), Value::Object(definitions));
     }
     schema
+}
+
+/// What a file of an arm in the plane does not have.
+fn in_the_plane() -> Value {
+    let without = |names: &[&str]| -> Value {
+        let none: Map<String, Value> = names.iter().map(|name| ((*name).to_owned(), json!(false))).collect();
+        json!({ "properties": none })
+    };
+    let scalar = json!({ "not": { "type": "array" } });
+    let pair = json!({ "maxItems": 2 });
+    let couple = json!({ "$ref": format!("#/$defs/{}", id("profile", Dimension::MomentPerLength)) });
+    json!({
+        "properties": {
+            "arm": { "properties": { "base": without(&["z", "direction", "section"]) } },
+            "material": without(&["c4"]),
+            "reference": without(&["zeta", "tau", "kappa"]),
+            "cable": { "items": without(&["angle"]) },
+            "flow": { "properties": { "direction": scalar } },
+            "gravity": { "properties": { "direction": scalar } },
+            "tip": { "properties": { "force": pair, "follower": pair, "moment": scalar } },
+            "distributed": { "properties": { "force": pair, "couple": couple } },
+        },
+    })
 }
 
 /// The schema as the text of a file.
@@ -57,6 +85,11 @@ fn property(key: &Key) -> Value {
                 { "required": ["young"], "allOf": [absent(COEFFICIENTS)] },
                 { "required": COEFFICIENTS, "allOf": [absent(HOMOGENEOUS)] },
             ]);
+            schema["dependentRequired"] = json!({ "c4": ["c1"] });
+        }
+        "base" => {
+            schema["not"] = json!({ "required": ["angle", "direction"] });
+            schema["dependentRequired"] = json!({ "section": ["direction"] });
         }
         "cable" => schema["items"]["not"] = json!({ "required": PULL }),
         "flow" => {

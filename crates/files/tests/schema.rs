@@ -119,12 +119,39 @@ fn parser_and_schema_take_the_same() {
     for (text, want) in whole {
         check(text, want);
     }
+    // What leaves the plane, with and without the word for it.
+    let leaves = [
+        "arm.base.z = 1",
+        "arm.base = { direction = [1, 0, 2], section = [0, 1, 0] }",
+        "cable = [{ angle = 30 }]",
+        "flow.direction = [0, 0, 1]",
+        "gravity.direction = [0, 0, 1]",
+        "tip.force = [1, 2, \"3 N\"]",
+        "tip.moment = [1, 2, 3]",
+        "distributed.force = [1, 2, { base = 1, tip = 2 }]",
+        "distributed.couple = [1, 2, [[0, 1], [0.2, 2]]]",
+        "reference.tau = 1",
+    ];
+    for text in leaves {
+        for (space, want) in [("planar", false), ("spatial", true)] {
+            check(
+                &format!("arm.length = 0.2\narm.radius = 0.01\narm.space = \"{space}\"\nmaterial.young = 1e5\n{text}"),
+                want,
+            );
+        }
+    }
+    for text in ["arm.base = { direction = [1, 0, 0], angle = 3 }", "arm.base.section = [1, 0, 0]", "material.c4 = 1"] {
+        check(
+            &format!("arm.length = 0.2\narm.radius = 0.01\narm.space = \"spatial\"\nmaterial.young = 1e5\n{text}"),
+            false,
+        );
+    }
 }
 
 #[test]
 fn shipped_arms_and_inputs_of_results_follow_it() {
     let validator = jsonschema::validator_for(&schema::arm_schema()).unwrap();
-    for name in shipped::names() {
+    for name in shipped::names().chain(shipped::spatial_names()) {
         let text = shipped::get(name).unwrap();
         assert!(valid(&validator, text), "{name}");
         let arm = ArmFile::parse(text, name).unwrap().arm().unwrap();

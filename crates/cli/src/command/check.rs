@@ -11,7 +11,7 @@ use crate::output;
 use crate::request;
 
 pub(crate) fn run(args: &CheckArgs) -> anyhow::Result<()> {
-    let arm = request::arm_of(&request::arm_file(&args.arm)?)?;
+    let arm = request::arm_anywhere(&request::arm_file(&args.arm)?)?;
     let mut out = String::new();
     let _ = writeln!(out, "# {}: a valid arm. In full, in SI units and degrees:\n", arm.name);
     out.push_str(&arm_to_toml(&arm));

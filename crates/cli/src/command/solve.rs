@@ -11,7 +11,7 @@ use crate::output;
 use crate::request;
 
 pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm)?;
+    let arm = request::arm_in_space(&args.arm)?;
     if arm.space.is_some() {
         return super::solve_spatial::run(args, &arm);
     }

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use anyhow::bail;
 use hydrostat::{
-    Arm, NoSpatialEquilibrium, Options, SpatialConfiguration, SpatialError, SpatialSolver, SpatialWrench, Stability,
+    Arm, ArmError, NoSpatialEquilibrium, Options, SpatialConfiguration, SpatialError, SpatialSolver, SpatialWrench,
+    Stability,
 };
 use hydrostat_files::{Note, SpatialFailureDocument, SpatialSolutionDocument, number, spatial_stations_csv};
 
@@ -15,9 +15,7 @@ use crate::request;
 
 pub(super) fn run(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
     if args.plot.is_some() {
-        bail!(
-            "--plot draws arms in the plane, and this arm has `space = \"spatial\"`: write its stations with --format csv"
-        );
+        return Err(SpatialError::from(ArmError::OnlyInPlane { what: "--plot" }).into());
     }
     let mut solver = SpatialSolver::new(arm, Options { tol: args.tol, snaps: args.snaps.bounds() })?;
     request::check_outputs(&[request::arm_input(&args.arm.file)], &[("-o", args.output.as_deref())])?;

@@ -14,6 +14,7 @@ mod refusals;
 mod serve;
 mod shell;
 mod slips;
+mod space;
 mod sweeps;
 mod tables;
 #[cfg(unix)]

@@ -25,6 +25,8 @@ const STRAIGHT: f64 = 0.94;
 const MOST: usize = 400;
 /// The steps that a path has left once it turned back.
 const BEYOND: usize = 200;
+/// Steps shorter than this go round a corner of the path, which the load's kinks make.
+const CORNER: f64 = 1e-5;
 /// Largest correction (rad) of a prediction that leads to the same branch.
 const MOVED: f64 = 0.15;
 /// The least change of rotation (rad) that counts as much as the whole load.
@@ -284,11 +286,16 @@ impl Ramp<'_, '_> {
         }
         self.keep_accuracy()?;
         self.engine.ends_fine()?;
-        let next = self.point(fraction, Some(here))?;
+        let mut next = self.point(fraction, Some(here))?;
         // How straight the way was.
         let cosine = self.cosine(here, &next);
         if cosine < STRAIGHT {
-            return Err(Trouble::Stalled(cosine));
+            // Round a corner, which kinks of the load make, the determinant says which way is on.
+            let (Some(before), Some(after)) = (here.sign, next.sign) else { return Err(Trouble::Stalled(cosine)) };
+            if step > CORNER {
+                return Err(Trouble::Stalled(cosine));
+            }
+            next.rise = next.rise.abs() * here.rise.signum() * before * after;
         }
         if lands && next.rise * here.rise < 0.0 {
             return Err(Trouble::Stalled(step));

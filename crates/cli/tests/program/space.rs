@@ -1,0 +1,69 @@
+//! Arms in space.
+
+use super::{columns, directory, hydrostat_in, json, refused, solved};
+
+#[test]
+fn an_arm_in_space_is_solved_in_every_format() {
+    let document = json(&solved(&["solve", "silicone-spatial", "--set", "flow.speed=0.05", "--format", "json"]).out);
+    assert_eq!((&document["converged"], &document["stable"]), (&true.into(), &true.into()));
+    let tip = &document["tip"];
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert!(number(&tip["y"]) > 0.0 && number(&tip["z"]) > 0.0, "towards the two cables that pull: {tip}");
+    let [a, b, c] = ["a", "b", "c"].map(|name| [0, 1, 2].map(|k| number(&tip[name][k])));
+    let cross: [f64; 3] = std::array::from_fn(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+    assert!((0..3).all(|k| (cross[k] - c[k]).abs() < 1e-12));
+    assert_eq!(document["base"]["force"].as_array().unwrap().len(), 3);
+    assert_eq!(document["inputs"]["arm"]["space"], "spatial");
+
+    let table = solved(&["solve", "silicone-spatial", "--format", "csv", "--stations", "5"]).out;
+    let (names, rows) = columns(&table);
+    let expected = "s_m x_m y_m z_m a_x a_y a_z b_x b_y b_z c_x c_y c_z nu eta zeta tau_per_m kappa_per_m mu_per_m beta alpha_rad n_a_N \
+                    n_b_N n_c_N m_a_Nm m_b_Nm m_c_Nm";
+    assert_eq!(names, expected.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(rows.len(), 5);
+
+    let text = solved(&["solve", "octopus-spatial"]).out;
+    assert!(text.contains("in space") && text.contains(", stable"), "{text}");
+}
+
+/// With the word for space alone, an arm has the shape that it has in the plane.
+#[test]
+fn a_planar_file_in_space_gives_the_planar_answer() {
+    let args = ["solve", "silicone", "--set", "cable[0].tension=0.3", "--set", "flow.speed=0.1", "--format", "json"];
+    let plane = json(&solved(&args).out);
+    let space = json(&solved(&[&args[..], &["--set", "arm.space=spatial"]].concat()).out);
+    for key in ["x", "y"] {
+        let [a, b] = [&plane, &space].map(|document| document["tip"][key].as_f64().unwrap());
+        assert!((a - b).abs() < 1e-9, "{key}: {a} {b}");
+    }
+}
+
+#[test]
+fn a_fold_in_space_is_a_verdict_with_the_last_good_shape() {
+    let directory = directory();
+    let args = ["solve", "silicone-spatial", "--set", "cable[0].tension=1.4", "--format", "json"];
+    let run = hydrostat_in(directory.path(), &args);
+    assert_eq!(run.code, 3, "{}", run.err);
+    let document = json(&run.out);
+    assert_eq!(document["verdict"]["kind"], "cable_fold");
+    assert!(document["last_good"]["tip"]["z"].is_number());
+    assert!(run.err.contains("try: "), "{}", run.err);
+}
+
+#[test]
+fn what_is_for_arms_in_the_plane_says_so() {
+    for args in [
+        &["path", "silicone-spatial", "--vary", "flow.speed=0:0.1"][..],
+        &["equilibria", "silicone-spatial"],
+        &["reach", "silicone-spatial", "--target", "200 mm,50 mm"],
+        &["solve", "silicone-spatial", "--plot", "arm.svg"],
+    ] {
+        let words = refused(args);
+        assert!(words.contains("in the plane") && words.contains("spatial"), "{args:?}: {words}");
+    }
+    let words = refused(&["solve", "silicone", "--set", "tip.force=[0, 0, 1]"]);
+    assert!(words.contains("tip.force") && words.contains("space = \"spatial\""), "{words}");
+    let words = refused(&["solve", "silicone-spatial", "--set", "cable[0].friction=0.1"]);
+    assert!(words.contains("cable[0].friction"), "{words}");
+    assert!(solved(&["check", "silicone-spatial"]).out.contains("space = \"spatial\""));
+}
