@@ -399,3 +399,29 @@ fn warm_solves_are_cold_ones() {
     assert!(apart(tip(&warm), tip(&cold)) < 2e-8 * arm.length);
     assert!(warm.statistics.newton_rounds < cold.statistics.newton_rounds);
 }
+
+/// A stream from any side is followed along the path to its end, or to a limit that has a name.
+#[test]
+fn streams_from_all_sides_are_solved_or_have_a_verdict() {
+    let mut solved = 0;
+    for axis in 0..3 {
+        for sign in [-1.0, 1.0] {
+            let mut arm = three_cables();
+            (arm.gravity, arm.cables[0].tension, arm.cables[1].tension) = (None, 0.45, 0.135);
+            let mut stream = [0.0; 3];
+            stream[axis] = sign;
+            arm.space = Some(Space { stream: Some(stream), ..Space::default() });
+            for speed in [0.05, 0.3] {
+                arm.flow.speed = speed;
+                match SpatialSolver::new(&arm, Options::with_tol(1e-6)).unwrap().solve() {
+                    Ok(_) => solved += 1,
+                    Err(hydrostat::SpatialError::NoEquilibrium(no)) => {
+                        assert_eq!(no.verdict.kind, hydrostat::VerdictKind::LimitPoint, "{stream:?} {speed}");
+                    }
+                    Err(error) => panic!("{error}"),
+                }
+            }
+        }
+    }
+    assert!(solved >= 11, "{solved} of 12");
+}
