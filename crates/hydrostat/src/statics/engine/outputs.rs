@@ -1,0 +1,80 @@
+//! What outputs at a place begin with: the element's polynomials there, and a beta' as sharp as the state.
+
+use hydrostat_bvp::{Gauss, LANES};
+
+use crate::statics::dimensions::{Guess, M, N};
+use crate::statics::equations::{Asked, AtPlace, Equations};
+
+/// What is known at `x` in [0, 1] of element `i`, where the state is `z`.
+pub(crate) fn asked_in(solution: &Guess, gauss: &Gauss<M>, i: usize, x: f64, z: [f64; N]) -> Asked {
+    let known = solution.inner_in(gauss, i, x);
+    let s = if x == 1.0 { solution.mesh.nodes()[i + 1] } else { solution.mesh.nodes()[i] + x * solution.mesh.step(i) };
+    Asked { s, from_left: x > 0.0, z, strain: known.inner, beta_slope: known.closure_slope }
+}
+
+/// The reach of beta' over an element's length up to which the section law gives beta' better than the element's polynomial.
+const SHORT_REACH: f64 = 0.05;
+
+/// The same with the beta' that follows from the section law along the arm, given everything at the place with the beta' of the polynomial.
+///
+/// beta' at the end of a polynomial of degree M + 1 is right to order M only. With beta = g(s, z, beta') the section law,
+///
+/// ```text
+/// beta' = g_s + g_z z' + r beta''        r = dg/d beta'
+/// ```
+///
+/// at each place, where the reach r is mostly some micrometres: how beta'' is known hardly counts. Both are derivatives of g along the arm,
+/// by its values here and at three places inside the element, where beta' follows a line; beta'' with r times the beta''' of the polynomial
+/// beside. Twice, the second time with the beta' and beta'' of the first.
+#[inline(always)]
+pub(crate) fn sharpened(
+    equations: &Equations,
+    solution: &Guess,
+    gauss: &Gauss<M>,
+    (i, x): (usize, f64),
+    asked: Asked,
+    here: &AtPlace,
+) -> Asked {
+    const STEP: f64 = 1e-3;
+    const REACH_STEP: f64 = 1e-4;
+    if !solution.directions.is_closed() {
+        return asked;
+    }
+    let h = solution.mesh.step(i);
+    let step = if x > 0.5 { -STEP * h } else { STEP * h };
+    // The derivative of a polynomial of degree four or less, wherever its places are.
+    let derivative = |[a, b, c, d]: [f64; 4]| (8.0 * (c - b) - (d - a)) / (12.0 * 0.125 * h);
+    let places = [-0.25, -0.125, 0.125, 0.25].map(|d| x + d);
+    let slopes = places.map(|x| solution.slope_in(gauss, i, x));
+    let bend: [f64; N] = std::array::from_fn(|a| derivative(slopes.map(|slope| slope[a])));
+    let [a, b, c, d] = places.map(|x| solution.inner_in(gauss, i, x).closure_slope);
+    let curvature = derivative([a, b, c, d]);
+    // Second derivative of beta', likewise.
+    let bend_of_slope = (16.0 * (b + c) - 30.0 * asked.beta_slope - (a + d)) / (12.0 * (0.125 * h) * (0.125 * h));
+    let along = |k: f64, beta_slope: f64, curvature: f64| {
+        let d = k * step;
+        let z = std::array::from_fn(|a| asked.z[a] + d * (here.slope[a] + 0.5 * d * bend[a]));
+        let beta_slope = beta_slope + d * curvature;
+        Asked { s: asked.s + d, from_left: asked.from_left && k == 0.0, z, strain: here.strain, beta_slope }
+    };
+    // beta' and beta'' from beta here and further on.
+    let slopes_of = |[a, b, c, d]: [f64; LANES], reach: f64| {
+        let slope = (18.0 * b - 9.0 * c + 2.0 * d - 11.0 * a) / (6.0 * step);
+        (slope, (2.0 * a - 5.0 * b + 4.0 * c - d) / (step * step) + reach * bend_of_slope)
+    };
+    let push = REACH_STEP * asked.beta_slope.abs().max(1.0);
+    let pushed = Asked { beta_slope: asked.beta_slope + push, strain: here.strain, ..asked };
+    let [first, second, third] = [1.0, 2.0, 3.0].map(|k| along(k, asked.beta_slope, curvature));
+    let Some([one, two, three, pushed]) = equations.beta_at(&[first, second, third, pushed]) else { return asked };
+    let reach = (pushed - here.beta) / push;
+    if reach.abs() > SHORT_REACH * h {
+        return asked;
+    }
+    let (slope, curved) = slopes_of([here.beta, one, two, three], reach);
+    let (slope, curvature) = (slope + reach * (curved - curvature), curved);
+    let Some(again) = equations.beta_at(&[0.0, 1.0, 2.0, 3.0].map(|k| along(k, slope, curvature))) else {
+        return asked;
+    };
+    let (slope, curved) = slopes_of(again, reach);
+    Asked { beta_slope: slope + reach * (curved - curvature), strain: here.strain, ..asked }
+}
