@@ -5,7 +5,7 @@
 //! method ([`Collocation::newton`]), derivatives by parameters and loads ([`Collocation::response`]), adjoints
 //! ([`Collocation::adjoint`], [`Collocation::contributions`]) and the [`Determinant`].
 
-mod adjoint;
+pub(crate) mod adjoint;
 
 use crate::block::{add_scaled, apply};
 use crate::condense::{Column, Condensed, Map, condense, condense_closed, solve_column};
@@ -18,8 +18,6 @@ use crate::panels::{AtNodes, Loads, Panels};
 use crate::problem::{Condition, Drift, Inner, Local, Problem, Station};
 use crate::real::{LANES, Lanes, Real};
 use crate::solution::{Correction, End, Solution, Stage};
-
-pub use self::adjoint::{Cotangent, EndWeights, Functional, StageWeights};
 
 /// Why a linear system could not be solved.
 #[derive(Debug, Clone, Copy, PartialEq)]

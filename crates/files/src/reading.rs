@@ -8,7 +8,6 @@ use hydrostat::{ArmError, Join, Profile};
 use crate::document::{Entry, Field, Node, Origin, segment};
 use crate::format::{self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, JOINED, Key, Kind, MAX_CABLES, MAX_POINTS, PULL};
 use crate::quantity::Dimension;
-use crate::relative::resolved;
 
 /// What is wrong, without the names of files.
 #[derive(Debug)]
@@ -55,10 +54,10 @@ pub(crate) struct Values {
 }
 
 impl Values {
-    /// Reads a file's fields.
+    /// Reads a file's fields, in which no value is relative to others any more: see [`crate::relative::resolved`].
     pub(crate) fn read(fields: &[Field]) -> Self {
         let mut values = Self::default();
-        values.table("", format::FILE, &resolved(fields), Origin::Text(0));
+        values.table("", format::FILE, fields, Origin::Text(0));
         // What a key of a table should be is open while another is wrong.
         let checks: [(&str, Check); 3] =
             [("material", Self::check_material), ("flow", Self::check_drag), ("cable", Self::check_pull)];

@@ -7,7 +7,7 @@ use hydrostat::{CableState, Configuration, NoEquilibrium, Snap, Stability, Stati
 use serde::Serialize;
 
 use crate::csv_text::Rows;
-use crate::equilibria::Others;
+use crate::others::Others;
 use crate::written::Inputs;
 
 /// The version of the JSON documents' structure.

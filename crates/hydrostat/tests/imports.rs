@@ -4,10 +4,11 @@
 //! by `use`, by a path such as `super::mesh::Mesh::new()`, or through another module's `pub use`. A `mod` line is no
 //! import, and neither is a call of a method.
 
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 /// One `use` of one name: `use a::b as c` has the path [a, b] and the name c; a glob has the name `*`.
 struct Import {
@@ -46,14 +47,14 @@ type Read<'a> = &'a dyn Fn(&Path) -> Option<String>;
 impl Crate {
     fn read(root: &Path, read: Read) -> Self {
         let mut this = Self { modules: Vec::new() };
-        let folder = root.parent().expect("a source file is in a folder").to_path_buf();
-        this.add_file(root.to_path_buf(), folder, None, read);
+        let folder = root.parent().expect("a source file is in a folder");
+        this.add_file(root, folder, None, read);
         this
     }
 
     /// Adds the module of a file, whose children are in `folder`.
-    fn add_file(&mut self, file: PathBuf, folder: PathBuf, parent: Option<usize>, read: Read) -> usize {
-        let text = read(&file).unwrap_or_else(|| panic!("{} is declared and not there", file.display()));
+    fn add_file(&mut self, file: &Path, folder: &Path, parent: Option<usize>, read: Read) -> usize {
+        let text = read(file).unwrap_or_else(|| panic!("{} is declared and not there", file.display()));
         let tokens: TokenStream = text.parse().unwrap_or_else(|e| panic!("{}: {e}", file.display()));
         self.add_module(tokens, file, folder, parent, read)
     }
@@ -61,14 +62,14 @@ impl Crate {
     fn add_module(
         &mut self,
         tokens: TokenStream,
-        file: PathBuf,
-        folder: PathBuf,
+        file: &Path,
+        folder: &Path,
         parent: Option<usize>,
         read: Read,
     ) -> usize {
         let number = self.modules.len();
-        self.modules.push(Module { file: file.clone(), parent, ..Module::default() });
-        self.scan(number, &folder, tokens, true, read);
+        self.modules.push(Module { file: file.to_path_buf(), parent, ..Module::default() });
+        self.scan(number, folder, tokens, true, read);
         number
     }
 
@@ -106,10 +107,10 @@ impl Crate {
                     let name = ident(&tokens, at + 1).expect("just seen");
                     let child = if let Some(TokenTree::Group(body)) = tokens.get(at + 2) {
                         let file = self.modules[module].file.clone();
-                        self.add_module(body.stream(), file, folder.join(&name), Some(module), read)
+                        self.add_module(body.stream(), &file, &folder.join(&name), Some(module), read)
                     } else {
                         let (file, below) = child_file(folder, &name, declared_path.take(), read);
-                        self.add_file(file, below, Some(module), read)
+                        self.add_file(&file, &below, Some(module), read)
                     };
                     self.modules[module].children.insert(name, child);
                     at += 3;

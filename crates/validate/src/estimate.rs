@@ -11,7 +11,7 @@ use serde::Deserialize;
 use crate::convergence::arms;
 use crate::numbers::{fixed, larger, quantile, size};
 use crate::report::{Check, Row, Section, Table};
-use crate::{Listener, Scope};
+use crate::scope::{Listener, Scope};
 
 const REFERENCE: &str = include_str!("../../../validation/reference/cases.json");
 

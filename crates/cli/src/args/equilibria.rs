@@ -8,7 +8,8 @@ use clap::Args as ClapArgs;
 use hydrostat_figures::Quantity;
 use hydrostat_files::Varied;
 
-use super::{ArmArgs, Format, PictureArgs, STABLE, picture};
+use super::common::STABLE;
+use super::{ArmArgs, Format, PictureArgs, picture};
 
 const EXIT: &str = "\
 Exit status:

@@ -5,8 +5,8 @@ use std::path::Path;
 use hydrostat::{Arm, Followed, Follower, Target};
 use hydrostat_files::{FollowedDocument, followed_csv, number, parse_targets, read_targets};
 
-use super::reach::{far_off, options};
 use super::table::table;
+use super::targets::{far_off, options};
 use super::{Advised, NoAnswer};
 use crate::args::{Format, ReachArgs};
 use crate::input;

@@ -18,7 +18,7 @@ use crate::rod::readings::{
     Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
 };
 use crate::rod::swelling::swelling;
-use crate::statics::equations::{N, Units};
+use crate::statics::dimensions::{N, Units};
 
 /// Taylor coefficients about a place, in s/L.
 #[derive(Debug, Clone, Copy)]
