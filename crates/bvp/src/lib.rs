@@ -88,6 +88,7 @@
 mod block;
 pub mod collocation;
 mod condense;
+pub mod derivatives;
 mod determinant;
 pub mod directions;
 pub mod gauss;
@@ -100,6 +101,7 @@ pub mod real;
 pub mod solution;
 pub use collocation::adjoint::{Cotangent, EndWeights, Functional, StageWeights};
 pub use collocation::{Change, Collocation, RoundError, Singular};
+pub use derivatives::{Along, Derivatives};
 pub use determinant::Determinant;
 pub use directions::{Directions, EndPlace, Side};
 pub use gauss::Gauss;

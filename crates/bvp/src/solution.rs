@@ -206,7 +206,7 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
     }
 
     /// Inner unknowns at the end of element `i` that is not its own.
-    fn inner_at_other_end(&self, i: usize) -> [f64; L] {
+    pub(crate) fn inner_at_other_end(&self, i: usize) -> [f64; L] {
         let (block, lane) = self.directions.end_taken(i);
         self.ends[block].inner.map(|v| v.0[lane])
     }

@@ -1,6 +1,8 @@
 //! What outputs at a place begin with: the element's polynomials there, and a beta' as sharp as the state.
 
-use hydrostat_bvp::{Gauss, LANES};
+use std::sync::LazyLock;
+
+use hydrostat_bvp::{Along, Derivatives, Gauss, LANES, Side};
 
 use crate::statics::dimensions::{Guess, M, N};
 use crate::statics::equations::{Asked, AtPlace, Equations};
@@ -15,6 +17,12 @@ pub(crate) fn asked_in(solution: &Guess, gauss: &Gauss<M>, i: usize, x: f64, z: 
 /// The reach of beta' over an element's length up to which the section law gives beta' better than the element's polynomial.
 const SHORT_REACH: f64 = 0.05;
 
+/// At the left and the right end of an element, by its own end.
+static AT_ENDS: LazyLock<[[Derivatives<M>; 2]; 2]> = LazyLock::new(|| {
+    let gauss = Gauss::new();
+    [0.0, 1.0].map(|x| [Side::Left, Side::Right].map(|side| Derivatives::new(&gauss, x, side)))
+});
+
 /// The same with the beta' that follows from the section law along the arm, given everything at the place with the beta' of the polynomial.
 ///
 /// beta' at the end of a polynomial of degree M + 1 is right to order M only. With beta = g(s, z, beta') the section law,
@@ -25,7 +33,8 @@ const SHORT_REACH: f64 = 0.05;
 ///
 /// at each place, where the reach r is mostly some micrometres: how beta'' is known hardly counts. Both are derivatives of g along the arm,
 /// by its values here and at three places inside the element, where beta' follows a line; beta'' with r times the beta''' of the polynomial
-/// beside. Twice, the second time with the beta' and beta'' of the first.
+/// beside.
+/// Where it is not small what the first time changes, a second time begins with its beta' and beta''.
 #[inline(always)]
 pub(crate) fn sharpened(
     equations: &Equations,
@@ -37,25 +46,27 @@ pub(crate) fn sharpened(
 ) -> Asked {
     const STEP: f64 = 1e-3;
     const REACH_STEP: f64 = 1e-4;
+    /// Change of beta' by the first time, times the reach over the element's length, below which a second time changes less than the
+    /// differences are known to.
+    const ONCE: f64 = 1e-10;
     if !solution.directions.is_closed() {
         return asked;
     }
     let h = solution.mesh.step(i);
     let step = if x > 0.5 { -STEP * h } else { STEP * h };
-    // The derivative of a polynomial of degree four or less, wherever its places are.
-    let derivative = |[a, b, c, d]: [f64; 4]| (8.0 * (c - b) - (d - a)) / (12.0 * 0.125 * h);
-    let places = [-0.25, -0.125, 0.125, 0.25].map(|d| x + d);
-    let slopes = places.map(|x| solution.slope_in(gauss, i, x));
-    let bend: [f64; N] = std::array::from_fn(|a| derivative(slopes.map(|slope| slope[a])));
-    let [a, b, c, d] = places.map(|x| solution.inner_in(gauss, i, x).closure_slope);
-    let curvature = derivative([a, b, c, d]);
-    // Second derivative of beta', likewise.
-    let bend_of_slope = (16.0 * (b + c) - 30.0 * asked.beta_slope - (a + d)) / (12.0 * (0.125 * h) * (0.125 * h));
+    let side = solution.directions.side(i);
+    let there = |end: usize| solution.along(i, &AT_ENDS[end][side.index()]);
+    let Along { slope: bend, inner: turn, closure: [curvature, bend_of_slope] } = match x {
+        0.0 => there(0),
+        1.0 => there(1),
+        x => solution.along(i, &Derivatives::new(gauss, x, side)),
+    };
     let along = |k: f64, beta_slope: f64, curvature: f64| {
         let d = k * step;
         let z = std::array::from_fn(|a| asked.z[a] + d * (here.slope[a] + 0.5 * d * bend[a]));
         let beta_slope = beta_slope + d * curvature;
-        Asked { s: asked.s + d, from_left: asked.from_left && k == 0.0, z, strain: here.strain, beta_slope }
+        let strain = std::array::from_fn(|k| here.strain[k] + d * turn[k]);
+        Asked { s: asked.s + d, from_left: asked.from_left && k == 0.0, z, strain, beta_slope }
     };
     // beta' and beta'' from beta here and further on.
     let slopes_of = |[a, b, c, d]: [f64; LANES], reach: f64| {
@@ -72,6 +83,9 @@ pub(crate) fn sharpened(
     }
     let (slope, curved) = slopes_of([here.beta, one, two, three], reach);
     let (slope, curvature) = (slope + reach * (curved - curvature), curved);
+    if (reach / h * (slope - asked.beta_slope)).abs() < ONCE {
+        return Asked { beta_slope: slope, strain: here.strain, ..asked };
+    }
     let Some(again) = equations.beta_at(&[0.0, 1.0, 2.0, 3.0].map(|k| along(k, slope, curvature))) else {
         return asked;
     };
