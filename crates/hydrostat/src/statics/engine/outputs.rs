@@ -12,20 +12,23 @@ pub(crate) fn asked_in(solution: &Guess, gauss: &Gauss<M>, i: usize, x: f64, z: 
     SectionQuery { s, from_left: x > 0.0, z, strain: known.inner, beta_slope: known.closure_slope }
 }
 
-/// The reach of beta' over an element's length up to which the section law gives beta' better than the element's polynomial.
+/// The reach of beta' over an element's length up to which the section law gives beta' better than the element's
+/// polynomial.
 const SHORT_REACH: f64 = 0.05;
 
-/// The same with the beta' that follows from the section law along the arm, given everything at the place with the beta' of the polynomial.
+/// The same with the beta' that follows from the section law along the arm, given everything at the place with the
+/// beta' of the polynomial.
 ///
-/// beta' at the end of a polynomial of degree M + 1 is right to order M only. With beta = g(s, z, beta') the section law,
+/// beta' at the end of a polynomial of degree M + 1 is right to order M only. With beta = g(s, z, beta') the section
+/// law,
 ///
 /// ```text
 /// beta' = g_s + g_z z' + r beta''        r = dg/d beta'
 /// ```
 ///
-/// at each place, where the reach r is mostly some micrometres: how beta'' is known hardly counts. Both are derivatives of g along the arm,
-/// by its values here and at three places inside the element, where beta' follows a line; beta'' with r times the beta''' of the polynomial
-/// beside. Twice, the second time with the beta' and beta'' of the first.
+/// at each place, where the reach r is mostly some micrometres: how beta'' is known hardly counts. Both are derivatives
+/// of g along the arm, by its values here and at three places inside the element, where beta' follows a line; beta''
+/// with r times the beta''' of the polynomial beside. Twice, the second time with the beta' and beta'' of the first.
 #[inline(always)]
 pub(crate) fn sharpened(
     equations: &Equations,
