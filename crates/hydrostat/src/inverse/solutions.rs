@@ -14,7 +14,8 @@ const MISSED: usize = 3;
 const SAME: f64 = 1e-5;
 
 impl Arm {
-    /// Tensions, from 0 to their largest, that bring the arm to `targets`; the tensions and strokes of the arm itself do not count.
+    /// Tensions, from 0 to their largest, that bring the arm to `targets`; the tensions and strokes of the arm itself
+    /// do not count.
     ///
     /// # Errors
     /// [`ReachError`].
@@ -55,8 +56,8 @@ impl Arm {
         Search::new(self, Goal::Places(targets.to_vec()), options)?.run(options, &go_on)
     }
 
-    /// [`Arm::reach`] by the lengths of the cables: of what is found the strokes are commanded that its tensions make. It is
-    /// solved again with these, and its stability is that with lengths held.
+    /// [`Arm::reach`] by the lengths of the cables: of what is found the strokes are commanded that its tensions make.
+    /// It is solved again with these, and its stability is that with lengths held.
     ///
     /// # Errors
     /// [`ReachError`].
@@ -77,7 +78,8 @@ impl Arm {
         self.reach_by_strokes_while(targets, options, || true)
     }
 
-    /// [`Arm::reach_by_strokes`] while `go_on`, which is asked every round, says so; then with what was found until then.
+    /// [`Arm::reach_by_strokes`] while `go_on`, which is asked every round, says so; then with what was found until
+    /// then.
     ///
     /// # Errors
     /// [`ReachError`].
@@ -92,8 +94,8 @@ impl Arm {
         search.run(options, &go_on)
     }
 
-    /// Tensions of one cable, all others slack, that turn the tip section to the angle `alpha` (rad) against the centreline; distances
-    /// are then angles, in rad.
+    /// Tensions of one cable, all others slack, that turn the tip section to the angle `alpha` (rad) against the
+    /// centreline; distances are then angles, in rad.
     ///
     /// # Errors
     /// [`ReachError`].
@@ -118,7 +120,7 @@ impl Arm {
 
 impl Search {
     fn run(&self, options: &ReachOptions, go_on: &dyn Fn() -> bool) -> Result<Reach, ReachError> {
-        let mut found = Found { search: self, solutions: Vec::new(), missed: Vec::new(), failure: None };
+        let mut found = Candidates { search: self, solutions: Vec::new(), missed: Vec::new(), failure: None };
         for start in self.starts() {
             if !go_on() || (!options.all && !found.solutions.is_empty()) {
                 break;
@@ -128,7 +130,7 @@ impl Search {
         if options.all || found.solutions.is_empty() {
             found.look_along_lines(options.all, go_on);
         }
-        let Found { solutions, missed, failure, .. } = found;
+        let Candidates { solutions, missed, failure, .. } = found;
         let mut out = Reach { solutions: Vec::new(), closest: None };
         for state in solutions {
             out.solutions.push(self.read(state)?);
@@ -146,7 +148,7 @@ impl Search {
 }
 
 /// What a search has found so far.
-struct Found<'a> {
+struct Candidates<'a> {
     search: &'a Search,
     /// Different tensions that reach the targets.
     solutions: Vec<State>,
@@ -155,7 +157,7 @@ struct Found<'a> {
     failure: Option<ReachError>,
 }
 
-impl Found<'_> {
+impl Candidates<'_> {
     fn look_from(&mut self, start: &[f64], go_on: &dyn Fn() -> bool) {
         let state = match self.search.from(start, go_on) {
             Ok(state) => state,

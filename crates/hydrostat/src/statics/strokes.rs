@@ -20,19 +20,20 @@
 //!
 //! Several shapes can have the same strokes. The one meant is the end of this path: loads and given tensions first,
 //! the commanded cables slack (section 7 of `docs/model.md`), then all commanded strokes in proportion, from
-//! those that the slack cables have there to those asked for. It is followed by arclength (`path/ramp`, `path/contact`)
-//! unless the direct solve (Newton from the tensions of a straight arm) leads to a shape that no load pushes hard against: then that
-//! stands. If the path cannot leave its start, the direct shape also stands when the path in its tensions leads to the same shape.
+//! those that the slack cables have there to those asked for. It is followed by arclength (`path/load_stepping`,
+//! `path/contact`) unless the direct solve (Newton from the tensions of a straight arm) leads to a shape that no load
+//! pushes hard against: then that stands. If the path cannot leave its start, the direct shape also stands when the
+//! path in its tensions leads to the same shape.
 
 use crate::rod::arm::Arm;
 use crate::statics::configuration::Configuration;
 use crate::statics::engine::{First, Trouble};
-use crate::statics::path::{Pace, Stopped, Travelled, follow_strokes};
+use crate::statics::path::{PathSummary, StepControl, Stopped, follow_strokes};
 use crate::statics::solve::{SAME, Solver, known_on_the_way};
 use crate::statics::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
-/// Shares of the tensions of a straight arm from which the path of strokes may start: slack, unless that is in line with the
-/// stream, with kinks of the load all along it, from where the path does not get away.
+/// Shares of the tensions of a straight arm from which the path of strokes may start: slack, unless that is in line
+/// with the stream, with kinks of the load all along it, from where the path does not get away.
 const STARTS: [f64; 4] = [0.0, 0.02, 0.2, 0.7];
 
 /// The fraction that a path of strokes has to reach to have got away from its start.
@@ -76,14 +77,14 @@ impl Solver {
         self.engine.set_loads(start);
         let mut snaps = self.solve_tensions()?.snaps;
         self.forget();
-        let travelled = match self.follow_strokes_from_here(Pace::BRISK) {
+        let travelled = match self.follow_strokes_from_here(StepControl::BRISK) {
             Ok(travelled) => travelled,
             Err(mut stopped) => {
                 snaps.append(&mut stopped.snaps);
                 return Err(self.no_equilibrium(Stopped { snaps, ..stopped }));
             }
         };
-        let crossings = travelled.crossings;
+        let bifurcations = travelled.bifurcations;
         let settled = self.engine.settle(self.options.tol, First::Rough);
         let Ok(mut configuration) = settled.and_then(|estimate| self.read(estimate, travelled)) else {
             let verdict = Verdict { phase: Phase::Stroke, ..self.last_verdict(Some(1.0)) };
@@ -92,13 +93,14 @@ impl Solver {
         let sign = self.engine.determinant().sign;
         snaps.append(&mut configuration.snaps);
         configuration.snaps = snaps;
-        configuration.stable = known_on_the_way(&configuration, crossings, sign < 0.0);
+        configuration.stable = known_on_the_way(&configuration, bifurcations, sign < 0.0);
         self.keep(&configuration, sign);
         Ok(configuration)
     }
 
-    /// The direct solve, where the path of the tensions that it finds leads to the same shape. An arm that lies in a fast stream has
-    /// kinks all along when its cables begin to pull, and the path of the strokes may not get past them.
+    /// The direct solve, where the path of the tensions that it finds leads to the same shape. An arm that lies in a
+    /// fast stream has kinks all along when its cables begin to pull, and the path of the strokes may not get past
+    /// them.
     fn solve_strokes_by_tensions(&mut self, arm: &Arm) -> Option<Configuration> {
         // Loads that stretch the arm leave cables less to reel in than a straight arm would.
         let slack = self.solve_beside(&without_strokes(&with_tensions(arm, |_| 0.0)))?;
@@ -133,7 +135,7 @@ impl Solver {
     /// From the tensions that the strokes take in a straight arm without other loads.
     fn solve_strokes_directly(&mut self, arm: &Arm) -> Result<Configuration, Trouble> {
         let estimate = self.settle_strokes(arm, &self.straight_tensions(arm))?;
-        if self.engine.may_have_left_the_branch() || self.engine.determinant().sign < 0.0 {
+        if self.engine.needs_continuation() || self.engine.determinant().sign < 0.0 {
             return Err(Trouble::Singular);
         }
         self.read_strokes(estimate)
@@ -150,13 +152,13 @@ impl Solver {
     }
 
     fn read_strokes(&mut self, estimate: f64) -> Result<Configuration, Trouble> {
-        let configuration = self.read(estimate, Travelled::default())?;
+        let configuration = self.read(estimate, PathSummary::default())?;
         self.keep(&configuration, 1.0);
         Ok(configuration)
     }
 
     /// The phase of strokes, from the engine's equilibrium, in which the commanded cables are slack or hardly pulled.
-    fn follow_strokes_from_here(&mut self, pace: Pace) -> Result<Travelled, Stopped> {
+    fn follow_strokes_from_here(&mut self, pace: StepControl) -> Result<PathSummary, Stopped> {
         let bounds = self.options.snaps;
         let engine = &mut self.engine;
         engine.equations.hold_strokes();
@@ -169,15 +171,16 @@ impl Solver {
             if all_slack && strokes.iter().enumerate().all(|(i, stroke)| *stroke >= engine.equations.command(&held, i))
             {
                 // All stay slack.
-                return Ok(Travelled::default());
+                return Ok(PathSummary::default());
             }
             engine.equations.start_strokes_from(strokes);
         }
         follow_strokes(engine, pace, bounds)
     }
 
-    /// Tensions (N) of the cables that their commanded strokes take in a straight arm, and those given: with the strokes
-    /// that unit tensions reel in there, T >= 0 and the slack >= 0, one of them zero, by sweeps over the cables.
+    /// Tensions (N) of the cables that their commanded strokes take in a straight arm, and those given: with the
+    /// strokes that unit tensions reel in there, T >= 0 and the slack >= 0, one of them zero, by sweeps over the
+    /// cables.
     fn straight_tensions(&self, arm: &Arm) -> Vec<f64> {
         let equations = &self.engine.equations;
         let mut tensions: Vec<f64> =
@@ -255,11 +258,11 @@ mod tests {
                     let mut other = Solver::new(&arm, Options::with_tol(1e-9)).unwrap();
                     other.engine = Engine::new(&with_tensions(&arm, |_| 0.0));
                     other.solve_tensions().unwrap();
-                    let pace = Pace { longest: 0.1, straightness: 0.99, most: 2000, accuracy: 1e-6 };
+                    let pace = StepControl { longest: 0.1, straightness: 0.99, most: 2000, accuracy: 1e-6 };
                     other.engine.equations.hold_strokes();
                     other.follow_strokes_from_here(pace).unwrap();
                     other.engine.settle(1e-9, First::Warm).unwrap();
-                    let two = other.read(1e-9, Travelled::default()).unwrap();
+                    let two = other.read(1e-9, PathSummary::default()).unwrap();
                     both += 1;
                     let off = (one.tip().x - two.tip().x).hypot(one.tip().y - two.tip().y) / arm.length;
                     assert!(off < 1e-7, "{strokes:?} m, {speed} m/s from {direction}: {off:e} L apart");

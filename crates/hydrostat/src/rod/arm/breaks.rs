@@ -1,4 +1,5 @@
-//! The places at which something about an arm changes its law. Meshes have a node at each, so that their number is bounded.
+//! The places at which something about an arm changes its law. Meshes have a node at each, so that their number is
+//! bounded.
 
 use super::{Arm, ArmError, Material};
 use crate::rod::profile::Profile;
@@ -6,7 +7,8 @@ use crate::rod::profile::Profile;
 /// Cables that make a station about twice as dear as one without.
 const AS_DEAR: usize = 8;
 
-/// The most places of an arm with few cables: a mesh that has them all takes some 200 MB, and a direct solve on it seconds.
+/// The most places of an arm with few cables: a mesh that has them all takes some 200 MB, and a direct solve on it
+/// seconds.
 const MOST: usize = 10_000;
 
 impl Arm {
@@ -23,13 +25,13 @@ impl Arm {
     }
 
     /// What a station of this arm costs, in time and memory, over one of an arm with few cables.
-    pub(crate) fn dearness(&self) -> usize {
+    pub(crate) fn cost_factor(&self) -> usize {
         1 + self.cables.len() / AS_DEAR
     }
 
     /// Refuses more places than meshes have room for.
     pub(super) fn check_breaks(&self) -> Result<(), ArmError> {
-        let most = MOST / self.dearness();
+        let most = MOST / self.cost_factor();
         let mut knots = self.cables.len();
         let mut longest = ("cable".to_owned(), 0);
         self.each_profile(|key, profile| {

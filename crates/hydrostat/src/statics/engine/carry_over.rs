@@ -10,11 +10,11 @@ impl Engine {
     pub(crate) fn move_to(&mut self, mesh: Mesh) {
         std::mem::swap(&mut self.solution, &mut self.before);
         self.solution.mesh = mesh;
-        self.come_from_before();
+        self.remap();
     }
 
     /// Carries the solution before over to the mesh of the present one.
-    pub(super) fn come_from_before(&mut self) {
+    pub(super) fn remap(&mut self) {
         self.meshes += 1;
         let (gauss, equations) = (&self.system.gauss, &self.equations);
         self.before.onto(gauss, |s| equations.jumps_at(s), &mut self.solution);
@@ -45,8 +45,8 @@ impl Engine {
         self.equations.place_ends(&self.solution);
     }
 
-    /// Moves the solution on by `share` times its way from the solution `before`, nodes on kinks with it. Left as it is where the
-    /// two do not correspond node by node.
+    /// Moves the solution on by `share` times its way from the solution `before`, nodes on kinks with it. Left as it is
+    /// where the two do not correspond node by node.
     pub(crate) fn lead_on(&mut self, before: &Guess, share: f64) {
         let Some(mesh) = self.solution.mesh.led_on(&before.mesh, share) else { return };
         if !self.solution.lead_on(before, share) || mesh == self.solution.mesh {

@@ -1,23 +1,25 @@
-//! Manufactured solutions: smooth strains are chosen, and the loads along the arm that make them an equilibrium follow from them, for every
-//! option of `docs/model.md`, section 9.
+//! Manufactured solutions: smooth strains are chosen, and the loads along the arm that make them an equilibrium follow
+//! from them, for every option of `docs/model.md`, section 9.
 //!
-//! What they are to prove: the differential equations, the section law with its volume laws, the cables with beta' and beta'', the units and
-//! the end conditions are those of the model, because n_f, m_f and their derivatives are worked out here a second time, by Taylor series along
-//! the arm, and Newton finds the chosen shape; and the discrete solutions near it with the order of the method, 8, on equal elements. What they do not prove: the
-//! loads of the stream and of weight, which are taken from [`crate::rod::loads`] on both sides; `crates/validate` writes those out again.
+//! What they are to prove: the differential equations, the section law with its volume laws, the cables with beta' and
+//! beta'', the units and the end conditions are those of the model, because n_f, m_f and their derivatives are worked
+//! out here a second time, by Taylor series along the arm, and Newton finds the chosen shape; and the discrete
+//! solutions near it with the order of the method, 8, on equal elements. What they do not prove: the loads of the
+//! stream and of weight, which are taken from [`crate::rod::loads`] on both sides; `crates/validate` writes those out
+//! again.
 
 use std::f64::consts::PI;
 
 use hydrostat_bvp::{Mesh, Solution};
 
 use super::{Engine, Trouble};
+use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Cable, Cavity, FlowLaw, Gravity, Material};
 use crate::rod::loads::{Body, Water, load};
 use crate::rod::profile::Profile;
 use crate::rod::readings::{
     Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
 };
-use crate::rod::swelling::swelling;
 use crate::statics::dimensions::{N, Units};
 
 /// Taylor coefficients about a place, in s/L.
@@ -143,7 +145,8 @@ impl Manufactured {
         let nu = Series::constant(1.0) - still.times(0.05);
         let eta = Series::wave(0.07, 0.8 * WAVE, -0.5 * PI, s);
         let reference_mu = of(&arm.reference.mu).times(l);
-        // theta has the reference's curvature and a wave that begins flat; the unstrained base is straight, whatever the reference is.
+        // theta has the reference's curvature and a wave that begins flat; the unstrained base is straight, whatever
+        // the reference is.
         let straight = arm.readings.support == Support::UnstrainedBase;
         let mu_base = if straight { 0.0 } else { arm.reference.mu.at(0.0, l).value * l };
         let mu_slope = reference_mu.0[1];
@@ -184,13 +187,14 @@ impl Manufactured {
         }
     }
 
-    /// Force along e1 and e2 and couple a length that have to be added at `s` (over L), in `units`, to the loads that the arm has.
+    /// Force along e1 and e2 and couple a length that have to be added at `s` (over L), in `units`, to the loads that
+    /// the arm has.
     pub(crate) fn missing(&self, units: Units, water: &Water, body: &Body<f64>, s: f64) -> [f64; 3] {
         let shape = self.at(s);
         let [nu, eta, mu] = shape.strain.map(Series::value);
         let (sin, cos) = shape.theta.value().sin_cos();
         let beta_slope = shape.beta.slope().value();
-        let present = load(water, body, [cos, sin], [nu, eta, mu], &swelling(self.arm.readings.volume, nu), beta_slope);
+        let present = load(water, body, [cos, sin], [nu, eta, mu], &area_law(self.arm.readings.volume, nu), beta_slope);
         let [n1, n2, m] = shape.carried.map(|c| c.slope().value());
         let [n_a, n_b] = shape.local.map(Series::value);
         // m_f' = -(r' x n_f) . k - couple, over L.
@@ -336,8 +340,9 @@ fn combinations(law: FlowLaw) -> Vec<Readings> {
     out
 }
 
-/// Theta and contact force under every combination of options: on 32 elements their errors are those on 16 by 2^7.4 or more, and on 64 what
-/// rounding leaves of them. The tip is too good for an order: what it is off by passes through zero as elements get shorter.
+/// Theta and contact force under every combination of options: on 32 elements their errors are those on 16 by 2^7.4 or
+/// more, and on 64 what rounding leaves of them. The tip is too good for an order: what it is off by passes through
+/// zero as elements get shorter.
 fn check(law: FlowLaw) {
     let (mut lowest, mut last) = ([f64::INFINITY; 2], [0.0_f64; 3]);
     let all = combinations(law);

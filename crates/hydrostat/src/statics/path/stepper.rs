@@ -3,15 +3,16 @@
 
 use hydrostat_bvp::{Correction, Mesh, Solution};
 
-use super::pace::{CORNER, EVEN, FINEST, LOOSE, MANY, Pace, SYMMETRIC};
-use crate::statics::engine::{Engine, HOP, M, Round, State, Trouble, roughly};
+use super::step_control::{CORNER, EVEN, FINEST, LOOSE, MANY, SYMMETRIC, StepControl};
+use crate::statics::engine::{Engine, HOP, M, NewtonStep, State, Trouble, roughly};
 use crate::statics::equations::{L, N, Q};
 use crate::statics::verdict::Phase;
 
 /// The largest correction (rad) of a prediction that leads to the same branch.
 const MOVED: f64 = 0.15;
 
-/// The least change of theta (rad) that counts as much as the whole load: arms that turn less are straight, as far as anybody can see.
+/// The least change of theta (rad) that counts as much as the whole load: arms that turn less are straight, as far as
+/// anybody can see.
 const FINE_SCALE: f64 = 0.01;
 
 /// Corrections (rad) after which, but for second order, nothing is left to correct.
@@ -29,7 +30,7 @@ pub(super) struct Point {
     pub(super) margins: Vec<f64>,
     /// The fraction's part of the unit tangent, positive where the load rises along the path: `rise`
     /// times `response` is the rest.
-    pub(super) rise: f64,
+    pub(super) dlambda_ds: f64,
     /// Whether the determinant says which way is on: not where rounding alone can turn its sign.
     pub(super) oriented: bool,
     /// Natural logarithm of the size of the determinant.
@@ -49,7 +50,7 @@ impl Point {
         mesh.nodes().iter().map(move |s| {
             let e = own.element_of(*s);
             let x = (s - own.nodes()[e]) / own.step(e);
-            self.rise * (response[e][0] + x * (response[e + 1][0] - response[e][0]))
+            self.dlambda_ds * (response[e][0] + x * (response[e + 1][0] - response[e][0]))
         })
     }
 
@@ -63,13 +64,14 @@ impl Point {
         self.response.nodes.last().map_or(f64::INFINITY, |z| 1.0 / z[0])
     }
 
-    /// The turn (rad, root mean square along the arm) by the whole load at the rate here, in a metric whose scale of theta is `scale`.
+    /// The turn (rad, root mean square along the arm) by the whole load at the rate here, in a metric whose scale of
+    /// theta is `scale`.
     fn turn_by_load(&self, scale: f64) -> f64 {
-        scale * (self.rise.powi(-2) - 1.0).max(0.0).sqrt()
+        scale * (self.dlambda_ds.powi(-2) - 1.0).max(0.0).sqrt()
     }
 
     pub(super) fn is_symmetric(&self) -> bool {
-        (self.rise * self.response.largest(0)).abs() < SYMMETRIC
+        (self.dlambda_ds * self.response.largest(0)).abs() < SYMMETRIC
     }
 }
 
@@ -114,7 +116,7 @@ pub(super) struct Stepper<'e> {
     /// Fractions on which a step lands that would pass them.
     pub(super) bounds: [f64; 2],
     /// The last linearisation.
-    pub(super) round: Round,
+    pub(super) round: NewtonStep,
     pub(super) last_trouble: Option<Trouble>,
     /// Sign of the climb times that of the determinant.
     pub(super) orientation: f64,
@@ -125,7 +127,8 @@ pub(super) struct Stepper<'e> {
     pub(super) crossings_welcome: bool,
     /// The last estimate of the tip's error over L.
     pub(super) error: f64,
-    /// The change of theta (rad, root mean square along the arm) that counts as much as the whole of the load in the metric of the path.
+    /// The change of theta (rad, root mean square along the arm) that counts as much as the whole of the load in the
+    /// metric of the path.
     scale: f64,
     /// Where the branch began, and how far its shape has turned and its fraction has climbed since.
     progress: Progress,
@@ -137,11 +140,11 @@ pub(super) struct Stepper<'e> {
 
 /// How the path goes on at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Turn {
+pub(super) enum StepOutcome {
     /// Smoothly, or round a corner that a kink of the load makes.
-    None,
+    Regular,
     /// Smoothly, but the determinant's sign says backwards: another branch crosses.
-    Crossing,
+    Bifurcation,
 }
 
 impl<'e> Stepper<'e> {
@@ -150,7 +153,7 @@ impl<'e> Stepper<'e> {
             engine,
             along,
             bounds,
-            round: Round::default(),
+            round: NewtonStep::default(),
             last_trouble: None,
             orientation: 1.0,
             opposite: None,
@@ -198,8 +201,8 @@ impl<'e> Stepper<'e> {
         self.engine.linearise_held(true, &mut self.round)
     }
 
-    /// Weights of the squares of theta's change at the nodes in the metric of the path: its root mean square along the arm over
-    /// [`Stepper::scale`].
+    /// Weights of the squares of theta's change at the nodes in the metric of the path: its root mean square along the
+    /// arm over [`Stepper::scale`].
     pub(super) fn weights(&self) -> Vec<f64> {
         let mesh = &self.engine.solution.mesh;
         let n = mesh.elements();
@@ -219,8 +222,9 @@ impl<'e> Stepper<'e> {
         self.rescale(start, start.turn_by_load(self.scale));
     }
 
-    /// Fits the scale of theta to the way from `here` to `next`, which becomes the next point to start from: the path must not be long in the load
-    /// alone, or a shape that changes little, as that of an arm which hardly leans to either side, would turn back and forth within a step.
+    /// Fits the scale of theta to the way from `here` to `next`, which becomes the next point to start from: the path
+    /// must not be long in the load alone, or a shape that changes little, as that of an arm which hardly leans to
+    /// either side, would turn back and forth within a step.
     pub(super) fn went(&mut self, here: &Point, next: &mut Point) {
         let way = self.distance(here, next);
         let climb = next.fraction - here.fraction;
@@ -229,14 +233,15 @@ impl<'e> Stepper<'e> {
         self.rescale(next, self.progress.turn / self.progress.climb);
     }
 
-    /// Widens the scale of theta to `wanted` (rad a whole load), and gives `point` the tangent of the metric that follows.
+    /// Widens the scale of theta to `wanted` (rad a whole load), and gives `point` the tangent of the metric that
+    /// follows.
     fn rescale(&mut self, point: &mut Point, wanted: f64) {
         let first = self.progress.turn == 0.0;
         let least = if first { FINE_SCALE } else { self.scale };
         let scale = if wanted.is_finite() { wanted.clamp(least, 1.0) } else { 1.0 };
         let turn = point.turn_by_load(self.scale) / scale;
         self.scale = scale;
-        point.rise = point.rise.signum() / turn.hypot(1.0);
+        point.dlambda_ds = point.dlambda_ds.signum() / turn.hypot(1.0);
     }
 
     /// The point here. Its tangent is oriented by the determinant, whose sign times that of the climb is
@@ -257,11 +262,11 @@ impl<'e> Stepper<'e> {
         }
         let determinant = self.engine.determinant();
         let known = determinant.known_sign();
-        let rise = self.orientation * known.unwrap_or(1.0) / norm;
+        let dlambda_ds = self.orientation * known.unwrap_or(1.0) / norm;
         let (state, response) = (self.engine.state(), self.round.response.clone());
         let (tensions, margins) = (self.round.tension[1].clone(), self.margins());
         let (oriented, size) = (known.is_some(), determinant.log);
-        Ok(Point { state, fraction, response, tensions, margins, rise, oriented, size, error: self.error })
+        Ok(Point { state, fraction, response, tensions, margins, dlambda_ds, oriented, size, error: self.error })
     }
 
     /// Moves the solution from `here` along its tangent.
@@ -269,42 +274,52 @@ impl<'e> Stepper<'e> {
         self.current = false;
         self.stretch = 0.0;
         self.engine.restore(&here.state);
-        let climb = step * here.rise;
+        let climb = step * here.dlambda_ds;
         self.engine.solution.add(&here.response, climb);
         self.engine.add_tensions(&here.tensions, climb);
         here.fraction + climb
     }
 
-    pub(super) fn advance(&mut self, here: &Point, step: f64, pace: Pace) -> Result<(Point, Turn), Trouble> {
+    pub(super) fn advance(
+        &mut self,
+        here: &Point,
+        step: f64,
+        control: StepControl,
+    ) -> Result<(Point, StepOutcome), Trouble> {
         let mut fraction = self.predict(here, step);
         let [low, high] = self.bounds;
         if fraction >= high || fraction <= low {
-            return self.land(here, if fraction >= high { high } else { low }, pace);
+            return self.land(here, if fraction >= high { high } else { low }, control);
         }
         let from = self.engine.solution.clone();
         self.correct(here, &mut fraction)?;
-        self.arrive(here, &from, Fraction::Free(fraction), step, pace)
+        self.arrive(here, &from, Fraction::Free(fraction), step, control)
     }
 
     /// A step that ends at a given fraction; near a fold that is refused, and steps shrink.
-    pub(super) fn land(&mut self, here: &Point, fraction: f64, pace: Pace) -> Result<(Point, Turn), Trouble> {
-        let step = (fraction - here.fraction) / here.rise;
+    pub(super) fn land(
+        &mut self,
+        here: &Point,
+        fraction: f64,
+        control: StepControl,
+    ) -> Result<(Point, StepOutcome), Trouble> {
+        let step = (fraction - here.fraction) / here.dlambda_ds;
         self.predict(here, step);
         self.set(fraction);
         let from = self.engine.solution.clone();
         roughly(self.engine.newton(1e-6 * self.scale, 9))?;
-        let (end, turn) = self.arrive(here, &from, Fraction::Fixed(fraction), step, pace)?;
-        if turn == Turn::None && end.rise * here.rise < 0.0 {
+        let (end, turn) = self.arrive(here, &from, Fraction::Fixed(fraction), step, control)?;
+        if turn == StepOutcome::Regular && end.dlambda_ds * here.dlambda_ds < 0.0 {
             return Err(Trouble::Stalled(step));
         }
         Ok((end, turn))
     }
 
-    /// The point of the branch at which the tip has a given angle, from one nearby. There is one wherever that angle alone decides the
-    /// shape, round sharp folds, too, of which no tangent at a distance knows.
-    pub(super) fn at_tip_angle(&mut self, here: &Point, angle: f64, pace: Pace) -> Result<Point, Trouble> {
+    /// The point of the branch at which the tip has a given angle, from one nearby. There is one wherever that angle
+    /// alone decides the shape, round sharp folds, too, of which no tangent at a distance knows.
+    pub(super) fn at_tip_angle(&mut self, here: &Point, angle: f64, control: StepControl) -> Result<Point, Trouble> {
         let climb = (angle - here.tip_angle()) * here.slope();
-        let mut fraction = self.predict(here, climb / here.rise);
+        let mut fraction = self.predict(here, climb / here.dlambda_ds);
         let from = self.engine.solution.clone();
         self.correct_at_tip(&mut fraction)?;
         let moved = largest_turn(&from, &self.engine.solution);
@@ -312,8 +327,8 @@ impl<'e> Stepper<'e> {
             return Err(Trouble::Stalled(moved));
         }
         let mut fraction = Fraction::AtTip(fraction);
-        self.keep_accuracy(None, &mut fraction, [pace.accuracy; 2])?;
-        self.engine.ends_fine()?;
+        self.keep_accuracy(None, &mut fraction, [control.accuracy; 2])?;
+        self.engine.check_ends()?;
         self.point(fraction.value())
     }
 
@@ -321,7 +336,7 @@ impl<'e> Stepper<'e> {
     pub(super) fn correct(&mut self, here: &Point, fraction: &mut f64) -> Result<(), Trouble> {
         let normal: Vec<f64> =
             here.tangent_on(&self.engine.solution.mesh).zip(self.weights()).map(|(t, w)| t * w).collect();
-        self.correct_on(&normal, here.rise, fraction)
+        self.correct_on(&normal, here.dlambda_ds, fraction)
     }
 
     /// Newton with the angle of the tip as it is.
@@ -333,7 +348,8 @@ impl<'e> Stepper<'e> {
         self.correct_on(&normal, 0.0, fraction)
     }
 
-    /// Newton on the plane through the present state with the normal `normal`, over theta at the nodes, and `climb`, over the fraction.
+    /// Newton on the plane through the present state with the normal `normal`, over theta at the nodes, and `climb`,
+    /// over the fraction.
     fn correct_on(&mut self, normal: &[f64], climb: f64, fraction: &mut f64) -> Result<(), Trouble> {
         // In a hurry, when the next one would be none.
         let close = self.scale * if self.engine.in_a_hurry { CLOSE } else { 1e-6 };
@@ -379,35 +395,35 @@ impl<'e> Stepper<'e> {
         from: &Solution<N, M, L>,
         mut fraction: Fraction,
         step: f64,
-        pace: Pace,
-    ) -> Result<(Point, Turn), Trouble> {
+        control: StepControl,
+    ) -> Result<(Point, StepOutcome), Trouble> {
         let moved = largest_turn(from, &self.engine.solution);
         self.stretch = moved / MOVED;
         if moved > MOVED {
             return Err(Trouble::Stalled(moved));
         }
         // What the mesh is off by must not be mistaken for a turn of the path.
-        let accuracy = (0.02 * step.abs() * self.scale).max(FINEST).min(pace.accuracy);
-        self.keep_accuracy(Some(here), &mut fraction, [accuracy, pace.accuracy])?;
-        self.engine.ends_fine()?;
+        let accuracy = (0.02 * step.abs() * self.scale).max(FINEST).min(control.accuracy);
+        self.keep_accuracy(Some(here), &mut fraction, [accuracy, control.accuracy])?;
+        self.engine.check_ends()?;
         let fraction = fraction.value();
         let mut next = if self.current { self.point_of_round(fraction)? } else { self.point(fraction)? };
         let mut cosine = self.cosine(here, &next);
         if cosine < 0.0 && !(here.oriented && next.oriented) {
             // Rounding may have turned the sign: the path goes straight on.
-            (cosine, next.rise) = (-cosine, -next.rise);
+            (cosine, next.dlambda_ds) = (-cosine, -next.dlambda_ds);
             if next.oriented {
                 self.orientation = -self.orientation;
             }
         }
-        let crossing = cosine < 0.0 && -cosine >= pace.straightness;
+        let crossing = cosine < 0.0 && -cosine >= control.straightness;
         // Nothing turns on a symmetric branch but the load: bifurcations are passed at once, because
         // near them rounding would lead off the branch.
         if crossing && (self.crossings_welcome || step.abs() < CORNER || (here.is_symmetric() && next.is_symmetric())) {
-            return Ok((next, Turn::Crossing));
+            return Ok((next, StepOutcome::Bifurcation));
         }
         let strict = if self.changed_sides(here) > 0.05 { 0.1 } else { 1.0 };
-        let bend = (1.0 - cosine) / (strict * (1.0 - pace.straightness));
+        let bend = (1.0 - cosine) / (strict * (1.0 - control.straightness));
         let even = if self.engine.in_a_hurry { strict.max(0.3) } else { strict };
         let unevenness = self.unevenness(here, &next, step) / (even * EVEN);
         self.stretch = self.stretch.max(bend).max(unevenness);
@@ -417,7 +433,7 @@ impl<'e> Stepper<'e> {
         if step.abs() > CORNER && !(bend <= 1.0 && unevenness <= 1.0) {
             return Err(Trouble::Stalled(cosine - 2.0));
         }
-        Ok((next, Turn::None))
+        Ok((next, StepOutcome::Regular))
     }
 
     /// The share of the arm that the stream meets from the other side than at `here`. Where much of a
@@ -452,7 +468,7 @@ impl<'e> Stepper<'e> {
             square += w * (z[0] - before[0]).powi(2);
         }
         let mean = climb / square.sqrt();
-        (mean - 0.5 * (a.rise + b.rise)).abs() / a.rise.abs().max(b.rise.abs())
+        (mean - 0.5 * (a.dlambda_ds + b.dlambda_ds)).abs() / a.dlambda_ds.abs().max(b.dlambda_ds.abs())
     }
 
     /// Refines when the mesh no longer carries `accuracy`, or, where that would take very many elements,
@@ -510,7 +526,8 @@ impl<'e> Stepper<'e> {
 
     fn cosine(&self, a: &Point, b: &Point) -> f64 {
         // Both on the mesh of `b`, lengths included: a coarse mesh measures them coarsely.
-        let (mut both, mut first, mut second) = (a.rise * b.rise, a.rise * a.rise, b.rise * b.rise);
+        let (mut both, mut first, mut second) =
+            (a.dlambda_ds * b.dlambda_ds, a.dlambda_ds * a.dlambda_ds, b.dlambda_ds * b.dlambda_ds);
         for ((carried, own), w) in a.tangent_on(b.mesh()).zip(b.tangent_on(b.mesh())).zip(self.weights()) {
             both += w * own * carried;
             first += w * carried * carried;

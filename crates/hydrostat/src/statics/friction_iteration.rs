@@ -1,17 +1,17 @@
 //! Solves with friction of the cables: rounds of shape and turns, see [`crate::statics::friction`].
 //!
-//! A round multiplies what the turns are off by with about the friction times the turn, and by its negative while reeling in: less
-//! tension bends less. Above one that leads nowhere by itself, so that the turns for the next round are a mixture
-//! of those before and of those that they led to, in which what is off is least (Anderson 1965, "Iterative procedures for nonlinear integral
-//! equations").
+//! A round multiplies what the turns are off by with about the friction times the turn, and by its negative while
+//! reeling in: less tension bends less. Above one that leads nowhere by itself, so that the turns for the next round
+//! are a mixture of those before and of those that they led to, in which what is off is least (Anderson 1965,
+//! "Iterative procedures for nonlinear integral equations").
 
 use std::sync::Arc;
 
 use crate::numerics::elimination::solved;
 use crate::statics::configuration::Configuration;
 use crate::statics::engine::{First, Trouble};
-use crate::statics::friction::{Grip, Turns, exponents};
-use crate::statics::path::{Travelled, name_limit};
+use crate::statics::friction::{CapstanFactors, WrapAngles, exponents};
+use crate::statics::path::{PathSummary, name_limit};
 use crate::statics::solve::Solver;
 use crate::statics::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
@@ -32,14 +32,14 @@ const INTERVALS: u32 = 32;
 
 impl Solver {
     /// From the equilibrium without friction; where there is none, along the tensions with it.
-    pub(crate) fn solve_rubbing(&mut self) -> Result<Configuration, SolveError> {
-        self.engine.set_grip(None);
+    pub(crate) fn solve_with_friction(&mut self) -> Result<Configuration, SolveError> {
+        self.engine.set_capstan(None);
         let commanded = self.engine.equations.arm().is_commanded();
         match self.solve_smooth() {
             Ok(smooth) => {
-                let mut rubbing = self.raise_friction().map_err(|verdict| self.no_equilibrium(verdict))?;
-                rubbing.snaps = smooth.snaps;
-                Ok(rubbing)
+                let mut converged = self.raise_friction().map_err(|verdict| self.no_equilibrium(verdict))?;
+                converged.snaps = smooth.snaps;
+                Ok(converged)
             }
             Err(SolveError::NoEquilibrium(no)) if no.verdict.phase == Phase::Tension && !commanded => {
                 // Friction spares the tip, which may carry more with it.
@@ -65,7 +65,7 @@ impl Solver {
             match self.rub(next).map(|estimate| if next == 1.0 { self.confirm(estimate) } else { estimate }) {
                 Ok(estimate) if next == 1.0 => {
                     return self
-                        .read(estimate, Travelled::default())
+                        .read(estimate, PathSummary::default())
                         .map_err(|trouble| self.limit(Phase::Friction, share, &trouble));
                 }
                 Ok(_) => {
@@ -101,7 +101,7 @@ impl Solver {
                     share = next;
                     step *= 1.5;
                     last = self
-                        .read(estimate, Travelled::default())
+                        .read(estimate, PathSummary::default())
                         .map_err(|trouble| Some(self.limit(Phase::Tension, share, &trouble)))?;
                 }
                 Err(trouble) => {
@@ -116,8 +116,8 @@ impl Solver {
         Ok(last)
     }
 
-    /// Why it does not go on from where the engine is. A limit of the sections is one that this shape is at: rounds that lead nowhere can pass
-    /// any.
+    /// Why it does not go on from where the engine is. A limit of the sections is one that this shape is at: rounds
+    /// that lead nowhere can pass any.
     fn limit(&mut self, phase: Phase, load_fraction: f64, trouble: &Trouble) -> Verdict {
         let (residual, spent) = (self.engine.last, self.engine.spent());
         let (mut kind, mut s) = (VerdictKind::NotFound, None);
@@ -131,8 +131,9 @@ impl Solver {
         Verdict { kind, phase, load_fraction, s, residual, spent }
     }
 
-    /// What the tip is off by (over L) beside the estimate of the shape with its turns given: the turns are those of a mesh, too. They are
-    /// found again on elements of half the length, until the tip moves by less than the tolerance; the shape on those stays.
+    /// What the tip is off by (over L) beside the estimate of the shape with its turns given: the turns are those of a
+    /// mesh, too. They are found again on elements of half the length, until the tip moves by less than the tolerance;
+    /// the shape on those stays.
     fn confirm(&mut self, estimate: f64) -> f64 {
         let (tol, mut estimate) = (self.options.tol, estimate);
         for _ in 0..CUTS {
@@ -160,8 +161,8 @@ impl Solver {
         let sign = self.engine.determinant().sign;
         let mut rounds = Rounds::new(share, exponents(self.engine.equations.arm(), share));
         for _ in 0..ROUNDS {
-            let ease = rounds.go_on(self.engine.cable_turns().map_err(Trouble::Section)?);
-            self.engine.set_grip(Some(&rounds.grip()));
+            let ease = rounds.go_on(self.engine.wrap_angles().map_err(Trouble::Section)?);
+            self.engine.set_capstan(Some(&rounds.capstan()));
             let (before, angle) = (self.engine.tip, self.engine.tip_angle());
             let estimate = self.engine.settle(tol, First::Warm)?;
             let same_branch = self.engine.determinant().sign == sign;
@@ -184,7 +185,7 @@ struct Rounds {
     share: f64,
     exponents: Vec<f64>,
     /// Of all shapes, in order; the first is that before the first round.
-    shapes: Vec<Arc<Turns>>,
+    shapes: Vec<Arc<WrapAngles>>,
     /// What each round's shape was solved with, as weights of the shapes before it.
     used: Vec<Vec<f64>>,
     /// What the turns of each round's shape differ by from those, as exponents.
@@ -197,15 +198,16 @@ impl Rounds {
     }
 
     /// What the next shape is to be solved with.
-    fn grip(&self) -> Grip {
+    fn capstan(&self) -> CapstanFactors {
         let weights = self.used.last().into_iter().flatten();
         let shapes = weights.zip(&self.shapes).filter(|(weight, _)| **weight != 0.0);
         let shapes = shapes.map(|(weight, shape)| (*weight, Arc::clone(shape))).collect();
-        Grip::new(self.share, self.exponents.clone(), shapes)
+        CapstanFactors::new(self.share, self.exponents.clone(), shapes)
     }
 
-    /// Takes the turns of the last round's shape, and chooses those for the next; the share of what is off that these make up for.
-    fn go_on(&mut self, turns: Turns) -> f64 {
+    /// Takes the turns of the last round's shape, and chooses those for the next; the share of what is off that these
+    /// make up for.
+    fn go_on(&mut self, turns: WrapAngles) -> f64 {
         self.shapes.push(Arc::new(turns));
         let count = self.shapes.len();
         let Some(last) = self.used.last() else {
@@ -240,8 +242,8 @@ impl Rounds {
         out
     }
 
-    /// The share of what is off that a round is to make up for: where less tension bends clearly less, about as much as would be right
-    /// if all of the arm did the same.
+    /// The share of what is off that a round is to make up for: where less tension bends clearly less, about as much as
+    /// would be right if all of the arm did the same.
     fn ease(&self) -> f64 {
         let Some(shape) = self.shapes.last() else { return 1.0 };
         let steep = |(c, exponent): (usize, &f64)| -exponent * shape.at(c, 1.0, true);
