@@ -17,7 +17,7 @@
 //! - **derivatives**: responses to many changes of the equations, or the [`Collocation::adjoint`] of few functionals;
 //! - **an error estimate**: the solution sampled with one more stage ([`Solution::resample`]), and one Newton round there;
 //!   [`Collocation::contributions`] says what each element adds;
-//! - **a better mesh**: [`Mesh::redistributed`] from those contributions, [`Solution::onto`] to go there, [`Mesh::pin`] for nodes that
+//! - **a better mesh**: [`Mesh::redistributed`] from those contributions, [`Solution::remap`] to go there, [`Mesh::pin`] for nodes that
 //!   must lie on breaks of the data or kinks of the solution;
 //! - **values between the nodes**: [`Solution::state_in`].
 //!
@@ -88,6 +88,7 @@
 mod block;
 pub mod collocation;
 mod condense;
+pub mod correction;
 mod determinant;
 pub mod directions;
 pub mod gauss;
@@ -99,13 +100,14 @@ pub mod problem;
 pub mod real;
 pub mod solution;
 pub use collocation::adjoint::{Cotangent, EndWeights, Functional, StageWeights};
-pub use collocation::{Change, Collocation, RoundError, Singular};
+pub use collocation::{Collocation, Forcing, LinearisationError, Singular};
+pub use correction::Correction;
 pub use determinant::Determinant;
 pub use directions::{Directions, EndPlace, Side};
 pub use gauss::Gauss;
 pub use groups::Groups;
 pub use mesh::{Limits, Mesh};
 pub use pointwise::{OnMesh, Pointwise, Slopes};
-pub use problem::{Condition, Drift, Inner, Local, Problem, Station};
+pub use problem::{Condition, Inner, Local, Problem, StageForcing, Station};
 pub use real::{LANES, Lanes, Real, each};
-pub use solution::{Correction, End, InnerState, Resampling, Solution, Stage};
+pub use solution::{End, InnerState, Resampling, Solution, Stage};

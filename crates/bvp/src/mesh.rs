@@ -134,7 +134,7 @@ impl Mesh {
 
     /// Moves the nodes on by `share` times their way from the mesh `before` to this one; `None` where the two do not
     /// correspond node by node, or where that would more than halve or double an element.
-    pub fn led_on(&self, before: &Self, share: f64) -> Option<Self> {
+    pub fn extrapolated(&self, before: &Self, share: f64) -> Option<Self> {
         if self.pinned != before.pinned {
             return None;
         }

@@ -27,7 +27,7 @@ pub trait Pointwise<const N: usize, const Q: usize> {
     /// Slopes and gradients at the place `s` in the state `z`.
     ///
     /// # Errors
-    /// When the state has no slopes: the round ends with [`RoundError::Slopes`](crate::RoundError::Slopes), and whoever drives it may correct by less.
+    /// When the state has no slopes: the round ends with [`LinearisationError::Slopes`](crate::LinearisationError::Slopes), and whoever drives it may correct by less.
     fn slopes(&self, s: f64, z: &[f64; N]) -> Result<Slopes<N, Q>, Self::Failure>;
 
     /// See [`Problem::left_count`].
