@@ -40,6 +40,26 @@ pub trait Pointwise<const N: usize, const Q: usize> {
     fn right(&self, z: &[f64; N], out: &mut [Condition<N>; N]);
 }
 
+impl<P: Pointwise<N, Q> + ?Sized, const N: usize, const Q: usize> Pointwise<N, Q> for &P {
+    type Failure = P::Failure;
+
+    fn slopes(&self, s: f64, z: &[f64; N]) -> Result<Slopes<N, Q>, P::Failure> {
+        (**self).slopes(s, z)
+    }
+
+    fn left_count(&self) -> usize {
+        (**self).left_count()
+    }
+
+    fn left(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
+        (**self).left(z, out);
+    }
+
+    fn right(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
+        (**self).right(z, out);
+    }
+}
+
 /// A [`Pointwise`] problem at the stages of a mesh, as a [`Problem`].
 #[derive(Debug, Clone)]
 pub struct OnMesh<P> {

@@ -170,7 +170,7 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
     /// [`Solution::inner_in`], given the cardinal polynomials at `x`.
     fn inner_by(&self, gauss: &Gauss<M>, cardinals: &[f64; M], i: usize, x: f64) -> InnerState<L> {
         let mut out = InnerState { inner: [0.0; L], closure_slope: 0.0 };
-        if !self.directions.is_closed() {
+        if const { L == 0 } || !self.directions.is_closed() {
             for (j, w) in cardinals.iter().enumerate() {
                 let of = self.inner(i, j).inner;
                 for a in 0..L {
@@ -254,7 +254,7 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
             }
         }
         out.nodes.push(self.nodes[self.mesh.elements()]);
-        if !self.directions.is_closed() {
+        if const { L == 0 } || !self.directions.is_closed() {
             out.directions.clear();
             out.ends.clear();
             return;
@@ -276,7 +276,7 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
         out.nodes.clone_from(&self.nodes);
         out.ends.clone_from(&self.ends);
         resize(&mut out.stages, groups.count() * K, Stage::default());
-        let closed = self.directions.is_closed();
+        let closed = L > 0 && self.directions.is_closed();
         for g in 0..groups.count() {
             let own = &self.stages[g * M..(g + 1) * M];
             let mut right = Lanes::default();

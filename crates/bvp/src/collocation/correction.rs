@@ -25,7 +25,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
     ) -> Column<N, M> {
         let zero = Lanes::of(0.0);
         let (mut value, mut by_closure) = ([zero; POINTS], [zero; POINTS]);
-        if self.directions.is_closed() {
+        if const { L > 0 } && self.directions.is_closed() {
             value = *change;
             if let Some(defect) = defect {
                 for m in 0..M + 1 {
@@ -63,7 +63,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             }
             change[j] = local.inner.value_change;
         }
-        if self.directions.is_closed() {
+        if const { L > 0 } && self.directions.is_closed() {
             change[M] = self.ends[g].value_change;
         }
         let defect = self.condensed.closures.get(g).map(|closure| &closure.defect);
@@ -82,7 +82,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 jump[a] += w * column.slopes[j][a];
             }
         }
-        if self.directions.is_closed() {
+        if const { L > 0 } && self.directions.is_closed() {
             let closure = &self.condensed.closures[g];
             for m in 0..M + 1 {
                 own += closure.own[m] * column.value[m];
@@ -138,7 +138,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
     /// The values that elements take over, given those of the nodes and what closings add.
     fn fill_taken(&self, nodes: &AtNodes<N>, closing: &[f64], taken: &mut Vec<f64>) {
         taken.clear();
-        if !self.directions.is_closed() {
+        if const { L == 0 } || !self.directions.is_closed() {
             return;
         }
         taken.extend((0..self.groups.elements).map(|i| match self.directions.side(i) {
@@ -202,6 +202,12 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             }
         }
         self.memory = memory;
+    }
+
+    /// By how much the state jumps over each element in the last Newton correction, from no change at its left node: the local error of the
+    /// element where the solution was another method's.
+    pub fn jumps(&self) -> &[[f64; N]] {
+        &self.memory.loads.transitions
     }
 
     /// The changes of the states at the stages, in blocks, by a correction.
@@ -306,7 +312,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 for a in 0..N {
                     z[a].0[lane] = memory.nodes.z[i][a];
                 }
-                if self.directions.is_closed() {
+                if const { L > 0 } && self.directions.is_closed() {
                     taken.0[lane] = memory.taken[i];
                 }
             }
@@ -315,7 +321,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 let by_state = apply(&by_stages[j], &z);
                 for a in 0..N {
                     k[j][a] += by_state[a];
-                    if self.directions.is_closed() {
+                    if const { L > 0 } && self.directions.is_closed() {
                         k[j][a] += by_taken_stages[j][a] * taken;
                     }
                 }
@@ -330,7 +336,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 }
             }
             let mut closure_slopes = [zero; POINTS];
-            if self.directions.is_closed() {
+            if const { L > 0 } && self.directions.is_closed() {
                 let closure = &self.condensed.closures[g];
                 let mut values = [zero; POINTS];
                 let mut own = z;

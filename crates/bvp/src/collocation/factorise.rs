@@ -66,7 +66,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         resize(&mut self.maps, groups.elements, blank);
         for g in 0..groups.count() {
             let mut own_product = Lanes::of(1.0);
-            let condensed = if self.directions.is_closed() {
+            let condensed = if const { L > 0 } && self.directions.is_closed() {
                 self.condense_closed::<FUSED>(g, &mut own_product)
             } else {
                 let locals = &self.locals[g * M..(g + 1) * M];
@@ -82,22 +82,32 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             self.map_group::<FUSED>(g);
         }
         self.close(&mut product)?;
+        let (left, right) = self.take_conditions(problem, solution);
         let left_count = problem.left_count();
-        let (mut left, mut right) = ([Condition::default(); N], [Condition::default(); N]);
-        problem.left(&solution.nodes[0], &mut left);
-        problem.right(&solution.nodes[groups.elements], &mut right);
-        let conditions = (&left[..left_count], &right[..N - left_count]);
         self.determinant = self
             .panels
-            .factorise::<FUSED>(&self.maps, &self.directions, conditions.0, conditions.1, product)
+            .factorise::<FUSED>(&self.maps, &self.directions, &left[..left_count], &right[..N - left_count], product)
             .ok_or(Singular::System)?;
-        for (r, condition) in conditions.0.iter().enumerate() {
-            self.memory.loads.left[r] = -condition.residual;
-        }
-        for (r, condition) in conditions.1.iter().enumerate() {
-            self.memory.loads.right[r] = -condition.residual;
-        }
         Ok(())
+    }
+
+    /// The conditions at both ends of a solution, their residuals put into the right side.
+    ///
+    /// After it, and an evaluation at the solution, [`Collocation::newton`] gives the simplified correction: new residual, old factors. (Without a
+    /// closure variable: the old factors of one do not fit its new equations.)
+    #[inline(always)]
+    pub(crate) fn take_conditions<P: Problem<N, Q, L>>(
+        &mut self,
+        problem: &P,
+        solution: &Solution<N, M, L>,
+    ) -> ([Condition<N>; N], [Condition<N>; N]) {
+        let (mut left, mut right) = ([Condition::default(); N], [Condition::default(); N]);
+        problem.left(&solution.nodes[0], &mut left);
+        problem.right(&solution.nodes[self.groups.elements], &mut right);
+        for r in 0..N {
+            (self.memory.loads.left[r], self.memory.loads.right[r]) = (-left[r].residual, -right[r].residual);
+        }
+        (left, right)
     }
 
     #[inline(always)]
@@ -153,7 +163,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 }
             }
         }
-        if !self.directions.is_closed() {
+        if const { L == 0 } || !self.directions.is_closed() {
             return;
         }
         let closure = &self.condensed.closures[g];

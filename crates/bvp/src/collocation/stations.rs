@@ -74,7 +74,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         resize(&mut self.locals, self.stations.len(), Local::default());
         self.evaluations += self.groups.elements * M;
         problem.stages::<FUSED>(self.groups, &mut self.stations, &mut self.locals)?;
-        if self.directions.is_closed() {
+        if const { L > 0 } && self.directions.is_closed() {
             resize(&mut self.ends, self.end_stations.len(), Inner::default());
             problem.ends::<FUSED>(&self.directions.ends, &mut self.end_stations, &mut self.ends)?;
         }
@@ -89,7 +89,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 stage.inner[a] = station.inner[a] + local.inner.change[a];
             }
         }
-        if !self.directions.is_closed() {
+        if const { L == 0 } || !self.directions.is_closed() {
             return;
         }
         for ((end, station), inner) in solution.ends.iter_mut().zip(&self.end_stations).zip(&self.ends) {
