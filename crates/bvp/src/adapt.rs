@@ -152,9 +152,7 @@ impl<'a, const N: usize> Comparison<'a, N> {
         let floor = self.options.floor;
         let gauss = &METHODS.solve;
         let mut out = Measured { error: 0.0, place: 0.0, goal: 0.0, goal_error: 0.0, nodal: 0.0 };
-        let at_node = |i: usize| -> [f64; N] {
-            std::array::from_fn(|a| self.finer.nodes[i][a] - solution.nodes[i][a])
-        };
+        let at_node = |i: usize| -> [f64; N] { std::array::from_fn(|a| self.finer.nodes[i][a] - solution.nodes[i][a]) };
         let size = |difference: &[f64; N], value: &[f64; N]| {
             // Not f64::max, which takes what is not a number for nothing.
             (0..N).filter(|a| wanted(*a)).fold(0.0, |m: f64, a| {
@@ -183,8 +181,7 @@ impl<'a, const N: usize> Comparison<'a, N> {
                     (0..N).for_each(|a| finer[a] += h * self.integrals[j][l] * slope[a]);
                 }
                 let difference: [f64; N] = std::array::from_fn(|a| finer[a] - own[a]);
-                let own_part: [f64; N] =
-                    std::array::from_fn(|a| difference[a] - (1.0 - c) * left[a] - c * right[a]);
+                let own_part: [f64; N] = std::array::from_fn(|a| difference[a] - (1.0 - c) * left[a] - c * right[a]);
                 local = local.max(size(&own_part, &own));
                 let whole = size(&difference, &own);
                 if whole.is_nan() || whole > out.error {

@@ -237,8 +237,7 @@ impl<P: Bvp<N>, const N: usize> Pointwise<N, 1> for OnUnit<'_, P> {
         let [a, b] = self.interval;
         let (s, length) = (a + (b - a) * t, b - a);
         let (z, p) = unknowns.split_at(states);
-        let mut out =
-            Slopes { slope: [0.0; N], jacobian: [[0.0; N]; N], rate: [0.0; 1], rate_gradient: [[0.0; N]; 1] };
+        let mut out = Slopes { slope: [0.0; N], jacobian: [[0.0; N]; N], rate: [0.0; 1], rate_gradient: [[0.0; N]; 1] };
         self.problem.slope_with_jacobian(s, z, p, &mut out.slope[..states], &mut out.jacobian[..states]);
         out.rate[0] = self.problem.goal_with_gradient(s, z, p, &mut out.rate_gradient[0]);
         let mut sum = out.rate[0];

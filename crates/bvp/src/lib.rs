@@ -284,6 +284,7 @@ mod block;
 pub mod bvp;
 pub mod collocation;
 mod condense;
+pub mod continuation;
 pub mod correction;
 mod determinant;
 pub mod directions;
@@ -304,6 +305,7 @@ pub use bvp::{Bvp, Differentiable};
 pub use collocation::{
     Collocation, Cotangent, EndWeights, Forcing, Functional, LinearisationError, Singular, StageWeights,
 };
+pub use continuation::{Continuation, Event, Path, PathEnd, PathOptions, PathPoint};
 pub use correction::Correction;
 pub use determinant::Determinant;
 pub use directions::{Directions, EndPlace, Side};
@@ -313,7 +315,7 @@ pub use mesh::{Limits, Mesh};
 pub use pointwise::{OnMesh, Pointwise, Slopes};
 pub use problem::{Condition, Inner, Local, Problem, StageForcing, Station};
 pub use real::{LANES, Lanes, Real, each};
-pub use solution::{End, InnerState, Resampling, Solution, Stage};
 pub use scalar::{Dual, Scalar};
 pub use sol::{Sol, SolveStatistics};
+pub use solution::{End, InnerState, Resampling, Solution, Stage};
 pub use solve::{Error, Guess, Options, solve};

@@ -113,6 +113,16 @@ impl Mesh {
         self.nodes[i + 1] - self.nodes[i]
     }
 
+    /// Weights of the nodes in an integral over [0, 1], by the trapezoidal rule.
+    pub fn node_weights(&self) -> impl Iterator<Item = f64> + '_ {
+        let n = self.elements();
+        (0..=n).map(move |i| {
+            let left = if i > 0 { self.step(i - 1) } else { 0.0 };
+            let right = if i < n { self.step(i) } else { 0.0 };
+            0.5 * (left + right)
+        })
+    }
+
     /// Whether node `i` is pinned.
     pub fn is_pinned(&self, i: usize) -> bool {
         self.pinned[i] == Pin::Pinned

@@ -231,7 +231,8 @@ pub(crate) fn correct<const N: usize, const M: usize>(
     system.newton::<false>(solution, out);
 }
 
-fn quadratures<const N: usize, const M: usize>(
+/// What each element adds to the quadratures, a correction included.
+pub(crate) fn quadratures<const N: usize, const M: usize>(
     system: &Collocation<N, M, 1>,
     correction: &Correction<N, M, 1>,
 ) -> Vec<[f64; 1]> {

@@ -111,7 +111,10 @@ impl std::fmt::Display for Error {
                 write!(f, "the equations of the element at s = {s} are singular, on {elements} elements")
             }
             Self::Singular { s: None, elements } => {
-                write!(f, "the linearised problem is singular, on {elements} elements: the conditions leave a solution free")
+                write!(
+                    f,
+                    "the linearised problem is singular, on {elements} elements: the conditions leave a solution free"
+                )
             }
             Self::Stalled { correction, s, damping, iterations, elements } => write!(
                 f,
@@ -193,11 +196,7 @@ fn missing(mesh: &Mesh, breaks: &[f64]) -> Vec<f64> {
 }
 
 /// A function sampled at nodes and stages: its polynomial through them has these slopes at the stages.
-fn sample<const N: usize>(
-    mesh: Mesh,
-    [a, b]: [f64; 2],
-    function: &dyn Fn(f64) -> [f64; N],
-) -> Solution<N, STAGES> {
+fn sample<const N: usize>(mesh: Mesh, [a, b]: [f64; 2], function: &dyn Fn(f64) -> [f64; N]) -> Solution<N, STAGES> {
     let gauss = &METHODS.solve;
     let at = |t: f64| function(a + (b - a) * t);
     let mut out = Solution::constant(mesh, [0.0; N], []);
@@ -235,11 +234,7 @@ fn sample<const N: usize>(
 ///
 /// # Errors
 /// [`Error`]. Work is bounded by the options, whatever the problem.
-pub fn solve<P: Bvp<N>, const N: usize>(
-    problem: &P,
-    guess: &Guess<'_, N>,
-    options: &Options,
-) -> Result<Sol<N>, Error> {
+pub fn solve<P: Bvp<N>, const N: usize>(problem: &P, guess: &Guess<'_, N>, options: &Options) -> Result<Sol<N>, Error> {
     let interval = check(problem, options)?;
     let [a, b] = interval;
     let breaks: Vec<f64> = problem.breaks().iter().map(|s| (s - a) / (b - a)).collect();
@@ -331,12 +326,8 @@ fn solve_on_unit<const N: usize>(
                 statistics,
             });
         }
-        last = Some(Error::Mesh {
-            error: measured.error,
-            s: unit(measured.place),
-            elements,
-            meshes: statistics.meshes,
-        });
+        last =
+            Some(Error::Mesh { error: measured.error, s: unit(measured.place), elements, meshes: statistics.meshes });
         let Some(mesh) = comparison.next_mesh(&solution.mesh, &measured) else { break };
         kept.clone_from(&solution);
         solution.mesh = mesh;
@@ -358,7 +349,7 @@ fn in_interval(error: NewtonError<NotFinite>, mesh: &Mesh, unit: impl Fn(f64) ->
 }
 
 /// The interval of a problem that can be solved with these options.
-fn check<P: Bvp<N>, const N: usize>(problem: &P, options: &Options) -> Result<[f64; 2], Error> {
+pub(crate) fn check<P: Bvp<N>, const N: usize>(problem: &P, options: &Options) -> Result<[f64; 2], Error> {
     let refuse = |what, value, expected| Err(Error::Input { what, value, expected });
     let [a, b] = problem.interval();
     if !(a.is_finite() && b.is_finite() && a < b) {

@@ -72,9 +72,9 @@ fn an_arm_on_an_elastic_foundation_deflects_as_in_hetenyi_s_closed_form() {
             // Equilibrium holds for large deflections, too.
             assert!((sol.goal() - load).abs() < 1e-7 * load, "{length} {load}: {:e}", sol.goal() - load);
         }
-        println!("length {length}: {off:e?}");
+        println!("length {length}: {off:?}");
         // What the closed form leaves out is of second order in the load.
-        assert!(off[0] < 2e-2 && off[1] < 0.02 * off[0] && off[2] < 1e-6, "length {length}: {off:e?}");
+        assert!(off[0] < 2e-2 && off[1] < 0.02 * off[0] && off[2] < 1e-6, "length {length}: {off:?}");
     }
 }
 

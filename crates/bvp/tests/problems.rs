@@ -50,9 +50,7 @@ fn check(tolerance: f64, [error, estimate]: [f64; 2]) {
 
 #[test]
 fn the_fold_of_bratu_s_problem_is_where_it_is_published() {
-    let guess = Guess::function(|s| {
-        [4.5 * s * (1.0 - s), 4.5 * (1.0 - 2.0 * s), s * (1.0 - s), 1.0 - 2.0 * s, 3.0]
-    });
+    let guess = Guess::function(|s| [4.5 * s * (1.0 - s), 4.5 * (1.0 - 2.0 * s), s * (1.0 - s), 1.0 - 2.0 * s, 3.0]);
     let sol = solve(&BratuFold, &guess, &Options::with_tolerance(1e-11)).unwrap();
     println!("{:?}", sol.statistics());
     assert!((sol.parameters()[0] - BRATU_FOLD).abs() < 1e-11, "{:?}", sol.parameters());

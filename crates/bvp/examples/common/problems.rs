@@ -280,9 +280,7 @@ impl Known<5> for Elastica {
 
     fn guess(&self) -> Guess<'_, 5> {
         let (tip, rate) = (self.tip, std::f64::consts::FRAC_PI_2);
-        Guess::function(move |s| {
-            [tip * (rate * s).sin(), tip * rate * (rate * s).cos(), s, 0.0, rate * rate]
-        })
+        Guess::function(move |s| [tip * (rate * s).sin(), tip * rate * (rate * s).cos(), s, 0.0, rate * rate])
     }
 
     fn exact(&self, _: f64) -> Option<f64> {
