@@ -27,9 +27,9 @@ pub enum Norm {
     Goal,
 }
 
-/// Corrections of a comparison, over the sizes of the unknowns, after which a second Newton iteration is worth its work: the square of them
-/// is what one leaves.
-const SECOND: f64 = 1e-2;
+/// Square of a comparison's first correction, over the tolerance, above which a second Newton iteration is worth its work: that square is
+/// what one leaves.
+const SECOND: f64 = 0.05;
 
 /// Elements of a new mesh over those that it would need were the estimate exact.
 const SPARE: f64 = 1.15;
@@ -122,8 +122,12 @@ impl<'a, const N: usize> Comparison<'a, N> {
             }
             self.finer.add(&self.correction, 1.0);
             self.iterations += 1;
-            let largest = (0..N).fold(0.0, |m: f64, a| m.max(sizes[a] * self.correction.largest(a)));
-            if self.iterations == 2 || largest < SECOND {
+            let at_nodes = (0..N).fold(0.0, |m: f64, a| m.max(sizes[a] * self.correction.largest(a)));
+            let at_stages = self.system.moved_states(&self.correction);
+            let largest = at_stages.iter().fold(at_nodes, |m: f64, z| {
+                (0..N).fold(m, |m: f64, a| z[a].0.iter().fold(m, |m: f64, v| m.max(sizes[a] * v.abs())))
+            });
+            if self.iterations == 2 || largest * largest < SECOND * self.options.tolerance {
                 break;
             }
         }

@@ -95,6 +95,9 @@ impl<const N: usize> Path<N> {
     }
 }
 
+/// A function of the parameter and the solution that is an event where it is zero.
+pub type Watch<'a, const N: usize> = &'a dyn Fn(f64, &Sol<N>) -> f64;
+
 /// The shortest step.
 const SHORTEST: f64 = 1e-7;
 /// Most corrections of a step.
@@ -123,6 +126,13 @@ impl<F, const N: usize> std::fmt::Debug for Continuation<F, N> {
     }
 }
 
+impl<const N: usize> PathPoint<N> {
+    /// Sign of the determinant times that of the tangent's rate, which is constant along a branch; zero where rounding could turn it.
+    fn orientation(&self) -> f64 {
+        self.sol.determinant.known_sign().unwrap_or(0.0) * self.rate.signum()
+    }
+}
+
 /// What a correction leaves: the problem's linearisation at a solution and its derivative by the parameter.
 struct Linearised<const N: usize> {
     rest: Correction<N, STAGES, 1>,
@@ -142,11 +152,7 @@ impl<P: Bvp<N>, F: Fn(f64) -> P, const N: usize> Continuation<F, N> {
     ///
     /// # Errors
     /// When there is no solution at the start; [`Error::Input`] for a range or options that cannot be.
-    pub fn follow(
-        &mut self,
-        guess: &Guess<'_, N>,
-        watch: Option<&dyn Fn(f64, &Sol<N>) -> f64>,
-    ) -> Result<Path<N>, Error> {
+    pub fn follow(&mut self, guess: &Guess<'_, N>, watch: Option<Watch<'_, N>>) -> Result<Path<N>, Error> {
         let [from, to] = self.range;
         if !(from.is_finite() && to.is_finite() && from != to) {
             return Err(Error::Input { what: "the range's end", value: to, expected: "finite, and not its start" });
@@ -187,7 +193,9 @@ impl<P: Bvp<N>, F: Fn(f64) -> P, const N: usize> Continuation<F, N> {
         out
     }
 
-    fn walk(&mut self, start: PathPoint<N>, watch: Option<&dyn Fn(f64, &Sol<N>) -> f64>) -> Path<N> {
+    fn walk(&mut self, start: PathPoint<N>, watch: Option<Watch<'_, N>>) -> Path<N> {
+        // The last that is known: a determinant next to nothing has no sign.
+        let mut orientation = start.orientation();
         let mut points = vec![start];
         let mut step = self.options.first;
         let inside = |t: f64| (0.0..=1.0).contains(&t);
@@ -204,7 +212,7 @@ impl<P: Bvp<N>, F: Fn(f64) -> P, const N: usize> Continuation<F, N> {
             let mut found = Vec::new();
             if next.rate * here.rate < 0.0 {
                 found.extend(self.limit_point(here, &next, step));
-            } else if self.orientation(here) * self.orientation(&next) < 0.0 {
+            } else if orientation * next.orientation() < 0.0 {
                 found.extend(self.bifurcation(here, &next, step));
             }
             if let Some(watch) = watch {
@@ -212,6 +220,9 @@ impl<P: Bvp<N>, F: Fn(f64) -> P, const N: usize> Continuation<F, N> {
                 if value(here) * value(&next) < 0.0 {
                     found.extend(self.zero(here, &next, step, value, Event::Zero));
                 }
+            }
+            if next.orientation() != 0.0 {
+                orientation = next.orientation();
             }
             points.extend(found.into_iter().filter(|point| inside(self.fraction(point.parameter))));
             if !inside(fraction) {
@@ -231,11 +242,6 @@ impl<P: Bvp<N>, F: Fn(f64) -> P, const N: usize> Continuation<F, N> {
     /// Where the parameter is in its range.
     fn fraction(&self, parameter: f64) -> f64 {
         (parameter - self.range[0]) / (self.range[1] - self.range[0])
-    }
-
-    /// Sign of the determinant times that of the tangent's rate: constant along a branch.
-    fn orientation(&self, point: &PathPoint<N>) -> f64 {
-        point.sol.determinant.known_sign().unwrap_or(0.0) * point.rate.signum()
     }
 
     /// Scalar product of two changes at the nodes of a mesh.
@@ -403,8 +409,8 @@ impl<P: Bvp<N>, F: Fn(f64) -> P, const N: usize> Continuation<F, N> {
 
     /// The bifurcation between two points, from determinants on both sides of it: corrections are of little worth right at it.
     fn bifurcation(&self, here: &PathPoint<N>, next: &PathPoint<N>, step: f64) -> Option<PathPoint<N>> {
-        let [unit, side] = [here.sol.determinant.log, self.orientation(here)];
-        let signed = |point: &PathPoint<N>| side * self.orientation(point) * (point.sol.determinant.log - unit).exp();
+        let [unit, side] = [here.sol.determinant.log, here.orientation()];
+        let signed = |point: &PathPoint<N>| side * point.orientation() * (point.sol.determinant.log - unit).exp();
         let mut samples = vec![(0.0, signed(here)), (step, signed(next))];
         let (mut low, mut high) = (0.0, step);
         let mut nearest: Option<(f64, PathPoint<N>)> = None;

@@ -305,7 +305,7 @@ pub use bvp::{Bvp, Differentiable};
 pub use collocation::{
     Collocation, Cotangent, EndWeights, Forcing, Functional, LinearisationError, Singular, StageWeights,
 };
-pub use continuation::{Continuation, Event, Path, PathEnd, PathOptions, PathPoint};
+pub use continuation::{Continuation, Event, Path, PathEnd, PathOptions, PathPoint, Watch};
 pub use correction::Correction;
 pub use determinant::Determinant;
 pub use directions::{Directions, EndPlace, Side};

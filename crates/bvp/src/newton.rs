@@ -171,16 +171,13 @@ pub(crate) fn solve_on_mesh<const N: usize, const M: usize>(
             trial.clone_from(solution);
             trial.add(correction, damping.factor);
             let (mut size, mut apart) = (f64::INFINITY, f64::INFINITY);
-            match evaluate(system, problem, trial) {
-                Ok(()) => {
-                    system.take_conditions(problem, trial);
-                    correct(system, trial, simplified);
-                    scale(system, simplified, &weights, after);
-                    size = self::norm(after);
-                    apart = distance(after, whole, 1.0 - damping.factor);
-                }
-                // No slopes there: the trial is refused.
-                Err(NotFinite { .. }) => {}
+            // A trial without slopes is refused.
+            if evaluate(system, problem, trial).is_ok() {
+                system.take_conditions(problem, trial);
+                correct(system, trial, simplified);
+                scale(system, simplified, &weights, after);
+                size = self::norm(after);
+                apart = distance(after, whole, 1.0 - damping.factor);
             }
             match damping.judge(norm, size, apart, enough) {
                 Trial::Refused => {}

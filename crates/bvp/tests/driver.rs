@@ -191,7 +191,9 @@ fn a_goal_is_met_on_fewer_elements_than_the_whole_solution() {
         let error = sol.goal() - exact;
         println!("{tolerance:e}: {error:e}, estimated {:e}, {:?}", -sol.goal_error(), sol.statistics());
         assert!(error.abs() <= 1.5 * tolerance * (1.0 + exact), "{error:e}");
-        assert!((error + sol.goal_error()).abs() < 0.3 * error.abs() + 1e-11, "{error:e} {:e}", sol.goal_error());
+        // What is far below the tolerance is not asymptotic yet.
+        let small = 1e-3 * tolerance * (1.0 + exact) + 1e-11;
+        assert!((error + sol.goal_error()).abs() < 0.3 * error.abs() + small, "{error:e} {:e}", sol.goal_error());
         assert!(sol.statistics().elements <= all.statistics().elements);
     }
 }
