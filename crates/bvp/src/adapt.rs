@@ -10,22 +10,10 @@ use crate::collocation::Collocation;
 use crate::correction::Correction;
 use crate::mesh::{Limits, Mesh};
 use crate::newton::{Converged, NewtonError, correct, evaluate, factorise, weights};
+use crate::options::{Norm, Options};
 use crate::pointwise::OnMesh;
 use crate::sol::{FINER, METHODS, STAGES};
 use crate::solution::Solution;
-use crate::solve::Options;
-
-/// What has to be accurate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Norm {
-    /// Every unknown, at every place of the interval.
-    Unknowns,
-    /// The unknown of this index (states first, then parameters), at every place. What depends on end values alone is a parameter:
-    /// with the condition that says what it is.
-    Unknown(usize),
-    /// The goal functional ([`Bvp::goal`](crate::Bvp::goal)), relative to the options' floor plus its size.
-    Goal,
-}
 
 /// Square of a comparison's first correction, over the tolerance, above which a second Newton iteration is worth its work: that square is
 /// what one leaves.

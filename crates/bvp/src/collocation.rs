@@ -6,6 +6,7 @@
 //! `correction`, adjoints ([`Collocation::adjoint`], [`Collocation::contributions`]) and the [`Determinant`].
 
 pub(crate) mod adjoint;
+mod closing;
 mod correction;
 mod factorise;
 mod stations;
@@ -20,7 +21,7 @@ use crate::panels::{AtNodes, Loads, Panels};
 use crate::problem::{Inner, Local, StageForcing, Station};
 use crate::real::{Lanes, Real};
 
-use self::factorise::Closing;
+use self::closing::Closing;
 
 /// Why a linear system could not be solved.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,19 +8,20 @@
 
 pub mod location;
 
-use crate::adapt::{Comparison, Norm};
+use crate::adapt::Comparison;
 use crate::bvp::{Bvp, OnUnit, Unit};
 use crate::collocation::{Collocation, Forcing};
 use crate::correction::Correction;
 use crate::determinant::Determinant;
 use crate::mesh::Mesh;
 use crate::newton::{Converged, correct, evaluate, factorise, quadratures, weights};
+use crate::options::{Norm, Options};
 use crate::pointwise::OnMesh;
 use crate::problem::{Condition, Local, Problem, StageForcing};
 use crate::real::{LANES, Lanes};
 use crate::sol::{METHODS, STAGES, Sol, SolveStatistics};
 use crate::solution::Solution;
-use crate::solve::{Error, Guess, Options, check, solve};
+use crate::solve::{Error, Guess, check, solve};
 
 use self::location::{RegulaFalsi, bordered, inverse_interpolation};
 

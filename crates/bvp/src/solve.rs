@@ -1,10 +1,11 @@
 //! The driver: Newton's method on a mesh, an error estimate, a better mesh, until the estimate meets the tolerance.
 
-use crate::adapt::{Comparison, Norm};
+use crate::adapt::Comparison;
 use crate::bvp::{Bvp, NotFinite, OnUnit, Unit};
 use crate::collocation::{Collocation, Singular};
 use crate::mesh::Mesh;
 use crate::newton::{Converged, NewtonError, Workspace, solve_on_mesh};
+use crate::options::{Norm, Options};
 use crate::pointwise::OnMesh;
 use crate::real::LANES;
 use crate::sol::{METHODS, STAGES, Sol, SolveStatistics};
@@ -14,43 +15,6 @@ use crate::solution::Solution;
 const CONVERGED: f64 = 1e-3;
 /// The least of these: rounding.
 const ROUNDING: f64 = 1e-13;
-
-/// What a solve is asked for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
-    /// The error allowed, in [1e-13, 0.1]: in the norm below, or, for a goal, of the goal.
-    pub tolerance: f64,
-    /// What is to be as accurate as that.
-    pub norm: Norm,
-    /// An unknown z may be off by the tolerance times `floor + |z|`: above zero.
-    pub floor: f64,
-    /// Most elements of a mesh.
-    pub max_elements: usize,
-    /// Most meshes.
-    pub max_meshes: usize,
-    /// Most Newton iterations on a mesh.
-    pub max_iterations: usize,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-6,
-            norm: Norm::Unknowns,
-            floor: 1.0,
-            max_elements: 10_000,
-            max_meshes: 20,
-            max_iterations: 40,
-        }
-    }
-}
-
-impl Options {
-    /// The default at another tolerance.
-    pub fn with_tolerance(tolerance: f64) -> Self {
-        Self { tolerance, ..Self::default() }
-    }
-}
 
 /// Why there is no solution. Places are in the problem's interval.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -73,37 +73,6 @@ impl Known<2> for Bratu {
     }
 }
 
-/// Bratu's problem at its fold, where lambda is an unknown parameter: beside the state stands the null vector of its linearisation, with
-/// the slope one at s = 0 (the extended system of Moore and Spence 1980).
-pub(crate) struct BratuFold;
-
-impl Differentiable<5> for BratuFold {
-    const PARAMETERS: usize = 1;
-    const LEFT: usize = 3;
-
-    fn slope<R: Scalar>(&self, _: f64, z: &[R], p: &[R], out: &mut [R]) {
-        let by_u = p[0] * z[0].exp();
-        out[0] = z[1];
-        out[1] = -by_u;
-        out[2] = z[3];
-        out[3] = -by_u * z[2];
-    }
-
-    fn left<R: Scalar>(&self, z: &[R], _: &[R], out: &mut [R]) {
-        out[0] = z[0];
-        out[1] = z[2];
-        out[2] = z[3] - 1.0;
-    }
-
-    fn right<R: Scalar>(&self, z: &[R], _: &[R], out: &mut [R]) {
-        out[0] = z[0];
-        out[1] = z[2];
-    }
-}
-
-/// lambda at the fold of Bratu's problem: `8 / sinh^2 c` at `c tanh c = 1`.
-pub(crate) const BRATU_FOLD: f64 = 3.513_830_719_125_161;
-
 /// Troesch's problem `u'' = mu sinh(mu u)`, `u(0) = 0`, `u(1) = 1`: a boundary layer at s = 1 that shooting does not survive.
 pub(crate) struct Troesch {
     pub(crate) mu: f64,

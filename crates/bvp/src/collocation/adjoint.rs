@@ -1,6 +1,7 @@
 //! Adjoints: weights on the changes of a solution as weights on changes of its equations.
 
 use super::Collocation;
+use super::closing::Closing;
 use crate::condense::solve_column_transposed;
 use crate::directions::Side;
 use crate::gauss::POINTS;
@@ -153,7 +154,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         }
     }
 
-    fn closing_at(&self, end: &EndWeights<N>) -> Option<&super::Closing<N, M>> {
+    fn closing_at(&self, end: &EndWeights<N>) -> Option<&Closing<N, M>> {
         self.closings.iter().find(|c| c.block == end.block && c.lane == end.lane)
     }
 
