@@ -21,7 +21,7 @@
 //!
 //! An elastic cable has the length that its own stretch takes in B, and acts as the spring that it is.
 
-use hydrostat_bvp::{Change, Collocation, Correction, Drift, LANES, Lanes, Mesh};
+use hydrostat_bvp::{Collocation, Correction, Forcing, LANES, Lanes, Mesh, StageForcing};
 
 use crate::numerics::elimination::solved;
 use crate::statics::engine::{M, respond};
@@ -61,7 +61,7 @@ impl Compliance {
             strokes: vec![0.0; cables * columns],
         };
         let basis = Basis::new(&system.gauss.c, mesh, functions);
-        let mut change = Change { stages: vec![Drift::default(); basis.blocks], ..Change::default() };
+        let mut change = Forcing { stages: vec![StageForcing::default(); basis.blocks], ..Forcing::default() };
         let mut response = Correction::default();
         for column in 0..columns {
             let (l, g) = (column / FIELDS, column % FIELDS);
@@ -71,7 +71,7 @@ impl Compliance {
                 drift.slope[1 + g] = -basis.value(l, block);
             }
             respond(system, &change, &mut response);
-            let motion = project(system, &basis, &response, &Change::default());
+            let motion = project(system, &basis, &response, &Forcing::default());
             for (k, moved) in motion.iter().enumerate() {
                 out.entries[k * columns + column] = *moved;
             }
@@ -150,7 +150,7 @@ pub(crate) fn project(
     system: &Collocation<N, M, Q, L>,
     basis: &Basis,
     response: &Correction<N, M, Q, L>,
-    change: &Change<N, Q, L>,
+    change: &Forcing<N, Q, L>,
 ) -> Vec<f64> {
     let states = system.moved_states(response);
     let elements = response.by_element.len();

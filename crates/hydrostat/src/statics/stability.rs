@@ -209,7 +209,7 @@ impl Tangent {
         if mesh != dense.solution.mesh {
             let mut cut = Solution { mesh, ..Solution::default() };
             let equations = &this.equations;
-            this.solution.onto(&this.system.gauss, |s| equations.jumps_at(s), &mut cut);
+            this.solution.remap(&this.system.gauss, |s| equations.jumps_at(s), &mut cut);
             this.equations.place_on(&this.system.gauss, &cut);
             this.solution = cut;
             let mut correction = Correction::default();

@@ -17,7 +17,7 @@ impl Engine {
     pub(super) fn remap(&mut self) {
         self.meshes += 1;
         let (gauss, equations) = (&self.system.gauss, &self.equations);
-        self.before.onto(gauss, |s| equations.jumps_at(s), &mut self.solution);
+        self.before.remap(gauss, |s| equations.jumps_at(s), &mut self.solution);
         self.equations.place_on(gauss, &self.solution);
     }
 
@@ -41,15 +41,15 @@ impl Engine {
         std::mem::swap(&mut self.solution, &mut self.before);
         let (system, before, equations) = (&self.system, &self.before, &self.equations);
         let jumps = |s| equations.jumps_at(s);
-        before.turned(&system.gauss, |i| side(system, before, i), jumps, &mut self.solution);
+        before.with_sides(&system.gauss, |i| side(system, before, i), jumps, &mut self.solution);
         self.equations.place_ends(&self.solution);
     }
 
     /// Moves the solution on by `share` times its way from the solution `before`, nodes on kinks with it. Left as it is
     /// where the two do not correspond node by node.
     pub(crate) fn lead_on(&mut self, before: &Guess, share: f64) {
-        let Some(mesh) = self.solution.mesh.led_on(&before.mesh, share) else { return };
-        if !self.solution.lead_on(before, share) || mesh == self.solution.mesh {
+        let Some(mesh) = self.solution.mesh.extrapolated(&before.mesh, share) else { return };
+        if !self.solution.extrapolate(before, share) || mesh == self.solution.mesh {
             return;
         }
         self.solution.mesh = mesh;

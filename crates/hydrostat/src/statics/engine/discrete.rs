@@ -337,7 +337,7 @@ pub(crate) fn response_change(
     system: &Collocation<N, M, Q, L>,
     solution: &Guess,
     way: Way,
-) -> hydrostat_bvp::Change<N, Q, L> {
+) -> hydrostat_bvp::Forcing<N, Q, L> {
     let ends = [&solution.nodes[0], &solution.nodes[solution.mesh.elements()]];
     equations.change_by(way, system.stations(), system.locals(), system.end_stations(), ends)
 }

@@ -1,6 +1,6 @@
 //! Newton's method on a mesh.
 
-use hydrostat_bvp::RoundError;
+use hydrostat_bvp::LinearisationError;
 
 use super::discrete::Engine;
 use super::rounds::{correct, linearise};
@@ -43,7 +43,7 @@ impl Engine {
             self.may_go_on()?;
             match linearise(&mut self.system, &self.equations, &self.solution) {
                 Ok(()) => {}
-                Err(RoundError::Slopes(failure)) => {
+                Err(LinearisationError::Slopes(failure)) => {
                     if applied == 0.0 || halvings == 8 {
                         return Err(Trouble::Section(failure));
                     }

@@ -1,6 +1,6 @@
 //! What is compiled for the widest vectors: evaluation, linearisation, corrections.
 
-use hydrostat_bvp::{Change, Collocation, Correction, RoundError, Solution};
+use hydrostat_bvp::{Collocation, Correction, Forcing, LinearisationError, Solution};
 
 use crate::numerics::dispatch::{Work, dispatch};
 use crate::statics::dimensions::{L, N, Q};
@@ -19,7 +19,7 @@ impl<const S: usize> Work for Evaluate<'_, S> {
 struct Linearise<'a, const S: usize>(&'a mut Collocation<N, S, Q, L>, &'a Equations, &'a Solution<N, S, L>);
 
 impl<const S: usize> Work for Linearise<'_, S> {
-    type Output = Result<(), RoundError<SectionFailure>>;
+    type Output = Result<(), LinearisationError<SectionFailure>>;
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Self::Output {
         self.0.linearise::<_, FUSED>(self.1, self.2)
@@ -40,7 +40,7 @@ impl<const S: usize> Work for Correct<'_, S> {
     }
 }
 
-struct Respond<'a, const S: usize>(&'a Collocation<N, S, Q, L>, &'a Change<N, Q, L>, &'a mut Correction<N, S, Q, L>);
+struct Respond<'a, const S: usize>(&'a Collocation<N, S, Q, L>, &'a Forcing<N, Q, L>, &'a mut Correction<N, S, Q, L>);
 
 impl<const S: usize> Work for Respond<'_, S> {
     type Output = ();
@@ -64,7 +64,7 @@ pub(crate) fn linearise<const S: usize>(
     system: &mut Collocation<N, S, Q, L>,
     equations: &Equations,
     solution: &Solution<N, S, L>,
-) -> Result<(), RoundError<SectionFailure>> {
+) -> Result<(), LinearisationError<SectionFailure>> {
     dispatch(Linearise(system, equations, solution))
 }
 
@@ -80,7 +80,7 @@ pub(crate) fn correct<const S: usize>(
 /// [`Collocation::response`].
 pub(crate) fn respond<const S: usize>(
     system: &Collocation<N, S, Q, L>,
-    change: &Change<N, Q, L>,
+    change: &Forcing<N, Q, L>,
     out: &mut Correction<N, S, Q, L>,
 ) {
     dispatch(Respond(system, change, out));

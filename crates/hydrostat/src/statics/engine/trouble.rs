@@ -1,6 +1,6 @@
 //! Why rounds lead nowhere.
 
-use hydrostat_bvp::RoundError;
+use hydrostat_bvp::LinearisationError;
 
 use crate::statics::equations::SectionFailure;
 
@@ -14,11 +14,11 @@ pub(crate) enum Trouble {
     Spent,
 }
 
-impl From<RoundError<SectionFailure>> for Trouble {
-    fn from(error: RoundError<SectionFailure>) -> Self {
+impl From<LinearisationError<SectionFailure>> for Trouble {
+    fn from(error: LinearisationError<SectionFailure>) -> Self {
         match error {
-            RoundError::Slopes(failure) => Self::Section(failure),
-            RoundError::Singular(_) => Self::Singular,
+            LinearisationError::Slopes(failure) => Self::Section(failure),
+            LinearisationError::Singular(_) => Self::Singular,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! How the equations follow what is given, at a fixed solution: the right sides of responses.
 
-use hydrostat_bvp::{Change, Condition, Drift, Lanes, Local, Problem, Real, Station, each};
+use hydrostat_bvp::{Condition, Forcing, Lanes, Local, Problem, Real, StageForcing, Station, each};
 
 use super::cable_paths::StationData;
 use super::gradients::{by_strain_change, in_directors};
@@ -71,8 +71,8 @@ impl Equations {
         locals: &[Local<N, Q, L, Lanes>],
         ends: &[Station<N, L>],
         end_states: [&[f64; N]; 2],
-    ) -> Change<N, Q, L> {
-        let mut out = Change::default();
+    ) -> Forcing<N, Q, L> {
+        let mut out = Forcing::default();
         let (mut explicit, mut end_explicit) = (Vec::new(), Vec::new());
         if self.moves_nothing(way) {
             return out;
@@ -214,7 +214,7 @@ impl Equations {
     }
 
     /// The change of the end conditions' residuals.
-    fn conditions_by(&self, way: Way, [base, tip]: [&[f64; N]; 2], out: &mut Change<N, Q, L>) {
+    fn conditions_by(&self, way: Way, [base, tip]: [&[f64; N]; 2], out: &mut Forcing<N, Q, L>) {
         if way == Way::Path && self.imposed.is_some() {
             return;
         }
@@ -242,7 +242,7 @@ impl Equations {
         station: &Station<N, L>,
         local: &Local<N, Q, L, Lanes>,
         by: &Explicit,
-    ) -> Drift<N, Q, L> {
+    ) -> StageForcing<N, Q, L> {
         let (sin, cos) = sin_cos(station.z[0]);
         let section_stretch = area_law(self.volume, station.inner[0]);
         let load = self.load(place, [cos, sin], station.inner, &section_stretch, station.closure_slope);
@@ -253,7 +253,7 @@ impl Equations {
         slope[2] -= by.force[1];
         slope[3] -= by.couple;
         let [nu, eta, _] = strain;
-        Drift {
+        StageForcing {
             slope,
             rate: [nu * cos - eta * sin, nu * sin + eta * cos],
             inner: strain,

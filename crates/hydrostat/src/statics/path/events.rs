@@ -1,6 +1,7 @@
 //! Limit points and bifurcations between two points of a path, and the branches that cross there.
 
 use hydrostat_bvp::Correction;
+use hydrostat_bvp::continuation::location::{RegulaFalsi, inverse_interpolation};
 
 use super::step_control::StepControl;
 use super::stepper::{Fraction, Point, StepOutcome, Stepper};
@@ -19,25 +20,14 @@ impl Stepper<'_> {
     pub(super) fn limit_point(&mut self, here: &Point, next: &Point, step: f64, control: StepControl) -> (Point, f64) {
         let control = StepControl { straightness: -1.0, accuracy: 1e-6_f64.min(control.accuracy), ..control };
         let up = here.dlambda_ds.signum();
-        let (mut low, mut low_slope) = (0.0, here.dlambda_ds.abs());
-        let (mut high, mut high_slope) = (step, up * next.dlambda_ds);
+        let mut search = RegulaFalsi::between((0.0, here.dlambda_ds.abs()), (step, up * next.dlambda_ds));
         let mut best: Option<Point> = None;
-        // False position; an end that stays a second time has its climb halved, so that both come in.
-        let mut before = 0.0;
         for _ in 0..25 {
-            let share = (low_slope / (low_slope - high_slope)).clamp(0.1, 0.9);
-            let middle = low + share * (high - low);
+            let middle = search.place(0.1);
             match self.advance(here, middle, control) {
                 Ok((point, StepOutcome::Regular)) => {
                     let dlambda_ds = up * point.dlambda_ds;
-                    if dlambda_ds < 0.0 {
-                        (high, high_slope) = (middle, dlambda_ds);
-                        low_slope *= if before < 0.0 { 0.5 } else { 1.0 };
-                    } else {
-                        (low, low_slope) = (middle, dlambda_ds);
-                        high_slope *= if before > 0.0 { 0.5 } else { 1.0 };
-                    }
-                    before = dlambda_ds;
+                    search.put(middle, dlambda_ds);
                     if best.as_ref().is_none_or(|b| up * point.fraction > up * b.fraction) {
                         best = Some(point);
                     }
@@ -45,9 +35,9 @@ impl Stepper<'_> {
                         break;
                     }
                 }
-                _ => high = middle,
+                _ => search.shorten(middle),
             }
-            if high - low < 1e-7 {
+            if search.width() < 1e-7 {
                 break;
             }
         }
@@ -132,15 +122,10 @@ impl Stepper<'_> {
         }
         samples.sort_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         samples.truncate(6);
-        let mut column: Vec<f64> = samples.iter().map(|(point, _)| point.fraction).collect();
-        for order in 1..samples.len() {
-            for k in 0..samples.len() - order {
-                let (a, b) = (samples[k].1, samples[k + order].1);
-                column[k] = (b * column[k] - a * column[k + 1]) / (b - a);
-            }
-        }
+        let places: Vec<(f64, f64)> = samples.iter().map(|(point, value)| (point.fraction, *value)).collect();
+        let place = inverse_interpolation(&places);
         let Some((nearest, _)) = samples.into_iter().next() else { return next };
-        let fraction = if column[0].is_finite() { column[0] } else { nearest.fraction };
+        let fraction = if place.is_finite() { place } else { nearest.fraction };
         self.predict(&nearest, (fraction - nearest.fraction) / nearest.dlambda_ds);
         self.set(fraction);
         Point { state: self.engine.state(), fraction, ..nearest }

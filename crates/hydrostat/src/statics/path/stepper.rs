@@ -1,6 +1,7 @@
 //! One step along a branch of equilibria: predict along the tangent, correct normal to it, refine, and
 //! refuse what may be another branch or beyond a fold.
 
+use hydrostat_bvp::continuation::location::bordered;
 use hydrostat_bvp::{Correction, Mesh, Solution};
 
 use super::step_control::{CORNER, EVEN, FINEST, LOOSE, MANY, SYMMETRIC, StepControl};
@@ -204,16 +205,8 @@ impl<'e> Stepper<'e> {
     /// Weights of the squares of theta's change at the nodes in the metric of the path: its root mean square along the
     /// arm over [`Stepper::scale`].
     pub(super) fn weights(&self) -> Vec<f64> {
-        let mesh = &self.engine.solution.mesh;
-        let n = mesh.elements();
         let square = self.scale * self.scale;
-        (0..=n)
-            .map(|i| {
-                let left = if i > 0 { mesh.step(i - 1) } else { 0.0 };
-                let right = if i < n { mesh.step(i) } else { 0.0 };
-                0.5 * (left + right) / square
-            })
-            .collect()
+        self.engine.solution.mesh.node_weights().map(|weight| weight / square).collect()
     }
 
     /// Takes `start` for the start of a branch, and its response for the scale of theta.
@@ -358,7 +351,7 @@ impl<'e> Stepper<'e> {
             self.set(*fraction);
             self.linearise()?;
             let dot = |c: &Correction<N, M, Q, L>| -> f64 { normal.iter().zip(&c.nodes).map(|(n, z)| n * z[0]).sum() };
-            let slide = -dot(&self.round.rest) / (dot(&self.round.response) + climb);
+            let slide = bordered(dot(&self.round.rest), dot(&self.round.response), climb);
             self.engine.system.quadratures(&mut self.engine.spans);
             self.engine.tip = [0.0; Q];
             for (i, span) in self.engine.spans.iter_mut().enumerate() {

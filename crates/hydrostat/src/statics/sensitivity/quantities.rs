@@ -1,7 +1,7 @@
 //! What is differentiated, and how each of it follows the solution and what is given.
 
 use hydrostat_bvp::{
-    Change, Collocation, Correction, Cotangent, EndWeights, Functional, LANES, Lanes, Real, Side, StageWeights, each,
+    Collocation, Correction, Cotangent, EndWeights, Forcing, Functional, LANES, Lanes, Real, Side, StageWeights, each,
 };
 
 use super::error::{SensitivityError, unsettled};
@@ -176,7 +176,7 @@ impl About<'_> {
         method: SensitivityMethod,
     ) -> Option<Vec<Vec<f64>>> {
         let rows: Vec<Row> = sums.iter().map(|sum| self.sum_row(sum, sources)).collect::<Option<_>>()?;
-        let changes: Vec<Change<N, Q, L>> = sources
+        let changes: Vec<Forcing<N, Q, L>> = sources
             .iter()
             .map(|source| response_change(&self.engine.equations, self.system, &self.engine.solution, Way::Of(*source)))
             .collect();
@@ -375,7 +375,7 @@ impl Row {
     }
 
     /// What the drifts of rates and strains add.
-    fn drifts(&self, change: &Change<N, Q, L>) -> f64 {
+    fn drifts(&self, change: &Forcing<N, Q, L>) -> f64 {
         let mut sum = Lanes::default();
         for ((rates, strains), drift) in self.stages.iter().zip(&change.stages) {
             for q in 0..Q {
@@ -396,7 +396,7 @@ impl Row {
 }
 
 /// What weights on changes of the equations make of one.
-fn along(weights: &Cotangent<N>, change: &Change<N, Q, L>) -> f64 {
+fn along(weights: &Cotangent<N>, change: &Forcing<N, Q, L>) -> f64 {
     let mut sum = Lanes::default();
     for ((slopes, values), drift) in weights.slopes.iter().zip(&weights.values).zip(&change.stages) {
         for a in 0..N {
