@@ -195,7 +195,7 @@ pub(super) struct Tracer<'a> {
     pub(super) search: Search,
     pub(super) spacing: f64,
     pub(super) lattice: usize,
-    /// Asked before every shape; when it says no there are no more shapes, which ends every line.
+    /// SectionQuery before every shape; when it says no there are no more shapes, which ends every line.
     go_on: &'a (dyn Fn() -> bool + Sync),
 }
 

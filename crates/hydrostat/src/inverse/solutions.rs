@@ -118,7 +118,7 @@ impl Arm {
 
 impl Search {
     fn run(&self, options: &ReachOptions, go_on: &dyn Fn() -> bool) -> Result<Reach, ReachError> {
-        let mut found = Found { search: self, solutions: Vec::new(), missed: Vec::new(), failure: None };
+        let mut found = Candidates { search: self, solutions: Vec::new(), missed: Vec::new(), failure: None };
         for start in self.starts() {
             if !go_on() || (!options.all && !found.solutions.is_empty()) {
                 break;
@@ -128,7 +128,7 @@ impl Search {
         if options.all || found.solutions.is_empty() {
             found.look_along_lines(options.all, go_on);
         }
-        let Found { solutions, missed, failure, .. } = found;
+        let Candidates { solutions, missed, failure, .. } = found;
         let mut out = Reach { solutions: Vec::new(), closest: None };
         for state in solutions {
             out.solutions.push(self.read(state)?);
@@ -146,7 +146,7 @@ impl Search {
 }
 
 /// What a search has found so far.
-struct Found<'a> {
+struct Candidates<'a> {
     search: &'a Search,
     /// Different tensions that reach the targets.
     solutions: Vec<State>,
@@ -155,7 +155,7 @@ struct Found<'a> {
     failure: Option<ReachError>,
 }
 
-impl Found<'_> {
+impl Candidates<'_> {
     fn look_from(&mut self, start: &[f64], go_on: &dyn Fn() -> bool) {
         let state = match self.search.from(start, go_on) {
             Ok(state) => state,

@@ -1,6 +1,6 @@
 //! A cable at a section: its tangent, and the force and moment it puts on the body. (5), (6).
 
-use crate::rod::swelling::Swelling;
+use crate::rod::area_law::SectionStretch;
 use hydrostat_bvp::{Real, each};
 
 /// Offset of a cable at a place: y and y'.
@@ -33,11 +33,11 @@ pub(crate) struct Tangent<R> {
 pub(crate) fn tangent<R: Real>(
     offset: &Offset<R>,
     [nu, eta, mu]: [R; 3],
-    swelling: &Swelling<R>,
+    section_stretch: &SectionStretch<R>,
     beta_slope: R,
 ) -> Tangent<R> {
-    let along = nu - offset.y * swelling.beta * mu;
-    let across = eta + offset.slope * swelling.beta + offset.y * beta_slope;
+    let along = nu - offset.y * section_stretch.beta * mu;
+    let across = eta + offset.slope * section_stretch.beta + offset.y * beta_slope;
     let inverse = R::of(1.0) / (along * along + across * across).sqrt();
     let (a, b) = (along * inverse, across * inverse);
     let mixed = -(a * b * inverse);
@@ -69,16 +69,16 @@ pub(crate) fn pull<R: Real>(
     tension: R,
     offset: &Offset<R>,
     strain: [R; 3],
-    swelling: &Swelling<R>,
+    section_stretch: &SectionStretch<R>,
     beta_slope: R,
 ) -> (Pull<R>, Tangent<R>) {
-    let t = tangent(offset, strain, swelling, beta_slope);
+    let t = tangent(offset, strain, section_stretch, beta_slope);
     let [_, _, mu] = strain;
-    let arm = offset.y * swelling.beta;
+    let arm = offset.y * section_stretch.beta;
 
     // d(tau . a), d(tau . b) by nu, by mu; eta enters tau . b alone.
-    let along_nu = R::of(1.0) - offset.y * mu * swelling.slope;
-    let across_nu = offset.slope * swelling.slope;
+    let along_nu = R::of(1.0) - offset.y * mu * section_stretch.slope;
+    let across_nu = offset.slope * section_stretch.slope;
     let a_nu = t.by_along.0 * along_nu + t.by_across.0 * across_nu;
     let b_nu = t.by_along.1 * along_nu + t.by_across.1 * across_nu;
     let (a_eta, b_eta) = t.by_across;
@@ -88,7 +88,7 @@ pub(crate) fn pull<R: Real>(
     let by_strain = [
         [tension * a_nu, tension * a_eta, tension * a_mu],
         [tension * b_nu, tension * b_eta, tension * b_mu],
-        [-(lever * a_nu + tension * offset.y * swelling.slope * t.a), -(lever * a_eta), -(lever * a_mu)],
+        [-(lever * a_nu + tension * offset.y * section_stretch.slope * t.a), -(lever * a_eta), -(lever * a_mu)],
     ];
     // beta' enters tau . b as eta does, times y.
     let by_beta_slope = each(|k| offset.y * by_strain[k][1]);

@@ -1,8 +1,8 @@
 //! All distributed loads at a station: stream (7)-(10), weight and buoyancy, and what the user adds.
 
+use crate::rod::area_law::{SectionStretch, displacement};
 use crate::rod::flow::{Law, traction};
 use crate::rod::readings::{Displaced, FlowSurface, Hydrostatics, Volume, WettedLength};
-use crate::rod::swelling::{Swelling, displacement};
 use hydrostat_bvp::{Real, each};
 
 /// What the loads need to know of the arm as a whole.
@@ -13,7 +13,7 @@ pub(crate) struct Water {
     pub(crate) law: Law,
     pub(crate) surface: FlowSurface,
     pub(crate) wetted: WettedLength,
-    /// The law that `swelling` is of, and with it `displaced`.
+    /// The area law, on which the displaced water depends, too.
     pub(crate) volume: Volume,
     pub(crate) displaced: Displaced,
     pub(crate) hydrostatics: Hydrostatics,
@@ -89,17 +89,17 @@ impl<R: Real> Direction<R> {
 fn lateral<R: Real>(
     sigma: f64,
     [nu, eta, mu]: [R; 3],
-    swelling: &Swelling<R>,
+    section_stretch: &SectionStretch<R>,
     [radius, radius_slope]: [R; 2],
     beta_slope: R,
 ) -> Direction<R> {
     let (zero, one, sigma) = (R::of(0.0), R::of(1.0), R::of(sigma));
-    let half_width = sigma * swelling.beta * radius;
+    let half_width = sigma * section_stretch.beta * radius;
     Direction {
         x: nu - half_width * mu,
-        y: eta + sigma * (beta_slope * radius + swelling.beta * radius_slope),
-        x_strain: [one - sigma * swelling.slope * radius * mu, zero, -half_width],
-        y_strain: [sigma * radius_slope * swelling.slope, one, zero],
+        y: eta + sigma * (beta_slope * radius + section_stretch.beta * radius_slope),
+        x_strain: [one - sigma * section_stretch.slope * radius * mu, zero, -half_width],
+        y_strain: [sigma * radius_slope * section_stretch.slope, one, zero],
         y_beta_slope: sigma * radius,
     }
 }
@@ -120,14 +120,14 @@ pub(crate) fn stream_along(
     radius: [f64; 2],
 ) -> f64 {
     let (sin, cos) = theta.sin_cos();
-    let swelling = Swelling { beta, slope: 0.0 };
+    let section_stretch = SectionStretch { beta, slope: 0.0 };
     match surface {
         FlowSurface::Centreline => {
             let angle = theta + alpha;
             stream[0] * angle.cos() + stream[1] * angle.sin()
         }
         FlowSurface::Lateral => {
-            let side = |sigma| lateral(sigma, strain, &swelling, radius, beta_slope).frame(cos, sin);
+            let side = |sigma| lateral(sigma, strain, &section_stretch, radius, beta_slope).frame(cos, sin);
             let (left, right) = (side(1.0), side(-1.0));
             let windward = if dot(stream, left.w) <= -dot(stream, right.w) { left } else { right };
             dot(stream, windward.u)
@@ -142,7 +142,7 @@ pub(crate) fn load<R: Real>(
     body: &Body<R>,
     [cos, sin]: [R; 2],
     strain: [R; 3],
-    swelling: &Swelling<R>,
+    section_stretch: &SectionStretch<R>,
     beta_slope: R,
 ) -> Load<R> {
     let (zero, one) = (R::of(0.0), R::of(1.0));
@@ -159,23 +159,23 @@ pub(crate) fn load<R: Real>(
     };
 
     let streams = water.stream != [0.0; 2];
-    let wetted = wetted(water, body, strain, swelling);
+    let wetted = wetted(water, body, strain, section_stretch);
     match water.surface {
         FlowSurface::Centreline => {
             if streams {
                 stream_load(water, &along, one, wetted, one, &mut out);
             }
-            add_hydrostatics(water, body, nu, swelling, &[(one, along)], &mut out);
+            add_hydrostatics(water, body, nu, section_stretch, &[(one, along)], &mut out);
         }
         FlowSurface::Lateral => {
             let radius = [body.radius, body.radius_slope];
-            let side = |sigma| lateral(sigma, strain, swelling, radius, beta_slope).frame(cos, sin);
+            let side = |sigma| lateral(sigma, strain, section_stretch, radius, beta_slope).frame(cos, sin);
             let (left, right) = (side(1.0), side(-1.0));
             let share = left_share(water, &left, &right);
             if streams {
                 lateral_load(water, &left, &right, share, wetted, &mut out);
             }
-            add_hydrostatics(water, body, nu, swelling, &[(share, left), (one - share, right)], &mut out);
+            add_hydrostatics(water, body, nu, section_stretch, &[(share, left), (one - share, right)], &mut out);
         }
     }
     out
@@ -183,10 +183,10 @@ pub(crate) fn load<R: Real>(
 
 /// S = pi rho_w beta R, times |r'| when the deformed length is wet, and how it follows the strains.
 #[inline(always)]
-fn wetted<R: Real>(water: &Water, body: &Body<R>, strain: [R; 3], swelling: &Swelling<R>) -> (R, [R; 3]) {
+fn wetted<R: Real>(water: &Water, body: &Body<R>, strain: [R; 3], section_stretch: &SectionStretch<R>) -> (R, [R; 3]) {
     let zero = R::of(0.0);
     let [nu, eta, _] = strain;
-    let (s, s_nu) = (body.wetted * swelling.beta, body.wetted * swelling.slope);
+    let (s, s_nu) = (body.wetted * section_stretch.beta, body.wetted * section_stretch.slope);
     match water.wetted {
         WettedLength::Reference => (s, [s_nu, zero, zero]),
         WettedLength::Deformed => {
@@ -240,12 +240,12 @@ fn add_hydrostatics<R: Real>(
     water: &Water,
     body: &Body<R>,
     nu: R,
-    swelling: &Swelling<R>,
+    section_stretch: &SectionStretch<R>,
     surfaces: &[(R, Frame<R>)],
     out: &mut Load<R>,
 ) {
     // Weight less buoyancy: f_h = (rho_arm - rho_w d) pi (R^2 - R_in^2) g (solid or flooded).
-    let [d, d_nu] = displacement(water.displaced, water.volume, nu, swelling);
+    let [d, d_nu] = displacement(water.displaced, water.volume, nu, section_stretch);
     let h: [R; 2] = each(|k| body.weight[k] - body.displaced[k] * d);
     let h_nu: [R; 2] = each(|k| -(body.displaced[k] * d_nu));
     match water.hydrostatics {
@@ -308,9 +308,9 @@ fn stream_load<R: Real>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rod::area_law::area_law;
     use crate::rod::arm::FlowLaw;
     use crate::rod::readings::{EnteringSpeed, LayerMean};
-    use crate::rod::swelling::swelling;
 
     /// Every reading's derivatives against differences, away from kinks.
     #[test]
@@ -351,7 +351,7 @@ mod tests {
     fn check(water: &Water, body: &Body<f64>) {
         let at = |x: [f64; 5]| {
             let e = [x[1], x[2], x[3]];
-            load(water, body, [x[0].cos(), x[0].sin()], e, &swelling(water.volume, e[0]), x[4])
+            load(water, body, [x[0].cos(), x[0].sin()], e, &area_law(water.volume, e[0]), x[4])
         };
         for theta in [0.9, 2.2, -1.4] {
             let x = [theta, 0.9, 0.1, 3.0, 0.3];

@@ -1,8 +1,8 @@
 //! The section law: which strains carry a contact force and moment. (11)-(14).
 
+use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::cable::{Offset, pull};
 use crate::rod::readings::Volume;
-use crate::rod::swelling::{Swelling, swelling};
 use hydrostat_bvp::Real;
 
 /// A section as the law sees it, per unit beta^2.
@@ -26,7 +26,7 @@ pub(crate) struct CableAt<R> {
 /// The law and the cables together at given strains: `carried` equals (n_f.a, n_f.b, m_f) in equilibrium.
 #[derive(Clone, Copy)]
 pub(crate) struct Balance<R> {
-    pub(crate) swelling: Swelling<R>,
+    pub(crate) section_stretch: SectionStretch<R>,
     /// C1 (nu - nu_o) A + sum T t_c.a,  C2 (eta - eta_o) A + sum T t_c.b,
     /// C3 (mu - mu_o) A - sum T y beta t_c.a.
     pub(crate) carried: [R; 3],
@@ -50,12 +50,12 @@ pub(crate) fn balance<R: Real>(
     strain: [R; 3],
     beta_slope: R,
 ) -> Balance<R> {
-    let swelling = swelling(volume, strain[0]);
-    let area = swelling.beta * swelling.beta;
-    let area_nu = R::of(2.0) * swelling.beta * swelling.slope;
+    let section_stretch = area_law(volume, strain[0]);
+    let area = section_stretch.beta * section_stretch.beta;
+    let area_nu = R::of(2.0) * section_stretch.beta * section_stretch.slope;
     let zero = R::of(0.0);
     let mut out = Balance {
-        swelling,
+        section_stretch,
         carried: [zero; 3],
         by_strain: [[zero; 3]; 3],
         by_beta_slope: [zero; 3],
@@ -69,7 +69,7 @@ pub(crate) fn balance<R: Real>(
         out.by_strain[k][0] += stiffness.value[k] * strained * area_nu;
     }
     for cable in cables {
-        let (pull, tangent) = pull(cable.tension, &cable.offset, strain, &swelling, beta_slope);
+        let (pull, tangent) = pull(cable.tension, &cable.offset, strain, &section_stretch, beta_slope);
         let open = zero.if_less(cable.tension, tangent.along / strain[0], R::of(1.0));
         out.openness = open.min(out.openness);
         for k in 0..3 {

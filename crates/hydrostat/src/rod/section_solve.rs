@@ -22,7 +22,7 @@ pub(crate) struct Solved<R> {
 impl Solved<Lanes> {
     /// Whether every lane is within `tolerance` of strains within the limits.
     #[inline(always)]
-    pub(crate) fn is_fine(&self, tolerance: f64) -> bool {
+    pub(crate) fn is_solved(&self, tolerance: f64) -> bool {
         let open = self.balance.openness - Lanes::of(FOLDED);
         let regular = self.regularity - Lanes::of(SINGULAR);
         let positive = regular.min(open).min(self.strain[0]);
@@ -31,7 +31,7 @@ impl Solved<Lanes> {
     }
 
     #[inline(always)]
-    pub(crate) fn is_fine_in(&self, lane: usize, tolerance: f64) -> bool {
+    pub(crate) fn is_solved_in(&self, lane: usize, tolerance: f64) -> bool {
         let positive =
             [self.regularity - Lanes::of(SINGULAR), self.balance.openness - Lanes::of(FOLDED), self.strain[0]];
         (self.size.0[lane] < tolerance) & positive.iter().all(|v| v.0[lane] > 0.0)
@@ -73,23 +73,23 @@ pub(crate) fn solve_section<R: Real>(
         let size = (change[0].abs().max(change[1].abs()) * nu_scale).max(change[2].abs() * mu_scale);
         let size = size.if_less(R::of(f64::INFINITY), size, R::of(f64::INFINITY));
         if size.all_below(tolerance) || round == MOST {
-            let area = balance.swelling.beta * balance.swelling.beta;
+            let area = balance.section_stretch.beta * balance.section_stretch.beta;
             let slack = stiffness.value[0] * stiffness.value[1] * stiffness.value[2] * area * area * area;
             return Solved { strain, balance, inverse, change, regularity: det / slack, size };
         }
-        let share = if round < SWIFT && is_short(&balance, cables, strain, change, size) {
+        let damping = if round < SWIFT && is_short(&balance, cables, strain, change, size) {
             one
         } else {
-            share_of(&balance, cables, strain, change, size, (round >= SWIFT).then_some(beta_slope))
+            damping_of(&balance, cables, strain, change, size, (round >= SWIFT).then_some(beta_slope))
         };
         for k in 0..3 {
-            strain[k] += share * change[k];
+            strain[k] += damping * change[k];
         }
     }
     unreachable!("the loop returns at its last round")
 }
 
-/// Whether [`share_of`] is one, in every lane and for little more than the section law's first rounds need.
+/// Whether [`damping_of`] is one, in every lane and for little more than the section law's first rounds need.
 #[inline(always)]
 fn is_short<R: Real>(balance: &Balance<R>, cables: &[CableAt<R>], strain: [R; 3], step: [R; 3], size: R) -> bool {
     let mut excess = (size - R::of(0.7)).max(step[0].abs() - R::of(0.5) * strain[0]);
@@ -103,15 +103,15 @@ fn is_short<R: Real>(balance: &Balance<R>, cables: &[CableAt<R>], strain: [R; 3]
 /// tau . a of a cable, and how much of it a step takes away.
 #[inline(always)]
 fn side<R: Real>(balance: &Balance<R>, cable: &CableAt<R>, strain: [R; 3], step: [R; 3]) -> (R, R) {
-    let lever = cable.offset.y * balance.swelling.beta;
-    let lever_nu = cable.offset.y * balance.swelling.slope;
+    let lever = cable.offset.y * balance.section_stretch.beta;
+    let lever_nu = cable.offset.y * balance.section_stretch.slope;
     (strain[0] - lever * strain[2], lever * step[2] + (lever_nu * strain[2] - R::of(1.0)) * step[0])
 }
 
-/// The share of a step of the section law that neither more than halves nu, nor closes a cable's side by more than
+/// The damping of a step of the section law that neither more than halves nu, nor closes a cable's side by more than
 /// two thirds, nor leaps; with beta' also turns no cable by more than a fraction of a radian.
 #[inline(always)]
-fn share_of<R: Real>(
+fn damping_of<R: Real>(
     balance: &Balance<R>,
     cables: &[CableAt<R>],
     strain: [R; 3],
@@ -120,20 +120,20 @@ fn share_of<R: Real>(
     turning_at: Option<R>,
 ) -> R {
     let one = R::of(1.0);
-    let mut share = one.min(R::of(0.5) * strain[0] / step[0].abs().max(R::of(1e-30)));
-    share = share.min(R::of(0.7) / size.max(R::of(1e-30)));
+    let mut damping = one.min(R::of(0.5) * strain[0] / step[0].abs().max(R::of(1e-30)));
+    damping = damping.min(R::of(0.7) / size.max(R::of(1e-30)));
     for cable in cables {
         let (now, closing) = side(balance, cable, strain, step);
         let allowed = R::of(0.67) * now.abs() / closing.max(R::of(1e-30));
-        share = share.min(R::of(0.0).if_less(cable.tension, allowed, one));
+        damping = damping.min(R::of(0.0).if_less(cable.tension, allowed, one));
         if let Some(beta_slope) = turning_at {
-            let swelling = &balance.swelling;
-            let across = strain[1] + cable.offset.slope * swelling.beta + cable.offset.y * beta_slope;
+            let section_stretch = &balance.section_stretch;
+            let across = strain[1] + cable.offset.slope * section_stretch.beta + cable.offset.y * beta_slope;
             let stretch = (now * now + across * across).sqrt();
-            let turning = (step[1] + cable.offset.slope * swelling.slope * step[0]).abs();
+            let turning = (step[1] + cable.offset.slope * section_stretch.slope * step[0]).abs();
             let allowed = R::of(0.3) * stretch / turning.max(R::of(1e-30));
-            share = share.min(R::of(0.0).if_less(cable.tension, allowed, one));
+            damping = damping.min(R::of(0.0).if_less(cable.tension, allowed, one));
         }
     }
-    share
+    damping
 }

@@ -6,7 +6,7 @@ use crate::rod::loads::stream_along;
 use crate::rod::readings::Support;
 use crate::statics::dense::Dense;
 use crate::statics::engine::{Engine, M, shift_by_tangential_load};
-use crate::statics::equations::{Measured, SectionFailure};
+use crate::statics::equations::{SectionFailure, StationData};
 use crate::statics::snap::Snap;
 use crate::statics::warning::PUBLISHED_CT;
 
@@ -290,7 +290,7 @@ fn cable_states(arm: &Arm, engine: &Engine) -> Vec<CableState> {
         held.is_some_and(|held| held.cables.iter().zip(&held.taut).any(|(own, taut)| *own == cable && *taut))
     };
     let state = |(index, cable): (usize, &Cable)| {
-        let [now, unloaded] = equations.cable_lengths(index, Measured::of(&engine.system));
+        let [now, unloaded] = equations.cable_lengths(index, StationData::of(&engine.system));
         let (length, stroke) = (arm.length * now, arm.length * (unloaded - now));
         let command =
             cable.stroke.map(|given| Command { stroke: given, length: length + stroke - given, slack: !taut(index) });

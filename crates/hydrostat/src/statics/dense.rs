@@ -6,7 +6,7 @@ use crate::numerics::dispatch::widest;
 use crate::numerics::elimination::solve_in_place;
 use crate::statics::configuration::Station;
 use crate::statics::engine::{Engine, M, asked_in, sharpened};
-use crate::statics::equations::{Asked, AtPlace, Equations, L, N, Q, SectionFailure};
+use crate::statics::equations::{Equations, L, N, Q, SectionFailure, SectionQuery, SectionState};
 
 /// Unknowns of a step between nodes: the slopes at its stages.
 const SLOPES: usize = N * M;
@@ -42,14 +42,14 @@ impl Dense {
     }
 
     /// What is known at `s` in element `i`, where the state is `z`.
-    fn asked(&self, i: usize, s: f64, z: [f64; N]) -> Asked {
+    fn asked(&self, i: usize, s: f64, z: [f64; N]) -> SectionQuery {
         let mesh = &self.solution.mesh;
         let x = (s - mesh.nodes()[i]) / mesh.step(i);
-        Asked { s, ..asked_in(&self.solution, &self.gauss, i, x, z) }
+        SectionQuery { s, ..asked_in(&self.solution, &self.gauss, i, x, z) }
     }
 
     /// What is asked with beta' as outputs have it, given everything there with the beta' of the polynomial.
-    fn sharp(&self, i: usize, asked: Asked, here: &AtPlace) -> Asked {
+    fn sharp(&self, i: usize, asked: SectionQuery, here: &SectionState) -> SectionQuery {
         let mesh = &self.solution.mesh;
         let x = (asked.s - mesh.nodes()[i]) / mesh.step(i);
         widest(
@@ -59,28 +59,29 @@ impl Dense {
     }
 
     /// Everything at a place with the beta' of the polynomial.
-    fn place(&self, i: usize, asked: Asked) -> Result<AtPlace, SectionFailure> {
+    fn place(&self, i: usize, asked: SectionQuery) -> Result<SectionState, SectionFailure> {
         match self.equations.at_place(&asked) {
             Err(_) => {
                 // Extrapolated strains can be off: start from the nearest stage instead.
                 let nearest = if asked.from_left { M - 1 } else { 0 };
-                self.equations.at_place(&Asked { strain: self.solution.inner(i, nearest).inner, ..asked })
+                self.equations.at_place(&SectionQuery { strain: self.solution.inner(i, nearest).inner, ..asked })
             }
             found => found,
         }
     }
 
     /// The same with beta' as outputs have it.
-    fn section(&self, i: usize, s: f64, from_left: bool, z: [f64; N]) -> Result<AtPlace, SectionFailure> {
-        let asked = Asked { from_left, ..self.asked(i, s, z) };
+    fn section(&self, i: usize, s: f64, from_left: bool, z: [f64; N]) -> Result<SectionState, SectionFailure> {
+        let asked = SectionQuery { from_left, ..self.asked(i, s, z) };
         let found = self.place(i, asked)?;
         Ok(self.equations.at_place(&self.sharp(i, asked, &found)).unwrap_or(found))
     }
 
     /// Everything at stages within element `i`.
-    fn stages(&self, i: usize, s: &[f64; M], z: &[[f64; N]; M]) -> Result<[AtPlace; M], SectionFailure> {
+    fn stages(&self, i: usize, s: &[f64; M], z: &[[f64; N]; M]) -> Result<[SectionState; M], SectionFailure> {
         const { assert!(M == LANES, "the stages of a step are solved side by side") };
-        let asked: [Asked; LANES] = std::array::from_fn(|j| Asked { from_left: false, ..self.asked(i, s[j], z[j]) });
+        let asked: [SectionQuery; LANES] =
+            std::array::from_fn(|j| SectionQuery { from_left: false, ..self.asked(i, s[j], z[j]) });
         let found = widest(
             #[inline(always)]
             || self.equations.at_places(&asked),
@@ -155,16 +156,16 @@ impl Dense {
     }
 
     /// Everything at nodes, each the start of an element, or its end.
-    pub(crate) fn at_nodes(&self, nodes: &[(usize, bool)]) -> Result<Vec<(Station, AtPlace)>, SectionFailure> {
+    pub(crate) fn at_nodes(&self, nodes: &[(usize, bool)]) -> Result<Vec<(Station, SectionState)>, SectionFailure> {
         let mesh = &self.solution.mesh;
         let mut out = Vec::with_capacity(nodes.len());
         for four in nodes.chunks(LANES) {
             let places: [(usize, bool); LANES] = std::array::from_fn(|lane| four[lane.min(four.len() - 1)]);
             let asked = places.map(|(i, end)| {
                 let k = i + usize::from(end);
-                Asked { from_left: end, ..self.asked(i, mesh.nodes()[k], self.solution.nodes[k]) }
+                SectionQuery { from_left: end, ..self.asked(i, mesh.nodes()[k], self.solution.nodes[k]) }
             });
-            let solved = |asked: &[Asked; LANES]| {
+            let solved = |asked: &[SectionQuery; LANES]| {
                 widest(
                     #[inline(always)]
                     || self.equations.at_places(asked),
@@ -174,7 +175,7 @@ impl Dense {
                 solved(&std::array::from_fn(|lane| self.sharp(places[lane].0, asked[lane], &first.lane(lane))))
             });
             for (lane, (i, end)) in four.iter().enumerate() {
-                let Asked { s, z, .. } = asked[lane];
+                let SectionQuery { s, z, .. } = asked[lane];
                 let place = match &found {
                     Some(found) => found.lane(lane),
                     None => self.section(*i, s, *end, z)?,
@@ -186,7 +187,7 @@ impl Dense {
     }
 
     /// Everything at `s` (over L), as seen from element `i`, which holds it or ends there.
-    pub(crate) fn at(&self, i: usize, s: f64) -> Result<(Station, AtPlace), SectionFailure> {
+    pub(crate) fn at(&self, i: usize, s: f64) -> Result<(Station, SectionState), SectionFailure> {
         let mesh = &self.solution.mesh;
         let (start, end) = (mesh.nodes()[i], mesh.nodes()[i + 1]);
         let (z, position) = if s <= start {
@@ -228,7 +229,7 @@ impl Dense {
         self.solution.inner_in(&self.gauss, i, f64::from(u8::from(end))).closure_slope
     }
 
-    fn station(&self, s: f64, z: [f64; N], position: [f64; Q], place: &AtPlace) -> Station {
+    fn station(&self, s: f64, z: [f64; N], position: [f64; Q], place: &SectionState) -> Station {
         let (l, f) = (self.equations.units.length, self.equations.units.force);
         let base = &self.equations.arm().base;
         let [nu, eta, mu] = place.strain;

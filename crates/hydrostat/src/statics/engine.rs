@@ -14,12 +14,12 @@ mod rounds;
 mod settle;
 mod start;
 mod trouble;
-mod turns;
 mod watch;
+mod wrap_angles;
 
 pub(crate) use self::budget::WORK;
 pub(crate) use self::discrete::{Engine, State, response_change, shift_by_tangential_load};
-pub(crate) use self::held::{Round, UnitPull, pull_taut};
+pub(crate) use self::held::{NewtonStep, UnitPull, pull_taut};
 pub(crate) use self::outputs::{asked_in, sharpened};
 pub(crate) use self::rounds::{correct, linearise, respond};
 pub(crate) use self::settle::First;

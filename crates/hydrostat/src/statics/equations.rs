@@ -12,28 +12,28 @@
 //! and at every s the section law gives (nu, eta, mu), see [`crate::rod::section`]. The centreline r is a
 //! quadrature. Lengths are in units of L, forces in a unit of [`Units`].
 
-mod adversity;
-mod at_place;
+mod buckling;
 mod cable_paths;
 mod change;
-mod commanded;
 mod ends;
 mod friction;
 mod gradients;
 mod held;
 mod limits;
-mod nearness;
+mod margins;
 mod place;
 mod places;
 mod range;
+mod section_state;
+mod stroke_control;
 mod system;
 mod varied;
 
-pub(crate) use self::adversity::Unloaded;
-pub(crate) use self::at_place::{Asked, AtPlace};
-pub(crate) use self::cable_paths::Measured;
+pub(crate) use self::buckling::Unloaded;
+pub(crate) use self::cable_paths::StationData;
 pub(crate) use self::change::Way;
-pub(crate) use self::commanded::Held;
-pub(crate) use self::limits::{Nearness, SectionFailure};
+pub(crate) use self::limits::{Margins, SectionFailure};
+pub(crate) use self::section_state::{SectionQuery, SectionState};
+pub(crate) use self::stroke_control::StrokeControl;
 pub(crate) use self::system::Equations;
 pub(crate) use super::dimensions::{L, N, Q};

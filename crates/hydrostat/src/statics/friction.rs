@@ -14,7 +14,7 @@
 //! (section 2 of `docs/model.md`) with the local T(s). At no friction it is the law without.
 //!
 //! The tension at a place follows all turns before it, so that it is found in rounds: a shape for given turns,
-//! the turns of that shape, and so on, see `rubbing`. Where chi' changes its sign the tension has a kink, and the mesh a node.
+//! the turns of that shape, and so on, see `friction_iteration`. Where chi' changes its sign the tension has a kink, and the mesh a node.
 
 use std::sync::Arc;
 
@@ -25,18 +25,18 @@ use crate::statics::dimensions::M;
 
 /// What friction leaves of the tensions, for turns that are a mixture of those of several shapes.
 #[derive(Debug, Clone)]
-pub(crate) struct Grip {
+pub(crate) struct CapstanFactors {
     /// The share of the friction that acts.
     pub(crate) of_friction: f64,
     /// What the exponent is by the turn, a cable.
     exponents: Vec<f64>,
     /// With weights that sum up to one.
-    shapes: Vec<(f64, Arc<Turns>)>,
+    shapes: Vec<(f64, Arc<WrapAngles>)>,
 }
 
 /// How far each cable has turned, along one shape.
 #[derive(Debug)]
-pub(crate) struct Turns {
+pub(crate) struct WrapAngles {
     gauss: Gauss<M>,
     /// The mesh of the shape.
     nodes: Vec<f64>,
@@ -68,7 +68,7 @@ pub(crate) fn exponents(arm: &Arm, of_friction: f64) -> Vec<f64> {
     arm.cables.iter().map(|cable| sign(cable.motion) * of_friction * cable.friction).collect()
 }
 
-impl Turns {
+impl WrapAngles {
     /// Of cables with these angles in space on the mesh of these nodes, given the nodes at which the data break, and those at which the angles step.
     pub(crate) fn new(
         gauss: Gauss<M>,
@@ -288,8 +288,8 @@ fn slope(gauss: &Gauss<M>, angles: &[f64; POINTS], x: f64) -> f64 {
     (value(gauss, angles, x + NEAR) - value(gauss, angles, x - NEAR)) / (2.0 * NEAR)
 }
 
-impl Grip {
-    pub(crate) fn new(of_friction: f64, exponents: Vec<f64>, shapes: Vec<(f64, Arc<Turns>)>) -> Self {
+impl CapstanFactors {
+    pub(crate) fn new(of_friction: f64, exponents: Vec<f64>, shapes: Vec<(f64, Arc<WrapAngles>)>) -> Self {
         Self { of_friction, exponents, shapes }
     }
 

@@ -10,8 +10,8 @@ use crate::rod::arm::{Arm, ArmError, Flow};
 use crate::rod::readings::Support;
 use crate::statics::configuration::{Configuration, FoldMargin, Stations, Tip, Warning, Wrench};
 use crate::statics::engine::{Engine, First, Guess};
-use crate::statics::equations::Measured;
-use crate::statics::path::Travelled;
+use crate::statics::equations::StationData;
+use crate::statics::path::PathSummary;
 use crate::statics::snap::{Snap, SnapBounds};
 use crate::statics::solve::{Options, Solver};
 use crate::statics::stability::Stability;
@@ -182,11 +182,11 @@ impl Tile {
         let before = engine.tip_angle();
         let estimate = engine.settle(self.options.tol, First::Warm).ok()?;
         // What a direct solve has to pass, too: one equilibrium, and that on the unloaded arm's branch.
-        if engine.may_have_left_the_branch() || (engine.tip_angle() - before).abs() > FARTHEST {
+        if engine.needs_continuation() || (engine.tip_angle() - before).abs() > FARTHEST {
             return None;
         }
         if self.wanted.fold_margin || self.wanted.stability || self.wanted.warnings || self.wanted.stations >= 2 {
-            return Some(self.row(&solver.read(estimate, Travelled::default()).ok()?));
+            return Some(self.row(&solver.read(estimate, PathSummary::default()).ok()?));
         }
         self.read(engine, estimate)
     }
@@ -196,7 +196,7 @@ impl Tile {
         let mut strokes = Vec::new();
         if self.wanted.strokes {
             engine.system.take_stations(&engine.solution);
-            let (equations, at) = (&engine.equations, Measured::of(&engine.system));
+            let (equations, at) = (&engine.equations, StationData::of(&engine.system));
             let stroke = |cable| {
                 let [now, unloaded] = equations.cable_lengths(cable, at);
                 equations.units.length * (unloaded - now)

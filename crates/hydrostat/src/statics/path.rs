@@ -5,15 +5,15 @@ mod circle;
 mod contact;
 mod events;
 mod limits;
-mod pace;
-mod ramp;
+mod load_stepping;
 mod range;
 #[cfg(test)]
 pub(crate) mod small_steps;
+mod step_control;
 mod stepper;
 
 pub use circle::{Equilibria, Equilibrium};
 pub(crate) use limits::name_limit;
-pub(crate) use pace::{LOOSE, Pace, Travelled};
-pub(crate) use ramp::{Stopped, follow, follow_strokes};
+pub(crate) use load_stepping::{Stopped, follow, follow_strokes};
 pub use range::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
+pub(crate) use step_control::{LOOSE, PathSummary, StepControl};

@@ -3,7 +3,7 @@
 use crate::rod::arm::Arm;
 use crate::statics::configuration::{Configuration, Statistics, Tip};
 use crate::statics::engine::{Engine, First, State, Trouble, WORK};
-use crate::statics::path::{LOOSE, Pace, Stopped, Travelled, follow};
+use crate::statics::path::{LOOSE, PathSummary, StepControl, Stopped, follow};
 use crate::statics::snap::SnapBounds;
 use crate::statics::stability::Stability;
 use crate::statics::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
@@ -103,7 +103,7 @@ impl Solver {
     pub(crate) fn solve_within(&mut self, work: usize) -> Result<Configuration, SolveError> {
         self.engine.allow(work);
         let rubs = self.engine.equations.arm().rubs();
-        let solved = if rubs { self.solve_rubbing() } else { self.solve_smooth() };
+        let solved = if rubs { self.solve_with_friction() } else { self.solve_smooth() };
         // What is done with the answer, a path say, has bounds of its own.
         self.engine.lift_limit();
         solved
@@ -129,14 +129,14 @@ impl Solver {
             .and_then(|()| engine.approach(tol))
             .and_then(|()| engine.settle(tol, First::Fair));
         if let Ok(estimate) = direct
-            && !self.engine.may_have_left_the_branch()
-            && let Ok(configuration) = self.read(estimate, Travelled::default())
+            && !self.engine.needs_continuation()
+            && let Ok(configuration) = self.read(estimate, PathSummary::default())
         {
             self.settled = true;
             self.sign = 1.0;
             return Ok(configuration);
         }
-        self.solve_along_the_path(Pace::BRISK)
+        self.solve_along_the_path(StepControl::BRISK)
     }
 
     /// Begins anew.
@@ -332,7 +332,7 @@ impl Solver {
 
     /// The configuration that the engine has settled on from another.
     fn read_warm(&mut self, estimate: f64) -> Result<Configuration, SolveError> {
-        let Ok(mut configuration) = self.read(estimate, Travelled::default()) else { return self.solve() };
+        let Ok(mut configuration) = self.read(estimate, PathSummary::default()) else { return self.solve() };
         if self.sign < 0.0 {
             configuration.stable = Some(false);
         }
@@ -341,7 +341,7 @@ impl Solver {
     }
 
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
-    pub(crate) fn solve_along_the_path(&mut self, pace: Pace) -> Result<Configuration, SolveError> {
+    pub(crate) fn solve_along_the_path(&mut self, pace: StepControl) -> Result<Configuration, SolveError> {
         let travelled = follow(&mut self.engine, pace, self.options.snaps).map_err(|at| self.no_equilibrium(at))?;
         let before = self.engine.tip;
         let sign = self.engine.system.determinant().sign;
@@ -357,12 +357,12 @@ impl Solver {
         }
         match settled {
             Ok(estimate) if moved < 0.05 && same => {
-                let crossings = travelled.crossings;
+                let bifurcations = travelled.bifurcations;
                 let Ok(mut configuration) = self.read(estimate, travelled) else {
                     let verdict = self.last_verdict(Some(1.0));
                     return Err(self.no_equilibrium(verdict));
                 };
-                configuration.stable = known_on_the_way(&configuration, crossings, odd);
+                configuration.stable = known_on_the_way(&configuration, bifurcations, odd);
                 self.keep(&configuration, sign);
                 Ok(configuration)
             }
@@ -410,14 +410,14 @@ impl Solver {
             // Where sections give way, arms are many times as long as they were.
             let size = kept.tip[0].hypot(kept.tip[1]).max(1.0);
             last_good =
-                settled.ok().filter(|_| moved < 0.05 * size).and_then(|e| self.read(e, Travelled::default()).ok());
+                settled.ok().filter(|_| moved < 0.05 * size).and_then(|e| self.read(e, PathSummary::default()).ok());
             if last_good.is_some() {
                 break;
             }
         }
         if last_good.is_none() {
             self.engine.restore(&kept);
-            last_good = self.engine.measure().ok().and_then(|()| self.read(LOOSE, Travelled::default()).ok());
+            last_good = self.engine.measure().ok().and_then(|()| self.read(LOOSE, PathSummary::default()).ok());
         }
         let [after_snap, at_full_loads] = [after_snap, at_full_loads].map(|state| self.read_state(state?.as_ref()));
         SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good, snaps, after_snap, at_full_loads }))
@@ -427,10 +427,10 @@ impl Solver {
     fn read_state(&mut self, state: &State) -> Option<Configuration> {
         self.engine.restore(state);
         let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
-        self.read(estimate, Travelled::default()).ok()
+        self.read(estimate, PathSummary::default()).ok()
     }
 
-    pub(crate) fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<Configuration, Trouble> {
+    pub(crate) fn read(&mut self, estimate: f64, travelled: PathSummary) -> Result<Configuration, Trouble> {
         self.estimate = Some(estimate);
         let statistics = self.engine.statistics(travelled.steps);
         let length = self.engine.equations.units.length;
@@ -443,9 +443,9 @@ impl Solver {
 
 /// What a path knows of the stability of its end, from the bifurcations that it passed and the determinant's sign, which is negative
 /// where an `odd` number of directions is unstable. An even one, after two bifurcations, is counted.
-pub(crate) fn known_on_the_way(configuration: &Configuration, crossings: usize, odd: bool) -> Option<bool> {
+pub(crate) fn known_on_the_way(configuration: &Configuration, bifurcations: usize, odd: bool) -> Option<bool> {
     let counted = || configuration.stability().and_then(Stability::is_stable).filter(|stable| !stable);
-    match (crossings, odd) {
+    match (bifurcations, odd) {
         (_, true) => Some(false),
         (0, false) => None,
         (_, false) => counted(),

@@ -34,7 +34,7 @@ use crate::statics::compliance::{Basis, Compliance, FIELDS, project};
 use crate::statics::configuration::Configuration;
 use crate::statics::dense::Dense;
 use crate::statics::engine::{M, UnitPull, correct, linearise, pull_taut, response_change, turn_sections};
-use crate::statics::equations::{Equations, L, Measured, N, Q, Way};
+use crate::statics::equations::{Equations, L, N, Q, StationData, Way};
 use crate::statics::verdict::Phase;
 
 /// Rates whose real part is smaller, over the slowest decay of the unloaded arm, are neither growth nor decay.
@@ -249,7 +249,7 @@ impl Tangent {
         self.determinant = self.system.determinant();
         if let Some(held) = self.equations.held.clone().filter(|held| held.taut.contains(&true)) {
             let pulled = pull_taut(&self.equations, &self.system, &self.solution, &held);
-            let taut = held.tight();
+            let taut = held.taut_cables();
             let row = |i: &usize| (pulled.iter().map(|by| by.strokes[*i]).collect(), [0.0; 2]);
             self.determinant = self.determinant.times(solved(taut.iter().map(row).collect())?.1);
         }
@@ -266,13 +266,13 @@ impl Tangent {
         let (mut pulled, mut taut) = (Vec::new(), Vec::new());
         if let Some(held) = &held {
             pulled = pull_taut(&self.equations, &self.system, &self.solution, held);
-            taut = held.tight();
+            taut = held.taut_cables();
         }
         let cables: Vec<usize> = held.iter().flat_map(|held| taut.iter().map(|i| held.cables[*i])).collect();
         let (equations, solution) = (&self.equations, &self.solution);
         let mut compliance =
             Compliance::new(&self.system, &solution.mesh, functions, cables.len(), |system, response| {
-                cables.iter().map(|cable| equations.stroke_change(*cable, Measured::of(system), response)).collect()
+                cables.iter().map(|cable| equations.stroke_change(*cable, StationData::of(system), response)).collect()
             });
         let basis = Basis::new(&self.system.gauss.c, &solution.mesh, functions);
         let motion = |(pulled, cable): (&UnitPull, &usize)| {

@@ -20,14 +20,14 @@
 //!
 //! Several shapes can have the same strokes. The one meant is the end of this path: loads and given tensions first,
 //! the commanded cables slack (section 7 of `docs/model.md`), then all commanded strokes in proportion, from
-//! those that the slack cables have there to those asked for. It is followed by arclength (`path/ramp`, `path/contact`)
+//! those that the slack cables have there to those asked for. It is followed by arclength (`path/load_stepping`, `path/contact`)
 //! unless the direct solve (Newton from the tensions of a straight arm) leads to a shape that no load pushes hard against: then that
 //! stands. If the path cannot leave its start, the direct shape also stands when the path in its tensions leads to the same shape.
 
 use crate::rod::arm::Arm;
 use crate::statics::configuration::Configuration;
 use crate::statics::engine::{First, Trouble};
-use crate::statics::path::{Pace, Stopped, Travelled, follow_strokes};
+use crate::statics::path::{PathSummary, StepControl, Stopped, follow_strokes};
 use crate::statics::solve::{SAME, Solver, known_on_the_way};
 use crate::statics::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
@@ -76,14 +76,14 @@ impl Solver {
         self.engine.set_loads(start);
         let mut snaps = self.solve_tensions()?.snaps;
         self.forget();
-        let travelled = match self.follow_strokes_from_here(Pace::BRISK) {
+        let travelled = match self.follow_strokes_from_here(StepControl::BRISK) {
             Ok(travelled) => travelled,
             Err(mut stopped) => {
                 snaps.append(&mut stopped.snaps);
                 return Err(self.no_equilibrium(Stopped { snaps, ..stopped }));
             }
         };
-        let crossings = travelled.crossings;
+        let bifurcations = travelled.bifurcations;
         let settled = self.engine.settle(self.options.tol, First::Rough);
         let Ok(mut configuration) = settled.and_then(|estimate| self.read(estimate, travelled)) else {
             let verdict = Verdict { phase: Phase::Stroke, ..self.last_verdict(Some(1.0)) };
@@ -92,7 +92,7 @@ impl Solver {
         let sign = self.engine.determinant().sign;
         snaps.append(&mut configuration.snaps);
         configuration.snaps = snaps;
-        configuration.stable = known_on_the_way(&configuration, crossings, sign < 0.0);
+        configuration.stable = known_on_the_way(&configuration, bifurcations, sign < 0.0);
         self.keep(&configuration, sign);
         Ok(configuration)
     }
@@ -133,7 +133,7 @@ impl Solver {
     /// From the tensions that the strokes take in a straight arm without other loads.
     fn solve_strokes_directly(&mut self, arm: &Arm) -> Result<Configuration, Trouble> {
         let estimate = self.settle_strokes(arm, &self.straight_tensions(arm))?;
-        if self.engine.may_have_left_the_branch() || self.engine.determinant().sign < 0.0 {
+        if self.engine.needs_continuation() || self.engine.determinant().sign < 0.0 {
             return Err(Trouble::Singular);
         }
         self.read_strokes(estimate)
@@ -150,13 +150,13 @@ impl Solver {
     }
 
     fn read_strokes(&mut self, estimate: f64) -> Result<Configuration, Trouble> {
-        let configuration = self.read(estimate, Travelled::default())?;
+        let configuration = self.read(estimate, PathSummary::default())?;
         self.keep(&configuration, 1.0);
         Ok(configuration)
     }
 
     /// The phase of strokes, from the engine's equilibrium, in which the commanded cables are slack or hardly pulled.
-    fn follow_strokes_from_here(&mut self, pace: Pace) -> Result<Travelled, Stopped> {
+    fn follow_strokes_from_here(&mut self, pace: StepControl) -> Result<PathSummary, Stopped> {
         let bounds = self.options.snaps;
         let engine = &mut self.engine;
         engine.equations.hold_strokes();
@@ -169,7 +169,7 @@ impl Solver {
             if all_slack && strokes.iter().enumerate().all(|(i, stroke)| *stroke >= engine.equations.command(&held, i))
             {
                 // All stay slack.
-                return Ok(Travelled::default());
+                return Ok(PathSummary::default());
             }
             engine.equations.start_strokes_from(strokes);
         }
@@ -255,11 +255,11 @@ mod tests {
                     let mut other = Solver::new(&arm, Options::with_tol(1e-9)).unwrap();
                     other.engine = Engine::new(&with_tensions(&arm, |_| 0.0));
                     other.solve_tensions().unwrap();
-                    let pace = Pace { longest: 0.1, straightness: 0.99, most: 2000, accuracy: 1e-6 };
+                    let pace = StepControl { longest: 0.1, straightness: 0.99, most: 2000, accuracy: 1e-6 };
                     other.engine.equations.hold_strokes();
                     other.follow_strokes_from_here(pace).unwrap();
                     other.engine.settle(1e-9, First::Warm).unwrap();
-                    let two = other.read(1e-9, Travelled::default()).unwrap();
+                    let two = other.read(1e-9, PathSummary::default()).unwrap();
                     both += 1;
                     let off = (one.tip().x - two.tip().x).hypot(one.tip().y - two.tip().y) / arm.length;
                     assert!(off < 1e-7, "{strokes:?} m, {speed} m/s from {direction}: {off:e} L apart");

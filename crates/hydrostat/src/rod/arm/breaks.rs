@@ -23,13 +23,13 @@ impl Arm {
     }
 
     /// What a station of this arm costs, in time and memory, over one of an arm with few cables.
-    pub(crate) fn dearness(&self) -> usize {
+    pub(crate) fn cost_factor(&self) -> usize {
         1 + self.cables.len() / AS_DEAR
     }
 
     /// Refuses more places than meshes have room for.
     pub(super) fn check_breaks(&self) -> Result<(), ArmError> {
-        let most = MOST / self.dearness();
+        let most = MOST / self.cost_factor();
         let mut knots = self.cables.len();
         let mut longest = ("cable".to_owned(), 0);
         self.each_profile(|key, profile| {

@@ -1,6 +1,6 @@
 //! How much work a solve may be, counted so that every machine ends it at the same place.
 //!
-//! A piece of work is one evaluation of the section law and the loads at a station, more with many cables ([`crate::Arm::dearness`]). All
+//! A piece of work is one evaluation of the section law and the loads at a station, more with many cables ([`crate::Arm::cost_factor`]). All
 //! ways of a solve to its answer are finite in themselves, but meshes of an arm that winds thousands of times through the stream are
 //! long, and rounds on them many.
 
@@ -66,12 +66,12 @@ mod tests {
         stream.flow.direction = 1.2;
         let mut reeled = stream.clone();
         reeled.cables[0] = Cable::new("left", Profile::linear(0.005, 0.001)).reeled_in(0.01);
-        let mut rubbing = stream.clone();
-        rubbing.cables[0].friction = 0.3;
-        rubbing.gravity = Some(Gravity::default());
+        let mut converged = stream.clone();
+        converged.cables[0].friction = 0.3;
+        converged.gravity = Some(Gravity::default());
         let mut too_much = stream.clone();
         too_much.cables[0].tension = 40.0;
-        vec![plain, stream, reeled, rubbing, too_much]
+        vec![plain, stream, reeled, converged, too_much]
     }
 
     #[test]

@@ -10,11 +10,11 @@ impl Engine {
     pub(crate) fn move_to(&mut self, mesh: Mesh) {
         std::mem::swap(&mut self.solution, &mut self.before);
         self.solution.mesh = mesh;
-        self.come_from_before();
+        self.remap();
     }
 
     /// Carries the solution before over to the mesh of the present one.
-    pub(super) fn come_from_before(&mut self) {
+    pub(super) fn remap(&mut self) {
         self.meshes += 1;
         let (gauss, equations) = (&self.system.gauss, &self.equations);
         self.before.onto(gauss, |s| equations.jumps_at(s), &mut self.solution);

@@ -9,7 +9,7 @@ use super::rounds::{correct, evaluate, linearise, respond};
 use super::trouble::{Trouble, roughly};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, K, L, M, N, Q};
-use crate::statics::equations::{Asked, AtPlace, Equations, Measured, Nearness, SectionFailure, Way};
+use crate::statics::equations::{Equations, Margins, SectionFailure, SectionQuery, SectionState, StationData, Way};
 use crate::statics::phase::Phase;
 use crate::statics::shape::{Statistics, Tip};
 
@@ -117,8 +117,8 @@ impl Engine {
         self.switches.clone_from(&state.switches);
         self.tip = state.tip;
         // Friction belongs to the shape, and the check is of the same arm.
-        if self.equations.grip.is_some() || self.check_equations.grip.is_some() {
-            self.check_equations.set_grip(self.equations.grip.as_ref());
+        if self.equations.capstan.is_some() || self.check_equations.capstan.is_some() {
+            self.check_equations.set_capstan(self.equations.capstan.as_ref());
         }
     }
 
@@ -172,12 +172,13 @@ impl Engine {
     }
 
     /// The section at an end, which is no station.
-    pub(super) fn at_end(&self, tip: bool) -> Result<AtPlace, SectionFailure> {
+    pub(super) fn at_end(&self, tip: bool) -> Result<SectionState, SectionFailure> {
         let n = self.solution.mesh.elements();
         let (node, nearest) = if tip { (n, n * M - 1) } else { (0, 0) };
         self.beside_node(node, tip).or_else(|_| {
             let asked = self.asked_beside(node, tip);
-            self.equations.at_place(&Asked { strain: self.solution.inner(nearest / M, nearest % M).inner, ..asked })
+            self.equations
+                .at_place(&SectionQuery { strain: self.solution.inner(nearest / M, nearest % M).inner, ..asked })
         })
     }
 
@@ -191,14 +192,14 @@ impl Engine {
     }
 
     /// Whether the section law has strains at both ends.
-    pub(crate) fn ends_fine(&self) -> Result<(), Trouble> {
+    pub(crate) fn check_ends(&self) -> Result<(), Trouble> {
         self.at_end(false).and_then(|_| self.at_end(true)).map(|_| ()).map_err(Trouble::Section)
     }
 
     /// How near the limits of the section law stations and ends are.
-    pub(crate) fn nearest_limits(&mut self) -> Nearness {
+    pub(crate) fn margins_to_limits(&mut self) -> Margins {
         self.system.take_stations(&self.solution);
-        let mut near = self.equations.nearness(self.system.stations());
+        let mut near = self.equations.margins(self.system.stations());
         for (tip, s) in [(false, 0.0), (true, 1.0)] {
             if let Ok(end) = self.at_end(tip) {
                 near.note(s, end.openness, end.strain[0], end.regularity);
@@ -273,7 +274,7 @@ impl Engine {
     /// The strokes that are commanded of cables for the present solution, over L.
     pub(crate) fn strokes(&self, cables: impl Iterator<Item = usize>) -> Vec<f64> {
         let system = self.at_present();
-        cables.map(|c| self.equations.stroke(c, Measured::of(&system))[0]).collect()
+        cables.map(|c| self.equations.stroke(c, StationData::of(&system))[0]).collect()
     }
 
     /// Evaluates the equations at the present solution.
@@ -290,24 +291,29 @@ impl Engine {
     }
 
     /// The section on either side of node `i`.
-    pub(crate) fn beside_node(&self, i: usize, left: bool) -> Result<AtPlace, SectionFailure> {
+    pub(crate) fn beside_node(&self, i: usize, left: bool) -> Result<SectionState, SectionFailure> {
         self.equations.at_place(&self.asked_beside(i, left))
     }
 
     /// The same with beta' as outputs have it, or as it is where the section has no strains with that.
-    pub(crate) fn sharp_beside_node(&self, i: usize, left: bool) -> Result<AtPlace, SectionFailure> {
+    pub(crate) fn sharp_beside_node(&self, i: usize, left: bool) -> Result<SectionState, SectionFailure> {
         let here = self.beside_node(i, left)?;
         Ok(self.sharp_beside(i, left, &here).unwrap_or(here))
     }
 
     /// The section on either side of node `i` with beta' as outputs have it, given that with the beta' of the polynomial.
-    pub(super) fn sharp_beside(&self, i: usize, left: bool, here: &AtPlace) -> Result<AtPlace, SectionFailure> {
+    pub(super) fn sharp_beside(
+        &self,
+        i: usize,
+        left: bool,
+        here: &SectionState,
+    ) -> Result<SectionState, SectionFailure> {
         let end = if left { (i - 1, 1.0) } else { (i, 0.0) };
         let asked = self.asked_beside(i, left);
         self.equations.at_place(&sharpened(&self.equations, &self.solution, &self.system.gauss, end, asked, here))
     }
 
-    pub(crate) fn asked_beside(&self, i: usize, left: bool) -> Asked {
+    pub(crate) fn asked_beside(&self, i: usize, left: bool) -> SectionQuery {
         let (element, x) = if left { (i - 1, 1.0) } else { (i, 0.0) };
         asked_in(&self.solution, &self.system.gauss, element, x, self.solution.nodes[i])
     }

@@ -18,7 +18,7 @@ use super::rounds::{correct, respond};
 use super::trouble::Trouble;
 use crate::numerics::elimination::solved;
 use crate::statics::dimensions::{Guess, L, M, N, Q};
-use crate::statics::equations::{Equations, Held, Measured, SectionFailure, Way};
+use crate::statics::equations::{Equations, SectionFailure, StationData, StrokeControl, Way};
 
 /// What strokes may be off by (over L) before the last round, which leaves the square of that.
 const STROKES: f64 = 1e-10;
@@ -37,7 +37,7 @@ const MORE: usize = 12;
 
 /// One linearisation.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Round {
+pub(crate) struct NewtonStep {
     /// What is left to correct at the commanded strokes.
     pub(crate) rest: Correction<N, M, Q, L>,
     /// Change a unit of the parameter.
@@ -61,7 +61,7 @@ impl Engine {
     }
 
     /// [`Engine::linearise`] with the corrections, at held strokes where there are any.
-    pub(crate) fn linearise_held(&mut self, parameter: bool, round: &mut Round) -> Result<(), Trouble> {
+    pub(crate) fn linearise_held(&mut self, parameter: bool, round: &mut NewtonStep) -> Result<(), Trouble> {
         self.match_closure();
         self.linearise()?;
         if self.choose_sides() {
@@ -80,11 +80,11 @@ impl Engine {
             return Ok(());
         };
         let count = held.cables.len();
-        let taut = held.tight();
+        let taut = held.taut_cables();
         let pulled = pull_taut(&self.equations, &self.system, &self.solution, &held);
         let mut slack: [Vec<f64>; 2] = std::array::from_fn(|_| Vec::with_capacity(count));
         round.off = 0.0;
-        let at = Measured::of(&self.system);
+        let at = StationData::of(&self.system);
         let change = |cable: usize, by: &Correction<N, M, Q, L>| self.equations.stroke_change(cable, at, by);
         for (index, cable) in held.cables.iter().enumerate() {
             let off = self.equations.stroke(*cable, at)[0] - self.equations.command(&held, index);
@@ -92,7 +92,7 @@ impl Engine {
                 round.off = round.off.max(off.abs());
             }
             slack[0].push(off + change(*cable, &round.rest));
-            slack[1].push(change(*cable, &round.response) - self.equations.command_drift(&held, index));
+            slack[1].push(change(*cable, &round.response) - self.equations.command_derivative(&held, index));
         }
         let row = |index: &usize| {
             (pulled.iter().map(|by| by.strokes[*index]).collect(), [-slack[0][*index], -slack[1][*index]])
@@ -115,7 +115,7 @@ impl Engine {
     }
 
     /// Adds `factor` times the rest (0) or the response (1) of a round to shape and tensions.
-    pub(crate) fn add_round(&mut self, round: &Round, which: usize, factor: f64) {
+    pub(crate) fn add_round(&mut self, round: &NewtonStep, which: usize, factor: f64) {
         self.solution.add(if which == 0 { &round.rest } else { &round.response }, factor);
         self.add_tensions(&round.tension[which], factor);
     }
@@ -136,11 +136,11 @@ impl Engine {
     /// Newton at held strokes until the tip moves by less than `tolerance` and the strokes are met.
     pub(super) fn iterate_held(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
         let strokes = STROKES.max(0.01 * tolerance);
-        let mut round = Round::default();
+        let mut round = NewtonStep::default();
         let (mut applied, mut halvings, mut switches) = (0.0, 0, 0);
         let mut count = 0;
         loop {
-            let mut next = Round::default();
+            let mut next = NewtonStep::default();
             match self.linearise_held(false, &mut next) {
                 Ok(()) => round = next,
                 Err(Trouble::Section(failure)) => {
@@ -188,7 +188,7 @@ impl Engine {
     /// Takes half of what is left of the last round back, where its end has no strains.
     fn halve(
         &mut self,
-        round: &Round,
+        round: &NewtonStep,
         applied: &mut f64,
         halvings: &mut usize,
         failure: SectionFailure,
@@ -237,11 +237,11 @@ pub(crate) fn pull_taut(
     equations: &Equations,
     system: &Collocation<N, M, Q, L>,
     solution: &Guess,
-    held: &Held,
+    held: &StrokeControl,
 ) -> Vec<UnitPull> {
-    let at = Measured::of(system);
+    let at = StationData::of(system);
     let mut out = Vec::new();
-    for index in held.tight() {
+    for index in held.taut_cables() {
         let cable = held.cables[index];
         let change = response_change(equations, system, solution, Way::Tension(cable));
         let mut response = Correction::default();
@@ -304,7 +304,7 @@ mod tests {
             let value = parameter.of(&arm).unwrap();
             // A range that differences of it are not lost in rounding.
             engine.equations.vary(parameter, value, value + RANGE * step);
-            let mut round = Round::default();
+            let mut round = NewtonStep::default();
             for _ in 0..3 {
                 engine.linearise_held(true, &mut round).unwrap();
             }
@@ -344,7 +344,7 @@ mod tests {
         engine.set_loads(&moved);
         let mut sizes = Vec::new();
         for _ in 0..5 {
-            let mut round = Round::default();
+            let mut round = NewtonStep::default();
             engine.linearise_held(false, &mut round).unwrap();
             engine.add_round(&round, 0, 1.0);
             sizes.push(round.off.max(round.rest.largest(0)));

@@ -89,13 +89,13 @@ impl Engine {
     /// Adds the places where cables that rub turn back: their tensions have kinks there. These are of the turns that the present
     /// tensions are made of, not of the solution: there the kinks are until the next round of turns.
     fn add_kinks_of_friction(&self, out: &mut Vec<f64>) {
-        let Some(grip) = &self.equations.grip else { return };
+        let Some(capstan) = &self.equations.capstan else { return };
         let cables = self.equations.arm().cables.iter().enumerate();
-        let rubbing = |(c, cable): (usize, &crate::Cable)| {
+        let converged = |(c, cable): (usize, &crate::Cable)| {
             (cable.friction > 0.0 && self.equations.tension(c) != 0.0).then_some(c)
         };
-        let rubbing: Vec<usize> = cables.filter_map(rubbing).collect();
-        let mut kinks: Vec<f64> = grip.kinks(&rubbing).collect();
+        let converged: Vec<usize> = cables.filter_map(converged).collect();
+        let mut kinks: Vec<f64> = capstan.kinks(&converged).collect();
         kinks.sort_by(f64::total_cmp);
         out.extend(merged(&kinks, |_| true));
     }
@@ -146,7 +146,7 @@ impl Engine {
             std::mem::swap(&mut self.solution, &mut self.before);
             return false;
         }
-        self.come_from_before();
+        self.remap();
         true
     }
 

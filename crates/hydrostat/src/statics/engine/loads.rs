@@ -4,12 +4,12 @@ use super::discrete::Engine;
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::M;
 use crate::statics::equations::Unloaded;
-use crate::statics::friction::Grip;
+use crate::statics::friction::CapstanFactors;
 
 impl Engine {
     /// Whether something pushes against the arm hard enough that a direct solve may have landed on a
     /// branch that the path does not lead to. Cheap and on the safe side.
-    pub(crate) fn may_have_left_the_branch(&mut self) -> bool {
+    pub(crate) fn needs_continuation(&mut self) -> bool {
         if self.equations.arm().readings.support == crate::Support::UnstrainedBase {
             // An initial-value problem has one solution.
             return false;
@@ -26,7 +26,7 @@ impl Engine {
                 let k = i * M + j;
                 let mu = self.equations.reference_strain(k)[2];
                 unloaded.turn(&self.equations, mesh.step(i) * self.system.gauss.b[j] * mu);
-                if self.equations.adversity(k, stations, &unloaded) > 0.3 {
+                if self.equations.buckling_indicator(k, stations, &unloaded) > 0.3 {
                     return true;
                 }
             }
@@ -80,8 +80,8 @@ impl Engine {
     }
 
     /// What friction leaves of the tensions from now on.
-    pub(crate) fn set_grip(&mut self, grip: Option<&Grip>) {
-        self.equations.set_grip(grip);
-        self.check_equations.set_grip(grip);
+    pub(crate) fn set_capstan(&mut self, capstan: Option<&CapstanFactors>) {
+        self.equations.set_capstan(capstan);
+        self.check_equations.set_capstan(capstan);
     }
 }

@@ -5,13 +5,13 @@ use std::sync::LazyLock;
 use hydrostat_bvp::{Along, Derivatives, Gauss, LANES, Side};
 
 use crate::statics::dimensions::{Guess, M, N};
-use crate::statics::equations::{Asked, AtPlace, Equations};
+use crate::statics::equations::{Equations, SectionQuery, SectionState};
 
 /// What is known at `x` in [0, 1] of element `i`, where the state is `z`.
-pub(crate) fn asked_in(solution: &Guess, gauss: &Gauss<M>, i: usize, x: f64, z: [f64; N]) -> Asked {
+pub(crate) fn asked_in(solution: &Guess, gauss: &Gauss<M>, i: usize, x: f64, z: [f64; N]) -> SectionQuery {
     let known = solution.inner_in(gauss, i, x);
     let s = if x == 1.0 { solution.mesh.nodes()[i + 1] } else { solution.mesh.nodes()[i] + x * solution.mesh.step(i) };
-    Asked { s, from_left: x > 0.0, z, strain: known.inner, beta_slope: known.closure_slope }
+    SectionQuery { s, from_left: x > 0.0, z, strain: known.inner, beta_slope: known.closure_slope }
 }
 
 /// The reach of beta' over an element's length up to which the section law gives beta' better than the element's polynomial.
@@ -41,9 +41,9 @@ pub(crate) fn sharpened(
     solution: &Guess,
     gauss: &Gauss<M>,
     (i, x): (usize, f64),
-    asked: Asked,
-    here: &AtPlace,
-) -> Asked {
+    asked: SectionQuery,
+    here: &SectionState,
+) -> SectionQuery {
     const STEP: f64 = 1e-3;
     const REACH_STEP: f64 = 1e-4;
     /// Change of beta' by the first time, times the reach over the element's length, below which a second time changes less than the
@@ -66,7 +66,7 @@ pub(crate) fn sharpened(
         let z = std::array::from_fn(|a| asked.z[a] + d * (here.slope[a] + 0.5 * d * bend[a]));
         let beta_slope = beta_slope + d * curvature;
         let strain = std::array::from_fn(|k| here.strain[k] + d * turn[k]);
-        Asked { s: asked.s + d, from_left: asked.from_left && k == 0.0, z, strain, beta_slope }
+        SectionQuery { s: asked.s + d, from_left: asked.from_left && k == 0.0, z, strain, beta_slope }
     };
     // beta' and beta'' from beta here and further on.
     let slopes_of = |[a, b, c, d]: [f64; LANES], reach: f64| {
@@ -74,7 +74,7 @@ pub(crate) fn sharpened(
         (slope, (2.0 * a - 5.0 * b + 4.0 * c - d) / (step * step) + reach * bend_of_slope)
     };
     let push = REACH_STEP * asked.beta_slope.abs().max(1.0);
-    let pushed = Asked { beta_slope: asked.beta_slope + push, strain: here.strain, ..asked };
+    let pushed = SectionQuery { beta_slope: asked.beta_slope + push, strain: here.strain, ..asked };
     let [first, second, third] = [1.0, 2.0, 3.0].map(|k| along(k, asked.beta_slope, curvature));
     let Some([one, two, three, pushed]) = equations.beta_at(&[first, second, third, pushed]) else { return asked };
     let reach = (pushed - here.beta) / push;
@@ -84,11 +84,11 @@ pub(crate) fn sharpened(
     let (slope, curved) = slopes_of([here.beta, one, two, three], reach);
     let (slope, curvature) = (slope + reach * (curved - curvature), curved);
     if (reach / h * (slope - asked.beta_slope)).abs() < ONCE {
-        return Asked { beta_slope: slope, strain: here.strain, ..asked };
+        return SectionQuery { beta_slope: slope, strain: here.strain, ..asked };
     }
     let Some(again) = equations.beta_at(&[0.0, 1.0, 2.0, 3.0].map(|k| along(k, slope, curvature))) else {
         return asked;
     };
     let (slope, curved) = slopes_of(again, reach);
-    Asked { beta_slope: slope + reach * (curved - curvature), strain: here.strain, ..asked }
+    SectionQuery { beta_slope: slope + reach * (curved - curvature), strain: here.strain, ..asked }
 }

@@ -218,7 +218,7 @@ impl Engine {
     /// not zero (`friction`), what a node that is off one costs is of first order.
     fn resolution(&self, tolerance: f64) -> f64 {
         let resolution = kink_resolution(tolerance);
-        if self.equations.grip.is_some() { resolution.min(OF_FRICTION) } else { resolution }
+        if self.equations.capstan.is_some() { resolution.min(OF_FRICTION) } else { resolution }
     }
 
     /// Newton on this mesh, with nodes moved to within `resolution` of the kinks of the load.

@@ -3,13 +3,13 @@
 use hydrostat_bvp::{Collocation, Correction, Lanes, Real, Station};
 
 use super::system::Equations;
+use crate::rod::area_law::area_law;
 use crate::rod::cable::{Tangent, tangent};
-use crate::rod::swelling::swelling;
 use crate::statics::dimensions::{L, N, Q};
 
 /// The stations of a solution, with what integrates over them.
 #[derive(Clone, Copy)]
-pub(crate) struct Measured<'a> {
+pub(crate) struct StationData<'a> {
     /// Of the stages.
     weights: &'a [f64],
     /// Lengths of elements, a group.
@@ -17,7 +17,7 @@ pub(crate) struct Measured<'a> {
     stations: &'a [Station<N, L>],
 }
 
-impl<'a> Measured<'a> {
+impl<'a> StationData<'a> {
     /// The stations that `system` has.
     pub(crate) fn of<const M: usize>(system: &'a Collocation<N, M, Q, L>) -> Self {
         Self { weights: &system.gauss.b, steps: system.steps(), stations: system.stations() }
@@ -30,7 +30,7 @@ impl Equations {
     fn cable_tangent(&self, c: usize, block: usize, station: &Station<N, L>) -> Tangent<Lanes> {
         let offset = &self.cables_in(block)[c].offset;
         let [nu, ..] = station.inner;
-        tangent(offset, station.inner, &swelling(self.volume, nu), station.closure_slope)
+        tangent(offset, station.inner, &area_law(self.volume, nu), station.closure_slope)
     }
 
     /// |tau| of cable `c` in a block of stations at the reference strains.
@@ -38,7 +38,7 @@ impl Equations {
     fn reference_stretch(&self, c: usize, block: usize) -> Lanes {
         let offset = &self.cables_in(block)[c].offset;
         let stiffness = &self.places[block].stiffness;
-        let reference = swelling(self.volume, stiffness.reference[0]);
+        let reference = area_law(self.volume, stiffness.reference[0]);
         let slope = reference.slope * stiffness.reference_slope;
         tangent(offset, stiffness.reference, &reference, slope).stretch
     }
@@ -55,7 +55,7 @@ impl Equations {
 
     /// Sums `value` over the path of cable `c`.
     #[inline(always)]
-    fn along_cable(&self, c: usize, at: Measured<'_>, value: impl Fn(usize) -> Lanes) -> f64 {
+    fn along_cable(&self, c: usize, at: StationData<'_>, value: impl Fn(usize) -> Lanes) -> f64 {
         let groups = self.groups;
         let mut sum = 0.0;
         for block in 0..groups.count() * groups.stages {
@@ -71,7 +71,7 @@ impl Equations {
     }
 
     /// Length of the path of cable `c`, now and at the reference strains, over L.
-    pub(crate) fn cable_lengths(&self, c: usize, at: Measured<'_>) -> [f64; 2] {
+    pub(crate) fn cable_lengths(&self, c: usize, at: StationData<'_>) -> [f64; 2] {
         [
             self.along_cable(c, at, |block| self.cable_tangent(c, block, &at.stations[block]).stretch),
             self.along_cable(c, at, |block| self.reference_stretch(c, block)),
@@ -80,7 +80,7 @@ impl Equations {
 
     /// The unstretched length of cable `c` over L: the integral of |tau| / (1 + T(s)/EA), with its derivative by the tension (in the unit
     /// of force).
-    fn unstretched(&self, c: usize, at: Measured<'_>) -> [f64; 2] {
+    fn unstretched(&self, c: usize, at: StationData<'_>) -> [f64; 2] {
         let per_force = self.per_force(c);
         let tension = self.tensions[c];
         let stretch = |block: usize| self.cable_tangent(c, block, &at.stations[block]).stretch;
@@ -104,7 +104,7 @@ impl Equations {
     }
 
     /// Unstretched stroke of `cable`, over L, and its derivative by the tension (in the unit of force).
-    pub(crate) fn stroke(&self, cable: usize, at: Measured<'_>) -> [f64; 2] {
+    pub(crate) fn stroke(&self, cable: usize, at: StationData<'_>) -> [f64; 2] {
         let [now, by_tension] = self.unstretched(cable, at);
         let reference = self.along_cable(cable, at, |block| self.reference_stretch(cable, block));
         [reference - now, -by_tension]
@@ -115,10 +115,11 @@ impl Equations {
     pub(crate) fn stretch_gradient(&self, c: usize, block: usize, station: &Station<N, L>) -> ([Lanes; L], Lanes) {
         let offset = &self.cables_in(block)[c].offset;
         let [nu, _, mu] = station.inner;
-        let swelling = swelling(self.volume, nu);
-        let t = tangent(offset, station.inner, &swelling, station.closure_slope);
-        let by_nu = t.a * (Lanes::of(1.0) - offset.y * swelling.slope * mu) + t.b * offset.slope * swelling.slope;
-        ([by_nu, t.b, -(t.a * offset.y * swelling.beta)], t.b * offset.y)
+        let section_stretch = area_law(self.volume, nu);
+        let t = tangent(offset, station.inner, &section_stretch, station.closure_slope);
+        let by_nu =
+            t.a * (Lanes::of(1.0) - offset.y * section_stretch.slope * mu) + t.b * offset.slope * section_stretch.slope;
+        ([by_nu, t.b, -(t.a * offset.y * section_stretch.beta)], t.b * offset.y)
     }
 
     /// What a change of |tau| changes the stroke of cable `c` by, in a block of stations: with a stretch of its own less.
@@ -132,7 +133,7 @@ impl Equations {
     pub(crate) fn stroke_change<const M: usize>(
         &self,
         cable: usize,
-        at: Measured<'_>,
+        at: StationData<'_>,
         change: &Correction<N, M, Q, L>,
     ) -> f64 {
         self.along_cable(cable, at, |block| {

@@ -2,18 +2,18 @@
 
 use hydrostat_bvp::{Change, Condition, Drift, Lanes, Local, Problem, Real, Station, each};
 
-use super::at_place::Asked;
-use super::cable_paths::Measured;
+use super::cable_paths::StationData;
 use super::gradients::{by_strain_change, in_directors};
 use super::place::Place;
+use super::section_state::SectionQuery;
 use super::system::Equations;
 use crate::numerics::sincos::sin_cos;
+use crate::rod::area_law::area_law;
 use crate::rod::cable::pull;
-use crate::rod::cables_here::Few;
+use crate::rod::cable_list::CableList;
 use crate::rod::loads::load;
 use crate::rod::parameter::Parameter;
 use crate::rod::section::{CableAt, Stiffness, apply3, balance};
-use crate::rod::swelling::swelling;
 use crate::statics::dimensions::{L, N, Q};
 use crate::statics::verdict::Phase;
 
@@ -95,9 +95,9 @@ impl Equations {
             whole.tangential_factor = self.water.tangential_factor;
             explicit.extend(stations.iter().zip(&self.places).map(|(station, place)| {
                 let (sin, cos) = sin_cos(station.z[0]);
-                let swelling = swelling(self.volume, station.inner[0]);
+                let section_stretch = area_law(self.volume, station.inner[0]);
                 let slope = station.closure_slope;
-                let force = load(&whole, &place.body, [cos, sin], station.inner, &swelling, slope).force;
+                let force = load(&whole, &place.body, [cos, sin], station.inner, &section_stretch, slope).force;
                 Explicit { force, couple: place.body.couple, ..Explicit::ZERO }
             }));
         } else {
@@ -149,11 +149,11 @@ impl Equations {
 
     /// What sections carry of these tensions.
     fn carried_by(&self, tensions: &[f64], cables: &[CableAt<Lanes>], station: &Station<N, L>) -> [Lanes; 3] {
-        let swelling = swelling(self.volume, station.inner[0]);
+        let section_stretch = area_law(self.volume, station.inner[0]);
         let mut out = [Lanes::of(0.0); 3];
         for (cable, tension) in cables.iter().zip(tensions).filter(|(_, tension)| **tension != 0.0) {
             let tension = cable.tension * Lanes::of(*tension);
-            let (by, _) = pull(tension, &cable.offset, station.inner, &swelling, station.closure_slope);
+            let (by, _) = pull(tension, &cable.offset, station.inner, &section_stretch, station.closure_slope);
             for k in 0..3 {
                 out[k] += by.load[k];
             }
@@ -173,7 +173,7 @@ impl Equations {
         explicit.resize(stations.len(), Explicit::ZERO);
         end_explicit.resize(ends.len(), [Lanes::of(0.0); 3]);
         let step = self.difference_step(way);
-        let mut pulled = Few::new();
+        let mut pulled = CableList::new();
         let count = self.tensions.len();
         for (steps, weight) in PLACES {
             let Some(moved) = self.moved(way, steps * step) else { continue };
@@ -206,7 +206,7 @@ impl Equations {
         let mut out = Explicit { carried: balance.carried, ..Explicit::ZERO };
         if let Some(place) = place {
             let (sin, cos) = sin_cos(station.z[0]);
-            out.force = self.load(place, [cos, sin], station.inner, &balance.swelling, slope).force;
+            out.force = self.load(place, [cos, sin], station.inner, &balance.section_stretch, slope).force;
             out.couple = place.body.couple * Lanes::of(self.fraction[0]);
         }
         out
@@ -243,8 +243,8 @@ impl Equations {
         by: &Explicit,
     ) -> Drift<N, Q, L> {
         let (sin, cos) = sin_cos(station.z[0]);
-        let swelling = swelling(self.volume, station.inner[0]);
-        let load = self.load(place, [cos, sin], station.inner, &swelling, station.closure_slope);
+        let section_stretch = area_law(self.volume, station.inner[0]);
+        let load = self.load(place, [cos, sin], station.inner, &section_stretch, station.closure_slope);
         let contact = in_directors([cos, sin], &station.z);
         let strain = following(&local.inner.gradient, [cos, sin], by.carried);
         let mut slope = by_strain_change(&load, contact, strain);
@@ -256,20 +256,20 @@ impl Equations {
             slope,
             rate: [nu * cos - eta * sin, nu * sin + eta * cos],
             inner: strain,
-            value: swelling.slope * strain[0],
+            value: section_stretch.slope * strain[0],
         }
     }
 
     fn end_drift(&self, block: usize, station: &Station<N, L>, carried: &[Lanes; 3]) -> ([Lanes; L], Lanes) {
         let section = &self.end_sections[block];
-        let mut pulled = Few::new();
+        let mut pulled = CableList::new();
         let count = self.tensions.len();
         self.pulled_in(&self.end_cables[block * count..(block + 1) * count], &mut pulled);
         let there = balance(self.volume, &section.stiffness, pulled.as_slice(), station.inner, station.closure_slope);
         let (inverse, _) = crate::rod::section::inverse3(&there.by_strain);
         let less = apply3(&inverse, *carried);
         let strain: [Lanes; 3] = each(|k| -less[k]);
-        (strain, there.swelling.slope * strain[0])
+        (strain, there.section_stretch.slope * strain[0])
     }
 }
 
@@ -339,7 +339,7 @@ impl Equations {
     }
 
     /// How the stroke of cable `c` (of its path, or as it is commanded) follows `way` at a fixed solution, over L.
-    pub(crate) fn stroke_by(&self, c: usize, commanded: bool, way: Way, at: Measured<'_>) -> f64 {
+    pub(crate) fn stroke_by(&self, c: usize, commanded: bool, way: Way, at: StationData<'_>) -> f64 {
         let geometric = matches!(way, Way::Of(Parameter::Offset(..)));
         let stretched = commanded && self.arm.cables[c].stiffness.is_some();
         let pulled = stretched && matches!(way, Way::Of(Parameter::Tension(k)) if k == c);
@@ -357,7 +357,7 @@ impl Equations {
     }
 
     /// How strains at a place follow `way` at a fixed state and beta'.
-    pub(crate) fn strain_by(&self, asked: &Asked, way: Way) -> [f64; L] {
+    pub(crate) fn strain_by(&self, asked: &SectionQuery, way: Way) -> [f64; L] {
         let strain = |k: usize| move |equations: &Self| equations.at_place(asked).map_or(f64::NAN, |at| at.strain[k]);
         each(|k| self.difference(way, strain(k)))
     }

@@ -1,6 +1,6 @@
 //! Cables whose length is commanded, as the equations know them: which are taut, and what is commanded of them.
 
-use super::commanded::Held;
+use super::stroke_control::StrokeControl;
 use super::system::Equations;
 use crate::rod::parameter::Parameter;
 use crate::statics::verdict::Phase;
@@ -12,7 +12,7 @@ impl Equations {
         let cables: Vec<usize> = (0..self.arm.cables.len()).filter(commanded).collect();
         let taut = cables.iter().map(|cable| self.tensions[*cable] > 0.0).collect();
         let from = vec![0.0; cables.len()];
-        self.held = (!cables.is_empty()).then_some(Held { cables, taut, from, share: 1.0, switching: true });
+        self.held = (!cables.is_empty()).then_some(StrokeControl { cables, taut, from, share: 1.0, switching: true });
     }
 
     /// Leaves all cables to their tensions.
@@ -28,7 +28,7 @@ impl Equations {
     }
 
     /// Makes held cable `index` slack that was taut, or the other way round: which it is of the arm's, and whether it is slack now.
-    pub(crate) fn change_over(&mut self, index: usize) -> (usize, bool) {
+    pub(crate) fn switch_active(&mut self, index: usize) -> (usize, bool) {
         let Some(mut held) = self.held.take() else { return (index, false) };
         held.taut[index] = !held.taut[index];
         let (cable, slack) = (held.cables[index], !held.taut[index]);
@@ -53,7 +53,7 @@ impl Equations {
     }
 
     /// Stroke that is commanded of held cable `index` now, over L.
-    pub(crate) fn command(&self, held: &Held, index: usize) -> f64 {
+    pub(crate) fn command(&self, held: &StrokeControl, index: usize) -> f64 {
         let (from, to) = (held.from[index], self.whole_command(held.cables[index]));
         if held.share == 1.0 { to } else { from + held.share * (to - from) }
     }
@@ -63,7 +63,7 @@ impl Equations {
     }
 
     /// The change of that stroke a unit of the parameter.
-    pub(crate) fn command_drift(&self, held: &Held, index: usize) -> f64 {
+    pub(crate) fn command_derivative(&self, held: &StrokeControl, index: usize) -> f64 {
         let cable = held.cables[index];
         match self.varied_over() {
             _ if self.imposed.is_some() => 0.0,

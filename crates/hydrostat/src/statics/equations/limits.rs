@@ -15,7 +15,7 @@ pub(crate) struct SectionFailure {
 
 /// How near the limits of the section law the stations came, each with its place (over L).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Nearness {
+pub(crate) struct Margins {
     /// Smallest tau.a / nu of a pulled cable.
     pub(crate) openness: (f64, f64),
     /// Smallest stretch.
@@ -24,7 +24,7 @@ pub(crate) struct Nearness {
     pub(crate) regularity: (f64, f64),
 }
 
-impl Nearness {
+impl Margins {
     pub(crate) const FAR: Self =
         Self { openness: (1.0, 0.0), nu: (f64::INFINITY, 0.0), regularity: (f64::INFINITY, 0.0) };
 

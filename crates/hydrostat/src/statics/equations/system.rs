@@ -2,23 +2,23 @@
 
 use hydrostat_bvp::{Condition, EndPlace, Groups, Inner, LANES, Lanes, Local, Problem, Real, Station, each};
 
-use super::commanded::Held;
 use super::gradients::{by_strain_change, in_directors, jacobian, rate_gradient, strain_by_state};
 use super::limits::SectionFailure;
 use super::place::{EndSection, Place};
 use super::range::Varied;
+use super::stroke_control::StrokeControl;
 use crate::numerics::sincos::sin_cos;
+use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::arm::Arm;
-use crate::rod::cables_here::Few;
+use crate::rod::cable_list::CableList;
 use crate::rod::flow::Law;
 use crate::rod::loads::{Load, Water, load};
 use crate::rod::profile::Profile;
 use crate::rod::readings::{FlowSurface, Support, Volume};
 use crate::rod::section::{CableAt, apply3};
 use crate::rod::section_solve::{Solved, solve_section};
-use crate::rod::swelling::{Swelling, swelling};
 use crate::statics::dimensions::{L, N, Q, Units};
-use crate::statics::friction::Grip;
+use crate::statics::friction::CapstanFactors;
 use crate::statics::phase::Phase;
 
 /// Steps of the section law that Newton's rounds on the arm leave to the next one.
@@ -40,9 +40,9 @@ pub(crate) struct Equations {
     pub(crate) phase: Phase,
     pub(super) varied: Option<Varied>,
     /// Cables whose stroke is commanded, from where on these are.
-    pub(crate) held: Option<Held>,
+    pub(crate) held: Option<StrokeControl>,
     /// What friction leaves of the tensions, if there is any.
-    pub(crate) grip: Option<Grip>,
+    pub(crate) capstan: Option<CapstanFactors>,
     /// A couple over s/L that takes the place of the parameter, at every station.
     pub(super) imposed: Option<Vec<f64>>,
     /// Steps of the section law that are left to the next round.
@@ -76,7 +76,7 @@ impl Equations {
             phase: Phase::Tension,
             varied: None,
             held: None,
-            grip: None,
+            capstan: None,
             imposed: None,
             inner_tolerance: ROUGH,
             groups: Groups { elements: 0, stages },
@@ -137,7 +137,7 @@ impl Equations {
     pub(crate) fn arm_at_fraction(&self) -> Arm {
         let mut arm = self.arm.clone();
         let [loads, tension] = self.fraction;
-        let of_friction = self.grip.as_ref().map_or(0.0, |grip| grip.of_friction);
+        let of_friction = self.capstan.as_ref().map_or(0.0, |capstan| capstan.of_friction);
         if of_friction != 1.0 {
             for cable in &mut arm.cables {
                 cable.friction *= of_friction;
@@ -180,7 +180,7 @@ impl Equations {
 
     /// Pieces of work that an evaluation of a station is.
     pub(crate) fn work(&self) -> usize {
-        self.arm.dearness()
+        self.arm.cost_factor()
     }
 
     pub(crate) fn stations(&self) -> &[f64] {
@@ -234,10 +234,10 @@ impl Equations {
         place: &Place<R>,
         direction: [R; 2],
         strain: [R; 3],
-        swelling: &Swelling<R>,
+        section_stretch: &SectionStretch<R>,
         beta_slope: R,
     ) -> Load<R> {
-        let mut load = load(&self.water, &place.body, direction, strain, swelling, beta_slope);
+        let mut load = load(&self.water, &place.body, direction, strain, section_stretch, beta_slope);
         let fraction = R::of(self.fraction[0]);
         for k in 0..2 {
             load.force[k] = load.force[k] * fraction;
@@ -252,8 +252,8 @@ impl Equations {
     #[inline(always)]
     pub(crate) fn switches(&self, block: usize, station: &Station<N, L>) -> [Lanes; 3] {
         let (sin, cos) = sin_cos(station.z[0]);
-        let swelling = swelling(self.volume, station.inner[0]);
-        load(&self.water, &self.places[block].body, [cos, sin], station.inner, &swelling, station.closure_slope)
+        let section_stretch = area_law(self.volume, station.inner[0]);
+        load(&self.water, &self.places[block].body, [cos, sin], station.inner, &section_stretch, station.closure_slope)
             .switches
     }
 
@@ -271,7 +271,7 @@ impl Equations {
     /// Place (over L), nu and mu (times L), and beta R (over L), in a lane of a block.
     pub(crate) fn stretched(&self, block: usize, station: &Station<N, L>, lane: usize) -> (f64, [f64; 2], f64) {
         let (place, [nu, _, mu]) = (&self.places[block], station.inner);
-        let half_width = swelling(self.volume, nu).beta * place.body.radius;
+        let half_width = area_law(self.volume, nu).beta * place.body.radius;
         (place.s.0[lane], [nu.0[lane], mu.0[lane]], half_width.0[lane])
     }
 
@@ -280,7 +280,7 @@ impl Equations {
     pub(crate) fn strain_energy(&self, block: usize, station: &Station<N, L>) -> Lanes {
         let stiffness = &self.places[block].stiffness;
         let strain = station.inner;
-        let beta = swelling(self.volume, strain[0]).beta;
+        let beta = area_law(self.volume, strain[0]).beta;
         let mut sum = Lanes::of(0.0);
         for a in 0..3 {
             let strained = strain[a] - stiffness.reference[a];
@@ -291,7 +291,7 @@ impl Equations {
 
     /// Fills `out` with the cables that pull in a block of stations, given all of them there.
     #[inline(always)]
-    pub(super) fn pulled_in(&self, cables: &[CableAt<Lanes>], out: &mut Few<Lanes>) {
+    pub(super) fn pulled_in(&self, cables: &[CableAt<Lanes>], out: &mut CableList<Lanes>) {
         out.clear();
         for (cable, tension) in cables.iter().zip(&self.tensions) {
             let tension = tension * self.fraction[1];
@@ -314,7 +314,7 @@ impl Equations {
         &self,
         block: usize,
         station: &Station<N, L>,
-        pulled: &mut Few<Lanes>,
+        pulled: &mut CableList<Lanes>,
     ) -> ([Lanes; 2], [Lanes; 3], Solved<Lanes>) {
         self.pulled_in(self.cables_in(block), pulled);
         let (sin, cos) = sin_cos(station.z[0]);
@@ -337,18 +337,18 @@ impl Equations {
         &self,
         block: usize,
         station: &mut Station<N, L>,
-        pulled: &mut Few<Lanes>,
+        pulled: &mut CableList<Lanes>,
         out: &mut Local<N, Q, L, Lanes>,
     ) -> Result<(), SectionFailure> {
         let place = &self.places[block];
         let (direction, contact, solved) = self.solved_in(block, station, pulled);
-        if !solved.is_fine(self.inner_tolerance) {
+        if !solved.is_solved(self.inner_tolerance) {
             return Err(failure(place.s, &solved, self.inner_tolerance));
         }
         let [cos, sin] = direction;
         let [nu, eta, mu] = solved.strain;
         let beta_slope = station.closure_slope;
-        let load = self.load(place, direction, solved.strain, &solved.balance.swelling, beta_slope);
+        let load = self.load(place, direction, solved.strain, &solved.balance.section_stretch, beta_slope);
         let couple = place.body.couple * Lanes::of(self.fraction[0]);
         let by_state = strain_by_state(&solved.inverse, direction, contact);
         let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
@@ -377,16 +377,16 @@ impl Equations {
 /// The section law linearised and solved for the strains.
 #[inline(always)]
 fn inner(solved: &Solved<Lanes>, by_state: [[Lanes; N]; 3]) -> Inner<N, L, Lanes> {
-    let swelling = &solved.balance.swelling;
+    let section_stretch = &solved.balance.section_stretch;
     let less = apply3(&solved.inverse, solved.balance.by_beta_slope);
     Inner {
         change: solved.change,
         gradient: by_state,
         by_closure: each(|k| -less[k]),
-        value: swelling.beta,
-        value_change: swelling.slope * solved.change[0],
-        value_gradient: each(|a| swelling.slope * by_state[0][a]),
-        reach: -(swelling.slope * less[0]),
+        value: section_stretch.beta,
+        value_change: section_stretch.slope * solved.change[0],
+        value_gradient: each(|a| section_stretch.slope * by_state[0][a]),
+        reach: -(section_stretch.slope * less[0]),
     }
 }
 
@@ -394,7 +394,7 @@ fn inner(solved: &Solved<Lanes>, by_state: [[Lanes; N]; 3]) -> Inner<N, L, Lanes
 #[cold]
 #[inline(never)]
 fn failure(s: Lanes, solved: &Solved<Lanes>, tolerance: f64) -> SectionFailure {
-    let lane = (0..LANES).find(|lane| !solved.is_fine_in(*lane, tolerance)).unwrap_or(0);
+    let lane = (0..LANES).find(|lane| !solved.is_solved_in(*lane, tolerance)).unwrap_or(0);
     SectionFailure {
         s: s.0[lane],
         openness: solved.balance.openness.0[lane],
@@ -417,7 +417,7 @@ impl Problem<N, Q, L> for Equations {
         stations: &mut [Station<N, L>],
         out: &mut [Local<N, Q, L, Lanes>],
     ) -> Result<(), SectionFailure> {
-        let mut pulled = Few::new();
+        let mut pulled = CableList::new();
         for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
             self.block(block, station, &mut pulled, out)?;
         }
@@ -431,7 +431,7 @@ impl Problem<N, Q, L> for Equations {
         stations: &mut [Station<N, L>],
         out: &mut [Inner<N, L, Lanes>],
     ) -> Result<(), SectionFailure> {
-        let mut pulled = Few::new();
+        let mut pulled = CableList::new();
         let count = self.tensions.len();
         for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
             let section = &self.end_sections[block];
@@ -447,7 +447,7 @@ impl Problem<N, Q, L> for Equations {
                 station.closure_slope,
                 self.inner_tolerance,
             );
-            if !solved.is_fine(self.inner_tolerance) {
+            if !solved.is_solved(self.inner_tolerance) {
                 return Err(failure(section.s, &solved, self.inner_tolerance));
             }
             *out = inner(&solved, strain_by_state(&solved.inverse, [cos, sin], contact));

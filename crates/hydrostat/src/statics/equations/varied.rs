@@ -86,7 +86,7 @@ impl Equations {
             ends: self.ends.clone(),
             varied: self.varied.clone(),
             held: self.held.clone(),
-            grip: None,
+            capstan: None,
             imposed: None,
             stations: Vec::new(),
             places: Vec::new(),

@@ -9,9 +9,9 @@
 
 use std::f64::consts::TAU;
 
-use super::pace::Pace;
 use super::range::{PathEnd, PathError};
-use super::stepper::{Along, Fraction, Point, Stepper, Turn};
+use super::step_control::StepControl;
+use super::stepper::{Along, Fraction, Point, StepOutcome, Stepper};
 use crate::rod::arm::Arm;
 use crate::rod::parameter::Parameter;
 use crate::statics::configuration::Configuration;
@@ -34,7 +34,7 @@ const HALVINGS: usize = 24;
 const EXTREMES: usize = 40;
 
 /// How finely the curve is followed.
-const PACE: Pace = Pace { longest: 0.25, straightness: 0.96, most: usize::MAX, accuracy: 1e-6 };
+const PACE: StepControl = StepControl { longest: 0.25, straightness: 0.96, most: usize::MAX, accuracy: 1e-6 };
 
 /// One of several equilibria.
 #[derive(Debug, Clone)]
@@ -116,7 +116,7 @@ impl Arm {
             return Err(PathError::Stroke { cable: cable.name.clone() });
         }
         let (mut solver, turned) = start(self)?;
-        let asked = Asked { arm: self.clone(), turned, tol };
+        let asked = SectionQuery { arm: self.clone(), turned, tol };
         let engine = solver.engine_mut();
         let base = self.base.angle + TAU * turned;
         engine.equations.vary(Parameter::BaseAngle, base, base + TAU);
@@ -144,7 +144,7 @@ impl Arm {
 }
 
 /// What is searched for.
-struct Asked {
+struct SectionQuery {
     arm: Arm,
     /// Where the curve starts, in turns of the base from the angle asked for.
     turned: f64,
@@ -176,7 +176,7 @@ fn start(arm: &Arm) -> Result<(Solver, f64), PathError> {
 /// turn. What stopped it before that.
 fn follow(
     engine: &mut Engine,
-    asked: &Asked,
+    asked: &SectionQuery,
     side: f64,
     out: &mut Equilibria,
     go_on: &mut impl FnMut(usize) -> bool,
@@ -193,9 +193,9 @@ fn follow(
             out.found.push(found);
         }
     }
-    if side * here.rise * here.response.nodes.last().map_or(1.0, |z| z[0]) < 0.0 {
+    if side * here.dlambda_ds * here.response.nodes.last().map_or(1.0, |z| z[0]) < 0.0 {
         stepper.orientation = -stepper.orientation;
-        here.rise = -here.rise;
+        here.dlambda_ds = -here.dlambda_ds;
     }
     let mut step = 0.05;
     while step >= 1e-8 {
@@ -203,7 +203,7 @@ fn follow(
         // Along the curve the angle of the tip only grows: what falls back has left it.
         let grown = |next: &Point| side * (next.tip_angle() - here.tip_angle()) > -1e-9;
         let next = match advanced {
-            Ok((next, Turn::None)) if grown(&next) => next,
+            Ok((next, StepOutcome::Regular)) if grown(&next) => next,
             Ok(_) => {
                 step *= 0.4;
                 continue;
@@ -247,7 +247,13 @@ fn follow(
 /// be the cubic of both values and slopes if that meets a third point, halfway, in value and slope, and rises or falls all the way. Where it
 /// does not, and may come to the angle asked for, the same is asked of both halves. What is less than [`HALVINGS`] halvings of a step wide may
 /// be missed.
-fn fill_in(stepper: &mut Stepper<'_>, asked: &Asked, [a, b]: [&Point; 2], halvings: usize, out: &mut Vec<Point>) {
+fn fill_in(
+    stepper: &mut Stepper<'_>,
+    asked: &SectionQuery,
+    [a, b]: [&Point; 2],
+    halvings: usize,
+    out: &mut Vec<Point>,
+) {
     let cubic = Cubic::between(a, b);
     if halvings == 0 || !cubic.comes_near_whole_turns(asked.turned) {
         return;
@@ -358,7 +364,7 @@ impl Cubic {
 /// The equilibria between two points: the base angle rises or falls there, or does both about an extreme.
 fn find_between(
     stepper: &mut Stepper<'_>,
-    asked: &Asked,
+    asked: &SectionQuery,
     [here, next]: [&Point; 2],
     within: &impl Fn(&Point) -> bool,
     out: &mut Vec<Equilibrium>,
@@ -384,7 +390,7 @@ fn find_between(
 }
 
 /// Turns of the base from the angle asked for, whole ones, that lie between two points.
-fn whole_turns_between(asked: &Asked, a: &Point, b: &Point) -> Vec<f64> {
+fn whole_turns_between(asked: &SectionQuery, a: &Point, b: &Point) -> Vec<f64> {
     let (mut low, mut high) = (a.fraction + asked.turned, b.fraction + asked.turned);
     if low > high {
         (low, high) = (high, low);
@@ -409,7 +415,9 @@ fn between(stepper: &mut Stepper<'_>, a: &Point, b: &Point, fraction: f64) -> Op
     let (mut low, mut high) = (a.clone(), b.clone());
     for _ in 0..40 {
         let near = if (low.fraction - fraction).abs() < (high.fraction - fraction).abs() { &low } else { &high };
-        if let Ok((point, Turn::None)) = stepper.land(near, fraction, Pace { straightness: -1.0, ..PACE }) {
+        if let Ok((point, StepOutcome::Regular)) =
+            stepper.land(near, fraction, StepControl { straightness: -1.0, ..PACE })
+        {
             let angle = point.tip_angle();
             let (least, most) = (low.tip_angle(), high.tip_angle());
             if (angle - least) * (angle - most) <= 1e-12 {
@@ -429,7 +437,12 @@ fn between(stepper: &mut Stepper<'_>, a: &Point, b: &Point, fraction: f64) -> Op
 
 /// The configuration at a point where the base is whole turns from the angle asked for, at that angle itself. With no
 /// turns given, whether the point is one.
-fn at_whole_turns(stepper: &mut Stepper<'_>, asked: &Asked, point: &Point, turns: Option<f64>) -> Option<Equilibrium> {
+fn at_whole_turns(
+    stepper: &mut Stepper<'_>,
+    asked: &SectionQuery,
+    point: &Point,
+    turns: Option<f64>,
+) -> Option<Equilibrium> {
     let turns = turns.or_else(|| (asked.turned == 0.0 && point.fraction == 0.0).then_some(0.0))?;
     let engine = &mut *stepper.engine;
     engine.restore(&point.state);

@@ -3,8 +3,8 @@
 //! Tension and slack of such a cable are not negative, and one of them is zero. Where the one that is not comes down to
 //! zero, they change their parts: the path goes on in a corner, in the direction in which the other one rises.
 
-use super::pace::Pace;
-use super::stepper::{Point, Stepper, Turn};
+use super::step_control::StepControl;
+use super::stepper::{Point, StepOutcome, Stepper};
 use crate::statics::engine::Trouble;
 
 /// Tensions (in the unit of force) and slacks (over L) that count as zero.
@@ -40,19 +40,19 @@ impl Stepper<'_> {
         &mut self,
         here: &Point,
         step: f64,
-        pace: Pace,
-    ) -> Result<(Point, Turn, Option<Contact>), Trouble> {
-        let (next, turn) = self.advance(here, step, pace)?;
+        control: StepControl,
+    ) -> Result<(Point, StepOutcome, Option<Contact>), Trouble> {
+        let (next, turn) = self.advance(here, step, control)?;
         let past: Vec<usize> = (0..next.margins.len()).filter(|i| next.margins[*i] < -ZERO).collect();
         if past.is_empty() {
             return Ok((next, turn, None));
         }
         // One that has just changed and changes back, or another branch: only a shorter step tells these apart.
-        if turn == Turn::Crossing || past.iter().any(|i| here.margins[*i] < FOUND) {
+        if turn == StepOutcome::Bifurcation || past.iter().any(|i| here.margins[*i] < FOUND) {
             return Err(Trouble::Stalled(step));
         }
-        let contact = self.contact_between(here, next, &past, step, Pace { straightness: -1.0, ..pace })?;
-        Ok((contact.at.clone(), Turn::None, Some(contact)))
+        let contact = self.contact_between(here, next, &past, step, StepControl { straightness: -1.0, ..control })?;
+        Ok((contact.at.clone(), StepOutcome::Regular, Some(contact)))
     }
 
     /// Where between two points, `step` apart, the first of the cables `past` goes slack or taut.
@@ -62,7 +62,7 @@ impl Stepper<'_> {
         next: Point,
         past: &[usize],
         step: f64,
-        pace: Pace,
+        control: StepControl,
     ) -> Result<Contact, Trouble> {
         // The first of them, over how far each is from it at the start.
         let least = |point: &Point| {
@@ -79,8 +79,8 @@ impl Stepper<'_> {
             // False position, its older end weighed down so that both ends come in.
             let share: f64 = low.1 / (low.1 - high.1);
             let middle = low.0 + share.clamp(0.02, 0.98) * (high.0 - low.0);
-            let (point, turn) = self.advance(here, middle, pace)?;
-            if turn == Turn::Crossing {
+            let (point, turn) = self.advance(here, middle, control)?;
+            if turn == StepOutcome::Bifurcation {
                 return Err(Trouble::Stalled(step));
             }
             let value = least(&point).0;
@@ -100,10 +100,10 @@ impl Stepper<'_> {
     fn change(&mut self, at: Point, i: usize) -> Result<Contact, Trouble> {
         self.engine.restore(&at.state);
         self.set(at.fraction);
-        let (cable, slack) = self.engine.equations.change_over(i);
+        let (cable, slack) = self.engine.equations.switch_active(i);
         let after = self.leave_contacts(at.fraction, |this, after| {
             let way = this.opening(after, i);
-            if way == 0.0 { at.rise.signum() * after.rise.signum() } else { way }
+            if way == 0.0 { at.dlambda_ds.signum() * after.dlambda_ds.signum() } else { way }
         })?;
         Ok(Contact { at, after, cable, slack })
     }
@@ -111,7 +111,7 @@ impl Stepper<'_> {
     /// The first point of a path, from which the parameter rises, with cables taut or slack as that needs.
     pub(super) fn first_contacts(&mut self, fraction: f64) -> Result<Point, Trouble> {
         self.engine.equations.let_cables_switch(false);
-        self.leave_contacts(fraction, |_, after| after.rise)
+        self.leave_contacts(fraction, |_, after| after.dlambda_ds)
     }
 
     /// Whether cables that are to be reeled in from where they hang slack would have to push: more tension pays them out
@@ -121,9 +121,9 @@ impl Stepper<'_> {
         self.set(0.0);
         let Some(held) = self.engine.equations.held.clone() else { return false };
         let short: Vec<usize> =
-            (0..held.cables.len()).filter(|i| self.engine.equations.command_drift(&held, *i) > 0.0).collect();
+            (0..held.cables.len()).filter(|i| self.engine.equations.command_derivative(&held, *i) > 0.0).collect();
         for i in short.iter().filter(|i| !held.taut[**i]) {
-            self.engine.equations.change_over(*i);
+            self.engine.equations.switch_active(*i);
         }
         let pushes = self.linearise().is_ok() && short.iter().any(|i| self.round.tension[1][*i] < 0.0);
         self.engine.restore(&kept);
@@ -139,7 +139,7 @@ impl Stepper<'_> {
             let mut after = self.point(fraction)?;
             if way(self, &after) < 0.0 {
                 self.orientation = -self.orientation;
-                after.rise = -after.rise;
+                after.dlambda_ds = -after.dlambda_ds;
             }
             let count = after.margins.len();
             let past: Vec<usize> =
@@ -156,7 +156,7 @@ impl Stepper<'_> {
             // All at first, because cables may hold together what none of them holds alone; then one by one.
             let together = if changes == 0 { past.len() } else { 1 };
             for i in past.into_iter().take(together) {
-                self.engine.equations.change_over(i);
+                self.engine.equations.switch_active(i);
             }
             changes += 1;
         }
@@ -165,6 +165,6 @@ impl Stepper<'_> {
     /// How the margin of the commanded cable `i` changes along the tangent of a point, after its linearisation.
     fn opening(&self, point: &Point, i: usize) -> f64 {
         let taut = self.engine.equations.held.as_ref().is_some_and(|held| held.taut[i]);
-        point.rise * if taut { self.round.tension[1][i] } else { self.round.slack[1][i] }
+        point.dlambda_ds * if taut { self.round.tension[1][i] } else { self.round.slack[1][i] }
     }
 }

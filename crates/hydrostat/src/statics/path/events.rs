@@ -2,9 +2,9 @@
 
 use hydrostat_bvp::Correction;
 
-use super::pace::Pace;
-use super::stepper::{Fraction, Point, Stepper, Turn};
-use crate::statics::engine::{M, Round};
+use super::step_control::StepControl;
+use super::stepper::{Fraction, Point, StepOutcome, Stepper};
+use crate::statics::engine::{M, NewtonStep};
 use crate::statics::equations::{L, N, Q};
 
 /// The climb that stands for none in the tangent of a branch that crosses.
@@ -16,32 +16,32 @@ const LEVEL: f64 = 1e-6;
 impl Stepper<'_> {
     /// The point where the fraction is extreme between two whose tangents rise and fall, or fall and rise, and its
     /// fraction. The engine is left at it.
-    pub(super) fn limit_point(&mut self, here: &Point, next: &Point, step: f64, pace: Pace) -> (Point, f64) {
-        let pace = Pace { straightness: -1.0, accuracy: 1e-6_f64.min(pace.accuracy), ..pace };
-        let up = here.rise.signum();
-        let (mut low, mut low_rise) = (0.0, here.rise.abs());
-        let (mut high, mut high_rise) = (step, up * next.rise);
+    pub(super) fn limit_point(&mut self, here: &Point, next: &Point, step: f64, control: StepControl) -> (Point, f64) {
+        let control = StepControl { straightness: -1.0, accuracy: 1e-6_f64.min(control.accuracy), ..control };
+        let up = here.dlambda_ds.signum();
+        let (mut low, mut low_slope) = (0.0, here.dlambda_ds.abs());
+        let (mut high, mut high_slope) = (step, up * next.dlambda_ds);
         let mut best: Option<Point> = None;
         // False position; an end that stays a second time has its climb halved, so that both come in.
         let mut before = 0.0;
         for _ in 0..25 {
-            let share = (low_rise / (low_rise - high_rise)).clamp(0.1, 0.9);
+            let share = (low_slope / (low_slope - high_slope)).clamp(0.1, 0.9);
             let middle = low + share * (high - low);
-            match self.advance(here, middle, pace) {
-                Ok((point, Turn::None)) => {
-                    let rise = up * point.rise;
-                    if rise < 0.0 {
-                        (high, high_rise) = (middle, rise);
-                        low_rise *= if before < 0.0 { 0.5 } else { 1.0 };
+            match self.advance(here, middle, control) {
+                Ok((point, StepOutcome::Regular)) => {
+                    let dlambda_ds = up * point.dlambda_ds;
+                    if dlambda_ds < 0.0 {
+                        (high, high_slope) = (middle, dlambda_ds);
+                        low_slope *= if before < 0.0 { 0.5 } else { 1.0 };
                     } else {
-                        (low, low_rise) = (middle, rise);
-                        high_rise *= if before > 0.0 { 0.5 } else { 1.0 };
+                        (low, low_slope) = (middle, dlambda_ds);
+                        high_slope *= if before > 0.0 { 0.5 } else { 1.0 };
                     }
-                    before = rise;
+                    before = dlambda_ds;
                     if best.as_ref().is_none_or(|b| up * point.fraction > up * b.fraction) {
                         best = Some(point);
                     }
-                    if rise.abs() < LEVEL {
+                    if dlambda_ds.abs() < LEVEL {
                         break;
                     }
                 }
@@ -62,13 +62,13 @@ impl Stepper<'_> {
     ///
     /// The shape may be exact on a mesh, as that of a straight arm is, on which its determinant is not: the mesh is
     /// cut until the place stays.
-    pub(super) fn bifurcation(&mut self, here: &Point, next: &Point, step: f64, pace: Pace) -> Point {
-        let mut found = self.crossing_between(here, next.clone(), step, pace);
+    pub(super) fn bifurcation(&mut self, here: &Point, next: &Point, step: f64, control: StepControl) -> Point {
+        let mut found = self.crossing_between(here, next.clone(), step, control);
         let mut from = here.clone();
         self.crossings_welcome = true;
         for _ in 0..4 {
             let before = found.fraction;
-            let Some((cut, again)) = self.crossing_on_half_the_mesh(&from, step, pace) else { break };
+            let Some((cut, again)) = self.crossing_on_half_the_mesh(&from, step, control) else { break };
             found = again;
             from = cut;
             if (found.fraction - before).abs() < 1e-7 {
@@ -76,12 +76,12 @@ impl Stepper<'_> {
             }
         }
         self.crossings_welcome = false;
-        found.rise = found.rise.abs() * here.rise.signum();
+        found.dlambda_ds = found.dlambda_ds.abs() * here.dlambda_ds.signum();
         found
     }
 
     /// `from` with its elements halved, and the crossing nearby.
-    fn crossing_on_half_the_mesh(&mut self, from: &Point, step: f64, pace: Pace) -> Option<(Point, Point)> {
+    fn crossing_on_half_the_mesh(&mut self, from: &Point, step: f64, control: StepControl) -> Option<(Point, Point)> {
         self.engine.restore(&from.state);
         let finer = self.engine.solution.mesh.cut(2);
         self.engine.move_to(finer);
@@ -90,14 +90,14 @@ impl Stepper<'_> {
         let mut cut = self.point(from.fraction).ok()?;
         let orientation = self.orientation;
         // On this mesh the point may be beyond the crossing.
-        let side = cut.rise.signum() * from.rise.signum();
+        let side = cut.dlambda_ds.signum() * from.dlambda_ds.signum();
         self.orientation *= side;
-        cut.rise *= side;
+        cut.dlambda_ds *= side;
         let mut reach = step;
         let mut found = None;
         while found.is_none() && reach < 2.0 {
-            if let Ok((end, Turn::Crossing)) = self.advance(&cut, side * reach, pace) {
-                found = Some(self.crossing_between(&cut, end, side * reach, pace));
+            if let Ok((end, StepOutcome::Bifurcation)) = self.advance(&cut, side * reach, control) {
+                found = Some(self.crossing_between(&cut, end, side * reach, control));
             }
             reach *= 3.0;
         }
@@ -107,7 +107,7 @@ impl Stepper<'_> {
 
     /// The crossing between two points, on their mesh. Corrections are of little worth right at it, so that it is found
     /// from the determinants around it, which vary smoothly: by inverse interpolation.
-    fn crossing_between(&mut self, here: &Point, next: Point, step: f64, pace: Pace) -> Point {
+    fn crossing_between(&mut self, here: &Point, next: Point, step: f64, control: StepControl) -> Point {
         // Determinants over that of the first point.
         let unit = here.size;
         let signed = |point: &Point, sign: f64| sign * (point.size - unit).exp();
@@ -118,12 +118,12 @@ impl Stepper<'_> {
                 break;
             }
             let middle = 0.5 * (low + high);
-            match self.advance(here, middle, pace) {
-                Ok((point, Turn::Crossing)) => {
+            match self.advance(here, middle, control) {
+                Ok((point, StepOutcome::Bifurcation)) => {
                     high = middle;
                     samples.push((point.clone(), signed(&point, -1.0)));
                 }
-                Ok((point, Turn::None)) => {
+                Ok((point, StepOutcome::Regular)) => {
                     low = middle;
                     samples.push((point.clone(), signed(&point, 1.0)));
                 }
@@ -141,13 +141,13 @@ impl Stepper<'_> {
         }
         let Some((nearest, _)) = samples.into_iter().next() else { return next };
         let fraction = if column[0].is_finite() { column[0] } else { nearest.fraction };
-        self.predict(&nearest, (fraction - nearest.fraction) / nearest.rise);
+        self.predict(&nearest, (fraction - nearest.fraction) / nearest.dlambda_ds);
         self.set(fraction);
         Point { state: self.engine.state(), fraction, ..nearest }
     }
 
     /// The first point of the branch that crosses at `at`, to one side.
-    pub(super) fn switch(&mut self, at: &Point, side: f64, pace: Pace) -> Option<Point> {
+    pub(super) fn switch(&mut self, at: &Point, side: f64, control: StepControl) -> Option<Point> {
         self.engine.restore(&at.state);
         let (mode, tensions) = self.null_mode(at)?;
         for distance in [0.05, 0.02, 0.1, 0.2] {
@@ -158,7 +158,7 @@ impl Stepper<'_> {
                 response: mode.clone(),
                 tensions: tensions.clone(),
                 margins: at.margins.clone(),
-                rise: side * MODE,
+                dlambda_ds: side * MODE,
                 oriented: true,
                 size: 0.0,
                 error: at.error,
@@ -168,7 +168,7 @@ impl Stepper<'_> {
                 continue;
             }
             let accurate =
-                self.keep_accuracy(Some(&from), &mut Fraction::Free(fraction), [pace.accuracy, pace.accuracy]);
+                self.keep_accuracy(Some(&from), &mut Fraction::Free(fraction), [control.accuracy, control.accuracy]);
             if accurate.is_err() {
                 continue;
             }
@@ -182,7 +182,7 @@ impl Stepper<'_> {
             };
             if along < 0.0 {
                 self.orientation = -self.orientation;
-                point.rise = -point.rise;
+                point.dlambda_ds = -point.dlambda_ds;
             }
             return Some(point);
         }
@@ -193,7 +193,7 @@ impl Stepper<'_> {
     /// inverse iteration with loads that turn the arm.
     fn null_mode(&mut self, at: &Point) -> Option<(Correction<N, M, Q, L>, Vec<f64>)> {
         let mesh = self.engine.solution.mesh.clone();
-        let mut round = Round::default();
+        let mut round = NewtonStep::default();
         let mut couple: Box<dyn Fn(f64) -> f64> = Box::new(|s| 1.0 + s);
         for _ in 0..4 {
             self.engine.equations.impose_couple(Some(&couple));
@@ -216,7 +216,7 @@ impl Stepper<'_> {
         let dot: f64 = mode.nodes.iter().zip(&along).zip(&weights).map(|((z, t), w)| z[0] * t * w).sum();
         let known: f64 = along.iter().zip(&weights).map(|(t, w)| t * t * w).sum();
         if known > 1e-6 {
-            let factor = -dot * at.rise / known;
+            let factor = -dot * at.dlambda_ds / known;
             mode.add(&at.response, factor);
             tensions.iter_mut().zip(&at.tensions).for_each(|(own, along)| *own += factor * along);
         }

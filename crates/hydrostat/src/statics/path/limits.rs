@@ -25,7 +25,7 @@ impl Stepper<'_> {
 /// Names the limit that the engine's solution is at, with its place, m; `trouble` is what kept it from going on.
 pub(crate) fn name_limit(engine: &mut Engine, trouble: Option<&Trouble>, residual: f64) -> (VerdictKind, Option<f64>) {
     engine.last = residual;
-    let near = engine.nearest_limits();
+    let near = engine.margins_to_limits();
     let failed = match trouble {
         Some(Trouble::Section(failure)) => Some(*failure),
         _ => None,

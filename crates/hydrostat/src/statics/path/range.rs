@@ -1,8 +1,8 @@
 //! Paths that users ask for: equilibria over the range of one parameter, through limit points and bifurcations.
 
 use super::contact::Contact;
-use super::pace::Pace;
-use super::stepper::{Along, Fraction, Point, Stepper, Turn};
+use super::step_control::StepControl;
+use super::stepper::{Along, Fraction, Point, StepOutcome, Stepper};
 use crate::rod::arm::Arm;
 use crate::rod::parameter::{Parameter, Refused};
 use crate::rod::readings::Support;
@@ -270,14 +270,15 @@ impl Arm {
 
         let engine = solver.engine_mut();
         engine.equations.vary(parameter, range[0], range[1]);
-        let pace = Pace { longest: options.longest, straightness: 0.97, most: usize::MAX, accuracy: options.tol };
+        let control =
+            StepControl { longest: options.longest, straightness: 0.97, most: usize::MAX, accuracy: options.tol };
         let mut trace = Trace {
             stepper: Stepper::new(engine, Along::Range, [0.0, 1.0]),
-            pace,
+            control,
             most: options.most,
             watch: &mut watch,
             stopped: false,
-            crossings: Vec::new(),
+            bifurcations: Vec::new(),
         };
         let first = if let Ok(start) = trace.start() {
             trace.from(start, None)
@@ -288,7 +289,7 @@ impl Arm {
         };
         let mut branches = vec![first];
         if options.branches {
-            for crossing in std::mem::take(&mut trace.crossings) {
+            for crossing in std::mem::take(&mut trace.bifurcations) {
                 branches.extend(trace.switched(&crossing));
             }
         }
@@ -317,14 +318,14 @@ fn check(range: [f64; 2], options: &PathOptions) -> Result<(), PathError> {
 
 struct Trace<'e, W> {
     stepper: Stepper<'e>,
-    pace: Pace,
+    control: StepControl,
     /// Points that may still come.
     most: usize,
     watch: &'e mut W,
     /// Whether it said that this is enough.
     stopped: bool,
     /// Bifurcations, where the branch followed goes straight on.
-    crossings: Vec<Point>,
+    bifurcations: Vec<Point>,
 }
 
 impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
@@ -337,7 +338,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             engine.move_to(mesh);
             engine.newton(1e-9, 12)?;
         }
-        let tol = self.pace.accuracy;
+        let tol = self.control.accuracy;
         self.stepper.keep_accuracy(None, &mut Fraction::Fixed(0.0), [tol, tol])?;
         self.stepper.first_contacts(0.0)
     }
@@ -345,9 +346,9 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
     /// The branch from a point into the range.
     fn from(&mut self, mut here: Point, switched_at: Option<f64>) -> Branch {
         // Which side of zero the determinant is on is a matter of the branch, which way is up is not.
-        if switched_at.is_none() && here.rise < 0.0 {
+        if switched_at.is_none() && here.dlambda_ds < 0.0 {
             self.stepper.orientation = -self.stepper.orientation;
-            here.rise = -here.rise;
+            here.dlambda_ds = -here.dlambda_ds;
         }
         self.stepper.begin(&mut here);
         let mut points = Vec::new();
@@ -361,9 +362,9 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
         {
             return end;
         }
-        let mut step = 0.05_f64.min(self.pace.longest);
+        let mut step = 0.05_f64.min(self.control.longest);
         while step >= 1e-8 {
-            let advanced = self.stepper.advance_to_contact(&here, step, self.pace);
+            let advanced = self.stepper.advance_to_contact(&here, step, self.control);
             let (mut next, turn, contact) = match advanced {
                 Ok(found) => found,
                 Err(trouble) => {
@@ -374,9 +375,9 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
                 }
             };
             let step_taken = if contact.is_some() { self.stepper.distance(&here, &next) } else { step };
-            let event = if turn == Turn::Crossing {
+            let event = if turn == StepOutcome::Bifurcation {
                 Some(Event::Bifurcation)
-            } else if next.rise * here.rise < 0.0 {
+            } else if next.dlambda_ds * here.dlambda_ds < 0.0 {
                 Some(Event::LimitPoint)
             } else {
                 None
@@ -415,7 +416,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             }
             self.stepper.went(&here, &mut next);
             here = next;
-            step = (step * 1.6).min(self.pace.longest);
+            step = (step * 1.6).min(self.control.longest);
         }
         self.stepper.end_at(&here)
     }
@@ -430,9 +431,9 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
         points: &mut Vec<PathPoint>,
     ) -> Option<PathEnd> {
         let at = if event == Event::Bifurcation {
-            self.stepper.bifurcation(here, next, step, self.pace)
+            self.stepper.bifurcation(here, next, step, self.control)
         } else {
-            self.stepper.limit_point(here, next, step, self.pace).0
+            self.stepper.limit_point(here, next, step, self.control).0
         };
         if let Some(read) = read(self.stepper.engine, &at, Some(event))
             && let Some(end) = self.put(read, points)
@@ -440,9 +441,9 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             return Some(end);
         }
         if event == Event::Bifurcation {
-            self.crossings.push(at);
+            self.bifurcations.push(at);
             self.stepper.orientation = -self.stepper.orientation;
-            next.rise = -next.rise;
+            next.dlambda_ds = -next.dlambda_ds;
         }
         None
     }
@@ -450,7 +451,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
     /// Keeps the point at which a cable goes slack or taut, which may be a limit point, too; why none may come after it.
     fn put_contact(&mut self, contact: &Contact, next: &Point, points: &mut Vec<PathPoint>) -> Option<PathEnd> {
         let event = if contact.slack { Event::Slack(contact.cable) } else { Event::Taut(contact.cable) };
-        let turns_back = (contact.after.rise * next.rise < 0.0).then_some(Event::LimitPoint);
+        let turns_back = (contact.after.dlambda_ds * next.dlambda_ds < 0.0).then_some(Event::LimitPoint);
         for event in turns_back.into_iter().chain([event]) {
             if let Some(read) = read(self.stepper.engine, &contact.after, Some(event))
                 && let Some(end) = self.put(read, points)
@@ -480,7 +481,7 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
             if self.stopped {
                 break;
             }
-            if let Some(first) = self.stepper.switch(crossing, side, self.pace) {
+            if let Some(first) = self.stepper.switch(crossing, side, self.control) {
                 out.push(self.from(first, Some(value)));
             }
         }

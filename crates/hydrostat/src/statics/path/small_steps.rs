@@ -43,7 +43,7 @@ pub(crate) fn random_arm(dice: &mut Dice) -> Arm {
 
 /// The answer is the one that small steps of arclength lead to.
 fn compare(count: usize) {
-    const SMALL: Pace = Pace { longest: 0.05, straightness: 0.995, most: 30_000, accuracy: 1e-7 };
+    const SMALL: StepControl = StepControl { longest: 0.05, straightness: 0.995, most: 30_000, accuracy: 1e-7 };
     let mut dice = Dice(7);
     let (mut solved, mut verdicts, mut direct) = (0, 0, 0);
     let mut wrong = Vec::new();

@@ -3,8 +3,8 @@
 
 use hydrostat_bvp::{Correction, Mesh, Solution};
 
-use super::pace::{CORNER, EVEN, FINEST, LOOSE, MANY, Pace, SYMMETRIC};
-use crate::statics::engine::{Engine, HOP, M, Round, State, Trouble, roughly};
+use super::step_control::{CORNER, EVEN, FINEST, LOOSE, MANY, SYMMETRIC, StepControl};
+use crate::statics::engine::{Engine, HOP, M, NewtonStep, State, Trouble, roughly};
 use crate::statics::equations::{L, N, Q};
 use crate::statics::verdict::Phase;
 
@@ -29,7 +29,7 @@ pub(super) struct Point {
     pub(super) margins: Vec<f64>,
     /// The fraction's part of the unit tangent, positive where the load rises along the path: `rise`
     /// times `response` is the rest.
-    pub(super) rise: f64,
+    pub(super) dlambda_ds: f64,
     /// Whether the determinant says which way is on: not where rounding alone can turn its sign.
     pub(super) oriented: bool,
     /// Natural logarithm of the size of the determinant.
@@ -49,7 +49,7 @@ impl Point {
         mesh.nodes().iter().map(move |s| {
             let e = own.element_of(*s);
             let x = (s - own.nodes()[e]) / own.step(e);
-            self.rise * (response[e][0] + x * (response[e + 1][0] - response[e][0]))
+            self.dlambda_ds * (response[e][0] + x * (response[e + 1][0] - response[e][0]))
         })
     }
 
@@ -65,11 +65,11 @@ impl Point {
 
     /// The turn (rad, root mean square along the arm) by the whole load at the rate here, in a metric whose scale of theta is `scale`.
     fn turn_by_load(&self, scale: f64) -> f64 {
-        scale * (self.rise.powi(-2) - 1.0).max(0.0).sqrt()
+        scale * (self.dlambda_ds.powi(-2) - 1.0).max(0.0).sqrt()
     }
 
     pub(super) fn is_symmetric(&self) -> bool {
-        (self.rise * self.response.largest(0)).abs() < SYMMETRIC
+        (self.dlambda_ds * self.response.largest(0)).abs() < SYMMETRIC
     }
 }
 
@@ -114,7 +114,7 @@ pub(super) struct Stepper<'e> {
     /// Fractions on which a step lands that would pass them.
     pub(super) bounds: [f64; 2],
     /// The last linearisation.
-    pub(super) round: Round,
+    pub(super) round: NewtonStep,
     pub(super) last_trouble: Option<Trouble>,
     /// Sign of the climb times that of the determinant.
     pub(super) orientation: f64,
@@ -137,11 +137,11 @@ pub(super) struct Stepper<'e> {
 
 /// How the path goes on at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Turn {
+pub(super) enum StepOutcome {
     /// Smoothly, or round a corner that a kink of the load makes.
-    None,
+    Regular,
     /// Smoothly, but the determinant's sign says backwards: another branch crosses.
-    Crossing,
+    Bifurcation,
 }
 
 impl<'e> Stepper<'e> {
@@ -150,7 +150,7 @@ impl<'e> Stepper<'e> {
             engine,
             along,
             bounds,
-            round: Round::default(),
+            round: NewtonStep::default(),
             last_trouble: None,
             orientation: 1.0,
             opposite: None,
@@ -236,7 +236,7 @@ impl<'e> Stepper<'e> {
         let scale = if wanted.is_finite() { wanted.clamp(least, 1.0) } else { 1.0 };
         let turn = point.turn_by_load(self.scale) / scale;
         self.scale = scale;
-        point.rise = point.rise.signum() / turn.hypot(1.0);
+        point.dlambda_ds = point.dlambda_ds.signum() / turn.hypot(1.0);
     }
 
     /// The point here. Its tangent is oriented by the determinant, whose sign times that of the climb is
@@ -257,11 +257,11 @@ impl<'e> Stepper<'e> {
         }
         let determinant = self.engine.determinant();
         let known = determinant.known_sign();
-        let rise = self.orientation * known.unwrap_or(1.0) / norm;
+        let dlambda_ds = self.orientation * known.unwrap_or(1.0) / norm;
         let (state, response) = (self.engine.state(), self.round.response.clone());
         let (tensions, margins) = (self.round.tension[1].clone(), self.margins());
         let (oriented, size) = (known.is_some(), determinant.log);
-        Ok(Point { state, fraction, response, tensions, margins, rise, oriented, size, error: self.error })
+        Ok(Point { state, fraction, response, tensions, margins, dlambda_ds, oriented, size, error: self.error })
     }
 
     /// Moves the solution from `here` along its tangent.
@@ -269,32 +269,42 @@ impl<'e> Stepper<'e> {
         self.current = false;
         self.stretch = 0.0;
         self.engine.restore(&here.state);
-        let climb = step * here.rise;
+        let climb = step * here.dlambda_ds;
         self.engine.solution.add(&here.response, climb);
         self.engine.add_tensions(&here.tensions, climb);
         here.fraction + climb
     }
 
-    pub(super) fn advance(&mut self, here: &Point, step: f64, pace: Pace) -> Result<(Point, Turn), Trouble> {
+    pub(super) fn advance(
+        &mut self,
+        here: &Point,
+        step: f64,
+        control: StepControl,
+    ) -> Result<(Point, StepOutcome), Trouble> {
         let mut fraction = self.predict(here, step);
         let [low, high] = self.bounds;
         if fraction >= high || fraction <= low {
-            return self.land(here, if fraction >= high { high } else { low }, pace);
+            return self.land(here, if fraction >= high { high } else { low }, control);
         }
         let from = self.engine.solution.clone();
         self.correct(here, &mut fraction)?;
-        self.arrive(here, &from, Fraction::Free(fraction), step, pace)
+        self.arrive(here, &from, Fraction::Free(fraction), step, control)
     }
 
     /// A step that ends at a given fraction; near a fold that is refused, and steps shrink.
-    pub(super) fn land(&mut self, here: &Point, fraction: f64, pace: Pace) -> Result<(Point, Turn), Trouble> {
-        let step = (fraction - here.fraction) / here.rise;
+    pub(super) fn land(
+        &mut self,
+        here: &Point,
+        fraction: f64,
+        control: StepControl,
+    ) -> Result<(Point, StepOutcome), Trouble> {
+        let step = (fraction - here.fraction) / here.dlambda_ds;
         self.predict(here, step);
         self.set(fraction);
         let from = self.engine.solution.clone();
         roughly(self.engine.newton(1e-6 * self.scale, 9))?;
-        let (end, turn) = self.arrive(here, &from, Fraction::Fixed(fraction), step, pace)?;
-        if turn == Turn::None && end.rise * here.rise < 0.0 {
+        let (end, turn) = self.arrive(here, &from, Fraction::Fixed(fraction), step, control)?;
+        if turn == StepOutcome::Regular && end.dlambda_ds * here.dlambda_ds < 0.0 {
             return Err(Trouble::Stalled(step));
         }
         Ok((end, turn))
@@ -302,9 +312,9 @@ impl<'e> Stepper<'e> {
 
     /// The point of the branch at which the tip has a given angle, from one nearby. There is one wherever that angle alone decides the
     /// shape, round sharp folds, too, of which no tangent at a distance knows.
-    pub(super) fn at_tip_angle(&mut self, here: &Point, angle: f64, pace: Pace) -> Result<Point, Trouble> {
+    pub(super) fn at_tip_angle(&mut self, here: &Point, angle: f64, control: StepControl) -> Result<Point, Trouble> {
         let climb = (angle - here.tip_angle()) * here.slope();
-        let mut fraction = self.predict(here, climb / here.rise);
+        let mut fraction = self.predict(here, climb / here.dlambda_ds);
         let from = self.engine.solution.clone();
         self.correct_at_tip(&mut fraction)?;
         let moved = largest_turn(&from, &self.engine.solution);
@@ -312,8 +322,8 @@ impl<'e> Stepper<'e> {
             return Err(Trouble::Stalled(moved));
         }
         let mut fraction = Fraction::AtTip(fraction);
-        self.keep_accuracy(None, &mut fraction, [pace.accuracy; 2])?;
-        self.engine.ends_fine()?;
+        self.keep_accuracy(None, &mut fraction, [control.accuracy; 2])?;
+        self.engine.check_ends()?;
         self.point(fraction.value())
     }
 
@@ -321,7 +331,7 @@ impl<'e> Stepper<'e> {
     pub(super) fn correct(&mut self, here: &Point, fraction: &mut f64) -> Result<(), Trouble> {
         let normal: Vec<f64> =
             here.tangent_on(&self.engine.solution.mesh).zip(self.weights()).map(|(t, w)| t * w).collect();
-        self.correct_on(&normal, here.rise, fraction)
+        self.correct_on(&normal, here.dlambda_ds, fraction)
     }
 
     /// Newton with the angle of the tip as it is.
@@ -379,35 +389,35 @@ impl<'e> Stepper<'e> {
         from: &Solution<N, M, L>,
         mut fraction: Fraction,
         step: f64,
-        pace: Pace,
-    ) -> Result<(Point, Turn), Trouble> {
+        control: StepControl,
+    ) -> Result<(Point, StepOutcome), Trouble> {
         let moved = largest_turn(from, &self.engine.solution);
         self.stretch = moved / MOVED;
         if moved > MOVED {
             return Err(Trouble::Stalled(moved));
         }
         // What the mesh is off by must not be mistaken for a turn of the path.
-        let accuracy = (0.02 * step.abs() * self.scale).max(FINEST).min(pace.accuracy);
-        self.keep_accuracy(Some(here), &mut fraction, [accuracy, pace.accuracy])?;
-        self.engine.ends_fine()?;
+        let accuracy = (0.02 * step.abs() * self.scale).max(FINEST).min(control.accuracy);
+        self.keep_accuracy(Some(here), &mut fraction, [accuracy, control.accuracy])?;
+        self.engine.check_ends()?;
         let fraction = fraction.value();
         let mut next = if self.current { self.point_of_round(fraction)? } else { self.point(fraction)? };
         let mut cosine = self.cosine(here, &next);
         if cosine < 0.0 && !(here.oriented && next.oriented) {
             // Rounding may have turned the sign: the path goes straight on.
-            (cosine, next.rise) = (-cosine, -next.rise);
+            (cosine, next.dlambda_ds) = (-cosine, -next.dlambda_ds);
             if next.oriented {
                 self.orientation = -self.orientation;
             }
         }
-        let crossing = cosine < 0.0 && -cosine >= pace.straightness;
+        let crossing = cosine < 0.0 && -cosine >= control.straightness;
         // Nothing turns on a symmetric branch but the load: bifurcations are passed at once, because
         // near them rounding would lead off the branch.
         if crossing && (self.crossings_welcome || step.abs() < CORNER || (here.is_symmetric() && next.is_symmetric())) {
-            return Ok((next, Turn::Crossing));
+            return Ok((next, StepOutcome::Bifurcation));
         }
         let strict = if self.changed_sides(here) > 0.05 { 0.1 } else { 1.0 };
-        let bend = (1.0 - cosine) / (strict * (1.0 - pace.straightness));
+        let bend = (1.0 - cosine) / (strict * (1.0 - control.straightness));
         let even = if self.engine.in_a_hurry { strict.max(0.3) } else { strict };
         let unevenness = self.unevenness(here, &next, step) / (even * EVEN);
         self.stretch = self.stretch.max(bend).max(unevenness);
@@ -417,7 +427,7 @@ impl<'e> Stepper<'e> {
         if step.abs() > CORNER && !(bend <= 1.0 && unevenness <= 1.0) {
             return Err(Trouble::Stalled(cosine - 2.0));
         }
-        Ok((next, Turn::None))
+        Ok((next, StepOutcome::Regular))
     }
 
     /// The share of the arm that the stream meets from the other side than at `here`. Where much of a
@@ -452,7 +462,7 @@ impl<'e> Stepper<'e> {
             square += w * (z[0] - before[0]).powi(2);
         }
         let mean = climb / square.sqrt();
-        (mean - 0.5 * (a.rise + b.rise)).abs() / a.rise.abs().max(b.rise.abs())
+        (mean - 0.5 * (a.dlambda_ds + b.dlambda_ds)).abs() / a.dlambda_ds.abs().max(b.dlambda_ds.abs())
     }
 
     /// Refines when the mesh no longer carries `accuracy`, or, where that would take very many elements,
@@ -510,7 +520,8 @@ impl<'e> Stepper<'e> {
 
     fn cosine(&self, a: &Point, b: &Point) -> f64 {
         // Both on the mesh of `b`, lengths included: a coarse mesh measures them coarsely.
-        let (mut both, mut first, mut second) = (a.rise * b.rise, a.rise * a.rise, b.rise * b.rise);
+        let (mut both, mut first, mut second) =
+            (a.dlambda_ds * b.dlambda_ds, a.dlambda_ds * a.dlambda_ds, b.dlambda_ds * b.dlambda_ds);
         for ((carried, own), w) in a.tangent_on(b.mesh()).zip(b.tangent_on(b.mesh())).zip(self.weights()) {
             both += w * own * carried;
             first += w * carried * carried;

@@ -8,7 +8,7 @@ use super::error::{SensitivityError, unsettled};
 use crate::numerics::elimination::solved;
 use crate::rod::parameter::Parameter;
 use crate::statics::engine::{Engine, M, Trouble, linearise, respond, response_change};
-use crate::statics::equations::{L, Measured, N, Q, Way};
+use crate::statics::equations::{L, N, Q, StationData, Way};
 
 /// Which way derivatives are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -57,7 +57,7 @@ type Sum = Vec<(Quantity, f64)>;
 pub(crate) const POSE: usize = 4;
 
 /// Derivatives of quantities, one row each, and of the tensions of all cables.
-pub(crate) struct Found {
+pub(crate) struct Derivatives {
     pub(crate) rows: Vec<Vec<f64>>,
     pub(crate) tensions: Vec<Vec<f64>>,
 }
@@ -101,20 +101,26 @@ impl Engine {
         quantities: &[Quantity],
         parameters: &[Parameter],
         method: SensitivityMethod,
-    ) -> Option<Found> {
+    ) -> Option<Derivatives> {
         let rows: Vec<Sum> = quantities.iter().map(|quantity| vec![(*quantity, 1.0)]).collect();
         self.derivatives_of(rows, parameters, method)
     }
 
     /// Derivatives of one weighted sum of poses.
-    pub(crate) fn gradient(&self, sum: &[(Quantity, f64)], parameters: &[Parameter]) -> Option<Found> {
+    pub(crate) fn gradient(&self, sum: &[(Quantity, f64)], parameters: &[Parameter]) -> Option<Derivatives> {
         self.derivatives_of(vec![sum.to_vec()], parameters, SensitivityMethod::Adjoint)
     }
 
     /// Derivatives of weighted sums.
-    fn derivatives_of(&self, mut sums: Vec<Sum>, parameters: &[Parameter], method: SensitivityMethod) -> Option<Found> {
+    fn derivatives_of(
+        &self,
+        mut sums: Vec<Sum>,
+        parameters: &[Parameter],
+        method: SensitivityMethod,
+    ) -> Option<Derivatives> {
         let (held, cables) = (self.equations.held.clone(), self.equations.arm().cables.len());
-        let taut: Vec<usize> = held.map_or(Vec::new(), |held| held.tight().iter().map(|i| held.cables[*i]).collect());
+        let taut: Vec<usize> =
+            held.map_or(Vec::new(), |held| held.taut_cables().iter().map(|i| held.cables[*i]).collect());
         let mut sources = parameters.to_vec();
         sources.extend(taut.iter().map(|c| Parameter::Tension(*c)));
         let asked = sums.len();
@@ -150,7 +156,7 @@ impl Engine {
         for row in &mut rows {
             row.truncate(count);
         }
-        Some(Found { rows, tensions })
+        Some(Derivatives { rows, tensions })
     }
 }
 
@@ -310,7 +316,7 @@ impl About<'_> {
             }
         }
         for (direct, source) in row.direct.iter_mut().zip(sources) {
-            *direct += factor * equations.stroke_by(c, commanded, Way::Of(*source), Measured::of(self.system));
+            *direct += factor * equations.stroke_by(c, commanded, Way::Of(*source), StationData::of(self.system));
         }
     }
 

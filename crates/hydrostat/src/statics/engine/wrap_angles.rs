@@ -3,11 +3,11 @@
 use super::discrete::Engine;
 use crate::statics::dimensions::M;
 use crate::statics::equations::SectionFailure;
-use crate::statics::friction::{POINTS, Turns};
+use crate::statics::friction::{POINTS, WrapAngles};
 
 impl Engine {
     /// How far the cables have turned along the solution.
-    pub(crate) fn cable_turns(&self) -> Result<Turns, SectionFailure> {
+    pub(crate) fn wrap_angles(&self) -> Result<WrapAngles, SectionFailure> {
         let equations = &self.equations;
         let gauss = self.system.gauss.clone();
         let mesh = &self.solution.mesh;
@@ -33,6 +33,6 @@ impl Engine {
         let own = |s: f64| equations.jumps_at(s) || self.has_break_at(s);
         let breaks: Vec<bool> = mesh.nodes().iter().map(|s| own(*s)).collect();
         let steps: Vec<bool> = mesh.nodes().iter().map(|s| equations.jumps_at(*s)).collect();
-        Ok(Turns::new(gauss, mesh.nodes().to_vec(), angles, &breaks, &steps))
+        Ok(WrapAngles::new(gauss, mesh.nodes().to_vec(), angles, &breaks, &steps))
     }
 }

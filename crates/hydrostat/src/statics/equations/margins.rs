@@ -2,16 +2,16 @@
 
 use hydrostat_bvp::Station;
 
-use super::limits::Nearness;
+use super::limits::Margins;
 use super::system::Equations;
-use crate::rod::cables_here::Few;
+use crate::rod::cable_list::CableList;
 use crate::statics::dimensions::{L, N};
 
 impl Equations {
     /// How near the limits of the section law stations and ends are.
-    pub(crate) fn nearness(&self, stations: &[Station<N, L>]) -> Nearness {
-        let mut out = Nearness::FAR;
-        let mut pulled = Few::new();
+    pub(crate) fn margins(&self, stations: &[Station<N, L>]) -> Margins {
+        let mut out = Margins::FAR;
+        let mut pulled = CableList::new();
         for (block, station) in stations.iter().enumerate() {
             let (_, _, solved) = self.solved_in(block, station, &mut pulled);
             let s = self.places[block].s;

@@ -9,13 +9,13 @@ use crate::rod::section::CableAt;
 const MOST_IN_PLACE: usize = 8;
 
 /// A list that allocates only when it is long.
-pub(crate) struct Few<R> {
+pub(crate) struct CableList<R> {
     count: usize,
     in_place: [CableAt<R>; MOST_IN_PLACE],
     many: Vec<CableAt<R>>,
 }
 
-impl<R: Real> Few<R> {
+impl<R: Real> CableList<R> {
     #[inline(always)]
     pub(crate) fn new() -> Self {
         let zero = R::of(0.0);

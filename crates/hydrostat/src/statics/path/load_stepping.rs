@@ -2,8 +2,8 @@
 //! `docs/model.md`).
 
 use super::contact::Contact;
-use super::pace::{LOOSE, MEET, Pace, START, Travelled};
-use super::stepper::{Along, Fraction, Point, Stepper, Turn};
+use super::step_control::{LOOSE, MEET, PathSummary, START, StepControl};
+use super::stepper::{Along, Fraction, Point, StepOutcome, Stepper};
 use crate::statics::configuration::{Configuration, Tip};
 use crate::statics::engine::{Engine, First, State, Trouble, roughly};
 use crate::statics::snap::{Snap, SnapBounds};
@@ -53,24 +53,29 @@ struct Refused {
 }
 
 /// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
-pub(crate) fn follow(engine: &mut Engine, pace: Pace, bounds: SnapBounds) -> Result<Travelled, Stopped> {
-    let mut outcome = follow_at(engine, pace, bounds, pace.accuracy >= LOOSE);
+pub(crate) fn follow(engine: &mut Engine, control: StepControl, bounds: SnapBounds) -> Result<PathSummary, Stopped> {
+    let mut outcome = follow_at(engine, control, bounds, control.accuracy >= LOOSE);
     if let Err(Stopped { verdict, .. }) = &outcome
         && engine.in_a_hurry
         && verdict.spent.is_none()
         && (verdict.kind == VerdictKind::NotFound || verdict.load_fraction < HASTE)
     {
         // Nothing that has physics behind it: it may be the haste.
-        outcome = follow_at(engine, pace, bounds, false);
+        outcome = follow_at(engine, control, bounds, false);
     }
     engine.in_a_hurry = false;
     outcome
 }
 
 /// [`follow`], in a hurry or with care.
-fn follow_at(engine: &mut Engine, mut pace: Pace, bounds: SnapBounds, hurry: bool) -> Result<Travelled, Stopped> {
+fn follow_at(
+    engine: &mut Engine,
+    mut control: StepControl,
+    bounds: SnapBounds,
+    hurry: bool,
+) -> Result<PathSummary, Stopped> {
     if hurry {
-        pace.longest *= 1.5;
+        control.longest *= 1.5;
     }
     let mut way = Way::new(bounds);
     engine.in_a_hurry = hurry;
@@ -82,7 +87,7 @@ fn follow_at(engine: &mut Engine, mut pace: Pace, bounds: SnapBounds, hurry: boo
             Phase::Tension => engine.equations.has_tension(),
             Phase::Stroke | Phase::Friction => false,
         };
-        if moves && let Err(verdict) = way.along(engine, phase, pace) {
+        if moves && let Err(verdict) = way.along(engine, phase, control) {
             return Err(way.stopped(engine, verdict));
         }
         engine.set_phase(phase, 1.0);
@@ -91,10 +96,14 @@ fn follow_at(engine: &mut Engine, mut pace: Pace, bounds: SnapBounds, hurry: boo
 }
 
 /// Follows the strokes to those commanded, or to a verdict, from the engine's equilibrium without them.
-pub(crate) fn follow_strokes(engine: &mut Engine, pace: Pace, bounds: SnapBounds) -> Result<Travelled, Stopped> {
+pub(crate) fn follow_strokes(
+    engine: &mut Engine,
+    control: StepControl,
+    bounds: SnapBounds,
+) -> Result<PathSummary, Stopped> {
     let phase = Phase::Stroke;
     let mut way = Way::new(bounds);
-    let outcome = way.along(engine, phase, pace);
+    let outcome = way.along(engine, phase, control);
     engine.equations.let_cables_switch(true);
     if let Err(verdict) = outcome {
         return Err(way.stopped(engine, verdict));
@@ -106,23 +115,23 @@ pub(crate) fn follow_strokes(engine: &mut Engine, pace: Pace, bounds: SnapBounds
 /// What the path has met so far.
 struct Way {
     bounds: SnapBounds,
-    travelled: Travelled,
+    travelled: PathSummary,
     refused: Option<Refused>,
 }
 
 impl Way {
     fn new(bounds: SnapBounds) -> Self {
-        Self { bounds, travelled: Travelled::default(), refused: None }
+        Self { bounds, travelled: PathSummary::default(), refused: None }
     }
 
     /// One phase of the path.
-    fn along(&mut self, engine: &mut Engine, phase: Phase, pace: Pace) -> Result<(), Verdict> {
+    fn along(&mut self, engine: &mut Engine, phase: Phase, control: StepControl) -> Result<(), Verdict> {
         let stepper = Stepper::new(engine, Along::Phase(phase), [f64::NEG_INFINITY, 1.0]);
-        Ramp { stepper, phase, way: self, turned_back: None }.follow(pace)
+        Ramp { stepper, phase, way: self, turned_back: None }.follow(control)
     }
 
     /// The end of the path at whole loads.
-    fn whole(self, engine: &mut Engine) -> Result<Travelled, Stopped> {
+    fn whole(self, engine: &mut Engine) -> Result<PathSummary, Stopped> {
         let Some(refused) = self.refused else { return Ok(self.travelled) };
         let end = engine.state();
         engine.restore(&refused.before);
@@ -163,20 +172,20 @@ struct Ramp<'e, 'w> {
 }
 
 impl Ramp<'_, '_> {
-    fn follow(&mut self, pace: Pace) -> Result<(), Verdict> {
+    fn follow(&mut self, control: StepControl) -> Result<(), Verdict> {
         let mut here = self.start_or_verdict()?;
         // Which side of zero the determinant is on is a matter of the branch, which way is up is not.
-        if here.rise < 0.0 {
+        if here.dlambda_ds < 0.0 {
             self.stepper.orientation = -self.stepper.orientation;
-            here.rise = -here.rise;
+            here.dlambda_ds = -here.dlambda_ds;
         }
         self.stepper.begin(&mut here);
-        let first = if self.stepper.engine.in_a_hurry { 0.2 } else { 0.1_f64.min(pace.longest) };
+        let first = if self.stepper.engine.in_a_hurry { 0.2 } else { 0.1_f64.min(control.longest) };
         let mut step = first;
         // A point before this one whose tangent climbed clearly more.
-        let mut steeper = (here.fraction, here.rise);
+        let mut steeper = (here.fraction, here.dlambda_ds);
         let mut sharpened = false;
-        let mut most = pace.most;
+        let mut most = control.most;
         let mut attempt = 0;
         loop {
             if self.stepper.engine.spent().is_some() {
@@ -192,20 +201,20 @@ impl Ramp<'_, '_> {
                 if !sharpened && let Some(point) = self.sharpen(&here) {
                     sharpened = true;
                     here = point;
-                    steeper = (here.fraction, here.rise);
+                    steeper = (here.fraction, here.dlambda_ds);
                     step = SHARP_STEP;
                     continue;
                 }
                 return Err(self.stuck(&here, steeper));
             }
             attempt += 1;
-            match self.stepper.advance_to_contact(&here, step, pace) {
+            match self.stepper.advance_to_contact(&here, step, control) {
                 Ok((mut next, turn, contact)) => {
-                    if turn == Turn::Crossing {
+                    if turn == StepOutcome::Bifurcation {
                         // The branch goes straight on through a bifurcation.
                         self.stepper.orientation = -self.stepper.orientation;
-                        next.rise = -next.rise;
-                        self.way.travelled.crossings += 1;
+                        next.dlambda_ds = -next.dlambda_ds;
+                        self.way.travelled.bifurcations += 1;
                     }
                     if self.turned_back.is_some() {
                         if next.fraction <= 0.0
@@ -213,26 +222,26 @@ impl Ramp<'_, '_> {
                         {
                             return Err(verdict);
                         }
-                        if self.comes_past(&here, &next) && !self.land(&here, pace) {
+                        if self.comes_past(&here, &next) && !self.land(&here, control) {
                             // The step goes round the next limit point, too.
                             step *= 0.4;
                             continue;
                         }
-                    } else if next.rise < 0.0 {
-                        let (_, limit) = self.stepper.limit_point(&here, &next, step, pace);
+                    } else if next.dlambda_ds < 0.0 {
+                        let (_, limit) = self.stepper.limit_point(&here, &next, step, control);
                         self.turn_back(limit.clamp(0.0, 1.0));
                         most = most.max(attempt + BEYOND);
                     }
                     self.way.travelled.steps += 1;
                     if let Some(Contact { after, .. }) = contact {
-                        if after.rise < 0.0 && self.turned_back.is_none() {
+                        if after.dlambda_ds < 0.0 && self.turned_back.is_none() {
                             // Where a cable goes slack or taut the path turns back in a corner.
                             self.stepper.engine.restore(&next.state);
                             self.turn_back(next.fraction);
                             most = most.max(attempt + BEYOND);
                         }
                         here = after;
-                        steeper = (here.fraction, here.rise);
+                        steeper = (here.fraction, here.dlambda_ds);
                         step = first;
                         continue;
                     }
@@ -243,14 +252,14 @@ impl Ramp<'_, '_> {
                         self.way.travelled.symmetric = next.is_symmetric();
                         return Ok(());
                     }
-                    if here.rise > 1.3 * next.rise {
-                        steeper = (here.fraction, here.rise);
-                    } else if here.rise < next.rise {
-                        steeper = (next.fraction, next.rise);
+                    if here.dlambda_ds > 1.3 * next.dlambda_ds {
+                        steeper = (here.fraction, here.dlambda_ds);
+                    } else if here.dlambda_ds < next.dlambda_ds {
+                        steeper = (next.fraction, next.dlambda_ds);
                     }
                     self.stepper.went(&here, &mut next);
                     here = next;
-                    step = (step * self.stepper.pace_up(true)).min(pace.longest);
+                    step = (step * self.stepper.pace_up(true)).min(control.longest);
                 }
                 Err(trouble) => {
                     self.stepper.last_trouble = Some(trouble);
@@ -275,12 +284,12 @@ impl Ramp<'_, '_> {
 
     /// The arm lands where a step from `here` comes past the load of the limit point, if that shape is stable. Whether the path is known
     /// that far.
-    fn land(&mut self, here: &Point, pace: Pace) -> bool {
+    fn land(&mut self, here: &Point, control: StepControl) -> bool {
         let Some(limit) = self.turned_back.take() else { return true };
         let kept = (self.stepper.engine.state(), self.stepper.orientation);
         // From before the second limit point no tangent leads there.
-        let landed =
-            here.rise > 0.0 && self.stepper.land(here, limit.fraction, Pace { straightness: -1.0, ..pace }).is_ok();
+        let landed = here.dlambda_ds > 0.0
+            && self.stepper.land(here, limit.fraction, StepControl { straightness: -1.0, ..control }).is_ok();
         let snap = if landed { self.landing(&limit) } else { None };
         let after = self.stepper.engine.state();
         self.stepper.engine.restore(&kept.0);
@@ -295,7 +304,7 @@ impl Ramp<'_, '_> {
             return true;
         }
         self.stepper.bounds[0] = f64::NEG_INFINITY;
-        self.way.travelled.crossings = 0;
+        self.way.travelled.bifurcations = 0;
         if self.way.refused.is_some() {
             return true;
         }
@@ -354,9 +363,9 @@ impl Ramp<'_, '_> {
         }
         let end = self.end(kind, here.fraction, s);
         // Towards a fold the square of the climb falls to zero linearly in the load.
-        let fall = steeper.1.powi(2) - here.rise.powi(2);
-        let ahead = (here.fraction - steeper.0) * here.rise.powi(2) / fall;
-        if kind == VerdictKind::NotFound && here.rise < 0.1 && fall > 0.0 && ahead < 1e-3 {
+        let fall = steeper.1.powi(2) - here.dlambda_ds.powi(2);
+        let ahead = (here.fraction - steeper.0) * here.dlambda_ds.powi(2) / fall;
+        if kind == VerdictKind::NotFound && here.dlambda_ds < 0.1 && fall > 0.0 && ahead < 1e-3 {
             return self.end(VerdictKind::LimitPoint, here.fraction + ahead, None);
         }
         end
@@ -409,9 +418,9 @@ impl Ramp<'_, '_> {
             let [x, y] = self.stepper.engine.tip;
             if settled.is_ok()
                 && (x - before[0]).hypot(y - before[1]) < 10.0 * (LOOSE + back)
-                && self.stepper.engine.ends_fine().is_ok()
+                && self.stepper.engine.check_ends().is_ok()
                 && let Ok(point) = self.stepper.point(fraction)
-                && point.rise * here.rise > 0.0
+                && point.dlambda_ds * here.dlambda_ds > 0.0
             {
                 return Some(point);
             }

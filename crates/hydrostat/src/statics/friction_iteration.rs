@@ -10,8 +10,8 @@ use std::sync::Arc;
 use crate::numerics::elimination::solved;
 use crate::statics::configuration::Configuration;
 use crate::statics::engine::{First, Trouble};
-use crate::statics::friction::{Grip, Turns, exponents};
-use crate::statics::path::{Travelled, name_limit};
+use crate::statics::friction::{CapstanFactors, WrapAngles, exponents};
+use crate::statics::path::{PathSummary, name_limit};
 use crate::statics::solve::Solver;
 use crate::statics::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
@@ -32,14 +32,14 @@ const INTERVALS: u32 = 32;
 
 impl Solver {
     /// From the equilibrium without friction; where there is none, along the tensions with it.
-    pub(crate) fn solve_rubbing(&mut self) -> Result<Configuration, SolveError> {
-        self.engine.set_grip(None);
+    pub(crate) fn solve_with_friction(&mut self) -> Result<Configuration, SolveError> {
+        self.engine.set_capstan(None);
         let commanded = self.engine.equations.arm().is_commanded();
         match self.solve_smooth() {
             Ok(smooth) => {
-                let mut rubbing = self.raise_friction().map_err(|verdict| self.no_equilibrium(verdict))?;
-                rubbing.snaps = smooth.snaps;
-                Ok(rubbing)
+                let mut converged = self.raise_friction().map_err(|verdict| self.no_equilibrium(verdict))?;
+                converged.snaps = smooth.snaps;
+                Ok(converged)
             }
             Err(SolveError::NoEquilibrium(no)) if no.verdict.phase == Phase::Tension && !commanded => {
                 // Friction spares the tip, which may carry more with it.
@@ -65,7 +65,7 @@ impl Solver {
             match self.rub(next).map(|estimate| if next == 1.0 { self.confirm(estimate) } else { estimate }) {
                 Ok(estimate) if next == 1.0 => {
                     return self
-                        .read(estimate, Travelled::default())
+                        .read(estimate, PathSummary::default())
                         .map_err(|trouble| self.limit(Phase::Friction, share, &trouble));
                 }
                 Ok(_) => {
@@ -101,7 +101,7 @@ impl Solver {
                     share = next;
                     step *= 1.5;
                     last = self
-                        .read(estimate, Travelled::default())
+                        .read(estimate, PathSummary::default())
                         .map_err(|trouble| Some(self.limit(Phase::Tension, share, &trouble)))?;
                 }
                 Err(trouble) => {
@@ -160,8 +160,8 @@ impl Solver {
         let sign = self.engine.determinant().sign;
         let mut rounds = Rounds::new(share, exponents(self.engine.equations.arm(), share));
         for _ in 0..ROUNDS {
-            let ease = rounds.go_on(self.engine.cable_turns().map_err(Trouble::Section)?);
-            self.engine.set_grip(Some(&rounds.grip()));
+            let ease = rounds.go_on(self.engine.wrap_angles().map_err(Trouble::Section)?);
+            self.engine.set_capstan(Some(&rounds.capstan()));
             let (before, angle) = (self.engine.tip, self.engine.tip_angle());
             let estimate = self.engine.settle(tol, First::Warm)?;
             let same_branch = self.engine.determinant().sign == sign;
@@ -184,7 +184,7 @@ struct Rounds {
     share: f64,
     exponents: Vec<f64>,
     /// Of all shapes, in order; the first is that before the first round.
-    shapes: Vec<Arc<Turns>>,
+    shapes: Vec<Arc<WrapAngles>>,
     /// What each round's shape was solved with, as weights of the shapes before it.
     used: Vec<Vec<f64>>,
     /// What the turns of each round's shape differ by from those, as exponents.
@@ -197,15 +197,15 @@ impl Rounds {
     }
 
     /// What the next shape is to be solved with.
-    fn grip(&self) -> Grip {
+    fn capstan(&self) -> CapstanFactors {
         let weights = self.used.last().into_iter().flatten();
         let shapes = weights.zip(&self.shapes).filter(|(weight, _)| **weight != 0.0);
         let shapes = shapes.map(|(weight, shape)| (*weight, Arc::clone(shape))).collect();
-        Grip::new(self.share, self.exponents.clone(), shapes)
+        CapstanFactors::new(self.share, self.exponents.clone(), shapes)
     }
 
     /// Takes the turns of the last round's shape, and chooses those for the next; the share of what is off that these make up for.
-    fn go_on(&mut self, turns: Turns) -> f64 {
+    fn go_on(&mut self, turns: WrapAngles) -> f64 {
         self.shapes.push(Arc::new(turns));
         let count = self.shapes.len();
         let Some(last) = self.used.last() else {

@@ -2,7 +2,7 @@
 
 /// The cables whose stroke is commanded.
 #[derive(Debug, Clone)]
-pub(crate) struct Held {
+pub(crate) struct StrokeControl {
     /// Their indices among the arm's.
     pub(crate) cables: Vec<usize>,
     /// Whether each is taut: then its tension is unknown and its stroke given, else its tension is zero.
@@ -15,9 +15,9 @@ pub(crate) struct Held {
     pub(crate) switching: bool,
 }
 
-impl Held {
+impl StrokeControl {
     /// Which of the commanded cables are taut.
-    pub(crate) fn tight(&self) -> Vec<usize> {
+    pub(crate) fn taut_cables(&self) -> Vec<usize> {
         (0..self.cables.len()).filter(|index| self.taut[*index]).collect()
     }
 }

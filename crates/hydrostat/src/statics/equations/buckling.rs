@@ -3,7 +3,7 @@
 use hydrostat_bvp::Station;
 
 use super::system::Equations;
-use crate::rod::swelling::{displacement, swelling};
+use crate::rod::area_law::{area_law, displacement};
 use crate::statics::dimensions::{L, N};
 
 /// Where the unloaded arm points at a place, and the load on its tip that would turn with it.
@@ -36,12 +36,12 @@ impl Equations {
     /// arm. Well below one, equilibria are unique: a cantilever buckles at 2.47 under a force on its tip and at
     /// 7.84 under a load along it. The stream counts with S U^2 times [`Law::largest`](crate::rod::flow::Law::largest). Moments and couples
     /// bend the arm and push nothing along it: they are in the compression of the shape that they lead to.
-    pub(crate) fn adversity(&self, k: usize, stations: &[Station<N, L>], unloaded: &Unloaded) -> f64 {
+    pub(crate) fn buckling_indicator(&self, k: usize, stations: &[Station<N, L>], unloaded: &Unloaded) -> f64 {
         let (block, lane) = self.groups.station(k);
         let place = &self.places[block];
         let rest = 1.0 - place.s.0[lane];
         let (z, [nu, eta, _]) = at(&stations[block], lane);
-        let beta = swelling(self.volume, nu).beta;
+        let beta = area_law(self.volume, nu).beta;
         let stiffness = place.stiffness.value[2].0[lane] * beta * beta;
         // Along the centreline: the section's directions, turned by alpha.
         let stretch = (nu * nu + eta * eta).sqrt();
@@ -69,7 +69,7 @@ impl Equations {
     fn net_weight(&self, k: usize, nu: f64) -> [f64; 2] {
         let (block, lane) = self.groups.station(k);
         let place = &self.places[block];
-        let [d, _] = displacement(self.water.displaced, self.water.volume, nu, &swelling(self.water.volume, nu));
+        let [d, _] = displacement(self.water.displaced, self.water.volume, nu, &area_law(self.water.volume, nu));
         [0, 1].map(|c| place.body.weight[c].0[lane] - place.body.displaced[c].0[lane] * d + place.body.force[c].0[lane])
     }
 
@@ -109,7 +109,7 @@ mod tests {
             let mut engine = Engine::new(&arm);
             engine.start_from_cables(8).unwrap();
             engine.settle(1e-6, First::Rough).unwrap();
-            engine.may_have_left_the_branch()
+            engine.needs_continuation()
         };
         let (slow, fast) = (0.02, 0.02 * 10.0_f64.sqrt());
         assert!(!leaves(slow, 0.01, 0.0) && leaves(fast, 0.01, 0.0), "the speeds are on both sides");

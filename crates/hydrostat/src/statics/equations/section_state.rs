@@ -7,14 +7,14 @@ use super::limits::SectionFailure;
 use super::place::{Place, blank_cable};
 use super::system::Equations;
 use crate::numerics::sincos::sin_cos;
-use crate::rod::cables_here::Few;
+use crate::rod::cable_list::CableList;
 use crate::rod::section::CableAt;
 use crate::rod::section_solve::{FOLDED, solve_section};
 use crate::statics::dimensions::N;
 
 /// A place between stations, and what is known there.
 #[derive(Clone, Copy)]
-pub(crate) struct Asked {
+pub(crate) struct SectionQuery {
     /// Over L.
     pub(crate) s: f64,
     /// Decides whether a cable that ends here still acts.
@@ -27,7 +27,7 @@ pub(crate) struct Asked {
 
 /// Everything at one place, or at four, in the solver's units.
 #[derive(Clone)]
-pub(crate) struct AtPlace<R = f64> {
+pub(crate) struct SectionState<R = f64> {
     pub(crate) strain: [R; 3],
     pub(crate) beta: R,
     pub(crate) beta_slope: R,
@@ -50,10 +50,10 @@ pub(crate) struct AtPlace<R = f64> {
     pub(crate) switches: [R; 3],
 }
 
-impl AtPlace<Lanes> {
+impl SectionState<Lanes> {
     /// That of one of the four places.
-    pub(crate) fn lane(&self, lane: usize) -> AtPlace {
-        AtPlace {
+    pub(crate) fn lane(&self, lane: usize) -> SectionState {
+        SectionState {
             strain: self.strain.map(|v| v.0[lane]),
             beta: self.beta.0[lane],
             beta_slope: self.beta_slope.0[lane],
@@ -72,7 +72,7 @@ impl AtPlace<Lanes> {
 
 /// State, guess of the strains and beta' of four places.
 #[inline(always)]
-fn in_lanes(asked: &[Asked; LANES]) -> ([Lanes; N], [Lanes; 3], Lanes) {
+fn in_lanes(asked: &[SectionQuery; LANES]) -> ([Lanes; N], [Lanes; 3], Lanes) {
     let z = each(|a| Lanes(each(|lane| asked[lane].z[a])));
     let strain = each(|a| Lanes(each(|lane| asked[lane].strain[a])));
     (z, strain, Lanes(each(|lane| asked[lane].beta_slope)))
@@ -86,10 +86,10 @@ const ROUGH_STEP: f64 = 1e-9;
 
 impl Equations {
     /// Solves section law and loads at one place, for output between stations.
-    pub(crate) fn at_place(&self, asked: &Asked) -> Result<AtPlace, SectionFailure> {
+    pub(crate) fn at_place(&self, asked: &SectionQuery) -> Result<SectionState, SectionFailure> {
         let mut place = self.place(asked.s);
         place.body.couple *= self.fraction[0];
-        let mut cables = Few::new();
+        let mut cables = CableList::new();
         for c in (0..self.tensions.len()).filter(|c| self.acts_at(*c, asked)) {
             cables.push(self.cable_at(c, asked));
         }
@@ -105,7 +105,7 @@ impl Equations {
 
     /// [`Equations::at_place`] at four places; `None` when one of them has no solution.
     #[inline(always)]
-    pub(crate) fn at_places(&self, asked: &[Asked; LANES]) -> Option<AtPlace<Lanes>> {
+    pub(crate) fn at_places(&self, asked: &[SectionQuery; LANES]) -> Option<SectionState<Lanes>> {
         let mut place = self.place_four(Lanes(each(|lane| asked[lane].s)));
         place.body.couple = place.body.couple * Lanes::of(self.fraction[0]);
         let cables = self.cables_at(asked, place.s);
@@ -117,7 +117,7 @@ impl Equations {
 
     /// beta alone at four places near strains that are known; `None` when one of them has no solution.
     #[inline(always)]
-    pub(crate) fn beta_at(&self, asked: &[Asked; LANES]) -> Option<[f64; LANES]> {
+    pub(crate) fn beta_at(&self, asked: &[SectionQuery; LANES]) -> Option<[f64; LANES]> {
         let place = self.place_four(Lanes(each(|lane| asked[lane].s)));
         let cables = self.cables_at(asked, place.s);
         let (z, strain, beta_slope) = in_lanes(asked);
@@ -125,14 +125,14 @@ impl Equations {
         let contact = in_directors([cos, sin], &z);
         let (volume, stiffness) = (self.volume, &place.stiffness);
         let solved = solve_section(volume, stiffness, cables.as_slice(), contact, strain, beta_slope, ROUGH_STEP);
-        let swelling = &solved.balance.swelling;
-        solved.size.all_below(ROUGH_STEP).then(|| (swelling.beta + swelling.slope * solved.change[0]).0)
+        let section_stretch = &solved.balance.section_stretch;
+        solved.size.all_below(ROUGH_STEP).then(|| (section_stretch.beta + section_stretch.slope * solved.change[0]).0)
     }
 
     /// The cables that pull at one of four places.
     #[inline(always)]
-    fn cables_at(&self, asked: &[Asked; LANES], s: Lanes) -> Few<Lanes> {
-        let mut cables = Few::new();
+    fn cables_at(&self, asked: &[SectionQuery; LANES], s: Lanes) -> CableList<Lanes> {
+        let mut cables = CableList::new();
         for c in 0..self.tensions.len() {
             let mut cable = blank_cable();
             for (lane, asked) in asked.iter().enumerate().filter(|(_, asked)| self.acts_at(c, asked)) {
@@ -146,17 +146,17 @@ impl Equations {
     }
 
     /// Cable `c` at a place up to its end.
-    fn cable_at(&self, c: usize, asked: &Asked) -> CableAt<f64> {
+    fn cable_at(&self, c: usize, asked: &SectionQuery) -> CableAt<f64> {
         CableAt { offset: self.offset(c, asked.s), tension: self.tension_at(c, asked) }
     }
 
     /// The tension of cable `c` at a place up to its end.
-    fn tension_at(&self, c: usize, asked: &Asked) -> f64 {
+    fn tension_at(&self, c: usize, asked: &SectionQuery) -> f64 {
         self.tension(c) * self.pull_share(c, asked.s, asked.from_left)
     }
 
     /// Whether cable `c` pulls at a place.
-    fn acts_at(&self, c: usize, asked: &Asked) -> bool {
+    fn acts_at(&self, c: usize, asked: &SectionQuery) -> bool {
         let runs = if asked.from_left { asked.s <= self.ends[c] + 1e-12 } else { asked.s < self.ends[c] - 1e-12 };
         runs && self.tension(c) != 0.0
     }
@@ -171,18 +171,18 @@ impl Equations {
         z: [R; N],
         strain: [R; 3],
         beta_slope: R,
-    ) -> (AtPlace<R>, bool) {
+    ) -> (SectionState<R>, bool) {
         let contact = in_directors([cos, sin], &z);
         let solved = solve_section(self.volume, &place.stiffness, cables, contact, strain, beta_slope, SHARP_STEP);
         let fine = solved.size.all_below(1e-9)
             && (-solved.regularity).all_below(0.0)
             && (-solved.balance.openness).all_below(-FOLDED);
-        let load = self.load(place, [cos, sin], solved.strain, &solved.balance.swelling, beta_slope);
+        let load = self.load(place, [cos, sin], solved.strain, &solved.balance.section_stretch, beta_slope);
         let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
         let [nu, eta, mu] = solved.strain;
-        let at = AtPlace {
+        let at = SectionState {
             strain: each(|k| solved.strain[k] + solved.change[k]),
-            beta: solved.balance.swelling.beta + solved.balance.swelling.slope * solved.change[0],
+            beta: solved.balance.section_stretch.beta + solved.balance.section_stretch.slope * solved.change[0],
             beta_slope,
             contact: each(|k| contact[k] - solved.balance.cables[k]),
             openness: solved.balance.openness,

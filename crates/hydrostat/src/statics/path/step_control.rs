@@ -31,7 +31,7 @@ pub(super) const CORNER: f64 = 1e-5;
 
 /// How finely a path is followed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Pace {
+pub(crate) struct StepControl {
     /// Longest step of arclength (root mean square of the change of theta, with the fraction).
     pub(crate) longest: f64,
     /// Smallest cosine between the tangents at both ends of a step.
@@ -42,16 +42,16 @@ pub(crate) struct Pace {
     pub(crate) accuracy: f64,
 }
 
-impl Pace {
+impl StepControl {
     pub(crate) const BRISK: Self = Self { longest: 0.4, straightness: 0.94, most: 300, accuracy: LOOSE };
 }
 
 /// What a path met.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Travelled {
+pub(crate) struct PathSummary {
     pub(crate) steps: usize,
     /// Times the determinant changed sign while the load went on rising: bifurcations passed since the last snap.
-    pub(crate) crossings: usize,
+    pub(crate) bifurcations: usize,
     /// The snaps that the arm makes on its way.
     pub(crate) snaps: Vec<Snap>,
     /// Whether it ended on a branch that nothing but the load moves along.
