@@ -242,8 +242,8 @@ fn ident(tokens: &[TokenTree], at: usize) -> Option<String> {
     }
 }
 
-/// The place after the item that starts at a place: after its `;`, or after its braces. Inside items, what is marked may also be a field, which
-/// ends at a comma.
+/// The place after the item that starts at a place: after its `;`, or after its braces. Inside items, what is marked
+/// may also be a field, which ends at a comma.
 fn past_item(tokens: &[TokenTree], mut at: usize, items: bool) -> usize {
     while at < tokens.len() {
         let end = match &tokens[at] {

@@ -1,17 +1,18 @@
 //! The boundary of what the tip can reach with bounded tensions.
 //!
-//! The tip's place is a map of the box of tensions. Its image ends where the box does, and where the map folds: with J_f, J_g the
-//! tip's derivatives by two tensions that are between their bounds,
+//! The tip's place is a map of the box of tensions. Its image ends where the box does, and where the map folds: with
+//! J_f, J_g the tip's derivatives by two tensions that are between their bounds,
 //!
 //! ```text
 //! edges of the box                     one tension between its bounds
 //! det(J_f, J_g) = 0                    two of them
 //! ```
 //!
-//! Edges are followed by their tension, folds by arclength in the plane of the two: a step along the level line, back to
-//! it along the gradient. Seeds of folds are changes of sign between the nodes of a lattice. A point with further cables at a bound is inside where
-//! these push to both sides of the line, and left out. Tensions without an equilibrium end the image, too: where all others are slack their border
-//! is followed ray by ray, since solves raise all tensions in proportion.
+//! Edges are followed by their tension, folds by arclength in the plane of the two: a step along the level line, back
+//! to it along the gradient. Seeds of folds are changes of sign between the nodes of a lattice. A point with further
+//! cables at a bound is inside where these push to both sides of the line, and left out. Tensions without an
+//! equilibrium end the image, too: where all others are slack their border is followed ray by ray, since solves raise
+//! all tensions in proportion.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -38,7 +39,8 @@ pub(super) const LEAST: f64 = 1e-5;
 /// How a boundary is traced.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundaryOptions {
-    /// The largest tension of every cable, N; of this and the cable's own `max_tension` the smaller counts. Every cable needs one.
+    /// The largest tension of every cable, N; of this and the cable's own `max_tension` the smaller counts. Every cable
+    /// needs one.
     pub max_tension: Option<f64>,
     /// Distance of points over L, in [1e-3, 0.1].
     pub spacing: f64,
@@ -100,7 +102,8 @@ pub struct Boundary {
 }
 
 impl Arm {
-    /// The boundary of the places that the tip reaches with tensions from 0 to their largest, at the shapes that solves give.
+    /// The boundary of the places that the tip reaches with tensions from 0 to their largest, at the shapes that solves
+    /// give.
     ///
     /// Folds narrower than a lattice of 12 (with more than three cables, 5) intervals a tension can be missed.
     ///
@@ -122,7 +125,8 @@ impl Arm {
         self.reachable_while(options, |_| true)
     }
 
-    /// [`Arm::reachable`] while `go_on`, which is asked before every shape, from several threads, says so; then with what was found until then.
+    /// [`Arm::reachable`] while `go_on`, which is asked before every shape, from several threads, says so; then with
+    /// what was found until then.
     ///
     /// # Errors
     /// [`ReachError`].
@@ -273,7 +277,8 @@ impl Tracer<'_> {
         (a.tip.x - b.tip.x).hypot(a.tip.y - b.tip.y) / self.search.arm.length
     }
 
-    /// The lines on which tension `f` goes from 0 to its largest: more than one where shapes are missing, or leap, between.
+    /// The lines on which tension `f` goes from 0 to its largest: more than one where shapes are missing, or leap,
+    /// between.
     fn edge(&self, f: usize, corner: &[f64]) -> Vec<Vec<Here>> {
         let most = self.search.most[f];
         let mut out = Vec::new();

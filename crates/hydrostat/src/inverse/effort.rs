@@ -1,16 +1,17 @@
 //! Linear conditions within bounds: met with the least effort, or as nearly as a damped step may.
 //!
-//! For the least effort, a least-squares problem with a little weight on the tensions themselves has one answer within the bounds, which a
-//! finite number of changes of the set of free cables finds. What it leaves of the conditions is added to what is asked for, and again,
-//! until nothing is left: the method of multipliers, whose limit is the least effort. It needs no
-//! start within the bounds, and none where the conditions leave a single point of them.
+//! For the least effort, a least-squares problem with a little weight on the tensions themselves has one answer within
+//! the bounds, which a finite number of changes of the set of free cables finds. What it leaves of the conditions is
+//! added to what is asked for, and again, until nothing is left: the method of multipliers, whose limit is the least
+//! effort. It needs no start within the bounds, and none where the conditions leave a single point of them.
 
 use crate::numerics::elimination::solved;
 
 /// Weight of the effort, over the largest square of a column.
 const WEIGHT: f64 = 1e-9;
 
-/// Most rounds on what is left: each divides it by one and the square of a singular value (over the largest) over the weight.
+/// Most rounds on what is left: each divides it by one and the square of a singular value (over the largest) over the
+/// weight.
 const ROUNDS: usize = 80;
 
 /// What is left (over the size of the conditions) when all is met, and what is still good enough.
@@ -27,8 +28,8 @@ enum Place {
     Most,
 }
 
-/// The t with J t = c and 0 <= t <= most, J given by its columns, for which the sum of squares of the first `cables` is least: what comes
-/// after these takes no effort. `None` where no t does.
+/// The t with J t = c and 0 <= t <= most, J given by its columns, for which the sum of squares of the first `cables` is
+/// least: what comes after these takes no effort. `None` where no t does.
 pub(super) fn least_effort(columns: &[Vec<f64>], wanted: &[f64], most: &[f64], cables: usize) -> Option<Vec<f64>> {
     let size = dot(wanted, wanted).sqrt().max(f64::MIN_POSITIVE);
     let weight = WEIGHT * columns.iter().map(|column| dot(column, column)).fold(f64::MIN_POSITIVE, f64::max);
@@ -63,8 +64,8 @@ pub(super) fn least_effort(columns: &[Vec<f64>], wanted: &[f64], most: &[f64], c
     (dot(&left, &left).sqrt() <= MET[1] * size).then_some(problem.t)
 }
 
-/// The t of the least |J t - c|^2 + sum of weights (t - centre)^2 with 0 <= t <= most, from the centre, which is within. `None` where
-/// it is not determined.
+/// The t of the least |J t - c|^2 + sum of weights (t - centre)^2 with 0 <= t <= most, from the centre, which is
+/// within. `None` where it is not determined.
 pub(super) fn nearest(
     columns: &[Vec<f64>],
     wanted: &[f64],
@@ -105,8 +106,9 @@ impl Bounded<'_> {
         dot(&self.columns[c], left) - self.weights[c] * (self.t[c] - self.centre[c])
     }
 
-    /// From the tensions before: free cables go to the least of the sum until one meets a bound, and what would leave its bound downhill
-    /// is let go, one at a time. The sum falls with every change, so that no set of free cables comes twice.
+    /// From the tensions before: free cables go to the least of the sum until one meets a bound, and what would leave
+    /// its bound downhill is let go, one at a time. The sum falls with every change, so that no set of free cables
+    /// comes twice.
     fn solve(&mut self, asked: &[f64]) -> Option<()> {
         let largest = self.columns.iter().map(|column| dot(column, column)).fold(0.0, f64::max).sqrt();
         let still = 1e-14 * largest * dot(asked, asked).sqrt();
@@ -198,7 +200,8 @@ mod tests {
         }
     }
 
-    /// Conditions that tensions within their bounds meet, some of them on their bounds: all are met, by none of more effort than those.
+    /// Conditions that tensions within their bounds meet, some of them on their bounds: all are met, by none of more
+    /// effort than those.
     #[test]
     fn what_can_be_met_is_met_with_no_more_effort() {
         let mut state = 1_u64;

@@ -141,7 +141,8 @@ impl Tracer<'_> {
         (out, false)
     }
 
-    /// Derivatives of the determinant by the tensions over their largest, by differences towards the middle of the face.
+    /// Derivatives of the determinant by the tensions over their largest, by differences towards the middle of the
+    /// face.
     fn fold_gradient(&self, here: &Here, pair: [usize; 2]) -> Option<[f64; 2]> {
         let at = self.share(here, pair);
         let value = self.fold_of(here, pair);

@@ -15,15 +15,15 @@ const ROUNDS: usize = 12;
 /// The share of a distance that a round may leave before the jacobian is taken anew.
 const SLOW: f64 = 0.1;
 
-/// How far (tensions over their scale) more cables than conditions go towards their least effort a target, beyond what the target takes: in
-/// its first round, whose error the others mend.
+/// How far (tensions over their scale) more cables than conditions go towards their least effort a target, beyond what
+/// the target takes: in its first round, whose error the others mend.
 const SLIDE: f64 = 0.02;
 
 /// How far (over L) the arm may end from where its derivatives lead before it has jumped to another branch.
 const JUMP: f64 = 0.1;
 
-/// Damping of a step, over the largest square of a column of the jacobian: where nothing speaks against it. A step that leads no nearer takes more, one
-/// that does takes less again.
+/// Damping of a step, over the largest square of a column of the jacobian: where nothing speaks against it. A step that
+/// leads no nearer takes more, one that does takes less again.
 const DAMPING: f64 = 1e-9;
 
 /// The least part of a change of the tensions that is tried on its own.
@@ -31,8 +31,8 @@ const LEAST: f64 = 1e-2;
 
 /// Follows a path of targets.
 ///
-/// With more cables than conditions tensions are those of least effort, or on their way there: from others they go a little with every
-/// target, since shapes on the way have to stay at the targets.
+/// With more cables than conditions tensions are those of least effort, or on their way there: from others they go a
+/// little with every target, since shapes on the way have to stay at the targets.
 ///
 /// ```
 /// use hydrostat::{Arm, Cable, Follower, Profile, ReachOptions, Target};
@@ -67,8 +67,8 @@ pub struct Followed {
     pub distance: f64,
     /// Whether that is within the tolerance.
     pub reached: bool,
-    /// Whether the arm went to another branch of its equilibria on the way: small changes of the tensions lead neither there nor back, or the
-    /// arm ended elsewhere than its derivatives lead.
+    /// Whether the arm went to another branch of its equilibria on the way: small changes of the tensions lead neither
+    /// there nor back, or the arm ended elsewhere than its derivatives lead.
     pub jumped: bool,
     /// Solves that it took.
     pub solves: usize,
@@ -95,8 +95,8 @@ impl Follower {
 
     /// Goes to the next targets, which have to be for the same places as the first.
     ///
-    /// Where they cannot be reached, or derivatives end (at a limit point), the arm stays as near as it came, and the next targets are followed
-    /// from there.
+    /// Where they cannot be reached, or derivatives end (at a limit point), the arm stays as near as it came, and the
+    /// next targets are followed from there.
     ///
     /// # Errors
     /// [`ReachError::Target`] for other places, and for targets that are none.
@@ -177,8 +177,8 @@ impl Follower {
         Some((self.search.state(solver, tensions), another_branch))
     }
 
-    /// Tensions that meet the targets to first order: those of least effort, or, where these are far, the nearest, in the `first` round a little
-    /// on the way there.
+    /// Tensions that meet the targets to first order: those of least effort, or, where these are far, the nearest, in
+    /// the `first` round a little on the way there.
     fn next(&self, damping: f64, careful: bool, first: bool) -> Vec<f64> {
         let (search, state) = (&self.search, &self.state);
         let nearest = || search.damped(&self.slopes, state, damping);
@@ -214,8 +214,8 @@ fn led_astray(columns: &[Vec<f64>], change: &[f64], before: &[f64], after: &[f64
     (0..after.len()).map(|r| after[r] - before[r] - led(r)).collect()
 }
 
-/// Solves at other tensions, from `kept`: in parts where one is too far, and where none lead there, as if nothing had been solved before. Whether that
-/// is another branch, which does not lead back. `None` where there is no equilibrium.
+/// Solves at other tensions, from `kept`: in parts where one is too far, and where none lead there, as if nothing had
+/// been solved before. Whether that is another branch, which does not lead back. `None` where there is no equilibrium.
 fn go(solver: &mut Solver, tensions: &[f64], kept: &Solver) -> Option<bool> {
     solver.set_tensions(tensions).ok()?;
     if solver.update_warm().is_some() {

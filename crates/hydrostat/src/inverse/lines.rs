@@ -1,15 +1,16 @@
 //! Further tensions, along lines through the target.
 //!
-//! Newton's method ends at a fold of the map from tensions to places, where two of its branches meet, and finds one of several
-//! solutions on the side that it comes from. The tensions that keep the places on a straight line through their targets form curves,
+//! Newton's method ends at a fold of the map from tensions to places, where two of its branches meet, and finds one of
+//! several solutions on the side that it comes from. The tensions that keep the places on a straight line through their
+//! targets form curves,
 //!
 //! ```text
 //! rest(T) . a = 0        for all a across the line
 //! rest(T) . d            is 0 at a solution, d along the line
 //! ```
 //!
-//! which pass folds without noticing: only there do the places turn back on their line. Each is followed by arclength from what Newton's
-//! method found to where a tension meets its bound. For as many cables as conditions.
+//! which pass folds without noticing: only there do the places turn back on their line. Each is followed by arclength
+//! from what Newton's method found to where a tension meets its bound. For as many cables as conditions.
 
 use nalgebra::DMatrix;
 
@@ -67,8 +68,8 @@ impl Search {
         Some(svd.u?.column(least).iter().copied().collect())
     }
 
-    /// Tensions near solutions on the line through the targets along `direction`, which the places of `from` are on: both ways from there.
-    /// `go_on` is asked before every step.
+    /// Tensions near solutions on the line through the targets along `direction`, which the places of `from` are on:
+    /// both ways from there. `go_on` is asked before every step.
     pub(super) fn along(&self, from: &State, direction: &[f64], go_on: &mut dyn FnMut() -> bool) -> Vec<Vec<f64>> {
         let size = dot(direction, direction).sqrt();
         if !(size > 0.0 && size.is_finite()) {
@@ -251,7 +252,8 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |m: f64, (a, b)| m.hypot(a - b))
 }
 
-/// Unit vectors normal to a unit vector and to each other: the rows but the first of the reflection that takes it to an axis.
+/// Unit vectors normal to a unit vector and to each other: the rows but the first of the reflection that takes it to an
+/// axis.
 fn across(along: &[f64]) -> Vec<Vec<f64>> {
     let mut v = along.to_vec();
     v[0] += 1.0_f64.copysign(v[0]);

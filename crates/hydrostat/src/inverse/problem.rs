@@ -45,7 +45,8 @@ pub struct ReachOptions {
     pub max_stroke: Option<f64>,
     /// Distance over L at which a target is reached, in [1e-10, 1e-2].
     pub tol: f64,
-    /// Whether to look from all starts, and along lines from what they find; else the first that reaches the target ends the search.
+    /// Whether to look from all starts, and along lines from what they find; else the first that reaches the target
+    /// ends the search.
     pub all: bool,
 }
 
@@ -77,7 +78,8 @@ pub struct Reached {
     pub distance: f64,
     /// The bounds that its tensions lie on.
     pub bounds: Vec<Bound>,
-    /// Whether a solve at these tensions (or at the strokes that they make), along the path of `docs/model.md`, leads to this shape.
+    /// Whether a solve at these tensions (or at the strokes that they make), along the path of `docs/model.md`, leads
+    /// to this shape.
     pub on_the_path: bool,
     /// `None` where it is not established.
     pub stability: Option<Stability>,

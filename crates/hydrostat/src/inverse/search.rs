@@ -142,8 +142,8 @@ impl Search {
         }
     }
 
-    /// Tensions to start from: every cable alone, and in pairs, gently and less so. Where strokes have a bound every cable also with all
-    /// others slack, since these can then be beyond it.
+    /// Tensions to start from: every cable alone, and in pairs, gently and less so. Where strokes have a bound every
+    /// cable also with all others slack, since these can then be beyond it.
     pub(super) fn starts(&self) -> Vec<Vec<f64>> {
         let n = self.scale.len();
         let at = |shares: &dyn Fn(usize) -> f64| {
@@ -181,8 +181,8 @@ impl Search {
         out
     }
 
-    /// Whether two solutions are near each other and what is between them is one, too: at the edge of what is reached, the tensions that bring
-    /// the arm to within the tolerance of a target are as many as its root allows.
+    /// Whether two solutions are near each other and what is between them is one, too: at the edge of what is reached,
+    /// the tensions that bring the arm to within the tolerance of a target are as many as its root allows.
     pub(super) fn joined(&self, a: &State, b: &State) -> bool {
         if self.change(&a.tensions, &b.tensions) >= NEIGHBOURS {
             return false;
@@ -402,7 +402,8 @@ impl Search {
         next
     }
 
-    /// The arm at other tensions, changed by what strokes are too long there, if that is nearer; near enough where a distance is `allowed`.
+    /// The arm at other tensions, changed by what strokes are too long there, if that is nearer; near enough where a
+    /// distance is `allowed`.
     pub(super) fn step(&self, state: &State, slopes: &ByTensions, next: &[f64], allowed: Option<f64>) -> Option<State> {
         let mut solver = state.solver.clone();
         let mut tensions = next.to_vec();
@@ -445,8 +446,9 @@ impl Search {
 }
 
 impl Search {
-    /// The arm with its cables at the lengths that they have; of an elastic one what its tension stretches is reeled in, too. One that
-    /// hangs slack is paid out a little beyond that: any longer one has the same shape, and one just taut is not to pull on the way there.
+    /// The arm with its cables at the lengths that they have; of an elastic one what its tension stretches is reeled
+    /// in, too. One that hangs slack is paid out a little beyond that: any longer one has the same shape, and one just
+    /// taut is not to pull on the way there.
     fn commanded(&self, configuration: &Configuration) -> Arm {
         let mut arm = configuration.arm.clone();
         for (c, (cable, state)) in arm.cables.iter_mut().zip(&configuration.cables).enumerate() {

@@ -14,7 +14,8 @@ const MISSED: usize = 3;
 const SAME: f64 = 1e-5;
 
 impl Arm {
-    /// Tensions, from 0 to their largest, that bring the arm to `targets`; the tensions and strokes of the arm itself do not count.
+    /// Tensions, from 0 to their largest, that bring the arm to `targets`; the tensions and strokes of the arm itself
+    /// do not count.
     ///
     /// # Errors
     /// [`ReachError`].
@@ -55,8 +56,8 @@ impl Arm {
         Search::new(self, Goal::Places(targets.to_vec()), options)?.run(options, &go_on)
     }
 
-    /// [`Arm::reach`] by the lengths of the cables: of what is found the strokes are commanded that its tensions make. It is
-    /// solved again with these, and its stability is that with lengths held.
+    /// [`Arm::reach`] by the lengths of the cables: of what is found the strokes are commanded that its tensions make.
+    /// It is solved again with these, and its stability is that with lengths held.
     ///
     /// # Errors
     /// [`ReachError`].
@@ -77,7 +78,8 @@ impl Arm {
         self.reach_by_strokes_while(targets, options, || true)
     }
 
-    /// [`Arm::reach_by_strokes`] while `go_on`, which is asked every round, says so; then with what was found until then.
+    /// [`Arm::reach_by_strokes`] while `go_on`, which is asked every round, says so; then with what was found until
+    /// then.
     ///
     /// # Errors
     /// [`ReachError`].
@@ -92,8 +94,8 @@ impl Arm {
         search.run(options, &go_on)
     }
 
-    /// Tensions of one cable, all others slack, that turn the tip section to the angle `alpha` (rad) against the centreline; distances
-    /// are then angles, in rad.
+    /// Tensions of one cable, all others slack, that turn the tip section to the angle `alpha` (rad) against the
+    /// centreline; distances are then angles, in rad.
     ///
     /// # Errors
     /// [`ReachError`].

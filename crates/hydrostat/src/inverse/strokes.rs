@@ -6,10 +6,10 @@
 //! T = 0   or   z(T) <= longest        for every cable
 //! ```
 //!
-//! since one that hangs slack takes no stroke. Steps keep to this with strokes to first order, each as a condition with one more unknown,
-//! the room that is left. What curvature makes too long, the least change of the tensions takes away, so that every shape that a
-//! search goes through is within the bounds. A slack cable that is past the
-//! bound stays slack, and so does one that can be taut nowhere near within it.
+//! since one that hangs slack takes no stroke. Steps keep to this with strokes to first order, each as a condition with
+//! one more unknown, the room that is left. What curvature makes too long, the least change of the tensions takes away,
+//! so that every shape that a search goes through is within the bounds. A slack cable that is past the bound stays
+//! slack, and so does one that can be taut nowhere near within it.
 
 use super::conditions::{ByTensions, Conditions, Pulled};
 use super::effort::{dot, nearest};
@@ -22,7 +22,8 @@ const CHANGES: usize = 6;
 /// Tensions over their scale that count as none.
 const NONE: f64 = 1e-9;
 
-/// Strokes over L past their bound, to first order, where the cable is not held to it, over the tolerance; and where it is.
+/// Strokes over L past their bound, to first order, where the cable is not held to it, over the tolerance; and where it
+/// is.
 const PAST: f64 = 0.1;
 const HELD: f64 = 1e-6;
 
@@ -49,7 +50,8 @@ impl Search {
         past.map(|(c, z)| (c, z - longest)).max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, past)| *past > 0.0)
     }
 
-    /// What `solve` finds when it holds so many cables to their strokes, with these largest tensions, that to first order none is wound in too far.
+    /// What `solve` finds when it holds so many cables to their strokes, with these largest tensions, that to first
+    /// order none is wound in too far.
     pub(super) fn within_strokes(
         &self,
         from: Pulled<'_>,
@@ -92,7 +94,8 @@ impl Search {
         }
     }
 
-    /// Conditions on the tensions, given by their columns, with those of the strokes of `held` cables below, so many times as heavy.
+    /// Conditions on the tensions, given by their columns, with those of the strokes of `held` cables below, so many
+    /// times as heavy.
     pub(super) fn conditions(
         &self,
         (columns, wanted): (Vec<Vec<f64>>, Vec<f64>),
@@ -124,7 +127,8 @@ impl Search {
         out
     }
 
-    /// Solves at `tensions` by `solve`, and changes them as little as brings all strokes within their bounds. `None` where that is not found.
+    /// Solves at `tensions` by `solve`, and changes them as little as brings all strokes within their bounds. `None`
+    /// where that is not found.
     pub(super) fn pull(
         &self,
         solver: &mut Solver,

@@ -2,7 +2,8 @@
 
 use hydrostat_bvp::Determinant;
 
-/// Solves `matrix x = right` into `right`, of sizes that are known beforehand; false where a pivot is no larger than `smallest`.
+/// Solves `matrix x = right` into `right`, of sizes that are known beforehand; false where a pivot is no larger than
+/// `smallest`.
 #[inline(always)]
 pub(crate) fn solve_in_place<const S: usize, const C: usize>(
     matrix: &mut [[f64; S]; S],

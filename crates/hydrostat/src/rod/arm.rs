@@ -235,7 +235,8 @@ impl Arm {
         Ok(())
     }
 
-    /// Whether bodies, cables and readings of both arms are laid out alike, whatever they are made of and whatever loads them.
+    /// Whether bodies, cables and readings of both arms are laid out alike, whatever they are made of and whatever
+    /// loads them.
     pub(crate) fn has_geometry_of(&self, other: &Self) -> bool {
         self.length == other.length
             && self.radius == other.radius
@@ -265,7 +266,8 @@ impl Arm {
         out
     }
 
-    /// The arm with nothing that loads it: slack cables ([`Arm::slackened`]), still water, no weight, no load on the tip or along the arm.
+    /// The arm with nothing that loads it: slack cables ([`Arm::slackened`]), still water, no weight, no load on the
+    /// tip or along the arm.
     ///
     /// ```
     /// use hydrostat::{Arm, Cable};

@@ -36,9 +36,9 @@ impl Law {
         }
     }
 
-    /// The largest load over S U^2, along or across the surface, or one if that is less. The momentum laws exceed one at an angle to the
-    /// stream: with V_t = c U_t, (8) has c^2/2 + sqrt(c^4/4 + c^2) along the surface with V_in = V_tin, 1.05 at most, and 1 + c^2, 1.54
-    /// at most, with the resultant. That is left to those who compare with it.
+    /// The largest load over S U^2, along or across the surface, or one if that is less. The momentum laws exceed one
+    /// at an angle to the stream: with V_t = c U_t, (8) has c^2/2 + sqrt(c^4/4 + c^2) along the surface with V_in =
+    /// V_tin, 1.05 at most, and 1 + c^2, 1.54 at most, with the resultant. That is left to those who compare with it.
     pub(crate) fn largest(self) -> f64 {
         match self {
             Self::MomentumTangential { .. } | Self::MomentumResultant { .. } => 1.0,

@@ -84,7 +84,8 @@ impl<R: Real> Direction<R> {
     }
 }
 
-/// The surface of the left side (`sigma` 1) or the right (-1): x_sigma' = (nu - sigma beta R mu) a + (eta + sigma (beta R)') b.
+/// The surface of the left side (`sigma` 1) or the right (-1): x_sigma' = (nu - sigma beta R mu) a + (eta + sigma (beta
+/// R)') b.
 #[inline(always)]
 fn lateral<R: Real>(
     sigma: f64,
@@ -109,8 +110,9 @@ fn dot<R: Real>(a: [R; 2], b: [R; 2]) -> R {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// The stream's tangential part U.u_t (m/s) along the surface that `surface` means, where theta, alpha, the strains, and beta with its
-/// slope are these; at the tie of both lateral sides, where it is the same on both, along the left one. `radius` is R (m) with its slope.
+/// The stream's tangential part U.u_t (m/s) along the surface that `surface` means, where theta, alpha, the strains,
+/// and beta with its slope are these; at the tie of both lateral sides, where it is the same on both, along the left
+/// one. `radius` is R (m) with its slope.
 pub(crate) fn stream_along(
     stream: [f64; 2],
     surface: FlowSurface,
@@ -233,8 +235,8 @@ fn lateral_load<R: Real>(
     out.switches[2] = (hit_left - hit_right) * speed;
 }
 
-/// Adds weight less buoyancy, the hydrostatic part of (9) and (10). `surfaces` are the one or two whose normals direct it
-/// where only its normal part acts, with their shares.
+/// Adds weight less buoyancy, the hydrostatic part of (9) and (10). `surfaces` are the one or two whose normals direct
+/// it where only its normal part acts, with their shares.
 #[inline(always)]
 fn add_hydrostatics<R: Real>(
     water: &Water,

@@ -237,7 +237,8 @@ impl Parameter {
         self.place(&mut arm).map(|value| *value)
     }
 
-    /// Sets its value in `arm`; gravity that was left out points down, a cable is given by its tension or by its stroke.
+    /// Sets its value in `arm`; gravity that was left out points down, a cable is given by its tension or by its
+    /// stroke.
     ///
     /// # Errors
     /// [`Unfit`] when the arm has no such quantity.

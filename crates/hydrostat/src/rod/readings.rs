@@ -155,8 +155,8 @@ pub enum Hydrostatics {
     /// The whole of it.
     #[default]
     Archimedes,
-    /// Its part along the normal of the [`FlowSurface`], as (9) and (10) act along u_n only: that of the centreline, or of the
-    /// windward lateral surface. Where both sides tie, as they do without a stream, the mean of both.
+    /// Its part along the normal of the [`FlowSurface`], as (9) and (10) act along u_n only: that of the centreline, or
+    /// of the windward lateral surface. Where both sides tie, as they do without a stream, the mean of both.
     NormalOnly,
 }
 

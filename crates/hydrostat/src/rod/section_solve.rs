@@ -38,14 +38,16 @@ impl Solved<Lanes> {
     }
 }
 
-/// Openness at which a cable has folded its side shut: below, steps are small because the law is steep, not because it is met.
+/// Openness at which a cable has folded its side shut: below, steps are small because the law is steep, not because it
+/// is met.
 pub(crate) const FOLDED: f64 = 1e-8;
 
-/// Determinant of the section law over that of the slack one, up to which the law counts as singular: `circular` never ends, but
-/// stretches by 3e4 there, at 0.99997 of what it can carry.
+/// Determinant of the section law over that of the slack one, up to which the law counts as singular: `circular` never
+/// ends, but stretches by 3e4 there, at 0.99997 of what it can carry.
 pub(crate) const SINGULAR: f64 = 3e-5;
 
-/// Newton on the section law from `strain` until the step is below `tolerance` in every lane; that last step is not taken.
+/// Newton on the section law from `strain` until the step is below `tolerance` in every lane; that last step is not
+/// taken.
 #[inline(always)]
 pub(crate) fn solve_section<R: Real>(
     volume: Volume,

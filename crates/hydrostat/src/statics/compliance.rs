@@ -44,8 +44,8 @@ pub(crate) struct Compliance {
 }
 
 impl Compliance {
-    /// With `functions` polynomials a field, about the last linearisation of `system` on `mesh`; `strokes` gives what a change of the
-    /// solution reels in of each cable asked for.
+    /// With `functions` polynomials a field, about the last linearisation of `system` on `mesh`; `strokes` gives what a
+    /// change of the solution reels in of each cable asked for.
     pub(crate) fn new(
         system: &Collocation<N, M, Q, L>,
         mesh: &Mesh,
@@ -82,8 +82,8 @@ impl Compliance {
         out
     }
 
-    /// Holds the lengths of the cables asked for: `motions` are the projections of what unit tensions move, `strokes` what
-    /// they reel in of all of them. `None` where the cables have no tensions for their lengths.
+    /// Holds the lengths of the cables asked for: `motions` are the projections of what unit tensions move, `strokes`
+    /// what they reel in of all of them. `None` where the cables have no tensions for their lengths.
     pub(crate) fn hold(&mut self, motions: &[Vec<f64>], strokes: &[Vec<f64>]) -> Option<()> {
         let (count, columns) = (motions.len(), FIELDS * self.functions);
         self.held = true;
@@ -144,7 +144,8 @@ impl Basis {
     }
 }
 
-/// Projection of the motion in a response, as the rows of a compliance are; `change` is what it responds to, beside loads along the arm.
+/// Projection of the motion in a response, as the rows of a compliance are; `change` is what it responds to, beside
+/// loads along the arm.
 pub(crate) fn project(
     system: &Collocation<N, M, Q, L>,
     basis: &Basis,

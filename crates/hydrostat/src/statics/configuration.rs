@@ -29,8 +29,9 @@ pub struct Configuration {
     pub unmet: Option<Wrench>,
     /// Estimated error of the tip position, m.
     pub error_estimate: f64,
-    /// What the solve came to know on its way: `Some(false)` where the determinant says that an odd number of directions is unstable, or where
-    /// the path passed bifurcations and a count finds unstable directions, else `None`. [`Configuration::stability`] establishes it.
+    /// What the solve came to know on its way: `Some(false)` where the determinant says that an odd number of
+    /// directions is unstable, or where the path passed bifurcations and a count finds unstable directions, else
+    /// `None`. [`Configuration::stability`] establishes it.
     pub stable: Option<bool>,
     /// The snaps that the arm makes as its loads grow from nothing to these, in their order.
     pub snaps: Vec<Snap>,
@@ -141,8 +142,8 @@ impl Configuration {
     }
 
     /// Everything at `s` (m), to the accuracy of the nodes; `s` outside [0, L] is moved to the
-    /// nearer end. At the end of a cable, the values on the tip's side. Should the section law have no strains at a place between two
-    /// nodes that have some, the values of the nearest node.
+    /// nearer end. At the end of a cable, the values on the tip's side. Should the section law have no strains at a
+    /// place between two nodes that have some, the values of the nearest node.
     pub fn at(&self, s: f64) -> Station {
         let share = (s / self.arm.length).clamp(0.0, 1.0);
         let share = if share.is_nan() { 0.0 } else { share };
@@ -265,8 +266,8 @@ impl Configuration {
     }
 }
 
-/// The nodes as the elements with their ends: the left end (false), and the right end (true) of the last and of those at which
-/// a cable ends, where the two sides differ.
+/// The nodes as the elements with their ends: the left end (false), and the right end (true) of the last and of those
+/// at which a cable ends, where the two sides differ.
 fn sides_of_nodes(dense: &Dense) -> Vec<(usize, bool)> {
     let mesh = &dense.solution.mesh;
     let (n, cables) = (mesh.elements(), dense.equations.arm().cables.len());
@@ -299,8 +300,8 @@ fn cable_states(arm: &Arm, engine: &Engine) -> Vec<CableState> {
     arm.cables.iter().enumerate().map(state).collect()
 }
 
-/// The tangential coefficient that the momentum law corresponds to along the stream, the square of the layer's mean over its outer
-/// speed. `None` where that law does not act.
+/// The tangential coefficient that the momentum law corresponds to along the stream, the square of the layer's mean
+/// over its outer speed. `None` where that law does not act.
 fn momentum_ct(arm: &Arm) -> Option<f64> {
     let acts = arm.flow.law == FlowLaw::Momentum && arm.flow.speed > 0.0 && arm.flow.density > 0.0;
     acts.then(|| arm.readings.layer_mean.factor().powi(2))

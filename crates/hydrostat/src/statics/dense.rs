@@ -93,8 +93,8 @@ impl Dense {
         Ok([one(0)?, one(1)?, one(2)?, one(3)?])
     }
 
-    /// One Gauss step from the start of element `i` to `s`: the state and the place there, to the order of the nodes. `None` where its
-    /// equations are singular.
+    /// One Gauss step from the start of element `i` to `s`: the state and the place there, to the order of the nodes.
+    /// `None` where its equations are singular.
     fn step(&self, i: usize, s: f64) -> Result<Option<Reached>, SectionFailure> {
         let mesh = &self.solution.mesh;
         let (start, from) = (mesh.nodes()[i], self.solution.nodes[i]);

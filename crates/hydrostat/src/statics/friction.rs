@@ -14,7 +14,8 @@
 //! (section 2 of `docs/model.md`) with the local T(s). At no friction it is the law without.
 //!
 //! The tension at a place follows all turns before it, so that it is found in rounds: a shape for given turns,
-//! the turns of that shape, and so on, see `friction_iteration`. Where chi' changes its sign the tension has a kink, and the mesh a node.
+//! the turns of that shape, and so on, see `friction_iteration`. Where chi' changes its sign the tension has a kink,
+//! and the mesh a node.
 
 use std::sync::Arc;
 
@@ -69,7 +70,8 @@ pub(crate) fn exponents(arm: &Arm, of_friction: f64) -> Vec<f64> {
 }
 
 impl WrapAngles {
-    /// Of cables with these angles in space on the mesh of these nodes, given the nodes at which the data break, and those at which the angles step.
+    /// Of cables with these angles in space on the mesh of these nodes, given the nodes at which the data break, and
+    /// those at which the angles step.
     pub(crate) fn new(
         gauss: Gauss<M>,
         nodes: Vec<f64>,
@@ -91,11 +93,13 @@ impl WrapAngles {
         turn.before[i] + turn.within(&self.gauss, i, x)
     }
 
-    /// What kinks inside of elements cost at most (tip over L, to first order), for cables with these exponents by the turn.
+    /// What kinks inside of elements cost at most (tip over L, to first order), for cables with these exponents by the
+    /// turn.
     ///
-    /// Beside a kink chi' = c' x. A polynomial across it, at the distance d from the node, misses c' d^2 of the turn, which changes the tension by the
-    /// exponent times that, and the direction of the tip by what the cable turns times that. Beside a node on the kink d is the thickness of the layers
-    /// (see [`parts`]), and what is missed is of third order.
+    /// Beside a kink chi' = c' x. A polynomial across it, at the distance d from the node, misses c' d^2 of the turn,
+    /// which changes the tension by the exponent times that, and the direction of the tip by what the cable turns times
+    /// that. Beside a node on the kink d is the thickness of the layers (see [`parts`]), and what is missed is of third
+    /// order.
     pub(crate) fn off_nodes(&self, exponents: &[f64]) -> f64 {
         let of_cable = |(c, exponent): (usize, &f64)| {
             if *exponent == 0.0 {
@@ -120,15 +124,17 @@ impl WrapAngles {
     }
 }
 
-/// Kinks nearer to each other (over L) are one: no element is to be shorter than the layers beside kinks, where chi' is no polynomial.
-/// The turn in between is of third order in their distance, what a node beside a kink costs of second.
+/// Kinks nearer to each other (over L) are one: no element is to be shorter than the layers beside kinks, where chi' is
+/// no polynomial. The turn in between is of third order in their distance, what a node beside a kink costs of second.
 const APART: f64 = 5e-5;
 
-/// How far beyond a node the polynomial of the element beside counts, over the shorter of the two elements that meet there.
+/// How far beyond a node the polynomial of the element beside counts, over the shorter of the two elements that meet
+/// there.
 const BESIDE: f64 = 0.4;
 
 impl Turn {
-    /// Of a cable with these angles, on a mesh of which some nodes are breaks of the data, and some of these steps of chi.
+    /// Of a cable with these angles, on a mesh of which some nodes are breaks of the data, and some of these steps of
+    /// chi.
     fn new(gauss: &Gauss<M>, nodes: &[f64], angles: Vec<[f64; POINTS]>, breaks: &[bool], steps: &[bool]) -> Self {
         let kinks = kinks(gauss, nodes, &angles, breaks);
         let mut out = Self { before: Vec::new(), angles, parts: Vec::new(), kinks };
@@ -136,8 +142,8 @@ impl Turn {
         let mut passed = 0.0;
         for i in 0..nodes.len() - 1 {
             if i > 0 {
-                // Where another cable ends the angle steps; elsewhere a step is a layer thinner than any element, which turns as its
-                // surroundings do.
+                // Where another cable ends the angle steps; elsewhere a step is a layer thinner than any element, which
+                // turns as its surroundings do.
                 let step = out.angles[i][0] - out.angles[i - 1][POINTS - 1];
                 passed += if steps[i] { step.abs() } else { step * out.parts[i][0].1 };
             }
@@ -182,9 +188,10 @@ fn value(gauss: &Gauss<M>, angles: &[f64; POINTS], x: f64) -> f64 {
 /// chi' = c +- r c'     before and after the kink, r some micrometres and of either sign
 /// ```
 ///
-/// with c what chi' would be without. So the polynomial before a node on the kink has its extreme by r to one side of it, and the one behind by r
-/// to the other: both in their elements, or none. The kink is where c = 0, and c at a node is the mean of both sides. With the distance from the node the
-/// part of the other side's polynomial falls to nothing, so that what changes its sign is continuous and no change is lost or found twice.
+/// with c what chi' would be without. So the polynomial before a node on the kink has its extreme by r to one side of
+/// it, and the one behind by r to the other: both in their elements, or none. The kink is where c = 0, and c at a node
+/// is the mean of both sides. With the distance from the node the part of the other side's polynomial falls to nothing,
+/// so that what changes its sign is continuous and no change is lost or found twice.
 fn kinks(gauss: &Gauss<M>, nodes: &[f64], angles: &[[f64; POINTS]], breaks: &[bool]) -> Vec<f64> {
     const SAMPLES: u32 = 24;
     let count = angles.len();
@@ -241,8 +248,9 @@ pub(crate) fn merged(places: &[f64], counts: impl Fn(usize) -> bool) -> Vec<f64>
 
 /// The parts of an element in which chi turns one way: where each begins (in [0, 1]), and its sign.
 ///
-/// Beside a kink at a node chi' = c +- r c' (see [`kinks`]). For r > 0 this is the solution outside of layers of the thickness r on both sides,
-/// in which |chi'| = c' (|x| - r + r exp(-|x|/r)): these turn by c' r^2 more each, as the absolute value of the polynomials does.
+/// Beside a kink at a node chi' = c +- r c' (see [`kinks`]). For r > 0 this is the solution outside of layers of the
+/// thickness r on both sides, in which |chi'| = c' (|x| - r + r exp(-|x|/r)): these turn by c' r^2 more each, as the
+/// absolute value of the polynomials does.
 fn parts(gauss: &Gauss<M>, angles: &[f64; POINTS]) -> Vec<(f64, f64)> {
     const SAMPLES: u32 = 24;
     let mut begins = vec![0.0];
@@ -293,7 +301,8 @@ impl CapstanFactors {
         Self { of_friction, exponents, shapes }
     }
 
-    /// Where the tensions of these cables have kinks (over L), by the last of the shapes: in the end all of them have the same.
+    /// Where the tensions of these cables have kinks (over L), by the last of the shapes: in the end all of them have
+    /// the same.
     pub(crate) fn kinks<'a>(&'a self, cables: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
         let last = self.shapes.last();
         last.into_iter().flat_map(|(_, shape)| cables.iter().flat_map(|c| shape.cables[*c].kinks.iter().copied()))

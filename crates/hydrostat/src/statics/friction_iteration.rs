@@ -1,9 +1,9 @@
 //! Solves with friction of the cables: rounds of shape and turns, see [`crate::statics::friction`].
 //!
-//! A round multiplies what the turns are off by with about the friction times the turn, and by its negative while reeling in: less
-//! tension bends less. Above one that leads nowhere by itself, so that the turns for the next round are a mixture
-//! of those before and of those that they led to, in which what is off is least (Anderson 1965, "Iterative procedures for nonlinear integral
-//! equations").
+//! A round multiplies what the turns are off by with about the friction times the turn, and by its negative while
+//! reeling in: less tension bends less. Above one that leads nowhere by itself, so that the turns for the next round
+//! are a mixture of those before and of those that they led to, in which what is off is least (Anderson 1965,
+//! "Iterative procedures for nonlinear integral equations").
 
 use std::sync::Arc;
 
@@ -116,8 +116,8 @@ impl Solver {
         Ok(last)
     }
 
-    /// Why it does not go on from where the engine is. A limit of the sections is one that this shape is at: rounds that lead nowhere can pass
-    /// any.
+    /// Why it does not go on from where the engine is. A limit of the sections is one that this shape is at: rounds
+    /// that lead nowhere can pass any.
     fn limit(&mut self, phase: Phase, load_fraction: f64, trouble: &Trouble) -> Verdict {
         let (residual, spent) = (self.engine.last, self.engine.spent());
         let (mut kind, mut s) = (VerdictKind::NotFound, None);
@@ -131,8 +131,9 @@ impl Solver {
         Verdict { kind, phase, load_fraction, s, residual, spent }
     }
 
-    /// What the tip is off by (over L) beside the estimate of the shape with its turns given: the turns are those of a mesh, too. They are
-    /// found again on elements of half the length, until the tip moves by less than the tolerance; the shape on those stays.
+    /// What the tip is off by (over L) beside the estimate of the shape with its turns given: the turns are those of a
+    /// mesh, too. They are found again on elements of half the length, until the tip moves by less than the tolerance;
+    /// the shape on those stays.
     fn confirm(&mut self, estimate: f64) -> f64 {
         let (tol, mut estimate) = (self.options.tol, estimate);
         for _ in 0..CUTS {
@@ -204,7 +205,8 @@ impl Rounds {
         CapstanFactors::new(self.share, self.exponents.clone(), shapes)
     }
 
-    /// Takes the turns of the last round's shape, and chooses those for the next; the share of what is off that these make up for.
+    /// Takes the turns of the last round's shape, and chooses those for the next; the share of what is off that these
+    /// make up for.
     fn go_on(&mut self, turns: WrapAngles) -> f64 {
         self.shapes.push(Arc::new(turns));
         let count = self.shapes.len();
@@ -240,8 +242,8 @@ impl Rounds {
         out
     }
 
-    /// The share of what is off that a round is to make up for: where less tension bends clearly less, about as much as would be right
-    /// if all of the arm did the same.
+    /// The share of what is off that a round is to make up for: where less tension bends clearly less, about as much as
+    /// would be right if all of the arm did the same.
     fn ease(&self) -> f64 {
         let Some(shape) = self.shapes.last() else { return 1.0 };
         let steep = |(c, exponent): (usize, &f64)| -exponent * shape.at(c, 1.0, true);

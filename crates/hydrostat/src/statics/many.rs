@@ -1,8 +1,8 @@
 //! Many arms, each answered with a few numbers: tiles of rows, in parallel.
 //!
 //! A row starts from the one before where the two differ in tensions, stream, gravity or tip loads only, and solves by
-//! itself wherever that could end on another branch than its own ramp (`docs/model.md`, section 7). A tile starts anew, so
-//! that its rows do not depend on what else is solved, nor on how many threads do it.
+//! itself wherever that could end on another branch than its own ramp (`docs/model.md`, section 7). A tile starts anew,
+//! so that its rows do not depend on what else is solved, nor on how many threads do it.
 
 use rayon::prelude::*;
 
@@ -41,7 +41,8 @@ pub struct Wanted {
 pub struct ManyOptions {
     /// Error of the tip position over L that is asked for, in [1e-12, 1e-2].
     pub tol: f64,
-    /// Rows a tile, at least one: the first is solved from nothing, each other one from the row before where that is safe.
+    /// Rows a tile, at least one: the first is solved from nothing, each other one from the row before where that is
+    /// safe.
     pub tile: usize,
     /// How far an arm may snap on its way to its loads.
     pub snaps: SnapBounds,
@@ -248,8 +249,8 @@ fn loads(arm: &Arm) -> Vec<f64> {
     others.into_iter().chain(arm.cables.iter().map(|cable| cable.tension)).collect()
 }
 
-/// How far along the line from the loads `before` to those `here` further `loads` are, over that way; `None` where they are
-/// not on it or much further.
+/// How far along the line from the loads `before` to those `here` further `loads` are, over that way; `None` where they
+/// are not on it or much further.
 fn further(before: &[f64], here: &[f64], loads: &[f64]) -> Option<f64> {
     const LONGEST: f64 = 2.0;
     let step = |k: usize| here[k] - before[k];
@@ -273,7 +274,8 @@ fn differ_in_loads(a: &Arm, b: &Arm) -> bool {
         && b.cables.iter().all(|cable| cable.stroke.is_none())
 }
 
-/// Solves all `arms`, on the threads of rayon's current pool. The rows are the same to the last bit whatever their number.
+/// Solves all `arms`, on the threads of rayon's current pool. The rows are the same to the last bit whatever their
+/// number.
 ///
 /// ```
 /// use hydrostat::{Arm, Cable, ManyOptions, Profile, solve_many};

@@ -1,5 +1,5 @@
-//! Continuation: along the loads, over a parameter, round the angle of the base; followed by arclength so that no fold is stepped
-//! over unseen.
+//! Continuation: along the loads, over a parameter, round the angle of the base; followed by arclength so that no fold
+//! is stepped over unseen.
 
 mod circle;
 mod contact;

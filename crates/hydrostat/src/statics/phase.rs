@@ -11,7 +11,8 @@ pub enum Phase {
     /// Loads and given tensions are whole; cables with a commanded stroke are reeled from the strokes that they have
     /// when slack to those commanded, the load fraction being the share of that way.
     Stroke,
-    /// Loads, tensions and strokes are as without friction; the coefficients of friction are multiplied by the load fraction.
+    /// Loads, tensions and strokes are as without friction; the coefficients of friction are multiplied by the load
+    /// fraction.
     Friction,
 }
 

@@ -1,8 +1,8 @@
 //! How an equilibrium changes with what is given: exact derivatives of tip, strokes and stations.
 //!
 //! With F the converged equations and p a parameter, F_z dz/dp = -F_p (the implicit function theorem). F_z is the
-//! derivative of the discrete equations themselves, beta' and beta'' included (`sensitivity/quantities`), factorised once; the
-//! entries of F_z and F_p are exact, from the code of the slopes running on numbers that carry derivatives
+//! derivative of the discrete equations themselves, beta' and beta'' included (`sensitivity/quantities`), factorised
+//! once; the entries of F_z and F_p are exact, from the code of the slopes running on numbers that carry derivatives
 //! (`equations/change`). No solve is repeated and nothing is differenced.
 //!
 //! Forward, every parameter is one back-substitution, and every output a sum over it. Adjoint, every output is one
@@ -86,7 +86,8 @@ pub struct Ellipse {
 }
 
 impl Parameter {
-    /// All parameters that `arm` can be differentiated by: strokes of the cables that are commanded, tensions of the others.
+    /// All parameters that `arm` can be differentiated by: strokes of the cables that are commanded, tensions of the
+    /// others.
     ///
     /// ```
     /// use hydrostat::{Arm, Cable, Parameter};
@@ -121,8 +122,8 @@ impl Sensitivities {
         parameters.iter().filter_map(|p| self.index(*p)).map(|k| [self.tip[k].x, self.tip[k].y]).collect()
     }
 
-    /// Compliance of the tip: rows x (m), y (m), theta (rad); columns the dead forces along e1 and e2 (N) and the moment (N m).
-    /// `None` where one of these was not asked for.
+    /// Compliance of the tip: rows x (m), y (m), theta (rad); columns the dead forces along e1 and e2 (N) and the
+    /// moment (N m). `None` where one of these was not asked for.
     pub fn compliance(&self) -> Option<[[f64; 3]; 3]> {
         let loads = [Parameter::TipForce(0), Parameter::TipForce(1), Parameter::TipMoment];
         let mut out = [[0.0; 3]; 3];
@@ -135,8 +136,8 @@ impl Sensitivities {
         Some(out)
     }
 
-    /// The manipulability ellipse of the tip by the tensions (or strokes) of the cables that were asked for: where the tip goes when the
-    /// sum of their squares is one. `None` where none was.
+    /// The manipulability ellipse of the tip by the tensions (or strokes) of the cables that were asked for: where the
+    /// tip goes when the sum of their squares is one. `None` where none was.
     pub fn manipulability(&self) -> Option<Ellipse> {
         let is_cable = |p: &Parameter| matches!(p, Parameter::Tension(_) | Parameter::Stroke(_));
         let cables: Vec<Parameter> = self.parameters.iter().copied().filter(is_cable).collect();
@@ -169,12 +170,12 @@ impl Ellipse {
 }
 
 impl Solver {
-    /// Exact derivatives of the tip and of the strokes by `parameters`, about the equilibrium of the present loads, which is
-    /// solved for where it was not yet.
+    /// Exact derivatives of the tip and of the strokes by `parameters`, about the equilibrium of the present loads,
+    /// which is solved for where it was not yet.
     ///
-    /// They are those of the discrete solution: what they differ by from the true ones is of the size of the error of the
-    /// solution over that of its shape. At a kink of the load that lies on a station, at a limit point and where a cable just
-    /// goes slack there is no derivative.
+    /// They are those of the discrete solution: what they differ by from the true ones is of the size of the error of
+    /// the solution over that of its shape. At a kink of the load that lies on a station, at a limit point and where a
+    /// cable just goes slack there is no derivative.
     ///
     /// # Errors
     /// [`SensitivityError`].
@@ -249,11 +250,11 @@ impl Solver {
         })
     }
 
-    /// The gradient of one number that follows the shape, by `parameters`, whose unit it is a unit of: for optimisation with many
-    /// parameters. One adjoint solve, however many these and the places are.
+    /// The gradient of one number that follows the shape, by `parameters`, whose unit it is a unit of: for optimisation
+    /// with many parameters. One adjoint solve, however many these and the places are.
     ///
-    /// `weights` are the number's own derivatives by the poses of places along the arm (m; the tip is at its length), a metre or
-    /// a radian each.
+    /// `weights` are the number's own derivatives by the poses of places along the arm (m; the tip is at its length), a
+    /// metre or a radian each.
     ///
     /// # Errors
     /// [`SensitivityError`].

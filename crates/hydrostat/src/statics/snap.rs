@@ -47,8 +47,8 @@ impl Snap {
     }
 }
 
-/// How far the tip of an arm may jump at a snap on the way to its loads for the shape after it to be an answer. An arm that snaps further has
-/// the verdict [`crate::VerdictKind::LimitPoint`].
+/// How far the tip of an arm may jump at a snap on the way to its loads for the shape after it to be an answer. An arm
+/// that snaps further has the verdict [`crate::VerdictKind::LimitPoint`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SnapBounds {
     /// Of the tip's position, over L, at least 0.

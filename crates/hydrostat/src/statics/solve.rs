@@ -145,8 +145,8 @@ impl Solver {
         self.engine.reset_statistics();
     }
 
-    /// Keeps the engine's solution, read as `configuration`, to start from, with the sign of its determinant. After a snap the way back is another
-    /// one: it is no start.
+    /// Keeps the engine's solution, read as `configuration`, to start from, with the sign of its determinant. After a
+    /// snap the way back is another one: it is no start.
     pub(crate) fn keep(&mut self, configuration: &Configuration, sign: f64) {
         self.settled = configuration.snaps.is_empty();
         self.sign = sign;
@@ -171,8 +171,9 @@ impl Solver {
         Ok(())
     }
 
-    /// Takes another arm. One of the same geometry, with the same cables commanded by their strokes, is solved from the last
-    /// configuration by [`Solver::resolve`] and [`Solver::update`], whatever its loads and its material; any other starts anew.
+    /// Takes another arm. One of the same geometry, with the same cables commanded by their strokes, is solved from the
+    /// last configuration by [`Solver::resolve`] and [`Solver::update`], whatever its loads and its material; any other
+    /// starts anew.
     ///
     /// # Errors
     /// [`SolveError::Arm`] when it is none; the arm before stays then.
@@ -252,8 +253,8 @@ impl Solver {
         }
     }
 
-    /// [`Solver::resolve`] for those who only want to know where the tip is, a control loop say: nothing is read out, and
-    /// nothing allocated once meshes have their size. [`Solver::configuration`] reads the rest when it is wanted.
+    /// [`Solver::resolve`] for those who only want to know where the tip is, a control loop say: nothing is read out,
+    /// and nothing allocated once meshes have their size. [`Solver::configuration`] reads the rest when it is wanted.
     ///
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
@@ -281,7 +282,8 @@ impl Solver {
         Ok(Answer { tip: found.tip(), error_estimate: found.error_estimate, statistics: found.statistics })
     }
 
-    /// [`Solver::update`], as far as a few rounds lead from the configuration before: on its branch. After `None` nothing is solved.
+    /// [`Solver::update`], as far as a few rounds lead from the configuration before: on its branch. After `None`
+    /// nothing is solved.
     pub(crate) fn update_warm(&mut self) -> Option<Answer> {
         let estimate = self.settle_warm()?;
         let tip = self.engine.read_tip().ok()?;
@@ -315,8 +317,9 @@ impl Solver {
         }
     }
 
-    /// A few Newton rounds on the mesh there is. `None` where that is no way to the answer: nothing was solved before, the
-    /// arm moved further than a small change moves it, or cables rub, and which way they slid is part of the answer.
+    /// A few Newton rounds on the mesh there is. `None` where that is no way to the answer: nothing was solved before,
+    /// the arm moved further than a small change moves it, or cables rub, and which way they slid is part of the
+    /// answer.
     fn settle_warm(&mut self) -> Option<f64> {
         if !self.settled || self.engine.equations.arm().rubs() {
             return None;
@@ -441,8 +444,8 @@ impl Solver {
     }
 }
 
-/// What a path knows of the stability of its end, from the bifurcations that it passed and the determinant's sign, which is negative
-/// where an `odd` number of directions is unstable. An even one, after two bifurcations, is counted.
+/// What a path knows of the stability of its end, from the bifurcations that it passed and the determinant's sign,
+/// which is negative where an `odd` number of directions is unstable. An even one, after two bifurcations, is counted.
 pub(crate) fn known_on_the_way(configuration: &Configuration, bifurcations: usize, odd: bool) -> Option<bool> {
     let counted = || configuration.stability().and_then(Stability::is_stable).filter(|stable| !stable);
     match (bifurcations, odd) {

@@ -16,8 +16,8 @@
 //! which the arm leaves the equilibrium. Rates are given over the slowest decay of the same arm unloaded, which
 //! drops the coefficients' unit.
 //!
-//! Where the strokes of cables are commanded, C is that of the arm with the lengths of the taut ones held (the last part of
-//! `compliance`): their tensions change with a motion, slack ones stay slack.
+//! Where the strokes of cables are commanded, C is that of the arm with the lengths of the taut ones held (the last
+//! part of `compliance`): their tensions change with a motion, slack ones stay slack.
 //!
 //! The number of real positive rates is even where the determinant of the equilibrium is positive and odd where it is
 //! negative, whatever the metric; pairs of complex ones, which the metric does bear on, leave
@@ -39,22 +39,23 @@ use crate::statics::verdict::Phase;
 
 /// Rates whose real part is smaller, over the slowest decay of the unloaded arm, are neither growth nor decay.
 ///
-/// Near a buckling load the scaled rate is about the share of the load that is missing or too much. A straight column at its
-/// exact load comes out below 1e-9. Of a hundred random arms, most of them bent, the first rate moves by up to 2e-6 of the
-/// larger of one and itself between solves to 1e-8 and to 1e-11, growing ones left out.
+/// Near a buckling load the scaled rate is about the share of the load that is missing or too much. A straight column
+/// at its exact load comes out below 1e-9. Of a hundred random arms, most of them bent, the first rate moves by up to
+/// 2e-6 of the larger of one and itself between solves to 1e-8 and to 1e-11, growing ones left out.
 const MARGIN: f64 = 1e-6;
 
 /// Rates this many times the smallest one are rounding: an eigenvalue of the compliance has no digit left there.
 const ROUNDING: f64 = 1e12;
 
-/// The same where lengths are held: what loads a cable alone could make moves nothing, which polynomials meet no better than
-/// that, with eigenvalues of either sign.
+/// The same where lengths are held: what loads a cable alone could make moves nothing, which polynomials meet no better
+/// than that, with eigenvalues of either sign.
 const BLURRED: f64 = 1e6;
 
 /// Most rates that are kept when fewer grow.
 const KEPT: usize = 6;
 
-/// Polynomials a field, and elements no longer than a part of the arm by as many; more where the count of what grows is not settled.
+/// Polynomials a field, and elements no longer than a part of the arm by as many; more where the count of what grows is
+/// not settled.
 const POLYNOMIALS: [usize; 3] = [16, 24, 36];
 
 /// What becomes of an equilibrium after a small push, inertia aside.
@@ -130,8 +131,9 @@ impl Configuration {
     /// Taut cables whose stroke is commanded hold their lengths, whichever way the arm moves.
     ///
     /// Computed when asked for, in one to two milliseconds. `None` with [`Support::UnstrainedBase`], whose arm is
-    /// no equilibrium at the tip, with friction of cables, whose tensions would change along them as the arm moves, in a way that depends on which way
-    /// each place slides, and where the number of growing motions does not settle as they are resolved more finely.
+    /// no equilibrium at the tip, with friction of cables, whose tensions would change along them as the arm moves, in
+    /// a way that depends on which way each place slides, and where the number of growing motions does not settle as
+    /// they are resolved more finely.
     pub fn growth(&self) -> Option<Growth> {
         growth(self.dense()).map(|(growth, _)| growth)
     }
@@ -256,7 +258,8 @@ impl Tangent {
         Some(())
     }
 
-    /// Whether so many growing directions have the parity that the determinant's sign asks for, where that sign is known.
+    /// Whether so many growing directions have the parity that the determinant's sign asks for, where that sign is
+    /// known.
     fn agrees_with(&self, count: usize) -> bool {
         self.determinant.known_sign().is_none_or(|sign| (sign > 0.0) == count.is_multiple_of(2))
     }
@@ -338,8 +341,8 @@ mod tests {
         arm
     }
 
-    /// Where the count does not agree with the determinant or with twice the polynomials and elements, or the first rate is
-    /// another one there.
+    /// Where the count does not agree with the determinant or with twice the polynomials and elements, or the first
+    /// rate is another one there.
     fn disagreement(dense: &Dense, found: &Growth, level: usize) -> Option<String> {
         let functions = 2 * POLYNOMIALS[level];
         let tangent = Tangent::new(dense, functions).unwrap();
@@ -353,8 +356,8 @@ mod tests {
         (!agrees).then(|| format!("{:?}, {:?}, finer {:?}", tangent.determinant, found.rates, &finer[..6]))
     }
 
-    /// The same arms with the strokes that their cables have commanded. Whether one more direction grows, or one less, than at
-    /// given tensions is a matter of the strokes that more tension reels in, here by solves on both sides.
+    /// The same arms with the strokes that their cables have commanded. Whether one more direction grows, or one less,
+    /// than at given tensions is a matter of the strokes that more tension reels in, here by solves on both sides.
     #[test]
     fn counts_at_held_lengths_agree_with_the_determinant_with_twice_the_polynomials_and_with_solves() {
         let mut dice = Dice(23);

@@ -20,9 +20,10 @@
 //!
 //! Several shapes can have the same strokes. The one meant is the end of this path: loads and given tensions first,
 //! the commanded cables slack (section 7 of `docs/model.md`), then all commanded strokes in proportion, from
-//! those that the slack cables have there to those asked for. It is followed by arclength (`path/load_stepping`, `path/contact`)
-//! unless the direct solve (Newton from the tensions of a straight arm) leads to a shape that no load pushes hard against: then that
-//! stands. If the path cannot leave its start, the direct shape also stands when the path in its tensions leads to the same shape.
+//! those that the slack cables have there to those asked for. It is followed by arclength (`path/load_stepping`,
+//! `path/contact`) unless the direct solve (Newton from the tensions of a straight arm) leads to a shape that no load
+//! pushes hard against: then that stands. If the path cannot leave its start, the direct shape also stands when the
+//! path in its tensions leads to the same shape.
 
 use crate::rod::arm::Arm;
 use crate::statics::configuration::Configuration;
@@ -31,8 +32,8 @@ use crate::statics::path::{PathSummary, StepControl, Stopped, follow_strokes};
 use crate::statics::solve::{SAME, Solver, known_on_the_way};
 use crate::statics::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
-/// Shares of the tensions of a straight arm from which the path of strokes may start: slack, unless that is in line with the
-/// stream, with kinks of the load all along it, from where the path does not get away.
+/// Shares of the tensions of a straight arm from which the path of strokes may start: slack, unless that is in line
+/// with the stream, with kinks of the load all along it, from where the path does not get away.
 const STARTS: [f64; 4] = [0.0, 0.02, 0.2, 0.7];
 
 /// The fraction that a path of strokes has to reach to have got away from its start.
@@ -97,8 +98,9 @@ impl Solver {
         Ok(configuration)
     }
 
-    /// The direct solve, where the path of the tensions that it finds leads to the same shape. An arm that lies in a fast stream has
-    /// kinks all along when its cables begin to pull, and the path of the strokes may not get past them.
+    /// The direct solve, where the path of the tensions that it finds leads to the same shape. An arm that lies in a
+    /// fast stream has kinks all along when its cables begin to pull, and the path of the strokes may not get past
+    /// them.
     fn solve_strokes_by_tensions(&mut self, arm: &Arm) -> Option<Configuration> {
         // Loads that stretch the arm leave cables less to reel in than a straight arm would.
         let slack = self.solve_beside(&without_strokes(&with_tensions(arm, |_| 0.0)))?;
@@ -176,8 +178,9 @@ impl Solver {
         follow_strokes(engine, pace, bounds)
     }
 
-    /// Tensions (N) of the cables that their commanded strokes take in a straight arm, and those given: with the strokes
-    /// that unit tensions reel in there, T >= 0 and the slack >= 0, one of them zero, by sweeps over the cables.
+    /// Tensions (N) of the cables that their commanded strokes take in a straight arm, and those given: with the
+    /// strokes that unit tensions reel in there, T >= 0 and the slack >= 0, one of them zero, by sweeps over the
+    /// cables.
     fn straight_tensions(&self, arm: &Arm) -> Vec<f64> {
         let equations = &self.engine.equations;
         let mut tensions: Vec<f64> =

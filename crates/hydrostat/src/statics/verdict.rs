@@ -60,11 +60,11 @@ pub struct Verdict {
     pub load_fraction: f64,
     /// Where along the arm (m), if the limit is local.
     pub s: Option<f64>,
-    /// The last Newton correction when the solver stopped: the largest change of an angle, in rad. It is no residual of the equations,
-    /// which no verdict has; its name in results is older than what it is.
+    /// The last Newton correction when the solver stopped: the largest change of an angle, in rad. It is no residual of
+    /// the equations, which no verdict has; its name in results is older than what it is.
     pub residual: f64,
-    /// The evaluations of the section law that were made (those of arms with many cables count for more), where the solver stopped because
-    /// a solve may take no more.
+    /// The evaluations of the section law that were made (those of arms with many cables count for more), where the
+    /// solver stopped because a solve may take no more.
     pub spent: Option<usize>,
 }
 
@@ -153,14 +153,15 @@ pub struct NoEquilibrium {
     /// Why.
     pub verdict: Verdict,
     /// The last good solution on the way, its `arm` carrying the loads that it balances.
-    /// `None` only when not even the first step off the unloaded arm could be solved, or where a section at its limit, at an end of the arm, lets no
-    /// shape be read out.
+    /// `None` only when not even the first step off the unloaded arm could be solved, or where a section at its limit,
+    /// at an end of the arm, lets no shape be read out.
     pub last_good: Option<Configuration>,
     /// The snaps that the arm makes on the way, the last of them the one that goes too far where the verdict is
     /// [`VerdictKind::LimitPoint`] and the path leads on beyond it.
     pub snaps: Vec<Snap>,
     /// With such a verdict: the shape that the arm snaps to, at the loads of the limit point.
     pub after_snap: Option<Configuration>,
-    /// With such a verdict: the shape at whole loads, if the path leads there. [`crate::Options::snaps`] without bounds gives it as an answer.
+    /// With such a verdict: the shape at whole loads, if the path leads there. [`crate::Options::snaps`] without bounds
+    /// gives it as an answer.
     pub at_full_loads: Option<Configuration>,
 }

@@ -1,4 +1,5 @@
-//! The places at which something about an arm changes its law. Meshes have a node at each, so that their number is bounded.
+//! The places at which something about an arm changes its law. Meshes have a node at each, so that their number is
+//! bounded.
 
 use super::{Arm, ArmError, Material};
 use crate::rod::profile::Profile;
@@ -6,7 +7,8 @@ use crate::rod::profile::Profile;
 /// Cables that make a station about twice as dear as one without.
 const AS_DEAR: usize = 8;
 
-/// The most places of an arm with few cables: a mesh that has them all takes some 200 MB, and a direct solve on it seconds.
+/// The most places of an arm with few cables: a mesh that has them all takes some 200 MB, and a direct solve on it
+/// seconds.
 const MOST: usize = 10_000;
 
 impl Arm {

@@ -35,7 +35,8 @@ pub struct Sample {
 }
 
 /// Points joined by a monotone piecewise cubic (Fritsch and Carlson 1980; Fritsch and Butland 1984
-/// for the weighted harmonic mean), with the slopes of SciPy's `PchipInterpolator`, end slopes included; or by straight lines.
+/// for the weighted harmonic mean), with the slopes of SciPy's `PchipInterpolator`, end slopes included; or by straight
+/// lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     pub(super) s: Vec<f64>,

@@ -1,8 +1,8 @@
 //! How much work a solve may be, counted so that every machine ends it at the same place.
 //!
-//! A piece of work is one evaluation of the section law and the loads at a station, more with many cables ([`crate::Arm::cost_factor`]). All
-//! ways of a solve to its answer are finite in themselves, but meshes of an arm that winds thousands of times through the stream are
-//! long, and rounds on them many.
+//! A piece of work is one evaluation of the section law and the loads at a station, more with many cables
+//! ([`crate::Arm::cost_factor`]). All ways of a solve to its answer are finite in themselves, but meshes of an arm that
+//! winds thousands of times through the stream are long, and rounds on them many.
 
 use super::discrete::Engine;
 use super::trouble::Trouble;
@@ -94,7 +94,8 @@ mod tests {
             for work in [0, 1, 100, 1000, 3000, 10_000, 30_000, 100_000, 1_000_000] {
                 let mut solver = Solver::new(&arm, Options::default()).unwrap();
                 let solved = solver.solve_within(work);
-                // The last evaluation is of a whole mesh, at stations and, for the check, at more of them; reading out takes some.
+                // The last evaluation is of a whole mesh, at stations and, for the check, at more of them; reading out
+                // takes some.
                 let done = solver.engine.work();
                 assert!(done <= work + 8000, "{done} of {work}");
                 match solved {

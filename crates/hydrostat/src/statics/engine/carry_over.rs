@@ -45,8 +45,8 @@ impl Engine {
         self.equations.place_ends(&self.solution);
     }
 
-    /// Moves the solution on by `share` times its way from the solution `before`, nodes on kinks with it. Left as it is where the
-    /// two do not correspond node by node.
+    /// Moves the solution on by `share` times its way from the solution `before`, nodes on kinks with it. Left as it is
+    /// where the two do not correspond node by node.
     pub(crate) fn lead_on(&mut self, before: &Guess, share: f64) {
         let Some(mesh) = self.solution.mesh.led_on(&before.mesh, share) else { return };
         if !self.solution.lead_on(before, share) || mesh == self.solution.mesh {

@@ -241,9 +241,10 @@ impl Engine {
         Ok(linearise(&mut self.system, &self.equations, &self.solution)?)
     }
 
-    /// The sign of the determinant at the present solution, where neither rounding nor the mesh decides it: what it is the difference of is known
-    /// better than that, and on halves of the elements it is the same. The tail of a rod that lies in the stream is free to turn, to first order: the load
-    /// along it turns with it, and that across it is of second order. The determinant is next to nothing then, and of either sign.
+    /// The sign of the determinant at the present solution, where neither rounding nor the mesh decides it: what it is
+    /// the difference of is known better than that, and on halves of the elements it is the same. The tail of a rod
+    /// that lies in the stream is free to turn, to first order: the load along it turns with it, and that across it is
+    /// of second order. The determinant is next to nothing then, and of either sign.
     pub(crate) fn sure_sign(&mut self) -> Option<f64> {
         /// What a mesh that is good to 1e-8 leaves of a determinant, with two digits to spare.
         const BY_MESH: f64 = 1e-6;
@@ -301,7 +302,8 @@ impl Engine {
         Ok(self.sharp_beside(i, left, &here).unwrap_or(here))
     }
 
-    /// The section on either side of node `i` with beta' as outputs have it, given that with the beta' of the polynomial.
+    /// The section on either side of node `i` with beta' as outputs have it, given that with the beta' of the
+    /// polynomial.
     pub(super) fn sharp_beside(
         &self,
         i: usize,

@@ -6,9 +6,9 @@
 //! A dz + A_t dt = -residual            s_z dz + s_t dt = command - s
 //! ```
 //!
-//! is solved by blocks: a response of the shape for every taut cable, then a small system for the tensions. Its determinant is
-//! that of A times that of B = s_t - s_z A^-1 A_t, the strokes that unit tensions reel in: positive in the
-//! unloaded arm.
+//! is solved by blocks: a response of the shape for every taut cable, then a small system for the tensions. Its
+//! determinant is that of A times that of B = s_t - s_z A^-1 A_t, the strokes that unit tensions reel in: positive in
+//! the unloaded arm.
 
 use hydrostat_bvp::{Collocation, Correction, Determinant};
 

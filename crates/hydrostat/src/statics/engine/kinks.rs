@@ -5,13 +5,14 @@ use crate::statics::dimensions::M;
 use crate::statics::friction::merged;
 
 /// How close (over L) nodes are kept to the kinks of the load at a tolerance: the error that a kink leaves is of second
-/// order in the distance, and the estimate does not see all of it. Closer than rounding places kinks, nodes would chase it.
+/// order in the distance, and the estimate does not see all of it. Closer than rounding places kinks, nodes would chase
+/// it.
 pub(crate) fn kink_resolution(tolerance: f64) -> f64 {
     (0.02 * tolerance.sqrt()).max(5e-8)
 }
 
-/// Kinks that nodes are placed on. An arm with more winds through the stream so often that no mesh of any use resolves it, and a node
-/// for each would take gigabytes: the estimate then says what that costs.
+/// Kinks that nodes are placed on. An arm with more winds through the stream so often that no mesh of any use resolves
+/// it, and a node for each would take gigabytes: the estimate then says what that costs.
 const MOST: usize = 500;
 
 impl Engine {
@@ -86,8 +87,8 @@ impl Engine {
         }
     }
 
-    /// Adds the places where cables that rub turn back: their tensions have kinks there. These are of the turns that the present
-    /// tensions are made of, not of the solution: there the kinks are until the next round of turns.
+    /// Adds the places where cables that rub turn back: their tensions have kinks there. These are of the turns that
+    /// the present tensions are made of, not of the solution: there the kinks are until the next round of turns.
     fn add_kinks_of_friction(&self, out: &mut Vec<f64>) {
         let Some(capstan) = &self.equations.capstan else { return };
         let cables = self.equations.arm().cables.iter().enumerate();

@@ -1,10 +1,12 @@
-//! Manufactured solutions: smooth strains are chosen, and the loads along the arm that make them an equilibrium follow from them, for every
-//! option of `docs/model.md`, section 9.
+//! Manufactured solutions: smooth strains are chosen, and the loads along the arm that make them an equilibrium follow
+//! from them, for every option of `docs/model.md`, section 9.
 //!
-//! What they are to prove: the differential equations, the section law with its volume laws, the cables with beta' and beta'', the units and
-//! the end conditions are those of the model, because n_f, m_f and their derivatives are worked out here a second time, by Taylor series along
-//! the arm, and Newton finds the chosen shape; and the discrete solutions near it with the order of the method, 8, on equal elements. What they do not prove: the
-//! loads of the stream and of weight, which are taken from [`crate::rod::loads`] on both sides; `crates/validate` writes those out again.
+//! What they are to prove: the differential equations, the section law with its volume laws, the cables with beta' and
+//! beta'', the units and the end conditions are those of the model, because n_f, m_f and their derivatives are worked
+//! out here a second time, by Taylor series along the arm, and Newton finds the chosen shape; and the discrete
+//! solutions near it with the order of the method, 8, on equal elements. What they do not prove: the loads of the
+//! stream and of weight, which are taken from [`crate::rod::loads`] on both sides; `crates/validate` writes those out
+//! again.
 
 use std::f64::consts::PI;
 
@@ -143,7 +145,8 @@ impl Manufactured {
         let nu = Series::constant(1.0) - still.times(0.05);
         let eta = Series::wave(0.07, 0.8 * WAVE, -0.5 * PI, s);
         let reference_mu = of(&arm.reference.mu).times(l);
-        // theta has the reference's curvature and a wave that begins flat; the unstrained base is straight, whatever the reference is.
+        // theta has the reference's curvature and a wave that begins flat; the unstrained base is straight, whatever
+        // the reference is.
         let straight = arm.readings.support == Support::UnstrainedBase;
         let mu_base = if straight { 0.0 } else { arm.reference.mu.at(0.0, l).value * l };
         let mu_slope = reference_mu.0[1];
@@ -184,7 +187,8 @@ impl Manufactured {
         }
     }
 
-    /// Force along e1 and e2 and couple a length that have to be added at `s` (over L), in `units`, to the loads that the arm has.
+    /// Force along e1 and e2 and couple a length that have to be added at `s` (over L), in `units`, to the loads that
+    /// the arm has.
     pub(crate) fn missing(&self, units: Units, water: &Water, body: &Body<f64>, s: f64) -> [f64; 3] {
         let shape = self.at(s);
         let [nu, eta, mu] = shape.strain.map(Series::value);
@@ -336,8 +340,9 @@ fn combinations(law: FlowLaw) -> Vec<Readings> {
     out
 }
 
-/// Theta and contact force under every combination of options: on 32 elements their errors are those on 16 by 2^7.4 or more, and on 64 what
-/// rounding leaves of them. The tip is too good for an order: what it is off by passes through zero as elements get shorter.
+/// Theta and contact force under every combination of options: on 32 elements their errors are those on 16 by 2^7.4 or
+/// more, and on 64 what rounding leaves of them. The tip is too good for an order: what it is off by passes through
+/// zero as elements get shorter.
 fn check(law: FlowLaw) {
     let (mut lowest, mut last) = ([f64::INFINITY; 2], [0.0_f64; 3]);
     let all = combinations(law);

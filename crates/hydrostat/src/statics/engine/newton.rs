@@ -25,9 +25,9 @@ impl Engine {
         self.iterate(tolerance, most, None)
     }
 
-    /// Newton until what is left of the tip's way is below `tolerance`, by the way rounds fall. Given how close to the kinks of the load
-    /// nodes have to be, they are moved there as soon
-    /// as corrections are small: a round on nodes that are off is as good as lost.
+    /// Newton until what is left of the tip's way is below `tolerance`, by the way rounds fall. Given how close to the
+    /// kinks of the load nodes have to be, they are moved there as soon as corrections are small: a round on nodes that
+    /// are off is as good as lost.
     pub(super) fn iterate(&mut self, tolerance: f64, most: usize, resolution: Option<f64>) -> Result<(), Trouble> {
         if self.equations.held.is_some() {
             return self.iterate_held(tolerance, most);
@@ -73,8 +73,8 @@ impl Engine {
             let [x, y] = self.system.totals();
             self.tip = [x + dx, y + dy];
             let moved = dx.hypot(dy).max(0.1 * size);
-            // Rounds fall with the square of their size, and no faster than the last one did. Strains count, too: those at the
-            // ends of elements may be far off where no angle is.
+            // Rounds fall with the square of their size, and no faster than the last one did. Strains count, too: those
+            // at the ends of elements may be far off where no angle is.
             let strained = self.correction.largest_inner();
             let whole = size.max(strained);
             let rate = if applied < 1.0 { 1.0 } else { (whole / before).min(1.0).max(10.0 * size.max(self.reached())) };

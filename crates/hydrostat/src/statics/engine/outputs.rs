@@ -14,7 +14,8 @@ pub(crate) fn asked_in(solution: &Guess, gauss: &Gauss<M>, i: usize, x: f64, z: 
     SectionQuery { s, from_left: x > 0.0, z, strain: known.inner, beta_slope: known.closure_slope }
 }
 
-/// The reach of beta' over an element's length up to which the section law gives beta' better than the element's polynomial.
+/// The reach of beta' over an element's length up to which the section law gives beta' better than the element's
+/// polynomial.
 const SHORT_REACH: f64 = 0.05;
 
 /// At the left and the right end of an element, by its own end.
@@ -23,18 +24,20 @@ static AT_ENDS: LazyLock<[[Derivatives<M>; 2]; 2]> = LazyLock::new(|| {
     [0.0, 1.0].map(|x| [Side::Left, Side::Right].map(|side| Derivatives::new(&gauss, x, side)))
 });
 
-/// The same with the beta' that follows from the section law along the arm, given everything at the place with the beta' of the polynomial.
+/// The same with the beta' that follows from the section law along the arm, given everything at the place with the
+/// beta' of the polynomial.
 ///
-/// beta' at the end of a polynomial of degree M + 1 is right to order M only. With beta = g(s, z, beta') the section law,
+/// beta' at the end of a polynomial of degree M + 1 is right to order M only. With beta = g(s, z, beta') the section
+/// law,
 ///
 /// ```text
 /// beta' = g_s + g_z z' + r beta''        r = dg/d beta'
 /// ```
 ///
-/// at each place, where the reach r is mostly some micrometres: how beta'' is known hardly counts. Both are derivatives of g along the arm,
-/// by its values here and at three places inside the element, where beta' follows a line; beta'' with r times the beta''' of the polynomial
-/// beside.
-/// Where it is not small what the first time changes, a second time begins with its beta' and beta''.
+/// at each place, where the reach r is mostly some micrometres: how beta'' is known hardly counts. Both are derivatives
+/// of g along the arm, by its values here and at three places inside the element, where beta' follows a line; beta''
+/// with r times the beta''' of the polynomial beside. Where it is not small what the first time changes, a second time
+/// begins with its beta' and beta''.
 #[inline(always)]
 pub(crate) fn sharpened(
     equations: &Equations,
@@ -46,8 +49,8 @@ pub(crate) fn sharpened(
 ) -> SectionQuery {
     const STEP: f64 = 1e-3;
     const REACH_STEP: f64 = 1e-4;
-    /// Change of beta' by the first time, times the reach over the element's length, below which a second time changes less than the
-    /// differences are known to.
+    /// Change of beta' by the first time, times the reach over the element's length, below which a second time changes
+    /// less than the differences are known to.
     const ONCE: f64 = 1e-10;
     if !solution.directions.is_closed() {
         return asked;

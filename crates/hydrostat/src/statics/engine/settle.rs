@@ -18,7 +18,8 @@ const OF_FRICTION: f64 = 5e-8;
 /// The error that a mesh is made for, over the tolerance: element by element it is foreseen with its sign lost.
 const TARGET: f64 = 0.3;
 
-/// What Newton is asked for on a first mesh (tip over L): what it leaves there would be taken for errors of the elements.
+/// What Newton is asked for on a first mesh (tip over L): what it leaves there would be taken for errors of the
+/// elements.
 const FIRST: f64 = 1e-5;
 
 /// The worst estimate (tip over L) with which a solution is still an answer.
@@ -42,8 +43,8 @@ const ROUNDED: f64 = 1e-13;
 /// What Newton moves the tip by (over L) at the end of an approach.
 const NEAR: f64 = 0.03;
 
-/// Reach of beta' over the length of the shortest element that meets the section law at both ends: on shorter ones the equations there
-/// hardly differ.
+/// Reach of beta' over the length of the shortest element that meets the section law at both ends: on shorter ones the
+/// equations there hardly differ.
 const SHORTEST_CLOSING: f64 = 0.3;
 
 /// Elements on which most arms meet a tolerance: by the order of the method, and what `paper` takes.
@@ -180,8 +181,8 @@ impl Engine {
                 (Ok(estimate), _) => estimate.max(hop),
                 (Err(trouble), None) => {
                     let Some(state) = carried.as_ref().filter(|_| cuts < CUTS) else { return Err(trouble) };
-                    // Newton got lost on a mesh that the errors of another foresaw: layers of a fast stream are where elements are long
-                    // on it. Halves of the elements that carried the shape carry it, too.
+                    // Newton got lost on a mesh that the errors of another foresaw: layers of a fast stream are where
+                    // elements are long on it. Halves of the elements that carried the shape carry it, too.
                     cuts += 1;
                     self.restore(state);
                     let halves = self.solution.mesh.cut(1 << cuts);
@@ -214,8 +215,8 @@ impl Engine {
         }
     }
 
-    /// How close nodes are kept to kinks at a tolerance. Those of friction are given while a shape is looked for, and as beside them chi' is
-    /// not zero (`friction`), what a node that is off one costs is of first order.
+    /// How close nodes are kept to kinks at a tolerance. Those of friction are given while a shape is looked for, and
+    /// as beside them chi' is not zero (`friction`), what a node that is off one costs is of first order.
     fn resolution(&self, tolerance: f64) -> f64 {
         let resolution = kink_resolution(tolerance);
         if self.equations.capstan.is_some() { resolution.min(OF_FRICTION) } else { resolution }

@@ -34,8 +34,9 @@ impl Equations {
     /// resists over the rest of its length: compression of the contact force by (1 - s)^2/EI, and
     /// stream and weight by (1 - s)^3/EI where they run against the tangent, now or in the unloaded
     /// arm. Well below one, equilibria are unique: a cantilever buckles at 2.47 under a force on its tip and at
-    /// 7.84 under a load along it. The stream counts with S U^2 times [`Law::largest`](crate::rod::flow::Law::largest). Moments and couples
-    /// bend the arm and push nothing along it: they are in the compression of the shape that they lead to.
+    /// 7.84 under a load along it. The stream counts with S U^2 times [`Law::largest`](crate::rod::flow::Law::largest).
+    /// Moments and couples bend the arm and push nothing along it: they are in the compression of the shape that they
+    /// lead to.
     pub(crate) fn buckling_indicator(&self, k: usize, stations: &[Station<N, L>], unloaded: &Unloaded) -> f64 {
         let (block, lane) = self.groups.station(k);
         let place = &self.places[block];

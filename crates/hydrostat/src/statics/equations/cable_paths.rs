@@ -78,8 +78,8 @@ impl Equations {
         ]
     }
 
-    /// The unstretched length of cable `c` over L: the integral of |tau| / (1 + T(s)/EA), with its derivative by the tension (in the unit
-    /// of force).
+    /// The unstretched length of cable `c` over L: the integral of |tau| / (1 + T(s)/EA), with its derivative by the
+    /// tension (in the unit of force).
     fn unstretched(&self, c: usize, at: StationData<'_>) -> [f64; 2] {
         let per_force = self.per_force(c);
         let tension = self.tensions[c];
@@ -122,7 +122,8 @@ impl Equations {
         ([by_nu, t.b, -(t.a * offset.y * section_stretch.beta)], t.b * offset.y)
     }
 
-    /// What a change of |tau| changes the stroke of cable `c` by, in a block of stations: with a stretch of its own less.
+    /// What a change of |tau| changes the stroke of cable `c` by, in a block of stations: with a stretch of its own
+    /// less.
     #[inline(always)]
     pub(crate) fn stroke_by_stretch(&self, c: usize, block: usize) -> Lanes {
         let stretched = self.cables_in(block)[c].tension * Lanes::of(self.tensions[c] * self.per_force(c));

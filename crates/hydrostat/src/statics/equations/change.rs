@@ -28,7 +28,8 @@ pub(crate) enum Way {
     Of(Parameter),
 }
 
-/// Part of its scale by which a number is moved to either side for a difference; with four places the error is its fourth power.
+/// Part of its scale by which a number is moved to either side for a difference; with four places the error is its
+/// fourth power.
 const STEP: f64 = 1e-3;
 
 /// The same for angles of the stream. Rounding leaves some 1e-10 of a load by it.
@@ -273,8 +274,8 @@ impl Equations {
     }
 }
 
-/// The strains that follow a change of what the section carries at fixed strains, from how they follow the state: the section law's inverse is
-/// turned into space there.
+/// The strains that follow a change of what the section carries at fixed strains, from how they follow the state: the
+/// section law's inverse is turned into space there.
 #[inline(always)]
 fn following(gradient: &[[Lanes; N]; 3], [cos, sin]: [Lanes; 2], carried: [Lanes; 3]) -> [Lanes; 3] {
     each(|k| {

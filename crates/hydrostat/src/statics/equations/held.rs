@@ -27,7 +27,8 @@ impl Equations {
         }
     }
 
-    /// Makes held cable `index` slack that was taut, or the other way round: which it is of the arm's, and whether it is slack now.
+    /// Makes held cable `index` slack that was taut, or the other way round: which it is of the arm's, and whether it
+    /// is slack now.
     pub(crate) fn switch_active(&mut self, index: usize) -> (usize, bool) {
         let Some(mut held) = self.held.take() else { return (index, false) };
         held.taut[index] = !held.taut[index];

@@ -54,8 +54,8 @@ impl Equations {
         self.place_with(&self.arm, s, at(&self.arm.radius), at)
     }
 
-    /// The data at `s` (over L) from a radius (m) and its slope that may carry derivatives, and from what all other profiles
-    /// are there, with their slopes.
+    /// The data at `s` (over L) from a radius (m) and its slope that may carry derivatives, and from what all other
+    /// profiles are there, with their slopes.
     #[inline(always)]
     pub(super) fn place_with<R: Real>(
         &self,

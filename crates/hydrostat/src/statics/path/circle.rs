@@ -84,14 +84,15 @@ impl Arm {
     ///
     /// # Errors
     /// [`PathError::Start`] when no equilibrium was found at any base angle, [`PathError::Support`],
-    /// [`PathError::Friction`], [`PathError::Option`], and [`PathError::Stroke`]: at commanded strokes an angle of the tip
-    /// leaves the tensions open, so that the equilibria for all base angles need not be one curve.
+    /// [`PathError::Friction`], [`PathError::Option`], and [`PathError::Stroke`]: at commanded strokes an angle of the
+    /// tip leaves the tensions open, so that the equilibria for all base angles need not be one curve.
     pub fn equilibria(&self, tol: f64) -> Result<Equilibria, PathError> {
         self.equilibria_while(tol, |_| true)
     }
 
-    /// [`Arm::equilibria`] that asks `go_on` after every point of the curve, with how many there are, and ends the search
-    /// where that is false: with what was found so far, [`PathEnd::Stopped`] as its end, and the angles that it covered.
+    /// [`Arm::equilibria`] that asks `go_on` after every point of the curve, with how many there are, and ends the
+    /// search where that is false: with what was found so far, [`PathEnd::Stopped`] as its end, and the angles that it
+    /// covered.
     ///
     /// ```
     /// use hydrostat::{Arm, PathEnd};
@@ -241,12 +242,13 @@ fn follow(
     Some(stepper.end_at(&here))
 }
 
-/// Points of the curve between two, as many as it takes to know how often the base comes to the angle asked for between them.
+/// Points of the curve between two, as many as it takes to know how often the base comes to the angle asked for between
+/// them.
 ///
-/// Along the curve the angle of the base is a function of that of the tip, whose slope is known at each point. Between two points it is taken to
-/// be the cubic of both values and slopes if that meets a third point, halfway, in value and slope, and rises or falls all the way. Where it
-/// does not, and may come to the angle asked for, the same is asked of both halves. What is less than [`HALVINGS`] halvings of a step wide may
-/// be missed.
+/// Along the curve the angle of the base is a function of that of the tip, whose slope is known at each point. Between
+/// two points it is taken to be the cubic of both values and slopes if that meets a third point, halfway, in value and
+/// slope, and rises or falls all the way. Where it does not, and may come to the angle asked for, the same is asked of
+/// both halves. What is less than [`HALVINGS`] halvings of a step wide may be missed.
 fn fill_in(
     stepper: &mut Stepper<'_>,
     asked: &SectionQuery,
@@ -267,8 +269,8 @@ fn fill_in(
     fill_in(stepper, asked, [&middle, b], halvings - 1, out);
 }
 
-/// A point of the curve between two, at the share `x` of the way between the angles of their tips, or nearer to one of them where no such
-/// tangent leads.
+/// A point of the curve between two, at the share `x` of the way between the angles of their tips, or nearer to one of
+/// them where no such tangent leads.
 fn inside(stepper: &mut Stepper<'_>, [a, b]: [&Point; 2], x: f64) -> Option<Point> {
     let way = b.tip_angle() - a.tip_angle();
     for part in [1.0, 0.3, 0.1, 0.03, 0.01] {

@@ -114,8 +114,8 @@ impl Stepper<'_> {
         self.leave_contacts(fraction, |_, after| after.dlambda_ds)
     }
 
-    /// Whether cables that are to be reeled in from where they hang slack would have to push: more tension pays them out
-    /// there. The engine is left with them slack.
+    /// Whether cables that are to be reeled in from where they hang slack would have to push: more tension pays them
+    /// out there. The engine is left with them slack.
     pub(super) fn nothing_reels_in(&mut self) -> bool {
         let kept = self.engine.state();
         self.set(0.0);
@@ -131,8 +131,8 @@ impl Stepper<'_> {
         pushes
     }
 
-    /// The point here with its tangent in the direction in which `way` is positive, and with those cables changed over that
-    /// are at a contact which that tangent leads past.
+    /// The point here with its tangent in the direction in which `way` is positive, and with those cables changed over
+    /// that are at a contact which that tangent leads past.
     fn leave_contacts(&mut self, fraction: f64, way: impl Fn(&Self, &Point) -> f64) -> Result<Point, Trouble> {
         let mut changes = 0;
         loop {

@@ -282,8 +282,8 @@ impl Ramp<'_, '_> {
         self.turned_back.as_ref().is_some_and(|limit| here.fraction < limit.fraction && next.fraction >= limit.fraction)
     }
 
-    /// The arm lands where a step from `here` comes past the load of the limit point, if that shape is stable. Whether the path is known
-    /// that far.
+    /// The arm lands where a step from `here` comes past the load of the limit point, if that shape is stable. Whether
+    /// the path is known that far.
     fn land(&mut self, here: &Point, control: StepControl) -> bool {
         let Some(limit) = self.turned_back.take() else { return true };
         let kept = (self.stepper.engine.state(), self.stepper.orientation);
@@ -349,7 +349,8 @@ impl Ramp<'_, '_> {
         })
     }
 
-    /// Why no step leads on from `here`, given fraction and rise of a point before it whose tangent climbed clearly more.
+    /// Why no step leads on from `here`, given fraction and rise of a point before it whose tangent climbed clearly
+    /// more.
     fn stuck(&mut self, here: &Point, steeper: (f64, f64)) -> Verdict {
         let residual = self.stepper.engine.last;
         self.stepper.engine.restore(&here.state);
@@ -371,8 +372,8 @@ impl Ramp<'_, '_> {
         end
     }
 
-    /// The point that a phase starts from. An arm that lies in the stream, or along another load, has tiny angles to it whose
-    /// signs decide where it goes, so this point is made very accurate then, as far as that can be had.
+    /// The point that a phase starts from. An arm that lies in the stream, or along another load, has tiny angles to it
+    /// whose signs decide where it goes, so this point is made very accurate then, as far as that can be had.
     fn start(&mut self) -> Result<Point, Trouble> {
         let whole = self.stepper.engine.solution.clone();
         let mut fraction = START;
@@ -399,9 +400,9 @@ impl Ramp<'_, '_> {
         self.stepper.first_contacts(fraction)
     }
 
-    /// The last good point, or one just before it, on a mesh that is as accurate as an answer. Where the section law ends the
-    /// path it may be for what a coarse mesh makes of the ends of the arm, and where cables go slack or taut close to each other
-    /// what a mesh is off by decides which does first. `None` where something else ends the path.
+    /// The last good point, or one just before it, on a mesh that is as accurate as an answer. Where the section law
+    /// ends the path it may be for what a coarse mesh makes of the ends of the arm, and where cables go slack or taut
+    /// close to each other what a mesh is off by decides which does first. `None` where something else ends the path.
     fn sharpen(&mut self, here: &Point) -> Option<Point> {
         let at_contact = here.margins.iter().any(|margin| *margin < CONTACT);
         if !matches!(self.stepper.last_trouble, Some(Trouble::Section(_))) && !at_contact {

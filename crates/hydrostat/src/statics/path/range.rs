@@ -212,8 +212,9 @@ impl Arm {
     /// turns back, and past bifurcations, until either end of the range is reached.
     ///
     /// The path starts at the configuration that [`Arm::solve`] gives at `range[0]`. The values of limit points and
-    /// bifurcations are good to 1e-6 of the range. Cables whose stroke is commanded keep it, or follow it where it is what
-    /// varies; where one goes slack or taut the path has a corner, which is an event, and at which the parameter may turn back.
+    /// bifurcations are good to 1e-6 of the range. Cables whose stroke is commanded keep it, or follow it where it is
+    /// what varies; where one goes slack or taut the path has a corner, which is an event, and at which the parameter
+    /// may turn back.
     ///
     /// ```
     /// use hydrostat::{Arm, Event, Parameter, PathOptions};
@@ -234,7 +235,8 @@ impl Arm {
     }
 
     /// [`Arm::path`] that hands every point to `watch` as it is found, and ends after the first for which that is
-    /// false: with [`PathEnd::Stopped`], unless that point is the last anyway, and without the branches that were still to come.
+    /// false: with [`PathEnd::Stopped`], unless that point is the last anyway, and without the branches that were still
+    /// to come.
     ///
     /// ```
     /// use hydrostat::{Arm, Parameter, PathEnd, PathOptions};
@@ -421,7 +423,8 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
         self.stepper.end_at(&here)
     }
 
-    /// Keeps the point of an event between two points, and goes straight on through a bifurcation; why none may come after it.
+    /// Keeps the point of an event between two points, and goes straight on through a bifurcation; why none may come
+    /// after it.
     fn put_event(
         &mut self,
         event: Event,
@@ -448,7 +451,8 @@ impl<W: FnMut(&PathPoint) -> bool> Trace<'_, W> {
         None
     }
 
-    /// Keeps the point at which a cable goes slack or taut, which may be a limit point, too; why none may come after it.
+    /// Keeps the point at which a cable goes slack or taut, which may be a limit point, too; why none may come after
+    /// it.
     fn put_contact(&mut self, contact: &Contact, next: &Point, points: &mut Vec<PathPoint>) -> Option<PathEnd> {
         let event = if contact.slack { Event::Slack(contact.cable) } else { Event::Taut(contact.cable) };
         let turns_back = (contact.after.dlambda_ds * next.dlambda_ds < 0.0).then_some(Event::LimitPoint);

@@ -11,7 +11,8 @@ use crate::statics::verdict::Phase;
 /// The largest correction (rad) of a prediction that leads to the same branch.
 const MOVED: f64 = 0.15;
 
-/// The least change of theta (rad) that counts as much as the whole load: arms that turn less are straight, as far as anybody can see.
+/// The least change of theta (rad) that counts as much as the whole load: arms that turn less are straight, as far as
+/// anybody can see.
 const FINE_SCALE: f64 = 0.01;
 
 /// Corrections (rad) after which, but for second order, nothing is left to correct.
@@ -63,7 +64,8 @@ impl Point {
         self.response.nodes.last().map_or(f64::INFINITY, |z| 1.0 / z[0])
     }
 
-    /// The turn (rad, root mean square along the arm) by the whole load at the rate here, in a metric whose scale of theta is `scale`.
+    /// The turn (rad, root mean square along the arm) by the whole load at the rate here, in a metric whose scale of
+    /// theta is `scale`.
     fn turn_by_load(&self, scale: f64) -> f64 {
         scale * (self.dlambda_ds.powi(-2) - 1.0).max(0.0).sqrt()
     }
@@ -125,7 +127,8 @@ pub(super) struct Stepper<'e> {
     pub(super) crossings_welcome: bool,
     /// The last estimate of the tip's error over L.
     pub(super) error: f64,
-    /// The change of theta (rad, root mean square along the arm) that counts as much as the whole of the load in the metric of the path.
+    /// The change of theta (rad, root mean square along the arm) that counts as much as the whole of the load in the
+    /// metric of the path.
     scale: f64,
     /// Where the branch began, and how far its shape has turned and its fraction has climbed since.
     progress: Progress,
@@ -198,8 +201,8 @@ impl<'e> Stepper<'e> {
         self.engine.linearise_held(true, &mut self.round)
     }
 
-    /// Weights of the squares of theta's change at the nodes in the metric of the path: its root mean square along the arm over
-    /// [`Stepper::scale`].
+    /// Weights of the squares of theta's change at the nodes in the metric of the path: its root mean square along the
+    /// arm over [`Stepper::scale`].
     pub(super) fn weights(&self) -> Vec<f64> {
         let mesh = &self.engine.solution.mesh;
         let n = mesh.elements();
@@ -219,8 +222,9 @@ impl<'e> Stepper<'e> {
         self.rescale(start, start.turn_by_load(self.scale));
     }
 
-    /// Fits the scale of theta to the way from `here` to `next`, which becomes the next point to start from: the path must not be long in the load
-    /// alone, or a shape that changes little, as that of an arm which hardly leans to either side, would turn back and forth within a step.
+    /// Fits the scale of theta to the way from `here` to `next`, which becomes the next point to start from: the path
+    /// must not be long in the load alone, or a shape that changes little, as that of an arm which hardly leans to
+    /// either side, would turn back and forth within a step.
     pub(super) fn went(&mut self, here: &Point, next: &mut Point) {
         let way = self.distance(here, next);
         let climb = next.fraction - here.fraction;
@@ -229,7 +233,8 @@ impl<'e> Stepper<'e> {
         self.rescale(next, self.progress.turn / self.progress.climb);
     }
 
-    /// Widens the scale of theta to `wanted` (rad a whole load), and gives `point` the tangent of the metric that follows.
+    /// Widens the scale of theta to `wanted` (rad a whole load), and gives `point` the tangent of the metric that
+    /// follows.
     fn rescale(&mut self, point: &mut Point, wanted: f64) {
         let first = self.progress.turn == 0.0;
         let least = if first { FINE_SCALE } else { self.scale };
@@ -310,8 +315,8 @@ impl<'e> Stepper<'e> {
         Ok((end, turn))
     }
 
-    /// The point of the branch at which the tip has a given angle, from one nearby. There is one wherever that angle alone decides the
-    /// shape, round sharp folds, too, of which no tangent at a distance knows.
+    /// The point of the branch at which the tip has a given angle, from one nearby. There is one wherever that angle
+    /// alone decides the shape, round sharp folds, too, of which no tangent at a distance knows.
     pub(super) fn at_tip_angle(&mut self, here: &Point, angle: f64, control: StepControl) -> Result<Point, Trouble> {
         let climb = (angle - here.tip_angle()) * here.slope();
         let mut fraction = self.predict(here, climb / here.dlambda_ds);
@@ -343,7 +348,8 @@ impl<'e> Stepper<'e> {
         self.correct_on(&normal, 0.0, fraction)
     }
 
-    /// Newton on the plane through the present state with the normal `normal`, over theta at the nodes, and `climb`, over the fraction.
+    /// Newton on the plane through the present state with the normal `normal`, over theta at the nodes, and `climb`,
+    /// over the fraction.
     fn correct_on(&mut self, normal: &[f64], climb: f64, fraction: &mut f64) -> Result<(), Trouble> {
         // In a hurry, when the next one would be none.
         let close = self.scale * if self.engine.in_a_hurry { CLOSE } else { 1e-6 };

@@ -95,7 +95,8 @@ impl Engine {
         Ok(())
     }
 
-    /// Derivatives by `parameters` at the last evaluation, cables that are commanded held. `None` where the system is singular.
+    /// Derivatives by `parameters` at the last evaluation, cables that are commanded held. `None` where the system is
+    /// singular.
     pub(crate) fn derivatives(
         &self,
         quantities: &[Quantity],
