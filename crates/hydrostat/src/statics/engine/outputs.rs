@@ -49,8 +49,8 @@ pub(crate) fn sharpened(
 ) -> SectionQuery {
     const STEP: f64 = 1e-3;
     const REACH_STEP: f64 = 1e-4;
-    /// Change of beta' by the first time, times the reach over the element's length, below which a second time changes less than the
-    /// differences are known to.
+    /// Change of beta' by the first time, times the reach over the element's length, below which a second time changes
+    /// less than the differences are known to.
     const ONCE: f64 = 1e-10;
     if !solution.directions.is_closed() {
         return asked;
