@@ -150,7 +150,7 @@ fn sensitivity(error: &SensitivityError) -> Blame {
         | SensitivityError::Commanded(_)
         | SensitivityError::NotCommanded(_)
         | SensitivityError::Station { .. }
-        | SensitivityError::Rubbing(_)
+        | SensitivityError::Friction(_)
         | SensitivityError::Support => Blame::Request,
     }
 }

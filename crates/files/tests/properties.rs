@@ -85,7 +85,7 @@ fn cable(length: f64) -> impl Strategy<Value = Cable> {
             // A file has one of both.
             let tension = if stroke.is_some() { 0.0 } else { tension };
             let cable = Cable::new(name, offset).ending_at(end);
-            Cable { tension, stroke, stiffness, max_tension, ..cable.rubbing(friction, motion) }
+            Cable { tension, stroke, stiffness, max_tension, ..cable.with_friction(friction, motion) }
         },
     )
 }

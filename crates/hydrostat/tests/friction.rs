@@ -20,7 +20,7 @@ fn a_bent_inextensible_arm_against_the_closed_form() {
                 let mut arm = inextensible_arm("rubbed");
                 // EI is 1 N m2.
                 let cable = Cable::new("left", lever).pulled(curvature / lever);
-                arm.cables.push(cable.rubbing(friction, motion));
+                arm.cables.push(cable.with_friction(friction, motion));
                 let turn = sign * (1.0 + sign * friction * curvature).ln() / friction;
                 let solved = solve(&arm, 1e-9);
                 let off = (solved.tip().theta - turn).abs();
@@ -133,7 +133,7 @@ fn rounds_that_lead_nowhere_were_called_a_limit_of_the_sections() {
 #[test]
 fn a_cable_paid_out_until_it_folds_the_tip_was_not_found() {
     let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
-    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.3).rubbing(0.0, Motion::Out));
+    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.3).with_friction(0.0, Motion::Out));
     let mut folds = Vec::new();
     for friction in [0.2, 0.3, 1.0] {
         arm.cables[0].friction = friction;
@@ -173,7 +173,7 @@ fn a_commanded_stroke_with_friction_takes_more_tension() {
 fn nodes_clustered_where_a_cable_turns_the_other_way() {
     let mut arm = Arm::cone(0.2, 0.010, 0.004, 100e3, 0.5);
     arm.reference.mu = Profile::linear(0.0, -20.0);
-    arm.cables.push(Cable::new("left", 0.002).pulled(0.3).rubbing(0.2, Motion::In));
+    arm.cables.push(Cable::new("left", 0.002).pulled(0.3).with_friction(0.2, Motion::In));
     // Found by an independent solver, to 4e-10.
     let tip = [0.169_509_232_5, -0.072_851_846_9];
     // 8.384 mm and 193.201 mm are where chi' changes its sign in the arm without friction; with it the second is

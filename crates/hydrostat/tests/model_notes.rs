@@ -76,7 +76,9 @@ fn sources(folder: &Path, out: &mut Vec<std::path::PathBuf>) {
 fn comments_keep_to_120_columns() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files = Vec::new();
-    ["src", "tests"].iter().for_each(|folder| sources(&root.join(folder), &mut files));
+    for folder in ["src", "tests"] {
+        sources(&root.join(folder), &mut files);
+    }
     assert!(files.len() > 90, "{}", files.len());
     for file in files {
         let text = std::fs::read_to_string(&file).unwrap();

@@ -353,7 +353,7 @@ fn what_has_no_derivative_is_refused() {
     assert!(matches!(refused(&cone(), Parameter::Tension(2)), Some(SensitivityError::Unfit(_))));
     let mut rubbing = cone();
     rubbing.cables[0].friction = 0.1;
-    assert!(matches!(refused(&rubbing, Parameter::Young), Some(SensitivityError::Rubbing(_))));
+    assert!(matches!(refused(&rubbing, Parameter::Young), Some(SensitivityError::Friction(_))));
     let off = SensitivityOptions { stations: vec![0.3], ..SensitivityOptions::default() };
     let found = Solver::new(&cone(), Options::default()).unwrap().sensitivities_with(&[], &off);
     assert!(matches!(found, Err(SensitivityError::Station { .. })));

@@ -41,7 +41,7 @@ pub(crate) fn sensitivity_error(py: Python<'_>, error: SensitivityError, options
         SensitivityError::Unfit(_) | SensitivityError::Commanded(_) | SensitivityError::NotCommanded(_) => {
             wrong(format!("parameters: {error}"))
         }
-        SensitivityError::Rubbing(_) | SensitivityError::Support => wrong(format!("arm: {error}")),
+        SensitivityError::Friction(_) | SensitivityError::Support => wrong(format!("arm: {error}")),
         SensitivityError::Singular | SensitivityError::Unsettled(_) => {
             made(py, &NO_DERIVATIVE, "NoDerivative", (error.to_string(),))
         }

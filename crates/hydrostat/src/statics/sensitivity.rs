@@ -317,7 +317,7 @@ pub(crate) fn check(arm: &Arm, parameters: &[Parameter], stations: &[f64]) -> Re
         }
     }
     if let Some(cable) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
-        return Err(SensitivityError::Rubbing(cable));
+        return Err(SensitivityError::Friction(cable));
     }
     if arm.readings.support != Support::Clamped {
         return Err(SensitivityError::Support);

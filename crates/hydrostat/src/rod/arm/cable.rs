@@ -65,7 +65,7 @@ impl Cable {
     }
 
     /// This cable with a coefficient of friction against its channel, having slid in or out.
-    pub fn rubbing(mut self, friction: f64, motion: Motion) -> Self {
+    pub fn with_friction(mut self, friction: f64, motion: Motion) -> Self {
         self.friction = friction;
         self.motion = motion;
         self

@@ -32,7 +32,7 @@ pub enum SensitivityError {
         "`cable[{0}].friction` is above 0: which way the cable slides decides what a change does, so that there is no one \
          derivative; with 0 there is"
     )]
-    Rubbing(usize),
+    Friction(usize),
     /// The support option whose arm is no equilibrium at the tip.
     #[error("sensitivities need a clamped base")]
     Support,
