@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::arms::{Arms, Last};
-use crate::column::{Answered, Column, Data, Layout, Output, WARNINGS};
+use crate::column::{Answered, Column, Data, Layout, NoAnswer, Output, WARNINGS};
 use crate::error::{SweepError, parquet_error};
 use crate::file_format::{Format, NOTE, noted};
 use crate::parquet_file::Reader;
@@ -388,11 +388,11 @@ impl Sweep {
         let mut solved: Vec<(u64, Answered)> = Vec::new();
         for row in self.plan.order(tile) {
             let arm = self.arms.arm(&self.plan.values(row), &mut last);
-            let asked = arm.map_or(f64::INFINITY, |arm| self.tol * arm.length);
-            let answer = arm.ok_or(None).and_then(|arm| {
+            let asked = arm.as_ref().map_or(f64::INFINITY, |arm| self.tol * arm.length);
+            let answer = arm.map_err(NoAnswer::Arm).and_then(|arm| {
                 solver.solve(arm).map_err(|no| match no {
-                    NoRow::Verdict(verdict) => Some(verdict),
-                    NoRow::Arm(_) => None,
+                    NoRow::Verdict(verdict) => NoAnswer::Verdict(verdict),
+                    NoRow::Arm(error) => NoAnswer::Arm(error.to_string()),
                 })
             });
             solved.push((row, Answered { answer, asked }));

@@ -73,7 +73,6 @@ fn sweeps_that_cannot_be_meant() {
         ("flow.speed=0:1", "expected FROM:TO:COUNT or a list"),
         ("flow.speed=0:1 N:5", "expected a speed"),
         ("flow.speed=-1:1:5", "--vary flow.speed=-1.0: flow.speed: expected a value that is not negative"),
-        ("cable[0].tension=0:101:5", "max_tension"),
         ("flow.law=magnus", "--vary flow.law=magnus"),
         ("flow.speed", "expected KEY=FROM:TO:COUNT"),
     ] {
