@@ -373,7 +373,7 @@ class Arm:
         max_tension: float | None = None,
         max_stroke: float | None = None,
         tol: float = 1e-8,
-        all: bool = True,
+        find_all: bool = True,
     ) -> Reach:
         """Inverse kinematics: find tensions, from 0 to their largest, that bring the arm to targets.
 
@@ -394,7 +394,7 @@ class Arm:
             The largest stroke of every taut cable, m: how much can be reeled in.
         tol : float
             Tolerance on the distance to a target, relative to the arm's length, in [1e-10, 1e-2].
-        all : bool
+        find_all : bool
             Whether to search from all starts; otherwise the first solution ends the search.
 
         Returns
@@ -423,7 +423,7 @@ class Arm:
         most = most_of(max_tension, max_stroke)
         if by not in ("tensions", "strokes"):
             raise ValueError(f"by: expected tensions or strokes, found {by!r}")
-        asked = (goals, most, _inputs.number("tol", tol), all, by == "strokes")
+        asked = (goals, most, _inputs.number("tol", tol), find_all, by == "strokes")
         return Reach(_native.reach(self._inner, *asked), tuple(goals), self._origin("reach", asked))
 
     def reachable(self, *, max_tension: float | None = None, spacing: float = 0.01, tol: float = 1e-7) -> Boundary:
