@@ -1,9 +1,9 @@
 //! How an equilibrium changes with what is given: exact derivatives of tip, strokes and stations.
 //!
 //! With F the converged equations and p a parameter, F_z dz/dp = -F_p (the implicit function theorem). F_z is the
-//! derivative of the discrete equations themselves, beta' and beta'' included (`sensitivity/quantities`), factorised
-//! once; the entries of F_z and F_p are exact, from the code of the slopes running on numbers that carry derivatives
-//! (`equations/change`). No solve is repeated and nothing is differenced.
+//! exact derivative of the discrete equations, beta' included, factorised once. F_p is exact for tensions; for other
+//! parameters it is a difference of the fourth order of the explicit terms at the fixed solution (`equations/change`).
+//! No solve is repeated.
 //!
 //! Forward, every parameter is one back-substitution, and every output a sum over it. Adjoint, every output is one
 //! transposed solve, and every parameter a sum over that. Both give the same numbers to rounding.
