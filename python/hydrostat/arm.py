@@ -140,7 +140,7 @@ class Arm:
         except UnicodeDecodeError as error:
             from hydrostat._errors import ArmError
 
-            raise ArmError(f"{path}: expected UTF-8 text, found a byte that is none") from error
+            raise ArmError(f"{path}: not UTF-8 text") from error
         return cls._of(_native.Arm(text, str(path)))
 
     @classmethod
@@ -155,12 +155,12 @@ class Arm:
         if unknown:
             from hydrostat._errors import ArmError
 
-            raise ArmError(f"{unknown[0]}: expected one of {', '.join(_TABLES)}, found an unknown key", unknown[0])
+            raise ArmError(f"{unknown[0]}: unknown key; expected one of {', '.join(_TABLES)}", unknown[0])
         missing = [key for key in ("arm", "material") if key not in tables]
         if missing:
             from hydrostat._errors import ArmError
 
-            raise ArmError(f"{missing[0]}: expected a table, found nothing", missing[0])
+            raise ArmError(f"{missing[0]}: missing; expected a table", missing[0])
         return cls(**tables)
 
     def to_toml(self) -> str:

@@ -225,7 +225,7 @@ fn read(text: &str) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(300) })]
+    #![proptest_config(hydrostat_fuzz::property(300))]
 
     #[test]
     fn an_arm_written_out_reads_back_the_same(arm in arm()) {

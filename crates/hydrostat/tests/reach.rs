@@ -54,7 +54,7 @@ fn tips_of_shipped_arms_are_reached_on_a_thinned_grid() {
 
 #[test]
 #[ignore = "minutes: the whole grid, on request"]
-fn tips_of_shipped_arms_are_reached_on_the_grid() {
+fn slow_tips_of_shipped_arms_are_reached_on_the_grid() {
     shipped_round_trips(11);
 }
 

@@ -4,7 +4,7 @@ use hydrostat::{Arm, Bound, CableState, Reach, Reached, Station, Target, Tip};
 use hydrostat_figures::reach_figure;
 use hydrostat_files::{ReachDocument, number, reach_csv};
 
-use super::table::{TIP, place_cells, stability_words, table, tip_cells};
+use super::table::{TIP, distance_cell, place_cells, stability_words, table, tip_cells};
 use super::targets::{far_off, options};
 use super::{Advised, NoAnswer};
 use super::{boundary, follow};
@@ -108,8 +108,8 @@ fn summary(arm: &Arm, found: &Reach, station: Option<f64>, by: By) -> String {
         None => head.extend(TIP.map(str::to_owned)),
         Some(_) => head.extend(["place ", "tip "].iter().flat_map(|of| TIP.map(|name| format!("{of}{name}")))),
     }
-    head.push("off (mm)".to_owned());
-    head.extend(["stability", "solve leads here"].map(str::to_owned));
+    head.push("distance (mm)".to_owned());
+    head.extend(["stability", "given by solve"].map(str::to_owned));
     let mut rows = vec![head];
     for one in found.solutions.iter().chain(&found.closest) {
         let mut row: Vec<String> = one.tensions.iter().map(|t| number(*t)).collect();
@@ -121,7 +121,7 @@ fn summary(arm: &Arm, found: &Reach, station: Option<f64>, by: By) -> String {
             row.extend(place_cells(Tip { x: *x, y: *y, theta: *theta, alpha: *alpha }));
         }
         row.extend(tip_cells(&one.configuration));
-        row.push(format!("{:.1e}", 1e3 * one.distance * arm.length));
+        row.push(distance_cell(one.distance * arm.length));
         row.push(stability_words(one.stability));
         row.push(if one.on_the_path { "yes" } else { "no" }.to_owned());
         rows.push(row);

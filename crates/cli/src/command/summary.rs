@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use hydrostat::{Configuration, Stability, Wrench};
 use hydrostat_files::number;
 
+use super::table::decimals;
+
 /// What is known of the stability of `c`, in words.
 pub(super) fn stability(c: &Configuration) -> Option<String> {
     match (c.stability(), c.stable) {
@@ -24,6 +26,7 @@ pub(super) fn summary(c: &Configuration) -> String {
     let arm = &c.arm;
     let tip = c.tip();
     let mut out = String::new();
+    let mm = |length: f64| decimals(1e3 * length, 4);
     let mut row = |name: &str, text: &str| {
         let _ = writeln!(out, "{name:<15}{text}");
     };
@@ -33,7 +36,7 @@ pub(super) fn summary(c: &Configuration) -> String {
         speed => format!("stream {speed} m/s at {} deg", number(arm.flow.direction.to_degrees())),
     };
     row("arm", &format!("{}, {} mm, {stream}{stability}", arm.name, number(1e3 * arm.length)));
-    row("tip", &format!("x {:.4} mm, y {:.4} mm, turned by {}", 1e3 * tip.x, 1e3 * tip.y, degrees(tip.theta)));
+    row("tip", &format!("x {} mm, y {} mm, turned by {}", mm(tip.x), mm(tip.y), degrees(tip.theta)));
     row("tip section", &format!("alpha(L) {}", degrees(tip.alpha)));
     let widest = c.cables.iter().map(|cable| cable.name.chars().count()).max().unwrap_or(0);
     for (i, cable) in c.cables.iter().enumerate() {
@@ -86,6 +89,5 @@ fn signed(value: f64) -> String {
 }
 
 fn degrees(angle: f64) -> String {
-    let text = format!("{:.4} deg", angle.to_degrees());
-    if text == "-0.0000 deg" { "0.0000 deg".to_owned() } else { text }
+    format!("{} deg", decimals(angle.to_degrees(), 4))
 }

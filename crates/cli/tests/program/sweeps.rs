@@ -81,7 +81,7 @@ fn sweeps_that_cannot_be_meant() {
         assert!(message.contains(said) && message.contains("--vary"), "{text}: {message}");
     }
     let with = |more: &[&str]| refused(&sweep(&[&["-o", "out.parquet"], more].concat()));
-    assert!(with(&["--vary", "flow.speed=1,2"]).contains("flow.speed: expected every key once"));
+    assert!(with(&["--vary", "flow.speed=1,2"]).contains("flow.speed: the key is given twice"));
     assert!(with(&["--sample", "lhs:5"]).contains("expected FROM:TO or a list"));
     assert!(with(&["--sample", "lhs:0"]).contains("--sample"));
     assert!(with(&["--columns", "tip,tap"]).contains("expected some of tip, alpha"));
@@ -319,6 +319,6 @@ fn killed_sweeps_go_on() {
 
 #[test]
 #[ignore = "takes a minute; five kills are in the test above"]
-fn fifty_kills() {
+fn slow_fifty_kills() {
     kill(50);
 }

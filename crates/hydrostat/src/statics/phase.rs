@@ -27,8 +27,9 @@ impl Phase {
         }
     }
 
-    /// The loads that are applied at a load fraction, in a phrase.
-    pub(crate) fn load_at(self, fraction: f64) -> String {
+    /// The loads that are applied at a load fraction, in a phrase, such as `62.9 % of the requested tensions, other
+    /// loads fully applied`.
+    pub fn load_at(self, fraction: f64) -> String {
         let share = percent(fraction);
         match self {
             Self::Loads => format!("{share} of the stream, weight, tip and distributed loads, cables slack"),

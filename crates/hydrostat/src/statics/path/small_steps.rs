@@ -87,6 +87,6 @@ fn answers_are_those_of_small_steps() {
 
 #[test]
 #[ignore = "takes most of a minute"]
-fn answers_are_those_of_small_steps_on_600_arms() {
+fn slow_answers_are_those_of_small_steps_on_600_arms() {
     compare(600);
 }
