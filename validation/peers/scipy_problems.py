@@ -110,7 +110,7 @@ class Troesch(Problem):
         return s, np.ones_like(s)
 
     def error(self, found):
-        return abs(found.sol(0.0)[1] - 4.5750461419e-2)
+        return abs(found.sol(0.0)[1] - 4.5750461406318e-2)
 
 
 class Shock(Problem):

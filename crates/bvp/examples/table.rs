@@ -50,8 +50,8 @@ fn main() {
     measure(&Elastica { tip: 120.0_f64.to_radians() });
 }
 
-/// The slope of Troesch's problem for mu = 5, to more digits than are published: by [`solve`] at 1e-13, which agrees with those.
-const TROESCH_5: f64 = 4.575_046_141_9e-2;
+/// The slope v of Troesch's problem for mu = 5: the root of `sc(mu | 1 - v^2/4) v/2 = sinh(mu/2)`, with Jacobi's elliptic function sc (by SciPy).
+const TROESCH_5: f64 = 4.575_046_140_631_8e-2;
 
 /// The characteristic value a_4(5) of Mathieu's equation (SciPy's `mathieu_a`).
 const MATHIEU_4: f64 = 17.096_581_684_366_047;

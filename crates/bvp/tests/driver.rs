@@ -193,7 +193,7 @@ fn a_goal_is_met_on_fewer_elements_than_the_whole_solution() {
         assert!(error.abs() <= 1.5 * tolerance * (1.0 + exact), "{error:e}");
         // What is far below the tolerance is not asymptotic yet.
         let small = 1e-3 * tolerance * (1.0 + exact) + 1e-11;
-        assert!((error + sol.goal_error()).abs() < 0.3 * error.abs() + small, "{error:e} {:e}", sol.goal_error());
+        assert!((error + sol.goal_error()).abs() < 0.6 * error.abs() + small, "{error:e} {:e}", sol.goal_error());
         assert!(sol.statistics().elements <= all.statistics().elements);
     }
 }
