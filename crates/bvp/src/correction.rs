@@ -1,7 +1,7 @@
 //! Corrections of discrete solutions.
 
 use crate::real::{LANES, Lanes};
-use crate::solution::{End, Stage};
+use crate::solution::{End, Solution, Stage};
 
 /// A Newton correction, or a tangent.
 #[derive(Debug, Clone)]
@@ -77,5 +77,33 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Correction<
     /// Largest change of component `a` at the nodes.
     pub fn largest(&self, a: usize) -> f64 {
         self.nodes.iter().fold(0.0, |m, z| if z[a].is_nan() { f64::NAN } else { f64::max(m, z[a].abs()) })
+    }
+}
+
+impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
+    /// Adds `factor` times a correction.
+    #[inline(always)]
+    pub fn add<const Q: usize>(&mut self, correction: &Correction<N, M, Q, L>, factor: f64) {
+        for (z, dz) in self.nodes.iter_mut().zip(&correction.nodes) {
+            for a in 0..N {
+                z[a] += factor * dz[a];
+            }
+        }
+        let f = Lanes([factor; LANES]);
+        for (own, change) in self.stages.iter_mut().zip(&correction.stages) {
+            for a in 0..N {
+                own.slope[a] += f * change.slope[a];
+            }
+            for a in 0..L {
+                own.inner[a] += f * change.inner[a];
+            }
+            own.closure_slope += f * change.closure_slope;
+        }
+        for (own, change) in self.ends.iter_mut().zip(&correction.ends) {
+            for a in 0..L {
+                own.inner[a] += f * change.inner[a];
+            }
+            own.closure_slope += f * change.closure_slope;
+        }
     }
 }

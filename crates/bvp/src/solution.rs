@@ -1,6 +1,5 @@
 //! Discrete solutions.
 
-use crate::correction::Correction;
 use crate::directions::{Directions, Side};
 use crate::gauss::Gauss;
 use crate::groups::{Groups, make_room, resize};
@@ -395,32 +394,6 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
             own.closure_slope += by * (own.closure_slope - other.closure_slope);
         }
         true
-    }
-
-    /// Adds `factor` times a correction.
-    #[inline(always)]
-    pub fn add<const Q: usize>(&mut self, correction: &Correction<N, M, Q, L>, factor: f64) {
-        for (z, dz) in self.nodes.iter_mut().zip(&correction.nodes) {
-            for a in 0..N {
-                z[a] += factor * dz[a];
-            }
-        }
-        let f = Lanes([factor; LANES]);
-        for (own, change) in self.stages.iter_mut().zip(&correction.stages) {
-            for a in 0..N {
-                own.slope[a] += f * change.slope[a];
-            }
-            for a in 0..L {
-                own.inner[a] += f * change.inner[a];
-            }
-            own.closure_slope += f * change.closure_slope;
-        }
-        for (own, change) in self.ends.iter_mut().zip(&correction.ends) {
-            for a in 0..L {
-                own.inner[a] += f * change.inner[a];
-            }
-            own.closure_slope += f * change.closure_slope;
-        }
     }
 }
 

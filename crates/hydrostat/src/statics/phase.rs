@@ -27,7 +27,8 @@ impl Phase {
         }
     }
 
-    /// The loads that are applied at a load fraction, in a phrase: `62.9 % of the requested tensions, other loads fully applied`.
+    /// The loads that are applied at a load fraction, in a phrase: `62.9 % of the requested tensions, other loads fully
+    /// applied`.
     pub fn load_at(self, fraction: f64) -> String {
         let share = percent(fraction);
         match self {
