@@ -367,7 +367,7 @@ mod tests {
             assert!(error(text).contains("expected KEY=FROM:TO:COUNT"), "{text}");
         }
         // What is no index was read over, and stood in messages with its ends of lines.
-        assert!(error("cable[x\n].tension=0:1:2").starts_with("cable[x\\n].tension: expected a key of the arm file"));
+        assert!(error("cable[x\n].tension=0:1:2").starts_with("cable[x\\n].tension: "));
         for text in ["flow.speed=", "flow.speed=1,,2", "flow.law="] {
             assert!(error(text).contains("at least one value"), "{text}");
         }
