@@ -1,6 +1,6 @@
 //! Two-point boundary-value problems with error estimates: Gauss collocation with adaptive meshes.
 //!
-//! [`solve`] takes a problem `z' = f(s, z, p)` on [a, b] with conditions at both ends, where parameters p may be unknown, a guess, and
+//! [`solve()`] takes a problem `z' = f(s, z, p)` on [a, b] with conditions at both ends, where parameters p may be unknown, a guess, and
 //! options. It returns a [`Sol`]: a continuous function ([`Sol::eval`]) with an estimate of its error at every place
 //! ([`Sol::error_at`]).
 //!

@@ -10,7 +10,7 @@ pub enum Scope {
     Quick,
 }
 
-/// What is happening while [`run`] works: told from several threads.
+/// What is happening while [`run`](crate::run) works: told from several threads.
 pub trait Listener: Sync {
     /// A part begins; `part` counts from 1.
     fn begins(&self, part: usize, of: usize, title: &str);

@@ -22,7 +22,7 @@ impl Join {
     }
 }
 
-/// Value and derivatives of a [`Profile`] at one place.
+/// Value and derivatives of a [`Profile`](crate::Profile) at one place.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sample {
     /// The value, in the unit of the profile.
