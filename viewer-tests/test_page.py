@@ -160,7 +160,7 @@ def test_too_much_tension_is_said_in_words(watched: Watched) -> None:
     expect(verdict).to_have_attribute("data-level", "bad")
     expect(verdict).to_contain_text("No equilibrium at these loads: cable fold")
     expect(verdict).to_contain_text("Try: lower the tension")
-    expect(verdict).to_contain_text("not the loads asked for")
+    expect(verdict).to_contain_text("not the requested loads")
     assert solved("silicone", "--tension", "1.2,0")["verdict"]["kind"] == "cable_fold"
     expect(page.locator("#tip")).to_be_hidden()
 

@@ -140,7 +140,7 @@ class Arm:
         except UnicodeDecodeError as error:
             from hydrostat._errors import ArmError
 
-            raise ArmError(f"{path}: expected UTF-8 text, found a byte that is none") from error
+            raise ArmError(f"{path}: not UTF-8 text") from error
         return cls._of(_native.Arm(text, str(path)))
 
     @classmethod
@@ -155,12 +155,12 @@ class Arm:
         if unknown:
             from hydrostat._errors import ArmError
 
-            raise ArmError(f"{unknown[0]}: expected one of {', '.join(_TABLES)}, found an unknown key", unknown[0])
+            raise ArmError(f"{unknown[0]}: unknown key; expected one of {', '.join(_TABLES)}", unknown[0])
         missing = [key for key in ("arm", "material") if key not in tables]
         if missing:
             from hydrostat._errors import ArmError
 
-            raise ArmError(f"{missing[0]}: expected a table, found nothing", missing[0])
+            raise ArmError(f"{missing[0]}: missing; expected a table", missing[0])
         return cls(**tables)
 
     def to_toml(self) -> str:
@@ -373,7 +373,7 @@ class Arm:
         max_tension: float | None = None,
         max_stroke: float | None = None,
         tol: float = 1e-8,
-        all: bool = True,
+        find_all: bool = True,
     ) -> Reach:
         """Inverse kinematics: find tensions, from 0 to their largest, that bring the arm to targets.
 
@@ -394,7 +394,7 @@ class Arm:
             The largest stroke of every taut cable, m: how much can be reeled in.
         tol : float
             Tolerance on the distance to a target, relative to the arm's length, in [1e-10, 1e-2].
-        all : bool
+        find_all : bool
             Whether to search from all starts; otherwise the first solution ends the search.
 
         Returns
@@ -423,7 +423,7 @@ class Arm:
         most = most_of(max_tension, max_stroke)
         if by not in ("tensions", "strokes"):
             raise ValueError(f"by: expected tensions or strokes, found {by!r}")
-        asked = (goals, most, _inputs.number("tol", tol), all, by == "strokes")
+        asked = (goals, most, _inputs.number("tol", tol), find_all, by == "strokes")
         return Reach(_native.reach(self._inner, *asked), tuple(goals), self._origin("reach", asked))
 
     def reachable(self, *, max_tension: float | None = None, spacing: float = 0.01, tol: float = 1e-7) -> Boundary:

@@ -103,7 +103,8 @@ class Run:
         work = list(zip(chunks, paths, strict=True))
         futures = [self._submit(_written, tiles, str(path)) for tiles, path in work]
         self._wait(futures, chunks)
-        rows = sum(rows for rows, _ in self._client.gather(futures))
+        written: Any = self._client.gather(futures)
+        rows = sum(rows for rows, _ in written)
         # A worker that was killed while it wrote leaves what it had, under a hidden name of its own; others wrote those rows again.
         for leftover in directory.glob(".rows-*.tmp"):
             leftover.unlink(missing_ok=True)
@@ -125,7 +126,8 @@ class Run:
     def _chunks(self) -> list[Tiles]:
         """Equal shares of the tiles, each about as long as asked for."""
         tiles = self._sweep.tiles
-        threads = max(sum(self._client.nthreads().values()), 1)
+        workers: Any = self._client.nthreads()
+        threads = max(sum(workers.values()), 1)
         most = max(tiles // (_EACH * threads), 1)
         width = sum(len(variable.columns) for variable in variables(self._sweep, self._probe)) + 1
         largest = max(_LARGEST // width // max(self._rows((0, 1)), 1), 1)

@@ -79,6 +79,7 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
         self.action_space = Box(-1.0, 1.0, (self._count,), np.float64)
         bound = np.concatenate([np.full(2, 2.0), np.ones(2), np.full(4, 3.0), np.ones(self._count)])
         self.observation_space = Box(-bound, bound, dtype=np.float64)
+        self._bound = bound
         self._solver = Solver(self._arm, 1e-6)
         self._tensions = np.zeros(self._count)
         self._course = np.zeros((self._period, 2))
@@ -146,7 +147,7 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
         turned = [np.sin(tip[2]), np.cos(tip[2])]
         pulls = self._tensions / (self._most or 1.0)
         seen: NDArray[np.float64] = np.concatenate([tip[:2], turned, target, following - target, pulls])
-        return np.clip(seen, self.observation_space.low, self.observation_space.high, out=seen)
+        return np.clip(seen, -self._bound, self._bound, out=seen)
 
     def _about(self, tip: NDArray[np.float64]) -> dict[str, Any]:
         return {"distance": float(np.hypot(*(tip[:2] - self.target()))), "flow_speed": self._speed}

@@ -274,11 +274,12 @@ def _table(data: Measured) -> tuple[str | None, str]:
             raise FileNotFoundError(f"data: there is no file {str(path)!r}")
         return str(path), ""
     columns: dict[str, list[object]] = {}
+    frame: Any = data
     named = [name for name in getattr(getattr(data, "index", None), "names", ()) if name is not None]
     if named and hasattr(data, "reset_index"):
         # An index with a name is a column like the others.
-        data = data.reset_index(level=named)
-    for head, column in data.items():
+        frame = frame.reset_index(level=named)
+    for head, column in frame.items():
         if isinstance(column, str) or not isinstance(column, Iterable):
             raise ValueError(f"data[{head!r}]: expected a column of values, found {column!r}")
         columns[str(head)] = list(column)

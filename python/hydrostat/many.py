@@ -13,25 +13,29 @@ import numpy as np
 from hydrostat import _inputs, _memory, _native, _saved
 from hydrostat._progress import Progress
 from hydrostat.arm import Arm, arm_of
+from hydrostat.solution import CONVENTIONS
 
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
-_UNITS = {
-    "tip_x": "m",
-    "tip_y": "m",
-    "tip_theta": "rad",
-    "tip_alpha": "rad",
-    "base_force_x": "N",
-    "base_force_y": "N",
-    "base_moment": "N m",
-    "error_estimate": "m",
-    "tension": "N",
-    "stroke": "m",
-    "x": "m",
-    "y": "m",
-    "theta": "rad",
+#: Unit and meaning of what has one.
+_FIELDS = {
+    "tip_x": ("m", "tip along e1"),
+    "tip_y": ("m", "tip along e2"),
+    "tip_theta": ("rad", "rotation of the section at the tip"),
+    "tip_alpha": ("rad", "angle from the section's normal to the centreline's tangent at the tip"),
+    "base_force_x": ("N", "base reaction along e1"),
+    "base_force_y": ("N", "base reaction along e2"),
+    "base_moment": ("N m", "moment of the base reaction"),
+    "error_estimate": ("m", "estimated error of the tip"),
+    "tension": ("N", "tension at the base"),
+    "stroke": ("m", "stroke, positive when reeled in"),
+    "fold_margin": ("1", "margin of the surface against folding"),
+    "load_fraction": ("1", "share of the loads where there is no equilibrium"),
+    "x": ("m", "centreline along e1"),
+    "y": ("m", "centreline along e2"),
+    "theta": ("rad", "rotation of the section"),
 }
 #: Dimensions beyond those of the rows.
 _DIMS: dict[str, tuple[str, ...]] = {
@@ -147,7 +151,7 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
             raise ValueError(f"dims: expected {len(self.shape)} names, found {len(own)}")
         variables = {}
         for name, column in self._columns.items():
-            attributes = {"units": _UNITS[name]} if name in _UNITS else {}
+            attributes = dict(zip(("units", "long_name"), _FIELDS[name], strict=True)) if name in _FIELDS else {}
             variables[name] = ((*own, *_DIMS.get(name, ())), column, attributes)
         coordinates: dict[str, Any] = {"cable": ("cable", list(self.cables))}
         if self.parameters:
@@ -155,7 +159,7 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         if "x" in self._columns:
             places = np.linspace(0.0, self.length, self._columns["x"].shape[-1])
             coordinates["s"] = ("station", places, {"units": "m", "long_name": "length along the undeformed arm"})
-        return xr.Dataset(variables, coords=coordinates)
+        return xr.Dataset(variables, coords=coordinates, attrs={"Conventions": CONVENTIONS, "hydrostat": _native.__version__})
 
 
 def _many(version: int, writer: str, state: tuple[Any, ...]) -> Many:
@@ -164,7 +168,7 @@ def _many(version: int, writer: str, state: tuple[Any, ...]) -> Many:
 
 
 @overload
-def solve_many(
+def solve_many(  # pyright: ignore[reportOverlappingOverload]
     arm: Arm | str | PathLike[str],
     *,
     tensions: xr.DataArray,
@@ -264,12 +268,8 @@ def solve_many(
         ``"tip.force[1]"`` (N), ``"material.young"`` (Pa) and so on.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
-    snap_distance : float
-        Largest jump of the tip at a snap, relative to the arm's length; an arm that snaps further has no answer.
-    snap_angle : float or str
-        Largest turn of the tip at a snap: degrees, or a string with a unit.
-    follow_snaps : bool
-        Whether to follow every snap, however far.
+    snap_distance, snap_angle, follow_snaps
+        Which snaps are followed; see `Arm.solve`.
     tile : int
         Number of rows that are solved after one another. A row starts warm from the one before if only loads differ and this cannot
         lead to another branch. The rows do not depend on the number of processors.

@@ -34,12 +34,8 @@ class Solver:
         The arm, or the name or file of one.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
-    snap_distance : float
-        Largest jump of the tip at a snap, relative to the arm's length; an arm that snaps further has no answer.
-    snap_angle : float or str
-        Largest turn of the tip at a snap: degrees, or a string with a unit.
-    follow_snaps : bool
-        Whether to follow every snap, however far.
+    snap_distance, snap_angle, follow_snaps
+        Which snaps are followed; see `Arm.solve`.
 
     A copy continues from the same shape, independently.
 

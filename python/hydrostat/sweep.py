@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union, overload
 import numpy as np
 
 from hydrostat import _inputs, _memory, _native
-from hydrostat._errors import ArmError
 from hydrostat._progress import Progress
 from hydrostat.arm import Arm, arm_of
+from hydrostat.solution import CONVENTIONS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,8 +30,6 @@ _UNITS = {"Nm": "N m"}
 #: Numbers of a row that are not of cables or stations, all columns together.
 _NUMBERS = 18
 _ENDINGS = (".parquet", ".csv")
-#: The verdict of a row whose values make no arm.
-_NO_ARM = "no_arm"
 
 
 class Plan(NamedTuple):
@@ -149,12 +147,8 @@ def sweep(
         Seed of the sample.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
-    snap_distance : float
-        Largest jump of the tip at a snap, relative to the arm's length; an arm that snaps further has no answer.
-    snap_angle : float or str
-        Largest turn of the tip at a snap: degrees, or a string with a unit.
-    follow_snaps : bool
-        Whether to follow every snap, however far.
+    snap_distance, snap_angle, follow_snaps
+        Which snaps are followed; see `Arm.solve`.
     columns : sequence of str, optional
         The outputs: some of ``tip``, ``alpha``, ``strokes``, ``tensions``, ``base``, ``fold``, ``stability``, ``error``,
         ``warnings``, ``verdict``.
@@ -265,29 +259,8 @@ Columns = Mapping[str, Any]
 
 
 def columns_of(plan: Plan, tiles: tuple[int, int], threads: int, progress: Callable[[int], None] | None) -> Columns:
-    """The columns of some tiles, and beside them in words why the values of a row make no arm."""
-    native = plan.native()
-    found = native.columns(tiles, threads, progress)
-    verdicts, words = found["verdict"]
-    place = np.full(len(verdicts), -1)
-    reasons: list[str] = []
-    if _NO_ARM in words:
-        for row in np.flatnonzero(np.asarray(verdicts) == list(words).index(_NO_ARM)):
-            place[row] = len(reasons)
-            reasons.append(_reason(plan, native, found, int(row)))
-    return {**found, "reason": (place, reasons)}
-
-
-def _reason(plan: Plan, native: _native.Sweep, found: Columns, row: int) -> str:
-    values: dict[str, object] = {}
-    for key, column, unit, per_si in native.axes:
-        own = found[column]
-        values[key] = own[1][own[0][row]] if isinstance(own, tuple) else f"{float(own[row] * per_si)!r} {unit}".strip()
-    try:
-        plan.arm.replace(values)
-    except ArmError as error:
-        return str(error).removeprefix("replace ")
-    return ""
+    """The columns of some tiles."""
+    return plan.native().columns(tiles, threads, progress)
 
 
 def variables(native: _native.Sweep, found: Columns) -> list[Variable]:
@@ -346,22 +319,23 @@ def dataset(
         dims = tuple(key for key, *_ in axes)
         for index, (key, _, unit, per_si) in enumerate(axes):
             own = _shown(vary[key], native.values(index), per_si)
-            coordinates[key] = (key, own, {"units": unit})
+            coordinates[key] = (key, own, {"units": unit} if unit else {})
         shape = tuple(len(coordinates[key][1]) for key in dims)
     else:
         for key, column, unit, per_si in axes:
             rows = keys[column]
             shown = rows if rows.dtype.kind == "O" or per_si == 1.0 else rows * per_si
-            coordinates[key] = ("row", shown, {"units": unit})
+            coordinates[key] = ("row", shown, {"units": unit} if unit else {})
     out: dict[str, Any] = {}
     for variable, rows in values.items():
         last = () if variable.dimension is None else (variable.dimension,)
         array = rows.reshape(shape + rows.shape[1:])
-        attributes = {"units": variable.unit, "column": variable.columns[0]} if not variable.words else {}
+        attributes = {"units": variable.unit or "1", "column": variable.columns[0]} if not variable.words else {}
         out[variable.name] = ((*dims, *last), array, attributes)
     used = {dim for dims_of, *_ in out.values() for dim in dims_of}
     kept = {name: value for name, value in coordinates.items() if name != "cable" or "cable" in used}
     about: dict[str, Any] = {
+        "Conventions": CONVENTIONS,
         "arm": plan.arm.to_toml(),
         "vary": [key for key, *_ in axes],
         "tol": plan.tol,

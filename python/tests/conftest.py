@@ -23,10 +23,21 @@ ROOT = Path(__file__).resolve().parents[2]
 
 CHECKOUT = (ROOT / "crates/python").is_dir()
 #: What reads documents and examples; the tests of a wheel run without them.
-needs_checkout = pytest.mark.skipif(not CHECKOUT, reason="needs the documents and examples of a checkout")
+needs_checkout = pytest.mark.checkout
 
 #: Runs the program with arguments: exit status and standard output.
 Program = Callable[..., tuple[int, str]]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "checkout: reads the documents and examples of a checkout")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    if not CHECKOUT:
+        for item in items:
+            if item.get_closest_marker("checkout"):
+                item.add_marker(pytest.mark.skip(reason="needs the documents and examples of a checkout"))
 
 
 @pytest.fixture(scope="session")

@@ -19,7 +19,7 @@ import hydrostat as hs
 @pytest.mark.parametrize("name", sorted(hs.arms()))
 def test_one_arm_in_five_ways(tmp_path: Path, name: str) -> None:
     shipped = hs.Arm.load(name)
-    file = ROOT / "arms" / f"{name}.toml"
+    file = ROOT / "crates" / "files" / "arms" / f"{name}.toml"
     tables = tomllib.loads(file.read_text(encoding="utf-8"))
     tables.setdefault("name", name)
     written = tmp_path / f"{name}.toml"
@@ -84,7 +84,7 @@ def test_numbers_and_texts_arrive_as_they_are(points: list[float], name: str) ->
         (lambda: hs.Arm(arm={"length": -1, "radius": 1}, material={"young": 1}), "arm.length", "above zero"),
         (lambda: hs.Arm(arm={"length": float("nan"), "radius": 1}, material={"young": 1}), "arm.length", "finite"),
         (lambda: hs.Arm.from_dict({"arm": {}, "materiel": {}}), "materiel", "unknown"),
-        (lambda: hs.Arm.from_dict({"arm": {}}), "material", "found nothing"),
+        (lambda: hs.Arm.from_dict({"arm": {}}), "material", "missing"),
         (lambda: hs.Arm.load("paper").replace({"flow.sped": 1}), "flow.sped", "did you mean `speed`"),
         (lambda: hs.Arm.load("paper").replace(tensions=[-1, 0]), "cable[0].tension", "not negative"),
         (lambda: hs.Arm.load("paper").replace({"cable[7].tension": 1}), "cable", "0 to 1"),

@@ -59,7 +59,7 @@ def test_several_targets(silicone: hs.Arm) -> None:
     assert np.allclose([places.s[0], places.x[0], places.y[0]], [0.15, goals[1].x, goals[1].y], rtol=0, atol=1e-8)
     assert len(places.s) == 1 and len(silicone.reach((0.182, 0.078), max_tension=0.6)[0].places.s) == 0
     assert found[0].stability == "stable" and found[0].unstable_directions == 0
-    first = silicone.reach(goals, max_tension=0.9, all=False)
+    first = silicone.reach(goals, max_tension=0.9, find_all=False)
     assert len(first) == 1
 
 

@@ -40,3 +40,14 @@ def test_warnings_can_be_errors_and_can_be_let_be(silicone: hs.Arm) -> None:
     dataset = bent.to_xarray()
     assert dataset.warnings.dims == ("warning",) and dataset.warning.values.tolist() == ["tangential_load"]
     assert "warnings" not in repr(silicone.solve())
+
+
+def test_who_ignores_them_is_spared_the_search(silicone: hs.Arm) -> None:
+    arm = silicone.replace(flow_speed=0.1, tensions=[0.2, 0.0])
+    for category, text, searched in [(hs.ModelWarning, "", False), (UserWarning, "", False), (hs.ModelWarning, "surface", True)]:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            warnings.filterwarnings("ignore", text, category)
+            sol = arm.solve()
+        assert ("warnings" in vars(sol)) == searched == bool(caught)
+        assert [note.kind for note in sol.warnings] == ["tangential_load"]

@@ -1,6 +1,6 @@
 """Where SciPy's `solve_bvp` and PyElastica have the tips of arms, for `hydrostat validate`; see README.md in this folder.
 
-    python3 validation/peers/tips.py VENV [-o validation/peers/tips.json]
+    python3 validation/peers/tips.py VENV [-o crates/validate/data/tips.json]
 
 VENV is a directory for a virtual environment: it is made where it is missing, and filled from PyPI.
 """
@@ -12,7 +12,7 @@ import platform
 from importlib.metadata import version
 from pathlib import Path
 
-from compare import HERE, PACKAGES, enter_venv
+from compare import PACKAGES, ROOT, enter_venv
 
 # Tension (N) and speed (m/s).
 LOADS = ((10.0, 0.0), (10.0, 0.5), (20.0, 1.0), (40.0, 0.0), (40.0, 0.5), (40.0, 1.0), (60.0, 0.5))
@@ -25,7 +25,7 @@ PERIODS, REST = 6, 1e-8
 def main():
     parser = argparse.ArgumentParser(description="Tips by solve_bvp and PyElastica")
     parser.add_argument("venv", help="virtual environment, made where it is missing")
-    parser.add_argument("-o", "--output", default=str(HERE / "tips.json"), help="where to write them")
+    parser.add_argument("-o", "--output", default=str(ROOT / "crates/validate/data/tips.json"), help="where to write them")
     options = parser.parse_args()
     enter_venv(options.venv)
     provenance = {

@@ -1,7 +1,7 @@
 """Shapes by a program that shares nothing with Hydrostat: Chebyshev collocation in NumPy and SciPy.
 
-    python3 validation/reference/solve.py validation/reference/cases.json             distances to the answers in a file
-    python3 validation/reference/solve.py validation/reference/weight.json --write    the answers in a file anew
+    python3 validation/reference/solve.py crates/validate/data/cases.json             distances to the answers in a file
+    python3 validation/reference/solve.py crates/validate/data/weight.json --write    the answers in a file anew
 
 The answer is the end of the path of docs/model.md, section 7: loads raised from nothing, then tensions. Kinks of the
 load are ends of pieces, found with the shape; pieces are halved until their polynomials are resolved.

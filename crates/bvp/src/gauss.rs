@@ -1,10 +1,10 @@
 //! Gauss–Legendre collocation with `M` stages on [0, 1]: order 2M at the nodes.
 
 /// Most stages of a method for problems with a closure variable.
-pub const MOST_STAGES: usize = 5;
+pub const MAX_STAGES: usize = 5;
 
 /// The stages and both ends of an element.
-pub(crate) const POINTS: usize = MOST_STAGES + 2;
+pub(crate) const POINTS: usize = MAX_STAGES + 2;
 
 /// Weights by two of the stages and ends.
 pub(crate) type Differentiation = [[f64; POINTS]; POINTS];
@@ -27,7 +27,7 @@ pub struct Gauss<const M: usize> {
     /// Differentiation on the stages and both ends, for either side that is an element's own
     /// ([`Side`](crate::directions::Side)): `closure[side][m][l]` is the slope at point `m` of the polynomial that is one at
     /// point `l`. Points 0 to M-1 are the stages, M is the own end, M+1 the other one. Zero for methods
-    /// with more than [`MOST_STAGES`] stages.
+    /// with more than [`MAX_STAGES`] stages.
     pub closure: [Differentiation; 2],
     /// `legendre[n][j]`: weight of P_n in `l_j`, `(2n+1) b_j P_n(c_j)`.
     legendre: [[f64; M]; M],
@@ -65,7 +65,7 @@ impl<const M: usize> Gauss<M> {
             gauss.a[j] = gauss.integrals(c[j]);
             gauss.d[j] = gauss.slopes(c[j]);
         }
-        if M <= MOST_STAGES {
+        if M <= MAX_STAGES {
             gauss.closure = [[0.0, 1.0], [1.0, 0.0]].map(|ends| differentiation(&gauss.c, ends));
         }
         gauss

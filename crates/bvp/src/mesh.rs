@@ -113,6 +113,16 @@ impl Mesh {
         self.nodes[i + 1] - self.nodes[i]
     }
 
+    /// Weights of the nodes in an integral over [0, 1], by the trapezoidal rule.
+    pub fn node_weights(&self) -> impl Iterator<Item = f64> + '_ {
+        let n = self.elements();
+        (0..=n).map(move |i| {
+            let left = if i > 0 { self.step(i - 1) } else { 0.0 };
+            let right = if i < n { self.step(i) } else { 0.0 };
+            0.5 * (left + right)
+        })
+    }
+
     /// Whether node `i` is pinned.
     pub fn is_pinned(&self, i: usize) -> bool {
         self.pinned[i] == Pin::Pinned
@@ -134,7 +144,7 @@ impl Mesh {
 
     /// Moves the nodes on by `share` times their way from the mesh `before` to this one; `None` where the two do not
     /// correspond node by node, or where that would more than halve or double an element.
-    pub fn led_on(&self, before: &Self, share: f64) -> Option<Self> {
+    pub fn extrapolated(&self, before: &Self, share: f64) -> Option<Self> {
         if self.pinned != before.pinned {
             return None;
         }

@@ -27,7 +27,7 @@ pub trait Pointwise<const N: usize, const Q: usize> {
     /// Slopes and gradients at the place `s` in the state `z`.
     ///
     /// # Errors
-    /// When the state has no slopes: the round ends with [`RoundError::Slopes`](crate::RoundError::Slopes), and whoever drives it may correct by less.
+    /// When the state has no slopes: the round ends with [`LinearisationError::Slopes`](crate::LinearisationError::Slopes), and whoever drives it may correct by less.
     fn slopes(&self, s: f64, z: &[f64; N]) -> Result<Slopes<N, Q>, Self::Failure>;
 
     /// See [`Problem::left_count`].
@@ -38,6 +38,26 @@ pub trait Pointwise<const N: usize, const Q: usize> {
 
     /// See [`Problem::right`].
     fn right(&self, z: &[f64; N], out: &mut [Condition<N>; N]);
+}
+
+impl<P: Pointwise<N, Q> + ?Sized, const N: usize, const Q: usize> Pointwise<N, Q> for &P {
+    type Failure = P::Failure;
+
+    fn slopes(&self, s: f64, z: &[f64; N]) -> Result<Slopes<N, Q>, P::Failure> {
+        (**self).slopes(s, z)
+    }
+
+    fn left_count(&self) -> usize {
+        (**self).left_count()
+    }
+
+    fn left(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
+        (**self).left(z, out);
+    }
+
+    fn right(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
+        (**self).right(z, out);
+    }
 }
 
 /// A [`Pointwise`] problem at the stages of a mesh, as a [`Problem`].

@@ -100,7 +100,7 @@ impl<const N: usize, const Q: usize, const L: usize, R: Real> Default for Local<
 /// A change of the equations at a station at fixed state and closure slope, the inner unknowns eliminated: the derivative by a
 /// parameter, or a load.
 #[derive(Debug, Clone, Copy)]
-pub struct Drift<const N: usize, const Q: usize, const L: usize, R = Lanes> {
+pub struct StageForcing<const N: usize, const Q: usize, const L: usize, R = Lanes> {
     /// Of the slopes.
     pub slope: [R; N],
     /// Of the rates of the quadratures.
@@ -111,7 +111,7 @@ pub struct Drift<const N: usize, const Q: usize, const L: usize, R = Lanes> {
     pub value: R,
 }
 
-impl<const N: usize, const Q: usize, const L: usize, R: Real> Default for Drift<N, Q, L, R> {
+impl<const N: usize, const Q: usize, const L: usize, R: Real> Default for StageForcing<N, Q, L, R> {
     #[inline(always)]
     fn default() -> Self {
         let zero = R::of(0.0);

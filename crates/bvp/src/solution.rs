@@ -1,4 +1,4 @@
-//! Discrete solutions, and corrections of them.
+//! Discrete solutions.
 
 use crate::directions::{Directions, Side};
 use crate::gauss::Gauss;
@@ -169,7 +169,7 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
     /// [`Solution::inner_in`], given the cardinal polynomials at `x`.
     fn inner_by(&self, gauss: &Gauss<M>, cardinals: &[f64; M], i: usize, x: f64) -> InnerState<L> {
         let mut out = InnerState { inner: [0.0; L], closure_slope: 0.0 };
-        if !self.directions.is_closed() {
+        if const { L == 0 } || !self.directions.is_closed() {
             for (j, w) in cardinals.iter().enumerate() {
                 let of = self.inner(i, j).inner;
                 for a in 0..L {
@@ -206,14 +206,14 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
     }
 
     /// Inner unknowns at the end of element `i` that is not its own.
-    fn inner_at_other_end(&self, i: usize) -> [f64; L] {
+    pub(crate) fn inner_at_other_end(&self, i: usize) -> [f64; L] {
         let (block, lane) = self.directions.end_taken(i);
         self.ends[block].inner.map(|v| v.0[lane])
     }
 
     /// Carries the solution over to the mesh of `out` by its polynomials; elements that both meshes have stay as they are. `jumps`
     /// say where the new elements take the closure variable over; see [`Directions::set`].
-    pub fn onto(&self, gauss: &Gauss<M>, jumps: impl Fn(f64) -> bool, out: &mut Self) {
+    pub fn remap(&self, gauss: &Gauss<M>, jumps: impl Fn(f64) -> bool, out: &mut Self) {
         let n = out.mesh.elements();
         let groups = Groups { elements: n, stages: M };
         out.nodes.clear();
@@ -253,7 +253,7 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
             }
         }
         out.nodes.push(self.nodes[self.mesh.elements()]);
-        if !self.directions.is_closed() {
+        if const { L == 0 } || !self.directions.is_closed() {
             out.directions.clear();
             out.ends.clear();
             return;
@@ -275,7 +275,7 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
         out.nodes.clone_from(&self.nodes);
         out.ends.clone_from(&self.ends);
         resize(&mut out.stages, groups.count() * K, Stage::default());
-        let closed = self.directions.is_closed();
+        let closed = L > 0 && self.directions.is_closed();
         for g in 0..groups.count() {
             let own = &self.stages[g * M..(g + 1) * M];
             let mut right = Lanes::default();
@@ -363,7 +363,13 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
     }
 
     /// This solution with an own end given to every element, and the unknowns there by extrapolation; see [`Directions::set`].
-    pub fn turned(&self, gauss: &Gauss<M>, side: impl Fn(usize) -> Side, jumps: impl Fn(f64) -> bool, out: &mut Self) {
+    pub fn with_sides(
+        &self,
+        gauss: &Gauss<M>,
+        side: impl Fn(usize) -> Side,
+        jumps: impl Fn(f64) -> bool,
+        out: &mut Self,
+    ) {
         out.clone_from(self);
         let nodes = self.mesh.nodes();
         out.directions.set((0..self.mesh.elements()).map(side), |node| jumps(nodes[node]));
@@ -371,7 +377,7 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
     }
 
     /// Moves the solution on by `share` times its way from the solution `before`; false, and as it was, where the two do not correspond.
-    pub fn lead_on(&mut self, before: &Self, share: f64) -> bool {
+    pub fn extrapolate(&mut self, before: &Self, share: f64) -> bool {
         if self.nodes.len() != before.nodes.len() || self.directions != before.directions {
             return false;
         }
@@ -388,32 +394,6 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
             own.closure_slope += by * (own.closure_slope - other.closure_slope);
         }
         true
-    }
-
-    /// Adds `factor` times a correction.
-    #[inline(always)]
-    pub fn add<const Q: usize>(&mut self, correction: &Correction<N, M, Q, L>, factor: f64) {
-        for (z, dz) in self.nodes.iter_mut().zip(&correction.nodes) {
-            for a in 0..N {
-                z[a] += factor * dz[a];
-            }
-        }
-        let f = Lanes([factor; LANES]);
-        for (own, change) in self.stages.iter_mut().zip(&correction.stages) {
-            for a in 0..N {
-                own.slope[a] += f * change.slope[a];
-            }
-            for a in 0..L {
-                own.inner[a] += f * change.inner[a];
-            }
-            own.closure_slope += f * change.closure_slope;
-        }
-        for (own, change) in self.ends.iter_mut().zip(&correction.ends) {
-            for a in 0..L {
-                own.inner[a] += f * change.inner[a];
-            }
-            own.closure_slope += f * change.closure_slope;
-        }
     }
 }
 
@@ -447,81 +427,4 @@ fn put<const N: usize, const L: usize>(stage: &mut Stage<N, L>, lane: usize, slo
         stage.inner[a].0[lane] = inner.inner[a];
     }
     stage.closure_slope.0[lane] = inner.closure_slope;
-}
-
-/// A Newton correction, or a tangent.
-#[derive(Debug, Clone)]
-pub struct Correction<const N: usize, const M: usize, const Q: usize, const L: usize = 0> {
-    /// At the nodes.
-    pub nodes: Vec<[f64; N]>,
-    /// At the stages, in blocks.
-    pub stages: Vec<Stage<N, L>>,
-    /// At the ends, in blocks.
-    pub ends: Vec<End<L>>,
-    /// Of the quadratures over each element.
-    pub by_element: Vec<[f64; Q]>,
-    /// Of the quadratures over [0, 1].
-    pub total: [f64; Q],
-}
-
-impl<const N: usize, const M: usize, const Q: usize, const L: usize> Default for Correction<N, M, Q, L> {
-    fn default() -> Self {
-        Self { nodes: Vec::new(), stages: Vec::new(), ends: Vec::new(), by_element: Vec::new(), total: [0.0; Q] }
-    }
-}
-
-impl<const N: usize, const M: usize, const Q: usize, const L: usize> Correction<N, M, Q, L> {
-    /// Multiplies it by `factor`.
-    pub fn scale(&mut self, factor: f64) {
-        let by = Lanes([factor; LANES]);
-        self.nodes.as_flattened_mut().iter_mut().for_each(|v| *v *= factor);
-        for stage in &mut self.stages {
-            stage.slope.iter_mut().for_each(|v| *v = *v * by);
-            stage.inner.iter_mut().for_each(|v| *v = *v * by);
-            stage.closure_slope = stage.closure_slope * by;
-        }
-        for end in &mut self.ends {
-            end.inner.iter_mut().for_each(|v| *v = *v * by);
-            end.closure_slope = end.closure_slope * by;
-        }
-        self.by_element.as_flattened_mut().iter_mut().for_each(|v| *v *= factor);
-        self.total.iter_mut().for_each(|v| *v *= factor);
-    }
-
-    /// Adds `factor` times another correction on the same mesh.
-    pub fn add(&mut self, other: &Self, factor: f64) {
-        let by = Lanes([factor; LANES]);
-        let plain = |own: &mut [f64], other: &[f64]| {
-            own.iter_mut().zip(other).for_each(|(own, other)| *own += factor * other);
-        };
-        plain(self.nodes.as_flattened_mut(), other.nodes.as_flattened());
-        plain(self.by_element.as_flattened_mut(), other.by_element.as_flattened());
-        plain(&mut self.total, &other.total);
-        for (own, other) in self.stages.iter_mut().zip(&other.stages) {
-            own.slope.iter_mut().zip(&other.slope).for_each(|(own, other)| *own += by * *other);
-            own.inner.iter_mut().zip(&other.inner).for_each(|(own, other)| *own += by * *other);
-            own.closure_slope += by * other.closure_slope;
-        }
-        for (own, other) in self.ends.iter_mut().zip(&other.ends) {
-            own.inner.iter_mut().zip(&other.inner).for_each(|(own, other)| *own += by * *other);
-            own.closure_slope += by * other.closure_slope;
-        }
-    }
-
-    /// Largest change of an inner unknown, at stages and ends.
-    pub fn largest_inner(&self) -> f64 {
-        let mut largest = [0.0_f64; LANES];
-        let all = self.stages.iter().map(|stage| &stage.inner).chain(self.ends.iter().map(|end| &end.inner));
-        for v in all.flatten() {
-            for lane in 0..LANES {
-                largest[lane] = largest[lane].max(v.0[lane].abs());
-            }
-        }
-        largest.into_iter().fold(0.0, f64::max)
-    }
-
-    /// Largest change of component `a` at the nodes.
-    pub fn largest(&self, a: usize) -> f64 {
-        self.nodes.iter().fold(0.0, |m, z| if z[a].is_nan() { f64::NAN } else { f64::max(m, z[a].abs()) })
-    }
 }

@@ -3,8 +3,8 @@
 use std::convert::Infallible;
 
 use hydrostat_bvp::{
-    Change, Collocation, Condition, Correction, Drift, EndPlace, EndWeights, Functional, Gauss, Groups, Inner, LANES,
-    Lanes, Local, Mesh, Problem, Side, Solution, StageWeights, Station,
+    Collocation, Condition, Correction, EndPlace, EndWeights, Forcing, Functional, Gauss, Groups, Inner, LANES, Lanes,
+    Local, Mesh, Problem, Side, Solution, StageForcing, StageWeights, Station,
 };
 
 /// z1' = z2, z2' = -z1 + y + 0.3 w' + load, w = y, y + 0.2 y^3 = sin z1 + reach(s) w'.
@@ -134,7 +134,7 @@ fn start(elements: usize, reach: fn(f64) -> f64, load: f64) -> (Wave, Solution<2
     let mut solution = Solution::constant(mesh, [0.5, 0.0], [0.3]);
     let nodes = wave.mesh.nodes().to_vec();
     let side = |i: usize| if reach(0.5 * (nodes[i] + nodes[i + 1])) >= 0.0 { Side::Left } else { Side::Right };
-    solution.clone().turned(&system.gauss, side, |_| false, &mut solution);
+    solution.clone().with_sides(&system.gauss, side, |_| false, &mut solution);
     (wave, solution, system)
 }
 
@@ -213,8 +213,8 @@ fn responses_and_adjoints_match_differences() {
         let (wave, mut solution, mut system) = start(6, reach, 0.1);
         solve(&wave, &mut solution, &mut system);
         let one = Lanes([1.0; LANES]);
-        let drift = Drift { slope: [Lanes::default(), one], ..Drift::default() };
-        let change = Change { stages: vec![drift; solution.stages.len()], ..Change::default() };
+        let drift = StageForcing { slope: [Lanes::default(), one], ..StageForcing::default() };
+        let change = Forcing { stages: vec![drift; solution.stages.len()], ..Forcing::default() };
         let mut out = Correction::default();
         system.response::<false>(&change, &mut out);
         assert!((out.total[0] - difference.0).abs() < 1e-8, "{k}: {} {}", out.total[0], difference.0);
@@ -250,14 +250,14 @@ fn responses_and_adjoints_match_differences() {
             let count = groups.filled(b / 4);
             Lanes(std::array::from_fn(|l| if l < count { v.0[l] } else { v.0[count - 1] }))
         };
-        let stages: Vec<Drift<2, 1, 1>> = (0..solution.stages.len())
+        let stages: Vec<StageForcing<2, 1, 1>> = (0..solution.stages.len())
             .map(|b| {
                 let value = filled(b, wild(b, 2.3));
-                Drift {
+                StageForcing {
                     slope: [filled(b, wild(b, 1.1)), filled(b, wild(b, 0.7))],
                     value,
                     inner: [value],
-                    ..Drift::default()
+                    ..StageForcing::default()
                 }
             })
             .collect();
@@ -270,7 +270,7 @@ fn responses_and_adjoints_match_differences() {
                 ([value], value)
             })
             .collect();
-        let change = Change { stages, ends, left: [0.4, 0.0], right: [-0.3, 0.0] };
+        let change = Forcing { stages, ends, left: [0.4, 0.0], right: [-0.3, 0.0] };
         system.response::<false>(&change, &mut out);
         let mut forward = out.total[0] + out.nodes[6][0] + 0.3 * out.nodes[2][0] - 0.7 * out.nodes[2][1];
         for end in &functional.ends {

@@ -1,5 +1,6 @@
 //! Arguments, and the help that teaches them.
 
+mod common;
 mod equilibria;
 mod identify;
 mod init;
@@ -16,8 +17,10 @@ mod workspace;
 
 use std::path::PathBuf;
 
-use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use clap::{Args as ClapArgs, Parser, Subcommand};
 
+use common::count;
+pub(crate) use common::{ArmArgs, Format};
 pub(crate) use equilibria::{EquilibriaArgs, Over};
 pub(crate) use identify::IdentifyArgs;
 pub(crate) use init::InitArgs;
@@ -38,11 +41,6 @@ Exit status:
   2  wrong request: arguments, arm file, or an output that cannot be written
   3  there is no such equilibrium, or none was found; standard error says why
   1  any other error";
-
-/// What `stable` means wherever it is said.
-const STABLE: &str = "\
-Stable means stable against static divergence, for overdamped motion (docs/model.md, section 7).
-Flutter is a dynamic instability and is not checked.";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -145,36 +143,6 @@ pub(crate) struct SolveArgs {
     pub(crate) picture: PictureArgs,
 }
 
-// An arm and what is to be different from its file. As a doc comment this would replace the help of each command.
-#[derive(Debug, ClapArgs)]
-pub(crate) struct ArmArgs {
-    /// Arm file, name of a shipped arm (see `hydrostat arms`), or - for standard input
-    #[arg(value_name = "ARM")]
-    pub(crate) file: String,
-    /// Tensions of all cables in their order, N, such as 20,0
-    #[arg(long, value_name = "T,T,...", value_delimiter = ',', allow_hyphen_values = true)]
-    pub(crate) tension: Option<Vec<String>>,
-    /// Speed of the stream, m/s
-    #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
-    pub(crate) flow_speed: Option<String>,
-    // A doc comment would take [0] for a link.
-    #[arg(
-        long,
-        value_name = "KEY=VALUE",
-        allow_hyphen_values = true,
-        help = "Override a value of the arm file, such as 'cable[0].tension=20 N' or cable.0.tension=20. Repeatable"
-    )]
-    pub(crate) set: Vec<String>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(crate) enum Format {
-    #[default]
-    Text,
-    Json,
-    Csv,
-}
-
 /// Reproduces Fig. 1a, 1b and 1c of the source, each as SVG, PDF, PNG and CSV, and compares the source's statements
 /// about them with the numbers.
 ///
@@ -223,12 +191,4 @@ pub(crate) struct CheckArgs {
 /// A number of stations.
 fn stations(text: &str) -> Result<usize, String> {
     count(text, 1_000_000)
-}
-
-/// A whole number of at least 2.
-fn count(text: &str, most: usize) -> Result<usize, String> {
-    match text.parse() {
-        Ok(n) if (2..=most).contains(&n) => Ok(n),
-        _ => Err(format!("expected a whole number from 2 to {most}")),
-    }
 }

@@ -75,8 +75,6 @@ impl<'a> Cause<'a> {
     pub(crate) fn blame(&self) -> Blame {
         match self {
             Self::Solve(error) => solve(error),
-            Self::Spatial(SpatialError::NoEquilibrium(_)) => Blame::Arm,
-            Self::Spatial(SpatialError::Arm(_) | SpatialError::Option { .. }) => Blame::Request,
             Self::Path(error) => path(error),
             Self::Sensitivity(error) => sensitivity(error),
             Self::Reach(error) => reach(error),
@@ -86,13 +84,14 @@ impl<'a> Cause<'a> {
             Self::Serve(ServeError::Run(_)) => Blame::Other,
             Self::Request(WrongRequest::Declined) => Blame::User,
             Self::Serve(ServeError::Bind { .. })
+            | Self::Spatial(SpatialError::Arm(_) | SpatialError::Option { .. })
             | Self::Measurements
             | Self::FitKey
             | Self::Targets
             | Self::File
             | Self::Write
             | Self::Request(_) => Blame::Request,
-            Self::NoAnswer => Blame::Arm,
+            Self::NoAnswer | Self::Spatial(SpatialError::NoEquilibrium(_)) => Blame::Arm,
         }
     }
 
@@ -155,7 +154,7 @@ fn sensitivity(error: &SensitivityError) -> Blame {
         | SensitivityError::Commanded(_)
         | SensitivityError::NotCommanded(_)
         | SensitivityError::Station { .. }
-        | SensitivityError::Rubbing(_)
+        | SensitivityError::Friction(_)
         | SensitivityError::Support => Blame::Request,
     }
 }

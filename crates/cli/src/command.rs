@@ -20,6 +20,7 @@ mod solve_spatial;
 mod summary;
 pub(crate) mod sweep;
 mod table;
+mod targets;
 pub(crate) mod validate;
 
 /// A command that did what it could: what it found is written, and it is not all that was asked for.

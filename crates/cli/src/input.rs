@@ -3,10 +3,8 @@
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::request::WrongRequest;
-
-/// What messages call it.
-pub(crate) const NAME: &str = "standard input";
+pub(crate) use crate::wrong_request::STANDARD_INPUT as NAME;
+use crate::wrong_request::WrongRequest;
 
 /// The most that is read, in bytes: as much as of the largest kind of file.
 const MOST: u64 = 64 << 20;

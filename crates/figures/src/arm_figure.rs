@@ -95,9 +95,8 @@ pub fn reach_figure(configuration: &Configuration, targets: &[[f64; 2]], note: O
 /// ```
 pub fn last_good_note(verdict: &Verdict) -> String {
     format!(
-        "Not the loads asked for: last good shape, at load fraction {:.4} of the phase \u{201c}{}\u{201d} ({})",
-        verdict.load_fraction,
-        verdict.phase.name(),
+        "Last good shape, at {} ({})",
+        verdict.phase.load_at(verdict.load_fraction),
         verdict.kind.name().replace('_', " ")
     )
 }

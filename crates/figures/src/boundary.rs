@@ -55,7 +55,7 @@ pub fn boundary_figure(found: &Boundary, slack: &Configuration, page: &Page) -> 
     let all: Vec<[f64; 2]> = outline.surface.iter().chain(pieces.iter().flatten()).copied().collect();
     let axes_below = |top: f64| axes_around(&all, top, page);
 
-    let words = format!("{}: what the tip can reach", slack.arm.name);
+    let words = format!("{}: workspace of the tip", slack.arm.name);
     let heading = page.heading(&words, None);
     // Whether there is an area does not depend on where on the page it is.
     let area_in = |axes: &Axes| {

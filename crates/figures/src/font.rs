@@ -9,7 +9,7 @@ use skrifa::metrics::GlyphMetrics;
 use skrifa::outline::{DrawSettings, OutlineGlyphCollection, OutlinePen};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 
-use crate::scene::{Point, Segment};
+use crate::geometry::{Point, Segment};
 
 /// A line of text, with italic symbols and subscripts.
 #[derive(Debug, Clone, Default)]

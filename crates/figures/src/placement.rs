@@ -1,6 +1,6 @@
 //! Labels that cover nothing: each goes to the nearest free place.
 
-use crate::scene::Point;
+use crate::geometry::Point;
 
 /// A rectangle on the page, points; `y` down.
 #[derive(Debug, Clone, Copy, PartialEq)]

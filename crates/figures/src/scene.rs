@@ -1,21 +1,9 @@
 //! What a figure shows, before it is SVG, PDF or PNG.
 
 use crate::font::Label;
+pub(crate) use crate::geometry::{Point, Segment};
 use crate::palette::{Color, INK};
 use crate::placement::Rect;
-
-/// A place on the page: points (1/72 inch) from its left and upper edge.
-pub(crate) type Point = [f64; 2];
-
-/// A piece of a path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Segment {
-    Move(Point),
-    Line(Point),
-    /// Control point, end.
-    Quad(Point, Point),
-    Close,
-}
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]

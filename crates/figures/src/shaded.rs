@@ -3,10 +3,38 @@
 use crate::chart::padded;
 use crate::font::Label;
 use crate::palette::{Color, series, shade};
-use crate::sweep::{Coloured, ColouredColumn};
 
 /// Where there is no answer.
 const NOTHING: Color = Color { rgb: [200, 200, 200], opacity: 1.0 };
+
+/// A quantity that gives colours, a value a row.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Coloured {
+    /// Numbers in the unit of the column's name; NaN where there is no answer.
+    Numbers(Vec<f64>),
+    /// Words; nothing where all is well.
+    Words(Vec<Option<String>>),
+}
+
+/// A column of a sweep that gives colours.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColouredColumn {
+    /// Its name, such as `tip_alpha_rad`.
+    pub name: String,
+    /// A value a row.
+    pub values: Coloured,
+}
+
+impl ColouredColumn {
+    /// The same column of some rows.
+    pub fn of(&self, rows: &[usize]) -> Self {
+        let values = match &self.values {
+            Coloured::Numbers(all) => Coloured::Numbers(rows.iter().map(|row| all[*row]).collect()),
+            Coloured::Words(all) => Coloured::Words(rows.iter().map(|row| all[*row].clone()).collect()),
+        };
+        Self { name: self.name.clone(), values }
+    }
+}
 
 /// What colours mean.
 #[derive(Debug, Clone, PartialEq)]

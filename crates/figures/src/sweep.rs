@@ -10,7 +10,7 @@ use crate::page::{Heading, MARGIN, Page};
 use crate::palette::{Color, INK, series, shade};
 use crate::placement::Rect;
 use crate::scene::{Anchor, Picture, Scene, Stroke};
-use crate::shaded::{Shades, Shading};
+use crate::shaded::{Coloured, ColouredColumn, Shades, Shading};
 
 const HEIGHT: f64 = 250.0;
 /// Width of the bar of colours, its gap to the frame, and the room for its labels and title.
@@ -22,35 +22,6 @@ const MOST_DOTS: usize = 3000;
 const FINE: f64 = 300.0 / 72.0;
 /// Cells of a picture whose columns or rows are not evenly spaced.
 const UNEVEN: usize = 800;
-
-/// A quantity that gives colours, a value a row.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Coloured {
-    /// Numbers in the unit of the column's name; NaN where there is no answer.
-    Numbers(Vec<f64>),
-    /// Words; nothing where all is well.
-    Words(Vec<Option<String>>),
-}
-
-/// A column of a sweep that gives colours.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ColouredColumn {
-    /// Its name, such as `tip_alpha_rad`.
-    pub name: String,
-    /// A value a row.
-    pub values: Coloured,
-}
-
-impl ColouredColumn {
-    /// The same column of some rows.
-    pub fn of(&self, rows: &[usize]) -> Self {
-        let values = match &self.values {
-            Coloured::Numbers(all) => Coloured::Numbers(rows.iter().map(|row| all[*row]).collect()),
-            Coloured::Words(all) => Coloured::Words(rows.iter().map(|row| all[*row].clone()).collect()),
-        };
-        Self { name: self.name.clone(), values }
-    }
-}
 
 /// A key that was varied, a value (SI) a row.
 #[derive(Debug, Clone, PartialEq)]

@@ -14,6 +14,7 @@ use crate::document::{self, Field, Origin};
 use crate::error::{FileError, Place, shortened};
 use crate::format::MAX_BYTES;
 use crate::reading::{Fault, FaultKind, MOST_FAULTS, Values};
+use crate::relative::resolved;
 use crate::setting;
 use crate::syntax_hint::hint;
 
@@ -155,7 +156,7 @@ impl ArmFile {
     /// # Errors
     /// [`FileError`] for the first thing that is wrong, with its place. [`ArmFile::errors`] has all.
     pub fn arm(&self) -> Result<Arm, FileError> {
-        let mut values = Values::read(&self.fields);
+        let mut values = Values::read(&resolved(&self.fields));
         if let Some(fault) = values.take_first_fault() {
             return Err(self.error(fault));
         }
@@ -179,7 +180,7 @@ impl ArmFile {
     /// assert_eq!(keys, ["arm.length", "arm.radus", "material.E"]);
     /// ```
     pub fn errors(&self) -> Vec<FileError> {
-        let mut values = Values::read(&self.fields);
+        let mut values = Values::read(&resolved(&self.fields));
         let mut refused: Vec<Fault> = Vec::new();
         // Numbers are held against each other only where those that most others depend on are right.
         if !["arm", "material"].iter().any(|table| values.is_faulty(table)) {

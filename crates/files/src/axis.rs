@@ -73,6 +73,14 @@ pub enum AxisValue<'a> {
     Word(&'a str),
 }
 
+/// The key that may have been meant, or where the keys are listed.
+fn suggested(suggestion: Option<&String>) -> String {
+    match suggestion {
+        None => "; `hydrostat check ARM` lists the keys, such as cable[0].tension".to_owned(),
+        some => hint(some),
+    }
+}
+
 /// Why a text is not a key with its values.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AxisError {
@@ -83,7 +91,7 @@ pub enum AxisError {
         text: String,
     },
     /// No key of the arm file.
-    #[error("{}: expected a key of the arm file, found an unknown one{}", shortened(.key), hint(.suggestion.as_ref()))]
+    #[error("{}: unknown key of the arm file{}", shortened(.key), suggested(.suggestion.as_ref()))]
     Unknown {
         /// What was given.
         key: String,
@@ -359,7 +367,7 @@ mod tests {
             assert!(error(text).contains("expected KEY=FROM:TO:COUNT"), "{text}");
         }
         // What is no index was read over, and stood in messages with its ends of lines.
-        assert!(error("cable[x\n].tension=0:1:2").starts_with("cable[x\\n].tension: expected a key of the arm file"));
+        assert!(error("cable[x\n].tension=0:1:2").starts_with("cable[x\\n].tension: "));
         for text in ["flow.speed=", "flow.speed=1,,2", "flow.law="] {
             assert!(error(text).contains("at least one value"), "{text}");
         }
@@ -371,7 +379,7 @@ mod tests {
         assert!(error("flow.speed=0:1 N:5").contains("expected a speed"));
         assert!(error("flow.speed=0:nan:5").contains("does not start with a number"));
         assert!(error("flow.sped=0:1:5").ends_with("did you mean `flow.speed`?"));
-        assert!(error("youn=1,2").ends_with("an unknown one"));
+        assert!(error("K=0:1:20").ends_with("`hydrostat check ARM` lists the keys, such as cable[0].tension"));
         assert!(error("young=1,2").ends_with("did you mean `material.young`?"));
         assert!(error("flow.law=a:b").contains("words with commas"));
     }

@@ -10,12 +10,11 @@ use crate::quantity::Dimension;
 use crate::written::{Tree, model, plain_tree};
 
 const HEAD: &str = "\
-# An arm for `hydrostat solve`. `hydrostat check` says what it means; docs/interface.md has all keys.
+# An arm for `hydrostat solve`. `hydrostat check` shows all values; docs/interface.md describes all keys.
 #
-# Numbers are in SI units, angles in degrees; a text may have another unit: \"245 mm\", \"110 kPa\", \"30 deg\".
-# A profile, which may vary along the arm, is one value, { base = _, tip = _ }, or points [[s, value], ...]
-# from s = 0 to the length. Lines that begin with # are comments: these keys have the value that they show,
-# or none. Take the # away to change them.
+# Numbers are in SI units, angles in degrees. Strings may have other units: \"245 mm\", \"110 kPa\", \"30 deg\".
+# A quantity along the arm is one value, { base = _, tip = _ }, or points [[s, value], ...] from s = 0 to the length.
+# A key behind a # is not set. It shows its default, or an example where it has none. Remove the # to set it.
 ";
 
 /// Keys that may be left out and have no default, with a value to show.

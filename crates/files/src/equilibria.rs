@@ -1,33 +1,16 @@
 //! All equilibria of an arm as JSON and CSV, at its loads and over a range of one of them.
 
-use hydrostat::{Arm, Equilibria, Equilibrium, PathEnd, Stability};
+use hydrostat::{Arm, Equilibria, Equilibrium, PathEnd};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
 use crate::digits::number;
+pub use crate::others::Others;
 use crate::paths::{EndOut, limit_message};
 use crate::results::{SCHEMA, cell, json};
 use crate::state::State;
 use crate::varied::Varied;
 use crate::written::Inputs;
-
-/// What a search found beside the path that a solve follows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Others {
-    /// Equilibria.
-    pub count: usize,
-    /// Those known to be stable.
-    pub stable: usize,
-    /// Whether these are all.
-    pub complete: bool,
-}
-
-impl From<&Equilibria> for Others {
-    fn from(all: &Equilibria) -> Self {
-        let stable = all.found.iter().filter(|e| e.stability == Some(Stability::Stable)).count();
-        Self { count: all.found.len(), stable, complete: all.complete }
-    }
-}
 
 #[derive(Debug, Clone, Serialize)]
 struct SearchOut<'a> {

@@ -46,7 +46,7 @@ pub enum FileError {
         source: io::Error,
     },
     /// Far more than an arm needs.
-    #[error("{path}: expected an arm file of at most {limit} bytes, found a larger one")]
+    #[error("{path}: larger than {limit} bytes, the most of an arm file")]
     TooLarge {
         /// The file.
         path: String,
@@ -54,7 +54,7 @@ pub enum FileError {
         limit: u64,
     },
     /// Bytes that are not text.
-    #[error("{place}: expected UTF-8 text, found the byte 0x{byte:02x}")]
+    #[error("{place}: not UTF-8 text: the byte 0x{byte:02x}")]
     NotText {
         /// Where.
         place: Place,
@@ -62,7 +62,7 @@ pub enum FileError {
         byte: u8,
     },
     /// Text that is not TOML.
-    #[error("{place}: {}expected TOML, found an error: {message}", prefix(.key.as_ref()))]
+    #[error("{place}: {}not valid TOML: {message}", prefix(.key.as_ref()))]
     Syntax {
         /// Where.
         place: Place,
@@ -72,7 +72,7 @@ pub enum FileError {
         message: String,
     },
     /// A key that appears twice.
-    #[error("{place}: {key}: expected every key once, found it a second time")]
+    #[error("{place}: {key}: the key is given twice")]
     Duplicate {
         /// Where the second one is.
         place: Place,
@@ -80,7 +80,7 @@ pub enum FileError {
         key: String,
     },
     /// A key that the format does not have.
-    #[error("{place}: {key}: expected {expected}, found an unknown key{}", hint(.suggestion.as_ref()))]
+    #[error("{place}: {key}: unknown key; expected {expected}{}", hint(.suggestion.as_ref()))]
     UnknownKey {
         /// Where.
         place: Place,
@@ -92,7 +92,7 @@ pub enum FileError {
         suggestion: Option<String>,
     },
     /// A key that must be there and is not.
-    #[error("{place}: {key}: expected {expected}, found nothing")]
+    #[error("{place}: {key}: missing; expected {expected}")]
     Missing {
         /// The table that lacks it.
         place: Place,

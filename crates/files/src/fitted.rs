@@ -9,7 +9,7 @@ use hydrostat_identify::{Fitted, Prior};
 use crate::error::shortened;
 use crate::format::{bracketed, dimension_at, is_key, nearest, synonym};
 use crate::quantity::{Dimension, WrongValue};
-use crate::shared_unit::{PartialUnit, shared_unit};
+use crate::shared_unit::{PartialUnit, bare, shared_unit};
 use crate::varied::hint;
 
 /// A parameter to be fitted, as a user gives it: values in SI units (rad for angles).
@@ -188,6 +188,18 @@ pub fn fitted(arm: &Arm, keys: &[FitKey], priors: &[PriorKey]) -> Result<Vec<Fit
         Some(prior) => Err(FitKeyError::NotFitted(prior.parameter)),
         None => Ok(out),
     }
+}
+
+/// The unit of a bare number at a key of the arm file, or at the short name of one that can be fitted; empty for a plain number, `None` where
+/// there is no number.
+///
+/// ```
+/// assert_eq!(hydrostat_files::bare_unit("arm.base.angle"), Some("deg"));
+/// assert_eq!(hydrostat_files::bare_unit("young"), Some("Pa"));
+/// assert_eq!(hydrostat_files::bare_unit("flow.law"), None);
+/// ```
+pub fn bare_unit(key: &str) -> Option<&'static str> {
+    dimension_at(key).or_else(|| dimension_at(&parameter(key).ok()?.to_string())).map(bare)
 }
 
 #[cfg(test)]

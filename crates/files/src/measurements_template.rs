@@ -17,11 +17,11 @@ use crate::measurements::rounded_mm;
 /// ```
 pub fn measurements_template(arm: &Arm) -> String {
     let mut out = format!(
-        "# Measured shapes of {}, for `hydrostat identify`. Lines that begin with # do not count.\n\
-         # A row is a place of the arm in a load case. s is along the arm before anything acts, from its base; empty is the tip.\n\
-         # x and y are of the centreline, from the base of the arm file; angle is that of the section, from e1. Empty cells were not measured.\n\
-         # The loads of a case stand in its first row: any key of the arm file with its unit. sd is a standard deviation.\n\
-         # More can be measured: tangent_deg, stroke_0_mm, tension_0_N, base_force_x_N, base_force_y_N, base_moment_Nmm.\n",
+        "# Measured shapes of {}, for `hydrostat identify`. Lines that begin with # are ignored.\n\
+         # Each row is one station in one load case. s is measured along the unloaded arm, from its base; empty is the tip.\n\
+         # x and y: the centreline, in the coordinates of the arm file; angle: the section, from e1. Leave a cell empty where nothing was measured.\n\
+         # The first row of a case has its loads: any key of the arm file, with its unit. sd is a standard deviation.\n\
+         # Other columns of measurements: tangent_deg, stroke_0_mm, tension_0_N, base_force_x_N, base_force_y_N, base_moment_Nmm.\n",
         arm.name.escape_debug()
     );
     let mut heads = vec!["case".to_owned()];

@@ -10,7 +10,6 @@ use crate::format::{
     self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, JOINED, Key, Kind, MAX_CABLES, MAX_POINTS, PULL, SPACES,
 };
 use crate::quantity::Dimension;
-use crate::relative::resolved;
 
 /// What is wrong, without the names of files.
 #[derive(Debug)]
@@ -59,10 +58,10 @@ pub(crate) struct Values {
 }
 
 impl Values {
-    /// Reads a file's fields.
+    /// Reads a file's fields, in which no value is relative to others any more: see [`crate::relative::resolved`].
     pub(crate) fn read(fields: &[Field]) -> Self {
         let mut values = Self::default();
-        values.table("", format::FILE, &resolved(fields), Origin::Text(0));
+        values.table("", format::FILE, fields, Origin::Text(0));
         // What a key of a table should be is open while another is wrong.
         let checks: [(&str, Check); 5] = [
             ("material", Self::check_material),

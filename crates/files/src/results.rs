@@ -9,7 +9,7 @@ use hydrostat::{
 use serde::Serialize;
 
 use crate::csv_text::Rows;
-use crate::equilibria::Others;
+use crate::others::Others;
 use crate::written::Inputs;
 
 /// The version of the JSON documents' structure.
@@ -66,7 +66,7 @@ impl Note {
         let asked = tol * configuration.arm.length;
         if configuration.error_estimate > asked {
             let [found, asked] = [configuration.error_estimate, asked].map(|metres| 1e3 * metres);
-            let message = format!("the tip error, about {found:.1e} mm, is above the {asked:.1e} mm asked for");
+            let message = format!("the tip error, about {found:.1e} mm, is above the tolerance of {asked:.1e} mm");
             notes.push(Self { kind: TOLERANCE_MISSED, message });
         }
         notes

@@ -1,8 +1,6 @@
 //! Numbers that are written together, as the ends of a range or a list: a unit behind the last one holds for all.
 
 use crate::error::shortened;
-use crate::fitted::parameter;
-use crate::format::dimension_at;
 use crate::quantity::{Dimension, parted};
 
 /// A unit that stands behind some numbers, so that it is open which unit the others have.
@@ -76,18 +74,6 @@ pub fn shared_unit(dimension: Dimension, key: &str, parts: &[&str], join: &str) 
         shared: (units.len() == 1).then_some(shared),
         each: with(bare).join(join),
     })
-}
-
-/// The unit of a bare number at a key of the arm file, or at the short name of one that can be fitted; empty for a plain number, `None` where
-/// there is no number.
-///
-/// ```
-/// assert_eq!(hydrostat_files::bare_unit("arm.base.angle"), Some("deg"));
-/// assert_eq!(hydrostat_files::bare_unit("young"), Some("Pa"));
-/// assert_eq!(hydrostat_files::bare_unit("flow.law"), None);
-/// ```
-pub fn bare_unit(key: &str) -> Option<&'static str> {
-    dimension_at(key).or_else(|| dimension_at(&parameter(key).ok()?.to_string())).map(bare)
 }
 
 /// The unit of a bare number as it can be written.

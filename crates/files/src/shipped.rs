@@ -10,27 +10,27 @@ const ARMS: [Shipped; 5] = [
     Shipped {
         name: "paper",
         description: "the source's arm: two cables, the left one pulled, 0.5 m/s; parameters found by trial",
-        text: include_str!("../../../arms/paper.toml"),
+        text: include_str!("../arms/paper.toml"),
     },
     Shipped {
         name: "paper-statements",
         description: "the same with parameters that meet every statement of the source at the highest tension",
-        text: include_str!("../../../arms/paper-statements.toml"),
+        text: include_str!("../arms/paper-statements.toml"),
     },
     Shipped {
         name: "silicone",
         description: "silicone cone of 245 mm, two cables (Renda et al. 2018)",
-        text: include_str!("../../../arms/silicone.toml"),
+        text: include_str!("../arms/silicone.toml"),
     },
     Shipped {
         name: "multi-bending",
         description: "silicone cone of 418 mm, six cables that end at three places (Renda et al.)",
-        text: include_str!("../../../arms/multi-bending.toml"),
+        text: include_str!("../arms/multi-bending.toml"),
     },
     Shipped {
         name: "octopus",
         description: "octopus arm of 200 mm, 10 kPa, two cables (Chang et al., drag of Yekutieli et al. 2005)",
-        text: include_str!("../../../arms/octopus.toml"),
+        text: include_str!("../arms/octopus.toml"),
     },
 ];
 
@@ -39,12 +39,12 @@ const SPATIAL: [Shipped; 2] = [
     Shipped {
         name: "octopus-spatial",
         description: "the octopus arm in space, four cables at 90 degrees",
-        text: include_str!("../../../arms/octopus-spatial.toml"),
+        text: include_str!("../arms/octopus-spatial.toml"),
     },
     Shipped {
         name: "silicone-spatial",
         description: "the silicone cone in space, three cables at 120 degrees",
-        text: include_str!("../../../arms/silicone-spatial.toml"),
+        text: include_str!("../arms/silicone-spatial.toml"),
     },
 ];
 

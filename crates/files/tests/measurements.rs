@@ -213,6 +213,8 @@ fn words_and_indices_are_checked_by_the_arm_file() {
 }
 
 proptest! {
+    #![proptest_config(hydrostat_fuzz::property(256))]
+
     #[test]
     fn no_table_panics(text in "(case|s \\[mm\\]|x \\[mm\\]|sd x \\[mm\\]|flow.speed \\[m/s\\]|[,;\t\n\"#a0-9.e-]){0,60}") {
         if let Err(message) = read(&text) {

@@ -111,7 +111,7 @@ fn a_tolerance_that_was_missed_is_noted() {
     assert!(!known.contains(&"tolerance_missed"), "{known:?}");
     assert_eq!(kinds(&answer, 4e-9), [known, vec!["tolerance_missed"]].concat());
     let last = Note::all(&answer, 4e-9).pop().unwrap();
-    assert_eq!(last.message, "the tip error, about 1.0e-6 mm, is above the 8.0e-7 mm asked for");
+    assert_eq!(last.message, "the tip error, about 1.0e-6 mm, is above the tolerance of 8.0e-7 mm");
 }
 
 #[test]

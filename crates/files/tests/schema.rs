@@ -27,6 +27,7 @@ fn it_is_a_schema() {
 }
 
 #[test]
+#[allow(clippy::too_many_lines, reason = "a list of cases")]
 fn parser_and_schema_take_the_same() {
     let validator = jsonschema::validator_for(&schema::arm_schema()).unwrap();
     let check = |text: &str, want: bool| {

@@ -2,8 +2,8 @@
 //!
 //! | variable | |
 //! |---|---|
+//! | `HYDROSTAT_SEED` | a number from which all random inputs follow, of these targets and of the property tests; without, 0, and another each time in runs of targets that are longer than the default |
 //! | `HYDROSTAT_FUZZ_SECONDS` | how long each target runs; 2 without |
-//! | `HYDROSTAT_FUZZ_SEED` | a number, from which the inputs follow; without, 0 in runs of the default length and another each time in longer ones |
 //!
 //! An hour of one target, and of all one after the other:
 //!
@@ -17,7 +17,7 @@ mod bytes;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use proptest::strategy::Strategy;
-use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
+use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestCaseError, TestError, TestRng, TestRunner};
 
 pub use bytes::{Bytes, mutations_of};
 
@@ -31,15 +31,36 @@ fn asked(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
 }
 
+/// The number from which random inputs of tests follow: `HYDROSTAT_SEED`, or 0. `./test --seed` sets it.
+///
+/// # Panics
+/// If `HYDROSTAT_SEED` is not a whole number: the tests would not draw what was asked for.
+pub fn seed() -> u64 {
+    given_seed().unwrap_or(0)
+}
+
+fn given_seed() -> Option<u64> {
+    let text = std::env::var("HYDROSTAT_SEED").ok()?;
+    Some(text.parse().unwrap_or_else(|_| panic!("HYDROSTAT_SEED is {text:?}, and not a whole number")))
+}
+
+/// A property test of so many cases, which follow from [`seed`]. What fails with a seed fails everywhere with it.
+///
+/// # Panics
+/// As [`seed`].
+pub fn property(cases: u32) -> Config {
+    Config { cases, rng_seed: RngSeed::Fixed(seed()), failure_persistence: None, ..Config::default() }
+}
+
 /// Tries `check` on values of `strategy` until time is up, and prints how many there were.
 ///
 /// # Panics
-/// Where `check` panics or returns an error: with the seed, and the value, made as small as can be.
+/// Where `check` panics or returns an error: with the seed, and the value, made as small as can be. As [`seed`].
 pub fn fuzz<S: Strategy>(target: &str, strategy: &S, check: impl Fn(S::Value) -> Result<(), String>) {
     let long = asked("HYDROSTAT_FUZZ_SECONDS");
     let time = Duration::from_secs(long.unwrap_or(SHORT));
     let by_clock = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let seed = asked("HYDROSTAT_FUZZ_SEED").unwrap_or_else(|| if long.is_some() { by_clock() } else { 0 });
+    let seed = given_seed().unwrap_or_else(|| if long.is_some() { by_clock() } else { 0 });
     let start = Instant::now();
     let mut cases: u32 = 0;
     loop {
@@ -54,9 +75,9 @@ pub fn fuzz<S: Strategy>(target: &str, strategy: &S, check: impl Fn(S::Value) ->
         match outcome {
             Ok(()) => {}
             Err(TestError::Fail(why, value)) => {
-                panic!("{target}, seed {seed}, within {cases} cases: {why}\n{value:#?}")
+                panic!("{target}, HYDROSTAT_SEED={seed}, within {cases} cases: {why}\n{value:#?}")
             }
-            Err(TestError::Abort(why)) => panic!("{target}, seed {seed}: {why}"),
+            Err(TestError::Abort(why)) => panic!("{target}, HYDROSTAT_SEED={seed}: {why}"),
         }
         if start.elapsed() >= time {
             break;

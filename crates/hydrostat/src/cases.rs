@@ -14,9 +14,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::arm::{Arm, Cable, Flow, FlowLaw, Gravity, Material};
-use crate::configuration::Configuration;
-use crate::readings::Volume;
+use crate::rod::arm::{Arm, Cable, Flow, FlowLaw, Gravity, Material};
+use crate::rod::readings::Volume;
+use crate::statics::configuration::Configuration;
 
 /// A problem and what its answer must be.
 #[derive(Debug, Clone)]

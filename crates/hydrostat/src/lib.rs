@@ -131,36 +131,16 @@
 //! corresponds to C_t = 4/9, where published coefficients of arms are 0.005 to 0.03: an answer that hangs
 //! on it carries a [`Warning::TangentialLoad`], and [`FlowLaw::QuadraticDrag`] is the alternative.
 
-pub mod arm;
-mod cable;
 pub mod cases;
-mod compliance;
-pub mod configuration;
-mod dense;
-mod dispatch;
-mod elimination;
-mod engine;
-mod equilibrium;
-mod flow;
-mod friction;
-mod loads;
-pub mod many;
-pub mod parameter;
-pub mod path;
-pub mod profile;
-pub mod reach;
-pub mod readings;
-mod rubbing;
-mod section;
-pub mod sensitivity;
-mod sincos;
-pub mod snap;
-pub mod solve;
+mod inverse;
+mod numerics;
+mod rod;
 pub mod spatial;
-pub mod stability;
-mod strokes;
-mod swelling;
-pub mod verdict;
+mod statics;
+
+pub use inverse::reach;
+pub use rod::{arm, parameter, profile, readings};
+pub use statics::{configuration, many, path, sensitivity, snap, solve, stability, verdict};
 
 pub use arm::{
     Arm, ArmError, Base, BaseDirections, Cable, Cavity, DistributedLoad, Flow, FlowLaw, Gravity, Material, Motion,
@@ -169,8 +149,8 @@ pub use arm::{
 pub use configuration::{
     CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,
 };
-pub use dispatch::has_wide_vectors;
 pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
+pub use numerics::dispatch::has_wide_vectors;
 pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub use profile::{Join, Point, Profile, Sample, TableError};

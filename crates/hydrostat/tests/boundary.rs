@@ -43,7 +43,8 @@ fn distance(lines: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> f64 {
     lines.iter().flat_map(|line| line.windows(2)).map(to).fold(f64::INFINITY, f64::min)
 }
 
-/// Without folds the image of the box is what its edges enclose: tips of tensions inside are inside, to what chords cut off.
+/// Without folds the image of the box is what its edges enclose: tips of tensions inside are inside, to what chords cut
+/// off.
 #[test]
 fn the_edges_enclose_all_tips() {
     const MOST: f64 = 0.2;

@@ -1,4 +1,5 @@
-//! What fuzzing found: arms far from any that is built are answered in bounded work and memory. Each test is named after what it was.
+//! What fuzzing found: arms far from any that is built are answered in bounded work and memory. Each test is named
+//! after what it was.
 
 use hydrostat::{Arm, Cable, Options, Profile, SolveError, Solver, VerdictKind};
 use hydrostat_files::{ArmFile, shipped};
@@ -50,6 +51,7 @@ fn evaluations_of_refused_steps_were_not_counted() {
     arm.flow.direction = 1.2;
     let taken = arm.solve().unwrap().statistics;
     assert!(taken.load_steps > 0, "{taken:?}");
-    // A round evaluates all stations of a mesh that has eight elements or more; some of the rounds are of the check, which counts its own.
+    // A round evaluates all stations of a mesh that has eight elements or more; some of the rounds are of the check,
+    // which counts its own.
     assert!(taken.evaluations > 32 * taken.newton_rounds / 2, "{taken:?}");
 }

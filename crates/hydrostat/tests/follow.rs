@@ -61,8 +61,8 @@ fn a_redundant_arm_follows_a_path_and_comes_to_less_effort() {
     assert!(least < 0.9 * own, "{least} N2 for {own} N2");
 }
 
-/// In every round a little towards less effort, the tensions made at each again what the round before had mended, and 2 of the first 5 targets were
-/// missed by 3e-6 of the length.
+/// In every round a little towards less effort, the tensions made at each again what the round before had mended, and 2
+/// of the first 5 targets were missed by 3e-6 of the length.
 #[test]
 fn targets_from_tensions_far_from_their_least_effort_were_missed() {
     let mut arm = shipped_arm("multi-bending");
@@ -94,8 +94,9 @@ fn a_target_that_cannot_be_followed_is_said() {
     assert!(matches!(follower.follow(&station), Err(ReachError::Target)));
 }
 
-/// Nearly against the stream the arm folds over past a limit point of its tensions. Targets that shapes beyond it have, in a slower
-/// stream where there is none, are not leapt to: the follower stays on its branch, says that it misses them, and comes back.
+/// Nearly against the stream the arm folds over past a limit point of its tensions. Targets that shapes beyond it have,
+/// in a slower stream where there is none, are not leapt to: the follower stays on its branch, says that it misses
+/// them, and comes back.
 #[test]
 fn a_limit_point_is_not_leapt_over() {
     let mut arm = cone();
@@ -161,8 +162,9 @@ fn a_follower_keeps_to_its_strokes() {
     assert!(missed > 5 && missed < 55, "{missed}");
 }
 
-/// In a stream from almost ahead this arm has two stable shapes under some tensions, and one leads to the other round them: under stronger tensions of
-/// both cables. Led that way into where there are two, and on to where the one ends, the arm snaps to the other, as all equilibria under each of the tensions say.
+/// In a stream from almost ahead this arm has two stable shapes under some tensions, and one leads to the other round
+/// them: under stronger tensions of both cables. Led that way into where there are two, and on to where the one ends,
+/// the arm snaps to the other, as all equilibria under each of the tensions say.
 #[test]
 fn a_follower_says_that_the_arm_snapped() {
     let arm = |[both, more]: [f64; 2]| {
@@ -212,8 +214,8 @@ fn a_follower_says_that_the_arm_snapped() {
     }
 }
 
-/// A column that symmetry holds upright under a load that would buckle it: steps aside fail, or have no derivative. Whatever a leap ends in, it
-/// is no error, and a target that is where the arm is by then is reached.
+/// A column that symmetry holds upright under a load that would buckle it: steps aside fail, or have no derivative.
+/// Whatever a leap ends in, it is no error, and a target that is where the arm is by then is reached.
 #[test]
 fn a_column_outlives_failed_steps() {
     let mut errors = 0;

@@ -20,7 +20,7 @@ fn a_bent_inextensible_arm_against_the_closed_form() {
                 let mut arm = inextensible_arm("rubbed");
                 // EI is 1 N m2.
                 let cable = Cable::new("left", lever).pulled(curvature / lever);
-                arm.cables.push(cable.rubbing(friction, motion));
+                arm.cables.push(cable.with_friction(friction, motion));
                 let turn = sign * (1.0 + sign * friction * curvature).ln() / friction;
                 let solved = solve(&arm, 1e-9);
                 let off = (solved.tip().theta - turn).abs();
@@ -70,8 +70,8 @@ fn reeling_in_and_paying_out_lie_on_both_sides() {
     assert!(with(Motion::In) < free && free < with(Motion::Out));
 }
 
-/// The rounds end where shape and turns agree: the balance of the whole arm does not feel them, the tip does by less than
-/// the tolerance.
+/// The rounds end where shape and turns agree: the balance of the whole arm does not feel them, the tip does by less
+/// than the tolerance.
 #[test]
 fn the_tolerance_is_kept_with_friction() {
     let mut arm = cone();
@@ -96,7 +96,8 @@ fn friction_spares_the_tip() {
     assert_eq!(solved.cables[0].tension, 1.0);
 }
 
-/// Cables that rub much: rounds of shape and turns go from side to side there by themselves, and the answer was the verdict without friction.
+/// Cables that rub much: rounds of shape and turns go from side to side there by themselves, and the answer was the
+/// verdict without friction.
 #[test]
 fn strong_friction_was_called_a_fold() {
     for tension in [0.8, 1.0, 1.5] {
@@ -112,7 +113,8 @@ fn strong_friction_was_called_a_fold() {
     }
 }
 
-/// Rounds can lead nowhere where a cable squeezes a thin tip. What they pass then is no limit of the arm, which more friction only spares.
+/// Rounds can lead nowhere where a cable squeezes a thin tip. What they pass then is no limit of the arm, which more
+/// friction only spares.
 #[test]
 fn rounds_that_lead_nowhere_were_called_a_limit_of_the_sections() {
     let mut arm = ArmFile::parse(shipped::get("paper").unwrap(), "paper").unwrap().arm().unwrap();
@@ -126,12 +128,12 @@ fn rounds_that_lead_nowhere_were_called_a_limit_of_the_sections() {
     }
 }
 
-/// Paid out, a cable pulls the tip more and more, and folds it shut: at the same friction, however much there was to be, and what is last found
-/// to be good is in balance with the friction that it says.
+/// Paid out, a cable pulls the tip more and more, and folds it shut: at the same friction, however much there was to
+/// be, and what is last found to be good is in balance with the friction that it says.
 #[test]
 fn a_cable_paid_out_until_it_folds_the_tip_was_not_found() {
     let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
-    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.3).rubbing(0.0, Motion::Out));
+    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.3).with_friction(0.0, Motion::Out));
     let mut folds = Vec::new();
     for friction in [0.2, 0.3, 1.0] {
         arm.cables[0].friction = friction;
@@ -164,16 +166,18 @@ fn a_commanded_stroke_with_friction_takes_more_tension() {
     assert!(rubbed.cables[0].tension > 1.05 * free.cables[0].tension);
 }
 
-/// The direction of the cable turns one way, then the other. On both sides of a node where it does, the polynomials had that place some micrometres off: nodes
-/// clustered there, or left it, and rounds of shape and turns did not settle. At 1e-6 friction was not raised past 0.066 of it.
+/// The direction of the cable turns one way, then the other. On both sides of a node where it does, the polynomials had
+/// that place some micrometres off: nodes clustered there, or left it, and rounds of shape and turns did not settle. At
+/// 1e-6 friction was not raised past 0.066 of it.
 #[test]
 fn nodes_clustered_where_a_cable_turns_the_other_way() {
     let mut arm = Arm::cone(0.2, 0.010, 0.004, 100e3, 0.5);
     arm.reference.mu = Profile::linear(0.0, -20.0);
-    arm.cables.push(Cable::new("left", 0.002).pulled(0.3).rubbing(0.2, Motion::In));
+    arm.cables.push(Cable::new("left", 0.002).pulled(0.3).with_friction(0.2, Motion::In));
     // Found by an independent solver, to 4e-10.
     let tip = [0.169_509_232_5, -0.072_851_846_9];
-    // 8.384 mm and 193.201 mm are where chi' changes its sign in the arm without friction; with it the second is further out.
+    // 8.384 mm and 193.201 mm are where chi' changes its sign in the arm without friction; with it the second is
+    // further out.
     let first = 8.380e-3;
     for tol in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10] {
         let solved = solve(&arm, tol);

@@ -28,8 +28,8 @@ fn solve(arm: &Arm) -> Configuration {
     arm.solve().unwrap_or_else(|e| panic!("{}: {e}", arm.name))
 }
 
-/// Two cables of fixed lengths keep the tip from turning: a column that may only sway buckles at pi^2 EI/L^2, four times
-/// the load of one whose cables keep their tensions.
+/// Two cables of fixed lengths keep the tip from turning: a column that may only sway buckles at pi^2 EI/L^2, four
+/// times the load of one whose cables keep their tensions.
 #[test]
 fn cables_of_fixed_lengths_hold_a_column_up_to_four_times_its_buckling_load() {
     // Enough stroke that the cables stay taut while the thrust shortens the column.
@@ -137,8 +137,8 @@ fn a_path_over_a_stroke_meets_every_stroke_and_ends_where_a_solve_does() {
     assert!((end.cables[0].stroke - 0.012).abs() < 1e-6 * arm.length, "{}", end.cables[0].stroke);
 }
 
-/// The left cable is reeled in: at first the bend draws the right one to the 0.22 mm that it is paid out by, then the arm gets so
-/// short that it hangs slack again; and the other way round on the way back.
+/// The left cable is reeled in: at first the bend draws the right one to the 0.22 mm that it is paid out by, then the
+/// arm gets so short that it hangs slack again; and the other way round on the way back.
 #[test]
 fn a_cable_that_is_taken_up_or_let_go_on_the_way_is_an_event() {
     const PAID_OUT: f64 = 0.00022;

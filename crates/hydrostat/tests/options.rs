@@ -169,7 +169,8 @@ fn an_arm_pulled_by_both_cables_floated_under_the_planar_law() {
     println!("{weight} N in water, {by_section} N by the section");
 }
 
-/// A sealed cavity displaces its outline, a flooded one its wall; sections that do not swell lose volume with the stretch.
+/// A sealed cavity displaces its outline, a flooded one its wall; sections that do not swell lose volume with the
+/// stretch.
 #[test]
 fn cavities_displace_what_they_did_in_the_unloaded_arm() {
     let full = |radius: f64| PI * radius * radius;

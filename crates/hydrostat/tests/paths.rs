@@ -24,8 +24,8 @@ fn jacobi(u: f64, k: f64) -> [f64; 3] {
     [sn, phi.cos(), (1.0 - k * k * sn * sn).sqrt()]
 }
 
-/// Angle at which the base of an elastica of L sqrt(P/EI) = `w` is held, from the line of the thrust P, when its tip has turned
-/// to 2 asin(k): sin(phi/2) = k sn(K - w (1 - s/L)), so k cn(w)/dn(w) at the base (Love, A Treatise on the
+/// Angle at which the base of an elastica of L sqrt(P/EI) = `w` is held, from the line of the thrust P, when its tip
+/// has turned to 2 asin(k): sin(phi/2) = k sn(K - w (1 - s/L)), so k cn(w)/dn(w) at the base (Love, A Treatise on the
 /// Mathematical Theory of Elasticity, the inflexional elastica).
 fn base_angle(w: f64, k: f64) -> f64 {
     let [_, cn, dn] = jacobi(w, k);

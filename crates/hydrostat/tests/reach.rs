@@ -7,8 +7,8 @@ use hydrostat_files::shipped;
 
 use common::{cone, options, shipped_arm, strokes_at, target_of, wound_in_by};
 
-/// Tensions of the first and the last cable to a tip, and from there to tensions that lead to the same tip, as a solve of its own says:
-/// how many, and how many of them are met.
+/// Tensions of the first and the last cable to a tip, and from there to tensions that lead to the same tip, as a solve
+/// of its own says: how many, and how many of them are met.
 fn round_trips(arm: &Arm, most: f64, per_cable: u32) -> (usize, usize) {
     let last = arm.cables.len() - 1;
     let (mut all, mut met) = (0, 0);
@@ -54,11 +54,12 @@ fn tips_of_shipped_arms_are_reached_on_a_thinned_grid() {
 
 #[test]
 #[ignore = "minutes: the whole grid, on request"]
-fn tips_of_shipped_arms_are_reached_on_the_grid() {
+fn slow_tips_of_shipped_arms_are_reached_on_the_grid() {
     shipped_round_trips(11);
 }
 
-/// Near folds of the map from tensions to tips Newton's method finds another solution, or none: what was solved with is found all the same.
+/// Near folds of the map from tensions to tips Newton's method finds another solution, or none: what was solved with is
+/// found all the same.
 #[test]
 fn all_tensions_near_folds_are_found() {
     let arm = shipped_arm("silicone");
@@ -213,7 +214,8 @@ fn strokes_that_are_found_lead_to_the_target() {
     (short.end, short.stiffness) = (0.6, Some(20.0));
     arm.cables.push(short);
     arm.flow.speed = 0.05;
-    // At [0.3, 0, 0.2] N the target is reached, but its strokes, one cable just taut, do not lead there from slack cables.
+    // At [0.3, 0, 0.2] N the target is reached, but its strokes, one cable just taut, do not lead there from slack
+    // cables.
     for tensions in [[0.2, 0.1, 0.1], [0.0, 0.3, 0.0], [0.3, 0.05, 0.2]] {
         let target = target_of(&arm, &tensions).unwrap();
         let found = arm.reach_by_strokes(&[target], &options(0.6)).unwrap();
@@ -265,7 +267,8 @@ fn wrong_requests_are_refused() {
     assert!(matches!(bare.reach(&target, &options(1.0)), Err(ReachError::NoCables)));
 }
 
-/// Tensions on a lattice with their tips, as solves of their own give them, of which every cable that pulls is wound in by `most` at most.
+/// Tensions on a lattice with their tips, as solves of their own give them, of which every cable that pulls is wound in
+/// by `most` at most.
 fn scan_within_strokes(arm: &Arm, largest: f64, count: u32, most: f64) -> Vec<(Vec<f64>, [f64; 2])> {
     let share = |k: u32| largest * f64::from(k) / f64::from(count);
     let pairs = (0..=count).flat_map(|a| (0..=count).map(move |b| [share(a), share(b)]));
@@ -279,7 +282,8 @@ fn scan_within_strokes(arm: &Arm, largest: f64, count: u32, most: f64) -> Vec<(V
     solved.collect()
 }
 
-/// Targets within and beyond what strokes allow: what is found is within, named where it lies on its bound, and no farther than the nearest of a scan.
+/// Targets within and beyond what strokes allow: what is found is within, named where it lies on its bound, and no
+/// farther than the nearest of a scan.
 #[test]
 fn strokes_are_bounded() {
     const MOST: f64 = 0.012;
@@ -327,7 +331,8 @@ fn strokes_are_bounded() {
     }
 }
 
-/// What the bound on its stroke forbids a cable takes another one that is nearer to the centreline, at more effort, which a scan cannot better.
+/// What the bound on its stroke forbids a cable takes another one that is nearer to the centreline, at more effort,
+/// which a scan cannot better.
 #[test]
 fn bounded_strokes_take_another_cable() {
     let mut arm = cone();
@@ -365,7 +370,8 @@ fn bounded_strokes_take_another_cable() {
     assert!(bounded >= 5, "{bounded}");
 }
 
-/// A cable that hangs slack takes no stroke: another one nearer to the centreline, on the same side, bends the arm further than its bound lets it.
+/// A cable that hangs slack takes no stroke: another one nearer to the centreline, on the same side, bends the arm
+/// further than its bound lets it.
 #[test]
 fn a_slack_cable_may_be_shorter_than_it_can_be_wound_in() {
     const MOST: f64 = 0.005;
@@ -434,7 +440,8 @@ fn strokes_with_slack_cables_lead_to_the_target() {
     assert_eq!(met, all);
 }
 
-/// At the edge of what is reached tensions within some root of the tolerance do as well: one solution, not one for each start.
+/// At the edge of what is reached tensions within some root of the tolerance do as well: one solution, not one for each
+/// start.
 #[test]
 fn an_edge_was_a_list_of_neighbours() {
     let mut arm = cone();

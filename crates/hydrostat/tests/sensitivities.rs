@@ -41,8 +41,8 @@ fn held() -> Arm {
     arm
 }
 
-/// An arm whose coefficients are given, as stiff as the source's, with a thicker tip: that of the source's arm leaves solves an error of
-/// 1e-8 of the length whatever is asked for, and differences of them no digits to compare with.
+/// An arm whose coefficients are given, as stiff as the source's, with a thicker tip: that of the source's arm leaves
+/// solves an error of 1e-8 of the length whatever is asked for, and differences of them no digits to compare with.
 fn stiff() -> Arm {
     let mut arm = Arm::cone(0.2, 0.010, 0.003, 500e3, 0.5);
     arm.material = Material::Coefficients { c1: 500e3.into(), c2: (500e3 / 3.0).into(), c3: 150.0.into() };
@@ -235,8 +235,8 @@ fn sensitivities_match_extrapolated_differences_of_solves() {
     println!("worst {worst_of_all:e}");
 }
 
-/// The source's arm pressed by both cables, whose beta is carried from element to element. Solves of it are good to 1e-9 of the length, whatever is
-/// asked for.
+/// The source's arm pressed by both cables, whose beta is carried from element to element. Solves of it are good to
+/// 1e-9 of the length, whatever is asked for.
 fn squeezed() -> Arm {
     let mut arm = stiff();
     arm.radius = Profile::linear(0.010, 0.0008);
@@ -353,14 +353,15 @@ fn what_has_no_derivative_is_refused() {
     assert!(matches!(refused(&cone(), Parameter::Tension(2)), Some(SensitivityError::Unfit(_))));
     let mut rubbing = cone();
     rubbing.cables[0].friction = 0.1;
-    assert!(matches!(refused(&rubbing, Parameter::Young), Some(SensitivityError::Rubbing(_))));
+    assert!(matches!(refused(&rubbing, Parameter::Young), Some(SensitivityError::Friction(_))));
     let off = SensitivityOptions { stations: vec![0.3], ..SensitivityOptions::default() };
     let found = Solver::new(&cone(), Options::default()).unwrap().sensitivities_with(&[], &off);
     assert!(matches!(found, Err(SensitivityError::Station { .. })));
 }
 
-/// How good derivatives are where the solve is not tight: of the size of its error, which counts for more where a parameter moves the arm
-/// little. At 1e-8 the largest is 2.1e-6 (below 1e-6 on the mesh that paths without hurry led to), at 1e-6 it is 4.4e-6.
+/// How good derivatives are where the solve is not tight: of the size of its error, which counts for more where a
+/// parameter moves the arm little. At 1e-8 the largest is 2.1e-6 (below 1e-6 on the mesh that paths without hurry led
+/// to), at 1e-6 it is 4.4e-6.
 #[test]
 fn derivatives_are_as_good_as_the_solve() {
     let arm = loaded();

@@ -1,9 +1,10 @@
-//! Arms that two cables press to a fraction of their length: there beta' has a length scale of up to a fortieth of the arm, and beta is
-//! carried from element to element.
+//! Arms that two cables press to a fraction of their length: there beta' has a length scale of up to a fortieth of the
+//! arm, and beta is carried from element to element.
 //!
-//! In still water, without weight or tip loads, n_f = m_f = 0 all along. The section law then is a differential equation for beta alone, beta' = P(s, beta),
-//! whose solutions all run together towards the base. Integrated that way, it is a second way to the shape that shares nothing
-//! with the solver. The smooth solution is the one that goes on past the tip, to where the cables meet and beta' drops out.
+//! In still water, without weight or tip loads, n_f = m_f = 0 all along. The section law then is a differential
+//! equation for beta alone, beta' = P(s, beta), whose solutions all run together towards the base. Integrated that way,
+//! it is a second way to the shape that shares nothing with the solver. The smooth solution is the one that goes on
+//! past the tip, to where the cables meet and beta' drops out.
 
 use hydrostat::{Arm, Cable, Configuration, Material, Options, Profile, Solver};
 
@@ -47,7 +48,8 @@ fn unbalanced(tensions: [f64; 2], s: f64, [beta, beta_slope, eta, mu]: [f64; 4])
     out
 }
 
-/// beta, beta', eta and mu that balance it, by Newton's method from a guess of which one stays: beta, or, where the cables meet, beta'.
+/// beta, beta', eta and mu that balance it, by Newton's method from a guess of which one stays: beta, or, where the
+/// cables meet, beta'.
 fn balanced(tensions: [f64; 2], s: f64, guess: [f64; 4], stays: usize) -> [f64; 4] {
     let free: Vec<usize> = (0..4).filter(|k| *k != stays).collect();
     let mut v = guess;

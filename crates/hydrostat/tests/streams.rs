@@ -26,8 +26,8 @@ fn bends_steadily(rod: &Arm, speed: f64) {
     assert!(off < 1e-5, "{speed} m/s: {off:e} m beside those at both sides");
 }
 
-/// A tail in the stream is free to turn, to first order, so that the determinant is nearly nothing and its sign is what a mesh makes of it. The path
-/// came to another sign than the answer and was refused, at one speed in some hundreds.
+/// A tail in the stream is free to turn, to first order, so that the determinant is nearly nothing and its sign is what
+/// a mesh makes of it. The path came to another sign than the answer and was refused, at one speed in some hundreds.
 #[test]
 fn rods_were_refused_by_a_sign_that_the_mesh_decided() {
     bends_steadily(&rod(Volume::Planar, FlowLaw::Momentum), 0.052_271_356_783_919_6);

@@ -204,7 +204,8 @@ fn a_load_jumps_on_the_tie_of_both_sides() {
     }
 }
 
-/// Where the stream alone takes the sections of the base near their limit, what carries the stream is not lost by tensions that go on only so far.
+/// Where the stream alone takes the sections of the base near their limit, what carries the stream is not lost by
+/// tensions that go on only so far.
 #[test]
 fn nothing_was_last_good_where_tensions_did_not_start() {
     let mut arm = ArmFile::parse(shipped::get("octopus").unwrap(), "octopus").unwrap().arm().unwrap();

@@ -1,9 +1,9 @@
 //! Cross-validation by load case: what the others say of each.
 
 use crate::error::Trial;
-use crate::fit::search;
 use crate::least_squares::Settings;
 use crate::model::{Cases, residuals};
+use crate::search::search;
 
 /// A load case as the others predict it.
 #[derive(Debug, Clone)]

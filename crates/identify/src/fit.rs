@@ -10,9 +10,10 @@ use crate::chi_square::below;
 use crate::cross_validation::{LeftOut, leave_out};
 use crate::data::{Case, Fitted, Measurement, natural_bounds};
 use crate::error::{IdentifyError, Trial};
-use crate::least_squares::{Minimum, Settings, minimise};
+use crate::least_squares::{Minimum, Settings};
 use crate::loss::Loss;
 use crate::model::{Cases, KEPT, Observed, Refusal, residuals};
+use crate::search::search;
 use crate::student::{NORMAL_95, student_95};
 use crate::verdict::{Finding, Scale, findings, verdict};
 
@@ -291,16 +292,6 @@ fn estimates(fitted: &[Fitted], found: &Minimum<Refusal>, covariance: &DMatrix<f
 fn shapes(model: &mut Cases, index: &[usize]) -> Vec<(usize, Configuration)> {
     let kept = index.iter().zip(&mut model.answers).filter_map(|(i, one)| Some((*i, one.shape.take()?)));
     kept.collect()
-}
-
-pub(crate) fn search(
-    model: &mut Cases,
-    settings: &Settings,
-    say: impl FnMut(usize, f64) -> bool,
-) -> Result<Minimum<Refusal>, Refusal> {
-    let start: Vec<f64> = model.fitted.iter().map(|one| one.start).collect();
-    let bounds: Vec<[f64; 2]> = model.fitted.iter().map(|one| one.bounds).collect();
-    minimise(model, &start, &bounds, settings, say)
 }
 
 /// Counts as numbers with a sign.

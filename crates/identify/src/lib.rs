@@ -17,6 +17,7 @@ mod fit;
 pub mod least_squares;
 mod loss;
 mod model;
+mod search;
 mod student;
 mod verdict;
 

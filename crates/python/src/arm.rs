@@ -4,21 +4,11 @@ use hydrostat_files::{ArmFile, arm_to_toml, shipped as files};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
+pub(crate) use crate::arm_class::Arm;
+use crate::arm_class::Setting;
 use crate::arrays::finite;
 use crate::errors::{file_error, solve_error, wrong};
 use crate::solution::{Solution, options};
-
-/// An override: the name that messages have for where it comes from, the key, the value.
-type Setting = (String, String, String);
-
-/// An arm with the text that it was read from.
-#[pyclass(frozen, module = "hydrostat._native")]
-pub(crate) struct Arm {
-    pub(crate) file: ArmFile,
-    pub(crate) given: hydrostat::Arm,
-    text: String,
-    settings: Vec<Setting>,
-}
 
 #[pymethods]
 impl Arm {
@@ -112,15 +102,6 @@ impl Arm {
         py.detach(|| hydrostat::Solver::new(&arm, options)?.solve())
             .map(|configuration| Solution::new(configuration, options))
             .map_err(|error| solve_error(py, error, options))
-    }
-}
-
-impl Arm {
-    /// Of an arm of the library, whose text is what it would be written as.
-    pub(crate) fn of(py: Python<'_>, arm: &hydrostat::Arm) -> PyResult<Self> {
-        let text = arm_to_toml(arm);
-        let file = ArmFile::parse(&text, &arm.name).map_err(|error| file_error(py, error))?;
-        Ok(Self { file, given: arm.clone(), text, settings: Vec::new() })
     }
 }
 

@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
-use crate::errors::wrong;
+use crate::wrong::wrong;
 
 /// A read-only array on memory that belongs to `owner`, without a copy.
 ///

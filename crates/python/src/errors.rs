@@ -4,33 +4,17 @@
 use hydrostat::{
     Configuration, NoEquilibrium, Options, PathError, ReachError, SensitivityError, SnapBounds, SolveError,
 };
-use hydrostat_files::{FileError, MeasurementsError};
+use hydrostat_files::MeasurementsError;
 use hydrostat_identify::{IdentifyError, Trial};
 use hydrostat_sweep::SweepError;
-use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyFileExistsError, PyOSError, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyAny;
 
 use crate::solution::{Solution, snaps};
-
-/// A request that cannot be meant, in words.
-pub(crate) fn wrong(error: impl std::fmt::Display) -> PyErr {
-    PyValueError::new_err(error.to_string())
-}
-
-/// An arm file that is none; a `ValueError` that knows its key, or an `OSError`.
-pub(crate) fn file_error(py: Python<'_>, error: FileError) -> PyErr {
-    static ARM_ERROR: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    if let FileError::Read { source, .. } = &error {
-        let text = error.to_string();
-        return match source.kind() {
-            std::io::ErrorKind::NotFound => PyFileNotFoundError::new_err(text),
-            _ => PyOSError::new_err(text),
-        };
-    }
-    made(py, &ARM_ERROR, "ArmError", (error.to_string(), error.key()))
-}
+use crate::wrong::made;
+pub(crate) use crate::wrong::{file_error, wrong};
 
 /// What a solve ends with.
 pub(crate) fn solve_error(py: Python<'_>, error: SolveError, options: Options) -> PyErr {
@@ -57,7 +41,7 @@ pub(crate) fn sensitivity_error(py: Python<'_>, error: SensitivityError, options
         SensitivityError::Unfit(_) | SensitivityError::Commanded(_) | SensitivityError::NotCommanded(_) => {
             wrong(format!("parameters: {error}"))
         }
-        SensitivityError::Rubbing(_) | SensitivityError::Support => wrong(format!("arm: {error}")),
+        SensitivityError::Friction(_) | SensitivityError::Support => wrong(format!("arm: {error}")),
         SensitivityError::Singular | SensitivityError::Unsettled(_) => {
             made(py, &NO_DERIVATIVE, "NoDerivative", (error.to_string(),))
         }
@@ -139,16 +123,4 @@ fn no_equilibrium(py: Python<'_>, no: NoEquilibrium, options: Options) -> PyErr 
         at_full_loads,
     );
     made(py, &NO_EQUILIBRIUM, "no_equilibrium", fields)
-}
-
-/// The exception that a function or class of `hydrostat._errors` makes of these fields.
-fn made<'py, A>(py: Python<'py>, kept: &PyOnceLock<Py<PyAny>>, name: &str, fields: A) -> PyErr
-where
-    A: pyo3::call::PyCallArgs<'py>,
-{
-    let make = kept.get_or_try_init(py, || Ok(py.import("hydrostat._errors")?.getattr(name)?.unbind()));
-    match make.and_then(|make: &Py<PyAny>| make.bind(py).call1(fields)) {
-        Ok(exception) => PyErr::from_value(exception),
-        Err(error) => error,
-    }
 }

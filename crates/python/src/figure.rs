@@ -7,10 +7,9 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::arm::Arm;
-use crate::errors::wrong;
+use crate::arm_class::Arm;
 use crate::interrupt::interruptible;
-use crate::paths::Equilibria;
+use crate::wrong::wrong;
 
 /// A drawing, as SVG, PDF and PNG.
 #[pyclass(frozen, module = "hydrostat._native")]
@@ -112,20 +111,6 @@ pub(crate) fn curve_figure(
     let key = KeyValues { axis: abscissa(axis), values: key.as_array().to_vec() };
     let values = values.as_array().to_vec();
     Figure::new(hydrostat_figures::curve_figure(&key, name, &values, title, &Page::default()))
-}
-
-/// All equilibria at each of several values (SI).
-#[pyfunction]
-pub(crate) fn over_figure(
-    searches: Vec<(f64, Py<Equilibria>)>,
-    axis: Axis,
-    asked: &str,
-    title: &str,
-) -> PyResult<Figure> {
-    let searches: Vec<(f64, &hydrostat::Equilibria)> =
-        searches.iter().map(|(value, all)| (*value, &all.get().all)).collect();
-    let page = Page::default();
-    Ok(Figure::new(hydrostat_figures::over_figure(&searches, &abscissa(axis), quantity(asked)?, title, &page)))
 }
 
 /// Name, drawing and CSV of each part of the source's figure; statement, finding and evidence of each claim.

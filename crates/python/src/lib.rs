@@ -4,6 +4,7 @@
 //! interpreter is let go of while anything is solved, and long calls look for Ctrl-C (`interrupt`).
 
 mod arm;
+mod arm_class;
 mod arrays;
 mod errors;
 mod figure;
@@ -17,6 +18,7 @@ mod sensitivity;
 mod solution;
 mod solver;
 mod sweep;
+mod wrong;
 
 use pyo3::prelude::*;
 
@@ -26,13 +28,13 @@ mod _native {
     #[pymodule_export]
     use super::arm::{Arm, bare_unit, shipped, shipped_names};
     #[pymodule_export]
-    use super::figure::{Figure, curve_figure, map_figure, over_figure, source_figures, workspace_figure};
+    use super::figure::{Figure, curve_figure, map_figure, source_figures, workspace_figure};
     #[pymodule_export]
     use super::identification::{Fit, identify, measurements_template};
     #[pymodule_export]
     use super::many::{parameter_names, solve_many};
     #[pymodule_export]
-    use super::paths::{Equilibria, Path, equilibria, path};
+    use super::paths::{Equilibria, Path, equilibria, over_figure, path};
     #[pymodule_export]
     use super::reach::{Boundary, Follower, Reach, reach, reachable};
     #[pymodule_export]

@@ -217,3 +217,17 @@ impl Equilibria {
         equilibria_csv(self.arm.cables.len(), &self.all)
     }
 }
+
+/// All equilibria at each of several values (SI).
+#[pyfunction]
+pub(crate) fn over_figure(
+    searches: Vec<(f64, Py<Equilibria>)>,
+    axis: Axis,
+    asked: &str,
+    title: &str,
+) -> PyResult<Figure> {
+    let searches: Vec<(f64, &hydrostat::Equilibria)> =
+        searches.iter().map(|(value, all)| (*value, &all.get().all)).collect();
+    let page = Page::default();
+    Ok(Figure::new(hydrostat_figures::over_figure(&searches, &abscissa(axis), quantity(asked)?, title, &page)))
+}

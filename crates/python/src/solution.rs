@@ -8,11 +8,11 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
-use crate::arm::Arm;
+use crate::arm_class::Arm;
 use crate::arrays::{field, given, shared};
-use crate::errors::wrong;
 use crate::figure::Figure;
 use crate::interrupt::interruptible;
+use crate::wrong::wrong;
 
 /// From so many places on Ctrl-C is listened for.
 const MANY: usize = 10_000;

@@ -1,5 +1,6 @@
 //! Sweeps: plans, and the rows of their tiles.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -218,23 +219,21 @@ fn put(out: &Bound<'_, PyDict>, column: Column) -> PyResult<()> {
             out.set_item(column.name, PyArray1::from_vec(py, numbers))
         }
         Data::Text(all) => {
+            let mut places: HashMap<String, i32> = HashMap::new();
             let mut words: Vec<String> = Vec::new();
-            let mut codes: Vec<i16> = Vec::with_capacity(all.len());
-            for word in all {
-                codes.push(code(&mut words, word));
-            }
+            // The place of a word among those met so far; -1 where there is none.
+            let code = |word: Option<String>| {
+                let Some(word) = word else { return -1 };
+                if let Some(place) = places.get(&word) {
+                    return *place;
+                }
+                let place = i32::try_from(words.len()).unwrap_or(-1);
+                words.push(word.clone());
+                places.insert(word, place);
+                place
+            };
+            let codes: Vec<i32> = all.into_iter().map(code).collect();
             out.set_item(column.name, (PyArray1::from_vec(py, codes), words))
         }
     }
-}
-
-/// The place of a word among those met so far; -1 where there is none. Keys have few words.
-fn code(words: &mut Vec<String>, word: Option<String>) -> i16 {
-    let Some(word) = word else { return -1 };
-    let known = words.iter().position(|other| *other == word);
-    let place = known.unwrap_or_else(|| {
-        words.push(word);
-        words.len() - 1
-    });
-    i16::try_from(place).unwrap_or(-1)
 }

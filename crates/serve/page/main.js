@@ -42,7 +42,7 @@ const controls = new Controls(byId("controls", HTMLElement), state, ramp);
 const connection = new Connection(receive, (open) => {
   byId("link", HTMLElement).textContent = open ? "" : "not connected";
   byId("took", HTMLElement).hidden = !open;
-  if (!open) say({ level: "bad", title: "Not connected", lines: ["The server does not answer: is `hydrostat serve` still running? The page looks for it again by itself."] });
+  if (!open) say({ level: "bad", title: "Not connected", lines: ["The server does not answer. Is `hydrostat serve` still running? The page reconnects automatically."] });
 });
 const studies = new Studies(state, view, controls, () => (present?.asked ? present : undefined));
 

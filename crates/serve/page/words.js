@@ -23,7 +23,7 @@ export function wordsOf(answer, drawing) {
       lines.push(`At that load the tip would jump by ${fixed(1e3 * snap.distance, 1)} mm and turn by ${fixed((180 / Math.PI) * snap.angle, 1)} deg.`);
     }
     if (shape) {
-      lines.push(`Shown is the last good shape, at load fraction ${number(verdict.load_fraction, 4)} of the phase \u201c${verdict.phase}\u201d: not the loads asked for.`);
+      lines.push("The picture shows the last good shape before this limit, not the requested loads.");
       lines.push(...shape.warnings.map((note) => sentence(note.message)));
     }
     return { level: "bad", title: `No equilibrium at these loads: ${verdict.kind.replaceAll("_", " ")}`, lines };
@@ -69,11 +69,11 @@ export function wordsOfPull(pulled, cables) {
       const { name, tension } = cables[cable] ?? { name: String(cable), tension: 0 };
       return kind === "slack" ? `cable ${name} is slack` : `cable ${name} has its largest tension (${force(tension)})`;
     });
-    const why = bounds.length > 0 ? `: ${bounds.join(", ")}` : ": pulling further leads no nearer";
+    const why = bounds.length > 0 ? `: ${bounds.join(", ")}` : ": pulling further does not bring it closer";
     lines.push(`The tip cannot go there; it is ${fixed(1e3 * pulled.distance, 1)} mm away${why}.`);
   }
-  if (pulled.elsewhere) lines.push("A solve from the unloaded arm at these tensions leads to another shape than the pull did; that shape is drawn.");
-  else if (pulled.jumped) lines.push("The arm has gone to another branch of its equilibria on the way.");
+  if (pulled.elsewhere) lines.push("A solve from the unloaded arm at these tensions gives another shape than this drag. The picture shows the shape of the solve.");
+  else if (pulled.jumped) lines.push("The arm has jumped to another branch of its equilibria on the way.");
   return lines;
 }
 

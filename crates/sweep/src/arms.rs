@@ -25,7 +25,7 @@ pub(crate) struct Arms {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Last {
     texts: Vec<String>,
-    arm: Option<Arm>,
+    arm: Option<Result<Arm, String>>,
 }
 
 /// A value of one key that makes no arm by itself.
@@ -40,6 +40,8 @@ impl From<FileError> for ValueError {
 }
 
 const OPTION: &str = "--vary";
+/// What messages of rows leave out, whose values are not those of one option.
+const PREFIX: &str = "--vary ";
 
 impl Arms {
     /// Of a file whose arm is `arm`, with these keys varied.
@@ -60,21 +62,28 @@ impl Arms {
         &self.arm
     }
 
-    /// The arm with these values, in the order of the keys; `None` where they do not go together.
-    pub(crate) fn arm<'a>(&self, values: &[AxisValue<'_>], last: &'a mut Last) -> Option<&'a Arm> {
+    /// The arm with these values, in the order of the keys.
+    ///
+    /// # Errors
+    /// In words, why they do not go together. Loads are looked at when the arm is solved.
+    pub(crate) fn arm<'a>(&self, values: &[AxisValue<'_>], last: &'a mut Last) -> Result<&'a Arm, String> {
         let texts: Vec<String> = self.by_way(values, Way::File).map(|(axis, value)| axis.text(value)).collect();
-        if last.arm.is_none() || texts != last.texts {
-            last.arm = if texts.is_empty() { Some(self.arm.clone()) } else { self.through_file(values).ok() };
-            last.texts = texts;
+        if texts != last.texts {
+            last.arm = None;
         }
-        let arm = last.arm.as_mut()?;
+        let made = last.arm.get_or_insert_with(|| {
+            let made = if texts.is_empty() { Ok(self.arm.clone()) } else { self.through_file(values) };
+            made.map_err(|error| error.to_string().trim_start_matches(PREFIX).to_owned())
+        });
+        last.texts = texts;
+        let arm = made.as_mut().map_err(|reason| reason.clone())?;
         for (way, value) in self.ways.iter().zip(values) {
             if let (Way::Load(parameter), AxisValue::Number(value)) = (way, value) {
                 // The parameters are those that the arm was seen to have.
                 let _ = parameter.set(arm, *value);
             }
         }
-        Some(arm)
+        Ok(arm)
     }
 
     fn by_way<'a>(
@@ -129,11 +138,16 @@ fn check(file: &ArmFile, axis: &Axis, alone: bool) -> Result<(), ValueError> {
         file.set_by(OPTION, &axis.key, &axis.text(value))?;
         match file.arm() {
             Ok(_) => {}
-            Err(FileError::Arm { ref source, .. }) if !alone && depends_on_others(source) => {}
+            Err(FileError::Arm { ref source, .. }) if is_of_a_row(source) || !alone && depends_on_others(source) => {}
             Err(error) => return Err(error.into()),
         }
     }
     Ok(())
+}
+
+/// Whether it is a matter of single rows: a range of tensions may go beyond what a cable takes, as loads may go beyond what an arm takes.
+fn is_of_a_row(error: &ArmError) -> bool {
+    matches!(error, ArmError::TensionAboveMax { .. })
 }
 
 /// Whether another key can mend it.

@@ -27,7 +27,7 @@ pub enum Output {
     Error,
     /// What should be known about the answer.
     Warnings,
-    /// Why there is no answer: kind, phase, load fraction and place.
+    /// Why there is no answer: kind, phase, load fraction and place, or in words why there is no arm.
     Verdict,
 }
 
@@ -120,8 +120,17 @@ pub struct Column {
     pub data: Data,
 }
 
-/// What became of a row: its answer, or why there is none; nothing where its values make no arm.
-pub(crate) type Answer = Result<Row, Option<Verdict>>;
+/// Why a row has no answer.
+#[derive(Debug, Clone)]
+pub(crate) enum NoAnswer {
+    /// There is no such equilibrium, or none was found.
+    Verdict(Verdict),
+    /// Its values make no arm; in words.
+    Arm(String),
+}
+
+/// What became of a row.
+pub(crate) type Answer = Result<Row, NoAnswer>;
 
 /// An answer, and the error of the tip (m) that was asked for.
 pub(crate) struct Answered {
@@ -205,7 +214,9 @@ impl Layout {
                 }
                 Output::Verdict => {
                     out.extend([text("verdict"), text("phase")]);
-                    ["load_fraction", "verdict_s_m"].map(str::to_owned).into()
+                    out.extend(["load_fraction", "verdict_s_m"].map(|name| number(name.to_owned())));
+                    out.push(text(REASON));
+                    continue;
                 }
             };
             out.extend(numbers.into_iter().map(number));
@@ -216,7 +227,7 @@ impl Layout {
         out
     }
 
-    /// Adds a row to what [`Layout::columns`] has made; a row without a verdict has no arm.
+    /// Adds a row to what [`Layout::columns`] has made; see there.
     pub(crate) fn add(&self, columns: &mut [Column], index: u64, values: &[AxisValue<'_>], answer: &Answered) {
         let Answered { answer: row, asked } = answer;
         let mut cells = Cells { columns: columns.iter_mut() };
@@ -257,11 +268,15 @@ impl Layout {
                     cells.text(kinds.as_deref());
                 }
                 Output::Verdict => {
-                    let verdict = row.as_ref().err().and_then(Option::as_ref);
-                    let no_arm = row.is_err().then_some(NO_ARM);
-                    cells.text(verdict.map(|v| v.kind.name()).or(no_arm));
+                    let (verdict, reason) = match row {
+                        Ok(_) => (None, None),
+                        Err(NoAnswer::Verdict(verdict)) => (Some(verdict), None),
+                        Err(NoAnswer::Arm(reason)) => (None, Some(reason.as_str())),
+                    };
+                    cells.text(verdict.map(|v| v.kind.name()).or(reason.map(|_| NO_ARM)));
                     cells.text(verdict.map(|v| v.phase.name()));
                     cells.numbers([verdict.map(|v| v.load_fraction), verdict.and_then(|v| v.s)]);
+                    cells.text(reason);
                 }
             }
         }
@@ -277,6 +292,9 @@ const SHAPE: [(&str, &str); 3] = [("x", "m"), ("y", "m"), ("theta", "rad")];
 
 /// The verdict of a row whose values together make no arm.
 pub const NO_ARM: &str = "no_arm";
+
+/// The column that says why they make none.
+pub(crate) const REASON: &str = "reason";
 
 /// Columns that get a cell each, one after the other.
 struct Cells<'a> {

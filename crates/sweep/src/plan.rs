@@ -57,7 +57,7 @@ pub enum PlanError {
     #[error("a sweep needs at least one key that varies")]
     NoAxes,
     /// One key twice.
-    #[error("{key}: expected every key once, found it a second time")]
+    #[error("{key}: the key is given twice")]
     Twice {
         /// The key.
         key: String,

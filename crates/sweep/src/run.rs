@@ -11,8 +11,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::arms::{Arms, Last};
-use crate::column::{Answered, Column, Data, Layout, Output, WARNINGS};
+use crate::column::{Answered, Column, Data, Layout, NoAnswer, Output, WARNINGS};
 use crate::error::{SweepError, parquet_error};
+use crate::file_format::{Format, NOTE, noted};
 use crate::parquet_file::Reader;
 use crate::parts::{Part, Parts, difference};
 use crate::plan::Plan;
@@ -25,36 +26,6 @@ const PARTS: u64 = 64;
 const LONGEST: u64 = 16_384;
 /// The most numbers of a part, 8 bytes each.
 const LARGEST: u64 = 1 << 20;
-
-/// The key under which a Parquet file notes the sweep that it is of. Of `out.csv` the same stands in `out.csv.json`.
-pub const NOTE: &str = "hydrostat.sweep";
-
-/// How a file is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Parquet, compressed with zstd.
-    Parquet,
-    /// CSV with a header.
-    Csv,
-}
-
-impl Format {
-    /// By the ending of a file's name, `.parquet` or `.csv`.
-    pub fn of(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-            "parquet" => Some(Self::Parquet),
-            "csv" => Some(Self::Csv),
-            _ => None,
-        }
-    }
-
-    fn ending(self) -> &'static str {
-        match self {
-            Self::Parquet => "parquet",
-            Self::Csv => "csv",
-        }
-    }
-}
 
 /// What is asked of a sweep beyond its plan.
 #[derive(Debug, Clone)]
@@ -417,25 +388,17 @@ impl Sweep {
         let mut solved: Vec<(u64, Answered)> = Vec::new();
         for row in self.plan.order(tile) {
             let arm = self.arms.arm(&self.plan.values(row), &mut last);
-            let asked = arm.map_or(f64::INFINITY, |arm| self.tol * arm.length);
-            let answer = arm.ok_or(None).and_then(|arm| {
+            let asked = arm.as_ref().map_or(f64::INFINITY, |arm| self.tol * arm.length);
+            let answer = arm.map_err(NoAnswer::Arm).and_then(|arm| {
                 solver.solve(arm).map_err(|no| match no {
-                    NoRow::Verdict(verdict) => Some(verdict),
-                    NoRow::Arm(_) => None,
+                    NoRow::Verdict(verdict) => NoAnswer::Verdict(verdict),
+                    NoRow::Arm(error) => NoAnswer::Arm(error.to_string()),
                 })
             });
             solved.push((row, Answered { answer, asked }));
         }
         solved.sort_unstable_by_key(|(row, _)| *row);
         (rows, solved.into_iter().map(|(_, answer)| answer).collect())
-    }
-}
-
-/// What a whole output says that it is of.
-pub(crate) fn noted(output: &Path, format: Format) -> Result<Option<String>, SweepError> {
-    match format {
-        Format::Parquet => Ok(Reader::open(output)?.note(NOTE)),
-        Format::Csv => csv_file::note(output),
     }
 }
 

@@ -8,8 +8,8 @@ use serde::Deserialize;
 use crate::column::{Column, Data, ROW};
 use crate::csv_file;
 use crate::error::{SweepError, read_error};
+use crate::file_format::{Format, noted};
 use crate::parquet_file::Reader;
-use crate::run::{Format, noted};
 
 /// A key that a sweep varied.
 #[derive(Debug, Clone, PartialEq)]

@@ -54,7 +54,7 @@ fn lists_are_drawn_in_equal_parts() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(hydrostat_fuzz::property(60))]
 
     /// Each key of a Latin hypercube has one row in each of as many parts of its range as there are rows.
     #[test]

@@ -151,6 +151,9 @@ fn values_that_do_not_go_together_are_a_verdict() {
     assert_eq!((summary.rows, summary.answered), (4, 3));
     let verdicts = all(&out).words("verdict").unwrap();
     assert_eq!(verdicts[1].as_deref(), Some(NO_ARM));
+    let reasons = all(&out).words("reason").unwrap();
+    assert!(reasons[1].as_ref().is_some_and(|words| words.contains("less than the radius")), "{reasons:?}");
+    assert_eq!(reasons.iter().flatten().count(), 1);
     let refused = |keys: &[&str]| {
         Sweep::new(&file("silicone"), plan(keys, Sample::Grid), &SweepOptions::default()).unwrap_err().to_string()
     };
@@ -160,6 +163,31 @@ fn values_that_do_not_go_together_are_a_verdict() {
     assert!(refused(&["flow.law=momentum,magnus"]).contains("--vary flow.law=magnus"));
     assert!(refused(&["cable[7].tension=0:1:3"]).contains("2 cables"));
     assert!(refused(&["arm.inner_radius=\"20 mm\",0"]).contains("less than the radius"));
+}
+
+#[test]
+fn one_tension_above_its_most_refused_the_whole_sweep() {
+    let directory = tempfile::tempdir().unwrap();
+    let options = SweepOptions::default();
+    let above = |pull: f64| format!("`cable[0].tension` is {pull} N, above its max_tension of 100 N");
+    let alone = ["cable[0].tension=80,101,120"];
+    for (keys, want) in [
+        (&alone[..], [None, Some(above(101.0)), Some(above(120.0))].to_vec()),
+        (
+            &["flow.speed=0,0.1", "cable[0].tension=80,101"],
+            [None, Some(above(101.0)), None, Some(above(101.0))].to_vec(),
+        ),
+    ] {
+        let outs = ["csv", "parquet"].map(|ending| directory.path().join(format!("{}.{ending}", keys.len())));
+        for out in outs {
+            let summary = sweep("paper", keys, &options).run(&out, false, 1, &|_| {}).unwrap();
+            let table = all(&out);
+            assert_eq!(table.words("reason").unwrap(), want);
+            let verdicts = table.words("verdict").unwrap();
+            assert!(verdicts.iter().zip(&want).all(|(kind, why)| why.is_none() || kind.as_deref() == Some(NO_ARM)));
+            assert_eq!(summary.answered, verdicts.iter().filter(|kind| kind.is_none()).count() as u64);
+        }
+    }
 }
 
 #[test]

@@ -11,7 +11,8 @@ use rayon::prelude::*;
 use crate::loads::{Pair, cross, sectional, spread, stream_load, switches, weight};
 use crate::numbers::{larger, size};
 use crate::report::{Check, Row, Section, Table};
-use crate::{Listener, Scope, readings, shipped};
+use crate::scope::{Listener, Scope};
+use crate::{readings, shipped};
 
 /// How far a configuration is from balance, over the largest force (or moment) in play.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -141,7 +141,7 @@ pub(crate) fn section() -> Section {
         "The solver is Gauss collocation. With M stages an element its order at the nodes is 2 M; Hydrostat uses M = 4, and 5 for the check \
          behind its error estimate. First on equal elements, for a rod whose exact shape was chosen and whose load follows from it; then for \
          whole solves, whose elements are placed by the error estimate. Chosen shapes of the arm's own equations are found under all \
-         240 combinations of the readings and flow laws, with orders of 7.48 and more, in crates/hydrostat/src/engine/manufactured.rs.",
+         240 combinations of the readings and flow laws, with orders of 7.48 and more, in crates/hydrostat/src/statics/engine/manufactured.rs.",
     );
     let tip = Rod::tip();
     let counts = [2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256];

@@ -11,12 +11,12 @@ use serde::Deserialize;
 use crate::convergence::arms;
 use crate::numbers::{fixed, larger, quantile, size};
 use crate::report::{Check, Row, Section, Table};
-use crate::{Listener, Scope};
+use crate::scope::{Listener, Scope};
 
-const REFERENCE: &str = include_str!("../../../validation/reference/cases.json");
+const REFERENCE: &str = include_str!("../data/cases.json");
 
 /// Arms whose answer hangs on the water that is displaced, as the default reading has it.
-const WEIGHT: &str = include_str!("../../../validation/reference/weight.json");
+const WEIGHT: &str = include_str!("../data/weight.json");
 
 /// Ends in a limit point here, with the tangent rising ever less before it; the reference steps over it
 /// with a smoothed load.
@@ -96,12 +96,12 @@ impl Compared {
     }
 }
 
-/// The references of `validation/reference/cases.json`; `None` where the file is not what it should be.
+/// The references of `crates/validate/data/cases.json`; `None` where the file is not what it should be.
 pub fn references() -> Option<Vec<Reference>> {
     serde_json::from_str(REFERENCE).ok()
 }
 
-/// Those of `validation/reference/weight.json`: arms whose answer hangs on the water that is displaced.
+/// Those of `crates/validate/data/weight.json`: arms whose answer hangs on the water that is displaced.
 pub fn references_with_weight() -> Option<Vec<Reference>> {
     serde_json::from_str(WEIGHT).ok()
 }
@@ -248,11 +248,11 @@ const ARMS: usize = 160;
 const WITH_WEIGHT: usize = 64;
 
 /// Where the references are from.
-const ORIGIN: &str = "validation/reference/cases.json: an independent program, Gauss collocation of order 9 to 10, to 1e-8 or better in 155 of the 160 and \
+const ORIGIN: &str = "crates/validate/data/cases.json: an independent program, Gauss collocation of order 9 to 10, to 1e-8 or better in 155 of the 160 and \
                       to 8e-7 in the other five.";
 
 /// Where those with weight are from.
-const WEIGHT_ORIGIN: &str = "validation/reference/weight.json: validation/reference/solve.py, Chebyshev collocation in NumPy and SciPy, to 1e-9 or better.";
+const WEIGHT_ORIGIN: &str = "crates/validate/data/weight.json: validation/reference/solve.py, Chebyshev collocation in NumPy and SciPy, to 1e-9 or better.";
 
 /// How many arms were answered and how well; `complete` if the file has as many as it should.
 fn summary(compared: &[Compared], ratios: &[f64], title: &str, origin: &str, complete: bool) -> Table {

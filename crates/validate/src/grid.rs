@@ -9,7 +9,8 @@ use rayon::prelude::*;
 
 use crate::numbers::fixed;
 use crate::report::{Check, Row, Section, Table};
-use crate::{Listener, Scope, shipped};
+use crate::scope::{Listener, Scope};
+use crate::shipped;
 
 /// The cases of one arm with their names, every `thin`-th of them: which cables pull, how hard, the stream, and gravity.
 pub fn cases(arm: &Arm, thin: usize) -> Vec<(String, Arm)> {

@@ -32,6 +32,7 @@ mod peers;
 pub mod readings;
 mod reconfiguration;
 mod report;
+mod scope;
 mod shipped;
 
 use hydrostat::cases;
@@ -40,27 +41,9 @@ pub use html::html;
 pub use markdown::{Markdown, markdown};
 pub use peers::{PeersError, PeersFile};
 pub use report::{Block, Check, Figure, Report, Row, Section, Table};
+pub use scope::{Listener, Scope};
 
 pub use crate::exact::section as exact_section;
-
-/// How much is run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Scope {
-    /// Everything: some minutes.
-    #[default]
-    Whole,
-    /// The same checks on fewer cases: some seconds.
-    Quick,
-}
-
-/// What is happening while [`run`] works: told from several threads.
-pub trait Listener: Sync {
-    /// A part begins; `part` counts from 1.
-    fn begins(&self, part: usize, of: usize, title: &str);
-
-    /// `done` of `of` pieces of the present part are done.
-    fn advances(&self, done: usize, of: usize);
-}
 
 /// Runs every check. What cannot be solved is a check that does not hold, never an error.
 pub fn run(scope: Scope, peers: &PeersFile, listener: &dyn Listener) -> Report {

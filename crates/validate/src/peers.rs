@@ -9,7 +9,7 @@ use serde::Deserialize;
 use crate::numbers::{fixed, size};
 use crate::report::{Check, Row, Section, Table};
 
-const COMMITTED: &str = include_str!("../../../validation/peers/tips.json");
+const COMMITTED: &str = include_str!("../data/tips.json");
 
 /// What is wrong with a file of tips.
 #[derive(Debug, thiserror::Error)]

@@ -9,7 +9,8 @@ use rayon::prelude::*;
 
 use crate::numbers::{fixed, larger};
 use crate::report::{Check, Row, Section, Table};
-use crate::{Scope, shipped};
+use crate::scope::Scope;
+use crate::shipped;
 
 /// The default reading, each alternative alone, and all that the source's letter asks for, under the words of the arm file. The
 /// support [`Support::UnstrainedBase`], under which balances are not met, is not among them.

@@ -4,9 +4,9 @@ use hydrostat::{Arm, Configuration, Options, Solver, cases};
 use hydrostat_figures::{Measure, Page, Panel, Scale, lines_figure};
 use rayon::prelude::*;
 
-use crate::Scope;
 use crate::numbers::{fixed, size};
 use crate::report::{Check, Row, Section, Table};
+use crate::scope::Scope;
 
 const SOURCE: &str = "F. Gosselin, E. de Langre, B. A. Machado-Almeida, Drag reduction of flexible plates by reconfiguration, Journal of Fluid Mechanics 650 \
     (2010), 319-341: a rectangular plate under drag normal to it, Vogel exponent -2/3; the same exponent for a fibre in a free-streamline flow: S. Alben, \

@@ -83,7 +83,7 @@ fn a_soft_arm_across_a_fast_stream_is_solved() {
 
 #[test]
 #[ignore = "6552 solves"]
-fn whole_grid_is_solved_or_explained() {
+fn slow_whole_grid_is_solved_or_explained() {
     few_are_not_found(run(1, |_| {}));
 }
 
@@ -162,7 +162,7 @@ fn strokes_lead_back_to_tensions_on_a_thinned_grid() {
 
 #[test]
 #[ignore = "717 solves and back, a minute"]
-fn strokes_lead_back_to_tensions_on_the_grid() {
+fn slow_strokes_lead_back_to_tensions_on_the_grid() {
     round_trips(7);
 }
 
@@ -185,6 +185,6 @@ fn other_readings_on_a_thinned_grid() {
 
 #[test]
 #[ignore = "1408 solves"]
-fn other_readings_on_the_grid() {
+fn slow_other_readings_on_the_grid() {
     other_readings(37);
 }

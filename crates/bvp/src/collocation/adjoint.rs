@@ -1,6 +1,7 @@
 //! Adjoints: weights on the changes of a solution as weights on changes of its equations.
 
 use super::Collocation;
+use super::closing::Closing;
 use crate::condense::solve_column_transposed;
 use crate::directions::Side;
 use crate::gauss::POINTS;
@@ -90,7 +91,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         for j in 0..M {
             self.add_state_weights(g, j, &weights[j].state, &mut out);
         }
-        if self.directions.is_closed() {
+        if const { L > 0 } && self.directions.is_closed() {
             let (closure, w) = (&self.condensed.closures[g], self.condensed.w(g));
             self.gather_ends(g, ends, &mut out);
             out.taken += out.own_slope * closure.omega[M];
@@ -112,7 +113,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 for b in 0..N {
                     out.node[b] += self.condensed.by_state(g)[l][a][b] * own;
                 }
-                if self.directions.is_closed() {
+                if const { L > 0 } && self.directions.is_closed() {
                     out.taken += self.condensed.by_taken(g)[l][a] * own;
                 }
             }
@@ -153,7 +154,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         }
     }
 
-    fn closing_at(&self, end: &EndWeights<N>) -> Option<&super::Closing<N, M>> {
+    fn closing_at(&self, end: &EndWeights<N>) -> Option<&Closing<N, M>> {
         self.closings.iter().find(|c| c.block == end.block && c.lane == end.lane)
     }
 
@@ -183,7 +184,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             for a in 0..N {
                 out.z[i][a] += gathered[g].node[a].0[lane];
             }
-            if self.directions.is_closed() && !self.directions.closings.contains(&i) {
+            if const { L > 0 } && self.directions.is_closed() && !self.directions.closings.contains(&i) {
                 let node = if self.directions.side(i) == Side::Left { i + 1 } else { i };
                 out.w[node] += gathered[g].taken.0[lane];
             }
@@ -239,7 +240,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 let weight = h * Lanes::of(self.gauss.b[l]);
                 for a in 0..N {
                     slopes[l][a] += weight * jump[a];
-                    if self.directions.is_closed() {
+                    if const { L > 0 } && self.directions.is_closed() {
                         slopes[l][a] += h * self.condensed.closures[g].own_by_slopes[l][a] * own;
                     }
                 }
@@ -266,7 +267,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
                 slopes.as_flattened_mut().iter_mut().for_each(|v| v.0[lane] = 0.0);
             }
             solve_column_transposed(self.condensed.lu(g), &mut slopes);
-            if self.directions.is_closed() {
+            if const { L > 0 } && self.directions.is_closed() {
                 let (closure, w) = (&self.condensed.closures[g], self.condensed.w(g));
                 for j in 0..M {
                     let mut on_slope = weights(g)[j].closure_slope;

@@ -8,7 +8,8 @@ use clap::Args as ClapArgs;
 use hydrostat_figures::Quantity;
 use hydrostat_files::Varied;
 
-use super::{ArmArgs, Format, PictureArgs, STABLE, picture};
+use super::common::STABLE;
+use super::{ArmArgs, Format, PictureArgs, picture};
 
 const EXIT: &str = "\
 Exit status:
@@ -17,7 +18,7 @@ Exit status:
   3  none was found; standard error says why
   1  any other error";
 
-/// Finds all equilibria under the same loads, including those that `solve` does not lead to.
+/// Finds all equilibria under the same loads, including those that `solve` does not reach.
 ///
 /// The equilibria for all base angles form one curve that closes after a full turn of the tip. The search follows this
 /// curve. If the result says "complete", the curve was closed and there are no other equilibria.

@@ -6,7 +6,8 @@ use clap::Args as ClapArgs;
 use hydrostat_figures::Quantity;
 use hydrostat_files::Varied;
 
-use super::{ArmArgs, Format, PictureArgs, STABLE, count, picture};
+use super::common::{STABLE, count};
+use super::{ArmArgs, Format, PictureArgs, picture};
 
 const EXIT: &str = "\
 Exit status:

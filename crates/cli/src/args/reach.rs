@@ -6,7 +6,8 @@ use std::str::FromStr;
 use clap::{Args as ClapArgs, ValueEnum};
 use hydrostat_files::{Dimension, shared_unit};
 
-use super::{ArmArgs, Format, PictureArgs, STABLE, picture};
+use super::common::STABLE;
+use super::{ArmArgs, Format, PictureArgs, picture};
 
 const EXIT: &str = "\
 Exit status:

@@ -7,7 +7,8 @@ use clap::Args as ClapArgs;
 use hydrostat_files::Axis;
 use hydrostat_sweep::{Format, Output, Sample, Shard};
 
-use super::{ArmArgs, SnapArgs, count};
+use super::common::count;
+use super::{ArmArgs, SnapArgs};
 
 const EXIT: &str = "\
 Exit status:

@@ -5,8 +5,8 @@ use std::path::Path;
 use hydrostat::{Arm, Followed, Follower, Target};
 use hydrostat_files::{FollowedDocument, followed_csv, number, parse_targets, read_targets};
 
-use super::reach::{far_off, options};
-use super::table::table;
+use super::table::{counted, distance_cell, table};
+use super::targets::{far_off, options};
 use super::{Advised, NoAnswer};
 use crate::args::{Format, ReachArgs};
 use crate::input;
@@ -53,17 +53,23 @@ pub(super) fn run(arm: &Arm, path: &Path, args: &ReachArgs) -> anyhow::Result<()
 fn summary(arm: &Arm, rows: &[(Target, Followed)]) -> String {
     let mut head: Vec<String> = ["target", "x (mm)", "y (mm)"].map(str::to_owned).into();
     head.extend(arm.cables.iter().map(|cable| format!("{} (N)", cable.name)));
-    head.extend(["off (mm)", "reached", "jumped"].map(str::to_owned));
+    head.extend(["distance (mm)", "reached", "jumped"].map(str::to_owned));
     let yes = |flag: bool| if flag { "yes" } else { "no" }.to_owned();
     let mut all = vec![head];
     for (index, (target, found)) in rows.iter().enumerate() {
         let mut row = vec![(index + 1).to_string(), number(1e3 * target.x), number(1e3 * target.y)];
         row.extend(found.tensions.iter().map(|tension| number(*tension)));
-        row.push(format!("{:.1e}", 1e3 * found.distance * arm.length));
+        row.push(distance_cell(found.distance * arm.length));
         row.extend([yes(found.reached), yes(found.jumped)]);
         all.push(row);
     }
     let jumps = rows.iter().filter(|(_, found)| found.jumped).count();
     let reached = rows.iter().filter(|(_, found)| found.reached).count();
-    format!("{}: {reached} of {} targets reached, {jumps} jumps\n\n{}", arm.name, rows.len(), table(&all, 2))
+    format!(
+        "{}: {reached} of {} reached, {}\n\n{}",
+        arm.name,
+        counted(rows.len(), "target"),
+        counted(jumps, "jump"),
+        table(&all, 2)
+    )
 }

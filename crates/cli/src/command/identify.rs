@@ -10,7 +10,7 @@ use hydrostat_identify::{Case, Fit, FitOptions, fit};
 use std::fmt::Write as _;
 
 use super::NoAnswer;
-use super::table::table;
+use super::table::{counted, table};
 use crate::args::{Format, IdentifyArgs};
 use crate::input;
 use crate::output;
@@ -30,7 +30,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     let arm = request::arm_of(&file)?;
     // Told before anything is measured.
     if let Some(cable) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
-        return Err(SensitivityError::Rubbing(cable).into());
+        return Err(SensitivityError::Friction(cable).into());
     }
     let outputs =
         [("-o", args.output.as_deref()), ("--fitted", args.fitted.as_deref()), ("--plot", args.plot.as_deref())];
@@ -89,7 +89,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     if found.converged {
         return Ok(());
     }
-    let mut words = format!("the fit did not converge in {} steps", found.rounds);
+    let mut words = format!("the fit did not converge in {}", counted(found.rounds, "step"));
     if let Some(one) = found.no_answer.first() {
         let _ = write!(
             words,
@@ -115,8 +115,13 @@ fn named(parameter: Parameter) -> String {
 
 fn report(arm: &Arm, cases: &[Case], found: &Fit) -> String {
     let count = found.residuals.len();
-    let mut out =
-        format!("{}: {} load cases, {count} measured values, {} steps\n\n", arm.name, found.load_cases, found.rounds);
+    let mut out = format!(
+        "{}: {}, {}, {}\n\n",
+        arm.name,
+        counted(found.load_cases, "load case"),
+        counted(count, "measured value"),
+        counted(found.rounds, "step")
+    );
     out.push_str(&estimates(found));
     out.push('\n');
     for sentence in found.verdict() {
@@ -235,7 +240,7 @@ fn far_out(cases: &[Case], found: &Fit) -> String {
     far.sort_by(|a, b| b.standardised.abs().total_cmp(&a.standardised.abs()));
     let mut out = String::new();
     if !far.is_empty() {
-        let _ = writeln!(out, "\n{} values deviate by more than {FAR} standard deviations", far.len());
+        let _ = writeln!(out, "\n{} beyond {FAR} standard deviations", counted(far.len(), "value"));
     }
     for one in far.iter().take(MOST_NAMED) {
         let measurement = one.measurement;

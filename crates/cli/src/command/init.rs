@@ -29,7 +29,7 @@ pub(crate) fn run(args: &InitArgs) -> anyhow::Result<()> {
     }
     write_whole(&args.file, commented_arm(&arm).as_bytes())?;
     let file = args.file.display();
-    Ok(output::print(&format!("{file}: written; `hydrostat check {file}` says what it means\n"))?)
+    Ok(output::print(&format!("{file}: written; `hydrostat check {file}` shows all its values\n"))?)
 }
 
 fn start() -> anyhow::Result<Arm> {

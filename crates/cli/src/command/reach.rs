@@ -1,10 +1,11 @@
 //! `hydrostat reach`: the tensions that bring the arm to a place.
 
-use hydrostat::{Arm, Bound, CableState, Reach, ReachOptions, Reached, Station, Target, Tip};
+use hydrostat::{Arm, Bound, CableState, Reach, Reached, Station, Target, Tip};
 use hydrostat_figures::reach_figure;
 use hydrostat_files::{ReachDocument, number, reach_csv};
 
-use super::table::{TIP, place_cells, stability_words, table, tip_cells};
+use super::table::{TIP, distance_cell, place_cells, stability_words, table, tip_cells};
+use super::targets::{far_off, options};
 use super::{Advised, NoAnswer};
 use super::{boundary, follow};
 use crate::args::{By, Format, Point, ReachArgs};
@@ -59,33 +60,9 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
     }
 }
 
-pub(super) fn options(args: &ReachArgs) -> ReachOptions {
-    ReachOptions {
-        max_tension: args.max_tension,
-        max_stroke: args.max_stroke,
-        tol: args.tol.unwrap_or(ReachOptions::default().tol),
-        all: true,
-    }
-}
-
 /// By how much the closest misses.
 fn miss(arm: &Arm, closest: &Reached) -> String {
     format!("the closest shape that was found misses it by {} mm", number(1e3 * closest.distance * arm.length))
-}
-
-/// Targets that are further from the base than this, over L, were hardly meant in m: an arm stretches, but not that far.
-const FAR: f64 = 3.0;
-
-/// What to try where a target is further away than any arm stretches.
-pub(super) fn far_off(arm: &Arm, target: &Target) -> Option<String> {
-    let lengths = (target.x - arm.base.x).hypot(target.y - arm.base.y) / arm.length;
-    (lengths > FAR).then(|| {
-        let [far, x, y] = [lengths, target.x, target.y].map(number);
-        format!(
-            "\"{x} mm,{y} mm\", or in a file the columns x_mm,y_mm, if millimetres are meant: ({x}, {y}) m is {far} lengths of the arm \
-             from its base"
-        )
-    })
 }
 
 /// Misses up to this, over L, are those of a target that was rounded.
@@ -131,8 +108,8 @@ fn summary(arm: &Arm, found: &Reach, station: Option<f64>, by: By) -> String {
         None => head.extend(TIP.map(str::to_owned)),
         Some(_) => head.extend(["place ", "tip "].iter().flat_map(|of| TIP.map(|name| format!("{of}{name}")))),
     }
-    head.push("off (mm)".to_owned());
-    head.extend(["stability", "solve leads here"].map(str::to_owned));
+    head.push("distance (mm)".to_owned());
+    head.extend(["stability", "given by solve"].map(str::to_owned));
     let mut rows = vec![head];
     for one in found.solutions.iter().chain(&found.closest) {
         let mut row: Vec<String> = one.tensions.iter().map(|t| number(*t)).collect();
@@ -144,7 +121,7 @@ fn summary(arm: &Arm, found: &Reach, station: Option<f64>, by: By) -> String {
             row.extend(place_cells(Tip { x: *x, y: *y, theta: *theta, alpha: *alpha }));
         }
         row.extend(tip_cells(&one.configuration));
-        row.push(format!("{:.1e}", 1e3 * one.distance * arm.length));
+        row.push(distance_cell(one.distance * arm.length));
         row.push(stability_words(one.stability));
         row.push(if one.on_the_path { "yes" } else { "no" }.to_owned());
         rows.push(row);

@@ -91,11 +91,9 @@ fn beyond(failure: &NoEquilibrium) -> Option<String> {
         Some(shape) => {
             let tip = shape.tip();
             let place = format!("x {:.4} mm, y {:.4} mm", 1e3 * tip.x, 1e3 * tip.y);
-            format!(
-                "the path leads on to the full loads, with the tip at {place}: --follow-snaps answers with that shape"
-            )
+            format!("the path continues to the full loads, with the tip at {place}; --follow-snaps gives that shape")
         }
-        None => "the path does not lead on to the full loads".to_owned(),
+        None => "the path does not continue to the full loads".to_owned(),
     };
     Some(format!("{}; {leads}", snap.message()))
 }

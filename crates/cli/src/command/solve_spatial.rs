@@ -60,7 +60,7 @@ fn report_failure(args: &SolveArgs, mut failure: NoSpatialEquilibrium) -> anyhow
         resample(args, last_good);
     }
     let text = output::line(SpatialFailureDocument::new(&failure, &notes).to_json());
-    Ok(output::put(args.output.as_deref(), &text)?)
+    output::put(args.output.as_deref(), &text)
 }
 
 fn resample(args: &SolveArgs, configuration: &mut SpatialConfiguration) {

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use hydrostat::{CableState, Configuration, Stability, Wrench};
 use hydrostat_files::number;
 
+use super::table::decimals;
+
 /// What is known of the stability of `c`, in words.
 pub(super) fn stability(c: &Configuration) -> Option<String> {
     let rubs = || c.arm.cables.iter().any(|cable| cable.friction > 0.0);
@@ -28,6 +30,7 @@ pub(super) fn summary(c: &Configuration) -> String {
     let arm = &c.arm;
     let tip = c.tip();
     let mut out = String::new();
+    let mm = |length: f64| decimals(1e3 * length, 4);
     let mut row = |name: &str, text: &str| {
         let _ = writeln!(out, "{name:<15}{text}");
     };
@@ -37,7 +40,7 @@ pub(super) fn summary(c: &Configuration) -> String {
         speed => format!("stream {speed} m/s at {} deg", number(arm.flow.direction.to_degrees())),
     };
     row("arm", &format!("{}, {} mm, {stream}{stability}", arm.name, number(1e3 * arm.length)));
-    row("tip", &format!("x {:.4} mm, y {:.4} mm, turned by {}", 1e3 * tip.x, 1e3 * tip.y, degrees(tip.theta)));
+    row("tip", &format!("x {} mm, y {} mm, turned by {}", mm(tip.x), mm(tip.y), degrees(tip.theta)));
     row("tip section", &format!("alpha(L) {}", degrees(tip.alpha)));
     for (i, text) in cable_rows(&c.cables).into_iter().enumerate() {
         row(if i == 0 { "cables" } else { "" }, &text);
@@ -98,6 +101,5 @@ pub(super) fn signed(value: f64) -> String {
 }
 
 fn degrees(angle: f64) -> String {
-    let text = format!("{:.4} deg", angle.to_degrees());
-    if text == "-0.0000 deg" { "0.0000 deg".to_owned() } else { text }
+    format!("{} deg", decimals(angle.to_degrees(), 4))
 }

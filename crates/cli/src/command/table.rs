@@ -33,20 +33,32 @@ pub(super) fn tip_cells(c: &Configuration) -> [String; 4] {
 
 /// The same of any place.
 pub(super) fn place_cells(place: Tip) -> [String; 4] {
-    let decimals = |value: f64, count: usize| {
-        let text = format!("{value:.count$}");
-        if text.trim_start_matches('-').bytes().all(|b| matches!(b, b'0' | b'.')) {
-            text.trim_start_matches('-').to_owned()
-        } else {
-            text
-        }
-    };
     [
         decimals(1e3 * place.x, 3),
         decimals(1e3 * place.y, 3),
         decimals(place.theta.to_degrees(), 3),
         decimals(place.alpha.to_degrees(), 3),
     ]
+}
+
+/// A number with so many decimals; zero has no sign.
+pub(super) fn decimals(value: f64, count: usize) -> String {
+    let text = format!("{value:.count$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.bytes().all(|b| matches!(b, b'0' | b'.')) => zero.to_owned(),
+        _ => text,
+    }
+}
+
+/// A distance (m) in mm, of any size.
+pub(super) fn distance_cell(distance: f64) -> String {
+    let mm = 1e3 * distance;
+    if mm < 1e-3 { format!("{mm:.1e}") } else { format!("{mm:.3}") }
+}
+
+/// A number of things: "1 target", "2 targets".
+pub(super) fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Stability in a word or two.
@@ -61,6 +73,13 @@ pub(super) fn stability_words(stability: Option<Stability>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_distance_beyond_a_millimetre_is_no_power_of_ten() {
+        assert_eq!(distance_cell(0.116_65), "116.650");
+        assert_eq!(distance_cell(6.94e-15), "6.9e-12");
+        assert_eq!(counted(1, "target") + ", " + &counted(0, "jump"), "1 target, 0 jumps");
+    }
 
     #[test]
     fn numbers_stand_right_and_words_left() {

@@ -303,7 +303,7 @@ fn thirty_clients_at_once_are_all_answered() {
 
 #[test]
 #[ignore = "10 000 requests take minutes on a busy machine"]
-fn ten_thousand_requests_leave_the_memory_as_it_was() {
+fn slow_ten_thousand_requests_leave_the_memory_as_it_was() {
     let Some([early, late]) = load(30, 334) else { return };
     println!("resident after 1 000 requests {early} KiB, after 10 000 {late} KiB");
     assert!(late < early + early / 4 + 4096, "{early} KiB, then {late} KiB");

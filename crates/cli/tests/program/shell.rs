@@ -119,7 +119,7 @@ fn a_dash_is_standard_input() {
     assert_eq!(run.out, solved(&[&["solve", "silicone"], &solve[..]].concat()).out);
     let run = fed(&["check", "-"], "[arm]\nlenght = 1\n");
     assert_eq!(run.code, 2);
-    assert!(run.err.starts_with("error: standard input:2: arm.lenght: expected "), "{}", run.err);
+    assert!(run.err.starts_with("error: standard input:2: arm.lenght: unknown key; "), "{}", run.err);
 
     let targets = "x_m,y_m\n0.182,0.078\n0.181,0.079\n";
     let follow = ["reach", "silicone", "--path"];

@@ -2,7 +2,7 @@
 
 use super::{directory, files, hydrostat_in, json, refused};
 
-const TIPS: &str = include_str!("../../../../validation/peers/tips.json");
+const TIPS: &str = include_str!("../../../validate/data/tips.json");
 
 /// The quick run, with one number of another program changed in its fourth digit: that check fails and no other, the report says so, and the
 /// program ends with status 1.

@@ -2,7 +2,8 @@
 
 use hydrostat::{Configuration, Parameter};
 
-use super::{SPEED, Study, TIP_ANGLE, speed, tension};
+use super::shapes::Study;
+use super::solves::{SPEED, TIP_ANGLE, speed, tension};
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, Label};
 use crate::legend::{Legend, Sample};

@@ -2,52 +2,10 @@
 
 use hydrostat::{Arm, Configuration, Volume};
 
-use super::{RESOLUTION, SPEED, Study, TIP_ANGLE, loaded, solved, speed, tension, tip_angle};
+use super::claim::{Claim, Finding};
+use super::shapes::Study;
+use super::solves::{RESOLUTION, SPEED, TIP_ANGLE, loaded, solved, speed, tension, tip_angle};
 use crate::numbers::short;
-
-/// What became of a claim.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Finding {
-    /// Everywhere that was looked.
-    Holds,
-    /// Somewhere, and somewhere not.
-    InPart,
-    /// Nowhere.
-    DoesNotHold,
-    /// The source gives nothing to measure it by.
-    Open,
-}
-
-impl Finding {
-    /// In words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Holds => "holds",
-            Self::InPart => "holds in part",
-            Self::DoesNotHold => "does not hold",
-            Self::Open => "cannot be decided",
-        }
-    }
-
-    fn of(held: usize, looked: usize) -> Self {
-        match held {
-            h if h == looked => Self::Holds,
-            0 => Self::DoesNotHold,
-            _ => Self::InPart,
-        }
-    }
-}
-
-/// A statement of the source and the numbers behind the finding.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Claim {
-    /// What the source says.
-    pub statement: &'static str,
-    /// Whether it is so.
-    pub finding: Finding,
-    /// The numbers.
-    pub evidence: String,
-}
 
 const SAMPLES: u32 = 400;
 

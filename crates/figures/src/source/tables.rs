@@ -2,7 +2,7 @@
 
 use hydrostat::Configuration;
 
-use super::{speed, tension};
+use super::solves::{speed, tension};
 
 const STATIONS: u32 = 201;
 

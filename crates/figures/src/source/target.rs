@@ -2,7 +2,7 @@
 
 use hydrostat::{Arm, Configuration, Reach, ReachError, ReachOptions};
 
-use super::{SPEED, StudyError, TIP_ANGLE, loaded};
+use super::solves::{SPEED, StudyError, TIP_ANGLE, loaded};
 
 /// The largest tension that is looked at where the cable names none, N.
 const LARGEST: f64 = 100.0;

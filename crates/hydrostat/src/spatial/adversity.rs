@@ -5,8 +5,8 @@ use hydrostat_bvp::each;
 use super::engine::{Engine, M};
 use super::equations::{Equations, FORCE, L, N};
 use super::rotation::{Directors, Vector, dot, times, turned};
-use crate::readings::Support;
-use crate::swelling::{displacement, swelling};
+use crate::rod::area_law::{area_law, displacement};
+use crate::rod::readings::Support;
 
 /// Adversity from which on a direct solve may have landed on a branch that the path does not lead to.
 const HARD: f64 = 0.3;
@@ -51,7 +51,7 @@ impl Equations {
     fn adversity(&self, block: usize, lane: usize, z: &[f64; N], strain: &[f64; L], unloaded: &Directors<f64>) -> f64 {
         let place = &self.places[block];
         let rest = 1.0 - place.s.0[lane];
-        let own = swelling(self.volume, strain[0]);
+        let own = area_law(self.volume, strain[0]);
         let stiffness = place.stiffness.value[5].0[lane] * own.beta * own.beta;
         let v = Directors::of(&[z[0], z[1], z[2], z[3]]).to_space(&[strain[0], strain[1], strain[2]]);
         let stretch = dot(&v, &v).sqrt();

@@ -8,12 +8,12 @@ use super::path::SpatialSnap;
 use super::rotation::{Directors, Vector, dot};
 use super::section::{CableAt, STRAINS, tangent};
 use super::section_solve::{FOLDED, solve_section};
-use crate::arm::{Arm, Cavity};
-use crate::configuration::{CableState, FoldMargin, Statistics, Warning};
-use crate::engine::Trouble;
-use crate::equilibrium::{Nearness, SectionFailure};
-use crate::readings::Support;
-use crate::swelling::swelling;
+use crate::rod::area_law::area_law;
+use crate::rod::arm::{Arm, Cavity};
+use crate::rod::readings::Support;
+use crate::statics::configuration::{CableState, FoldMargin, Statistics, Warning};
+use crate::statics::engine::Trouble;
+use crate::statics::equations::{Margins, SectionFailure};
 
 /// The static configuration of an arm in space.
 #[derive(Debug, Clone)]
@@ -243,7 +243,7 @@ impl Engine {
         Ok(AtPlace {
             directors,
             strain: each(|k| solved.strain[k] + solved.change[k]),
-            beta: swelling(volume, solved.strain[0] + solved.change[0]).beta,
+            beta: area_law(volume, solved.strain[0] + solved.change[0]).beta,
             contact: each(|k| contact[k] - solved.balance.cables[k]),
             openness: solved.balance.openness,
             regularity: solved.regularity,
@@ -258,8 +258,8 @@ impl Engine {
     }
 
     /// How near the limits of the section law nodes are.
-    pub(super) fn nearest_limits(&self) -> Nearness {
-        let mut near = Nearness::FAR;
+    pub(super) fn nearest_limits(&self) -> Margins {
+        let mut near = Margins::FAR;
         for i in 0..self.solution.mesh.elements() {
             for x in [0.0, 0.5, 1.0] {
                 if let Ok(at) = self.section_in(i, x) {
@@ -310,10 +310,10 @@ impl Engine {
                 let cable = equations.cable(c, s);
                 let strain: [f64; L] = each(|k| station.inner[k].0[lane]);
                 let reference: [f64; L] = each(|k| equations.reference_in(block)[k].0[lane]);
-                let unloaded = swelling(equations.volume, reference[0]);
+                let unloaded = area_law(equations.volume, reference[0]);
                 let slope = arm.reference.nu.at(s * arm.length, arm.length).slope * arm.length * unloaded.slope;
                 let paths = [
-                    tangent(&cable, &strain, &swelling(equations.volume, strain[0]), station.closure_slope.0[lane]),
+                    tangent(&cable, &strain, &area_law(equations.volume, strain[0]), station.closure_slope.0[lane]),
                     tangent(&cable, &reference, &unloaded, slope),
                 ];
                 for (out, path) in out.iter_mut().zip(paths) {

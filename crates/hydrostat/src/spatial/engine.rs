@@ -2,15 +2,15 @@
 
 use std::sync::LazyLock;
 
-use hydrostat_bvp::{Collocation, Correction, Gauss, Lanes, Resampling, RoundError, Solution, each};
+use hydrostat_bvp::{Collocation, Correction, Gauss, Lanes, LinearisationError, Resampling, Solution, each};
 
 use super::equations::{Equations, L, N, Q};
 use super::rotation::{Vector, dot, turn};
-use crate::arm::Arm;
-use crate::configuration::Statistics;
-use crate::engine::Trouble;
-use crate::equilibrium::SectionFailure;
-use crate::readings::Support;
+use crate::rod::arm::Arm;
+use crate::rod::readings::Support;
+use crate::statics::configuration::Statistics;
+use crate::statics::engine::Trouble;
+use crate::statics::equations::SectionFailure;
 
 /// Stages of the solve, and of the check that estimates its error.
 pub(crate) const M: usize = 4;
@@ -63,7 +63,7 @@ pub(super) fn linearise<const S: usize>(
     system: &mut Collocation<N, S, Q, L>,
     equations: &Equations,
     solution: &Solution<N, S, L>,
-) -> Result<(), RoundError<SectionFailure>> {
+) -> Result<(), LinearisationError<SectionFailure>> {
     system.linearise::<_, false>(equations, solution)
 }
 
@@ -81,7 +81,7 @@ pub(super) fn correct<const S: usize>(
 #[inline(never)]
 pub(super) fn respond(
     system: &Collocation<N, M, Q, L>,
-    change: &hydrostat_bvp::Change<N, Q, L>,
+    change: &hydrostat_bvp::Forcing<N, Q, L>,
     out: &mut Correction<N, M, Q, L>,
 ) {
     system.response::<false>(change, out);
@@ -185,7 +185,7 @@ impl Engine {
 
     /// Work done so far.
     pub(super) fn work(&self) -> usize {
-        (self.system.evaluations + self.check.evaluations) * self.equations.arm().dearness()
+        (self.system.evaluations + self.check.evaluations) * self.equations.arm().cost_factor()
     }
 
     /// Refuses to go on where no work is left.
@@ -214,7 +214,7 @@ impl Engine {
             self.may_go_on()?;
             match linearise(&mut self.system, &self.equations, &self.solution) {
                 Ok(()) => {}
-                Err(RoundError::Slopes(failure)) => {
+                Err(LinearisationError::Slopes(failure)) => {
                     if applied == 0.0 || halvings == 8 {
                         return Err(Trouble::Section(failure));
                     }

@@ -14,7 +14,7 @@
 //! [`Units`], as in the plane.
 
 use hydrostat_bvp::{
-    Change, Condition, Drift, EndPlace, Groups, Inner, LANES, Lanes, Local, Problem, Real, Station, each,
+    Condition, EndPlace, Forcing, Groups, Inner, LANES, Lanes, Local, Problem, Real, StageForcing, Station, each,
 };
 
 use super::loads::{Load, Water, load};
@@ -22,12 +22,12 @@ use super::places::{Place, loads_of};
 use super::rotation::{Directors, Vector, cross, spin, turn};
 use super::section::{CableAt, STRAINS, Stiffness, apply};
 use super::section_solve::{Solved, solve_section};
-use crate::arm::{Arm, Space};
-use crate::equilibrium::{SectionFailure, Units};
-use crate::flow::Law;
-use crate::readings::{Support, Volume};
-use crate::swelling::swelling;
-use crate::verdict::Phase;
+use crate::rod::area_law::area_law;
+use crate::rod::arm::{Arm, Space};
+use crate::rod::flow::Law;
+use crate::rod::readings::{Support, Volume};
+use crate::statics::verdict::Phase;
+use crate::statics::{dimensions::Units, equations::SectionFailure};
 
 /// States: q, n_f and m_f in space.
 pub(crate) const N: usize = 10;
@@ -226,7 +226,7 @@ impl Equations {
 
     /// beta R (over L) in a lane of a block.
     pub(crate) fn half_width(&self, block: usize, station: &Station<N, L>, lane: usize) -> f64 {
-        (swelling(self.volume, station.inner[0]).beta * self.places[block].body.radius).0[lane]
+        (area_law(self.volume, station.inner[0]).beta * self.places[block].body.radius).0[lane]
     }
 
     /// The place (over L) of a lane of a block.
@@ -238,7 +238,7 @@ impl Equations {
     #[inline(always)]
     pub(crate) fn strain_energy(&self, block: usize, station: &Station<N, L>) -> Lanes {
         let stiffness = &self.places[block].stiffness;
-        let beta = swelling(self.volume, station.inner[0]).beta;
+        let beta = area_law(self.volume, station.inner[0]).beta;
         let mut sum = Lanes::of(0.0);
         for a in 0..L {
             let strained = station.inner[a] - stiffness.reference[a];
@@ -251,7 +251,7 @@ impl Equations {
     #[inline(always)]
     pub(crate) fn speeds(&self, block: usize, station: &Station<N, L>) -> (Lanes, Vector<Lanes>) {
         let directors = Directors::of(&each(|k| station.z[k]));
-        let swelling = swelling(self.volume, station.inner[0]);
+        let swelling = area_law(self.volume, station.inner[0]);
         let load = load(&self.water, &self.places[block].body, &directors, &station.inner, &swelling);
         (load.along, load.across)
     }
@@ -404,13 +404,13 @@ impl Equations {
         stations: &[Station<N, L>],
         end_stations: &[Station<N, L>],
         tip: &[f64; N],
-    ) -> Result<Change<N, Q, L>, SectionFailure> {
-        let mut out = Change::default();
+    ) -> Result<Forcing<N, Q, L>, SectionFailure> {
+        let mut out = Forcing::default();
         let mut pulled = Vec::new();
         let loads = self.phase == Phase::Loads;
         for (block, station) in stations.iter().enumerate() {
             let at = self.solved_in(block, station, &mut pulled)?;
-            let mut drift = Drift::default();
+            let mut drift = StageForcing::default();
             if loads {
                 let place = &self.places[block];
                 let own = load(&self.water, &place.body, &at.directors, &at.solved.strain, &at.solved.balance.swelling);
@@ -506,7 +506,7 @@ pub(super) fn strain_by_state<R: Real>(
     out
 }
 
-/// Change of z' with the strains, at fixed z and beta'.
+/// Forcing of z' with the strains, at fixed z and beta'.
 #[inline(always)]
 fn by_strain_change<R: Real>(at: &AtStation<R>, q: &[R; 4], change: &[R; STRAINS]) -> [R; N] {
     let v = [change[0], change[1], change[2]];

@@ -12,9 +12,9 @@ use hydrostat_bvp::{Real, each};
 
 use super::rotation::{Directors, Vector, cross, dot, times};
 use super::section::STRAINS;
-use crate::flow::{Law, traction};
-use crate::readings::{Displaced, Hydrostatics, Volume, WettedLength};
-use crate::swelling::{Swelling, displacement};
+use crate::rod::area_law::{SectionStretch, displacement};
+use crate::rod::flow::{Law, traction};
+use crate::rod::readings::{Displaced, Hydrostatics, Volume, WettedLength};
 
 /// What the loads need to know of the arm as a whole.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +66,7 @@ pub(crate) fn load<R: Real>(
     body: &Body<R>,
     directors: &Directors<R>,
     strain: &[R; STRAINS],
-    swelling: &Swelling<R>,
+    swelling: &SectionStretch<R>,
 ) -> Load<R> {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let v = [strain[0], strain[1], strain[2]];
@@ -155,7 +155,7 @@ pub(crate) fn load<R: Real>(
 mod tests {
     use super::super::rotation::turned;
     use super::*;
-    use crate::swelling::swelling;
+    use crate::rod::area_law::area_law;
 
     fn body() -> Body<f64> {
         Body {
@@ -195,7 +195,7 @@ mod tests {
         let strain = [0.9, 0.05, -0.08, 0.2, 0.3, 0.4];
         for water in waters() {
             let at = |q: &[f64; 4], strain: &[f64; 6]| {
-                load(&water, &body(), &Directors::of(q), strain, &swelling(water.volume, strain[0]))
+                load(&water, &body(), &Directors::of(q), strain, &area_law(water.volume, strain[0]))
             };
             let here = at(&q, &strain);
             for k in 0..3 {
@@ -229,10 +229,10 @@ mod tests {
             let body =
                 Body { weight: [0.1, -0.4, 0.0], displaced: [0.05, -0.2, 0.0], force: [0.01, 0.02, 0.0], ..body() };
             let (theta, strain) = (0.7_f64, [0.9, 0.05, 0.0, 0.0, 0.0, 0.4]);
-            let own = swelling(water.volume, strain[0]);
+            let own = area_law(water.volume, strain[0]);
             let q = [(0.5 * theta).cos(), 0.0, 0.0, (0.5 * theta).sin()];
             let here = load(&water, &body, &Directors::of(&q), &strain, &own);
-            let planar = crate::loads::Water {
+            let planar = crate::rod::loads::Water {
                 stream: [0.3, -0.2],
                 law: water.law,
                 surface: crate::FlowSurface::Centreline,
@@ -242,7 +242,7 @@ mod tests {
                 hydrostatics: water.hydrostatics,
                 tangential_factor: 1.0,
             };
-            let section = crate::loads::Body {
+            let section = crate::rod::loads::Body {
                 radius: 0.05,
                 radius_slope: 0.0,
                 wetted: 0.7,
@@ -252,7 +252,7 @@ mod tests {
                 couple: 0.0,
             };
             let strains = [strain[0], strain[1], strain[5]];
-            let there = crate::loads::load(&planar, &section, [theta.cos(), theta.sin()], strains, &own, 0.0);
+            let there = crate::rod::loads::load(&planar, &section, [theta.cos(), theta.sin()], strains, &own, 0.0);
             for k in 0..2 {
                 assert!((here.force[k] - there.force[k]).abs() < 1e-14);
                 assert!((here.by_turn[2][k] - there.by_theta[k]).abs() < 1e-14);

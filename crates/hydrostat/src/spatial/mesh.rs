@@ -5,7 +5,7 @@ use hydrostat_bvp::{LANES, Limits, Mesh};
 use super::engine::{Engine, M, METHODS, State, correct, linearise};
 use super::kinks::kink_resolution;
 use super::rotation::dot;
-use crate::engine::{Trouble, roughly};
+use crate::statics::engine::{Trouble, roughly};
 
 /// How close (over L) nodes are kept to kinks on meshes that are refined afterwards.
 const COARSE: f64 = 1e-3;
@@ -58,7 +58,7 @@ impl Engine {
         self.solution.mesh = mesh;
         self.meshes += 1;
         let (gauss, equations) = (&self.system.gauss, &self.equations);
-        self.before.onto(gauss, |s| equations.jumps_at(s), &mut self.solution);
+        self.before.remap(gauss, |s| equations.jumps_at(s), &mut self.solution);
         self.equations.place_on(gauss, &self.solution);
     }
 

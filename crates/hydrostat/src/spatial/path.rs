@@ -9,11 +9,11 @@ use super::configuration::SpatialTip;
 use super::engine::{Engine, Guess, M, State, correct, linearise, turn_of};
 use super::equations::{L, N, Q};
 use super::rotation::{Vector, dot};
-use crate::engine::{Trouble, roughly};
-use crate::equilibrium::Nearness;
-use crate::readings::Volume;
-use crate::snap::SnapBounds;
-use crate::verdict::{Phase, Verdict, VerdictKind};
+use crate::rod::readings::Volume;
+use crate::statics::engine::{Trouble, roughly};
+use crate::statics::equations::Margins;
+use crate::statics::snap::SnapBounds;
+use crate::statics::verdict::{Phase, Verdict, VerdictKind};
 
 /// Fractions start here, where the tangent by the fraction is defined.
 const START: f64 = 1e-7;
@@ -96,7 +96,7 @@ pub(super) struct Stopped {
 struct Point {
     state: State,
     fraction: f64,
-    /// Change a unit of the fraction.
+    /// Forcing a unit of the fraction.
     response: Correction<N, M, Q, L>,
     /// The turns (about the directors) of the nodes a unit of the fraction.
     turns: Vec<Vector<f64>>,
@@ -449,12 +449,12 @@ fn largest_way(before: &[[f64; N]], solution: &Guess) -> f64 {
 }
 
 /// Names the limit that a shape is at, with its place (over L): as in the plane.
-fn name_limit(near: Nearness, trouble: Option<&Trouble>, volume: Volume) -> (VerdictKind, Option<f64>) {
+fn name_limit(near: Margins, trouble: Option<&Trouble>, volume: Volume) -> (VerdictKind, Option<f64>) {
     let failed = match trouble {
         Some(Trouble::Section(failure)) => Some(*failure),
         _ => None,
     };
-    let Nearness { mut openness, mut nu, mut regularity } = near;
+    let Margins { mut openness, mut nu, mut regularity } = near;
     if let Some(f) = failed {
         for (least, value) in [(&mut openness, f.openness), (&mut nu, f.nu), (&mut regularity, f.regularity)] {
             if value.abs() < least.0 {

@@ -5,9 +5,9 @@ use hydrostat_bvp::{Gauss, LANES, Lanes, Real, Side, Solution, each};
 use super::equations::{Equations, L, N};
 use super::loads::Body;
 use super::section::{CableAt, Stiffness};
-use crate::arm::{Cable, Material, Space};
-use crate::equilibrium::section_data;
-use crate::profile::Profile;
+use crate::rod::arm::{Cable, Material, Space};
+use crate::rod::profile::Profile;
+use crate::statics::equations::section_data;
 
 /// One place of the arm as data.
 #[derive(Debug, Clone, Copy)]

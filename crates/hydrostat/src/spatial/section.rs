@@ -18,8 +18,8 @@
 use hydrostat_bvp::{Real, each};
 
 use super::rotation::{Vector, cross, dot, sum, times};
-use crate::readings::Volume;
-use crate::swelling::{Swelling, swelling};
+use crate::rod::area_law::{SectionStretch, area_law};
+use crate::rod::readings::Volume;
 
 /// Strains of a section.
 pub(crate) const STRAINS: usize = 6;
@@ -46,7 +46,7 @@ pub(crate) struct CableAt<R> {
 /// The law and the cables together at given strains: `carried` equals (n_f, m_f) in the directors in equilibrium.
 #[derive(Clone, Copy)]
 pub(crate) struct Balance<R> {
-    pub(crate) swelling: Swelling<R>,
+    pub(crate) swelling: SectionStretch<R>,
     pub(crate) carried: [R; STRAINS],
     pub(crate) by_strain: [[R; STRAINS]; STRAINS],
     /// Derivatives by beta'.
@@ -73,7 +73,7 @@ pub(crate) struct Pull<R> {
 pub(crate) fn tangent<R: Real>(
     cable: &CableAt<R>,
     strain: &[R; STRAINS],
-    swelling: &Swelling<R>,
+    swelling: &SectionStretch<R>,
     beta_slope: R,
 ) -> Tangent<R> {
     let zero = R::of(0.0);
@@ -99,7 +99,7 @@ pub(crate) struct Tangent<R> {
 pub(crate) fn pull<R: Real>(
     cable: &CableAt<R>,
     strain: &[R; STRAINS],
-    swelling: &Swelling<R>,
+    swelling: &SectionStretch<R>,
     beta_slope: R,
 ) -> Pull<R> {
     let zero = R::of(0.0);
@@ -154,7 +154,7 @@ pub(crate) fn balance<R: Real>(
     beta_slope: R,
 ) -> Balance<R> {
     let zero = R::of(0.0);
-    let swelling = swelling(volume, strain[0]);
+    let swelling = area_law(volume, strain[0]);
     let area = swelling.beta * swelling.beta;
     let area_nu = R::of(2.0) * swelling.beta * swelling.slope;
     let mut out = Balance {
@@ -235,7 +235,7 @@ pub(crate) fn apply<R: Real>(m: &[[R; STRAINS]; STRAINS], v: &[R; STRAINS]) -> [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cable::Offset;
+    use crate::rod::cable::Offset;
 
     fn section() -> (Stiffness<f64>, [CableAt<f64>; 3]) {
         let stiffness =
@@ -277,12 +277,15 @@ mod tests {
         let (stiffness, _) = section();
         let stiffness = Stiffness { reference: [1.02, 0.01, 0.0, 0.0, 0.0, 0.3], ..stiffness };
         let cable = CableAt { y: 0.08, z: 0.0, y_slope: -0.01, z_slope: 0.0, tension: 0.4 };
-        let planar =
-            crate::section::Stiffness { value: [3.0, 1.0, 0.2], reference: [1.02, 0.01, 0.3], reference_slope: 0.0 };
-        let own = crate::section::CableAt { offset: Offset { y: 0.08, slope: -0.01 }, tension: 0.4 };
+        let planar = crate::rod::section::Stiffness {
+            value: [3.0, 1.0, 0.2],
+            reference: [1.02, 0.01, 0.3],
+            reference_slope: 0.0,
+        };
+        let own = crate::rod::section::CableAt { offset: Offset { y: 0.08, slope: -0.01 }, tension: 0.4 };
         for volume in Volume::ALL {
             let here = balance(volume, &stiffness, &[cable], &[0.9, 0.03, 0.0, 0.0, 0.0, 1.4], 0.2);
-            let there = crate::section::balance(volume, &planar, &[own], [0.9, 0.03, 1.4], 0.2);
+            let there = crate::rod::section::balance(volume, &planar, &[own], [0.9, 0.03, 1.4], 0.2);
             for (k, of) in [0, 1, 5].into_iter().enumerate() {
                 assert!((here.carried[of] - there.carried[k]).abs() < 1e-15, "{volume:?}");
             }

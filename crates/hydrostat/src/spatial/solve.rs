@@ -5,10 +5,10 @@ use super::engine::{Engine, State};
 use super::mesh::First;
 use super::path::{SpatialSnap, Travelled, follow, verdict};
 use super::rotation::dot;
-use crate::arm::{Arm, ArmError};
-use crate::engine::{Trouble, WORK};
-use crate::solve::Options;
-use crate::verdict::{Phase, Verdict, VerdictKind};
+use crate::rod::arm::{Arm, ArmError};
+use crate::statics::engine::{Trouble, WORK};
+use crate::statics::solve::Options;
+use crate::statics::verdict::{Phase, Verdict, VerdictKind};
 
 /// Why a solve in space gives no configuration at the loads asked for.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -31,9 +31,9 @@ pub enum SpatialError {
     NoEquilibrium(Box<NoSpatialEquilibrium>),
 }
 
-impl From<crate::verdict::SolveError> for SpatialError {
-    fn from(error: crate::verdict::SolveError) -> Self {
-        use crate::verdict::SolveError;
+impl From<crate::statics::verdict::SolveError> for SpatialError {
+    fn from(error: crate::statics::verdict::SolveError) -> Self {
+        use crate::statics::verdict::SolveError;
         match error {
             SolveError::Arm(error) => Self::Arm(error),
             SolveError::Option { option, value, expected } => Self::Option { option, value, expected },

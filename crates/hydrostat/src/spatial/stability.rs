@@ -4,17 +4,17 @@
 //! Two eigenvalues of the compliance may pass together, as those of a straight column do at Euler's load: the determinant's sign does not
 //! change there, and the count does.
 
-use hydrostat_bvp::{Change, Correction, Drift, LANES, Lanes, Real, each};
+use hydrostat_bvp::{Correction, Forcing, LANES, Lanes, Real, StageForcing, each};
 use nalgebra::DMatrix;
 
 use super::configuration::SpatialConfiguration;
 use super::engine::{Engine, M, respond};
 use super::equations::{FORCE, MOMENT, N, Q};
 use super::rotation::{Directors, Vector, turn};
-use crate::compliance::Basis;
-use crate::readings::Support;
-use crate::stability::{Growth, KEPT, MARGIN, ROUNDING, Stability, growing, rates_of};
-use crate::verdict::Phase;
+use crate::rod::readings::Support;
+use crate::statics::compliance::Basis;
+use crate::statics::stability::{Growth, KEPT, MARGIN, ROUNDING, Stability, growing, rates_of};
+use crate::statics::verdict::Phase;
 
 /// Fields: the motion in space, and the turn in space.
 const FIELDS: usize = 6;
@@ -85,7 +85,7 @@ fn compliance(engine: &Engine, functions: usize) -> DMatrix<f64> {
     let size = FIELDS * functions;
     let mut out = DMatrix::zeros(size, size);
     let blocks = system.stations().len();
-    let mut change = Change { stages: vec![Drift::default(); blocks], ..Change::default() };
+    let mut change = Forcing { stages: vec![StageForcing::default(); blocks], ..Forcing::default() };
     let mut response = Correction::default();
     for column in 0..size {
         let (l, g) = (column / FIELDS, column % FIELDS);

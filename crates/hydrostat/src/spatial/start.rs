@@ -5,7 +5,7 @@ use hydrostat_bvp::{Collocation, Gauss, LANES, Mesh, Side, Solution, each};
 use super::engine::{Engine, Guess, M, evaluate};
 use super::equations::{L, N, Q};
 use super::rotation::{spin, times, turned};
-use crate::engine::Trouble;
+use crate::statics::engine::Trouble;
 
 /// Reach over the length of an element up to which either end may be its own.
 const HARMLESS: f64 = 0.02;
@@ -106,7 +106,7 @@ impl Engine {
         std::mem::swap(&mut self.solution, &mut self.before);
         let (system, before, equations) = (&self.system, &self.before, &self.equations);
         let jumps = |s| equations.jumps_at(s);
-        before.turned(&system.gauss, |i| side(system, before, i), jumps, &mut self.solution);
+        before.with_sides(&system.gauss, |i| side(system, before, i), jumps, &mut self.solution);
         self.equations.place_ends(&self.solution);
     }
 }

@@ -4,10 +4,10 @@ use hydrostat_bvp::{Gauss, Groups, Inner, Lanes, Local, Mesh, Problem, Side, Sol
 
 use super::engine::M;
 use super::equations::{Equations, L, N, Q};
-use crate::arm::{Arm, BaseDirections, Cable, FlowLaw, Gravity, Space};
-use crate::profile::Profile;
-use crate::readings::{Displaced, EnteringSpeed, Hydrostatics, Readings, Support, Volume, WettedLength};
-use crate::verdict::Phase;
+use crate::rod::arm::{Arm, BaseDirections, Cable, FlowLaw, Gravity, Space};
+use crate::rod::profile::Profile;
+use crate::rod::readings::{Displaced, EnteringSpeed, Hydrostatics, Readings, Support, Volume, WettedLength};
+use crate::statics::verdict::Phase;
 
 /// An arm with everything on it.
 fn arm(readings: Readings, law: FlowLaw) -> Arm {
@@ -67,7 +67,7 @@ fn at_station(arm: &Arm, phase: Phase, fraction: f64) -> (Equations, Station<N, 
     let flat = Solution::<N, M, L>::constant(Mesh::uniform(4, &[]), z, [0.97, 0.01, -0.02, 0.3, -0.2, 0.4]);
     equations.place_on(&gauss, &flat);
     let mut closed = Solution::default();
-    flat.turned(&gauss, |_| Side::Left, |_| false, &mut closed);
+    flat.with_sides(&gauss, |_| Side::Left, |_| false, &mut closed);
     equations.place_ends(&closed);
     equations.set_phase(phase, fraction);
     let inner = [0.97, 0.01, -0.02, 0.3, -0.2, 0.4].map(|v| Lanes([v; 4]));

@@ -107,7 +107,7 @@ fn a_change_of_friction_is_seen() {
     (before.tip, before.distributed) = Default::default();
     before.cables[0].offset = Profile::linear(0.005, 0.002);
     for motion in [Motion::In, Motion::Out] {
-        before.cables[0] = before.cables[0].clone().rubbing(0.2, motion);
+        before.cables[0] = before.cables[0].clone().with_friction(0.2, motion);
         let mut after = before.clone();
         after.cables[0].friction = 0.2002;
         check("friction", &before, &after);

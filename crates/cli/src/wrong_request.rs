@@ -1,0 +1,152 @@
+//! Requests that cannot be meant, and how they are told.
+
+use std::path::PathBuf;
+
+use hydrostat::ArmError;
+use hydrostat::parameter::Unfit;
+use hydrostat_files::{FileError, PartialUnit, shipped};
+
+/// What messages call standard input.
+pub(crate) const STANDARD_INPUT: &str = "standard input";
+
+/// A request that cannot be meant.
+#[derive(Debug)]
+pub(crate) enum WrongRequest {
+    /// Neither a file nor the name of a shipped arm.
+    UnknownArm(String),
+    /// `--set` without `=`.
+    Setting(String),
+    /// Tensions that do not fit the cables.
+    Tensions(ArmError),
+    /// A unit behind some of the tensions.
+    Unit(PartialUnit),
+    /// Two outputs in one file.
+    SamePath([&'static str; 2], PathBuf),
+    /// An output in a file that is read.
+    Overwrites { option: &'static str, path: PathBuf, input: &'static str },
+    /// Tensions for a search that finds them.
+    TensionsAreFound,
+    /// A quantity that the arm at hand does not have.
+    Unfit(&'static str, Unfit),
+    /// A value, said where, that makes no arm.
+    Value(String, ArmError),
+    /// A column that a sweep does not have, and those that it has.
+    NoColumn(String, Vec<String>),
+    /// A sweep without an answer, or without a value in a column.
+    NothingToDraw(PathBuf, Option<String>),
+    /// What an option needs of a sweep and does not find.
+    NotInSweep(&'static str, &'static str),
+    /// Keys that give no map, and those of the sweep.
+    Over(Vec<String>),
+    /// A key whose values are words.
+    Words(String),
+    /// Numbers of other programs that cannot be read.
+    Peers(PathBuf, String),
+    /// A cable without a largest tension, where one is needed.
+    Unbounded(String),
+    /// A cable whose stroke was asked for.
+    NoCable { asked: usize, cables: usize },
+    /// A table of measurements without any.
+    NothingMeasured(PathBuf),
+    /// An option of pictures without one, and the options that ask for one.
+    NothingDrawn(&'static str, String),
+    /// More work than was meant.
+    Declined,
+    /// Everything that is wrong with an arm file, where that is more than one thing.
+    File(Vec<FileError>),
+    /// What standard input brought is not what was asked for.
+    Input(String),
+    /// Standard input for two files.
+    InputTwice([&'static str; 2]),
+    /// A file that is written only where there is none yet.
+    Exists(PathBuf),
+    /// No command of the program, and those that there are.
+    NoCommand(String, Vec<String>),
+}
+
+impl std::fmt::Display for WrongRequest {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::UnknownArm(name) => {
+                write!(f, "`{name}` is neither a file nor an arm that ships with the program (")?;
+                for (i, shipped) in shipped::names().enumerate() {
+                    write!(f, "{}{shipped}", if i == 0 { "" } else { ", " })?;
+                }
+                f.write_str(")")?;
+                match nearest(name) {
+                    Some(near) => write!(f, "; did you mean `{near}`?"),
+                    None => Ok(()),
+                }
+            }
+            Self::Setting(text) => {
+                write!(f, "--set {text}: expected KEY=VALUE, such as flow.speed=0.5 or cable[0].tension=\"20 N\"")
+            }
+            Self::Tensions(error) => write!(f, "--tension: {error}"),
+            Self::Unit(error) => write!(f, "{error}"),
+            Self::SamePath([a, b], path) => {
+                write!(f, "{a} and {b} both name {}; give them different files", path.display())
+            }
+            Self::Overwrites { option, path, input } => write!(
+                f,
+                "{option} {}: this file is also read, as {input}, and inputs are never overwritten; choose another output",
+                path.display()
+            ),
+            Self::TensionsAreFound => f.write_str(
+                "--tension: reach finds the tensions itself; use --max-tension to bound them, or --path, which starts from those of --tension",
+            ),
+            Self::Unfit(option, error) => write!(f, "{option} {error}"),
+            Self::Value(at, error) => write!(f, "{at}: {error}"),
+            Self::NoColumn(name, columns) => {
+                write!(f, "--quantity {name}: expected one of {}", columns.join(", "))
+            }
+            Self::NothingToDraw(path, None) => write!(
+                f,
+                "{}: no row has an equilibrium, so there is nothing to draw; see the column `verdict`",
+                path.display()
+            ),
+            Self::NothingToDraw(path, Some(column)) => {
+                write!(f, "{}: no row has a value of {column}, so there is nothing to draw", path.display())
+            }
+            Self::NotInSweep(option, needed) => write!(f, "{option}: expected {needed} in the sweep, found none"),
+            Self::Over(keys) => {
+                write!(f, "--over: expected one or two different keys of those that were varied, {}", keys.join(", "))
+            }
+            Self::Words(key) => write!(f, "--over: the values of {key} are words, and an axis needs numbers"),
+            Self::Peers(path, why) => write!(f, "--peers {}: {why}", path.display()),
+            Self::Unbounded(cable) => {
+                write!(
+                    f,
+                    "--boundary: cable {cable} has no largest tension; give --max-tension, or set `max_tension` in the arm file"
+                )
+            }
+            Self::NoCable { asked, cables } => {
+                write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")
+            }
+            Self::File(errors) => {
+                for (k, error) in errors.iter().enumerate() {
+                    write!(f, "{}{error}", if k == 0 { "" } else { "\nerror: " })?;
+                }
+                Ok(())
+            }
+            Self::Input(why) => write!(f, "{STANDARD_INPUT}: {why}"),
+            Self::InputTwice([a, b]) => {
+                write!(f, "{a} and {b} are both -, and {STANDARD_INPUT} is read only once; name a file for one of them")
+            }
+            Self::Exists(path) => write!(f, "{} exists; remove it or choose another name", path.display()),
+            Self::NoCommand(name, all) => write!(f, "`{name}` is not a command; the commands are {}", all.join(", ")),
+            Self::Declined => f.write_str("nothing was solved"),
+            Self::NothingDrawn(option, pictures) => write!(f, "{option}: nothing is drawn; give {pictures}"),
+            Self::NothingMeasured(path) => {
+                let path = path.display();
+                write!(f, "{path}: there is no measured value; fill in x and y, or another measured quantity")
+            }
+        }
+    }
+}
+
+impl std::error::Error for WrongRequest {}
+
+fn nearest(name: &str) -> Option<&'static str> {
+    let score = |candidate: &str| strsim::jaro_winkler(name, candidate);
+    shipped::names().max_by(|a, b| score(a).total_cmp(&score(b))).filter(|best| score(best) > 0.75)
+}

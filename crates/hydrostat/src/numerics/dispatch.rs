@@ -1,0 +1,65 @@
+//! The widest vectors that the processor has, chosen when the program runs.
+
+use pulp::{Arch, Simd, WithSimd};
+
+/// Work that is compiled for more than one kind of processor.
+pub(crate) trait Work {
+    type Output;
+    /// Does it; `FUSED` says whether multiply and add are one instruction. Has to be inlined.
+    fn run<const FUSED: bool>(self) -> Self::Output;
+}
+
+struct Any<F>(F);
+
+impl<R, F: FnOnce() -> R> Work for Any<F> {
+    type Output = R;
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> R {
+        (self.0)()
+    }
+}
+
+struct Dispatched<W>(W);
+
+impl<W: Work> WithSimd for Dispatched<W> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> W::Output {
+        // The vectors that are chosen between come with fused multiply-add.
+        if S::IS_SCALAR { self.0.run::<false>() } else { self.0.run::<true>() }
+    }
+}
+
+/// Does `work` compiled for the processor at hand. Only what is inlined into `work` is compiled so,
+/// and `work` itself has to be: write `widest(#[inline(always)] || ...)`.
+#[inline(always)]
+pub(crate) fn widest<R>(work: impl FnOnce() -> R) -> R {
+    dispatch(Any(work))
+}
+
+/// [`widest`] for work that wants to know whether there is a fused multiply-add.
+#[inline(always)]
+pub(crate) fn dispatch<W: Work>(work: W) -> W::Output {
+    Arch::new().dispatch(Dispatched(work))
+}
+
+struct Fused;
+
+impl Work for Fused {
+    type Output = bool;
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> bool {
+        FUSED
+    }
+}
+
+/// Whether solves on this processor run on what is compiled for wide vectors with fused multiply-add (on x86: AVX2),
+/// not on what is compiled for any processor. Answers agree to the tolerance, not to the last bit.
+///
+/// ```
+/// println!("wide vectors: {}", hydrostat::has_wide_vectors());
+/// ```
+pub fn has_wide_vectors() -> bool {
+    dispatch(Fused)
+}

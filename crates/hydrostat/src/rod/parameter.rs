@@ -1,0 +1,461 @@
+//! Quantities of an arm that a path varies, under the names that the arm file has for them.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::rod::arm::{Arm, ArmError, FlowLaw, Gravity, Material};
+use crate::rod::profile::{Point, Profile};
+
+/// One number of an arm that can be varied. Its name is the dotted key of the arm file.
+///
+/// ```
+/// use hydrostat::Parameter;
+///
+/// let parameter: Parameter = "cable[0].tension".parse().unwrap();
+/// assert_eq!(parameter, Parameter::Tension(0));
+/// assert_eq!(parameter.to_string(), "cable[0].tension");
+/// assert_eq!(parameter.unit(), "N");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Parameter {
+    /// Tension of a cable, N.
+    Tension(usize),
+    /// Stroke of a cable that is commanded in place of its tension, m.
+    Stroke(usize),
+    /// Offset of a cable, m: one of the numbers that its profile is given by.
+    Offset(usize, Point),
+    /// Radius of the arm, m: the same.
+    Radius(Point),
+    /// Speed of the stream, m/s.
+    FlowSpeed,
+    /// Direction of the stream from e1, rad.
+    FlowDirection,
+    /// Density of the water, kg/m3.
+    FlowDensity,
+    /// Gravity, m/s2.
+    GravityAcceleration,
+    /// Direction of gravity from e1, rad.
+    GravityDirection,
+    /// Dead force on the tip along e1 (0) or e2 (1), N.
+    TipForce(usize),
+    /// Moment on the tip, N m.
+    TipMoment,
+    /// Follower force on the tip along a (0) or b (1), N.
+    TipFollower(usize),
+    /// Angle of the base from e1, rad.
+    BaseAngle,
+    /// Density of the arm, kg/m3.
+    Density,
+    /// Young's modulus of a homogeneous arm, Pa.
+    Young,
+    /// Poisson's ratio of a homogeneous arm.
+    Poisson,
+    /// Shear correction of a homogeneous arm.
+    ShearFactor,
+    /// C1 (0, Pa), C2 (1, Pa) or C3 (2, N), where the coefficients are given and this one is the same all along.
+    Coefficient(usize),
+    /// C_n of quadratic drag.
+    DragNormal,
+    /// C_t of quadratic drag.
+    DragTangential,
+}
+
+/// A name that no parameter has.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{}` is no quantity that a path can vary; those are {}", on_one_line(.name), names().join(", "))]
+pub struct UnknownParameter {
+    /// The name given.
+    pub name: String,
+}
+
+/// The beginning of what may be anything, as a message can show it.
+fn on_one_line(name: &str) -> String {
+    name.chars().take(60).flat_map(char::escape_debug).collect()
+}
+
+/// A parameter that the arm at hand does not have.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Unfit {
+    /// A cable that is not there.
+    #[error("`{key}`: the arm has {cables} cables, counted from 0")]
+    Cable {
+        /// The parameter.
+        key: String,
+        /// Cables of the arm.
+        cables: usize,
+    },
+    /// A point of a profile that is given in another way.
+    #[error("`{key}`: the arm gives this profile in another way; {expected}")]
+    Point {
+        /// The parameter.
+        key: String,
+        /// Which keys it has.
+        expected: String,
+    },
+    /// A homogeneous material's property where the coefficients are given.
+    #[error("`{key}`: the arm gives c1, c2 and c3 in place of a homogeneous material")]
+    Coefficients {
+        /// The parameter.
+        key: String,
+    },
+    /// A coefficient where a homogeneous material is given.
+    #[error("`{key}`: the arm gives a homogeneous material in place of c1, c2 and c3")]
+    Homogeneous {
+        /// The parameter.
+        key: String,
+    },
+    /// A coefficient that is a profile.
+    #[error("`{key}` varies along the arm: it is no single number")]
+    Profile {
+        /// The parameter.
+        key: String,
+    },
+    /// A drag coefficient without quadratic drag.
+    #[error("`{key}` does not act: flow.law is momentum, not quadratic-drag")]
+    Momentum {
+        /// The parameter.
+        key: String,
+    },
+}
+
+/// The names of all parameters, those of the cables with the index 0, those of profiles as of linear ones.
+pub fn names() -> Vec<String> {
+    let of_cables = [Parameter::Tension(0), Parameter::Stroke(0)].into_iter();
+    let ends = [Point::Base, Point::Tip];
+    let geometry = ends.map(|end| Parameter::Offset(0, end)).into_iter().chain(ends.map(Parameter::Radius));
+    of_cables.chain(PLAIN).chain(geometry).map(|parameter| parameter.to_string()).collect()
+}
+
+/// All but the cables' and the geometry's.
+pub(crate) const PLAIN: [Parameter; 20] = [
+    Parameter::FlowSpeed,
+    Parameter::FlowDirection,
+    Parameter::FlowDensity,
+    Parameter::GravityAcceleration,
+    Parameter::GravityDirection,
+    Parameter::TipForce(0),
+    Parameter::TipForce(1),
+    Parameter::TipMoment,
+    Parameter::TipFollower(0),
+    Parameter::TipFollower(1),
+    Parameter::BaseAngle,
+    Parameter::Density,
+    Parameter::Young,
+    Parameter::Poisson,
+    Parameter::ShearFactor,
+    Parameter::Coefficient(0),
+    Parameter::Coefficient(1),
+    Parameter::Coefficient(2),
+    Parameter::DragNormal,
+    Parameter::DragTangential,
+];
+
+impl fmt::Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tension(c) => write!(f, "cable[{c}].tension"),
+            Self::Stroke(c) => write!(f, "cable[{c}].stroke"),
+            Self::Offset(c, point) => write!(f, "cable[{c}].offset{point}"),
+            Self::Radius(point) => write!(f, "arm.radius{point}"),
+            Self::FlowSpeed => f.write_str("flow.speed"),
+            Self::FlowDirection => f.write_str("flow.direction"),
+            Self::FlowDensity => f.write_str("flow.density"),
+            Self::GravityAcceleration => f.write_str("gravity.acceleration"),
+            Self::GravityDirection => f.write_str("gravity.direction"),
+            Self::TipForce(k) => write!(f, "tip.force[{k}]"),
+            Self::TipMoment => f.write_str("tip.moment"),
+            Self::TipFollower(k) => write!(f, "tip.follower[{k}]"),
+            Self::BaseAngle => f.write_str("arm.base.angle"),
+            Self::Density => f.write_str("arm.density"),
+            Self::Young => f.write_str("material.young"),
+            Self::Poisson => f.write_str("material.poisson"),
+            Self::ShearFactor => f.write_str("material.shear_factor"),
+            Self::Coefficient(k) => write!(f, "material.c{}", k.min(&2) + 1),
+            Self::DragNormal => f.write_str("flow.cn"),
+            Self::DragTangential => f.write_str("flow.ct"),
+        }
+    }
+}
+
+impl FromStr for Parameter {
+    type Err = UnknownParameter;
+
+    fn from_str(name: &str) -> Result<Self, UnknownParameter> {
+        if let Some((index, of)) = name.strip_prefix("cable[").and_then(|rest| rest.split_once("].")) {
+            match (index.parse(), of) {
+                (Ok(index), "tension") => return Ok(Self::Tension(index)),
+                (Ok(index), "stroke") => return Ok(Self::Stroke(index)),
+                (Ok(index), other) => {
+                    if let Some(point) = other.strip_prefix("offset").and_then(Point::read) {
+                        return Ok(Self::Offset(index, point));
+                    }
+                }
+                _ => {}
+            }
+        }
+        if let Some(point) = name.strip_prefix("arm.radius").and_then(Point::read) {
+            return Ok(Self::Radius(point));
+        }
+        PLAIN.into_iter().find(|p| p.to_string() == name).ok_or_else(|| UnknownParameter { name: name.to_owned() })
+    }
+}
+
+impl Parameter {
+    /// The unit of its values in the library; empty for a plain number.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) | Self::Coefficient(2..) => "N",
+            Self::FlowSpeed => "m/s",
+            Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => "rad",
+            Self::FlowDensity | Self::Density => "kg/m3",
+            Self::GravityAcceleration => "m/s2",
+            Self::Stroke(_) | Self::Offset(..) | Self::Radius(_) => "m",
+            Self::TipMoment => "N m",
+            Self::Young | Self::Coefficient(_) => "Pa",
+            Self::Poisson | Self::ShearFactor | Self::DragNormal | Self::DragTangential => "",
+        }
+    }
+
+    /// A value of it (in [`Parameter::unit`]) with its unit, angles in degrees.
+    pub(crate) fn shown(self, value: f64) -> String {
+        match self.unit() {
+            "rad" => format!("{} deg", value.to_degrees()),
+            "" => value.to_string(),
+            unit => format!("{value} {unit}"),
+        }
+    }
+
+    /// Its value in `arm`.
+    ///
+    /// # Errors
+    /// [`Unfit`] when the arm has no such quantity.
+    pub fn of(self, arm: &Arm) -> Result<f64, Unfit> {
+        if let Some((profile, point)) = self.profile(arm)? {
+            return profile.point(point).ok_or_else(|| self.no_point(profile));
+        }
+        let mut arm = arm.clone();
+        self.place(&mut arm).map(|value| *value)
+    }
+
+    /// Sets its value in `arm`; gravity that was left out points down, a cable is given by its tension or by its
+    /// stroke.
+    ///
+    /// # Errors
+    /// [`Unfit`] when the arm has no such quantity.
+    pub fn set(self, arm: &mut Arm, value: f64) -> Result<(), Unfit> {
+        if let Some((profile, point)) = self.profile(arm)? {
+            let moved = profile.with_point(point, value).ok_or_else(|| self.no_point(profile))?;
+            match self {
+                Self::Offset(c, _) => arm.cables[c].offset = moved,
+                _ => arm.radius = moved,
+            }
+            return Ok(());
+        }
+        *self.place(arm)? = value;
+        Ok(())
+    }
+
+    /// The profile that it is a number of.
+    pub(crate) fn profile(self, arm: &Arm) -> Result<Option<(&Profile, Point)>, Unfit> {
+        match self {
+            Self::Offset(c, point) => match arm.cables.get(c) {
+                Some(cable) => Ok(Some((&cable.offset, point))),
+                None => Err(Unfit::Cable { key: self.to_string(), cables: arm.cables.len() }),
+            },
+            Self::Radius(point) => Ok(Some((&arm.radius, point))),
+            _ => Ok(None),
+        }
+    }
+
+    fn no_point(self, profile: &Profile) -> Unfit {
+        let of = |point: Point| match self {
+            Self::Offset(c, _) => Self::Offset(c, point).to_string(),
+            _ => Self::Radius(point).to_string(),
+        };
+        let names: Vec<String> = profile.points().into_iter().map(of).collect();
+        let expected = match &names[..] {
+            [one] => format!("it has `{one}`"),
+            [first, .., last] => format!("it has `{first}` to `{last}`"),
+            [] => String::new(),
+        };
+        Unfit::Point { key: self.to_string(), expected }
+    }
+
+    /// Where its number stands, of all but profiles'.
+    fn place(self, arm: &mut Arm) -> Result<&mut f64, Unfit> {
+        let gravity = Gravity { acceleration: 0.0, ..Gravity::default() };
+        Ok(match self {
+            Self::Tension(c) | Self::Stroke(c) => {
+                let cables = arm.cables.len();
+                let missing = || Unfit::Cable { key: self.to_string(), cables };
+                let cable = arm.cables.get_mut(c).ok_or_else(missing)?;
+                if let Self::Stroke(_) = self {
+                    if cable.stroke.is_none() {
+                        cable.tension = 0.0;
+                    }
+                    cable.stroke.get_or_insert(0.0)
+                } else {
+                    cable.stroke = None;
+                    &mut cable.tension
+                }
+            }
+            // Not by itself: the slopes of a table go with it.
+            Self::Offset(..) | Self::Radius(_) => {
+                return Err(Unfit::Point { key: self.to_string(), expected: String::new() });
+            }
+            Self::FlowSpeed => &mut arm.flow.speed,
+            Self::FlowDirection => &mut arm.flow.direction,
+            Self::FlowDensity => &mut arm.flow.density,
+            Self::GravityAcceleration => &mut arm.gravity.get_or_insert(gravity).acceleration,
+            Self::GravityDirection => &mut arm.gravity.get_or_insert(gravity).direction,
+            Self::TipForce(k) => &mut arm.tip.force[k.min(1)],
+            Self::TipMoment => &mut arm.tip.moment,
+            Self::TipFollower(k) => &mut arm.tip.follower[k.min(1)],
+            Self::BaseAngle => &mut arm.base.angle,
+            Self::Density => &mut arm.density,
+            Self::Young | Self::Poisson | Self::ShearFactor => match &mut arm.material {
+                Material::Homogeneous { young, poisson, shear_factor } => match self {
+                    Self::Young => young,
+                    Self::Poisson => poisson,
+                    _ => shear_factor,
+                },
+                Material::Coefficients { .. } => return Err(Unfit::Coefficients { key: self.to_string() }),
+            },
+            Self::Coefficient(k) => match &mut arm.material {
+                Material::Homogeneous { .. } => return Err(Unfit::Homogeneous { key: self.to_string() }),
+                Material::Coefficients { c1, c2, c3 } => match [c1, c2, c3][k.min(2)] {
+                    Profile::Constant(value) => value,
+                    _ => return Err(Unfit::Profile { key: self.to_string() }),
+                },
+            },
+            Self::DragNormal | Self::DragTangential => match &mut arm.flow.law {
+                FlowLaw::Momentum => return Err(Unfit::Momentum { key: self.to_string() }),
+                FlowLaw::QuadraticDrag { cn, ct } => {
+                    if self == Self::DragNormal {
+                        cn
+                    } else {
+                        ct
+                    }
+                }
+            },
+        })
+    }
+
+    /// A change of it that counts for the arm, in its unit, given the unit of force of the equations (N).
+    pub(crate) fn scale(self, arm: &Arm, force: f64) -> f64 {
+        let least = match self {
+            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) => force,
+            Self::Stroke(_) => arm.length,
+            Self::Offset(..) | Self::Radius(_) => 1e-3 * arm.length,
+            Self::FlowSpeed => 0.1,
+            Self::FlowDensity | Self::Density => 1000.0,
+            Self::GravityAcceleration => 10.0,
+            Self::TipMoment => force * arm.length,
+            Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => return 1.0,
+            Self::DragNormal | Self::DragTangential => 1.0,
+            Self::Young | Self::Poisson | Self::ShearFactor | Self::Coefficient(_) => 0.0,
+        };
+        let value = self.of(arm).unwrap_or(0.0).abs().max(least);
+        if value > 0.0 { value } else { 1.0 }
+    }
+
+    /// Whether the data of the sections depend on it.
+    pub(crate) fn is_of_sections(self) -> bool {
+        matches!(
+            self,
+            Self::Offset(..)
+                | Self::Radius(_)
+                | Self::FlowDensity
+                | Self::GravityAcceleration
+                | Self::GravityDirection
+                | Self::Density
+                | Self::Young
+                | Self::Poisson
+                | Self::ShearFactor
+                | Self::Coefficient(_)
+        )
+    }
+
+    /// `arm` with this value, checked.
+    pub(crate) fn checked(self, arm: &Arm, value: f64) -> Result<Arm, Refused> {
+        let mut arm = arm.clone();
+        self.set(&mut arm, value)?;
+        arm.check()?;
+        Ok(arm)
+    }
+}
+
+/// Why an arm cannot have a value.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Refused {
+    /// It has no such quantity.
+    #[error(transparent)]
+    Unfit(#[from] Unfit),
+    /// It would be no arm.
+    #[error(transparent)]
+    Arm(#[from] ArmError),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_read_back() {
+        for parameter in PLAIN.into_iter().chain([
+            Parameter::Tension(0),
+            Parameter::Tension(13),
+            Parameter::Stroke(0),
+            Parameter::Stroke(7),
+            Parameter::Offset(3, Point::Whole),
+            Parameter::Offset(0, Point::Tip),
+            Parameter::Radius(Point::Base),
+            Parameter::Radius(Point::Knot(12)),
+        ]) {
+            assert_eq!(parameter.to_string().parse(), Ok(parameter));
+        }
+        for wrong in [
+            "",
+            "cable.tension",
+            "cable[].tension",
+            "cable[-1].tension",
+            "tip.force",
+            "flow.Speed",
+            "cable[0].offset[1]",
+            "arm.radiusx",
+        ] {
+            assert!(wrong.parse::<Parameter>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_value_that_is_set_is_found() {
+        let mut arm = Arm::cone(0.2, 0.01, 0.002, 1e5, 0.5);
+        arm.cables.push(crate::Cable::new("left", 0.001));
+        arm.flow.law = FlowLaw::QuadraticDrag { cn: 1.0, ct: 0.02 };
+        let mut given = arm.clone();
+        given.material = Material::Coefficients { c1: 1e5.into(), c2: 3e4.into(), c3: Profile::linear(2.0, 0.1) };
+        let others = [Parameter::Tension(0), Parameter::Stroke(0), Parameter::Offset(0, Point::Whole)];
+        let radii = [Point::Base, Point::Tip].map(Parameter::Radius);
+        for (k, parameter) in PLAIN.into_iter().chain(others).chain(radii).enumerate() {
+            let arm = if matches!(parameter, Parameter::Coefficient(_)) { &mut given } else { &mut arm };
+            if parameter == Parameter::Coefficient(2) {
+                assert!(matches!(parameter.of(arm), Err(Unfit::Profile { .. })));
+                continue;
+            }
+            parameter.set(arm, k as f64).unwrap();
+            assert_eq!(parameter.of(arm), Ok(k as f64));
+        }
+        for missing in [Parameter::Tension(1), Parameter::Offset(1, Point::Whole)] {
+            assert!(matches!(missing.of(&arm), Err(Unfit::Cable { cables: 1, .. })));
+        }
+        let other = Parameter::Offset(0, Point::Tip);
+        assert_eq!(other.of(&arm).err(), other.set(&mut arm.clone(), 1.0).err());
+        assert!(other.of(&arm).is_err());
+        let words = Parameter::Radius(Point::Knot(1)).of(&arm).unwrap_err().to_string();
+        assert!(words.ends_with("it has `arm.radius.base` to `arm.radius.tip`"), "{words}");
+        assert!(matches!(Parameter::Coefficient(0).of(&arm), Err(Unfit::Homogeneous { .. })));
+        arm.flow.law = FlowLaw::Momentum;
+        assert!(matches!(Parameter::DragNormal.of(&arm), Err(Unfit::Momentum { .. })));
+    }
+}

@@ -1,0 +1,21 @@
+//! Equilibria of a rod: the equations, their solution, and what is asked of it.
+
+pub(crate) mod compliance;
+pub mod configuration;
+pub(crate) mod dense;
+pub(crate) mod dimensions;
+pub(crate) mod engine;
+pub(crate) mod equations;
+pub(crate) mod friction;
+mod friction_iteration;
+pub mod many;
+pub mod path;
+pub(crate) mod phase;
+pub mod sensitivity;
+pub(crate) mod shape;
+pub mod snap;
+pub mod solve;
+pub mod stability;
+mod strokes;
+pub mod verdict;
+pub(crate) mod warning;

@@ -1,0 +1,28 @@
+//! Newton rounds, meshes and estimates on one arm's equations.
+
+mod budget;
+mod carry_over;
+mod discrete;
+mod held;
+mod kinks;
+mod loads;
+#[cfg(test)]
+pub(crate) mod manufactured;
+mod newton;
+mod outputs;
+mod rounds;
+mod settle;
+mod start;
+mod trouble;
+mod watch;
+mod wrap_angles;
+
+pub(crate) use self::budget::WORK;
+pub(crate) use self::discrete::{Engine, State, response_change, shift_by_tangential_load};
+pub(crate) use self::held::{NewtonStep, UnitPull, pull_taut};
+pub(crate) use self::outputs::{asked_in, sharpened};
+pub(crate) use self::rounds::{correct, linearise, respond};
+pub(crate) use self::settle::First;
+pub(crate) use self::start::turn_sections;
+pub(crate) use self::trouble::{HOP, Trouble, roughly};
+pub(crate) use super::dimensions::{Guess, M};

@@ -1,0 +1,58 @@
+//! A solution carried over to another mesh.
+
+use hydrostat_bvp::{Collocation, Mesh, Side};
+
+use super::discrete::Engine;
+use crate::statics::dimensions::{Guess, L, M, N, Q};
+
+impl Engine {
+    /// Moves the solution to another mesh.
+    pub(crate) fn move_to(&mut self, mesh: Mesh) {
+        std::mem::swap(&mut self.solution, &mut self.before);
+        self.solution.mesh = mesh;
+        self.remap();
+    }
+
+    /// Carries the solution before over to the mesh of the present one.
+    pub(super) fn remap(&mut self) {
+        self.meshes += 1;
+        let (gauss, equations) = (&self.system.gauss, &self.equations);
+        self.before.remap(gauss, |s| equations.jumps_at(s), &mut self.solution);
+        self.equations.place_on(gauss, &self.solution);
+    }
+
+    /// Gives the solution a closure where the equations have one, and none where they have none.
+    pub(super) fn match_closure(&mut self) {
+        let closed = self.equations.is_closed();
+        if closed == self.solution.directions.is_closed() {
+            return;
+        }
+        if closed {
+            self.turn(|_, _, _| Side::Left);
+            return;
+        }
+        self.solution.directions.clear();
+        self.solution.ends.clear();
+        self.equations.place_ends(&self.solution);
+    }
+
+    /// Gives every element an own end, given the last linearisation and the solution until now.
+    pub(super) fn turn(&mut self, side: impl Fn(&Collocation<N, M, Q, L>, &Guess, usize) -> Side) {
+        std::mem::swap(&mut self.solution, &mut self.before);
+        let (system, before, equations) = (&self.system, &self.before, &self.equations);
+        let jumps = |s| equations.jumps_at(s);
+        before.with_sides(&system.gauss, |i| side(system, before, i), jumps, &mut self.solution);
+        self.equations.place_ends(&self.solution);
+    }
+
+    /// Moves the solution on by `share` times its way from the solution `before`, nodes on kinks with it. Left as it is
+    /// where the two do not correspond node by node.
+    pub(crate) fn lead_on(&mut self, before: &Guess, share: f64) {
+        let Some(mesh) = self.solution.mesh.extrapolated(&before.mesh, share) else { return };
+        if !self.solution.extrapolate(before, share) || mesh == self.solution.mesh {
+            return;
+        }
+        self.solution.mesh = mesh;
+        self.equations.place_on(&self.system.gauss, &self.solution);
+    }
+}

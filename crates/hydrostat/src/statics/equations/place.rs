@@ -1,0 +1,30 @@
+//! The data of an arm at one place, or at four.
+
+use hydrostat_bvp::{LANES, Lanes};
+
+use crate::rod::cable::Offset;
+use crate::rod::loads::Body;
+use crate::rod::section::{CableAt, Stiffness};
+
+/// One place of the arm as data.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place<R> {
+    /// Over L.
+    pub(super) s: R,
+    pub(crate) stiffness: Stiffness<R>,
+    pub(crate) body: Body<R>,
+}
+
+/// Sections at the ends of four elements.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EndSection {
+    /// Over L.
+    pub(super) s: Lanes,
+    pub(super) stiffness: Stiffness<Lanes>,
+}
+
+#[inline(always)]
+pub(super) fn blank_cable() -> CableAt<Lanes> {
+    let zero = Lanes([0.0; LANES]);
+    CableAt { offset: Offset { y: zero, slope: zero }, tension: zero }
+}

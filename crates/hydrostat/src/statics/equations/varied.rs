@@ -1,0 +1,102 @@
+//! The equations of an arm whose loads, support or material follow one parameter over a range.
+
+use super::range::Varied;
+use super::system::{Equations, water};
+use crate::rod::arm::Arm;
+use crate::rod::parameter::Parameter;
+
+impl Equations {
+    /// Lets `parameter` run from `from` to `to`; the equations are at share 0 of the range.
+    pub(crate) fn vary(&mut self, parameter: Parameter, from: f64, to: f64) {
+        self.varied = Some(Varied { parameter, from, to, share: 0.0 });
+        self.set_share(0.0);
+    }
+
+    /// The parameter's value at a share of its range.
+    pub(crate) fn value_at(&self, share: f64) -> f64 {
+        self.varied.as_ref().map_or(share, |v| v.value(share))
+    }
+
+    /// Takes the arm at a share of the range, within it or beyond.
+    pub(crate) fn set_share(&mut self, share: f64) {
+        self.set_share_with(share, true);
+    }
+
+    /// [`Equations::set_share`], without what is along the arm where that is not asked for.
+    pub(super) fn set_share_with(&mut self, share: f64, sections: bool) {
+        let Some(varied) = &mut self.varied else { return };
+        varied.share = share;
+        let (parameter, value) = (varied.parameter, varied.value(share));
+        // That the arm has the parameter was checked when the range was.
+        let _ = parameter.set(&mut self.arm, value);
+        self.take_arm(sections && parameter.is_of_sections());
+    }
+
+    /// Takes the arm of other equations, which may be at another share of a range.
+    pub(crate) fn take_arm_of(&mut self, other: &Self) {
+        if let Some(varied) = &other.varied {
+            self.arm.clone_from(&other.arm);
+            self.take_arm(varied.parameter.is_of_sections());
+        }
+        self.tensions.clone_from(&other.tensions);
+    }
+
+    /// Varies nothing any more: the arm is `arm`, of the same geometry and material, with all angles less by whole
+    /// turns.
+    pub(crate) fn hold(&mut self, arm: &Arm) {
+        self.varied = None;
+        self.arm.clone_from(arm);
+        self.take_arm(false);
+    }
+
+    pub(super) fn take_arm(&mut self, sections: bool) {
+        self.water = water(&self.arm);
+        self.set_tensions();
+        if sections {
+            self.take_sections();
+        }
+    }
+
+    /// What is varied, and by how much over its range.
+    pub(super) fn varied_over(&self) -> Option<(Parameter, f64)> {
+        self.varied.as_ref().map(|v| (v.parameter, v.to - v.from))
+    }
+
+    /// Sets the tension of one cable, N.
+    pub(crate) fn set_tension(&mut self, cable: usize, tension: f64) {
+        self.arm.cables[cable].tension = tension;
+        self.tensions[cable] = tension / self.units.force;
+    }
+
+    /// Where in the range the equations are.
+    pub(crate) fn share(&self) -> f64 {
+        self.varied.as_ref().map_or(0.0, |v| v.share)
+    }
+
+    /// Makes the derivative by the parameter that by a couple along the arm, of the shape `couple` over s/L.
+    pub(crate) fn impose_couple(&mut self, couple: Option<&dyn Fn(f64) -> f64>) {
+        self.imposed = couple.map(|couple| self.stations.iter().map(|s| couple(*s)).collect());
+    }
+
+    /// The same equations without stations, for the conditions at the ends.
+    pub(super) fn without_stations(&self) -> Self {
+        Self {
+            arm: self.arm.clone(),
+            tensions: self.tensions.clone(),
+            ends: self.ends.clone(),
+            varied: self.varied.clone(),
+            held: self.held.clone(),
+            capstan: None,
+            imposed: None,
+            stations: Vec::new(),
+            places: Vec::new(),
+            cables: Vec::new(),
+            end_places: Vec::new(),
+            end_sections: Vec::new(),
+            end_cables: Vec::new(),
+            #[cfg(test)]
+            manufactured: None,
+            ..*self
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! Continuation: along the loads, over a parameter, round the angle of the base; followed by arclength so that no fold
+//! is stepped over unseen.
+
+mod circle;
+mod contact;
+mod events;
+mod limits;
+mod load_stepping;
+mod range;
+#[cfg(test)]
+pub(crate) mod small_steps;
+mod step_control;
+mod stepper;
+
+pub use circle::{Equilibria, Equilibrium};
+pub(crate) use limits::name_limit;
+pub(crate) use load_stepping::{Stopped, follow, follow_strokes};
+pub use range::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
+pub(crate) use step_control::{LOOSE, PathSummary, StepControl};

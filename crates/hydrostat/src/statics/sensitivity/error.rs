@@ -1,0 +1,53 @@
+//! Why there are no derivatives.
+
+use crate::rod::parameter::Unfit;
+use crate::statics::engine::Trouble;
+use crate::statics::verdict::SolveError;
+
+/// Why there are no derivatives.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum SensitivityError {
+    /// The arm has no equilibrium.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The arm has no such quantity.
+    #[error(transparent)]
+    Unfit(#[from] Unfit),
+    /// The tension of a cable whose stroke is commanded.
+    #[error("`cable[{0}].tension` follows from the stroke that is commanded of the cable")]
+    Commanded(usize),
+    /// The stroke of a cable whose tension is given.
+    #[error("`cable[{0}].stroke` follows from the tension of the cable: command it to differentiate by it")]
+    NotCommanded(usize),
+    /// A place off the arm.
+    #[error("there is no station at {s} m: the arm is {length} m long")]
+    Station {
+        /// m.
+        s: f64,
+        /// Of the arm, m.
+        length: f64,
+    },
+    /// A cable that rubs, by its index: which way it slides decides what a change does.
+    #[error(
+        "`cable[{0}].friction` is above 0: which way the cable slides decides what a change does, so that there is no one \
+         derivative; with 0 there is"
+    )]
+    Friction(usize),
+    /// The support option whose arm is no equilibrium at the tip.
+    #[error("sensitivities need a clamped base")]
+    Support,
+    /// A limit point or a bifurcation.
+    #[error("the equilibrium is at a limit point or a bifurcation, where it has no derivative")]
+    Singular,
+    /// The rounds do not settle.
+    #[error("the equilibrium could not be settled closely enough: rounds still move it by {0:e}")]
+    Unsettled(f64),
+}
+
+pub(super) fn unsettled(trouble: &Trouble) -> SensitivityError {
+    match *trouble {
+        Trouble::Singular => SensitivityError::Singular,
+        Trouble::Stalled(size) => SensitivityError::Unsettled(size),
+        Trouble::Section(_) | Trouble::Mesh | Trouble::Spent => SensitivityError::Unsettled(f64::NAN),
+    }
+}
