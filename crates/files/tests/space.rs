@@ -7,7 +7,7 @@ const TEXT: &str = r#"
 [arm]
 space = "spatial"
 length = "245 mm"
-radius = { base = "10 mm", tip = "2 mm" }
+radius = { base = "10 mm", tip = "6 mm" }
 base = { x = "1 mm", z = "2 mm", direction = [1, 1, 0], section = [0, 0, 1] }
 
 [material]

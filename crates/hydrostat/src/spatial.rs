@@ -1,6 +1,8 @@
-//! The arm in space: section law in six strains, loads as vectors, and the solver of their equations (`docs/model.md`, the arm in space).
+//! The arm in space: section law in six strains, loads as vectors, and the solver of their equations (`docs/model.md`,
+//! the arm in space).
 //!
-//! What is the same in the plane is taken from there: profiles, sections along the arm, the section stretch, the scalar flow laws, meshes
+//! What is the same in the plane is taken from there: profiles, sections along the arm, the section stretch, the scalar
+//! flow laws, meshes
 //! and their errors, verdicts.
 
 mod adversity;

@@ -114,7 +114,8 @@ fn natural_curvature_and_twist_make_a_helix() {
     }
 }
 
-/// Bathe and Bolourchi's 45-degree bend, 600 out of its plane. Published tips, from several element formulations, lie about
+/// Bathe and Bolourchi's 45-degree bend, 600 out of its plane. Published tips, from several element formulations, lie
+/// about
 /// (47.2, 15.7, 53.4).
 #[test]
 fn forty_five_degree_bend() {
@@ -177,7 +178,8 @@ fn arms_in_a_plane_have_the_planar_solution() {
     }
 }
 
-/// One cable at constant offset that turns uniformly along a uniform arm: the strains are constant in the frame that turns with the
+/// One cable at constant offset that turns uniformly along a uniform arm: the strains are constant in the frame that
+/// turns with the
 /// cable, and meet six algebraic equations.
 #[test]
 fn a_uniformly_turning_cable_strains_the_arm_evenly() {
@@ -225,7 +227,8 @@ fn a_uniformly_turning_cable_strains_the_arm_evenly() {
     }
 }
 
-/// Kirchhoff's rod: a uniform arm without distributed loads keeps n_f in space, m . n, and the complement of its strain energy.
+/// Kirchhoff's rod: a uniform arm without distributed loads keeps n_f in space, m . n, and the complement of its strain
+/// energy.
 #[test]
 fn first_integrals_hold_along_a_uniform_rod() {
     let stiffness = [40.0, 15.0, 0.01, 0.008];
@@ -340,7 +343,8 @@ fn two_half_tensions_in_one_place_are_one() {
     assert!(apart(tip(&solved(&arm, 1e-9)), tip(&solved(&halves, 1e-9))) < 1e-9 * arm.length);
 }
 
-/// Euler's column is doubly degenerate in space: the determinant's sign does not change at its load, and two directions are unstable past it.
+/// Euler's column is doubly degenerate in space: the determinant's sign does not change at its load, and two directions
+/// are unstable past it.
 #[test]
 fn a_column_past_eulers_load_is_unstable_in_two_directions() {
     let [ea, ga, ei, gj] = [40.0, 15.0, 0.01, 0.008];

@@ -6,6 +6,7 @@
 mod breaks;
 mod cable;
 mod check;
+mod check_space;
 mod error;
 mod space;
 

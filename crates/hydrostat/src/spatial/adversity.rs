@@ -12,7 +12,8 @@ use crate::rod::readings::Support;
 const HARD: f64 = 0.3;
 
 impl Engine {
-    /// Whether something pushes against the arm hard enough that a direct solve may have landed on a branch that the path does not lead
+    /// Whether something pushes against the arm hard enough that a direct solve may have landed on a branch that the
+    /// path does not lead
     /// to. Cheap and on the safe side.
     pub(super) fn may_have_left_the_branch(&mut self) -> bool {
         let equations = &self.equations;
@@ -46,7 +47,8 @@ impl Engine {
 }
 
 impl Equations {
-    /// Compression of the contact force by (1 - s)^2/EI, and stream and weight by (1 - s)^3/EI where they run against the tangent, now or
+    /// Compression of the contact force by (1 - s)^2/EI, and stream and weight by (1 - s)^3/EI where they run against
+    /// the tangent, now or
     /// in the unloaded arm: as in the plane.
     fn adversity(&self, block: usize, lane: usize, z: &[f64; N], strain: &[f64; L], unloaded: &Directors<f64>) -> f64 {
         let place = &self.places[block];

@@ -30,7 +30,8 @@ pub struct SpatialConfiguration {
     pub unmet: Option<SpatialWrench>,
     /// Estimated error of the tip position, m.
     pub error_estimate: f64,
-    /// What the solve came to know on its way: `Some(false)` where the determinant says that an odd number of directions is unstable, else
+    /// What the solve came to know on its way: `Some(false)` where the determinant says that an odd number of
+    /// directions is unstable, else
     /// `None`.
     pub stable: Option<bool>,
     /// The snaps that the arm makes as its loads grow from nothing to these, in their order.
@@ -442,7 +443,8 @@ impl SpatialConfiguration {
         SpatialTip { x: st.x, y: st.y, z: st.z, a: st.a, b: st.b, c: st.c, alpha: st.alpha }
     }
 
-    /// Everything at `s` (m); `s` outside [0, L] is moved to the nearer end. At the end of a cable, the values on the tip's side. Between
+    /// Everything at `s` (m); `s` outside [0, L] is moved to the nearer end. At the end of a cable, the values on the
+    /// tip's side. Between
     /// nodes by the polynomials of the solve.
     pub fn at(&self, s: f64) -> SpatialStation {
         let share = (s / self.arm.length).clamp(0.0, 1.0);
@@ -485,13 +487,15 @@ impl SpatialConfiguration {
         self.energy
     }
 
-    /// How far the surface is from folding over itself: min over s of (nu - beta R sqrt(kappa^2 + mu^2))/nu, on the side of the section that
+    /// How far the surface is from folding over itself: min over s of (nu - beta R sqrt(kappa^2 + mu^2))/nu, on the
+    /// side of the section that
     /// is worst.
     pub fn fold_margin(&self) -> FoldMargin {
         self.fold
     }
 
-    /// What should be known about this answer, beside [`SpatialConfiguration::snaps`]. The tangential load of the momentum law, which
+    /// What should be known about this answer, beside [`SpatialConfiguration::snaps`]. The tangential load of the
+    /// momentum law, which
     /// warnings in the plane weigh, is not weighed in space.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut out = Vec::new();

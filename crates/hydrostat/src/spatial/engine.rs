@@ -47,7 +47,8 @@ pub(super) static METHODS: LazyLock<Methods> = LazyLock::new(|| {
     Methods { solve, check, to_check }
 });
 
-/// [`Collocation::evaluate`]. Not compiled for wide vectors, unlike the planar equations: with ten states that takes minutes.
+/// [`Collocation::evaluate`]. Not compiled for wide vectors, unlike the planar equations: with ten states that takes
+/// minutes.
 #[inline(never)]
 pub(super) fn evaluate(
     system: &mut Collocation<N, M, Q, L>,
@@ -200,7 +201,8 @@ impl Engine {
         Ok(linearise(&mut self.system, &self.equations, &self.solution)?)
     }
 
-    /// Newton on the present mesh until what is left of the tip's way is below `tolerance`, by the way rounds fall. Given how close to the
+    /// Newton on the present mesh until what is left of the tip's way is below `tolerance`, by the way rounds fall.
+    /// Given how close to the
     /// kinks of the load nodes have to be, they are moved there as soon as corrections are small.
     pub(super) fn iterate(&mut self, tolerance: f64, most: usize, resolution: Option<f64>) -> Result<(), Trouble> {
         let clamped = self.equations.arm().readings.support == Support::Clamped;

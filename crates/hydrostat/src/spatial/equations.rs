@@ -1,6 +1,7 @@
 //! The differential equations and end conditions of an arm in space (`docs/model.md`, the arm in space).
 //!
-//! Unknown along the arm are z = (q, n_f, m_f): the section's rotation as a quaternion, and the part of the contact force and moment, in
+//! Unknown along the arm are z = (q, n_f, m_f): the section's rotation as a quaternion, and the part of the contact
+//! force and moment, in
 //! space, that balances everything but the cables:
 //!
 //! ```text
@@ -9,8 +10,10 @@
 //! m_f' = -r' x n_f - couple        r' = nu a + eta b + zeta c
 //! ```
 //!
-//! and at every s the section law gives (nu, eta, zeta, tau, kappa, mu), see [`super::section`]. The centreline r is a quadrature. Gauss
-//! collocation keeps |q| at the nodes, as it keeps every quadratic invariant. Lengths are in units of L, forces in a unit of
+//! and at every s the section law gives (nu, eta, zeta, tau, kappa, mu), see [`super::section`]. The centreline r is a
+//! quadrature. Gauss
+//! collocation keeps |q| at the nodes, as it keeps every quadratic invariant. Lengths are in units of L, forces in a
+//! unit of
 //! [`Units`], as in the plane.
 
 use hydrostat_bvp::{
@@ -352,7 +355,8 @@ impl Equations {
         Ok(())
     }
 
-    /// n_f(L) and m_f(L) that a fraction of the loads on the tip asks for, and their derivatives by a turn about each director.
+    /// n_f(L) and m_f(L) that a fraction of the loads on the tip asks for, and their derivatives by a turn about each
+    /// director.
     pub(crate) fn tip_load(&self, fraction: f64, directors: &Directors<f64>) -> ([f64; 6], [Vector<f64>; 3]) {
         let share = fraction / self.units.force;
         let (tip, space) = (&self.arm.tip, &self.space);

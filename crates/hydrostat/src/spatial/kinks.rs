@@ -1,7 +1,9 @@
 //! Kinks of the stream's load in space, and nodes that follow them.
 //!
-//! Where U_t changes sign, the curvature of |V_t| V_t jumps. |U_p| is a cone: an arm in the plane of the stream passes through its apex,
-//! which is the planar kink where U_n changes sign; off the plane an arm passes at a distance, within a length |U_p|/|U_p'| that elements
+//! Where U_t changes sign, the curvature of |V_t| V_t jumps. |U_p| is a cone: an arm in the plane of the stream passes
+//! through its apex,
+//! which is the planar kink where U_n changes sign; off the plane an arm passes at a distance, within a length
+//! |U_p|/|U_p'| that elements
 //! have to resolve. Nodes go where U_t changes sign, and where |U_p| is least.
 
 use hydrostat_bvp::{LANES, each};
@@ -9,7 +11,8 @@ use hydrostat_bvp::{LANES, each};
 use super::engine::{Engine, M};
 use super::rotation::{Vector, dot};
 
-/// How close (over L) nodes are kept to the kinks of the load at a tolerance: closer than in the plane, so that what the estimate does not see is less.
+/// How close (over L) nodes are kept to the kinks of the load at a tolerance: closer than in the plane, so that what
+/// the estimate does not see is less.
 pub(super) fn kink_resolution(tolerance: f64) -> f64 {
     (0.002 * tolerance.sqrt()).max(5e-8)
 }
@@ -112,7 +115,8 @@ impl Engine {
         out
     }
 
-    /// Moves nodes onto the kinks at the present solution, where no pinned node is within `resolution`; whether any moved.
+    /// Moves nodes onto the kinks at the present solution, where no pinned node is within `resolution`; whether any
+    /// moved.
     pub(super) fn pin_kinks(&mut self, resolution: f64) -> bool {
         let kinks = self.kinks(10.0 * resolution);
         let mesh = &self.solution.mesh;

@@ -1,6 +1,7 @@
 //! Distributed loads in space: stream, weight and buoyancy, and what the user adds.
 //!
-//! With the centreline's tangent t = r'/|r'|, U_t = U . t and U_p = U - U_t t, the scalar flow laws of [`crate::flow`] give the load along t
+//! With the centreline's tangent t = r'/|r'|, U_t = U . t and U_p = U - U_t t, the scalar flow laws of [`crate::flow`]
+//! give the load along t
 //! and along U_p from the speeds U_t and |U_p|:
 //!
 //! ```text
@@ -73,7 +74,8 @@ pub(crate) fn load<R: Real>(
     let stretch = dot(&v, &v).sqrt();
     let inverse = one / stretch;
     let t = times(inverse, &v);
-    // All in the directors, turned into space at the end. `by_tangent` is d f / d t, row by row, for changes normal to t in space.
+    // All in the directors, turned into space at the end. `by_tangent` is d f / d t, row by row, for changes normal to
+    // t in space.
     let mut force = [zero; 3];
     let mut by_tangent = [[zero; 3]; 3];
     let mut by_size = [[zero; 3]; 3];

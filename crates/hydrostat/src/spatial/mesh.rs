@@ -30,7 +30,8 @@ const NEAR: f64 = 0.03;
 /// Reach of beta' over the length of the shortest element that meets the section law at both ends.
 const SHORTEST_CLOSING: f64 = 0.3;
 
-/// What the comparison with one more stage is multiplied by to be the estimate: where the load has kinks nearby, one stage more takes away as
+/// What the comparison with one more stage is multiplied by to be the estimate: where the load has kinks nearby, one
+/// stage more takes away as
 /// little as two thirds of the error.
 const SAFE: f64 = 2.0;
 

@@ -1,6 +1,7 @@
 //! The path of `docs/model.md`, section 7, in space: loads first, then tensions, by arclength continuation.
 //!
-//! A step predicts along the tangent, corrects normal to it, and is refused where the tangent turns too much. The metric is the turn of
+//! A step predicts along the tangent, corrects normal to it, and is refused where the tangent turns too much. The
+//! metric is the turn of
 //! the sections (root mean square along the arm, over a scale) with the fraction of the phase's loads.
 
 use hydrostat_bvp::{Correction, Mesh};
@@ -19,7 +20,8 @@ use crate::statics::verdict::{Phase, Verdict, VerdictKind};
 const START: f64 = 1e-7;
 /// Error of the tip over L that is kept along the path.
 pub(super) const LOOSE: f64 = 1e-4;
-/// Longest step of arclength, smallest cosine between the tangents at both ends of a step, most steps of a phase, refused ones included.
+/// Longest step of arclength, smallest cosine between the tangents at both ends of a step, most steps of a phase,
+/// refused ones included.
 const LONGEST: f64 = 0.4;
 const STRAIGHT: f64 = 0.94;
 const MOST: usize = 400;

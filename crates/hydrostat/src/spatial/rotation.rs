@@ -34,7 +34,8 @@ pub(crate) struct Directors<R> {
 }
 
 impl<R: Real> Directors<R> {
-    /// Of the quaternion q, scalar part first: those of q/|q|, because at the stages of a collocation |q| is one to the order of the
+    /// Of the quaternion q, scalar part first: those of q/|q|, because at the stages of a collocation |q| is one to the
+    /// order of the
     /// stages only.
     #[inline(always)]
     pub(crate) fn of(q: &[R; 4]) -> Self {
@@ -84,7 +85,8 @@ impl Directors<f64> {
     }
 }
 
-/// The rotation about the directors, (rad), that a change of the quaternion q is: d phi = `turn(q)` dq. A change of |q| is none.
+/// The rotation about the directors, (rad), that a change of the quaternion q is: d phi = `turn(q)` dq. A change of |q|
+/// is none.
 #[inline(always)]
 pub(crate) fn turn<R: Real>(q: &[R; 4]) -> [[R; 4]; 3] {
     let [w, x, y, z] = *q;

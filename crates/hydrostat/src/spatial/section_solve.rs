@@ -43,7 +43,8 @@ impl Solved<Lanes> {
     }
 }
 
-/// Newton on the section law from `guess` until the step is below `tolerance` in every lane; that last step is not taken.
+/// Newton on the section law from `guess` until the step is below `tolerance` in every lane; that last step is not
+/// taken.
 pub(crate) fn solve_section<R: Real>(
     volume: Volume,
     stiffness: &Stiffness<R>,

@@ -119,7 +119,8 @@ impl SpatialSolver {
         Ok(())
     }
 
-    /// Solves again from the last configuration, after a small change of tensions; falls back to [`SpatialSolver::solve`].
+    /// Solves again from the last configuration, after a small change of tensions; falls back to
+    /// [`SpatialSolver::solve`].
     ///
     /// # Errors
     /// [`SpatialError::NoEquilibrium`].

@@ -1,7 +1,9 @@
-//! Whether an equilibrium in space is stable against static divergence, and in how many directions it is not: as in the plane
+//! Whether an equilibrium in space is stable against static divergence, and in how many directions it is not: as in the
+//! plane
 //! ([`crate::stability`]), with all six motions of a section.
 //!
-//! Two eigenvalues of the compliance may pass together, as those of a straight column do at Euler's load: the determinant's sign does not
+//! Two eigenvalues of the compliance may pass together, as those of a straight column do at Euler's load: the
+//! determinant's sign does not
 //! change there, and the count does.
 
 use hydrostat_bvp::{Correction, Forcing, LANES, Lanes, Real, StageForcing, each};
@@ -19,19 +21,24 @@ use crate::statics::verdict::Phase;
 /// Fields: the motion in space, and the turn in space.
 const FIELDS: usize = 6;
 
-/// Polynomials a field, and elements no longer than a part of the arm by as many; more where the count of what grows is not settled.
+/// Polynomials a field, and elements no longer than a part of the arm by as many; more where the count of what grows is
+/// not settled.
 const POLYNOMIALS: [usize; 2] = [12, 20];
 
 impl SpatialConfiguration {
-    /// Whether this equilibrium is stable against static divergence, see [`SpatialConfiguration::growth`]. `None` where that is not
+    /// Whether this equilibrium is stable against static divergence, see [`SpatialConfiguration::growth`]. `None` where
+    /// that is not
     /// established.
     pub fn stability(&self) -> Option<Stability> {
         self.growth().map(|growth| growth.stability())
     }
 
-    /// How fast small overdamped motions about this equilibrium grow or decay: of the velocity of the centreline over L and of the rate of
-    /// turn about any axis, each against a resistance of one along the whole arm. `None` with [`Support::UnstrainedBase`], whose arm is no
-    /// equilibrium at the tip, and where the number of growing motions does not settle as they are resolved more finely.
+    /// How fast small overdamped motions about this equilibrium grow or decay: of the velocity of the centreline over L
+    /// and of the rate of
+    /// turn about any axis, each against a resistance of one along the whole arm. `None` with
+    /// [`Support::UnstrainedBase`], whose arm is no
+    /// equilibrium at the tip, and where the number of growing motions does not settle as they are resolved more
+    /// finely.
     pub fn growth(&self) -> Option<Growth> {
         if self.arm.readings.support == Support::UnstrainedBase {
             return None;
@@ -77,7 +84,8 @@ fn slowest_decay(engine: &Engine, functions: usize) -> Option<f64> {
 }
 
 /// How the arm gives way to loads of the shapes of polynomials along it, about the last linearisation: entry
-/// `[FIELDS k + f, FIELDS l + g]` is the part of polynomial `k` in the motion of field `f` under a load of the shape of polynomial `l` in
+/// `[FIELDS k + f, FIELDS l + g]` is the part of polynomial `k` in the motion of field `f` under a load of the shape of
+/// polynomial `l` in
 /// field `g`.
 fn compliance(engine: &Engine, functions: usize) -> DMatrix<f64> {
     let system = &engine.system;

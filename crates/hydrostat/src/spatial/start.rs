@@ -111,7 +111,8 @@ impl Engine {
     }
 }
 
-/// Turns the sections by the strains of each station, from the base, with nothing carried: between stages each at the mean rate of both.
+/// Turns the sections by the strains of each station, from the base, with nothing carried: between stages each at the
+/// mean rate of both.
 fn turn_sections(gauss: &Gauss<M>, solution: &mut Guess) {
     let groups = solution.groups();
     for i in 0..solution.mesh.elements() {

@@ -7,9 +7,11 @@ use crate::rod::profile::Profile;
 pub struct Cable {
     /// A name for people.
     pub name: String,
-    /// Signed offset y(s) in the straight arm, left positive, m; in space the distance from the centreline along the angle.
+    /// Signed offset y(s) in the straight arm, left positive, m; in space the distance from the centreline along the
+    /// angle.
     pub offset: Profile,
-    /// Angle of the offset in the section, from b towards c, rad: zero in the plane. A profile that turns along the arm routes a helix.
+    /// Angle of the offset in the section, from b towards c, rad: zero in the plane. A profile that turns along the arm
+    /// routes a helix.
     pub angle: Profile,
     /// Tension T >= 0, N. With a commanded stroke it follows from that, and what is given here does not count.
     pub tension: f64,
