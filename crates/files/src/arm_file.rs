@@ -39,7 +39,7 @@ const LONGEST_KEY: usize = 200;
 /// assert_eq!((arm.length, arm.flow.speed), (0.245, 0.5));
 ///
 /// let wrong = ArmFile::parse("[arm]\nlenght = 0.2", "arm.toml").unwrap().arm().unwrap_err();
-/// assert!(wrong.to_string().starts_with("arm.toml:2: arm.lenght: expected"));
+/// assert!(wrong.to_string().starts_with("arm.toml:2: arm.lenght: unknown key; expected"));
 /// assert!(wrong.to_string().ends_with("did you mean `length`?"));
 /// ```
 #[derive(Debug, Clone)]

@@ -1,5 +1,7 @@
 //! Folds of the map from tensions to the tip: level lines of a determinant in a face of the box of tensions.
 
+use hydrostat_bvp::continuation::location::RegulaFalsi;
+
 use super::boundary::{Here, LEAST, Tracer, cross};
 
 /// Difference of tensions over the largest, for gradients of the determinant.
@@ -57,26 +59,22 @@ impl Tracer<'_> {
         (a[0] - b[0]).hypot(a[1] - b[1])
     }
 
-    /// The fold between two shapes on either side of it, by regula falsi with the Illinois weight.
+    /// The fold between two shapes on either side of it.
     fn between(&self, a: &Here, b: &Here, pair: [usize; 2]) -> Option<Here> {
         let [from, to] = [a, b].map(|here| self.share(here, pair));
-        let mut low = (0.0, self.fold_of(a, pair));
-        let mut high = (1.0, self.fold_of(b, pair));
-        let small = 1e-8 * low.1.abs().max(high.1.abs());
-        let (mut here, mut side) = (a.clone(), 0);
+        let ends = [a, b].map(|here| self.fold_of(here, pair));
+        let (sign, small) = (ends[0].signum(), 1e-8 * ends[0].abs().max(ends[1].abs()));
+        let mut search = RegulaFalsi::between((0.0, sign * ends[0]), (1.0, sign * ends[1]));
+        let mut here = a.clone();
         for _ in 0..40 {
-            let s: f64 = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let s = search.place(0.0);
             let at = [from[0] + s * (to[0] - from[0]), from[1] + s * (to[1] - from[1])];
             here = self.to(&here, &self.in_face(pair, &a.state.tensions, at))?;
             let value = self.fold_of(&here, pair);
             if value.abs() <= small {
                 return Some(here);
             }
-            let (own, other) = if value * low.1 > 0.0 { (&mut low, &mut high) } else { (&mut high, &mut low) };
-            let now = if s < 0.0 || own.0 < other.0 { -1 } else { 1 };
-            *own = (s, value);
-            other.1 *= if side == now { 0.5 } else { 1.0 };
-            side = now;
+            search.put(s, sign * value);
         }
         None
     }

@@ -224,13 +224,8 @@ fn kinks(gauss: &Gauss<M>, nodes: &[f64], angles: &[[f64; POINTS]], breaks: &[bo
             let s = nodes[i] + step(i) * f64::from(k) / f64::from(SAMPLES);
             let now = (s, blended(i, s));
             if before.1 * now.1 < 0.0 {
-                let (mut low, mut high) = (before, now);
-                for _ in 0..40 {
-                    let middle = 0.5 * (low.0 + high.0);
-                    let there = blended(if middle < nodes[i] { i - 1 } else { i }, middle);
-                    if there * low.1 > 0.0 { low = (middle, there) } else { high = (middle, there) }
-                }
-                out.push(0.5 * (low.0 + high.0));
+                let at = |s: f64| blended(if s < nodes[i] { i - 1 } else { i }, s);
+                out.push(change_of_sign([before.0, now.0], before.1, at));
             }
             if now.1 != 0.0 {
                 before = now;
@@ -238,6 +233,15 @@ fn kinks(gauss: &Gauss<M>, nodes: &[f64], angles: &[[f64; POINTS]], breaks: &[bo
         }
     }
     merged(&out, |count| count % 2 == 1)
+}
+
+/// Where `of` changes its sign between two places, at the first of which it is `first`, by halving.
+fn change_of_sign([mut low, mut high]: [f64; 2], first: f64, of: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if of(middle) * first > 0.0 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
 }
 
 /// Changes of sign in order, those nearer to each other than [`APART`] as one in their middle, if their number counts.
@@ -260,12 +264,7 @@ fn parts(gauss: &Gauss<M>, angles: &[f64; POINTS]) -> Vec<(f64, f64)> {
             let x = f64::from(k) / f64::from(SAMPLES);
             let now = (x, slope(gauss, angles, x));
             if before.1 * now.1 < 0.0 {
-                let (mut low, mut high) = (before.0, now.0);
-                for _ in 0..40 {
-                    let middle = 0.5 * (low + high);
-                    if slope(gauss, angles, middle) * before.1 > 0.0 { low = middle } else { high = middle }
-                }
-                begins.push(0.5 * (low + high));
+                begins.push(change_of_sign([before.0, now.0], before.1, |x| slope(gauss, angles, x)));
             }
             before = now;
         }

@@ -25,8 +25,6 @@ const LARGEST_TURN: f64 = 0.3;
 const LEAST: f64 = 1e-6;
 /// Halvings of elements that confirm the turns.
 const CUTS: usize = 4;
-/// The part of what halving elements moves that is taken to be left.
-const FINER: f64 = 1.0;
 /// Intervals at whose ends turns are compared.
 const INTERVALS: u32 = 32;
 
@@ -37,9 +35,9 @@ impl Solver {
         let commanded = self.engine.equations.arm().is_commanded();
         match self.solve_smooth() {
             Ok(smooth) => {
-                let mut converged = self.raise_friction().map_err(|verdict| self.no_equilibrium(verdict))?;
-                converged.snaps = smooth.snaps;
-                Ok(converged)
+                let mut with_friction = self.raise_friction().map_err(|verdict| self.no_equilibrium(verdict))?;
+                with_friction.snaps = smooth.snaps;
+                Ok(with_friction)
             }
             Err(SolveError::NoEquilibrium(no)) if no.verdict.phase == Phase::Tension && !commanded => {
                 // Friction spares the tip, which may carry more with it.
@@ -145,8 +143,8 @@ impl Solver {
                 break;
             };
             let moved = (self.engine.tip[0] - before.0[0]).hypot(self.engine.tip[1] - before.0[1]);
-            // Halves of elements leave a small part of what they moved.
-            estimate = again.max(FINER * moved);
+            // What halves of elements leave is less than what they moved.
+            estimate = again.max(moved);
             if moved <= tol {
                 break;
             }

@@ -66,12 +66,12 @@ mod tests {
         stream.flow.direction = 1.2;
         let mut reeled = stream.clone();
         reeled.cables[0] = Cable::new("left", Profile::linear(0.005, 0.001)).reeled_in(0.01);
-        let mut converged = stream.clone();
-        converged.cables[0].friction = 0.3;
-        converged.gravity = Some(Gravity::default());
+        let mut with_friction = stream.clone();
+        with_friction.cables[0].friction = 0.3;
+        with_friction.gravity = Some(Gravity::default());
         let mut too_much = stream.clone();
         too_much.cables[0].tension = 40.0;
-        vec![plain, stream, reeled, converged, too_much]
+        vec![plain, stream, reeled, with_friction, too_much]
     }
 
     #[test]

@@ -92,11 +92,11 @@ impl Engine {
     fn add_kinks_of_friction(&self, out: &mut Vec<f64>) {
         let Some(capstan) = &self.equations.capstan else { return };
         let cables = self.equations.arm().cables.iter().enumerate();
-        let converged = |(c, cable): (usize, &crate::Cable)| {
+        let with_friction = |(c, cable): (usize, &crate::Cable)| {
             (cable.friction > 0.0 && self.equations.tension(c) != 0.0).then_some(c)
         };
-        let converged: Vec<usize> = cables.filter_map(converged).collect();
-        let mut kinks: Vec<f64> = capstan.kinks(&converged).collect();
+        let with_friction: Vec<usize> = cables.filter_map(with_friction).collect();
+        let mut kinks: Vec<f64> = capstan.kinks(&with_friction).collect();
         kinks.sort_by(f64::total_cmp);
         out.extend(merged(&kinks, |_| true));
     }
