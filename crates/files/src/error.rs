@@ -185,9 +185,7 @@ fn expected(error: &ArmError) -> String {
             format!("at most {most} places at which tables have points and cables end")
         }
         ArmError::TensionCount { cables, .. } => format!("{cables} tensions, one a cable"),
-        ArmError::OutOfPlane { .. } => {
-            "nothing out of the plane e1-e2: that needs `space = \"spatial\"` in `[arm]`".to_owned()
-        }
+        ArmError::OutOfPlane { .. } => "`space = \"spatial\"` in `[arm]`, which this key needs".to_owned(),
         ArmError::OnlyInPlane { what } => format!("an arm in the plane: {what} is for those alone"),
         ArmError::NotInSpace { .. } => "nothing of that with `space = \"spatial\"`".to_owned(),
         ArmError::Direction { why, .. } => format!("a direction that {why}"),
@@ -211,7 +209,7 @@ fn found(error: &ArmError) -> String {
         ArmError::Table { source: TableError::NotIncreasing { s, .. }, .. } => format!("s = {s} m"),
         ArmError::Table { source: TableError::NotFinite { s, value, .. }, .. } => format!("[{s}, {value}]"),
         ArmError::TensionCount { given, .. } => format!("{given}"),
-        ArmError::OutOfPlane { .. } => "it in an arm in the plane".to_owned(),
+        ArmError::OutOfPlane { .. } => "an arm in the plane".to_owned(),
         ArmError::OnlyInPlane { .. } => "`space = \"spatial\"`".to_owned(),
         ArmError::NotInSpace { key, why } => format!("`{key}`, which {why} in space"),
         ArmError::Direction { .. } => "one that does not".to_owned(),

@@ -253,7 +253,7 @@ fn overrides_are_refused_by_name() {
         ("arm.inner_radius.mid", "1", "arm.inner_radius.mid", &["base or tip"]),
         ("arm.inner_radius.base", "0.001", "arm.inner_radius.tip", &["missing"]),
         ("arm.radius[0][1]", "1", "arm.radius", &["[[s, value], ...]; set arm.radius as a whole"]),
-        ("tip.force[2]", "1", "tip.force", &["the index 0 or 1", "found 2"]),
+        ("tip.force[2]", "1", "tip.force", &["`space = \"spatial\"`", "found an arm in the plane"]),
         ("model.volume", "plain", "model.volume", &["\"planar\"", "found \"plain\""]),
         ("material.c1", "1", "material.c1", &["either young"]),
         ("flow.law", "quadratic-drag", "flow.cn", &["missing"]),

@@ -55,7 +55,7 @@ fn added_keys_types_and_units() {
         ("[tip]\nwhatever = 1", 7, "tip.whatever", &["force, moment, follower", "unknown key"]),
         ("\"a b\\n\" = 1", 6, "material.\"a b\\n\"", &["unknown key"]),
         ("poison = 0.4", 6, "material.poison", &["did you mean `poisson`?"]),
-        ("[arm.base]\nz = 0", 7, "arm.base.z", &["x, y, angle"]),
+        ("[arm.base]\nz = 0", 7, "arm.base.z", &["`space = \"spatial\"`", "found an arm in the plane"]),
         ("[reference]\nmu = { base = 0, top = 1 }", 7, "reference.mu.top", &["base and tip", "did you mean `tip`?"]),
         // Wrong types.
         ("[flow]\nspeed = true", 7, "flow.speed", &["a speed (a number in m/s,", "found true"]),
@@ -167,7 +167,7 @@ fn added_values() {
 #[test]
 fn whole_files() {
     let cases: &[Case] = &[
-        ("", 1, "arm", &["a table with length, radius", "missing"]),
+        ("", 1, "arm", &["a table with space, length, radius", "missing"]),
         ("# only a comment\n", 1, "arm", &["missing"]),
         ("\u{feff}", 1, "arm", &["missing"]),
         ("[arm]\nlength = 1\nradius = 1\n", 1, "material", &["young", "missing"]),

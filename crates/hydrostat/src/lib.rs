@@ -123,13 +123,12 @@
 //!
 //! # What is not in the model
 //!
-//! The arm moves slowly (quasi-static). It stays in the plane, unless [`Arm::space`] says otherwise: [`SpatialSolver`] solves it then, and all
-//! else is for arms in the plane. The section law is linear in the
-//! strains. Cables act by their tension alone: they do not press into the material. The surface may
-//! touch itself unseen; [`Configuration::fold_margin`] sees only a section that folds. The outside
-//! pressure on the wall of a sealed cavity is left out. The tangential load of the source's flow law
-//! corresponds to C_t = 4/9, where published coefficients of arms are 0.005 to 0.03: an answer that hangs
-//! on it carries a [`Warning::TangentialLoad`], and [`FlowLaw::QuadraticDrag`] is the alternative.
+//! The arm moves slowly (quasi-static). An arm in space ([`Arm::space`]) has a solver of its own, [`SpatialSolver`];
+//! everything else is for arms in the plane. The section law is linear in the strains. Cables act by their tension
+//! alone: they do not press into the material. The surface may touch itself unseen; [`Configuration::fold_margin`]
+//! sees only a section that folds. The outside pressure on the wall of a sealed cavity is left out. The tangential
+//! load of the source's flow law corresponds to C_t = 4/9, where published coefficients of arms are 0.005 to 0.03: an
+//! answer that hangs on it carries a [`Warning::TangentialLoad`], and [`FlowLaw::QuadraticDrag`] is the alternative.
 
 pub mod cases;
 mod inverse;

@@ -1,9 +1,8 @@
 //! The arm in space: section law in six strains, loads as vectors, and the solver of their equations (`docs/model.md`,
 //! the arm in space).
 //!
-//! What is the same in the plane is taken from there: profiles, sections along the arm, the section stretch, the scalar
-//! flow laws, meshes
-//! and their errors, verdicts.
+//! What is the same in the plane is taken from there: profiles, sections along the arm, the section stretch, the
+//! scalar flow laws, meshes and their errors, verdicts.
 
 mod adversity;
 mod configuration;
@@ -13,6 +12,7 @@ mod kinks;
 mod loads;
 mod mesh;
 mod path;
+mod place;
 mod places;
 mod rotation;
 mod section;
@@ -22,7 +22,9 @@ mod stability;
 mod start;
 #[cfg(test)]
 mod tests;
+mod tip;
 
-pub use self::configuration::{SpatialConfiguration, SpatialStation, SpatialStations, SpatialTip, SpatialWrench};
+pub use self::configuration::{SpatialConfiguration, SpatialStation, SpatialStations, SpatialWrench};
 pub use self::path::SpatialSnap;
 pub use self::solve::{NoSpatialEquilibrium, SpatialError, SpatialSolver};
+pub use self::tip::SpatialTip;

@@ -115,8 +115,7 @@ fn natural_curvature_and_twist_make_a_helix() {
 }
 
 /// Bathe and Bolourchi's 45-degree bend, 600 out of its plane. Published tips, from several element formulations, lie
-/// about
-/// (47.2, 15.7, 53.4).
+/// about (47.2, 15.7, 53.4).
 #[test]
 fn forty_five_degree_bend() {
     for (load, j, expected) in [
@@ -179,8 +178,7 @@ fn arms_in_a_plane_have_the_planar_solution() {
 }
 
 /// One cable at constant offset that turns uniformly along a uniform arm: the strains are constant in the frame that
-/// turns with the
-/// cable, and meet six algebraic equations.
+/// turns with the cable, and meet six algebraic equations.
 #[test]
 fn a_uniformly_turning_cable_strains_the_arm_evenly() {
     for volume in Volume::ALL {

@@ -13,8 +13,7 @@ const HARD: f64 = 0.3;
 
 impl Engine {
     /// Whether something pushes against the arm hard enough that a direct solve may have landed on a branch that the
-    /// path does not lead
-    /// to. Cheap and on the safe side.
+    /// path does not lead to. Cheap and on the safe side.
     pub(super) fn may_have_left_the_branch(&mut self) -> bool {
         let equations = &self.equations;
         if equations.arm().readings.support == Support::UnstrainedBase {
@@ -48,8 +47,7 @@ impl Engine {
 
 impl Equations {
     /// Compression of the contact force by (1 - s)^2/EI, and stream and weight by (1 - s)^3/EI where they run against
-    /// the tangent, now or
-    /// in the unloaded arm: as in the plane.
+    /// the tangent, now or in the unloaded arm: as in the plane.
     fn adversity(&self, block: usize, lane: usize, z: &[f64; N], strain: &[f64; L], unloaded: &Directors<f64>) -> f64 {
         let place = &self.places[block];
         let rest = 1.0 - place.s.0[lane];

@@ -8,6 +8,7 @@ use super::path::SpatialSnap;
 use super::rotation::{Directors, Vector, dot};
 use super::section::{CableAt, STRAINS, tangent};
 use super::section_solve::{FOLDED, solve_section};
+use super::tip::SpatialTip;
 use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Cavity};
 use crate::rod::readings::Support;
@@ -31,8 +32,7 @@ pub struct SpatialConfiguration {
     /// Estimated error of the tip position, m.
     pub error_estimate: f64,
     /// What the solve came to know on its way: `Some(false)` where the determinant says that an odd number of
-    /// directions is unstable, else
-    /// `None`.
+    /// directions is unstable, else `None`.
     pub stable: Option<bool>,
     /// The snaps that the arm makes as its loads grow from nothing to these, in their order.
     pub snaps: Vec<SpatialSnap>,
@@ -168,25 +168,6 @@ impl SpatialStations {
         }
         Some(each_field!(at!()))
     }
-}
-
-/// The tip of an arm in space.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SpatialTip {
-    /// m.
-    pub x: f64,
-    /// m.
-    pub y: f64,
-    /// m.
-    pub z: f64,
-    /// Director normal to the tip section.
-    pub a: [f64; 3],
-    /// Director in the tip section.
-    pub b: [f64; 3],
-    /// Director in the tip section, a x b.
-    pub c: [f64; 3],
-    /// Angle between section normal and centreline tangent, rad, in [0, pi].
-    pub alpha: f64,
 }
 
 /// A place between stations, solved.
@@ -444,8 +425,7 @@ impl SpatialConfiguration {
     }
 
     /// Everything at `s` (m); `s` outside [0, L] is moved to the nearer end. At the end of a cable, the values on the
-    /// tip's side. Between
-    /// nodes by the polynomials of the solve.
+    /// tip's side. Between nodes by the polynomials of the solve.
     pub fn at(&self, s: f64) -> SpatialStation {
         let share = (s / self.arm.length).clamp(0.0, 1.0);
         let share = if share.is_nan() { 0.0 } else { share };
@@ -488,15 +468,13 @@ impl SpatialConfiguration {
     }
 
     /// How far the surface is from folding over itself: min over s of (nu - beta R sqrt(kappa^2 + mu^2))/nu, on the
-    /// side of the section that
-    /// is worst.
+    /// side of the section that is worst.
     pub fn fold_margin(&self) -> FoldMargin {
         self.fold
     }
 
     /// What should be known about this answer, beside [`SpatialConfiguration::snaps`]. The tangential load of the
-    /// momentum law, which
-    /// warnings in the plane weigh, is not weighed in space.
+    /// momentum law, which warnings in the plane weigh, is not weighed in space.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut out = Vec::new();
         if self.fold.value <= 0.0 {

@@ -202,8 +202,8 @@ impl Engine {
     }
 
     /// Newton on the present mesh until what is left of the tip's way is below `tolerance`, by the way rounds fall.
-    /// Given how close to the
-    /// kinks of the load nodes have to be, they are moved there as soon as corrections are small.
+    /// Given how close to the kinks of the load nodes have to be, they are moved there as soon as corrections are
+    /// small.
     pub(super) fn iterate(&mut self, tolerance: f64, most: usize, resolution: Option<f64>) -> Result<(), Trouble> {
         let clamped = self.equations.arm().readings.support == Support::Clamped;
         let most = if clamped { most } else { 60 };

@@ -1,8 +1,7 @@
 //! The differential equations and end conditions of an arm in space (`docs/model.md`, the arm in space).
 //!
 //! Unknown along the arm are z = (q, n_f, m_f): the section's rotation as a quaternion, and the part of the contact
-//! force and moment, in
-//! space, that balances everything but the cables:
+//! force and moment, in space, that balances everything but the cables:
 //!
 //! ```text
 //! q'   = 1/2 q (0, u)
@@ -10,18 +9,16 @@
 //! m_f' = -r' x n_f - couple        r' = nu a + eta b + zeta c
 //! ```
 //!
-//! and at every s the section law gives (nu, eta, zeta, tau, kappa, mu), see [`super::section`]. The centreline r is a
-//! quadrature. Gauss
-//! collocation keeps |q| at the nodes, as it keeps every quadratic invariant. Lengths are in units of L, forces in a
-//! unit of
-//! [`Units`], as in the plane.
+//! and at every s the section law gives (nu, eta, zeta, tau, kappa, mu), see [`super::section`]. The centreline r is
+//! a quadrature. Gauss collocation keeps |q| at the nodes, as it keeps every quadratic invariant. Lengths are in
+//! units of L, forces in a unit of [`Units`], as in the plane.
 
 use hydrostat_bvp::{
     Condition, EndPlace, Forcing, Groups, Inner, LANES, Lanes, Local, Problem, Real, StageForcing, Station, each,
 };
 
 use super::loads::{Load, Water, load};
-use super::places::{Place, loads_of};
+use super::place::{Place, loads_of};
 use super::rotation::{Directors, Vector, cross, spin, turn};
 use super::section::{CableAt, STRAINS, Stiffness, apply};
 use super::section_solve::{Solved, solve_section};

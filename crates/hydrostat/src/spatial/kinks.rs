@@ -1,8 +1,8 @@
 //! Kinks of the stream's load in space, and nodes that follow them.
 //!
-//! Where U_t changes sign, the curvature of |V_t| V_t jumps. |U_p| is a cone: an arm in the plane of the stream passes
-//! through its apex,
-//! which is the planar kink where U_n changes sign; off the plane an arm passes at a distance, within a length
+//! Where U_t changes sign, the curvature of |V_t| V_t jumps. |U_p| is a cone: an arm in the plane of the stream
+//! passes through its apex, which is the planar kink where U_n changes sign; off the plane an arm passes at a
+//! distance, within a length
 //! |U_p|/|U_p'| that elements
 //! have to resolve. Nodes go where U_t changes sign, and where |U_p| is least.
 

@@ -1,8 +1,7 @@
 //! Distributed loads in space: stream, weight and buoyancy, and what the user adds.
 //!
-//! With the centreline's tangent t = r'/|r'|, U_t = U . t and U_p = U - U_t t, the scalar flow laws of [`crate::flow`]
-//! give the load along t
-//! and along U_p from the speeds U_t and |U_p|:
+//! With the centreline's tangent t = r'/|r'|, U_t = U . t and U_p = U - U_t t, the scalar flow laws of
+//! [`crate::flow`] give the load along t and along U_p from the speeds U_t and |U_p|:
 //!
 //! ```text
 //! f = S (|V_t| + 2 |U_p|) V_t t + S |U_p| U_p                  momentum law, S = pi rho_w beta R, V_t = (2/3) U_t

@@ -31,8 +31,7 @@ const NEAR: f64 = 0.03;
 const SHORTEST_CLOSING: f64 = 0.3;
 
 /// What the comparison with one more stage is multiplied by to be the estimate: where the load has kinks nearby, one
-/// stage more takes away as
-/// little as two thirds of the error.
+/// stage more takes away as little as two thirds of the error.
 const SAFE: f64 = 2.0;
 
 /// Elements on which most arms meet a tolerance.

@@ -1,15 +1,15 @@
 //! The path of `docs/model.md`, section 7, in space: loads first, then tensions, by arclength continuation.
 //!
 //! A step predicts along the tangent, corrects normal to it, and is refused where the tangent turns too much. The
-//! metric is the turn of
-//! the sections (root mean square along the arm, over a scale) with the fraction of the phase's loads.
+//! metric is the turn of the sections (root mean square along the arm, over a scale) with the fraction of the phase's
+//! loads.
 
 use hydrostat_bvp::{Correction, Mesh};
 
-use super::configuration::SpatialTip;
 use super::engine::{Engine, Guess, M, State, correct, linearise, turn_of};
 use super::equations::{L, N, Q};
 use super::rotation::{Vector, dot};
+use super::tip::SpatialTip;
 use crate::rod::readings::Volume;
 use crate::statics::engine::{Trouble, roughly};
 use crate::statics::equations::Margins;

@@ -4,19 +4,11 @@ use hydrostat_bvp::{Gauss, LANES, Lanes, Real, Side, Solution, each};
 
 use super::equations::{Equations, L, N};
 use super::loads::Body;
+use super::place::Place;
 use super::section::{CableAt, Stiffness};
-use crate::rod::arm::{Cable, Material, Space};
+use crate::rod::arm::{Cable, Material};
 use crate::rod::profile::Profile;
 use crate::statics::equations::section_data;
-
-/// One place of the arm as data.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Place<R> {
-    /// Over L.
-    pub(crate) s: R,
-    pub(crate) stiffness: Stiffness<R>,
-    pub(crate) body: Body<R>,
-}
 
 impl Equations {
     /// Data at `s` (over L).
@@ -169,12 +161,4 @@ fn place_of(cable: &Cable, s: f64, length: f64) -> CableAt<f64> {
         z_slope: offset.slope * sin + offset.value * cos * angle.slope,
         tension: 0.0,
     }
-}
-
-/// Whether anything of `space` loads the arm.
-pub(super) fn loads_of(space: &Space) -> bool {
-    space.tip_force != 0.0
-        || space.tip_follower != 0.0
-        || space.tip_moment != [0.0; 2]
-        || !(space.force.is_zero() && space.couple.iter().all(Profile::is_zero))
 }

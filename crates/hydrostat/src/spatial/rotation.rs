@@ -34,9 +34,8 @@ pub(crate) struct Directors<R> {
 }
 
 impl<R: Real> Directors<R> {
-    /// Of the quaternion q, scalar part first: those of q/|q|, because at the stages of a collocation |q| is one to the
-    /// order of the
-    /// stages only.
+    /// Of the quaternion q, scalar part first: those of q/|q|, because at the stages of a collocation |q| is one to
+    /// the order of the stages only.
     #[inline(always)]
     pub(crate) fn of(q: &[R; 4]) -> Self {
         let [w, x, y, z] = *q;

@@ -1,8 +1,7 @@
 //! The section law in six strains, and a cable at a section (`docs/model.md`, the arm in space).
 //!
-//! The strains are (nu, eta, zeta, tau, kappa, mu): v = nu a + eta b + zeta c is r', and u = tau a + kappa b + mu c the
-//! rate at which
-//! the directors turn, a' = u x a. One isotropic round section has
+//! The strains are (nu, eta, zeta, tau, kappa, mu): v = nu a + eta b + zeta c is r', and u = tau a + kappa b + mu c
+//! the rate at which the directors turn, a' = u x a. One isotropic round section has
 //!
 //! ```text
 //! n = A (C1 (nu - nu_o) a + C2 (eta - eta_o) b + C2 (zeta - zeta_o) c)
@@ -193,8 +192,7 @@ pub(crate) fn balance<R: Real>(
 /// Inverse of the balance's derivative, and its last pivot: that of nu, once the other five strains are eliminated.
 ///
 /// Those five rows are symmetric and positive definite whatever the tensions, because beta depends on nu alone: they
-/// need no exchanges.
-/// The pivot of nu passes through zero at the limits of the section law.
+/// need no exchanges. The pivot of nu passes through zero at the limits of the section law.
 pub(crate) fn inverse<R: Real>(m: &[[R; STRAINS]; STRAINS]) -> ([[R; STRAINS]; STRAINS], R) {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let mut out = *m;

@@ -1,10 +1,8 @@
-//! Whether an equilibrium in space is stable against static divergence, and in how many directions it is not: as in the
-//! plane
-//! ([`crate::stability`]), with all six motions of a section.
+//! Whether an equilibrium in space is stable against static divergence, and in how many directions it is not: as in
+//! the plane ([`crate::stability`]), with all six motions of a section.
 //!
 //! Two eigenvalues of the compliance may pass together, as those of a straight column do at Euler's load: the
-//! determinant's sign does not
-//! change there, and the count does.
+//! determinant's sign does not change there, and the count does.
 
 use hydrostat_bvp::{Correction, Forcing, LANES, Lanes, Real, StageForcing, each};
 use nalgebra::DMatrix;
@@ -26,19 +24,16 @@ const FIELDS: usize = 6;
 const POLYNOMIALS: [usize; 2] = [12, 20];
 
 impl SpatialConfiguration {
-    /// Whether this equilibrium is stable against static divergence, see [`SpatialConfiguration::growth`]. `None` where
-    /// that is not
-    /// established.
+    /// Whether this equilibrium is stable against static divergence, see [`SpatialConfiguration::growth`]. `None`
+    /// where that is not established.
     pub fn stability(&self) -> Option<Stability> {
         self.growth().map(|growth| growth.stability())
     }
 
-    /// How fast small overdamped motions about this equilibrium grow or decay: of the velocity of the centreline over L
-    /// and of the rate of
-    /// turn about any axis, each against a resistance of one along the whole arm. `None` with
-    /// [`Support::UnstrainedBase`], whose arm is no
-    /// equilibrium at the tip, and where the number of growing motions does not settle as they are resolved more
-    /// finely.
+    /// How fast small overdamped motions about this equilibrium grow or decay: of the velocity of the centreline over
+    /// L and of the rate of turn about any axis, each against a resistance of one along the whole arm. `None` with
+    /// [`Support::UnstrainedBase`], whose arm is no equilibrium at the tip, and where the number of growing motions
+    /// does not settle as they are resolved more finely.
     pub fn growth(&self) -> Option<Growth> {
         if self.arm.readings.support == Support::UnstrainedBase {
             return None;
@@ -83,10 +78,9 @@ fn slowest_decay(engine: &Engine, functions: usize) -> Option<f64> {
     rates.first().map(|rate| -rate[0]).filter(|decay| *decay > 0.0)
 }
 
-/// How the arm gives way to loads of the shapes of polynomials along it, about the last linearisation: entry
-/// `[FIELDS k + f, FIELDS l + g]` is the part of polynomial `k` in the motion of field `f` under a load of the shape of
-/// polynomial `l` in
-/// field `g`.
+/// How the arm gives way to loads of the shapes of polynomials along it, about the last linearisation: entry `[FIELDS
+/// k + f, FIELDS l + g]` is the part of polynomial `k` in the motion of field `f` under a load of the shape of
+/// polynomial `l` in field `g`.
 fn compliance(engine: &Engine, functions: usize) -> DMatrix<f64> {
     let system = &engine.system;
     let basis = Basis::new(&system.gauss.c, &engine.solution.mesh, functions);
