@@ -185,7 +185,7 @@ fn expected(error: &ArmError) -> String {
             format!("at most {most} places at which tables have points and cables end")
         }
         ArmError::TensionCount { cables, .. } => format!("{cables} tensions, one a cable"),
-        ArmError::OutOfPlane { .. } => "`space = \"spatial\"` in `[arm]`, which this key needs".to_owned(),
+        ArmError::OutOfPlane { .. } => "`space = \"spatial\"` in `[arm]` for a value out of the plane".to_owned(),
         ArmError::OnlyInPlane { what } => format!("an arm in the plane: {what} is for those alone"),
         ArmError::NotInSpace { .. } => "nothing of that with `space = \"spatial\"`".to_owned(),
         ArmError::Direction { why, .. } => format!("a direction that {why}"),

@@ -76,7 +76,7 @@ fn added_keys_types_and_units() {
         ),
         ("[model]\nclosure = \"litteral\"", 7, "model.closure", &["\"default\" or \"literal\""]),
         ("[tip]\nforce = 1", 7, "tip.force", &["two values [_, _]", "found 1"]),
-        ("[tip]\nforce = [1, 2, 3]", 7, "tip.force", &["found an array of 3 values"]),
+        ("[tip]\nforce = [1, 2, 3]", 7, "tip.force", &["found an arm in the plane"]),
         ("[tip]\nforce = [1,\n  \"2 m\"]", 8, "tip.force[1]", &["a force", "`m` is the unit of a length"]),
         ("[reference]\nmu = \"a lot\"", 7, "reference.mu", &["a curvature", "it does not start with a number"]),
         ("[distributed]\nforce = [0, true]", 7, "distributed.force[1]", &["a force per length", "found true"]),

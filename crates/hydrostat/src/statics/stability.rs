@@ -173,7 +173,8 @@ fn scaled_rates(compliance: &Compliance, functions: usize, unit: f64) -> Option<
     rates_of(DMatrix::from_fn(size, size, |i, j| compliance.entry(i, j)), unit, least)
 }
 
-/// The rates -1/kappa over `unit` of the eigenvalues kappa of a compliance, largest real part first, without those `least` times the smallest.
+/// The rates -1/kappa over `unit` of the eigenvalues kappa of a compliance, largest real part first, without those
+/// `least` times the smallest.
 pub(crate) fn rates_of(matrix: DMatrix<f64>, unit: f64, least: f64) -> Option<Vec<[f64; 2]>> {
     let size = matrix.nrows();
     if !matrix.iter().all(|v| v.is_finite()) {

@@ -212,8 +212,8 @@ impl Equations {
     }
 }
 
-/// The data at `s` (over L): of a radius (m) and its slope, which may carry derivatives, and of the values and slopes of
-/// all other profiles there.
+/// The data at `s` (over L), from a radius (m) and its slope, which may carry derivatives, and from the values and
+/// slopes of all other profiles there.
 #[inline(always)]
 pub(crate) fn section_data<R: Real>(
     arm: &Arm,
