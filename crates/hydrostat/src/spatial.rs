@@ -5,21 +5,26 @@
 //! scalar flow laws, meshes and their errors, verdicts.
 
 mod adversity;
+mod cable_paths;
 mod configuration;
 mod engine;
 mod equations;
+mod held;
 mod kinks;
+mod lengths;
 mod loads;
 mod mesh;
 mod path;
 mod place;
 mod places;
 mod rotation;
+mod rounds;
 mod section;
 mod section_solve;
 mod solve;
 mod stability;
 mod start;
+mod strokes;
 #[cfg(test)]
 mod tests;
 mod tip;

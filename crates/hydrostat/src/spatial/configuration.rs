@@ -2,17 +2,19 @@
 
 use hydrostat_bvp::{LANES, each};
 
-use super::engine::{Engine, M, evaluate};
+use super::cable_paths::StageData;
+use super::engine::Engine;
 use super::equations::{FORCE, L, MOMENT, N, Q, in_directors};
 use super::path::SpatialSnap;
-use super::rotation::{Directors, Vector, dot};
-use super::section::{CableAt, STRAINS, tangent};
+use super::rotation::{Directors, Vector};
+use super::rounds::{M, evaluate};
+use super::section::{CableAt, STRAINS};
 use super::section_solve::{FOLDED, solve_section};
 use super::tip::SpatialTip;
 use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Cavity};
 use crate::rod::readings::Support;
-use crate::statics::configuration::{CableState, FoldMargin, Statistics, Warning};
+use crate::statics::configuration::{CableState, Command, FoldMargin, Statistics, Warning};
 use crate::statics::engine::Trouble;
 use crate::statics::equations::{Margins, SectionFailure};
 
@@ -274,37 +276,6 @@ impl Engine {
         (self.rounds, self.meshes) = (0, 0);
         (self.system.evaluations, self.check.evaluations) = (0, 0);
     }
-
-    /// Lengths over L of cable `c` at the last evaluation, and at the reference strains.
-    fn cable_lengths(&self, c: usize) -> [f64; 2] {
-        let equations = &self.equations;
-        let arm = equations.arm();
-        let mut out = [0.0; 2];
-        for i in 0..self.solution.mesh.elements() {
-            let h = self.solution.mesh.step(i);
-            for j in 0..M {
-                let s = equations.stations[i * M + j];
-                if s > equations.ends[c] {
-                    continue;
-                }
-                let (block, lane) = self.solution.groups().at(i, j);
-                let station = &self.system.stations()[block];
-                let cable = equations.cable(c, s);
-                let strain: [f64; L] = each(|k| station.inner[k].0[lane]);
-                let reference: [f64; L] = each(|k| equations.reference_in(block)[k].0[lane]);
-                let unloaded = area_law(equations.volume, reference[0]);
-                let slope = arm.reference.nu.at(s * arm.length, arm.length).slope * arm.length * unloaded.slope;
-                let paths = [
-                    tangent(&cable, &strain, &area_law(equations.volume, strain[0]), station.closure_slope.0[lane]),
-                    tangent(&cable, &reference, &unloaded, slope),
-                ];
-                for (out, path) in out.iter_mut().zip(paths) {
-                    *out += h * self.system.gauss.b[j] * dot(&path.tau, &path.tau).sqrt();
-                }
-            }
-        }
-        out
-    }
 }
 
 /// The angle between a and r'.
@@ -372,14 +343,14 @@ impl SpatialConfiguration {
             }
         }
         let cables = arm.cables.iter().enumerate().map(|(c, cable)| {
-            let [now, unloaded] = engine.cable_lengths(c);
-            CableState {
-                name: cable.name.clone(),
-                tension: cable.tension,
-                length: length * now,
-                stroke: length * (unloaded - now),
-                command: None,
-            }
+            let [now, unloaded] = engine.equations.cable_lengths(c, StageData::of(&engine.system, &engine.solution));
+            let (now, stroke) = (length * now, length * (unloaded - now));
+            let command = cable.stroke.map(|given| Command {
+                stroke: given,
+                length: now + stroke - given,
+                slack: !engine.is_taut(c),
+            });
+            CableState { name: cable.name.clone(), tension: cable.tension, length: now, stroke, command }
         });
         let cables = cables.collect();
         // Taken from zero, what is nothing is 0 and not -0.
@@ -483,6 +454,11 @@ impl SpatialConfiguration {
         let (nu, s) = self.stretch;
         if !(0.5..=1.5).contains(&nu) {
             out.push(Warning::StrainRange { nu, s });
+        }
+        for cable in self.arm.cables.iter().filter(|cable| cable.stroke.is_some()) {
+            if let Some(max) = cable.max_tension.filter(|max| cable.tension > *max) {
+                out.push(Warning::TensionAboveMax { cable: cable.name.clone(), tension: cable.tension, max });
+            }
         }
         if self.arm.cavity == Cavity::Sealed && !self.arm.inner_radius.is_zero() {
             out.push(Warning::SealedCavity);

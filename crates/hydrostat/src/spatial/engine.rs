@@ -2,27 +2,31 @@
 
 use std::sync::LazyLock;
 
-use hydrostat_bvp::{Collocation, Correction, Gauss, Lanes, LinearisationError, Resampling, Solution, each};
+use hydrostat_bvp::{
+    Collocation, Correction, Determinant, Gauss, Lanes, LinearisationError, Resampling, Solution, each,
+};
 
 use super::equations::{Equations, L, N, Q};
+use super::lengths::HeldRound;
 use super::rotation::{Vector, dot, turn};
+use super::rounds::{Guess, K, M, correct, linearise, respond};
 use crate::rod::arm::Arm;
 use crate::rod::readings::Support;
 use crate::statics::configuration::Statistics;
 use crate::statics::engine::Trouble;
-use crate::statics::equations::SectionFailure;
-
-/// Stages of the solve, and of the check that estimates its error.
-pub(crate) const M: usize = 4;
-pub(super) const K: usize = M + 1;
-
-pub(crate) type Guess = Solution<N, M, L>;
+use crate::statics::equations::StrokeControl;
 
 /// Steps of the section law that the check leaves: its one round has to take up their squares.
 const CHECKED: f64 = 1e-5;
 
 /// What the square of a change of strains leaves to the tip's way (over L).
 const LEFT_BY_STRAINS: f64 = 0.01;
+
+/// What strokes may be off by (over L) before the last round, which leaves the square of that.
+const STROKES: f64 = 1e-10;
+
+/// Rounds at held lengths added to those at given tensions: the set of taut cables may change.
+const MORE: usize = 12;
 
 /// Changes of own ends that one call of Newton's method may make.
 const TURNS: usize = 2;
@@ -47,50 +51,13 @@ pub(super) static METHODS: LazyLock<Methods> = LazyLock::new(|| {
     Methods { solve, check, to_check }
 });
 
-/// [`Collocation::evaluate`]. Not compiled for wide vectors, unlike the planar equations: with ten states that takes
-/// minutes.
-#[inline(never)]
-pub(super) fn evaluate(
-    system: &mut Collocation<N, M, Q, L>,
-    equations: &Equations,
-    solution: &Guess,
-) -> Result<(), SectionFailure> {
-    system.evaluate::<_, false>(equations, solution)
-}
-
-/// [`Collocation::linearise`].
-#[inline(never)]
-pub(super) fn linearise<const S: usize>(
-    system: &mut Collocation<N, S, Q, L>,
-    equations: &Equations,
-    solution: &Solution<N, S, L>,
-) -> Result<(), LinearisationError<SectionFailure>> {
-    system.linearise::<_, false>(equations, solution)
-}
-
-/// [`Collocation::newton`].
-#[inline(never)]
-pub(super) fn correct<const S: usize>(
-    system: &mut Collocation<N, S, Q, L>,
-    solution: &Solution<N, S, L>,
-    out: &mut Correction<N, S, Q, L>,
-) {
-    system.newton::<false>(solution, out);
-}
-
-/// [`Collocation::response`].
-#[inline(never)]
-pub(super) fn respond(
-    system: &Collocation<N, M, Q, L>,
-    change: &hydrostat_bvp::Forcing<N, Q, L>,
-    out: &mut Correction<N, M, Q, L>,
-) {
-    system.response::<false>(change, out);
-}
-
 #[derive(Debug, Clone)]
 pub(crate) struct Engine {
     pub(crate) equations: Equations,
+    /// The cables whose strokes are commanded, once they are.
+    pub(super) held: Option<StrokeControl>,
+    /// Determinant of the strokes of taut cables by their tensions, at the last round.
+    pub(super) border: Option<Determinant>,
     pub(super) system: Collocation<N, M, Q, L>,
     pub(super) check_equations: Equations,
     pub(super) check: Collocation<N, K, Q, L>,
@@ -111,6 +78,8 @@ pub(crate) struct Engine {
     pub(super) meshes: usize,
     /// The last correction, rad.
     pub(super) last: f64,
+    /// Whether a round since this was last cleared took less than a whole correction.
+    pub(super) damped: bool,
     /// What the last round leaves to the next (tip over L), by the way rounds fall.
     pub(super) left_over: f64,
     /// Tip position over L from the base at the last round.
@@ -124,6 +93,8 @@ pub(crate) struct Engine {
 pub(super) struct State {
     pub(super) solution: Guess,
     pub(super) fraction: [f64; 2],
+    tensions: Vec<f64>,
+    held: Option<StrokeControl>,
     spans: Vec<[f64; Q]>,
     pub(super) tip: [f64; Q],
 }
@@ -133,6 +104,8 @@ impl Engine {
         let methods = &*METHODS;
         Self {
             equations: Equations::new(arm, M),
+            held: None,
+            border: None,
             check_equations: Equations::new(arm, K).leaving(CHECKED),
             system: Collocation::with(methods.solve.clone()),
             check: Collocation::with(methods.check.clone()),
@@ -148,6 +121,7 @@ impl Engine {
             rounds: 0,
             meshes: 0,
             last: 0.0,
+            damped: false,
             left_over: 0.0,
             tip: [0.0; Q],
             allowed: usize::MAX,
@@ -155,8 +129,14 @@ impl Engine {
     }
 
     pub(super) fn state(&self) -> State {
-        let fraction = self.equations.fraction;
-        State { solution: self.solution.clone(), fraction, spans: self.spans.clone(), tip: self.tip }
+        State {
+            solution: self.solution.clone(),
+            fraction: self.equations.fraction,
+            tensions: self.equations.tensions.clone(),
+            held: self.held.clone(),
+            spans: self.spans.clone(),
+            tip: self.tip,
+        }
     }
 
     pub(super) fn restore(&mut self, state: &State) {
@@ -165,6 +145,10 @@ impl Engine {
         self.spans.clone_from(&state.spans);
         self.tip = state.tip;
         self.equations.fraction = state.fraction;
+        self.held.clone_from(&state.held);
+        for (cable, tension) in state.tensions.iter().enumerate() {
+            self.equations.set_tension(cable, *tension);
+        }
         if same {
             self.equations.place_ends(&self.solution);
         } else {
@@ -207,7 +191,9 @@ impl Engine {
     pub(super) fn iterate(&mut self, tolerance: f64, most: usize, resolution: Option<f64>) -> Result<(), Trouble> {
         let clamped = self.equations.arm().readings.support == Support::Clamped;
         let most = if clamped { most } else { 60 };
+        let most = if self.held.is_some() { most + MORE } else { most };
         let (mut applied, mut halvings, mut round) = (0.0, 0, 0);
+        let (mut lengths, mut switches) = (HeldRound::default(), 0);
         let mut before = f64::INFINITY;
         let mut pins = if resolution.is_some() { PINS } else { 0 };
         let mut turns = 0;
@@ -223,6 +209,7 @@ impl Engine {
                     applied *= 0.5;
                     halvings += 1;
                     self.solution.add(&self.correction, -applied);
+                    self.add_tensions(&lengths.tensions, -applied);
                     continue;
                 }
                 Err(singular) => return Err(singular.into()),
@@ -235,6 +222,7 @@ impl Engine {
             }
             round += 1;
             correct(&mut self.system, &self.solution, &mut self.correction);
+            lengths = self.hold_lengths()?;
             let size = largest_turn(&self.solution, &self.correction);
             if !size.is_finite() {
                 return Err(Trouble::Singular);
@@ -242,12 +230,25 @@ impl Engine {
             applied = if size > 1.0 { 1.0 / size } else { 1.0 };
             halvings = 0;
             let moved = self.take_correction(applied).max(0.1 * size);
+            self.add_tensions(&lengths.tensions, applied);
+            self.damped |= applied < 1.0;
             let strained = self.correction.largest_inner();
             let whole = size.max(strained);
             let rate = if applied < 1.0 { 1.0 } else { (whole / before).min(1.0).max(10.0 * size) };
             self.left_over = (moved * rate.min(1.0)).max(LEFT_BY_STRAINS * strained * strained);
             before = whole;
             self.last = size;
+            if lengths.off > STROKES.max(0.01 * tolerance) {
+                self.left_over = self.left_over.max(10.0 * lengths.off);
+            }
+            if self.switch_taut(size, &lengths.slack) {
+                switches += 1;
+                if switches > MORE {
+                    return Err(Trouble::Stalled(size));
+                }
+                before = f64::INFINITY;
+                continue;
+            }
             let stop = round == most || (clamped && round >= 6 && size > 3.0);
             if self.left_over <= tolerance || stop {
                 return if self.left_over <= tolerance { Ok(()) } else { Err(Trouble::Stalled(size)) };

@@ -374,16 +374,16 @@ impl Equations {
         (out, by_turn)
     }
 
-    /// n_f(0) and m_f(0) of a base at which the section is unstrained, at a fraction of the tensions.
-    fn unstrained_base(&self, fraction: f64) -> [f64; 6] {
+    /// n_f(0) and m_f(0) of a base at which the section is unstrained, at these tensions (in the unit of force).
+    fn unstrained_base(&self, tensions: &[f64]) -> [f64; 6] {
         let directors = Directors::of(&self.base);
         let stiffness = self.place(0.0).stiffness;
         let mut at_base: [f64; STRAINS] =
             each(|k| stiffness.value[k] * (f64::from(u8::from(k == 0)) - stiffness.reference[k]));
-        for c in 0..self.tensions.len() {
+        for (c, tension) in tensions.iter().enumerate() {
             let cable = self.cable(c, 0.0);
             let stretch = (1.0 + cable.y_slope * cable.y_slope + cable.z_slope * cable.z_slope).sqrt();
-            let force = [1.0, cable.y_slope, cable.z_slope].map(|v| v * fraction * self.tensions[c] / stretch);
+            let force = [1.0, cable.y_slope, cable.z_slope].map(|v| v * tension / stretch);
             let moment = cross(&[0.0, cable.y, cable.z], &force);
             for k in 0..3 {
                 at_base[k] += force[k];
@@ -406,45 +406,23 @@ impl Equations {
         end_stations: &[Station<N, L>],
         tip: &[f64; N],
     ) -> Result<Forcing<N, Q, L>, SectionFailure> {
+        if self.phase != Phase::Loads {
+            return self.change_by_tensions(stations, end_stations, &self.tensions);
+        }
         let mut out = Forcing::default();
         let mut pulled = Vec::new();
-        let loads = self.phase == Phase::Loads;
         for (block, station) in stations.iter().enumerate() {
             let at = self.solved_in(block, station, &mut pulled)?;
+            let place = &self.places[block];
+            let own = load(&self.water, &place.body, &at.directors, &at.solved.strain, &at.solved.balance.swelling);
             let mut drift = StageForcing::default();
-            if loads {
-                let place = &self.places[block];
-                let own = load(&self.water, &place.body, &at.directors, &at.solved.strain, &at.solved.balance.swelling);
-                for k in 0..3 {
-                    drift.slope[FORCE + k] = -own.force[k];
-                    drift.slope[MOMENT + k] = -place.body.couple[k];
-                }
-            } else {
-                let q: [Lanes; 4] = each(|k| station.z[k]);
-                let inner = self.pulled_more(self.cables_in(block), &at.solved, station.closure_slope);
-                drift.slope = by_strain_change(&at, &q, &inner);
-                drift.rate = at.directors.to_space(&[inner[0], inner[1], inner[2]]);
-                drift.value = at.solved.balance.swelling.slope * inner[0];
-                drift.inner = inner;
+            for k in 0..3 {
+                drift.slope[FORCE + k] = -own.force[k];
+                drift.slope[MOMENT + k] = -place.body.couple[k];
             }
             out.stages.push(drift);
         }
-        if !loads {
-            for (block, station) in end_stations.iter().enumerate() {
-                self.pulled_in(self.cables_at_end(block), &mut pulled);
-                let (_, _, solved) = self.solved(&self.end_sections[block].1, station, &pulled);
-                let inner = self.pulled_more(self.cables_at_end(block), &solved, station.closure_slope);
-                out.ends.push((inner, solved.balance.swelling.slope * inner[0]));
-            }
-        }
-        if self.is_unstrained_base() {
-            if !loads {
-                let [all, none] = [1.0, 0.0].map(|share| self.unstrained_base(share));
-                for k in 0..6 {
-                    out.left[FORCE + k] = none[k] - all[k];
-                }
-            }
-        } else if loads {
+        if !self.is_unstrained_base() {
             let (load, _) = self.tip_load(1.0, &Directors::of(&each(|k| tip[k])));
             for k in 0..6 {
                 out.right[k] = -load[k];
@@ -453,19 +431,54 @@ impl Equations {
         Ok(out)
     }
 
-    /// The change of the strains a unit of the fraction of the tensions.
-    #[inline(always)]
-    fn pulled_more(&self, cables: &[CableAt<Lanes>], solved: &Solved<Lanes>, slope: Lanes) -> [Lanes; L] {
-        let mut added = [Lanes::of(0.0); L];
-        for (cable, tension) in cables.iter().zip(&self.tensions) {
-            let cable = CableAt { tension: cable.tension * Lanes::of(*tension), ..*cable };
-            let load = super::section::pull(&cable, &solved.strain, &solved.balance.swelling, slope).load;
-            for k in 0..L {
-                added[k] -= load[k];
+    /// The change of the equations with `tensions` (in the unit of force) more, at fixed state, at the last stations.
+    pub(crate) fn change_by_tensions(
+        &self,
+        stations: &[Station<N, L>],
+        end_stations: &[Station<N, L>],
+        tensions: &[f64],
+    ) -> Result<Forcing<N, Q, L>, SectionFailure> {
+        let mut out = Forcing::default();
+        let mut pulled = Vec::new();
+        for (block, station) in stations.iter().enumerate() {
+            let at = self.solved_in(block, station, &mut pulled)?;
+            let q: [Lanes; 4] = each(|k| station.z[k]);
+            let inner = pulled_more(self.cables_in(block), tensions, &at.solved, station.closure_slope);
+            out.stages.push(StageForcing {
+                slope: by_strain_change(&at, &q, &inner),
+                rate: at.directors.to_space(&[inner[0], inner[1], inner[2]]),
+                value: at.solved.balance.swelling.slope * inner[0],
+                inner,
+            });
+        }
+        for (block, station) in end_stations.iter().enumerate() {
+            self.pulled_in(self.cables_at_end(block), &mut pulled);
+            let (_, _, solved) = self.solved(&self.end_sections[block].1, station, &pulled);
+            let inner = pulled_more(self.cables_at_end(block), tensions, &solved, station.closure_slope);
+            out.ends.push((inner, solved.balance.swelling.slope * inner[0]));
+        }
+        if self.is_unstrained_base() {
+            let none = vec![0.0; tensions.len()];
+            let [more, without] = [tensions, &none].map(|tensions| self.unstrained_base(tensions));
+            for k in 0..6 {
+                out.left[FORCE + k] = without[k] - more[k];
             }
         }
-        apply(&solved.inverse, &added)
+        Ok(out)
     }
+}
+
+/// The change of the strains with `tensions` more.
+fn pulled_more(cables: &[CableAt<Lanes>], tensions: &[f64], solved: &Solved<Lanes>, slope: Lanes) -> [Lanes; L] {
+    let mut added = [Lanes::of(0.0); L];
+    for (cable, tension) in cables.iter().zip(tensions).filter(|(_, tension)| **tension != 0.0) {
+        let cable = CableAt { tension: cable.tension * Lanes::of(*tension), ..*cable };
+        let load = super::section::pull(&cable, &solved.strain, &solved.balance.swelling, slope).load;
+        for k in 0..L {
+            added[k] -= load[k];
+        }
+    }
+    apply(&solved.inverse, &added)
 }
 
 /// n_f and m_f in the directors.
@@ -662,7 +675,8 @@ impl Problem<N, Q, L> for Equations {
             out[k].gradient[k] = 1.0;
         }
         if self.is_unstrained_base() {
-            for (k, carried) in self.unstrained_base(self.fraction[1]).into_iter().enumerate() {
+            let pulling: Vec<f64> = (0..self.tensions.len()).map(|c| self.tension(c)).collect();
+            for (k, carried) in self.unstrained_base(&pulling).into_iter().enumerate() {
                 out[FORCE + k].residual = z[FORCE + k] - carried;
                 out[FORCE + k].gradient[FORCE + k] = 1.0;
             }

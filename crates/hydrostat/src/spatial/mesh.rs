@@ -2,9 +2,11 @@
 
 use hydrostat_bvp::{LANES, Limits, Mesh};
 
-use super::engine::{Engine, M, METHODS, State, correct, linearise};
+use super::engine::{Engine, METHODS, State};
 use super::kinks::kink_resolution;
+use super::lengths::hold_lengths;
 use super::rotation::dot;
+use super::rounds::{M, correct, linearise};
 use crate::statics::engine::{Trouble, roughly};
 
 /// How close (over L) nodes are kept to kinks on meshes that are refined afterwards.
@@ -27,6 +29,9 @@ const LEFT: f64 = 0.1;
 const ROUNDED: f64 = 1e-13;
 /// What Newton moves the tip by (over L) at the end of an approach.
 const NEAR: f64 = 0.03;
+/// Error of the tip over L that is kept along a path, and most elements there.
+pub(super) const LOOSE: f64 = 1e-4;
+const MANY: usize = 200;
 /// Reach of beta' over the length of the shortest element that meets the section law at both ends.
 const SHORTEST_CLOSING: f64 = 0.3;
 
@@ -73,6 +78,7 @@ impl Engine {
         solution.resample(&methods.to_check, finer);
         self.check_equations.fraction = self.equations.fraction;
         self.check_equations.phase = self.equations.phase;
+        self.check_equations.tensions.clone_from(&self.equations.tensions);
         self.check_equations.place_on(&methods.check, &self.finer);
         let mut estimate = self.compare()?;
         let unseen = (LEFT * self.left_over).max(ROUNDED);
@@ -95,6 +101,9 @@ impl Engine {
         linearise(&mut self.check, &self.check_equations, &self.finer)?;
         self.rounds += 1;
         correct(&mut self.check, &self.finer, &mut self.check_correction);
+        if let Some(held) = &self.held {
+            hold_lengths(&self.check_equations, &self.check, &self.finer, held, &mut self.check_correction)?;
+        }
         let (total, d) = (self.check.totals(), self.check_correction.total);
         let off = [0, 1, 2].map(|k| total[k] + d[k] - self.tip[k]);
         Ok(SAFE * dot(&off, &off).sqrt())
@@ -194,6 +203,22 @@ impl Engine {
                 break;
             }
             self.iterate(goal, 14, None)?;
+        }
+        Ok(())
+    }
+
+    /// Refines the mesh at the present loads where the tip's error is above what a path keeps.
+    pub(super) fn keep_accuracy(&mut self) -> Result<(), Trouble> {
+        for _ in 0..4 {
+            let Ok(estimate) = self.estimate(LOOSE, Some(LOOSE)) else { break };
+            if estimate <= LOOSE {
+                return Ok(());
+            }
+            let mut mesh = self.refined(0.1 * LOOSE, MANY);
+            let kinks = self.kinks(1e-3);
+            mesh.pin(&self.breaks, &kinks);
+            self.move_to(mesh);
+            roughly(self.iterate(1e-6, 9, None))?;
         }
         Ok(())
     }

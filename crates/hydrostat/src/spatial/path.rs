@@ -6,9 +6,10 @@
 
 use hydrostat_bvp::{Correction, Mesh};
 
-use super::engine::{Engine, Guess, M, State, correct, linearise, turn_of};
+use super::engine::{Engine, State, turn_of};
 use super::equations::{L, N, Q};
 use super::rotation::{Vector, dot};
+use super::rounds::{Guess, M, correct, linearise};
 use super::tip::SpatialTip;
 use crate::rod::readings::Volume;
 use crate::statics::engine::{Trouble, roughly};
@@ -18,8 +19,6 @@ use crate::statics::verdict::{Phase, Verdict, VerdictKind};
 
 /// Fractions start here, where the tangent by the fraction is defined.
 const START: f64 = 1e-7;
-/// Error of the tip over L that is kept along the path.
-pub(super) const LOOSE: f64 = 1e-4;
 /// Longest step of arclength, smallest cosine between the tangents at both ends of a step, most steps of a phase,
 /// refused ones included.
 const LONGEST: f64 = 0.4;
@@ -33,8 +32,6 @@ const CORNER: f64 = 1e-5;
 const MOVED: f64 = 0.15;
 /// The least change of rotation (rad) that counts as much as the whole load.
 const FINE_SCALE: f64 = 0.01;
-/// Elements that a path may take to be accurate.
-const MANY: usize = 200;
 
 /// A jump of an arm in space from a limit point to the next part of the same curve at the same loads.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -248,7 +245,7 @@ impl Ramp<'_, '_> {
     fn start(&mut self) -> Result<Point, Trouble> {
         self.engine.equations.set_phase(self.phase, START);
         roughly(self.engine.iterate(1e-6, 14, None))?;
-        self.keep_accuracy()?;
+        self.engine.keep_accuracy()?;
         self.point(START, None)
     }
 
@@ -286,7 +283,7 @@ impl Ramp<'_, '_> {
         if engine.correction.largest_inner().is_nan() {
             return Err(Trouble::Singular);
         }
-        self.keep_accuracy()?;
+        self.engine.keep_accuracy()?;
         self.engine.ends_fine()?;
         let mut next = self.point(fraction, Some(here))?;
         // How straight the way was.
@@ -348,23 +345,6 @@ impl Ramp<'_, '_> {
             }
         }
         engine.equations.set_phase(self.phase, *fraction);
-        Ok(())
-    }
-
-    /// Refines the mesh at the present fraction where the tip's error is above what a path keeps.
-    fn keep_accuracy(&mut self) -> Result<(), Trouble> {
-        let engine = &mut *self.engine;
-        for _ in 0..4 {
-            let Ok(estimate) = engine.estimate(LOOSE, Some(LOOSE)) else { break };
-            if estimate <= LOOSE {
-                return Ok(());
-            }
-            let mut mesh = engine.refined(0.1 * LOOSE, MANY);
-            let kinks = engine.kinks(1e-3);
-            mesh.pin(&engine.breaks, &kinks);
-            engine.move_to(mesh);
-            roughly(engine.iterate(1e-6, 9, None))?;
-        }
         Ok(())
     }
 
@@ -438,7 +418,7 @@ fn weights(mesh: &Mesh) -> impl Iterator<Item = f64> + '_ {
 }
 
 /// The largest turn (rad) of a node from where it was.
-fn largest_way(before: &[[f64; N]], solution: &Guess) -> f64 {
+pub(super) fn largest_way(before: &[[f64; N]], solution: &Guess) -> f64 {
     if before.len() != solution.nodes.len() {
         return 0.0;
     }
@@ -451,7 +431,7 @@ fn largest_way(before: &[[f64; N]], solution: &Guess) -> f64 {
 }
 
 /// Names the limit that a shape is at, with its place (over L): as in the plane.
-fn name_limit(near: Margins, trouble: Option<&Trouble>, volume: Volume) -> (VerdictKind, Option<f64>) {
+pub(super) fn name_limit(near: Margins, trouble: Option<&Trouble>, volume: Volume) -> (VerdictKind, Option<f64>) {
     let failed = match trouble {
         Some(Trouble::Section(failure)) => Some(*failure),
         _ => None,

@@ -11,6 +11,8 @@ pub(crate) struct Place<R> {
     /// Over L.
     pub(crate) s: R,
     pub(crate) stiffness: Stiffness<R>,
+    /// d nu_o / ds, over L.
+    pub(crate) reference_slope: R,
     pub(crate) body: Body<R>,
 }
 

@@ -62,6 +62,7 @@ impl Equations {
         Place {
             s,
             stiffness: Stiffness { value: [c1, c2, c2, c4, c3, c3], reference: [nu, eta, zeta, tau, kappa, mu] },
+            reference_slope: plane.stiffness.reference_slope,
             body: Body {
                 radius: plane.body.radius,
                 wetted: plane.body.wetted,

@@ -90,9 +90,9 @@ pub(crate) fn tangent<R: Real>(
 pub(crate) struct Tangent<R> {
     pub(crate) tau: Vector<R>,
     /// d tau / d beta.
-    by_beta: Vector<R>,
+    pub(crate) by_beta: Vector<R>,
     /// p over beta, which is also d tau / d beta'.
-    place: Vector<R>,
+    pub(crate) place: Vector<R>,
 }
 
 /// What a cable adds to the balance.

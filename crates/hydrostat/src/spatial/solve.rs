@@ -56,8 +56,8 @@ pub struct NoSpatialEquilibrium {
 /// Solves one arm in space, again and again as its tensions change.
 #[derive(Debug, Clone)]
 pub struct SpatialSolver {
-    engine: Engine,
-    options: Options,
+    pub(super) engine: Engine,
+    pub(super) options: Options,
     /// Whether the engine holds a configuration at whole loads.
     settled: bool,
     /// Sign of the determinant of the last configuration.
@@ -90,6 +90,17 @@ impl SpatialSolver {
         self.settled = false;
         self.engine.reset_statistics();
         self.engine.allowed = WORK;
+        self.engine.release_strokes();
+        let solved = self.solve_tensions()?;
+        if self.arm().cables.iter().all(|cable| cable.stroke.is_none()) {
+            return Ok(solved);
+        }
+        self.settled = false;
+        self.solve_strokes(solved)
+    }
+
+    /// At given tensions, the cables with a commanded stroke slack.
+    fn solve_tensions(&mut self) -> Result<SpatialConfiguration, SpatialError> {
         self.engine.equations.set_phase(Phase::Tension, 1.0);
         let tol = self.options.tol;
         let engine = &mut self.engine;
@@ -176,18 +187,18 @@ impl SpatialSolver {
     }
 
     /// The verdict with the engine's shape, the last good one.
-    fn no_equilibrium(&mut self, verdict: Verdict, snaps: Vec<SpatialSnap>) -> SpatialError {
+    pub(super) fn no_equilibrium(&mut self, verdict: Verdict, snaps: Vec<SpatialSnap>) -> SpatialError {
         self.engine.allowed = usize::MAX;
         let state: State = self.engine.state();
         let estimate = self.engine.settle(self.options.tol, First::Warm).unwrap_or_else(|_| {
             self.engine.restore(&state);
-            super::path::LOOSE
+            super::mesh::LOOSE
         });
         let last_good = self.read(estimate, Travelled::default()).ok();
         SpatialError::NoEquilibrium(Box::new(NoSpatialEquilibrium { verdict, last_good, snaps }))
     }
 
-    fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<SpatialConfiguration, Trouble> {
+    pub(super) fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<SpatialConfiguration, Trouble> {
         let statistics = self.engine.statistics(travelled.steps);
         let length = self.engine.equations.units.length;
         let mut read = SpatialConfiguration::read(&mut self.engine, estimate * length, statistics)?;

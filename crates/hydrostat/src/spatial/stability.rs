@@ -7,13 +7,17 @@
 use hydrostat_bvp::{Correction, Forcing, LANES, Lanes, Real, StageForcing, each};
 use nalgebra::DMatrix;
 
+use super::cable_paths::StageData;
 use super::configuration::SpatialConfiguration;
-use super::engine::{Engine, M, respond};
+use super::engine::Engine;
 use super::equations::{FORCE, MOMENT, N, Q};
+use super::lengths::pull_taut;
 use super::rotation::{Directors, Vector, turn};
+use super::rounds::{M, respond};
+use crate::numerics::elimination::solved;
 use crate::rod::readings::Support;
 use crate::statics::compliance::Basis;
-use crate::statics::stability::{Growth, KEPT, MARGIN, ROUNDING, Stability, growing, rates_of};
+use crate::statics::stability::{BLURRED, Growth, KEPT, MARGIN, ROUNDING, Stability, growing, rates_of};
 use crate::statics::verdict::Phase;
 
 /// Fields: the motion in space, and the turn in space.
@@ -47,12 +51,15 @@ impl SpatialConfiguration {
             }
             engine.iterate(1e-10, 6, None).ok()?;
             engine.linearise().ok()?;
-            let sign = engine.system.determinant().known_sign();
+            engine.find_border().ok()?;
+            let sign = engine.determinant().known_sign();
             let unit = slowest_decay(&engine, functions)?;
-            let compliance = compliance(&engine, functions);
+            let compliance = compliance(&engine, functions)?;
+            let holds = engine.held.as_ref().is_some_and(|held| held.taut.contains(&true));
             let rates = |functions: usize| {
                 let size = FIELDS * functions;
-                rates_of(DMatrix::from_fn(size, size, |i, j| compliance[(i, j)]), unit, ROUNDING)
+                let least = if holds { BLURRED } else { ROUNDING };
+                rates_of(DMatrix::from_fn(size, size, |i, j| compliance[(i, j)]), unit, least)
             };
             let mut all = rates(functions)?;
             let fewer = rates(functions - functions / 4)?;
@@ -71,17 +78,22 @@ impl SpatialConfiguration {
 /// The slowest decay of the arm on the same mesh with no load at all.
 fn slowest_decay(engine: &Engine, functions: usize) -> Option<f64> {
     let mut unloaded = engine.clone();
+    unloaded.held = None;
     unloaded.equations.set_phase(Phase::Loads, 0.0);
     unloaded.start_unloaded_on(engine.solution.mesh.clone());
     unloaded.linearise().ok()?;
-    let rates = rates_of(compliance(&unloaded, functions), 1.0, ROUNDING)?;
+    let rates = rates_of(compliance(&unloaded, functions)?, 1.0, ROUNDING)?;
     rates.first().map(|rate| -rate[0]).filter(|decay| *decay > 0.0)
 }
 
 /// How the arm gives way to loads of the shapes of polynomials along it, about the last linearisation: entry `[FIELDS
 /// k + f, FIELDS l + g]` is the part of polynomial `k` in the motion of field `f` under a load of the shape of
 /// polynomial `l` in field `g`.
-fn compliance(engine: &Engine, functions: usize) -> DMatrix<f64> {
+///
+/// Where the lengths of taut cables are held, loads change their tensions so that the strokes stay: with V the strokes
+/// that loads make at fixed tensions, U the motions that tensions make, and B the strokes that they make, U B^-1 V is
+/// taken off.
+fn compliance(engine: &Engine, functions: usize) -> Option<DMatrix<f64>> {
     let system = &engine.system;
     let basis = Basis::new(&system.gauss.c, &engine.solution.mesh, functions);
     let size = FIELDS * functions;
@@ -89,6 +101,14 @@ fn compliance(engine: &Engine, functions: usize) -> DMatrix<f64> {
     let blocks = system.stations().len();
     let mut change = Forcing { stages: vec![StageForcing::default(); blocks], ..Forcing::default() };
     let mut response = Correction::default();
+    let at = StageData::of(system, &engine.solution);
+    let pulled = match &engine.held {
+        Some(held) => pull_taut(&engine.equations, system, &engine.solution, held).ok()?,
+        None => Vec::new(),
+    };
+    let taut: Vec<(usize, usize)> =
+        engine.held.iter().flat_map(|held| held.taut_cables().into_iter().map(|i| (i, held.cables[i]))).collect();
+    let motions: Vec<Vec<f64>> = pulled.iter().map(|by| project(engine, &basis, functions, &by.response)).collect();
     for column in 0..size {
         let (l, g) = (column / FIELDS, column % FIELDS);
         for (block, drift) in change.stages.iter_mut().enumerate() {
@@ -100,8 +120,18 @@ fn compliance(engine: &Engine, functions: usize) -> DMatrix<f64> {
         for (row, moved) in project(engine, &basis, functions, &response).into_iter().enumerate() {
             out[(row, column)] = moved;
         }
+        let row = |(index, cable): &(usize, usize)| {
+            let stroke = engine.equations.stroke_change(*cable, at, &response);
+            (pulled.iter().map(|by| by.strokes[*index]).collect(), [-stroke, 0.0])
+        };
+        let (tensions, _) = solved(taut.iter().map(row).collect())?;
+        for ([tension, _], motion) in tensions.iter().zip(&motions) {
+            for (row, moved) in motion.iter().enumerate() {
+                out[(row, column)] += tension * moved;
+            }
+        }
     }
-    out
+    Some(out)
 }
 
 /// Projection of the motion in a response.

@@ -49,7 +49,7 @@ pub(crate) const ROUNDING: f64 = 1e12;
 
 /// The same where lengths are held: what loads a cable alone could make moves nothing, which polynomials meet no better
 /// than that, with eigenvalues of either sign.
-const BLURRED: f64 = 1e6;
+pub(crate) const BLURRED: f64 = 1e6;
 
 /// Most rates that are kept when fewer grow.
 pub(crate) const KEPT: usize = 6;

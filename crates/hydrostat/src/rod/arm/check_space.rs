@@ -44,10 +44,6 @@ impl Arm {
             let why = "is not solved yet";
             return Err(ArmError::NotInSpace { key: format!("cable[{i}].friction"), why });
         }
-        if let Some(i) = self.cables.iter().position(|c| c.stroke.is_some()) {
-            let why = "is not solved yet (give the tension)";
-            return Err(ArmError::NotInSpace { key: format!("cable[{i}].stroke"), why });
-        }
         Ok(())
     }
 

@@ -9,10 +9,10 @@ impl Equations {
     /// Commands the strokes of the arm, no cable taut but those that have a tension.
     pub(crate) fn hold_strokes(&mut self) {
         let commanded = |cable: &usize| self.arm.cables[*cable].stroke.is_some();
-        let cables: Vec<usize> = (0..self.arm.cables.len()).filter(commanded).collect();
-        let taut = cables.iter().map(|cable| self.tensions[*cable] > 0.0).collect();
-        let from = vec![0.0; cables.len()];
-        self.held = (!cables.is_empty()).then_some(StrokeControl { cables, taut, from, share: 1.0, switching: true });
+        self.held = StrokeControl::slack((0..self.arm.cables.len()).filter(commanded).collect());
+        if let Some(held) = &mut self.held {
+            held.taut = held.cables.iter().map(|cable| self.tensions[*cable] > 0.0).collect();
+        }
     }
 
     /// Leaves all cables to their tensions.
@@ -55,8 +55,7 @@ impl Equations {
 
     /// Stroke that is commanded of held cable `index` now, over L.
     pub(crate) fn command(&self, held: &StrokeControl, index: usize) -> f64 {
-        let (from, to) = (held.from[index], self.whole_command(held.cables[index]));
-        if held.share == 1.0 { to } else { from + held.share * (to - from) }
+        held.command(index, self.whole_command(held.cables[index]))
     }
 
     fn whole_command(&self, cable: usize) -> f64 {

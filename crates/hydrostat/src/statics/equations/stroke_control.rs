@@ -8,14 +8,27 @@ pub(crate) struct StrokeControl {
     /// Whether each is taut: then its tension is unknown and its stroke given, else its tension is zero.
     pub(crate) taut: Vec<bool>,
     /// Strokes that the phase of strokes starts from, over L.
-    pub(super) from: Vec<f64>,
+    pub(crate) from: Vec<f64>,
     /// The share of the way from these to those commanded.
-    pub(super) share: f64,
+    pub(crate) share: f64,
     /// Whether rounds may change which cables are taut. Along a path that is an event of its own.
     pub(crate) switching: bool,
 }
 
 impl StrokeControl {
+    /// Of these cables, all slack; `None` of none.
+    pub(crate) fn slack(cables: Vec<usize>) -> Option<Self> {
+        let count = cables.len();
+        let (taut, from) = (vec![false; count], vec![0.0; count]);
+        (count > 0).then_some(Self { cables, taut, from, share: 1.0, switching: true })
+    }
+
+    /// Stroke that is commanded of cable `index` now, `whole` (over L) being the one asked for.
+    pub(crate) fn command(&self, index: usize, whole: f64) -> f64 {
+        let from = self.from[index];
+        if self.share == 1.0 { whole } else { from + self.share * (whole - from) }
+    }
+
     /// Which of the commanded cables are taut.
     pub(crate) fn taut_cables(&self) -> Vec<usize> {
         (0..self.cables.len()).filter(|index| self.taut[*index]).collect()

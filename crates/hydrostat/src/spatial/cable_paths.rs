@@ -1,0 +1,116 @@
+//! The paths that cables take through the deformed arm in space, and their strokes: as in the plane.
+//!
+//! The stroke of a cable is its length at the reference strains less its present one. An elastic cable of stiffness EA is
+//! longer by T/EA of its unstretched length, so that what is reeled in of it is counted unstretched:
+//!
+//! ```text
+//! stroke = int |tau_ref| ds - int |tau| ds / (1 + T/EA)
+//! ```
+
+use hydrostat_bvp::{Collocation, Correction, Lanes, Real, Solution, Stage};
+
+use super::equations::{Equations, L, N, Q};
+use super::rotation::{cross, dot, times};
+use super::section::{STRAINS, tangent};
+use crate::rod::area_law::area_law;
+
+/// Strains at the stages of a solution, with what integrates over them.
+#[derive(Clone, Copy)]
+pub(super) struct StageData<'a> {
+    /// Of the stages.
+    weights: &'a [f64],
+    /// Lengths of elements, a group.
+    steps: &'a [Lanes],
+    stages: &'a [Stage<N, L>],
+}
+
+impl<'a> StageData<'a> {
+    /// Of a solution that `system` was evaluated at.
+    pub(super) fn of<const S: usize>(system: &'a Collocation<N, S, Q, L>, solution: &'a Solution<N, S, L>) -> Self {
+        Self { weights: &system.gauss.b, steps: system.steps(), stages: &solution.stages }
+    }
+}
+
+impl Equations {
+    /// Sums `value` over the path of cable `c`.
+    fn along_cable(&self, c: usize, at: StageData<'_>, value: impl Fn(usize) -> Lanes) -> f64 {
+        let groups = self.groups;
+        let mut sum = 0.0;
+        for block in 0..groups.count() * groups.stages {
+            let (group, stage) = (block / groups.stages, block % groups.stages);
+            let value = value(block) * self.cables_in(block)[c].tension;
+            for lane in 0..groups.filled(group) {
+                sum += at.steps[group].0[lane] * at.weights[stage] * value.0[lane];
+            }
+        }
+        sum
+    }
+
+    /// |tau| of cable `c` in a block of stations.
+    fn stretch(&self, c: usize, block: usize, stage: &Stage<N, L>) -> Lanes {
+        let swelling = area_law(self.volume, stage.inner[0]);
+        let tau = tangent(&self.cables_in(block)[c], &stage.inner, &swelling, stage.closure_slope).tau;
+        dot(&tau, &tau).sqrt()
+    }
+
+    /// |tau| of cable `c` in a block of stations at the reference strains.
+    fn reference_stretch(&self, c: usize, block: usize) -> Lanes {
+        let place = &self.places[block];
+        let swelling = area_law(self.volume, place.stiffness.reference[0]);
+        let slope = swelling.slope * place.reference_slope;
+        let tau = tangent(&self.cables_in(block)[c], &place.stiffness.reference, &swelling, slope).tau;
+        dot(&tau, &tau).sqrt()
+    }
+
+    /// Lengths of the path of cable `c`, now and at the reference strains, over L.
+    pub(super) fn cable_lengths(&self, c: usize, at: StageData<'_>) -> [f64; 2] {
+        [
+            self.along_cable(c, at, |block| self.stretch(c, block, &at.stages[block])),
+            self.along_cable(c, at, |block| self.reference_stretch(c, block)),
+        ]
+    }
+
+    /// 1 + T/EA of cable `c`, and its derivative by the tension (in the unit of force).
+    fn elongation(&self, c: usize) -> [f64; 2] {
+        let per_force = self.arm.cables[c].stiffness.map_or(0.0, |stiffness| self.units.force / stiffness);
+        [1.0 + per_force * self.tension(c), per_force]
+    }
+
+    /// Unstretched stroke of cable `c`, over L, and its derivative by the tension (in the unit of force).
+    pub(super) fn stroke(&self, c: usize, at: StageData<'_>) -> [f64; 2] {
+        let [now, unloaded] = self.cable_lengths(c, at);
+        let [longer, by_tension] = self.elongation(c);
+        [unloaded - now / longer, now * by_tension / (longer * longer)]
+    }
+
+    /// Change of the stroke of cable `c` (over L) with a change of the solution, at fixed tension.
+    pub(super) fn stroke_change<const S: usize>(
+        &self,
+        c: usize,
+        at: StageData<'_>,
+        change: &Correction<N, S, Q, L>,
+    ) -> f64 {
+        let longer = self.along_cable(c, at, |block| {
+            let (by_strain, by_beta_slope) = self.stretch_gradient(c, block, &at.stages[block]);
+            let stage = &change.stages[block];
+            let mut sum = by_beta_slope * stage.closure_slope;
+            for k in 0..STRAINS {
+                sum += by_strain[k] * stage.inner[k];
+            }
+            sum
+        });
+        -longer / self.elongation(c)[0]
+    }
+
+    /// Derivatives of |tau| by the strains and by beta': d|tau| = t . dtau with
+    /// dtau = dv + du x p + d(beta) (u x p + p')/beta + d(beta') p/beta.
+    fn stretch_gradient(&self, c: usize, block: usize, stage: &Stage<N, L>) -> ([Lanes; STRAINS], Lanes) {
+        let swelling = area_law(self.volume, stage.inner[0]);
+        let path = tangent(&self.cables_in(block)[c], &stage.inner, &swelling, stage.closure_slope);
+        let t = times(Lanes::of(1.0) / dot(&path.tau, &path.tau).sqrt(), &path.tau);
+        // t . (du x p) = du . (p x t).
+        let lever = cross(&times(swelling.beta, &path.place), &t);
+        let by_nu = t[0] + swelling.slope * dot(&t, &path.by_beta);
+        ([by_nu, t[1], t[2], lever[0], lever[1], lever[2]], dot(&t, &path.place))
+    }
+}

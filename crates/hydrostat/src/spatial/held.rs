@@ -1,0 +1,101 @@
+//! The cables of an arm in space whose strokes are commanded, as the engine holds them.
+
+use hydrostat_bvp::Determinant;
+
+use super::cable_paths::StageData;
+use super::engine::Engine;
+use super::lengths::{HeldRound, hold_lengths, pull_taut};
+use crate::numerics::elimination::solved;
+use crate::statics::engine::Trouble;
+use crate::statics::equations::StrokeControl;
+
+/// Slacks (over L) below which a cable is too short to hang slack.
+const SLACK: f64 = 1e-12;
+
+/// Corrections (rad) above which the tensions do not yet say which cables are taut.
+const SETTLED: f64 = 0.3;
+
+impl Engine {
+    /// Commands the strokes of the arm, all these cables slack.
+    pub(super) fn hold_strokes(&mut self) {
+        let cables = &self.equations.arm().cables;
+        let commanded: Vec<usize> = (0..cables.len()).filter(|c| cables[*c].stroke.is_some()).collect();
+        self.held = StrokeControl::slack(commanded);
+    }
+
+    /// Leaves all cables to their tensions, those with a commanded stroke slack.
+    pub(super) fn release_strokes(&mut self) {
+        (self.held, self.border) = (None, None);
+        for cable in 0..self.equations.arm().cables.len() {
+            if self.equations.arm().cables[cable].stroke.is_some() {
+                self.equations.set_tension(cable, 0.0);
+            }
+        }
+    }
+
+    /// Sign and size of the determinant of shape and unknown tensions together, at the last linearisation.
+    pub(super) fn determinant(&self) -> Determinant {
+        let shape = self.system.determinant();
+        self.border.map_or(shape, |border| shape.times(border))
+    }
+
+    /// Holds the lengths of taut cables in the present correction, if any are commanded.
+    pub(super) fn hold_lengths(&mut self) -> Result<HeldRound, Trouble> {
+        let Some(held) = &self.held else { return Ok(HeldRound::default()) };
+        let round = hold_lengths(&self.equations, &self.system, &self.solution, held, &mut self.correction)?;
+        self.border = round.border;
+        Ok(round)
+    }
+
+    /// The determinant of the strokes of taut cables by their tensions, at the last linearisation.
+    pub(super) fn find_border(&mut self) -> Result<(), Trouble> {
+        let Some(held) = &self.held else { return Ok(()) };
+        let pulled = pull_taut(&self.equations, &self.system, &self.solution, held)?;
+        let taut = held.taut_cables();
+        let row = |index: &usize| (pulled.iter().map(|by| by.strokes[*index]).collect(), [0.0; 2]);
+        self.border = Some(solved(taut.iter().map(row).collect()).ok_or(Trouble::Singular)?.1);
+        Ok(())
+    }
+
+    /// Adds `factor` times `changes` (in the unit of force), one a commanded cable, to the tensions.
+    pub(super) fn add_tensions(&mut self, changes: &[f64], factor: f64) {
+        let Some(held) = &self.held else { return };
+        for (cable, change) in held.cables.iter().zip(changes) {
+            let tension = self.equations.tension(*cable) + factor * change;
+            self.equations.set_tension(*cable, tension);
+        }
+    }
+
+    /// Lets cables go slack that push, and takes slack ones up that are too short, once a correction of `size` (rad)
+    /// says which these are; whether any changed.
+    pub(super) fn switch_taut(&mut self, size: f64, slack: &[f64]) -> bool {
+        let Some(held) = &mut self.held else { return false };
+        let mut changed = false;
+        if size < SETTLED {
+            for ((cable, taut), slack) in held.cables.iter().zip(&mut held.taut).zip(slack) {
+                if *taut && self.equations.tension(*cable) < 0.0 {
+                    *taut = false;
+                    self.equations.set_tension(*cable, 0.0);
+                    changed = true;
+                } else if !*taut && *slack < -SLACK {
+                    *taut = true;
+                    changed = true;
+                }
+            }
+        }
+        changed
+    }
+
+    /// Whether cable `c` has a commanded stroke and is taut.
+    pub(super) fn is_taut(&self, c: usize) -> bool {
+        let held = self.held.iter().flat_map(|held| held.cables.iter().zip(&held.taut));
+        held.into_iter().any(|(cable, taut)| *cable == c && *taut)
+    }
+
+    /// Strokes of the commanded cables at the present solution, over L.
+    pub(super) fn strokes(&self) -> Vec<f64> {
+        let at = StageData::of(&self.system, &self.solution);
+        let cables = self.held.iter().flat_map(|held| held.cables.iter());
+        cables.map(|cable| self.equations.stroke(*cable, at)[0]).collect()
+    }
+}
