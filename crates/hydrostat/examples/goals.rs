@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use arms::pulled;
 use clock::{Times, timed};
-use hydrostat::{Arm, ManyOptions, Options, SolveError, Solver, VerdictKind, solve_many};
+use hydrostat::{Arm, ManyOptions, Options, SolveError, Solver, Space, SpatialSolver, VerdictKind, solve_many};
 
 type Failure = Box<dyn Error>;
 
@@ -38,6 +38,14 @@ fn main() -> Result<(), Failure> {
     row("`paper` warm", "15 us", &us(&tight_warm));
     row("`paper` warm, `update`", "", &us(&tight_update));
     row("`silicone`, the flag, cold", "100 us", &us(&cold(&flag, tight, REPEATS)?));
+
+    for (name, plane, space) in in_space()? {
+        row(
+            &format!("{name}, in space over in the plane"),
+            "6, aim 3",
+            &format!("{:.1} ({plane}, {space})", space.0 / plane.0),
+        );
+    }
 
     let mut ramped = Vec::new();
     for (name, arm) in sets::ramped()? {
@@ -121,6 +129,43 @@ fn warm(arm: &Arm, options: Options) -> Result<[Times; 2], SolveError> {
         },
     )?;
     Ok([whole, tip])
+}
+
+/// Median time, us.
+struct Median(f64);
+
+impl std::fmt::Display for Median {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:.0} us", self.0)
+    }
+}
+
+/// `silicone` at 0.1 N in 0.1 m/s by both solvers: cold, and from 1 % less tension.
+fn in_space() -> Result<[(&'static str, Median, Median); 2], Failure> {
+    let plane = pulled("silicone", &[0.1, 0.0], 0.1)?;
+    let space = Arm { space: Some(Space::default()), ..plane.clone() };
+    let options = Options::default();
+    let flat = cold(&plane, options, REPEATS)?;
+    let less = [0.099, 0.0];
+    let [flat_warm, _] = warm(&plane, options)?;
+    let mut samples = [Vec::new(), Vec::new()];
+    for _ in 0..REPEATS {
+        let clock = Instant::now();
+        let mut solver = SpatialSolver::new(&space, options)?;
+        solver.solve()?;
+        samples[0].push(clock.elapsed().as_secs_f64() * 1e6);
+        solver.set_tensions(&less)?;
+        solver.resolve()?;
+        solver.set_tensions(&[0.1, 0.0])?;
+        let clock = Instant::now();
+        solver.resolve()?;
+        samples[1].push(clock.elapsed().as_secs_f64() * 1e6);
+    }
+    let [cold, warm] = samples.map(|mut all| {
+        all.sort_by(f64::total_cmp);
+        Median(all[all.len() / 2])
+    });
+    Ok([("cold", Median(flat.quartile(2)), cold), ("warm", Median(flat_warm.quartile(2)), warm)])
 }
 
 fn limit_point(name: &str, arm: &Arm) -> Result<Times, Failure> {

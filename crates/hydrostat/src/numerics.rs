@@ -1,5 +1,6 @@
-//! Small numerical tools: vectors of the processor, small dense systems, sine and cosine of four angles.
+//! Small numerical tools: vectors of the processor and rounds on them, small dense systems, sine and cosine of four angles.
 
 pub(crate) mod dispatch;
 pub(crate) mod elimination;
+pub(crate) mod rounds;
 pub(crate) mod sincos;

@@ -18,7 +18,6 @@ mod path;
 mod place;
 mod places;
 mod rotation;
-mod rounds;
 mod section;
 mod section_solve;
 mod solve;

@@ -5,11 +5,8 @@ use std::f64::consts::{PI, TAU};
 #[path = "common/space.rs"]
 mod common;
 
-use common::{apart, in_space, rotation, silicone, solved, three_cables, times, tip, turned, turned_arm};
-use hydrostat::{
-    Arm, BaseDirections, Cable, FlowLaw, Gravity, Material, Options, Profile, Readings, Space, SpatialConfiguration,
-    SpatialSolver, Volume,
-};
+use common::{apart, in_space, rotation, silicone, solved, three_cables, tip, turned, turned_arm};
+use hydrostat::{Arm, Cable, FlowLaw, Gravity, Material, Options, Profile, Readings, Space, SpatialSolver, Volume};
 
 /// Without pins, elements: a rod of one section with given coefficients, no area change.
 fn rod(length: f64, [ea, ga, ei, gj]: [f64; 4]) -> Arm {

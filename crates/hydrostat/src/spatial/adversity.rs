@@ -3,9 +3,8 @@
 use hydrostat_bvp::each;
 
 use super::engine::Engine;
-use super::equations::{Equations, FORCE, L, N};
+use super::equations::{Equations, FORCE, L, M, N};
 use super::rotation::{Directors, Vector, dot, times, turned};
-use super::rounds::M;
 use crate::rod::area_law::{area_law, displacement};
 use crate::rod::readings::Support;
 

@@ -4,13 +4,13 @@ use hydrostat_bvp::{LANES, each};
 
 use super::cable_paths::StageData;
 use super::engine::Engine;
-use super::equations::{FORCE, L, MOMENT, N, Q, in_directors};
+use super::equations::{FORCE, L, M, MOMENT, N, Q, in_directors};
 use super::path::SpatialSnap;
 use super::rotation::{Directors, Vector};
-use super::rounds::{M, evaluate};
 use super::section::{CableAt, STRAINS};
 use super::section_solve::{FOLDED, solve_section};
 use super::tip::SpatialTip;
+use crate::numerics::rounds::evaluate;
 use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Cavity};
 use crate::rod::readings::Support;
@@ -305,7 +305,7 @@ impl SpatialConfiguration {
                 rates.push(engine.system.locals()[block].rate.map(|v| v.0[lane]));
             }
         }
-        let dense = Dense { engine: engine.clone(), nodes, rates };
+        let dense = Dense { engine: engine.without_workspace(), nodes, rates };
         let mut fold = FoldMargin { value: 1.0, s: 0.0 };
         let mut stretch = (1.0, 0.0);
         let mut note = |s: f64, nu: f64, bending: f64, half_width: f64| {

@@ -6,10 +6,10 @@ use hydrostat_bvp::{
     Collocation, Correction, Determinant, Gauss, Lanes, LinearisationError, Resampling, Solution, each,
 };
 
-use super::equations::{Equations, L, N, Q};
+use super::equations::{Equations, Guess, K, L, M, N, Q};
 use super::lengths::HeldRound;
 use super::rotation::{Vector, dot, turn};
-use super::rounds::{Guess, K, M, correct, linearise, respond};
+use crate::numerics::rounds::{correct, linearise, respond};
 use crate::rod::arm::Arm;
 use crate::rod::readings::Support;
 use crate::statics::configuration::Statistics;
@@ -125,6 +125,29 @@ impl Engine {
             left_over: 0.0,
             tip: [0.0; Q],
             allowed: usize::MAX,
+        }
+    }
+
+    /// The solution with its equations, without what the last rounds have left: nothing that is large is copied.
+    pub(super) fn without_workspace(&self) -> Self {
+        let methods = &*METHODS;
+        Self {
+            equations: self.equations.clone(),
+            held: self.held.clone(),
+            border: self.border,
+            check_equations: self.check_equations.without_places(),
+            system: Collocation::with(methods.solve.clone()),
+            check: Collocation::with(methods.check.clone()),
+            solution: self.solution.clone(),
+            correction: Correction::default(),
+            check_correction: Correction::default(),
+            finer: Solution::default(),
+            speeds: Vec::new(),
+            before: Solution::default(),
+            errors: Vec::new(),
+            spans: self.spans.clone(),
+            breaks: self.breaks.clone(),
+            ..*self
         }
     }
 

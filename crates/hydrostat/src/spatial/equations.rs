@@ -14,7 +14,8 @@
 //! units of L, forces in a unit of [`Units`], as in the plane.
 
 use hydrostat_bvp::{
-    Condition, EndPlace, Forcing, Groups, Inner, LANES, Lanes, Local, Problem, Real, StageForcing, Station, each,
+    Condition, EndPlace, Forcing, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution, StageForcing, Station,
+    each,
 };
 
 use super::loads::{Load, Water, load};
@@ -22,6 +23,7 @@ use super::place::{Place, loads_of};
 use super::rotation::{Directors, Vector, cross, spin, turn};
 use super::section::{CableAt, STRAINS, Stiffness, apply};
 use super::section_solve::{Solved, solve_section};
+use crate::numerics::dispatch::widest;
 use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Space};
 use crate::rod::flow::Law;
@@ -35,6 +37,13 @@ pub(crate) const N: usize = 10;
 pub(crate) const Q: usize = 3;
 /// Inner unknowns: nu, eta, zeta, tau, kappa, mu.
 pub(crate) const L: usize = STRAINS;
+
+/// Stages of the solve, and of the check that estimates its error.
+pub(crate) const M: usize = 4;
+pub(super) const K: usize = M + 1;
+
+/// What a solve works on.
+pub(crate) type Guess = Solution<N, M, L>;
 
 /// Where n_f stands in the state.
 pub(crate) const FORCE: usize = 4;
@@ -131,6 +140,24 @@ impl Equations {
         this.units.force = this.place(0.0).stiffness.value[5];
         this.set_tensions();
         this
+    }
+
+    /// The same equations on no mesh.
+    pub(crate) fn without_places(&self) -> Self {
+        Self {
+            arm: self.arm.clone(),
+            space: self.space.clone(),
+            upright: self.upright.clone(),
+            tensions: self.tensions.clone(),
+            ends: self.ends.clone(),
+            groups: Groups { elements: 0, stages: self.groups.stages },
+            stations: Vec::new(),
+            places: Vec::new(),
+            cables: Vec::new(),
+            end_sections: Vec::new(),
+            end_cables: Vec::new(),
+            ..*self
+        }
     }
 
     /// The same equations with steps of the section law left up to `inner_tolerance`.
@@ -282,7 +309,7 @@ impl Equations {
         &self.end_cables[block * count..(block + 1) * count]
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn solved(
         &self,
         stiffness: &Stiffness<Lanes>,
@@ -297,7 +324,7 @@ impl Equations {
     }
 
     /// A block of stations near their strains.
-    #[inline(never)]
+    #[inline(always)]
     fn solved_in(
         &self,
         block: usize,
@@ -323,7 +350,7 @@ impl Equations {
     }
 
     /// The stations of a block.
-    #[inline(never)]
+    #[inline(always)]
     fn block(
         &self,
         block: usize,
@@ -350,6 +377,48 @@ impl Equations {
         out.rate_by_closure = strains(&out.inner.by_closure);
         station.inner = at.solved.strain;
         Ok(())
+    }
+
+    /// All stages, compiled once for all systems that they are evaluated for.
+    #[inline(never)]
+    fn all_stages(
+        &self,
+        stations: &mut [Station<N, L>],
+        out: &mut [Local<N, Q, L, Lanes>],
+    ) -> Result<(), SectionFailure> {
+        let mut pulled = Vec::with_capacity(self.tensions.len());
+        widest(
+            #[inline(always)]
+            || {
+                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+                    self.block(block, station, &mut pulled, out)?;
+                }
+                Ok(())
+            },
+        )
+    }
+
+    /// All ends at which elements meet the section law, likewise.
+    #[inline(never)]
+    fn all_ends(&self, stations: &mut [Station<N, L>], out: &mut [Inner<N, L, Lanes>]) -> Result<(), SectionFailure> {
+        let mut pulled = Vec::with_capacity(self.tensions.len());
+        widest(
+            #[inline(always)]
+            || {
+                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+                    let (s, stiffness) = &self.end_sections[block];
+                    self.pulled_in(self.cables_at_end(block), &mut pulled);
+                    let (directors, contact, solved) = self.solved(stiffness, station, &pulled);
+                    if !solved.is_fine(self.inner_tolerance) {
+                        return Err(failure(*s, &solved, self.inner_tolerance));
+                    }
+                    let turns = turn(&each(|k| station.z[k]));
+                    *out = inner(&solved, strain_by_state(&solved.inverse, &directors, &contact, &turns));
+                    station.inner = solved.strain;
+                }
+                Ok(())
+            },
+        )
     }
 
     /// n_f(L) and m_f(L) that a fraction of the loads on the tip asks for, and their derivatives by a turn about each
@@ -533,7 +602,7 @@ fn by_strain_change<R: Real>(at: &AtStation<R>, q: &[R; 4], change: &[R; STRAINS
 }
 
 /// Slopes of the state and of the centreline, with their gradients, at the strains without their step.
-#[inline(never)]
+#[inline(always)]
 fn slopes(
     at: &AtStation<Lanes>,
     q: &[Lanes; 4],
@@ -637,11 +706,7 @@ impl Problem<N, Q, L> for Equations {
         stations: &mut [Station<N, L>],
         out: &mut [Local<N, Q, L, Lanes>],
     ) -> Result<(), SectionFailure> {
-        let mut pulled = Vec::with_capacity(self.tensions.len());
-        for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-            self.block(block, station, &mut pulled, out)?;
-        }
-        Ok(())
+        self.all_stages(stations, out)
     }
 
     fn ends<const FUSED: bool>(
@@ -650,19 +715,7 @@ impl Problem<N, Q, L> for Equations {
         stations: &mut [Station<N, L>],
         out: &mut [Inner<N, L, Lanes>],
     ) -> Result<(), SectionFailure> {
-        let mut pulled = Vec::with_capacity(self.tensions.len());
-        for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-            let (s, stiffness) = &self.end_sections[block];
-            self.pulled_in(self.cables_at_end(block), &mut pulled);
-            let (directors, contact, solved) = self.solved(stiffness, station, &pulled);
-            if !solved.is_fine(self.inner_tolerance) {
-                return Err(failure(*s, &solved, self.inner_tolerance));
-            }
-            let turns = turn(&each(|k| station.z[k]));
-            *out = inner(&solved, strain_by_state(&solved.inverse, &directors, &contact, &turns));
-            station.inner = solved.strain;
-        }
-        Ok(())
+        self.all_ends(stations, out)
     }
 
     fn left_count(&self) -> usize {

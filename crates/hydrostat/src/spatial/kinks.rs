@@ -9,8 +9,8 @@
 use hydrostat_bvp::{LANES, each};
 
 use super::engine::Engine;
+use super::equations::M;
 use super::rotation::{Vector, dot};
-use super::rounds::M;
 
 /// How close (over L) nodes are kept to the kinks of the load at a tolerance: closer than in the plane, so that what
 /// the estimate does not see is less.

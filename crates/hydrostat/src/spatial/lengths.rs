@@ -13,8 +13,8 @@ use hydrostat_bvp::{Collocation, Correction, Determinant, Solution};
 
 use super::cable_paths::StageData;
 use super::equations::{Equations, L, N, Q};
-use super::rounds::respond;
 use crate::numerics::elimination::solved;
+use crate::numerics::rounds::respond;
 use crate::statics::engine::Trouble;
 use crate::statics::equations::StrokeControl;
 

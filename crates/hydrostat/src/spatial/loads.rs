@@ -61,6 +61,7 @@ pub(crate) struct Load<R> {
 const STILL: f64 = 1e-300;
 
 /// The load of everything but cables, tip and support at a station.
+#[inline(always)]
 pub(crate) fn load<R: Real>(
     water: &Water,
     body: &Body<R>,

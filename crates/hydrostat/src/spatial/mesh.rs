@@ -3,10 +3,11 @@
 use hydrostat_bvp::{LANES, Limits, Mesh};
 
 use super::engine::{Engine, METHODS, State};
+use super::equations::M;
 use super::kinks::kink_resolution;
 use super::lengths::hold_lengths;
 use super::rotation::dot;
-use super::rounds::{M, correct, linearise};
+use crate::numerics::rounds::{correct, linearise};
 use crate::statics::engine::{Trouble, roughly};
 
 /// How close (over L) nodes are kept to kinks on meshes that are refined afterwards.

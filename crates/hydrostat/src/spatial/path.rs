@@ -7,10 +7,10 @@
 use hydrostat_bvp::{Correction, Mesh};
 
 use super::engine::{Engine, State, turn_of};
-use super::equations::{L, N, Q};
+use super::equations::{Guess, L, M, N, Q};
 use super::rotation::{Vector, dot};
-use super::rounds::{Guess, M, correct, linearise};
 use super::tip::SpatialTip;
+use crate::numerics::rounds::{correct, linearise};
 use crate::rod::readings::Volume;
 use crate::statics::engine::{Trouble, roughly};
 use crate::statics::equations::Margins;

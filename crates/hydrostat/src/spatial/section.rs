@@ -96,6 +96,7 @@ pub(crate) struct Tangent<R> {
 }
 
 /// What a cable adds to the balance.
+#[inline(always)]
 pub(crate) fn pull<R: Real>(
     cable: &CableAt<R>,
     strain: &[R; STRAINS],
@@ -146,6 +147,7 @@ pub(crate) fn pull<R: Real>(
 }
 
 /// The section law joined with the cables' local law.
+#[inline(always)]
 pub(crate) fn balance<R: Real>(
     volume: Volume,
     stiffness: &Stiffness<R>,
@@ -193,6 +195,7 @@ pub(crate) fn balance<R: Real>(
 ///
 /// Those five rows are symmetric and positive definite whatever the tensions, because beta depends on nu alone: they
 /// need no exchanges. The pivot of nu passes through zero at the limits of the section law.
+#[inline(always)]
 pub(crate) fn inverse<R: Real>(m: &[[R; STRAINS]; STRAINS]) -> ([[R; STRAINS]; STRAINS], R) {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let mut out = *m;

@@ -45,6 +45,7 @@ impl Solved<Lanes> {
 
 /// Newton on the section law from `guess` until the step is below `tolerance` in every lane; that last step is not
 /// taken.
+#[inline(always)]
 pub(crate) fn solve_section<R: Real>(
     volume: Volume,
     stiffness: &Stiffness<R>,

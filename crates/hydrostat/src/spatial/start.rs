@@ -3,9 +3,9 @@
 use hydrostat_bvp::{Collocation, Gauss, LANES, Mesh, Side, Solution, each};
 
 use super::engine::Engine;
-use super::equations::{L, N, Q};
+use super::equations::{Guess, L, M, N, Q};
 use super::rotation::{spin, times, turned};
-use super::rounds::{Guess, M, evaluate};
+use crate::numerics::rounds::evaluate;
 use crate::statics::engine::Trouble;
 
 /// Reach over the length of an element up to which either end may be its own.

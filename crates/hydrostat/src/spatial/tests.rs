@@ -2,8 +2,7 @@
 
 use hydrostat_bvp::{Gauss, Groups, Inner, Lanes, Local, Mesh, Problem, Side, Solution, Station};
 
-use super::equations::{Equations, L, N, Q};
-use super::rounds::M;
+use super::equations::{Equations, L, M, N, Q};
 use crate::rod::arm::{Arm, BaseDirections, Cable, FlowLaw, Gravity, Space};
 use crate::rod::profile::Profile;
 use crate::rod::readings::{Displaced, EnteringSpeed, Hydrostatics, Readings, Support, Volume, WettedLength};

@@ -4,25 +4,25 @@ use std::f64::consts::TAU;
 
 use hydrostat::{Arm, BaseDirections, Cable, Gravity, Options, Profile, Space, SpatialConfiguration, SpatialSolver};
 
-pub fn solved(arm: &Arm, tol: f64) -> SpatialConfiguration {
+pub(crate) fn solved(arm: &Arm, tol: f64) -> SpatialConfiguration {
     SpatialSolver::new(arm, Options::with_tol(tol)).unwrap().solve().unwrap_or_else(|error| panic!("{error}"))
 }
 
-pub fn tip(shape: &SpatialConfiguration) -> [f64; 3] {
+pub(crate) fn tip(shape: &SpatialConfiguration) -> [f64; 3] {
     let tip = shape.tip();
     [tip.x, tip.y, tip.z]
 }
 
-pub fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(crate) fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
 
-pub fn in_space(arm: &Arm) -> Arm {
+pub(crate) fn in_space(arm: &Arm) -> Arm {
     Arm { space: Some(Space::default()), ..arm.clone() }
 }
 
 /// A rotation matrix from three angles.
-pub fn rotation(a: f64, b: f64, c: f64) -> [[f64; 3]; 3] {
+pub(crate) fn rotation(a: f64, b: f64, c: f64) -> [[f64; 3]; 3] {
     let about = |axis: usize, angle: f64| {
         let (sin, cos) = angle.sin_cos();
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -34,16 +34,16 @@ pub fn rotation(a: f64, b: f64, c: f64) -> [[f64; 3]; 3] {
     times(&times(&about(2, a), &about(1, b)), &about(0, c))
 }
 
-pub fn times(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+pub(crate) fn times(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
-pub fn turned(m: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+pub(crate) fn turned(m: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| (0..3).map(|k| m[i][k] * v[k]).sum())
 }
 
 /// An arm in the plane with base, loads, stream and gravity turned into another plane.
-pub fn turned_arm(arm: &Arm, m: &[[f64; 3]; 3]) -> Arm {
+pub(crate) fn turned_arm(arm: &Arm, m: &[[f64; 3]; 3]) -> Arm {
     let mut out = arm.clone();
     let (sin, cos) = arm.base.angle.sin_cos();
     let in_plane = |angle: f64| [angle.cos(), angle.sin(), 0.0];
@@ -68,7 +68,7 @@ pub fn turned_arm(arm: &Arm, m: &[[f64; 3]; 3]) -> Arm {
     out
 }
 
-pub fn silicone() -> Arm {
+pub(crate) fn silicone() -> Arm {
     let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
     arm.density = 1080.0;
     arm.flow.density = 1022.0;
@@ -77,7 +77,7 @@ pub fn silicone() -> Arm {
     arm
 }
 
-pub fn three_cables() -> Arm {
+pub(crate) fn three_cables() -> Arm {
     let mut arm = silicone();
     arm.cables.clear();
     for (k, tension) in [0.1, 0.05, 0.0].into_iter().enumerate() {

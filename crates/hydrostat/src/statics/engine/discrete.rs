@@ -5,8 +5,8 @@ use std::sync::LazyLock;
 use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Lanes, Resampling, Solution};
 
 use super::outputs::{asked_in, sharpened};
-use super::rounds::{correct, evaluate, linearise, respond};
 use super::trouble::{Trouble, roughly};
+use crate::numerics::rounds::{correct, evaluate, linearise, respond};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, K, L, M, N, Q};
 use crate::statics::equations::{Equations, Margins, SectionFailure, SectionQuery, SectionState, StationData, Way};

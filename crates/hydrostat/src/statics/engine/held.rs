@@ -14,9 +14,9 @@ use hydrostat_bvp::{Collocation, Correction, Determinant};
 
 use super::discrete::{Engine, response_change};
 use super::newton::add_to_spans;
-use super::rounds::{correct, respond};
 use super::trouble::Trouble;
 use crate::numerics::elimination::solved;
+use crate::numerics::rounds::{correct, respond};
 use crate::statics::dimensions::{Guess, L, M, N, Q};
 use crate::statics::equations::{Equations, SectionFailure, StationData, StrokeControl, Way};
 

@@ -3,8 +3,8 @@
 use hydrostat_bvp::LinearisationError;
 
 use super::discrete::Engine;
-use super::rounds::{correct, linearise};
 use super::trouble::Trouble;
+use crate::numerics::rounds::{correct, linearise};
 use crate::statics::dimensions::{M, Q};
 
 /// Corrections (rad) after which kinks of the load are where they will be, but for second order.

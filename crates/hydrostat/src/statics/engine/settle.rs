@@ -4,9 +4,9 @@ use hydrostat_bvp::{LANES, Limits, Mesh};
 
 use super::discrete::{Engine, METHODS, State};
 use super::kinks::kink_resolution;
-use super::rounds::{correct, linearise};
 use super::trouble::{Trouble, roughly};
 use crate::numerics::dispatch::widest;
+use crate::numerics::rounds::{correct, linearise};
 use crate::statics::dimensions::M;
 
 /// How close (over L) nodes are kept to kinks on meshes that are refined afterwards.

@@ -3,8 +3,8 @@
 use hydrostat_bvp::{Collocation, Gauss, Lanes, Mesh, Side, Solution};
 
 use super::discrete::Engine;
-use super::rounds::evaluate;
 use super::trouble::Trouble;
+use crate::numerics::rounds::evaluate;
 use crate::statics::dimensions::{Guess, L, M, N, Q};
 
 impl Engine {
