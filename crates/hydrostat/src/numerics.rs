@@ -1,4 +1,4 @@
-//! Small numerical tools: vectors of the processor and rounds on them, small dense systems, sine and cosine of four angles.
+//! Small numerical tools: vectors of the processor and rounds on them, small dense systems, sines of four angles.
 
 pub(crate) mod dispatch;
 pub(crate) mod elimination;

@@ -289,6 +289,10 @@ impl SpatialConfiguration {
         let evaluations = engine.system.evaluations;
         evaluate(&mut engine.system, &engine.equations, &engine.solution).map_err(Trouble::Section)?;
         engine.system.evaluations = evaluations;
+        if engine.spans.len() != engine.solution.mesh.elements() {
+            // The mesh was changed and no round followed.
+            engine.system.quadratures(&mut engine.spans);
+        }
         let arm = engine.equations.arm_at_fraction();
         let mesh = &engine.solution.mesh;
         let n = mesh.elements();

@@ -27,8 +27,9 @@ const NEAR: f64 = 1e-3;
 struct Way {
     steps: usize,
     crossings: usize,
-    /// Share of the way and logarithm of the determinant of the last two points.
+    /// Share of the way and logarithm of the determinant at the points since the set of taut cables changed last.
     points: Vec<(f64, f64)>,
+    taut: Vec<bool>,
 }
 
 impl SpatialSolver {
@@ -83,6 +84,11 @@ fn raise(engine: &mut Engine, way: &mut Way) -> Result<(), Verdict> {
                 if let Some(now) = determinant.known_sign() {
                     way.crossings += usize::from(now != sign);
                     sign = now;
+                }
+                let taut = engine.held.as_ref().map(|held| held.taut.clone()).unwrap_or_default();
+                if taut != way.taut {
+                    way.points.clear();
+                    way.taut = taut;
                 }
                 way.points.push((there, determinant.log));
                 if there == 1.0 {

@@ -22,6 +22,7 @@ mod curve;
 mod dice;
 mod friction;
 mod hanging_cords;
+mod in_space;
 mod judge;
 mod march;
 mod mechanics;
