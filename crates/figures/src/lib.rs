@@ -7,7 +7,7 @@
 //!
 //! [`arm_figure`] draws one configuration to scale, [`spatial_arm_figure`] one in space, [`path_shapes_figure`] and [`equilibria_figure`]
 //! several, [`boundary_figure`] the places that a tip reaches; [`path_figure`] and [`over_figure`] draw a [`Quantity`]
-//! over a parameter; [`map_figure`], [`workspace_figure`] and [`curve_figure`] draw a sweep, [`fit_figure`] a fit beside
+//! over a parameter; [`map_figure`], [`workspace_figure`], [`spatial_workspace_figure`] and [`curve_figure`] draw a sweep, [`fit_figure`] a fit beside
 //! its data, and [`lines_figure`] whatever numbers are compared. [`source`] solves what the source's Fig. 1
 //! shows, judges what its text says about it, and draws the three parts.
 
@@ -58,4 +58,4 @@ pub use scene::Scene;
 pub use shaded::{Coloured, ColouredColumn};
 pub use shapes::{equilibria_figure, path_shapes_figure};
 pub use spatial_figure::spatial_arm_figure;
-pub use sweep::{KeyValues, curve_figure, map_figure, value_text, workspace_figure};
+pub use sweep::{KeyValues, curve_figure, map_figure, spatial_workspace_figure, value_text, workspace_figure};
