@@ -145,27 +145,15 @@ impl<'a> Perspective<'a> {
         let mut taken = Occupied::new(axes.frame);
         solid.occupy(&mut taken, axes, view);
         taken.add_line(&drop);
-        self.draw_scale(scene, axes, &mut taken);
+        draw_scale(scene, axes, &mut taken);
         self.draw_triad(scene, axes, &mut taken);
-        let arrows = self.tip_arrows(configuration);
+        let arrows = tip_arrows(configuration);
         let from = self.at(axes, &tip);
         for (_, direction, _) in &arrows {
             taken.add_line(&[from, self.at(axes, &self.arrow_end(direction))]);
         }
         Surroundings::seen(&configuration.arm, view).draw(scene, &mut taken, axes.frame);
         self.draw_tip(scene, axes, &mut taken, &arrows, configuration.tip().alpha);
-    }
-
-    /// Names, directions and colours of the directors at the tip, and of the tangent where it is not a.
-    fn tip_arrows(&self, configuration: &SpatialConfiguration) -> Vec<(&'static str, Vector, Color)> {
-        let tip = configuration.tip();
-        let mut arrows = vec![("$a$", tip.a, INK), ("$b$", tip.b, INK), ("$c$", tip.c, INK)];
-        if tip.alpha > 0.02 {
-            let st = configuration.at(configuration.arm.length);
-            let along = plus(&plus(&st.a.map(|v| st.nu * v), st.eta, &st.b), st.zeta, &st.c);
-            arrows.push(("$t$", unit(&along), series(2)));
-        }
-        arrows
     }
 
     fn draw_tip(
@@ -199,26 +187,6 @@ impl<'a> Perspective<'a> {
         place_label(scene, page, &label, INK, from, up.atan2(right));
     }
 
-    /// A length of the arm at the depth of its middle, in the lower left corner.
-    fn draw_scale(&self, scene: &mut Scene, axes: &Axes, page: &mut Occupied) {
-        let frame = axes.frame;
-        let per_mm = axes.at([1.0, 0.0])[0] - axes.at([0.0, 0.0])[0];
-        let wish = 0.18 * frame.width().min(300.0) / per_mm;
-        let size = 10.0_f64.powf(wish.log10().floor());
-        let length =
-            [1.0, 2.0, 5.0, 10.0].map(|f| f * size).into_iter().filter(|l| *l <= 1.3 * wish).fold(size, f64::max);
-        let y = frame.bottom - 5.0;
-        let (left, right) = (frame.left + 2.0, frame.left + 2.0 + length * per_mm);
-        scene.line(&[[left, y], [right, y]], Stroke::solid(INK, 1.2));
-        for x in [left, right] {
-            scene.line(&[[x, y - 2.5], [x, y + 2.5]], Stroke::solid(INK, 0.8));
-        }
-        let label = Label::plain(format!("{} mm at mid-depth", short(length)));
-        let at = [right + 5.0, y + 0.5 * CAP_HEIGHT * TICK_SIZE];
-        scene.text(&label, at, Anchor::Start, TICK_SIZE);
-        page.add_box(Rect { left, top: y - 5.0, right: at[0] + label.width(TICK_SIZE), bottom: frame.bottom });
-    }
-
     /// The directions of e1, e2 and e3, above the scale.
     fn draw_triad(&self, scene: &mut Scene, axes: &Axes, page: &mut Occupied) {
         const SIDE: f64 = 2.0 * TRIAD + 14.0;
@@ -237,6 +205,37 @@ impl<'a> Perspective<'a> {
         let left = frame.left;
         page.add_box(Rect { left, top: from[1] - 0.6 * SIDE, right: left + SIDE, bottom: frame.bottom - 10.0 });
     }
+}
+
+/// Names, directions and colours of the directors at the tip, and of the tangent where it is not a.
+fn tip_arrows(configuration: &SpatialConfiguration) -> Vec<(&'static str, Vector, Color)> {
+    let tip = configuration.tip();
+    let mut arrows = vec![("$a$", tip.a, INK), ("$b$", tip.b, INK), ("$c$", tip.c, INK)];
+    if tip.alpha > 0.02 {
+        let st = configuration.at(configuration.arm.length);
+        let along = plus(&plus(&st.a.map(|v| st.nu * v), st.eta, &st.b), st.zeta, &st.c);
+        arrows.push(("$t$", unit(&along), series(2)));
+    }
+    arrows
+}
+
+/// A length of the arm at the depth of its middle, in the lower left corner.
+fn draw_scale(scene: &mut Scene, axes: &Axes, page: &mut Occupied) {
+    let frame = axes.frame;
+    let per_mm = axes.at([1.0, 0.0])[0] - axes.at([0.0, 0.0])[0];
+    let wish = 0.18 * frame.width().min(300.0) / per_mm;
+    let size = 10.0_f64.powf(wish.log10().floor());
+    let length = [1.0, 2.0, 5.0, 10.0].map(|f| f * size).into_iter().filter(|l| *l <= 1.3 * wish).fold(size, f64::max);
+    let y = frame.bottom - 5.0;
+    let (left, right) = (frame.left + 2.0, frame.left + 2.0 + length * per_mm);
+    scene.line(&[[left, y], [right, y]], Stroke::solid(INK, 1.2));
+    for x in [left, right] {
+        scene.line(&[[x, y - 2.5], [x, y + 2.5]], Stroke::solid(INK, 0.8));
+    }
+    let label = Label::plain(format!("{} mm at mid-depth", short(length)));
+    let at = [right + 5.0, y + 0.5 * CAP_HEIGHT * TICK_SIZE];
+    scene.text(&label, at, Anchor::Start, TICK_SIZE);
+    page.add_box(Rect { left, top: y - 5.0, right: at[0] + label.width(TICK_SIZE), bottom: frame.bottom });
 }
 
 impl Floor {

@@ -100,15 +100,12 @@ pub(crate) fn workspace_figure(
     let (x, y) = (x.as_array(), y.as_array());
     let (page, column) = (Page::default(), column(name, values));
     let tips = x.iter().zip(y.iter());
-    Figure::new(match z {
-        Some(z) => {
-            let tips: Vec<[f64; 3]> = tips.zip(z.as_array()).map(|((x, y), z)| [*x, *y, *z]).collect();
-            hydrostat_figures::spatial_workspace_figure(&tips, &column, title, &page)
-        }
-        None => {
-            let tips: Vec<[f64; 2]> = tips.map(|(x, y)| [*x, *y]).collect();
-            hydrostat_figures::workspace_figure(&tips, &column, title, &page)
-        }
+    Figure::new(if let Some(z) = z {
+        let tips: Vec<[f64; 3]> = tips.zip(z.as_array()).map(|((x, y), z)| [*x, *y, *z]).collect();
+        hydrostat_figures::spatial_workspace_figure(&tips, &column, title, &page)
+    } else {
+        let tips: Vec<[f64; 2]> = tips.map(|(x, y)| [*x, *y]).collect();
+        hydrostat_figures::workspace_figure(&tips, &column, title, &page)
     })
 }
 

@@ -1,8 +1,8 @@
 //! What became of a row, in the plane or in space.
 
 use hydrostat::{
-    Arm, FoldMargin, Options, Row, SpatialConfiguration, SpatialError, SpatialSolver, SpatialStations, SpatialTip,
-    SpatialWrench, Stability, Verdict, Wanted, Warning,
+    Arm, FoldMargin, Options, Row, SpatialConfiguration, SpatialError, SpatialSolver, SpatialTip, SpatialWrench,
+    Stability, Verdict, Wanted, Warning,
 };
 
 /// Why a row has no answer.
@@ -20,22 +20,22 @@ pub(crate) enum Found {
     /// Of an arm in the plane.
     Plane(Row),
     /// Of an arm in space.
-    Space(Box<SpatialRow>),
+    Space(SpatialRow),
 }
 
 /// What is kept of an arm in space.
 #[derive(Debug, Clone)]
 pub(crate) struct SpatialRow {
-    pub(crate) tip: SpatialTip,
-    pub(crate) base_reaction: SpatialWrench,
+    tip: SpatialTip,
+    base_reaction: SpatialWrench,
     error_estimate: f64,
     tensions: Vec<f64>,
     strokes: Vec<f64>,
     fold_margin: FoldMargin,
     stability: Option<Stability>,
     warnings: Vec<Warning>,
-    /// Empty unless asked for.
-    pub(crate) stations: SpatialStations,
+    /// Place and directors a and b at each station; empty unless asked for.
+    shape: Vec<[f64; 9]>,
 }
 
 impl SpatialRow {
@@ -50,19 +50,24 @@ impl SpatialRow {
             fold_margin: configuration.fold_margin(),
             stability: if wanted.stability { configuration.stability() } else { None },
             warnings: if wanted.warnings { configuration.warnings() } else { Vec::new() },
-            stations: if wanted.stations < 2 {
-                SpatialStations::default()
-            } else {
-                configuration.resampled(wanted.stations)
-            },
+            shape: if wanted.stations < 2 { Vec::new() } else { shape(configuration, wanted.stations) },
         }
     }
+}
+
+fn shape(configuration: &SpatialConfiguration, count: usize) -> Vec<[f64; 9]> {
+    let stations = configuration.resampled(count);
+    let at = |k: usize| {
+        let (a, b) = (stations.a[k], stations.b[k]);
+        [stations.x[k], stations.y[k], stations.z[k], a[0], a[1], a[2], b[0], b[1], b[2]]
+    };
+    (0..stations.len()).map(at).collect()
 }
 
 /// Solves a row in space by itself: it does not depend on the rows before.
 pub(crate) fn solve_in_space(arm: &Arm, options: Options, wanted: Wanted) -> Result<Found, NoAnswer> {
     match SpatialSolver::new(arm, options).and_then(|mut solver| solver.solve()) {
-        Ok(configuration) => Ok(Found::Space(Box::new(SpatialRow::of(&configuration, wanted)))),
+        Ok(configuration) => Ok(Found::Space(SpatialRow::of(&configuration, wanted))),
         Err(SpatialError::NoEquilibrium(no)) => Err(NoAnswer::Verdict(no.verdict)),
         Err(error) => Err(NoAnswer::Arm(error.to_string())),
     }
@@ -141,10 +146,7 @@ impl Found {
     pub(crate) fn shape(&self, field: usize, station: usize) -> Option<f64> {
         match self {
             Self::Plane(Row { stations: s, .. }) => [&s.x, &s.y, &s.theta].get(field)?.get(station).copied(),
-            Self::Space(row) => {
-                let s = row.stations.get(station)?;
-                [[s.x, s.y, s.z], s.a, s.b].concat().get(field).copied()
-            }
+            Self::Space(row) => row.shape.get(station)?.get(field).copied(),
         }
     }
 }

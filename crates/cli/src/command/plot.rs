@@ -26,8 +26,10 @@ const TIP_FIRST: [&str; 2] = ["tip_theta_rad", ALPHA];
 pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
     let keys = varied_keys(&args.sweep)?;
     let all = names(&args.sweep)?;
-    let over = over(&keys, &args.over)?;
     let pictures = pictures(args, all.iter().any(|name| name == TIP[0]));
+    // A workspace needs no keys, of which there may be as many as cables.
+    let has_map = pictures.iter().any(|(_, _, kind)| matches!(kind, Kind::Map));
+    let over = if has_map || !args.over.is_empty() { over(&keys, &args.over)? } else { Vec::new() };
     let outputs: Vec<_> = pictures.iter().map(|(option, file, _)| (*option, Some(file.as_path()))).collect();
     let beside = note_beside(&args.sweep);
     request::check_outputs(&[Some(("SWEEP", &*args.sweep)), Some(("SWEEP", &*beside))], &outputs)?;
@@ -59,15 +61,12 @@ pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
                     return Err(WrongRequest::NotInSweep(option, "the columns tip_x_m and tip_y_m").into());
                 };
                 let tips = x.into_iter().zip(y);
-                match table.numbers(TIP_Z) {
-                    Some(z) => {
-                        let tips: Vec<[f64; 3]> = tips.zip(z).map(|((x, y), z)| [x, y, z]).collect();
-                        spatial_workspace_figure(&tips, &column, &name, &page)
-                    }
-                    None => {
-                        let tips: Vec<[f64; 2]> = tips.map(|(x, y)| [x, y]).collect();
-                        workspace_figure(&tips, &column, &name, &page)
-                    }
+                if let Some(z) = table.numbers(TIP_Z) {
+                    let tips: Vec<[f64; 3]> = tips.zip(z).map(|((x, y), z)| [x, y, z]).collect();
+                    spatial_workspace_figure(&tips, &column, &name, &page)
+                } else {
+                    let tips: Vec<[f64; 2]> = tips.map(|(x, y)| [x, y]).collect();
+                    workspace_figure(&tips, &column, &name, &page)
                 }
             }
         };

@@ -40,7 +40,9 @@ fn an_arm_in_space_is_drawn_in_every_form() {
 #[test]
 fn tips_of_a_sweep_in_space_are_drawn_from_three_sides() {
     let directory = directory();
-    let tensions = ["--vary", "cable[0].tension=0:0.2:3", "--vary", "cable[1].tension=0:0.2:3"];
+    // As many keys as cables: more than a map has axes.
+    let keys = [0, 1, 2].map(|cable| format!("cable[{cable}].tension=0:0.2:3"));
+    let tensions: Vec<&str> = keys.iter().flat_map(|key| ["--vary", key]).collect();
     let swept =
         hydrostat_in(directory.path(), &[&["sweep", "silicone-spatial", "-o", "rows.csv"], &tensions[..]].concat());
     assert_eq!(swept.code, 0, "{}", swept.err);
