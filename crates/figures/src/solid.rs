@@ -62,8 +62,8 @@ impl Paint {
     /// Sides of the tube.
     fn sides(self) -> usize {
         match self {
-            Self::Flat => 24,
-            Self::Lit => 20,
+            Self::Flat => 16,
+            Self::Lit => 18,
         }
     }
 }
