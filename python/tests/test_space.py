@@ -150,6 +150,7 @@ def test_sweeps(arm: hs.Arm) -> None:
     assert swept["verdict"].values[2].tolist() == ["cable_fold", "cable_fold"]
     assert swept["shape_a_x"].dims[-1] == "station" and swept["base_moment_x"].attrs["units"] == "N m"
     solved = arm.replace({"flow.direction[2]": -1.0}).solve(tensions=[0.2, 0.05, 0.0], tol=1e-6)
+    assert isinstance(solved, hs.SpatialSolution)
     assert float(swept["tip_z"][1, 0]) == pytest.approx(solved.z[-1], abs=1e-12)
     assert "z (mm)" in hs.workspace_figure(swept).texts()
 
