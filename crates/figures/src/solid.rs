@@ -62,7 +62,7 @@ impl Paint {
     /// Sides of the tube.
     fn sides(self) -> usize {
         match self {
-            Self::Flat => 16,
+            Self::Flat => 20,
             Self::Lit => 18,
         }
     }
