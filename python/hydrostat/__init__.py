@@ -1,6 +1,6 @@
 """The static shape of soft arms under water.
 
-An arm is a planar Cosserat rod: it bends, shears and stretches. Its section widens under compression, so that the
+An arm is a Cosserat rod, in a plane or in space: it bends, shears and stretches, and in space it twists. Its section widens under compression, so that the
 volume is kept. Cables, a stream, weight and buoyancy act on it.
 
 SI units throughout, results in radians. Numbers given at a key of the arm file (`Arm`, `Arm.replace`, `Arm.path`, `sweep`) are read
@@ -64,6 +64,7 @@ from hydrostat.reach import Bound, Boundary, BoundaryPiece, Followed, Follower, 
 from hydrostat.sensitivity import Ellipse, PoseChange, Sensitivities
 from hydrostat.solution import CableState, Command, FoldMargin, Note, Snap, Solution, Stations, Tip, Wrench, animate
 from hydrostat.solver import Answer, Solver
+from hydrostat.spatial import SpatialSolution, SpatialStations, SpatialTip, SpatialWrench
 from hydrostat.sweep import sweep
 
 __all__ = [
@@ -115,6 +116,10 @@ __all__ = [
     "Snap",
     "Solution",
     "Solver",
+    "SpatialSolution",
+    "SpatialStations",
+    "SpatialTip",
+    "SpatialWrench",
     "Stations",
     "Target",
     "Tip",

@@ -194,17 +194,18 @@ def no_equilibrium(
     residual: float,
     message: str,
     advice: str,
-    last_good: _native.Solution | None,
+    last_good: _native.Solution | _native.SpatialSolution | None,
     snaps: list[Any],
     after_snap: _native.Solution | None,
     at_full_loads: _native.Solution | None,
 ) -> NoEquilibriumError:
     """The exception of a verdict; called by the extension module."""
-    from hydrostat.solution import Solution, snaps_of
+    from hydrostat.solution import solution_of, snaps_of
+    from hydrostat.spatial import tip_of
 
-    good, after, full = (None if shape is None else Solution(shape) for shape in (last_good, after_snap, at_full_loads))
+    good, after, full = (None if shape is None else solution_of(shape) for shape in (last_good, after_snap, at_full_loads))
     make = _KINDS.get(kind, NoEquilibriumError)
-    return make(kind, phase, load_fraction, where, residual, message, advice, good, snaps_of(snaps), after, full)
+    return make(kind, phase, load_fraction, where, residual, message, advice, good, snaps_of(snaps, tip_of), after, full)
 
 
 # The names of version 0.1, kept for a version.

@@ -57,5 +57,6 @@ def load(path: str | PathLike[str]) -> Solution:
         if about.get("kind") != "Solution":
             raise ValueError(f"{path}: expected a file that `Solution.save` wrote, found another")
         _saved.check(f"{path}", about["format"], about["hydrostat"])
-        fields = {name: np.array(dataset[name].values, dtype=np.float64) for name in _saved.FIELDS}
+        names = (*_saved.NUMBERS_IN_SPACE, *_saved.DIRECTORS) if about["state"].get("space") else _saved.FIELDS
+        fields = {name: np.array(dataset[name].values, dtype=np.float64) for name in names}
     return _restored(about["format"], about["hydrostat"], {**about["state"], "fields": fields})

@@ -24,6 +24,12 @@ _SAME = 1e-6
 
 #: Fields of stations, in the order of the extension module's.
 FIELDS = ("s", "x", "y", "theta", "nu", "eta", "mu", "beta", "alpha", "n_a", "n_b", "m")
+#: The same of an arm in space: numbers, and directors, which have three components.
+NUMBERS_IN_SPACE = (
+    *("s", "x", "y", "z", "nu", "eta", "zeta", "tau", "kappa", "mu", "beta", "alpha"),
+    *("n_a", "n_b", "n_c", "m_a", "m_b", "m_c"),
+)
+DIRECTORS = ("a", "b", "c")
 
 
 class Origin(NamedTuple):
@@ -72,6 +78,9 @@ class SavedStations(Saved):
         array: NDArray[np.float64] = self._stored["fields"][name]
         return array
 
+    #: Directors are stored beside numbers.
+    directors = field
+
 
 class SavedSolution(SavedStations):
     """An equilibrium."""
@@ -80,6 +89,9 @@ class SavedSolution(SavedStations):
         *("tol", "bounds", "cables", "base_reaction", "unmet", "error_estimate", "strain_energy", "fold_margin", "statistics"),
         "snaps",
     )
+
+    #: Fields that say where the arm is.
+    _place: tuple[str, ...] = ("x", "y")
 
     @property
     def arm(self) -> _native.Arm:
@@ -101,7 +113,8 @@ class SavedSolution(SavedStations):
         if self._live is None:
             made = self._origin.make()
             length = float(self.field("s")[-1])
-            off = np.hypot(made.tip[0] - self.tip[0], made.tip[1] - self.tip[1])
+            one, other = (np.array([native.field(name)[-1] for name in self._place]) for native in (made, self))
+            off = float(np.linalg.norm(one - other))
             if not off <= _SAME * length:
                 raise RuntimeError(
                     "this shape was saved, and a solve of its arm leads to another one: what was saved of it (stations, tip, cables, "
@@ -111,10 +124,35 @@ class SavedSolution(SavedStations):
         return self._live
 
 
+class SavedSpatialSolution(SavedSolution):
+    """An equilibrium of an arm in space."""
+
+    _place = ("x", "y", "z")
+
+    @property
+    def tip(self) -> Any:
+        x, y, z, alpha = (float(self.field(name)[-1]) for name in ("x", "y", "z", "alpha"))
+        a, b, c = (self.directors(name)[-1].tolist() for name in DIRECTORS)
+        return x, y, z, a, b, c, alpha
+
+
+def is_spatial(native: Any) -> bool:
+    """Whether a solution, of the extension module or saved, is of an arm in space."""
+    return isinstance(native, (_native.SpatialSolution, SavedSpatialSolution))
+
+
+def _fields(native: Any) -> dict[str, NDArray[np.float64]]:
+    if not is_spatial(native):
+        return {name: np.array(native.field(name)) for name in FIELDS}
+    numbers = {name: np.array(native.field(name)) for name in NUMBERS_IN_SPACE}
+    return numbers | {name: np.array(native.directors(name)) for name in DIRECTORS}
+
+
 def solution_state(native: Any, origin: Origin, stability: tuple[str | None, int | None, bool | None] | None) -> dict[str, Any]:
     """What is stored of a solution, which the extension module or `SavedSolution` holds."""
     state = {name: getattr(native, name) for name in SavedSolution._plain}
-    state["fields"] = {name: np.array(native.field(name)) for name in FIELDS}
+    state["fields"] = _fields(native)
+    state["space"] = is_spatial(native)
     state["arm"] = native.arm.parts()
     state["warnings"] = native.warnings()
     state["stability"] = native._stored["stability"] if stability is None and isinstance(native, SavedSolution) else stability
@@ -126,7 +164,8 @@ def solution_of(state: Mapping[str, Any]) -> SavedSolution:
     """What stands in for the solution of a state."""
     for array in state["fields"].values():
         array.flags.writeable = False
-    return SavedSolution(state, Origin(*state["origin"]))
+    kind = SavedSpatialSolution if state.get("space") else SavedSolution
+    return kind(state, Origin(*state["origin"]))
 
 
 def own_origin(native: Any, tol: float) -> Origin:
@@ -367,7 +406,7 @@ def _arm(parts: tuple[Any, ...]) -> _native.Arm:
 
 def _solve(
     arm: tuple[Any, ...], tensions: Any, strokes: Any, flow_speed: float | None, tol: float, snaps: Sequence[float]
-) -> _native.Solution:
+) -> _native.Solution | _native.SpatialSolution:
     pulled = None if tensions is None else np.asarray(tensions, dtype=np.float64)
     return _arm(arm).solve(pulled, strokes, flow_speed, tol, (snaps[0], snaps[1]))
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from hydrostat import _inputs, _native
 from hydrostat._saved import Origin
-from hydrostat.solution import Solution, warn
+from hydrostat.solution import Solution, solution_of, warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -118,7 +118,8 @@ class Arm:
         Parameters
         ----------
         arm : str or path
-            ``"paper"``, ``"paper-statements"``, ``"silicone"``, ``"multi-bending"``, ``"octopus"``, or a TOML file. A file
+            ``"paper"``, ``"paper-statements"``, ``"silicone"``, ``"multi-bending"``, ``"octopus"``, ``"octopus-spatial"``,
+            ``"silicone-spatial"``, or a TOML file. A file
             with the name of a shipped arm takes precedence.
 
         Raises
@@ -180,6 +181,11 @@ class Arm:
     def length(self) -> float:
         """Undeformed length, m."""
         return self._inner.length
+
+    @property
+    def is_spatial(self) -> bool:
+        """Whether it may leave the plane e1-e2: ``space = "spatial"``."""
+        return self._inner.is_spatial
 
     @property
     def cables(self) -> tuple[str, ...]:
@@ -280,6 +286,11 @@ class Arm:
         follow_snaps : bool
             Whether to follow every snap, however far.
 
+        Returns
+        -------
+        Solution
+            Of an arm with ``space = "spatial"`` a `SpatialSolution`.
+
         Raises
         ------
         NoEquilibriumError
@@ -296,7 +307,7 @@ class Arm:
         def origin() -> Origin:
             return Origin("solve", (self._inner.parts(), None if pulled is None else pulled.tolist(), reeled, speed, within, snaps))
 
-        return warn(Solution(self._inner.solve(pulled, reeled, speed, within, snaps), origin), 2)
+        return warn(solution_of(self._inner.solve(pulled, reeled, speed, within, snaps), origin), 2)
 
     def path(
         self,

@@ -125,11 +125,16 @@ def map_figure(dataset: xr.Dataset, quantity: str = "tip_alpha", title: str = "a
     return Figure(_native.map_figure(axes, values, *_coloured(dataset, flat, quantity), title))
 
 
-def workspace_figure(dataset: xr.Dataset, quantity: str = "tip_theta", title: str = "a sweep") -> Figure:
-    """Where the tip is in the rows of a sweep, to scale, coloured by a quantity."""
+def workspace_figure(dataset: xr.Dataset, quantity: str | None = None, title: str = "a sweep") -> Figure:
+    """Where the tip is in the rows of a sweep, to scale, of arms in space from three sides, coloured by a quantity.
+
+    That is by default ``tip_theta``, of arms in space ``tip_alpha``.
+    """
     _, flat = _rows(dataset, None)
     x, y = _column(flat, "tip_x"), _column(flat, "tip_y")
-    return Figure(_native.workspace_figure(x, y, *_coloured(dataset, flat, quantity), title))
+    z = _column(flat, "tip_z") if "tip_z" in flat.variables else None
+    shown = quantity or ("tip_theta" if z is None else "tip_alpha")
+    return Figure(_native.workspace_figure(x, y, z, *_coloured(dataset, flat, shown), title))
 
 
 def curve_figure(dataset: xr.Dataset, quantity: str = "tip_y", title: str = "a sweep") -> Figure:

@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from hydrostat.sensitivity import Sensitivities
     from hydrostat.solution import Solution
 
-_MM = 1e3
-_INK = "#28323c"
-_WATER = "#4a90b8"
+MM = 1e3
+INK = "#28323c"
+WATER = "#4a90b8"
 _POINTS = 240
-_TAUT = "#1f3b57"
-_SLACK = "#8a97a3"
+TAUT = "#1f3b57"
+SLACK = "#8a97a3"
 _BODY = "#d9734e"
 _MARK = "#c0392b"
 
@@ -48,7 +48,7 @@ UNITS = {"mm": 1e3, "cm": 1e2, "m": 1.0}
 _DRAWN: WeakKeyDictionary[Axes, str] = WeakKeyDictionary()
 
 
-def _unit_of(ax: Axes, unit: str | None) -> str:
+def unit_of(ax: Axes, unit: str | None) -> str:
     """The unit of an axis: what was drawn there before decides."""
     if unit is not None and unit not in UNITS:
         raise ValueError(f"unit: expected one of {', '.join(UNITS)}, found {unit!r}")
@@ -72,27 +72,27 @@ def plot_shape(
 ) -> Axes:
     """See `Solution.plot`."""
     ax = _new_axes(ax)
-    name = _unit_of(ax, unit)
+    name = unit_of(ax, unit)
     per_m = UNITS[name]
     arm = solution.arm
     s = np.linspace(0.0, arm.length, _POINTS)
     left, right = (per_m * side for side in solution.surfaces(s))
     outline = np.concatenate([left, right[::-1]])
-    ax.fill(outline[:, 0], outline[:, 1], facecolor=color, edgecolor=_INK, linewidth=0.8, alpha=0.55, label=label, zorder=2)
+    ax.fill(outline[:, 0], outline[:, 1], facecolor=color, edgecolor=INK, linewidth=0.8, alpha=0.55, label=label, zorder=2)
     if sections > 0:
         at = np.linspace(0.0, arm.length, sections)
         for one, other in zip(*solution.surfaces(at), strict=True):
-            ax.plot(*(per_m * np.stack([one, other])).T, color=_INK, linewidth=0.4, alpha=0.6, zorder=3)
+            ax.plot(*(per_m * np.stack([one, other])).T, color=INK, linewidth=0.4, alpha=0.6, zorder=3)
     line = solution.at(s)
-    ax.plot(per_m * line.x, per_m * line.y, color=_INK, linewidth=0.7, linestyle=(0, (6, 3)), zorder=3)
+    ax.plot(per_m * line.x, per_m * line.y, color=INK, linewidth=0.7, linestyle=(0, (6, 3)), zorder=3)
     if cables:
         for index, cable in enumerate(solution.cables):
             taut = cable.tension > 0.0
             points = per_m * solution.cable_path(index, s)
-            style = {"color": _TAUT, "linewidth": 1.8} if taut else {"color": _SLACK, "linewidth": 0.9}
+            style = {"color": TAUT, "linewidth": 1.8} if taut else {"color": SLACK, "linewidth": 0.9}
             ax.plot(points[:, 0], points[:, 1], zorder=4, **style)  # type: ignore[arg-type]
     base = per_m * np.stack([left[0], right[0]]) / per_m
-    ax.plot(base[:, 0], base[:, 1], color=_INK, linewidth=3.0, solid_capstyle="butt", zorder=5)
+    ax.plot(base[:, 0], base[:, 1], color=INK, linewidth=3.0, solid_capstyle="butt", zorder=5)
     # Axes that share their limits can only change their boxes.
     shared = any(len(group.get_siblings(ax)) > 1 for group in (ax.get_shared_x_axes(), ax.get_shared_y_axes()))
     ax.set_aspect("equal", adjustable="box" if shared else "datalim")
@@ -109,7 +109,7 @@ def _stream(solution: Solution, ax: Axes) -> None:
     speed = float(table.get("speed", 0.0))
     if speed <= 0.0:
         return
-    angle = _radians(table.get("direction", 0.0))
+    angle = radians(table.get("direction", 0.0))
     direction = np.array([np.cos(angle), np.sin(angle)])
     across = np.array([-direction[1], direction[0]])
     line = solution.at(np.linspace(0.0, solution.arm.length, 60))
@@ -121,16 +121,16 @@ def _stream(solution: Solution, ax: Axes) -> None:
     place = np.array(corners[min(taken, key=lambda corner: taken[corner])])
     for k in (-1.0, 0.0, 1.0):
         tail = place + 0.035 * k * across - 0.06 * direction
-        arrow = {"arrowstyle": "-|>", "color": _WATER, "linewidth": 1.3}
+        arrow = {"arrowstyle": "-|>", "color": WATER, "linewidth": 1.3}
         head = tail + 0.12 * direction
         ax.annotate("", (head[0], head[1]), (tail[0], tail[1]), xycoords="axes fraction", arrowprops=arrow)
     words = f"{speed:g} m/s"
     ax.annotate(
-        words, (place[0], place[1] - 0.085), xycoords="axes fraction", color=_WATER, ha="center", va="center", size=9
+        words, (place[0], place[1] - 0.085), xycoords="axes fraction", color=WATER, ha="center", va="center", size=9
     )
 
 
-def _radians(angle: object) -> float:
+def radians(angle: object) -> float:
     """An angle of a written arm file: degrees, or a string with its unit."""
     if isinstance(angle, str):
         value, unit = angle.split()
@@ -159,7 +159,7 @@ def plot_strains(solution: Solution, *, label: str | None, figure: Figure | None
         # What is constant but for rounding is drawn as a constant.
         if np.ptp(values) < 1e-9 * max(float(np.abs(values).max()), 1.0):
             values = np.full_like(values, values.mean())
-        ax.plot(_MM * stations.s, values, linewidth=1.6, label=label)
+        ax.plot(MM * stations.s, values, linewidth=1.6, label=label)
         ax.set_title(title, size=10, loc="left")
         ax.set_ylabel(text)
         ax.grid(alpha=0.25)
@@ -171,8 +171,8 @@ def plot_strains(solution: Solution, *, label: str | None, figure: Figure | None
 
 
 _QUANTITIES = {
-    "tip_x": (_MM, "x of the tip (mm)"),
-    "tip_y": (_MM, "y of the tip (mm)"),
+    "tip_x": (MM, "x of the tip (mm)"),
+    "tip_y": (MM, "y of the tip (mm)"),
     "tip_theta": (180.0 / np.pi, "the tip's turn (deg)"),
     "tip_alpha": (180.0 / np.pi, r"$\alpha$ at the tip (deg)"),
 }
@@ -192,8 +192,8 @@ def plot_path(path: EquilibriumPath, quantity: str, ax: Axes | None) -> Axes:
         event[[event.point for event in branch.events]] = True
         good = stable | event
         solid = np.where(good, values, np.nan)
-        ax.plot(branch.values, values, color=_SLACK, linewidth=1.2, linestyle=(0, (4, 2)))
-        ax.plot(branch.values, solid, color=_TAUT, linewidth=1.8)
+        ax.plot(branch.values, values, color=SLACK, linewidth=1.2, linestyle=(0, (4, 2)))
+        ax.plot(branch.values, solid, color=TAUT, linewidth=1.8)
         for one in branch.events:
             marker = {"limit_point": "o", "bifurcation": "D"}.get(one.name, "s")
             ax.plot(one.value, values[one.point], marker, color=_MARK, markersize=5)
@@ -206,7 +206,7 @@ def plot_path(path: EquilibriumPath, quantity: str, ax: Axes | None) -> Axes:
 def plot_equilibria(equilibria: Equilibria, ax: Axes | None) -> Axes:
     """See `Equilibria.plot`."""
     ax = _new_axes(ax)
-    per_m = UNITS[_unit_of(ax, None)]
+    per_m = UNITS[unit_of(ax, None)]
     for index, (solution, state) in enumerate(zip(equilibria, equilibria.stability, strict=True)):
         color = _BODY if state == "stable" else "#d8d2c4"
         name = f"{index + 1}: {state or 'not established'}"
@@ -225,7 +225,7 @@ def plot_reach(reach: Reach, ax: Axes | None) -> Axes:
     import matplotlib.pyplot as plt
 
     ax = _new_axes(ax)
-    per_m = UNITS[_unit_of(ax, None)]
+    per_m = UNITS[unit_of(ax, None)]
     shown = [*reach] or [one for one in (reach.closest,) if one is not None]
     colors = plt.colormaps["viridis"](np.linspace(0.15, 0.85, max(len(shown), 2)))
     for index, (one, color) in enumerate(zip(shown, colors, strict=False)):
@@ -249,7 +249,7 @@ def plot_fit(fit: Fit, ax: Axes | None) -> Axes:
     import matplotlib.pyplot as plt
 
     ax = _new_axes(ax)
-    per_m = UNITS[_unit_of(ax, None)]
+    per_m = UNITS[unit_of(ax, None)]
     cases = fit.residuals["case"]
     colors = plt.colormaps["viridis"](np.linspace(0.15, 0.85, max(len(fit.solutions), 2)))
     for (name, solution), color in zip(fit.solutions.items(), colors, strict=False):
@@ -280,7 +280,7 @@ def plot_manipulability(found: Sensitivities, ax: Axes | None, effort: float | N
     ax = plot_shape(
         found.solution, _new_axes(ax), color=_BODY, sections=0, cables=True, flow=True, label=None
     )
-    per_m = UNITS[_unit_of(ax, None)]
+    per_m = UNITS[unit_of(ax, None)]
     longest = ellipse.half_axes[0]
     if effort is None:
         # A round number near a fifth of the length.
@@ -306,13 +306,15 @@ def animate(
     shapes = list(solutions)
     if not shapes or not all(hasattr(shape, "surfaces") for shape in shapes):
         raise ValueError("solutions: expected at least one solution, and nothing else")
+    if any(hasattr(shape, "z") for shape in shapes):
+        raise ValueError('solutions: animations are of arms in the plane, and one of these has `space = "spatial"`')
     target = None if output is None else FilePath(output)
     if target is not None and target.suffix not in (".gif", ".mp4", ".html"):
         raise ValueError(f"output: expected a name that ends in .gif, .mp4 or .html, found {target.name!r}")
     if not fps > 0.0:
         raise ValueError(f"fps: expected a number above zero, found {fps}")
     figure, ax = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
-    per_m = UNITS[_unit_of(ax, unit)]
+    per_m = UNITS[unit_of(ax, unit)]
     ends = np.concatenate([per_m * side for shape in shapes for side in shape.surfaces(shape.s)])
     low, high = ends.min(axis=0), ends.max(axis=0)
     margin = 0.05 * float((high - low).max())

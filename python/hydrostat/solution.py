@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 
@@ -96,7 +96,7 @@ class Snap:
     load_fraction : float
         The share of that phase's loads at the snap, 0 to 1.
     before, after : Tip
-        The tip, m and rad, before the snap and where the arm lands.
+        The tip, m and rad, before the snap and where the arm lands; of an arm in space a `SpatialTip`.
     distance, angle : float
         How far the tip jumps, m, and turns, rad.
     """
@@ -109,10 +109,10 @@ class Snap:
     angle: float
 
 
-def snaps_of(fields: Iterable[Sequence[Any]]) -> tuple[Snap, ...]:
-    """Snaps of what the extension module, a pickle or a file has of them."""
+def snaps_of(fields: Iterable[Sequence[Any]], tip: Callable[..., Tip] = Tip) -> tuple[Snap, ...]:
+    """Snaps of what the extension module, a pickle or a file has of them; `tip` makes a tip of its fields."""
     return tuple(
-        Snap(phase, load_fraction, Tip(*before), Tip(*after), distance, angle)
+        Snap(phase, load_fraction, tip(*before), tip(*after), distance, angle)
         for phase, load_fraction, before, after, distance, angle in fields
     )
 
@@ -153,9 +153,13 @@ class Stations(Result):
     __slots__ = ("_inner",)
 
     _inner: _native.Stations | _native.Solution
+    _fields: ClassVar[dict[str, tuple[str, str]]] = FIELDS
 
     def __init__(self, native: _native.Stations) -> None:
         self._inner = native
+
+    def _field(self, name: str) -> NDArray[np.float64]:
+        return self._inner.field(name)
 
     @property
     def s(self) -> NDArray[np.float64]:
@@ -221,9 +225,9 @@ class Stations(Result):
         return len(self.s)
 
     def __eq__(self, other: object) -> bool:
-        if type(other) is not Stations:
+        if not isinstance(other, Stations) or type(other) is not type(self):
             return NotImplemented
-        return all(_saved.same(self._inner.field(name), other._inner.field(name)) for name in FIELDS)
+        return all(_saved.same(self._field(name), other._field(name)) for name in self._fields)
 
     def __hash__(self) -> int:
         return hash((len(self), float(self.x[-1]), float(self.y[-1])) if len(self) else 0)
@@ -235,27 +239,28 @@ class Stations(Result):
         return f"<Stations: {len(self)}, from {self.s[0]:g} to {self.s[-1]:g} m>" if len(self) else "<Stations: none>"
 
     def copy_arrays(self) -> dict[str, NDArray[np.float64]]:
-        """Return the twelve fields by name, as independent arrays that can be changed."""
-        return {name: self._inner.field(name).copy() for name in FIELDS}
+        """Return all fields by name, as independent arrays that can be changed."""
+        return {name: self._field(name).copy() for name in self._fields}
 
     def to_pandas(self) -> pd.DataFrame:
         """The stations as a table with `s` (m) as its index. Needs pandas."""
         import pandas as pd
 
-        columns = {name: self._inner.field(name) for name in FIELDS if name != "s"}
+        columns = {name: self._field(name) for name in self._fields if name != "s"}
         return pd.DataFrame(columns, index=pd.Index(self.s, name="s"))
 
     def to_xarray(self) -> xr.Dataset:
         """The stations along the coordinate `s`, each with ``units`` and ``long_name``. Needs xarray."""
         import xarray as xr
 
-        fields = {name: ("s", self._inner.field(name), _attributes(name)) for name in FIELDS}
+        fields = {name: ("s", self._field(name), attributes(self._fields, name)) for name in self._fields}
         coordinate = fields.pop("s")
         return xr.Dataset(fields, coords={"s": coordinate})
 
 
-def _attributes(name: str) -> dict[str, str]:
-    units, meaning = FIELDS[name]
+def attributes(fields: Mapping[str, tuple[str, str]], name: str) -> dict[str, str]:
+    """What a dataset says of a field."""
+    units, meaning = fields[name]
     return {"units": units, "long_name": meaning}
 
 
@@ -291,19 +296,27 @@ class Solution(Stations):
 
     def _repr_html_(self) -> str:
         """A small picture with the tip, the tensions and the warnings, for notebooks."""
-        tip = self.tip
         pulls = ", ".join(f"{html.escape(cable.name)} {cable.tension:.4g} N" for cable in self.cables)
         lines = [
             f"<b>{html.escape(self.arm.name)}</b>",
-            f"tip at ({1e3 * tip.x:.2f}, {1e3 * tip.y:.2f}) mm, turned by {np.degrees(tip.theta):.2f}&deg;",
+            self._place_in_words(),
             *([pulls] if pulls else []),
             *(f"&#9888; {html.escape(note.message)}" for note in self.warnings),
         ]
         words = "<br>".join(lines)
         return f'<div style="display:flex;gap:1em;align-items:center">{_picture(self)}<div>{words}</div></div>'
 
+    def _place_in_words(self) -> str:
+        tip = self.tip
+        return f"tip at ({1e3 * tip.x:.2f}, {1e3 * tip.y:.2f}) mm, turned by {np.degrees(tip.theta):.2f}&deg;"
+
+    def _outline(self) -> NDArray[np.float64]:
+        """The outline on the page of x and y, m, shape (n, 2)."""
+        left, right = self.surfaces(self.s)
+        return np.concatenate([left, right[::-1]])
+
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Solution):
+        if not isinstance(other, Solution) or type(other) is not type(self):
             return NotImplemented
         return _saved.same(_numbers(self), _numbers(other)) and self.arm.to_toml() == other.arm.to_toml()
 
@@ -443,22 +456,22 @@ class Solution(Stations):
         s : array_like, shape (n,) or ()
             Lengths along the undeformed arm, m, from 0 to the arm's length.
         """
-        return Stations(self._inner.at(_places(s)))
+        return Stations(self._inner.at(places_of(s)))
 
     def resampled(self, count: int) -> Stations:
         """`count` (at least two) equally spaced stations from base to tip."""
         wanted = _inputs.count("count", count)
-        _memory.require(2 * 8 * len(FIELDS) * wanted, f"{wanted} stations", "ask for fewer")
+        _memory.require(2 * 8 * len(self._fields) * wanted, f"{wanted} stations", "ask for fewer")
         return Stations(self._inner.resampled(wanted))
 
     def surfaces(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The deformed surface on the left and on the right, m, each of shape (n, 2), at lengths `s` (m) of shape (n,)."""
-        left_x, left_y, right_x, right_y = self._inner.surfaces(_places(s))
+        left_x, left_y, right_x, right_y = self._inner.surfaces(places_of(s))
         return np.stack([left_x, left_y], axis=1), np.stack([right_x, right_y], axis=1)
 
     def cable_path(self, cable: int, s: ArrayLike) -> NDArray[np.float64]:
         """Points of a cable, m, shape (n, 2), at lengths `s` (m) of shape (n,); NaN past its anchor."""
-        return np.stack(self._inner.cable_path(cable, _places(s)), axis=1)
+        return np.stack(self._inner.cable_path(cable, places_of(s)), axis=1)
 
     def layer_speed(self, s: float, y: float) -> float:
         """Speed of the water along the arm, m/s, at the length `s` (m) and the distance `y` (m) from the windward surface."""
@@ -483,7 +496,10 @@ class Solution(Stations):
             ``snap_y``, ``snap_theta``, ``snap_alpha`` over ``snap`` and ``side`` (before, after), if the arm snaps on its way; the rest
             as attributes.
         """
-        out = super().to_xarray()
+        return self._described(super().to_xarray())
+
+    def _described(self, out: xr.Dataset) -> xr.Dataset:
+        """The stations with all else that is known of the solution."""
         cables = self.cables
         out = out.assign_coords(cable=("cable", [cable.name for cable in cables]))
         out["tension"] = ("cable", np.array([c.tension for c in cables]), {"units": "N", "long_name": "tension at the base"})
@@ -495,13 +511,13 @@ class Solution(Stations):
         messages = np.array([note.message for note in self.warnings], dtype=np.str_)
         out["warnings"] = ("warning", messages, {"long_name": "what should be known about this answer"})
         if self.snaps:
-            out = _with_snaps(out, self.snaps)
+            out = _with_snaps(out, self.snaps, self._fields)
         base = self.base_reaction
         out.attrs = {
             "Conventions": CONVENTIONS,
             "arm": self.arm.name,
             "base_force": list(base.force),
-            "base_moment": base.moment,
+            "base_moment": _attribute(base.moment),
             "error_estimate": self.error_estimate,
             "fold_margin": self.fold_margin.value,
             "hydrostat": _native.__version__,
@@ -640,7 +656,11 @@ def _ignored() -> bool:
     return False
 
 
-def _with_snaps(dataset: xr.Dataset, snaps: tuple[Snap, ...]) -> xr.Dataset:
+def _attribute(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _with_snaps(dataset: xr.Dataset, snaps: tuple[Snap, ...], fields: Mapping[str, tuple[str, str]]) -> xr.Dataset:
     about = {
         "load_fraction": ("1", "share of that phase's loads at the snap"),
         "distance": ("m", "jump of the tip"),
@@ -651,15 +671,16 @@ def _with_snaps(dataset: xr.Dataset, snaps: tuple[Snap, ...]) -> xr.Dataset:
     for name, (unit, meaning) in about.items():
         numbers = np.array([getattr(snap, name) for snap in snaps])
         out[f"snap_{name}"] = ("snap", numbers, {"units": unit, "long_name": meaning})
-    for name in Tip._fields:
+    for name in snaps[0].before._fields:
         sides = np.array([[getattr(snap.before, name), getattr(snap.after, name)] for snap in snaps])
-        out[f"snap_{name}"] = (("snap", "side"), sides, _attributes(name))
+        # Directors have their components along one more axis.
+        out[f"snap_{name}"] = (("snap", "side", "axis")[: sides.ndim], sides, attributes(fields, name))
     return out
 
 
 def _numbers(solution: Solution) -> tuple[Any, ...]:
     inner = solution._inner
-    fields = [inner.field(name) for name in FIELDS]
+    fields = [solution._field(name) for name in solution._fields]
     return inner.tol, inner.cables, inner.base_reaction, inner.error_estimate, inner.snaps, fields
 
 
@@ -667,23 +688,38 @@ def _stations(version: int, writer: str, fields: Mapping[str, NDArray[np.float64
     _saved.check("Stations", version, writer)
     for array in fields.values():
         array.flags.writeable = False
-    return Stations(cast("_native.Stations", _saved.SavedStations({"fields": fields}, Origin("none", ()))))
+    native: Any = _saved.SavedStations({"fields": fields}, Origin("none", ()))
+    if "z" in fields:
+        from hydrostat.spatial import SpatialStations
+
+        return SpatialStations(native)
+    return Stations(native)
 
 
 def _restored(version: int, writer: str, state: dict[str, Any]) -> Solution:
     _saved.check("Solution", version, writer)
-    return Solution(cast("_native.Solution", _saved.solution_of(state)), Origin(*state["origin"]))
+    return solution_of(cast("_native.Solution", _saved.solution_of(state)), Origin(*state["origin"]))
+
+
+def solution_of(
+    native: _native.Solution | _native.SpatialSolution, origin: Origin | Callable[[], Origin] | None = None
+) -> Solution:
+    """The solution that the extension module, or what stands in for it, holds: in the plane or in space."""
+    if _saved.is_spatial(native):
+        from hydrostat.spatial import SpatialSolution
+
+        return SpatialSolution(cast("_native.SpatialSolution", native), origin)
+    return Solution(cast("_native.Solution", native), origin)
 
 
 def _picture(solution: Solution) -> str:
     """The outline to scale, as a small SVG: of the stations, which are at hand."""
-    x, y = solution.x, solution.y
     try:
-        left, right = solution.surfaces(solution.s)
+        outline = 1e3 * solution._outline()
     except RuntimeError:
         # A shape that was saved and cannot be made again has its centreline.
-        left = right = np.stack([x, y], axis=1)
-    outline = 1e3 * np.concatenate([left, right[::-1]])
+        line = np.stack([solution.x, solution.y], axis=1)
+        outline = 1e3 * np.concatenate([line, line[::-1]])
     (x0, y0), (x1, y1) = outline.min(axis=0), outline.max(axis=0)
     margin = 0.04 * max(x1 - x0, y1 - y0, 1e-9)
     points = " ".join(f"{px:.2f},{-py:.2f}" for px, py in outline)
@@ -698,5 +734,6 @@ def _wrench(force: list[float], moment: float) -> Wrench:
     return Wrench((force[0], force[1]), moment)
 
 
-def _places(s: ArrayLike) -> NDArray[np.float64]:
+def places_of(s: ArrayLike) -> NDArray[np.float64]:
+    """Places along an arm, m, as a vector."""
     return np.atleast_1d(_inputs.numbers("s", s)).ravel()

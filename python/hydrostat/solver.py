@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from os import PathLike
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
 from hydrostat import _inputs, _native
 from hydrostat.arm import Arm, arm_of
-from hydrostat.solution import Solution, Tip, warn
+from hydrostat.solution import Solution, Tip, solution_of, warn
+from hydrostat.spatial import SpatialTip
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Answer(NamedTuple):
-    """Where the tip is, m and rad, and the estimated error of its position, m."""
+    """Where the tip is, m and rad (a `SpatialTip` of an arm in space), and the estimated error of its position, m."""
 
     tip: Tip
     error_estimate: float
@@ -62,7 +63,9 @@ class Solver:
         follow_snaps: bool = False,
     ) -> None:
         snaps = _inputs.snaps(snap_distance, snap_angle, follow_snaps)
-        self._inner = _native.Solver(arm_of(arm)._inner, _inputs.number("tol", tol), snaps)
+        native = arm_of(arm)._inner
+        kind = _native.SpatialSolver if native.is_spatial else _native.Solver
+        self._inner: _native.Solver | _native.SpatialSolver = kind(native, _inputs.number("tol", tol), snaps)
 
     def __copy__(self) -> Solver:
         out = Solver.__new__(Solver)
@@ -91,20 +94,28 @@ class Solver:
 
     def solve(self) -> Solution:
         """Solve from the unloaded arm."""
-        return warn(Solution(self._inner.solve()), 2)
+        return warn(solution_of(self._inner.solve()), 2)
 
     def resolve(self) -> Solution:
         """Solve from the last shape (warm start), or from the unloaded arm if the arm moved too far."""
-        return Solution(self._inner.resolve())
+        return solution_of(self._inner.resolve())
 
     def update(self) -> Answer:
         """Solve as `resolve` does, and return the tip only."""
+        if isinstance(self._inner, _native.SpatialSolver):
+            fields, estimate = self._inner.update()
+            return Answer(cast("Tip", SpatialTip.of(*fields)), estimate)
         x, y, theta, alpha, error_estimate = self._inner.update()
         return Answer(Tip(x, y, theta, alpha), error_estimate)
 
     def solution(self) -> Solution:
         """The full solution of the last `update`."""
-        return Solution(self._inner.configuration())
+        return solution_of(self._inner.configuration())
+
+    def _in_plane(self, what: str) -> _native.Solver:
+        if isinstance(self._inner, _native.SpatialSolver):
+            raise ValueError(f'{what}: for arms in the plane, and this arm has `space = "spatial"`')
+        return self._inner
 
     def sensitivities(
         self, parameters: Sequence[str] | None = None, *, stations: ArrayLike = (), method: str = "best"
@@ -146,7 +157,7 @@ class Solver:
         places = np.atleast_1d(_inputs.finite("stations", stations))
         if places.ndim != 1:
             raise ValueError(f"stations: expected one dimension, found shape {places.shape}")
-        native, solution = self._inner.sensitivities(names, places, method)
+        native, solution = self._in_plane("sensitivities").sensitivities(names, places, method)
         return Sensitivities(native, Solution(solution), places)
 
     def gradient(
@@ -208,7 +219,7 @@ class Solver:
             if own.shape not in ((), places.shape):
                 raise ValueError(f"{name}: expected the shape {places.shape} of the stations, found {own.shape}")
             weights.append(np.ascontiguousarray(np.broadcast_to(own, places.shape)))
-        return self._inner.gradient(_names(parameters), places, weights)
+        return self._in_plane("gradient").gradient(_names(parameters), places, weights)
 
 
 def _names(parameters: Sequence[str]) -> list[str]:

@@ -28,7 +28,9 @@ Values = Union[str, float, Sequence[float], Sequence[str], "NDArray[np.generic]"
 _COLUMN = re.compile(r"(?P<name>.+?)(_(?P<index>\d+))?(_(?P<unit>m|rad|N|Nm))?$")
 _UNITS = {"Nm": "N m"}
 #: Numbers of a row that are not of cables or stations, all columns together.
-_NUMBERS = 18
+_NUMBERS = {"plane": 18, "space": 30}
+#: What is held of a station, as columns and put together of them.
+_OF_STATIONS = {"plane": 6, "space": 18}
 _ENDINGS = (".parquet", ".csv")
 
 
@@ -215,8 +217,8 @@ def sweep(
         raise ValueError(f"output: expected a name that ends in {' or '.join(_ENDINGS)}, found {str(output)!r}{remedy}")
     if output is None and client is None:
         # Row, keys, what is answered, and what is put together of several columns.
-        cables = len(plan.arm.cables)
-        numbers = 1 + len(native.axes) + _NUMBERS + 4 * cables + 6 * plan.shapes
+        cables, space = len(plan.arm.cables), "space" if plan.arm.is_spatial else "plane"
+        numbers = 1 + len(native.axes) + _NUMBERS[space] + 4 * cables + _OF_STATIONS[space] * plan.shapes
         remedy = "write them to a file with output=, or take fewer"
         _memory.require(8 * numbers * native.rows, f"{native.rows} rows", remedy)
     if client is not None:

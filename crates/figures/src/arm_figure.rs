@@ -1,6 +1,6 @@
 //! One arm drawn to scale.
 
-use hydrostat::{Configuration, Verdict};
+use hydrostat::{CableState, Configuration, Verdict};
 
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, DESCENT, Label};
@@ -46,9 +46,9 @@ pub fn arm_figure(configuration: &Configuration, note: Option<&str>, page: &Page
 pub fn reach_figure(configuration: &Configuration, targets: &[[f64; 2]], note: Option<&str>, page: &Page) -> Scene {
     let arm = &configuration.arm;
     let outline = Outline::new(configuration, SECTIONS);
-    let strokes = cable_strokes(configuration);
+    let strokes = cable_strokes(&configuration.cables);
     let heading = page.heading(&arm.name, note);
-    let legend = legend(configuration, &strokes, page);
+    let legend = cable_legend(&configuration.cables, &strokes, page);
     let frame_top = heading.bottom + legend.height() + 6.0;
     let axes = axes_around(&outline, targets, configuration.tip().theta, frame_top, page);
 
@@ -122,8 +122,8 @@ fn axes_around(outline: &Outline, targets: &[[f64; 2]], theta: f64, top: f64, pa
 }
 
 /// Line styles: as wide as the tension is large among the cables, dashed when slack.
-fn cable_strokes(configuration: &Configuration) -> Vec<Stroke> {
-    let largest = configuration.cables.iter().map(|c| c.tension).fold(0.0, f64::max);
+pub(crate) fn cable_strokes(cables: &[CableState]) -> Vec<Stroke> {
+    let largest = cables.iter().map(|c| c.tension).fold(0.0, f64::max);
     let stroke = |(i, tension): (usize, f64)| {
         if tension > 0.0 {
             Stroke::solid(series(i), 0.7 + 1.1 * tension / largest)
@@ -131,7 +131,7 @@ fn cable_strokes(configuration: &Configuration) -> Vec<Stroke> {
             Stroke::dashed(series(i), 0.6, [3.0, 2.0])
         }
     };
-    configuration.cables.iter().map(|c| c.tension).enumerate().map(stroke).collect()
+    cables.iter().map(|c| c.tension).enumerate().map(stroke).collect()
 }
 
 /// Keeps what has no place of its own off the arrows at the tip.
@@ -189,9 +189,9 @@ pub(crate) fn place_label(
 }
 
 /// The cables, above the frame where no data are.
-fn legend(configuration: &Configuration, strokes: &[Stroke], page: &Page) -> Legend {
+pub(crate) fn cable_legend(cables: &[CableState], strokes: &[Stroke], page: &Page) -> Legend {
     let mut legend = Legend::new(page);
-    for (cable, stroke) in configuration.cables.iter().zip(strokes) {
+    for (cable, stroke) in cables.iter().zip(strokes) {
         let state = if cable.tension > 0.0 { format!("{} N", short(cable.tension)) } else { "slack".to_owned() };
         legend.add(Sample::Line(*stroke), Label::plain(format!("{}: {state}", clipped(&cable.name))));
     }

@@ -9,7 +9,7 @@ use crate::font::{CAP_HEIGHT, Label};
 use crate::legend::{Legend, Mark, Sample, clipped};
 use crate::outline::{Outline, Style, bounds};
 use crate::page::{MARGIN, Page};
-use crate::palette::{Color, GREY, INK, series};
+use crate::palette::{Color, GREY, INK, PAPER, series};
 use crate::placement::{Occupied, Rect};
 use crate::scene::{Anchor, Scene, Stroke};
 use crate::surroundings::Surroundings;
@@ -175,7 +175,6 @@ fn correlation_cell(count: usize, page: &Page) -> f64 {
 fn draw_correlation(scene: &mut Scene, top: f64, cell: f64, names: &[String], correlation: &[Vec<f64>]) {
     const POSITIVE: Color = series_of(0);
     const NEGATIVE: Color = series_of(1);
-    const PAPER: Color = Color { rgb: [255, 255, 255], opacity: 1.0 };
     scene.text(&Label::plain("correlation of the estimates"), [LEFT, top], Anchor::Start, TEXT_SIZE);
     let top = top + 6.0;
     for (i, (name, row)) in names.iter().zip(correlation).enumerate() {

@@ -3,7 +3,7 @@
 use crate::axes::{LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, Label};
 use crate::page::{LINE, Page};
-use crate::palette::Color;
+use crate::palette::{Color, PAPER};
 use crate::scene::{Anchor, Point, Scene, Stroke};
 
 /// What a legend shows.
@@ -29,7 +29,6 @@ pub(crate) enum Mark {
 impl Mark {
     pub(crate) fn draw(self, scene: &mut Scene, [x, y]: Point) {
         const SIZE: f64 = 2.3;
-        const PAPER: Color = Color { rgb: [255, 255, 255], opacity: 1.0 };
         match self {
             Self::Filled(color) => scene.dot([x, y], SIZE, color),
             Self::Hollow(color) => scene.ring([x, y], SIZE - 0.4, Stroke::solid(color, 0.8)),

@@ -5,9 +5,9 @@
 //! outlines before any of them is made; that also needs no font on the machine that shows the figure.
 //! [`svg_with_text`](Scene::svg_with_text) keeps text as text. A [`Page`] says how wide a figure is and what its title is.
 //!
-//! [`arm_figure`] draws one configuration to scale, [`path_shapes_figure`] and [`equilibria_figure`]
+//! [`arm_figure`] draws one configuration to scale, [`spatial_arm_figure`] one in space, [`path_shapes_figure`] and [`equilibria_figure`]
 //! several, [`boundary_figure`] the places that a tip reaches; [`path_figure`] and [`over_figure`] draw a [`Quantity`]
-//! over a parameter; [`map_figure`], [`workspace_figure`] and [`curve_figure`] draw a sweep, [`fit_figure`] a fit beside
+//! over a parameter; [`map_figure`], [`workspace_figure`], [`spatial_workspace_figure`] and [`curve_figure`] draw a sweep, [`fit_figure`] a fit beside
 //! its data, and [`lines_figure`] whatever numbers are compared. [`source`] solves what the source's Fig. 1
 //! shows, judges what its text says about it, and draws the three parts.
 
@@ -18,6 +18,7 @@ mod chart;
 mod fit;
 mod font;
 mod geometry;
+mod hull;
 mod legend;
 mod lines;
 mod numbers;
@@ -33,11 +34,15 @@ mod region;
 mod scene;
 mod shaded;
 mod shapes;
+mod solid;
 pub mod source;
+mod spatial_figure;
 mod surroundings;
 mod svg;
 mod sweep;
+mod three_views;
 mod tip_labels;
+mod view;
 
 pub use arm_figure::{arm_figure, last_good_note, reach_figure};
 pub use axes::Scale;
@@ -52,4 +57,5 @@ pub use quantity::{Quantity, UnknownQuantity};
 pub use scene::Scene;
 pub use shaded::{Coloured, ColouredColumn};
 pub use shapes::{equilibria_figure, path_shapes_figure};
-pub use sweep::{KeyValues, curve_figure, map_figure, value_text, workspace_figure};
+pub use spatial_figure::spatial_arm_figure;
+pub use sweep::{KeyValues, curve_figure, map_figure, spatial_workspace_figure, value_text, workspace_figure};

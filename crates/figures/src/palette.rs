@@ -30,6 +30,8 @@ impl Color {
     }
 }
 
+/// What everything is drawn on.
+pub(crate) const PAPER: Color = rgb(255, 255, 255);
 /// Text and axes: softer than black on white.
 pub(crate) const INK: Color = rgb(38, 38, 38);
 /// What should step back.

@@ -136,6 +136,7 @@ fn title(name: &str) -> (Label, f64) {
     let known = match name {
         "tip_x_m" => Some("$x$($L$) (mm)"),
         "tip_y_m" => Some("$y$($L$) (mm)"),
+        "tip_z_m" => Some("$z$($L$) (mm)"),
         "tip_theta_rad" => Some("$θ$($L$) (°)"),
         "tip_alpha_rad" => Some("$α$($L$) (°)"),
         _ => None,

@@ -7,11 +7,14 @@ use crate::font::{CAP_HEIGHT, Label};
 use crate::numbers::short;
 use crate::palette::{Color, GREY, WATER};
 use crate::placement::{Occupied, Rect};
-use crate::scene::{Anchor, Scene};
+use crate::scene::{Anchor, Point, Scene, Stroke};
+use crate::view::{View, dot};
 
 /// Length of an arrow and side of the square that it turns in, points.
 const ARROW: f64 = 22.0;
 const SQUARE: f64 = 24.0;
+/// Below this share of its length an arrow is drawn as seen from its end.
+pub(crate) const SHORTEST: f64 = 0.25;
 /// From the square to the label, and from that to the next square.
 const GAPS: [f64; 2] = [3.0, 10.0];
 /// From the frame.
@@ -20,8 +23,10 @@ const INSET: f64 = 6.0;
 /// A direction that holds all over the figure.
 #[derive(Debug, Clone)]
 struct Direction {
-    /// From e1, rad.
-    angle: f64,
+    /// To the right and up on the page: of length one, shorter where it leaves the page.
+    along: [f64; 2],
+    /// Whether it comes out of the page.
+    out: bool,
     color: Color,
     label: Label,
 }
@@ -40,15 +45,32 @@ impl Surroundings {
         if flows && arm.flow.density > 0.0 && varied != Some(Parameter::FlowDirection) {
             let speed = format!("stream {} m/s", short(arm.flow.speed));
             let text = if varied == Some(Parameter::FlowSpeed) { "stream".to_owned() } else { speed };
-            directions.push(Direction { angle: arm.flow.direction, color: WATER, label: Label::plain(text) });
+            directions.push(Direction::in_plane(arm.flow.direction, WATER, Label::plain(text)));
         }
         let pulls = |acceleration: f64| acceleration > 0.0 || varied == Some(Parameter::GravityAcceleration);
         if let Some(gravity) = &arm.gravity
             && pulls(gravity.acceleration)
             && varied != Some(Parameter::GravityDirection)
         {
-            directions.push(Direction { angle: gravity.direction, color: GREY, label: Label::plain("gravity") });
+            directions.push(Direction::in_plane(gravity.direction, GREY, Label::plain("gravity")));
         }
+        Self { directions }
+    }
+
+    /// Of an arm in space, as `view` shows directions.
+    pub(crate) fn seen(arm: &Arm, view: &View) -> Self {
+        let mut directions = Vec::new();
+        let mut add = |vector: [f64; 3], color: Color, label: String| {
+            let length = dot(&vector, &vector).sqrt();
+            if length > 0.0 {
+                let [right, up, back] = view.turned(&vector.map(|v| v / length));
+                directions.push(Direction { along: [right, up], out: back > 0.0, color, label: Label::plain(label) });
+            }
+        };
+        if arm.flow.density > 0.0 {
+            add(arm.stream_in_space(), WATER, format!("stream {} m/s", short(arm.flow.speed)));
+        }
+        add(arm.gravity_in_space(), GREY, "gravity".to_owned());
         Self { directions }
     }
 
@@ -58,7 +80,7 @@ impl Surroundings {
         let mut own = Self::of(first, None);
         for arm in arms {
             let other = Self::of(arm, None);
-            let same = |a: &Direction, b: &Direction| a.angle == b.angle && a.label.to_string() == b.label.to_string();
+            let same = |a: &Direction, b: &Direction| a.along == b.along && a.label.to_string() == b.label.to_string();
             own.directions.retain(|a| other.directions.iter().any(|b| same(a, b)));
         }
         own
@@ -86,12 +108,37 @@ impl Surroundings {
 }
 
 impl Direction {
+    /// `angle` from e1, rad.
+    fn in_plane(angle: f64, color: Color, label: Label) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self { along: [cos, sin], out: false, color, label }
+    }
+
     fn draw(&self, scene: &mut Scene, [x, y]: [f64; 2]) {
-        let (dx, dy) = (0.5 * ARROW * self.angle.cos(), -0.5 * ARROW * self.angle.sin());
-        scene.arrow([x - dx, y - dy], [x + dx, y + dy], self.color, 1.3);
+        let [right, up] = self.along;
+        if right.hypot(up) < SHORTEST {
+            draw_along_sight(scene, [x, y], self.out, self.color);
+        } else {
+            let (dx, dy) = (0.5 * ARROW * right, -0.5 * ARROW * up);
+            scene.arrow([x - dx, y - dy], [x + dx, y + dy], self.color, 1.3);
+        }
         let at = [x + 0.5 * SQUARE + GAPS[0], y + 0.5 * CAP_HEIGHT * TEXT_SIZE];
         scene.text(&self.label, at, Anchor::Start, TEXT_SIZE);
     }
+}
+
+/// An arrow that comes out of the page (a dot in a circle) or goes into it (a cross in a circle).
+pub(crate) fn draw_along_sight(scene: &mut Scene, [x, y]: Point, out: bool, color: Color) {
+    const RADIUS: f64 = 4.0;
+    let stroke = Stroke::solid(color, 0.9);
+    scene.ring([x, y], RADIUS, stroke);
+    if out {
+        scene.dot([x, y], 1.3, color);
+        return;
+    }
+    let a = RADIUS * std::f64::consts::FRAC_1_SQRT_2;
+    scene.line(&[[x - a, y - a], [x + a, y + a]], stroke);
+    scene.line(&[[x - a, y + a], [x + a, y - a]], stroke);
 }
 
 /// The first free place for a row or a column, corners before the edges between them; where nothing is free, the place that covers least.

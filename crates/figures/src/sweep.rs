@@ -11,6 +11,7 @@ use crate::palette::{Color, INK, series, shade};
 use crate::placement::Rect;
 use crate::scene::{Anchor, Picture, Scene, Stroke};
 use crate::shaded::{Coloured, ColouredColumn, Shades, Shading};
+use crate::three_views::ThreeViews;
 
 const HEIGHT: f64 = 250.0;
 /// Width of the bar of colours, its gap to the frame, and the room for its labels and title.
@@ -95,6 +96,41 @@ pub fn workspace_figure(tips: &[[f64; 2]], column: &ColouredColumn, title: &str,
     scene
 }
 
+/// The places of the tip in space, in m, to scale, coloured by a column: y over x, z over x and z over y.
+///
+/// ```
+/// use hydrostat_figures::{Coloured, ColouredColumn, Page, spatial_workspace_figure};
+///
+/// let tips = [[0.1, 0.0, 0.02], [0.09, 0.03, -0.01], [f64::NAN; 3]];
+/// let values = Coloured::Numbers(vec![0.0, 0.2, f64::NAN]);
+/// let column = ColouredColumn { name: "tip_alpha_rad".to_owned(), values };
+/// let figure = spatial_workspace_figure(&tips, &column, "a sweep", &Page::default());
+/// assert!(figure.texts().any(|text| text == "z (mm)"));
+/// ```
+pub fn spatial_workspace_figure(tips: &[[f64; 3]], column: &ColouredColumn, title: &str, page: &Page) -> Scene {
+    let rows: Vec<usize> = (0..tips.len()).filter(|row| tips[*row].iter().all(|v| v.is_finite())).collect();
+    let shading = Shading::new(&column.of(&rows));
+    let places: Vec<[f64; 3]> = rows.iter().map(|row| tips[*row].map(|v| 1e3 * v)).collect();
+    let range = |k: usize| {
+        let ends = |[low, high]: [f64; 2], place: &[f64; 3]| [low.min(place[k]), high.max(place[k])];
+        places.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends)
+    };
+    let says = format!("{}: places of the tip in space, coloured by {}", page.title_or(title), shading.title());
+    let above = Above::new(title, &shading, page);
+    let top = above.bottom();
+    let room = Page { width: page.width() - beside(&shading), title: None };
+    let views = ThreeViews::new([0, 1, 2].map(|k| padded(range(k), 0.05)), &room).placed(top);
+    let mut scene = above.begin(says, views.bottom - top, page);
+    for (axes, view) in &views.views {
+        let seen: Vec<[f64; 2]> = places.iter().map(|p| view.place(p)).collect();
+        dots(&mut scene, axes, &seen, &shading);
+    }
+    views.draw(&mut scene);
+    let right = views.views.iter().map(|(axes, _)| axes.frame.right).fold(0.0, f64::max);
+    draw_bar(&mut scene, Rect { left: right, top, right, bottom: views.bottom }, &shading);
+    scene
+}
+
 /// A column over one key.
 ///
 /// ```
@@ -161,15 +197,24 @@ impl Above {
 }
 
 fn frame(shading: &Shading, top: f64, height: f64, page: &Page) -> Rect {
-    let beside = if matches!(shading.shades(), Shades::Range(_)) { BAR.iter().sum() } else { 0.0 };
-    Rect { left: LEFT, top, right: page.right() - beside, bottom: top + height }
+    Rect { left: LEFT, top, right: page.right() - beside(shading), bottom: top + height }
+}
+
+/// The width that a bar of colours needs.
+fn beside(shading: &Shading) -> f64 {
+    if matches!(shading.shades(), Shades::Range(_)) { BAR.iter().sum() } else { 0.0 }
 }
 
 /// Axes and the bar of colours, over what they measure.
 fn finish(scene: &mut Scene, axes: &Axes, shading: &Shading, titles: [&Label; 2]) {
     axes.draw(scene, titles[0], titles[1]);
+    draw_bar(scene, axes.frame, shading);
+}
+
+/// The bar of colours to the right of a frame.
+fn draw_bar(scene: &mut Scene, frame: Rect, shading: &Shading) {
     let Shades::Range(range) = *shading.shades() else { return };
-    let Rect { right, top, bottom, .. } = axes.frame;
+    let Rect { right, top, bottom, .. } = frame;
     let bar = Rect { left: right + BAR[1], top, right: right + BAR[1] + BAR[0], bottom };
     let steps = 256;
     let colors = (0..steps).rev().flat_map(|k| rgba(shade(k as f64 / (steps - 1) as f64)));

@@ -1,10 +1,13 @@
 //! What the drawings hold, and that all their forms are pictures.
 
-use hydrostat::{Arm, Cable, Gravity, Material, Parameter, PathOptions, Profile};
+use hydrostat::{
+    Arm, BaseDirections, Cable, Gravity, Material, Options, Parameter, PathOptions, Profile, Space, SpatialSolver,
+};
 use hydrostat_figures::source::Finding::{Holds, InPart, Open};
 use hydrostat_figures::source::{Finding, Shown, Study, StudyError, TIP_ANGLE};
 use hydrostat_figures::{
-    Abscissa, Page, Quantity, arm_figure, equilibria_figure, over_figure, path_figure, path_shapes_figure, reach_figure,
+    Abscissa, Page, Quantity, arm_figure, equilibria_figure, over_figure, path_figure, path_shapes_figure,
+    reach_figure, spatial_arm_figure,
 };
 
 fn page() -> Page {
@@ -43,6 +46,28 @@ fn an_arm_is_drawn_with_what_acts_on_it() {
         assert!(texts.contains(&text), "{text}: {texts:?}");
     }
     assert!(texts.iter().any(|t| t.starts_with("α(L) = ")));
+}
+
+#[test]
+fn an_arm_in_space_is_drawn_from_four_sides() {
+    let mut arm = arm();
+    arm.inner_radius = 0.001.into();
+    let base = BaseDirections { direction: [0.0, 0.2, 1.0], section: None };
+    arm.space = Some(Space { stream: Some([1.0, 0.0, 1.0]), base: Some(base), ..Space::default() });
+    let shape = SpatialSolver::new(&arm, Options::default()).unwrap().solve().unwrap();
+    for width in [0.07, 0.159, 0.5] {
+        let figure = spatial_arm_figure(&shape, Some("a note"), &Page::of_width(width).unwrap());
+        let texts: Vec<&str> = figure.texts().collect();
+        let all =
+            ["a note", "left: 0.3 N", "stream 0.1 m/s", "gravity", "x (mm)", "y (mm)", "z (mm)", "a", "b", "c", "e3"];
+        for text in all {
+            assert!(texts.contains(&text), "{text}: {texts:?}");
+        }
+        assert!(texts.iter().any(|t| t.starts_with("α(L) = ")) && texts.iter().any(|t| t.ends_with("mm at mid-depth")));
+        let svg = figure.svg();
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        assert_eq!(&figure.png().unwrap()[1..4], b"PNG");
+    }
 }
 
 #[test]

@@ -4,12 +4,14 @@
 //! along it. Nodes of a mesh may move along a line and results may change by rounding, the picture may not: numbers are the same
 //! within a tenth of a point.
 
-use hydrostat::{Arm, BoundaryOptions, Cable, Gravity, Material, Parameter, PathOptions, Profile};
+use hydrostat::{
+    Arm, BoundaryOptions, Cable, Gravity, Material, Options, Parameter, PathOptions, Profile, Space, SpatialSolver,
+};
 use hydrostat_figures::source::{Shown, Study};
 use hydrostat_figures::{
     Abscissa, Coloured, ColouredColumn, KeyValues, Measure, Page, Panel, Quantity, Scale, Scene, arm_figure,
     boundary_figure, curve_figure, equilibria_figure, fit_figure, last_good_note, lines_figure, map_figure,
-    over_figure, path_figure, path_shapes_figure, reach_figure, workspace_figure,
+    over_figure, path_figure, path_shapes_figure, reach_figure, spatial_arm_figure, workspace_figure,
 };
 use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, fit};
 use insta::comparator::Comparator;
@@ -58,11 +60,15 @@ fn what_is_the_same_and_what_is_not() {
 }
 
 fn check(name: &str, figure: &Scene) {
+    check_svg(name, &figure.svg_with_text());
+}
+
+fn check_svg(name: &str, svg: &str) {
     let mut settings = Settings::clone_current();
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     settings.set_comparator(Box::new(Nearly));
-    settings.bind(|| insta::assert_snapshot!(name, shown(&figure.svg_with_text())));
+    settings.bind(|| insta::assert_snapshot!(name, shown(svg)));
 }
 
 /// An SVG's elements, one a line.
@@ -141,6 +147,23 @@ fn one_arm() {
     folded.cables[0].tension = 1.5;
     let Err(hydrostat::SolveError::NoEquilibrium(no)) = folded.solve() else { panic!("1.5 N fold the tip") };
     check("last_good", &arm_figure(no.last_good.as_ref().unwrap(), Some(&last_good_note(&no.verdict)), &page()));
+}
+
+#[test]
+fn one_arm_in_space() {
+    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    "three cables".clone_into(&mut arm.name);
+    for (name, angle, tension) in [("top", 0.0, 0.1), ("left", 120.0_f64, 0.05), ("right", 240.0, 0.0)] {
+        let cable = Cable::new(name, Profile::linear(0.005, 0.001)).at_angle(angle.to_radians());
+        arm.cables.push(cable.pulled(tension));
+    }
+    arm.flow.speed = 0.1;
+    arm.space = Some(Space { stream: Some([0.0, 0.0, 1.0]), ..Space::default() });
+    let shape = SpatialSolver::new(&arm, Options::default()).unwrap().solve().unwrap();
+    let svg = spatial_arm_figure(&shape, None, &page()).svg_with_text();
+    // The surface alone takes half a megabyte; its edges and rings say where it is.
+    let lines = svg.lines().filter(|line| !line.contains("stroke-width=\"0.3\""));
+    check_svg("spatial_arm", &lines.collect::<Vec<&str>>().join("\n"));
 }
 
 #[test]

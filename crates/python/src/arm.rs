@@ -1,5 +1,6 @@
 //! Arms: a file's text with what overrides it, and the arm that it means.
 
+use hydrostat::SpatialSolver;
 use hydrostat_files::{ArmFile, arm_to_toml, shipped as files};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -7,8 +8,9 @@ use pyo3::prelude::*;
 pub(crate) use crate::arm_class::Arm;
 use crate::arm_class::Setting;
 use crate::arrays::finite;
-use crate::errors::{file_error, solve_error, wrong};
+use crate::errors::{file_error, solve_error, spatial_error, wrong};
 use crate::solution::{Solution, options};
+use crate::spatial_solution::SpatialSolution;
 
 #[pymethods]
 impl Arm {
@@ -64,13 +66,19 @@ impl Arm {
         self.given.cables.iter().map(|cable| cable.stroke.is_some()).collect()
     }
 
+    /// Whether the arm may leave the plane e1-e2.
+    #[getter]
+    fn is_spatial(&self) -> bool {
+        self.given.space.is_some()
+    }
+
     /// The arm and this one are the same.
     fn same(&self, other: &Self) -> bool {
         self.given == other.given
     }
 
     /// Solves under these loads; `None` among the strokes leaves a cable its tension. `snaps` is how far the tip may jump (over the length) and
-    /// turn (rad) at a snap.
+    /// turn (rad) at a snap. A `Solution`, or a `SpatialSolution` of an arm in space.
     #[pyo3(signature = (tensions, strokes, flow_speed, tol, snaps))]
     fn solve(
         &self,
@@ -80,7 +88,7 @@ impl Arm {
         flow_speed: Option<f64>,
         tol: f64,
         snaps: (f64, f64),
-    ) -> PyResult<Solution> {
+    ) -> PyResult<Py<PyAny>> {
         let mut arm = self.given.clone();
         if let Some(tensions) = tensions {
             let tensions = finite("tensions", &tensions, false)?;
@@ -99,9 +107,14 @@ impl Arm {
             arm.flow.speed = speed;
         }
         let options = options(tol, snaps);
-        py.detach(|| hydrostat::Solver::new(&arm, options)?.solve())
-            .map(|configuration| Solution::new(configuration, options))
-            .map_err(|error| solve_error(py, error, options))
+        if arm.space.is_some() {
+            let solved = py.detach(|| SpatialSolver::new(&arm, options)?.solve());
+            let found = solved.map_err(|error| spatial_error(py, error, options))?;
+            return Ok(Py::new(py, SpatialSolution::new(found, options))?.into_any());
+        }
+        let solved = py.detach(|| hydrostat::Solver::new(&arm, options)?.solve());
+        let found = solved.map_err(|error| solve_error(py, error, options))?;
+        Ok(Py::new(py, Solution::new(found, options))?.into_any())
     }
 }
 
@@ -127,5 +140,8 @@ pub(crate) fn shipped(name: &str) -> Option<&'static str> {
 /// Names and descriptions of the arms that ship with the program.
 #[pyfunction]
 pub(crate) fn shipped_names() -> Vec<(&'static str, &'static str)> {
-    files::names().map(|name| (name, files::description(name).unwrap_or_default())).collect()
+    files::names()
+        .chain(files::spatial_names())
+        .map(|name| (name, files::description(name).unwrap_or_default()))
+        .collect()
 }

@@ -1,7 +1,7 @@
 //! Numbers as NumPy arrays, and back.
 
-use numpy::ndarray::ArrayView1;
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use numpy::ndarray::{ArrayView1, ArrayView2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
@@ -14,6 +14,22 @@ pub(crate) fn shared<'py>(owner: Bound<'py, PyAny>, numbers: &[f64]) -> Bound<'p
     // SAFETY: the array keeps `owner` alive, which keeps the vector; frozen, it never gives out a way to change or move it.
     #[expect(unsafe_code, reason = "NumPy cannot know how long the memory lives: see above")]
     let array = unsafe { PyArray1::borrow_from_array(&ArrayView1::from(numbers), owner) };
+    array.readwrite().make_nonwriteable();
+    array
+}
+
+/// The same of points, as an array of three columns.
+pub(crate) fn shared_points<'py>(owner: Bound<'py, PyAny>, points: &[[f64; 3]]) -> Bound<'py, PyArray2<f64>> {
+    // SAFETY: as in `shared`.
+    #[expect(unsafe_code, reason = "NumPy cannot know how long the memory lives: see `shared`")]
+    let array = unsafe { PyArray2::borrow_from_array(&ArrayView2::from(points), owner) };
+    array.readwrite().make_nonwriteable();
+    array
+}
+
+/// A read-only array of three columns with its own memory.
+pub(crate) fn given_points<'py>(py: Python<'py>, points: &[[f64; 3]]) -> Bound<'py, PyArray2<f64>> {
+    let array = PyArray2::from_array(py, &ArrayView2::from(points));
     array.readwrite().make_nonwriteable();
     array
 }

@@ -3,6 +3,7 @@
 
 use hydrostat::{
     Configuration, NoEquilibrium, Options, PathError, ReachError, SensitivityError, SnapBounds, SolveError,
+    SpatialError, Verdict,
 };
 use hydrostat_files::MeasurementsError;
 use hydrostat_identify::{IdentifyError, Trial};
@@ -13,6 +14,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyAny;
 
 use crate::solution::{Solution, snaps};
+use crate::spatial_solution::{self, SpatialSolution};
 use crate::wrong::made;
 pub(crate) use crate::wrong::{file_error, wrong};
 
@@ -94,9 +96,19 @@ pub(crate) fn sweep_error(error: SweepError) -> PyErr {
     }
 }
 
+/// What a solve in space ends with.
+pub(crate) fn spatial_error(py: Python<'_>, error: SpatialError, options: Options) -> PyErr {
+    let SpatialError::NoEquilibrium(no) = error else { return wrong(error) };
+    let last_good = no.last_good.map(|configuration| Py::new(py, SpatialSolution::new(configuration, options)));
+    match last_good.transpose() {
+        Ok(shape) => {
+            verdict_error(py, &no.verdict, shape, spatial_solution::snaps(&no.snaps), None::<Py<Solution>>, None)
+        }
+        Err(error) => error,
+    }
+}
+
 fn no_equilibrium(py: Python<'_>, no: NoEquilibrium, options: Options) -> PyErr {
-    static NO_EQUILIBRIUM: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    let verdict = no.verdict;
     let shape = |found: Option<Configuration>, options| -> PyResult<Option<Py<Solution>>> {
         found.map(|configuration| Py::new(py, Solution::new(configuration, options))).transpose()
     };
@@ -105,10 +117,28 @@ fn no_equilibrium(py: Python<'_>, no: NoEquilibrium, options: Options) -> PyErr 
     let shapes = || -> PyResult<_> {
         Ok((shape(no.last_good, options)?, shape(no.after_snap, followed)?, shape(no.at_full_loads, followed)?))
     };
-    let (last_good, after_snap, at_full_loads) = match shapes() {
-        Ok(shapes) => shapes,
-        Err(error) => return error,
-    };
+    match shapes() {
+        Ok((last_good, after_snap, at_full_loads)) => {
+            verdict_error(py, &no.verdict, last_good, snaps(&no.snaps), after_snap, at_full_loads)
+        }
+        Err(error) => error,
+    }
+}
+
+/// `hydrostat.NoEquilibriumError` with the shapes that are known.
+fn verdict_error<'py, G, S>(
+    py: Python<'py>,
+    verdict: &Verdict,
+    last_good: Option<G>,
+    snaps: S,
+    after_snap: Option<Py<Solution>>,
+    at_full_loads: Option<Py<Solution>>,
+) -> PyErr
+where
+    G: IntoPyObject<'py>,
+    S: IntoPyObject<'py>,
+{
+    static NO_EQUILIBRIUM: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let fields = (
         verdict.kind.name(),
         verdict.phase.name(),
@@ -118,7 +148,7 @@ fn no_equilibrium(py: Python<'_>, no: NoEquilibrium, options: Options) -> PyErr 
         verdict.message(),
         verdict.advice(),
         last_good,
-        snaps(&no.snaps),
+        snaps,
         after_snap,
         at_full_loads,
     );

@@ -86,17 +86,27 @@ pub(crate) fn map_figure(
     Figure::new(hydrostat_figures::map_figure(&keys, &column(name, values), title, &Page::default()))
 }
 
-/// Places of the tip.
+/// Places of the tip, of arms in space from three sides.
 #[pyfunction]
+#[pyo3(signature = (x, y, z, name, values, title))]
 pub(crate) fn workspace_figure(
     x: PyReadonlyArray1<'_, f64>,
     y: PyReadonlyArray1<'_, f64>,
+    z: Option<PyReadonlyArray1<'_, f64>>,
     name: String,
     values: Colours<'_>,
     title: &str,
 ) -> Figure {
-    let tips: Vec<[f64; 2]> = x.as_array().iter().zip(y.as_array()).map(|(x, y)| [*x, *y]).collect();
-    Figure::new(hydrostat_figures::workspace_figure(&tips, &column(name, values), title, &Page::default()))
+    let (x, y) = (x.as_array(), y.as_array());
+    let (page, column) = (Page::default(), column(name, values));
+    let tips = x.iter().zip(y.iter());
+    Figure::new(if let Some(z) = z {
+        let tips: Vec<[f64; 3]> = tips.zip(z.as_array()).map(|((x, y), z)| [*x, *y, *z]).collect();
+        hydrostat_figures::spatial_workspace_figure(&tips, &column, title, &page)
+    } else {
+        let tips: Vec<[f64; 2]> = tips.map(|(x, y)| [*x, *y]).collect();
+        hydrostat_figures::workspace_figure(&tips, &column, title, &page)
+    })
 }
 
 /// A column over one key.

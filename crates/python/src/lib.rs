@@ -17,6 +17,8 @@ mod reach;
 mod sensitivity;
 mod solution;
 mod solver;
+mod spatial_solution;
+mod spatial_solver;
 mod sweep;
 mod wrong;
 
@@ -43,6 +45,10 @@ mod _native {
     use super::solution::{Solution, Stations, angle};
     #[pymodule_export]
     use super::solver::Solver;
+    #[pymodule_export]
+    use super::spatial_solution::{SpatialSolution, Stations as SpatialStations};
+    #[pymodule_export]
+    use super::spatial_solver::SpatialSolver;
     #[pymodule_export]
     use super::sweep::Sweep;
 

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hydrostat::{Configuration, Options, Snap, SnapBounds, Stability, Tip, Wrench};
+use hydrostat::{Configuration, Options, Snap, SnapBounds, Stability, Statistics, Tip, Wrench};
 use hydrostat_files::{Dimension, Note, stations_csv};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyIndexError;
@@ -52,7 +52,33 @@ fn wrench(wrench: Wrench) -> (Point, f64) {
 }
 
 /// Name, tension, length, stroke, and where it was commanded that stroke, the length it leaves and whether the cable is slack.
-type CableFields<'a> = (&'a str, f64, f64, f64, Option<(f64, f64, bool)>);
+pub(crate) type CableFields<'a> = (&'a str, f64, f64, f64, Option<(f64, f64, bool)>);
+
+pub(crate) fn cable_fields(cables: &[hydrostat::CableState]) -> Vec<CableFields<'_>> {
+    let command = |c: &hydrostat::CableState| c.command.map(|c| (c.stroke, c.length, c.slack));
+    cables.iter().map(|c| (c.name.as_str(), c.tension, c.length, c.stroke, command(c))).collect()
+}
+
+/// What a solve took, by name.
+pub(crate) fn statistics(s: &Statistics) -> [(&'static str, usize); 6] {
+    [
+        ("elements", s.elements),
+        ("stages", s.stages),
+        ("newton_rounds", s.newton_rounds),
+        ("meshes", s.meshes),
+        ("load_steps", s.load_steps),
+        ("evaluations", s.evaluations),
+    ]
+}
+
+/// Places (m) on an arm of this length.
+pub(crate) fn places(length: f64, s: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
+    let places: Vec<f64> = s.as_array().iter().copied().collect();
+    match places.iter().find(|s| !(**s >= 0.0 && **s <= length)) {
+        None => Ok(places),
+        Some(outside) => Err(wrong(format!("s: expected places in [0, {length}] m, found {outside}"))),
+    }
+}
 
 /// x, y, theta and alpha.
 type TipFields = (f64, f64, f64, f64);
@@ -126,12 +152,7 @@ impl Solution {
 
     #[getter]
     fn cables(&self) -> Vec<CableFields<'_>> {
-        let fields = |c: &'_ hydrostat::CableState| (c.tension, c.length, c.stroke, c.command);
-        let all = self.configuration.cables.iter().map(|c| {
-            let (tension, length, stroke, command) = fields(c);
-            (c.name.as_str(), tension, length, stroke, command.map(|c| (c.stroke, c.length, c.slack)))
-        });
-        all.collect()
+        cable_fields(&self.configuration.cables)
     }
 
     #[getter]
@@ -179,15 +200,7 @@ impl Solution {
 
     #[getter]
     fn statistics(&self) -> [(&'static str, usize); 6] {
-        let s = self.configuration.statistics;
-        [
-            ("elements", s.elements),
-            ("stages", s.stages),
-            ("newton_rounds", s.newton_rounds),
-            ("meshes", s.meshes),
-            ("load_steps", s.load_steps),
-            ("evaluations", s.evaluations),
-        ]
+        statistics(&self.configuration.statistics)
     }
 
     /// Stations at these places.
@@ -257,7 +270,7 @@ impl Solution {
 }
 
 /// What is at each of many places, without the interpreter; Ctrl-C ends it.
-fn each<T: Send>(py: Python<'_>, places: &[f64], of: impl Fn(f64) -> T + Sync + Send) -> PyResult<Vec<T>> {
+pub(crate) fn each<T: Send>(py: Python<'_>, places: &[f64], of: impl Fn(f64) -> T + Sync + Send) -> PyResult<Vec<T>> {
     if places.len() < MANY {
         return Ok(py.detach(|| places.iter().map(|s| of(*s)).collect()));
     }
@@ -293,11 +306,6 @@ impl Solution {
 
     /// Places along the arm.
     fn places(&self, s: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
-        let places: Vec<f64> = s.as_array().iter().copied().collect();
-        let length = self.configuration.arm.length;
-        match places.iter().find(|s| !(**s >= 0.0 && **s <= length)) {
-            None => Ok(places),
-            Some(outside) => Err(wrong(format!("s: expected places in [0, {length}] m, found {outside}"))),
-        }
+        places(self.configuration.arm.length, s)
     }
 }

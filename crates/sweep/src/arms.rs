@@ -105,7 +105,11 @@ impl Arms {
 }
 
 fn way(arm: &Arm, axis: &Axis) -> Way {
+    let space = arm.space.as_ref();
     match axis.key.parse() {
+        // Angles take the place of directions in space, which the file knows.
+        Ok(Parameter::FlowDirection) if space.is_some_and(|space| space.stream.is_some()) => Way::File,
+        Ok(Parameter::GravityDirection) if space.is_some_and(|space| space.gravity.is_some()) => Way::File,
         // The tension of a cable whose stroke is commanded takes the stroke's place, which the file knows.
         Ok(Parameter::Tension(cable)) if arm.cables.get(cable).is_none_or(|cable| cable.stroke.is_some()) => Way::File,
         Ok(

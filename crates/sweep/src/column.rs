@@ -3,8 +3,10 @@
 use std::fmt;
 use std::str::FromStr;
 
-use hydrostat::{Row, Stability, Verdict, Wanted, Warning};
+use hydrostat::{Arm, Row, Stability, Wanted, Warning};
 use hydrostat_files::{Axis, AxisValue, TOLERANCE_MISSED};
+
+use crate::answer::{Found, NoAnswer};
 
 /// Something that can be asked of every row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,17 +122,8 @@ pub struct Column {
     pub data: Data,
 }
 
-/// Why a row has no answer.
-#[derive(Debug, Clone)]
-pub(crate) enum NoAnswer {
-    /// There is no such equilibrium, or none was found.
-    Verdict(Verdict),
-    /// Its values make no arm; in words.
-    Arm(String),
-}
-
 /// What became of a row.
-pub(crate) type Answer = Result<Row, NoAnswer>;
+pub(crate) type Answer = Result<Found, NoAnswer>;
 
 /// An answer, and the error of the tip (m) that was asked for.
 pub(crate) struct Answered {
@@ -144,9 +137,13 @@ pub(crate) const WARNINGS: &str = "warnings";
 /// The kinds of the warnings of a row with blanks between, each once, as the column of warnings has them. `asked` is the error of the tip that was
 /// asked for, m.
 pub fn kinds(row: &Row, asked: f64) -> String {
-    let mut out: Vec<&str> = row.warnings.iter().map(Warning::kind).collect();
+    kinds_of(&row.warnings, row.error_estimate, asked)
+}
+
+fn kinds_of(warnings: &[Warning], error_estimate: f64, asked: f64) -> String {
+    let mut out: Vec<&str> = warnings.iter().map(Warning::kind).collect();
     out.dedup();
-    if row.error_estimate > asked {
+    if error_estimate > asked {
         out.push(TOLERANCE_MISSED);
     }
     out.join(" ")
@@ -158,20 +155,28 @@ pub(crate) struct Layout {
     outputs: Vec<Output>,
     cables: usize,
     stations: usize,
+    /// Whether rows are of an arm in space.
+    space: bool,
 }
 
 /// The first column.
 pub(crate) const ROW: &str = "row";
 
 impl Layout {
-    /// With these outputs (the verdict always is one) of arms with so many cables.
-    pub(crate) fn new(outputs: &[Output], cables: usize, stations: usize) -> Self {
+    /// With these outputs (the verdict always is one) of rows of `arm`.
+    pub(crate) fn new(outputs: &[Output], arm: &Arm, stations: usize) -> Self {
         let given = |output: &Output| *output == Output::Verdict || outputs.contains(output);
-        Self { outputs: Output::ALL.into_iter().filter(given).collect(), cables, stations }
+        let outputs = Output::ALL.into_iter().filter(given).collect();
+        Self { outputs, cables: arm.cables.len(), stations, space: arm.space.is_some() }
     }
 
     pub(crate) fn outputs(&self) -> &[Output] {
         &self.outputs
+    }
+
+    /// Whether rows are of an arm in space.
+    pub(crate) fn is_spatial(&self) -> bool {
+        self.space
     }
 
     pub(crate) fn wanted(&self) -> Wanted {
@@ -196,10 +201,14 @@ impl Layout {
         }));
         for output in &self.outputs {
             let numbers: Vec<String> = match output {
-                Output::Tip => ["tip_x_m", "tip_y_m", "tip_theta_rad"].map(str::to_owned).into(),
+                Output::Tip => self.tip_columns(),
                 Output::Alpha => vec!["tip_alpha_rad".to_owned()],
                 Output::Strokes => (0..self.cables).map(|c| format!("stroke_{c}_m")).collect(),
                 Output::Tensions => (0..self.cables).map(|c| format!("tension_{c}_N")).collect(),
+                Output::Base if self.space => {
+                    let force = AXES.map(|axis| format!("base_force_{axis}_N"));
+                    force.into_iter().chain(AXES.map(|axis| format!("base_moment_{axis}_Nm"))).collect()
+                }
                 Output::Base => ["base_force_x_N", "base_force_y_N", "base_moment_Nm"].map(str::to_owned).into(),
                 Output::Fold => ["fold_margin", "fold_s_m"].map(str::to_owned).into(),
                 Output::Error => vec!["error_estimate_m".to_owned()],
@@ -221,10 +230,24 @@ impl Layout {
             };
             out.extend(numbers.into_iter().map(number));
         }
-        for (name, unit) in SHAPE {
-            out.extend((0..self.stations).map(|k| number(format!("shape_{name}_{k}_{unit}"))));
+        for (name, unit) in self.shape() {
+            out.extend((0..self.stations).map(|k| number(format!("shape_{name}_{k}{unit}"))));
         }
         out
+    }
+
+    fn tip_columns(&self) -> Vec<String> {
+        if !self.space {
+            return ["tip_x_m", "tip_y_m", "tip_theta_rad"].map(str::to_owned).into();
+        }
+        let place = AXES.map(|axis| format!("tip_{axis}_m"));
+        let directors = ["a", "b", "c"].into_iter().flat_map(|name| AXES.map(|axis| format!("tip_{name}_{axis}")));
+        place.into_iter().chain(directors).collect()
+    }
+
+    /// What shapes have at every station: names, and the ends of columns' names.
+    fn shape(&self) -> &'static [(&'static str, &'static str)] {
+        if self.space { &SHAPE_IN_SPACE } else { &SHAPE }
     }
 
     /// Adds a row to what [`Layout::columns`] has made; see there.
@@ -243,29 +266,30 @@ impl Layout {
         for output in &self.outputs {
             match output {
                 Output::Tip => {
-                    let tip = found.map(|row| row.tip);
-                    cells.numbers([tip.map(|t| t.x), tip.map(|t| t.y), tip.map(|t| t.theta)]);
+                    let tip = found.map(Found::tip);
+                    cells.numbers((0..self.tip_columns().len()).map(|k| tip.as_ref()?.get(k).copied()));
                 }
-                Output::Alpha => cells.number(found.map_or(nothing, |row| row.tip.alpha)),
-                Output::Strokes => cells.numbers((0..self.cables).map(|c| found?.strokes.get(c).copied())),
-                Output::Tensions => cells.numbers((0..self.cables).map(|c| found?.tensions.get(c).copied())),
+                Output::Alpha => cells.number(found.map_or(nothing, Found::alpha)),
+                Output::Strokes => cells.numbers((0..self.cables).map(|c| found?.strokes().get(c).copied())),
+                Output::Tensions => cells.numbers((0..self.cables).map(|c| found?.tensions().get(c).copied())),
                 Output::Base => {
-                    let base = found.map(|row| row.base_reaction);
-                    cells.numbers([base.map(|b| b.force[0]), base.map(|b| b.force[1]), base.map(|b| b.moment)]);
+                    let base = found.map(Found::base);
+                    let count = if self.space { 2 * AXES.len() } else { 3 };
+                    cells.numbers((0..count).map(|k| base.as_ref()?.get(k).copied()));
                 }
                 Output::Fold => {
-                    let fold = found.and_then(|row| row.fold_margin);
+                    let fold = found.and_then(Found::fold_margin);
                     cells.numbers([fold.map(|fold| fold.value), fold.map(|fold| fold.s)]);
                 }
-                Output::Error => cells.number(found.map_or(nothing, |row| row.error_estimate)),
+                Output::Error => cells.number(found.map_or(nothing, Found::error_estimate)),
                 Output::Stability => {
-                    let stability = found.and_then(|row| row.stability);
+                    let stability = found.and_then(Found::stability);
                     cells.text(stability.map(Stability::name));
                     cells.whole(stability.and_then(Stability::directions).and_then(|count| i64::try_from(count).ok()));
                 }
                 Output::Warnings => {
-                    let kinds = found.map(|row| kinds(row, *asked)).filter(|kinds| !kinds.is_empty());
-                    cells.text(kinds.as_deref());
+                    let kinds = found.map(|row| kinds_of(row.warnings(), row.error_estimate(), *asked));
+                    cells.text(kinds.filter(|kinds| !kinds.is_empty()).as_deref());
                 }
                 Output::Verdict => {
                     let (verdict, reason) = match row {
@@ -280,15 +304,27 @@ impl Layout {
                 }
             }
         }
-        let shape = found.map(|row| &row.stations);
-        for k in 0..SHAPE.len() {
-            let field = shape.map(|s| [&s.x, &s.y, &s.theta][k]);
-            cells.numbers((0..self.stations).map(|station| field?.get(station).copied()));
+        for field in 0..self.shape().len() {
+            cells.numbers((0..self.stations).map(|station| found?.shape(field, station)));
         }
     }
 }
 
-const SHAPE: [(&str, &str); 3] = [("x", "m"), ("y", "m"), ("theta", "rad")];
+const SHAPE: [(&str, &str); 3] = [("x", "_m"), ("y", "_m"), ("theta", "_rad")];
+const SHAPE_IN_SPACE: [(&str, &str); 9] = [
+    ("x", "_m"),
+    ("y", "_m"),
+    ("z", "_m"),
+    ("a_x", ""),
+    ("a_y", ""),
+    ("a_z", ""),
+    ("b_x", ""),
+    ("b_y", ""),
+    ("b_z", ""),
+];
+
+/// Along e1, e2, e3.
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The verdict of a row whose values together make no arm.
 pub const NO_ARM: &str = "no_arm";

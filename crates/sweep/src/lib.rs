@@ -5,6 +5,7 @@
 //! on; parts are joined at the end. A row is the same to the last bit whatever threads, shards and stops there were. Rows without an
 //! equilibrium are rows with a verdict. [`Table`] reads an output back.
 
+mod answer;
 mod arms;
 mod column;
 mod csv_file;

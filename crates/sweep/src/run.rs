@@ -5,13 +5,14 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use hydrostat::{NoRow, Options, SnapBounds, Tile};
+use hydrostat::{Arm, NoRow, Options, SnapBounds, Tile};
 use hydrostat_files::{ArmFile, arm_to_toml, write_whole, write_whole_with};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::answer::{Found, NoAnswer, solve_in_space};
 use crate::arms::{Arms, Last};
-use crate::column::{Answered, Column, Data, Layout, NoAnswer, Output, WARNINGS};
+use crate::column::{Answer, Answered, Column, Data, Layout, Output, WARNINGS};
 use crate::error::{SweepError, parquet_error};
 use crate::file_format::{Format, NOTE, noted};
 use crate::parquet_file::Reader;
@@ -89,7 +90,7 @@ pub struct Sweep {
     tiles: Range<u64>,
     /// The rows of these tiles that are wanted: all but where there are more shards than tiles.
     rows: Range<u64>,
-    tol: f64,
+    options: Options,
     name: String,
     note: String,
 }
@@ -127,15 +128,16 @@ impl Sweep {
     /// [`SweepError`]: a key that the arm file does not have, a value that makes no arm, a tolerance or shard out of range.
     pub fn new(file: &ArmFile, plan: Plan, options: &SweepOptions) -> Result<Self, SweepError> {
         let arms = Arms::new(file, plan.axes())?;
-        let layout = Layout::new(&options.outputs, arms.base().cables.len(), options.stations);
-        let start = Tile::new(Options { tol: options.tol, snaps: options.snaps }, layout.wanted())?;
+        let layout = Layout::new(&options.outputs, arms.base(), options.stations);
+        let each = Options { tol: options.tol, snaps: options.snaps };
+        let start = Tile::new(each, layout.wanted())?;
         let (tiles, rows) = match options.shard {
             None => (0..plan.tiles(), 0..plan.rows()),
             Some(shard) => share(&plan, shard)?,
         };
         let note = note(&plan, &arms, &layout, options, &rows);
         let name = arms.base().name.clone();
-        Ok(Self { plan, arms, layout, start, tiles, rows, tol: options.tol, name, note })
+        Ok(Self { plan, arms, layout, start, tiles, rows, options: each, name, note })
     }
 
     /// The name of the arm.
@@ -388,17 +390,27 @@ impl Sweep {
         let mut solved: Vec<(u64, Answered)> = Vec::new();
         for row in self.plan.order(tile) {
             let arm = self.arms.arm(&self.plan.values(row), &mut last);
-            let asked = arm.as_ref().map_or(f64::INFINITY, |arm| self.tol * arm.length);
-            let answer = arm.map_err(NoAnswer::Arm).and_then(|arm| {
-                solver.solve(arm).map_err(|no| match no {
-                    NoRow::Verdict(verdict) => NoAnswer::Verdict(verdict),
-                    NoRow::Arm(error) => NoAnswer::Arm(error.to_string()),
-                })
-            });
+            let asked = arm.as_ref().map_or(f64::INFINITY, |arm| self.options.tol * arm.length);
+            let answer = arm.map_err(NoAnswer::Arm).and_then(|arm| self.answer(arm, &mut solver));
             solved.push((row, Answered { answer, asked }));
         }
         solved.sort_unstable_by_key(|(row, _)| *row);
         (rows, solved.into_iter().map(|(_, answer)| answer).collect())
+    }
+}
+
+impl Sweep {
+    /// What becomes of a row; `solver` has solved the one before.
+    fn answer(&self, arm: &Arm, solver: &mut Tile) -> Answer {
+        match (arm.space.is_some(), self.layout.is_spatial()) {
+            (true, true) => solve_in_space(arm, self.options, self.layout.wanted()),
+            (false, false) => solver.solve(arm).map(Found::Plane).map_err(|no| match no {
+                NoRow::Verdict(verdict) => NoAnswer::Verdict(verdict),
+                NoRow::Arm(error) => NoAnswer::Arm(error.to_string()),
+            }),
+            // Their columns differ.
+            _ => Err(NoAnswer::Arm("`arm.space`: expected the same in all rows; give it in the arm file".to_owned())),
+        }
     }
 }
 

@@ -6,6 +6,23 @@ use hydrostat_sweep::{NO_ARM, Output, Plan, Sample, Sweep, SweepOptions, names};
 const PAGE: &str = include_str!("../../../docs/interface.md");
 
 #[test]
+fn it_has_every_column_of_arms_in_space() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().join("out.csv");
+    let file = ArmFile::parse(shipped::get("silicone-spatial").unwrap(), "silicone-spatial").unwrap();
+    let plan = Plan::new(vec!["flow.speed=0,0.1".parse::<Axis>().unwrap()], Sample::Grid, 0).unwrap();
+    let options = SweepOptions { outputs: Output::ALL.to_vec(), stations: 2, ..SweepOptions::default() };
+    Sweep::new(&file, plan, &options).unwrap().run(&out, false, 1, &|_| {}).unwrap();
+    let columns = names(&out).unwrap();
+    assert_eq!(columns.len(), 56);
+    // Of directors the page has the first of each kind.
+    let rest = ["tip_b_y", "tip_b_z", "tip_c_", "_1_", "_2_", "shape_a_", "shape_b_", "_1"];
+    for column in columns.iter().filter(|column| !rest.iter().any(|part| column.contains(part))) {
+        assert!(PAGE.contains(&format!("`{column}`")), "{column}");
+    }
+}
+
+#[test]
 fn it_has_every_column() {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("out.csv");

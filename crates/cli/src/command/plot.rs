@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use hydrostat_figures::{
-    Abscissa, Coloured, ColouredColumn, KeyValues, Page, Scene, curve_figure, map_figure, value_text, workspace_figure,
+    Abscissa, Coloured, ColouredColumn, KeyValues, Page, Scene, curve_figure, map_figure, spatial_workspace_figure,
+    value_text, workspace_figure,
 };
 use hydrostat_files::head_now;
 use hydrostat_sweep::{Table, VariedKey, names, note_beside, varied_keys};
@@ -13,6 +14,8 @@ use crate::output;
 use crate::request::{self, WrongRequest};
 
 const TIP: [&str; 2] = ["tip_x_m", "tip_y_m"];
+/// Of arms in space.
+const TIP_Z: &str = "tip_z_m";
 const ALPHA: &str = "tip_alpha_rad";
 /// How little an error estimate says of an arm.
 const ERROR: &str = "error_estimate_m";
@@ -23,8 +26,10 @@ const TIP_FIRST: [&str; 2] = ["tip_theta_rad", ALPHA];
 pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
     let keys = varied_keys(&args.sweep)?;
     let all = names(&args.sweep)?;
-    let over = over(&keys, &args.over)?;
     let pictures = pictures(args, all.iter().any(|name| name == TIP[0]));
+    // A workspace needs no keys, of which there may be as many as cables.
+    let has_map = pictures.iter().any(|(_, _, kind)| matches!(kind, Kind::Map));
+    let over = if has_map || !args.over.is_empty() { over(&keys, &args.over)? } else { Vec::new() };
     let outputs: Vec<_> = pictures.iter().map(|(option, file, _)| (*option, Some(file.as_path()))).collect();
     let beside = note_beside(&args.sweep);
     request::check_outputs(&[Some(("SWEEP", &*args.sweep)), Some(("SWEEP", &*beside))], &outputs)?;
@@ -35,6 +40,7 @@ pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
     };
     let mut wanted: Vec<&str> = keys.iter().map(|key| key.column.as_str()).collect();
     wanted.extend(TIP);
+    wanted.push(TIP_Z);
     wanted.push(&quantity);
     let table = Table::read(&args.sweep, &wanted)?;
     let Some(column) = coloured(&table, &quantity) else {
@@ -54,8 +60,14 @@ pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
                 let (Some(x), Some(y)) = (x, y) else {
                     return Err(WrongRequest::NotInSweep(option, "the columns tip_x_m and tip_y_m").into());
                 };
-                let tips: Vec<[f64; 2]> = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
-                workspace_figure(&tips, &column, &name, &page)
+                let tips = x.into_iter().zip(y);
+                if let Some(z) = table.numbers(TIP_Z) {
+                    let tips: Vec<[f64; 3]> = tips.zip(z).map(|((x, y), z)| [x, y, z]).collect();
+                    spatial_workspace_figure(&tips, &column, &name, &page)
+                } else {
+                    let tips: Vec<[f64; 2]> = tips.map(|(x, y)| [x, y]).collect();
+                    workspace_figure(&tips, &column, &name, &page)
+                }
             }
         };
         output::draw(&scene, &file, &args.picture.page)?;
@@ -127,7 +139,8 @@ fn varying(sweep: &Path, all: &[String], keys: &[VariedKey]) -> anyhow::Result<S
     if span(ALPHA).is_some_and(|span| span >= LEAST_ANGLE) {
         return Ok(ALPHA.to_owned());
     }
-    let widest = TIP.into_iter().filter_map(|name| Some((name, span(name)?))).max_by(|a, b| a.1.total_cmp(&b.1));
+    let widest =
+        TIP.into_iter().chain([TIP_Z]).filter_map(|name| Some((name, span(name)?))).max_by(|a, b| a.1.total_cmp(&b.1));
     let other = || outputs.iter().copied().filter(|name| *name != ERROR).find(|name| span(name).is_some());
     // Where nothing varies, one colour is what there is to see.
     let any =

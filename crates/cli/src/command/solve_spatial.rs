@@ -1,11 +1,12 @@
 //! `hydrostat solve` of an arm in space.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use hydrostat::{
-    Arm, ArmError, NoSpatialEquilibrium, Options, SpatialConfiguration, SpatialError, SpatialSolver, SpatialWrench,
-    Stability,
+    Arm, NoSpatialEquilibrium, Options, SpatialConfiguration, SpatialError, SpatialSolver, SpatialWrench, Stability,
 };
+use hydrostat_figures::{last_good_note, spatial_arm_figure};
 use hydrostat_files::{Note, SpatialFailureDocument, SpatialSolutionDocument, number, spatial_stations_csv};
 
 use super::summary::{cable_rows, signed, stability_in_words};
@@ -14,11 +15,10 @@ use crate::output;
 use crate::request;
 
 pub(super) fn run(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
-    if args.plot.is_some() {
-        return Err(SpatialError::from(ArmError::OnlyInPlane { what: "--plot" }).into());
-    }
     let mut solver = SpatialSolver::new(arm, Options { tol: args.tol, snaps: args.snaps.bounds() })?;
-    request::check_outputs(&[request::arm_input(&args.arm.file)], &[("-o", args.output.as_deref())])?;
+    let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
+    request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
+    request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
     match solver.solve() {
         Ok(configuration) => report(args, configuration),
         Err(SpatialError::NoEquilibrium(failure)) => {
@@ -30,6 +30,9 @@ pub(super) fn run(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
 }
 
 fn report(args: &SolveArgs, mut configuration: SpatialConfiguration) -> anyhow::Result<()> {
+    if let Some(plot) = &args.plot {
+        draw(args, plot, &configuration, None)?;
+    }
     let notes = Note::all_in_space(&configuration, args.tol);
     resample(args, &mut configuration);
     let text = match args.format {
@@ -51,6 +54,11 @@ fn report(args: &SolveArgs, mut configuration: SpatialConfiguration) -> anyhow::
 
 /// JSON gets the verdict with the last good shape; text and CSV have nothing to say.
 fn report_failure(args: &SolveArgs, mut failure: NoSpatialEquilibrium) -> anyhow::Result<()> {
+    match (&args.plot, &failure.last_good) {
+        (Some(plot), Some(last_good)) => draw(args, plot, last_good, Some(&last_good_note(&failure.verdict)))?,
+        (Some(plot), None) => eprintln!("warning: no shape was found on the way, so {} is not drawn", plot.display()),
+        (None, _) => {}
+    }
     if args.format != Format::Json {
         return Ok(());
     }
@@ -61,6 +69,10 @@ fn report_failure(args: &SolveArgs, mut failure: NoSpatialEquilibrium) -> anyhow
     }
     let text = output::line(SpatialFailureDocument::new(&failure, &notes).to_json());
     output::put(args.output.as_deref(), &text)
+}
+
+fn draw(args: &SolveArgs, plot: &Path, configuration: &SpatialConfiguration, note: Option<&str>) -> anyhow::Result<()> {
+    output::draw(&spatial_arm_figure(configuration, note, &args.picture.page()), plot, &args.picture.page)
 }
 
 fn resample(args: &SolveArgs, configuration: &mut SpatialConfiguration) {

@@ -16,7 +16,7 @@ const MANY: u64 = 1_000_000_000;
 pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let file = request::overridden(&args.arm)?;
     // Wrong files and likely slips are told as everywhere.
-    request::arm_of(&file)?;
+    request::arm_anywhere(&file)?;
     let plan =
         Plan::new(args.vary.clone(), args.sample.unwrap_or(Sample::Grid), args.seed).map_err(SweepError::from)?;
     let options = SweepOptions {

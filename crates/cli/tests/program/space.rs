@@ -26,6 +26,32 @@ fn an_arm_in_space_is_solved_in_every_format() {
     assert!(text.contains("in space") && text.contains(", stable"), "{text}");
 }
 
+#[test]
+fn an_arm_in_space_is_drawn_in_every_form() {
+    let directory = directory();
+    for (file, head) in [("arm.svg", &b"<svg"[..]), ("arm.pdf", b"%PDF"), ("arm.png", b"\x89PNG")] {
+        let args = ["solve", "octopus-spatial", "--plot", file, "--width", "85 mm", "--title", "four cables"];
+        let run = hydrostat_in(directory.path(), &args);
+        assert_eq!(run.code, 0, "{}", run.err);
+        assert!(std::fs::read(directory.path().join(file)).unwrap().starts_with(head), "{file}");
+    }
+}
+
+#[test]
+fn tips_of_a_sweep_in_space_are_drawn_from_three_sides() {
+    let directory = directory();
+    // As many keys as cables: more than a map has axes.
+    let keys = [0, 1, 2].map(|cable| format!("cable[{cable}].tension=0:0.2:3"));
+    let tensions: Vec<&str> = keys.iter().flat_map(|key| ["--vary", key]).collect();
+    let swept =
+        hydrostat_in(directory.path(), &[&["sweep", "silicone-spatial", "-o", "rows.csv"], &tensions[..]].concat());
+    assert_eq!(swept.code, 0, "{}", swept.err);
+    let drawn = hydrostat_in(directory.path(), &["plot", "rows.csv", "--workspace", "tips.svg", "--svg-text"]);
+    assert_eq!(drawn.code, 0, "{}", drawn.err);
+    let svg = std::fs::read_to_string(directory.path().join("tips.svg")).unwrap();
+    assert!(svg.matches("(mm)").count() >= 3);
+}
+
 /// With the word for space alone, an arm has the shape that it has in the plane.
 #[test]
 fn a_planar_file_in_space_gives_the_planar_answer() {
@@ -47,6 +73,9 @@ fn a_fold_in_space_is_a_verdict_with_the_last_good_shape() {
     let document = json(&run.out);
     assert_eq!(document["verdict"]["kind"], "cable_fold");
     assert!(document["last_good"]["tip"]["z"].is_number());
+    let drawn = hydrostat_in(directory.path(), &[&args[..4], &["--plot", "last.svg", "--svg-text"]].concat());
+    let svg = std::fs::read_to_string(directory.path().join("last.svg")).unwrap();
+    assert!(drawn.code == 3 && svg.contains("Last good shape, at"), "{}", drawn.err);
     assert!(run.err.contains("try: "), "{}", run.err);
 }
 
@@ -56,7 +85,6 @@ fn what_is_for_arms_in_the_plane_says_so() {
         &["path", "silicone-spatial", "--vary", "flow.speed=0:0.1"][..],
         &["equilibria", "silicone-spatial"],
         &["reach", "silicone-spatial", "--target", "200 mm,50 mm"],
-        &["solve", "silicone-spatial", "--plot", "arm.svg"],
     ] {
         let words = refused(args);
         assert!(words.contains("in the plane") && words.contains("spatial"), "{args:?}: {words}");

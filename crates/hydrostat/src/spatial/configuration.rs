@@ -156,7 +156,8 @@ impl SpatialStations {
         self.s.is_empty()
     }
 
-    fn push(&mut self, station: &SpatialStation) {
+    /// One more, at the end.
+    pub fn push(&mut self, station: &SpatialStation) {
         macro_rules! push {
             ($($field:ident)*) => { $(self.$field.push(station.$field);)* };
         }

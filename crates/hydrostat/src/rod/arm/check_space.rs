@@ -65,7 +65,14 @@ impl Arm {
     }
 
     /// The free-stream velocity U in space, m/s.
-    pub(crate) fn stream_in_space(&self) -> [f64; 3] {
+    ///
+    /// ```
+    /// let mut arm = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+    /// arm.flow.speed = 0.1;
+    /// arm.space = Some(hydrostat::Space { stream: Some([0.0, 0.0, 2.0]), ..Default::default() });
+    /// assert_eq!(arm.stream_in_space(), [0.0, 0.0, 0.1]);
+    /// ```
+    pub fn stream_in_space(&self) -> [f64; 3] {
         let [x, y] = self.stream();
         match self.space.as_ref().and_then(|space| space.stream).map(|d| unit("flow.direction", d)) {
             Some(Ok(direction)) => direction.map(|d| self.flow.speed * d),
@@ -73,8 +80,14 @@ impl Arm {
         }
     }
 
-    /// The acceleration of gravity in space, m/s2.
-    pub(crate) fn gravity_in_space(&self) -> [f64; 3] {
+    /// The acceleration of gravity in space, m/s2; zero without [`Arm::gravity`].
+    ///
+    /// ```
+    /// let mut arm = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+    /// arm.gravity = Some(hydrostat::Gravity::default());
+    /// assert!((arm.gravity_in_space()[1] + 9.81).abs() < 1e-12);
+    /// ```
+    pub fn gravity_in_space(&self) -> [f64; 3] {
         let Some(gravity) = self.gravity else { return [0.0; 3] };
         let given = self.space.as_ref().and_then(|space| space.gravity).map(|d| unit("gravity.direction", d));
         if let Some(Ok(direction)) = given {
