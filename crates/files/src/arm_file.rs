@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use hydrostat::{
-    Arm, Base, Cable, Cavity, Displaced, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity,
+    Arm, Base, Cable, Cavity, Displaced, DistributedLoad, Dynamics, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity,
     Hydrostatics, LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume, WettedLength,
 };
 
@@ -273,6 +273,7 @@ fn build(v: &Values, name: String) -> Arm {
             force: v.profiles("distributed.force").unwrap_or_else(|| [zero(), zero()]),
             couple: v.profile("distributed.couple").unwrap_or_else(zero),
         },
+        dynamics: Dynamics::default(),
         readings: readings(v),
     }
 }

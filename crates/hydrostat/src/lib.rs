@@ -132,6 +132,7 @@
 
 pub mod cases;
 mod inverse;
+pub mod motion;
 mod numerics;
 mod rod;
 mod statics;
@@ -141,12 +142,15 @@ pub use rod::{arm, parameter, profile, readings};
 pub use statics::{configuration, many, path, sensitivity, snap, solve, stability, verdict};
 
 pub use arm::{
-    Arm, ArmError, Base, Cable, Cavity, DistributedLoad, Flow, FlowLaw, Gravity, Material, Motion, Reference, TipLoad,
+    Arm, ArmError, Base, Cable, Cavity, DistributedLoad, Dynamics, Flow, FlowLaw, Gravity, Material, Motion, Reference, TipLoad,
 };
 pub use configuration::{
     CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,
 };
 pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
+pub use motion::{
+    CableMotion, Course, Inputs, Instant, MotionError, MotionOptions, MotionStatistics, MotionVerdict, MotionVerdictKind, Simulation,
+};
 pub use numerics::dispatch::has_wide_vectors;
 pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};

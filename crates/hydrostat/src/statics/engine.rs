@@ -23,6 +23,6 @@ pub(crate) use self::held::{NewtonStep, UnitPull, pull_taut};
 pub(crate) use self::outputs::{asked_in, sharpened};
 pub(crate) use self::rounds::{correct, linearise, respond};
 pub(crate) use self::settle::First;
-pub(crate) use self::start::turn_sections;
+pub(crate) use self::start::{turn_sections, wanted_side};
 pub(crate) use self::trouble::{HOP, Trouble, roughly};
 pub(crate) use super::dimensions::{Guess, M};

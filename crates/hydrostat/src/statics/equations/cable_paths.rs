@@ -11,10 +11,10 @@ use crate::statics::dimensions::{L, N, Q};
 #[derive(Clone, Copy)]
 pub(crate) struct StationData<'a> {
     /// Of the stages.
-    weights: &'a [f64],
+    pub(crate) weights: &'a [f64],
     /// Lengths of elements, a group.
-    steps: &'a [Lanes],
-    stations: &'a [Station<N, L>],
+    pub(crate) steps: &'a [Lanes],
+    pub(crate) stations: &'a [Station<N, L>],
 }
 
 impl<'a> StationData<'a> {

@@ -1,0 +1,362 @@
+//! The boundary-value problem of one stage in time.
+//!
+//! ```text
+//! theta' = mu                 n_f' = -f(U - r.) + rho_arm A_m r.. + f_a
+//! r' = nu a + eta b           m_f' = -(r' x n_f) . k - couple + d/dt (J omega)
+//! ```
+//!
+//! with r. = cv r + hv, r.. = cv r. + ha and so on, see [`super`]. States are (theta, n_f, m_f, x, y), the first four those of
+//! the statics; lengths are in L, forces in the static unit, times in s.
+
+use hydrostat_bvp::{Condition, EndPlace, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution, Station, each};
+
+use super::history::{History, Layout};
+use crate::numerics::sincos::sin_cos;
+use crate::rod::arm::Arm;
+use crate::rod::cable_list::CableList;
+use crate::rod::inertia::{Masses, inertia, turning};
+use crate::rod::loads::{Load, centreline, load};
+use crate::rod::profile::Profile;
+use crate::rod::readings::{FlowSurface, Volume};
+use crate::rod::section::Stiffness;
+use crate::rod::section_solve::{Solved, solve_section};
+use crate::statics::dimensions::{L, M, N};
+use crate::statics::equations::gradients::{
+    by_strain_change, in_directors, jacobian, rate_gradient, strain_by_state,
+};
+use crate::statics::equations::place::Place;
+use crate::statics::equations::{Equations, SectionFailure, failure, inner};
+
+/// States: those of the statics, and x, y.
+pub(super) const S: usize = 6;
+/// Where x stands among them; y follows.
+pub(super) const X: usize = 4;
+
+/// A solution on the mesh of the motion.
+pub(super) type Shape = Solution<S, M, L>;
+
+/// Equations of a moving arm at one time.
+#[derive(Debug, Clone)]
+pub(super) struct Moving {
+    /// Data along the arm, loads at this time.
+    pub(super) statics: Equations,
+    /// Acceleration of the stream, m/s2.
+    stream_acceleration: [f64; 2],
+    pub(super) masses: Vec<Masses<Lanes>>,
+    /// d rate / d value, 1/s; zero at rest.
+    pub(super) cv: f64,
+    /// What rates start from.
+    pub(super) history: History,
+    /// Strain rates at ends of elements, less cv times the strains.
+    end_rates: Vec<[Lanes; L]>,
+    closed: bool,
+    nodes: usize,
+}
+
+impl Moving {
+    pub(super) fn new(arm: &Arm) -> Self {
+        let lateral = arm.readings.flow_surface == FlowSurface::Lateral && arm.flow.density != 0.0;
+        Self {
+            statics: Equations::new(arm, M).leaving(1e-4),
+            stream_acceleration: [0.0; 2],
+            masses: Vec::new(),
+            cv: 0.0,
+            history: History::default(),
+            end_rates: Vec::new(),
+            nodes: 0,
+            closed: arm.readings.volume != Volume::None && (!arm.cables.is_empty() || lateral),
+        }
+    }
+
+    /// Takes stations, ends and masses of a solution's mesh.
+    pub(super) fn place_on(&mut self, gauss: &Gauss<M>, solution: &Shape) {
+        self.statics.place_on(gauss, solution);
+        let (arm, unit) = (self.statics.arm(), self.statics.units);
+        self.masses = self
+            .statics
+            .places
+            .iter()
+            .map(|place| {
+                let at = |profile: &Profile| profile.at_four(place.s * Lanes::of(unit.length), unit.length)[0];
+                Masses::new(arm, unit.force, at)
+            })
+            .collect();
+        self.nodes = solution.nodes.len();
+        self.history.set_layout(self.layout());
+    }
+
+    pub(super) fn layout(&self) -> Layout {
+        Layout { blocks: self.masses.len(), nodes: self.nodes }
+    }
+
+    /// Takes the loads of `arm`, which has the same sections, and the acceleration of its stream.
+    pub(super) fn set_loads(&mut self, arm: &Arm, stream_acceleration: [f64; 2]) {
+        self.stream_acceleration = if arm.dynamics.inertia { stream_acceleration } else { [0.0; 2] };
+        self.statics.set_loads(arm);
+    }
+
+    /// Takes what strain rates at the ends start from, by the polynomial through the stages of their elements.
+    pub(super) fn set_end_rates(&mut self, gauss: &Gauss<M>) {
+        self.end_rates.clear();
+        if self.statics.arm().dynamics.relaxation_time == 0.0 {
+            return;
+        }
+        let at_ends = [gauss.cardinals(0.0), gauss.cardinals(1.0)];
+        for place in &self.statics.end_places {
+            let mut rates = [Lanes::of(0.0); L];
+            for lane in 0..LANES {
+                let (block, from) = self.statics.groups.at(place.elements[lane], 0);
+                let weights = &at_ends[place.sides[lane].index()];
+                for (j, weight) in weights.iter().enumerate() {
+                    for (k, rate) in rates.iter_mut().enumerate() {
+                        rate.0[lane] -= self.cv * weight * self.history.strain(block + j, k).0[from];
+                    }
+                }
+            }
+            self.end_rates.push(rates);
+        }
+    }
+
+    /// The section law of a material with memory of rate, given what strain rates are beside cv times the strains.
+    #[inline(always)]
+    fn stiffened(&self, stiffness: &Stiffness<Lanes>, rates: [Lanes; L]) -> Stiffness<Lanes> {
+        let time = self.statics.arm().dynamics.relaxation_time;
+        let factor = 1.0 + time * self.cv;
+        Stiffness {
+            value: each(|k| stiffness.value[k] * Lanes::of(factor)),
+            reference: each(|k| (stiffness.reference[k] - Lanes::of(time) * rates[k]) * Lanes::of(1.0 / factor)),
+            reference_slope: stiffness.reference_slope,
+        }
+    }
+
+    /// Strain rates at a station are cv times the strains, and these.
+    #[inline(always)]
+    fn strain_rates(&self, block: usize) -> [Lanes; L] {
+        each(|k| Lanes::of(-self.cv) * self.history.strain(block, k))
+    }
+
+    /// What acts along the arm at a station, inertia among it, as a load whose force is -n_f'; its derivative by (x, y); and the
+    /// couple of inertia with its derivatives by theta and nu.
+    #[inline(always)]
+    fn loads(
+        &self,
+        block: usize,
+        station: &Station<S, L>,
+        direction: [Lanes; 2],
+        solved: &Solved<Lanes>,
+    ) -> (Load<Lanes>, [[Lanes; 2]; 2], [Lanes; 3]) {
+        let (place, masses) = (&self.places()[block], &self.masses[block]);
+        let (arm, water) = (self.statics.arm(), &self.statics.water);
+        let cv = Lanes::of(self.cv);
+        let of = |k: usize, z: Lanes| {
+            let velocity = cv * (z - self.history.value(block, k));
+            [velocity, cv * (velocity - self.history.rate(block, k))]
+        };
+        let [omega, omega_rate] = of(0, station.z[0]);
+        let [x, y] = [of(1, station.z[X]), of(2, station.z[X + 1])];
+        let length = Lanes::of(self.statics.units.length);
+        let wet = arm.flow.density != 0.0;
+        let against = [x[0], y[0]];
+        let stream = wet.then(|| each(|k| Lanes::of(water.stream[k]) - length * against[k]));
+        let section_stretch = &solved.balance.section_stretch;
+        let [nu, eta, _] = solved.strain;
+        let mut out =
+            load(water, &place.body, stream, direction, solved.strain, section_stretch, station.closure_slope);
+        let along = centreline(direction, [nu, eta]);
+        let unit = 1.0 / self.statics.units.length;
+        let still = self.stream_acceleration.map(|v| v * unit);
+        let inert = inertia(water, masses, &along, nu, section_stretch, [x[1], y[1]], still);
+        let nu_rate = cv * (nu - self.history.strain(block, 0));
+        let turn = turning(self.statics.volume, masses, [nu, nu_rate], [omega, omega_rate]);
+        let by_place = each(|k| {
+            each(|c| -(length * cv * out.by_stream[k][c]) - cv * cv * inert.by_acceleration[k][c])
+        });
+        for k in 0..2 {
+            out.force[k] -= inert.force[k];
+            out.by_theta[k] -= inert.by_theta[k];
+            for c in 0..3 {
+                out.by_strain[k][c] -= inert.by_strain[k][c];
+            }
+        }
+        let [by_omega_rate, by_omega, by_nu, by_nu_rate] = turn.by;
+        (out, by_place, [turn.couple, cv * (cv * by_omega_rate + by_omega), by_nu + cv * by_nu_rate])
+    }
+
+    #[inline(always)]
+    fn places(&self) -> &[Place<Lanes>] {
+        &self.statics.places
+    }
+
+    /// The stations of a block.
+    #[inline(always)]
+    fn block(
+        &self,
+        block: usize,
+        station: &mut Station<S, L>,
+        pulled: &mut CableList<Lanes>,
+        out: &mut Local<S, 0, L, Lanes>,
+    ) -> Result<(), SectionFailure> {
+        let statics = &self.statics;
+        let place = &statics.places[block];
+        statics.pulled_in(statics.cables_in(block), pulled);
+        let (sin, cos) = sin_cos(station.z[0]);
+        let direction = [cos, sin];
+        let z: [Lanes; N] = each(|a| station.z[a]);
+        let contact = in_directors(direction, &z);
+        let tolerance = statics.inner_tolerance;
+        let stiffness = self.stiffened(&place.stiffness, self.strain_rates(block));
+        let solved = solve_section(
+            statics.volume,
+            &stiffness,
+            pulled.as_slice(),
+            contact,
+            station.inner,
+            station.closure_slope,
+            tolerance,
+        );
+        if !solved.is_solved(tolerance) {
+            return Err(failure(place.s, &solved, tolerance));
+        }
+        let [nu, eta, mu] = solved.strain;
+        let (load, by_place, [inert, inert_by_theta, inert_by_nu]) = self.loads(block, station, direction, &solved);
+        let by_state = strain_by_state(&solved.inverse, direction, contact);
+        let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
+        let rates = |[nu, eta, _]: [Lanes; 3]| [nu * cos - eta * sin, nu * sin + eta * cos];
+        let zero = Lanes::of(0.0);
+
+        // With the step of the strains, to first order.
+        let by_change = by_strain_change(&load, contact, solved.change);
+        let rate_change = rates(solved.change);
+        let couple = eta * contact[0] - nu * contact[1] - place.body.couple + inert;
+        out.slope = [
+            mu + by_change[0],
+            by_change[1] - load.force[0],
+            by_change[2] - load.force[1],
+            couple + by_change[3] + inert_by_nu * solved.change[0],
+            rate[0] + rate_change[0],
+            rate[1] + rate_change[1],
+        ];
+        let by_own = jacobian(direction, contact, &solved, &load, &by_state);
+        let by_rate = rate_gradient(direction, rate, &by_state);
+        out.jacobian = [[zero; S]; S];
+        for a in 0..N {
+            for b in 0..N {
+                out.jacobian[a][b] = by_own[a][b];
+            }
+            out.jacobian[3][a] += inert_by_nu * by_state[0][a];
+        }
+        out.jacobian[3][0] += inert_by_theta;
+        for q in 0..2 {
+            for b in 0..N {
+                out.jacobian[X + q][b] = by_rate[q][b];
+            }
+            for c in 0..2 {
+                out.jacobian[1 + q][X + c] = -by_place[q][c];
+            }
+        }
+        out.inner = inner(&solved, each(|k| wide(by_state[k])));
+        let by_closure = out.inner.by_closure;
+        let own = by_strain_change(&load, contact, by_closure);
+        let moved = rates(by_closure);
+        out.by_closure = [
+            own[0],
+            own[1] - load.by_beta_slope[0],
+            own[2] - load.by_beta_slope[1],
+            own[3] + inert_by_nu * by_closure[0],
+            moved[0],
+            moved[1],
+        ];
+        station.inner = solved.strain;
+        Ok(())
+    }
+}
+
+/// A gradient by the statics' states as one by all.
+#[inline(always)]
+fn wide([theta, n_x, n_y, m]: [Lanes; N]) -> [Lanes; S] {
+    let zero = Lanes::of(0.0);
+    [theta, n_x, n_y, m, zero, zero]
+}
+
+impl Problem<S, 0, L> for Moving {
+    type Failure = SectionFailure;
+
+    fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    #[inline(always)]
+    fn stages<const FUSED: bool>(
+        &self,
+        _: Groups,
+        stations: &mut [Station<S, L>],
+        out: &mut [Local<S, 0, L, Lanes>],
+    ) -> Result<(), SectionFailure> {
+        let mut pulled = CableList::new();
+        for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+            self.block(block, station, &mut pulled, out)?;
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn ends<const FUSED: bool>(
+        &self,
+        _: &[EndPlace],
+        stations: &mut [Station<S, L>],
+        out: &mut [Inner<S, L, Lanes>],
+    ) -> Result<(), SectionFailure> {
+        let statics = &self.statics;
+        let mut pulled = CableList::new();
+        let count = statics.tensions.len();
+        for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+            let section = &statics.end_sections[block];
+            statics.pulled_in(&statics.end_cables[block * count..(block + 1) * count], &mut pulled);
+            let (sin, cos) = sin_cos(station.z[0]);
+            let z: [Lanes; N] = each(|a| station.z[a]);
+            let contact = in_directors([cos, sin], &z);
+            let rates = self.end_rates.get(block).copied().unwrap_or_default();
+            let solved = solve_section(
+                statics.volume,
+                &self.stiffened(&section.stiffness, rates),
+                pulled.as_slice(),
+                contact,
+                station.inner,
+                station.closure_slope,
+                statics.inner_tolerance,
+            );
+            if !solved.is_solved(statics.inner_tolerance) {
+                return Err(failure(section.s, &solved, statics.inner_tolerance));
+            }
+            let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
+            *out = inner(&solved, each(|k| wide(by_state[k])));
+            station.inner = solved.strain;
+        }
+        Ok(())
+    }
+
+    fn left_count(&self) -> usize {
+        3
+    }
+
+    /// Place and angle of the base.
+    fn left(&self, z: &[f64; S], out: &mut [Condition<S>; S]) {
+        let base = self.statics.arm().base;
+        let length = self.statics.units.length;
+        let given = [(0, base.angle), (X, base.x / length), (X + 1, base.y / length)];
+        for (out, (a, value)) in out.iter_mut().zip(given) {
+            out.residual = z[a] - value;
+            out.gradient[a] = 1.0;
+        }
+    }
+
+    /// n_f(L) and m_f(L) are the loads on the tip, as in the statics.
+    fn right(&self, z: &[f64; S], out: &mut [Condition<S>; S]) {
+        let (load, turn) = self.statics.tip_load(z[0]);
+        for k in 0..3 {
+            out[k].residual = z[k + 1] - load[k];
+            out[k].gradient[k + 1] = 1.0;
+            out[k].gradient[0] = -turn[k];
+        }
+    }
+}
