@@ -51,19 +51,25 @@ pub(super) struct Moving {
     end_rates: Vec<[Lanes; L]>,
     closed: bool,
     nodes: usize,
+    /// Sizes of the states: what a solution holds, times these, is the state. With k^4 = mass cv^2 and the sizes 1, k^2, k^2,
+    /// k, 1/k, 1/k all states of a bending wave that a step resolves are of one size, and elimination in order is stable.
+    pub(super) scales: [f64; S],
 }
 
 impl Moving {
     pub(super) fn new(arm: &Arm) -> Self {
+        let mut statics = Equations::new(arm, M).leaving(1e-4);
+        statics.set_force_unit(force_unit(arm));
         let lateral = arm.readings.flow_surface == FlowSurface::Lateral && arm.flow.density != 0.0;
         Self {
-            statics: Equations::new(arm, M).leaving(1e-4),
+            statics,
             stream_acceleration: [0.0; 2],
             masses: Vec::new(),
             cv: 0.0,
             history: History::default(),
             end_rates: Vec::new(),
             nodes: 0,
+            scales: [1.0; S],
             closed: arm.readings.volume != Volume::None && (!arm.cables.is_empty() || lateral),
         }
     }
@@ -169,7 +175,7 @@ impl Moving {
         let nu_rate = cv * (nu - self.history.strain(block, 0));
         let turn = turning(self.statics.volume, masses, [nu, nu_rate], [omega, omega_rate]);
         let by_place = each(|k| {
-            each(|c| -(length * cv * out.by_stream[k][c]) - cv * cv * inert.by_acceleration[k][c])
+            each(|c| cv * (-(length * out.by_stream[k][c]) - cv * inert.by_acceleration[k][c]))
         });
         for k in 0..2 {
             out.force[k] -= inert.force[k];
@@ -182,6 +188,24 @@ impl Moving {
         (out, by_place, [turn.couple, cv * (cv * by_omega_rate + by_omega), by_nu + cv * by_nu_rate])
     }
 
+    /// A station with the states themselves.
+    #[inline(always)]
+    fn unscaled(&self, station: &Station<S, L>) -> Station<S, L> {
+        Station { z: each(|a| Lanes::of(self.scales[a]) * station.z[a]), ..*station }
+    }
+
+    /// Gradients by the states as gradients by what a solution holds.
+    #[inline(always)]
+    fn scale_inner(&self, inner: &mut Inner<S, L, Lanes>) {
+        for a in 0..S {
+            let own = Lanes::of(self.scales[a]);
+            inner.value_gradient[a] = own * inner.value_gradient[a];
+            for k in 0..L {
+                inner.gradient[k][a] = own * inner.gradient[k][a];
+            }
+        }
+    }
+
     #[inline(always)]
     fn places(&self) -> &[Place<Lanes>] {
         &self.statics.places
@@ -192,12 +216,13 @@ impl Moving {
     fn block(
         &self,
         block: usize,
-        station: &mut Station<S, L>,
+        given: &mut Station<S, L>,
         pulled: &mut CableList<Lanes>,
         out: &mut Local<S, 0, L, Lanes>,
     ) -> Result<(), SectionFailure> {
         let statics = &self.statics;
         let place = &statics.places[block];
+        let station = &self.unscaled(given);
         statics.pulled_in(statics.cables_in(block), pulled);
         let (sin, cos) = sin_cos(station.z[0]);
         let direction = [cos, sin];
@@ -220,8 +245,8 @@ impl Moving {
         let [nu, eta, mu] = solved.strain;
         let (load, by_place, [inert, inert_by_theta, inert_by_nu]) = self.loads(block, station, direction, &solved);
         let by_state = strain_by_state(&solved.inverse, direction, contact);
-        let rate = [nu * cos - eta * sin, nu * sin + eta * cos];
         let rates = |[nu, eta, _]: [Lanes; 3]| [nu * cos - eta * sin, nu * sin + eta * cos];
+        let rate = rates(solved.strain);
         let zero = Lanes::of(0.0);
 
         // With the step of the strains, to first order.
@@ -266,9 +291,34 @@ impl Moving {
             moved[0],
             moved[1],
         ];
-        station.inner = solved.strain;
+        for a in 0..S {
+            let [own, inverse] = [self.scales[a], 1.0 / self.scales[a]].map(Lanes::of);
+            out.slope[a] = inverse * out.slope[a];
+            out.by_closure[a] = inverse * out.by_closure[a];
+            for b in 0..S {
+                out.jacobian[a][b] = inverse * out.jacobian[a][b];
+                out.jacobian[b][a] = own * out.jacobian[b][a];
+            }
+        }
+        self.scale_inner(&mut out.inner);
+        given.inner = solved.strain;
         Ok(())
     }
+}
+
+/// The force that bends the arm as a whole, N: the mean of EI over L^2, soft pieces (a hinge) foremost.
+fn force_unit(arm: &Arm) -> f64 {
+    let mut at = vec![0.0];
+    at.extend(arm.breaks());
+    at.push(arm.length);
+    // By Simpson's rule on eight parts between breaks.
+    let soft = |s: f64| arm.stiffness_at(s)[2].recip();
+    let sum = |ends: &[f64]| -> f64 {
+        let h = (ends[1] - ends[0]) / 8.0;
+        (0..8).map(|k| ends[0] + f64::from(k) * h).map(|s| h / 6.0 * (soft(s) + 4.0 * soft(s + 0.5 * h) + soft(s + h))).sum()
+    };
+    let compliance: f64 = at.windows(2).map(sum).sum();
+    (compliance * arm.length).recip()
 }
 
 /// A gradient by the statics' states as one by all.
@@ -309,7 +359,8 @@ impl Problem<S, 0, L> for Moving {
         let statics = &self.statics;
         let mut pulled = CableList::new();
         let count = statics.tensions.len();
-        for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+        for (block, (given, out)) in stations.iter_mut().zip(out).enumerate() {
+            let station = &self.unscaled(given);
             let section = &statics.end_sections[block];
             statics.pulled_in(&statics.end_cables[block * count..(block + 1) * count], &mut pulled);
             let (sin, cos) = sin_cos(station.z[0]);
@@ -330,7 +381,8 @@ impl Problem<S, 0, L> for Moving {
             }
             let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
             *out = inner(&solved, each(|k| wide(by_state[k])));
-            station.inner = solved.strain;
+            self.scale_inner(out);
+            given.inner = solved.strain;
         }
         Ok(())
     }
@@ -345,7 +397,7 @@ impl Problem<S, 0, L> for Moving {
         let length = self.statics.units.length;
         let given = [(0, base.angle), (X, base.x / length), (X + 1, base.y / length)];
         for (out, (a, value)) in out.iter_mut().zip(given) {
-            out.residual = z[a] - value;
+            out.residual = z[a] - value / self.scales[a];
             out.gradient[a] = 1.0;
         }
     }
@@ -354,9 +406,10 @@ impl Problem<S, 0, L> for Moving {
     fn right(&self, z: &[f64; S], out: &mut [Condition<S>; S]) {
         let (load, turn) = self.statics.tip_load(z[0]);
         for k in 0..3 {
-            out[k].residual = z[k + 1] - load[k];
+            let inverse = 1.0 / self.scales[k + 1];
+            out[k].residual = z[k + 1] - inverse * load[k];
             out[k].gradient[k + 1] = 1.0;
-            out[k].gradient[0] = -turn[k];
+            out[k].gradient[0] = -inverse * turn[k];
         }
     }
 }

@@ -81,19 +81,21 @@ impl Snapshot {
         }
     }
 
-    /// Takes the values of a solution; `system` is for its memory.
-    pub(super) fn take(&mut self, system: &mut Collocation<S, M, 0, L>, solution: &Shape) {
+    /// Takes the values of a solution whose states have the sizes `scales`, that of theta one; `system` is for its memory.
+    pub(super) fn take(&mut self, system: &mut Collocation<S, M, 0, L>, solution: &Shape, scales: &[f64; S]) {
         system.take_stations(solution);
         let layout = self.layout;
+        let size = scales[X];
         for (block, station) in system.stations().iter().enumerate() {
             let own = &mut self.values[3 * block..3 * block + 3];
-            own.copy_from_slice(&[station.z[0], station.z[X], station.z[X + 1]]);
+            let per = Lanes::of(size);
+            own.copy_from_slice(&[station.z[0], per * station.z[X], per * station.z[X + 1]]);
             let [nu, eta, mu] = solution.stages[block].inner;
             let first = layout.second() + 4 * block;
             self.values[first..first + 4].copy_from_slice(&[nu, eta, mu, solution.stages[block].closure_slope]);
         }
         for (i, z) in solution.nodes.iter().enumerate() {
-            self.values[3 * layout.blocks + i] = Lanes([z[0], z[X], z[X + 1], 0.0]);
+            self.values[3 * layout.blocks + i] = Lanes([z[0], size * z[X], size * z[X + 1], 0.0]);
         }
     }
 

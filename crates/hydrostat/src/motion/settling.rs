@@ -6,7 +6,7 @@ use super::equations::{Moving, S, Shape, X};
 use crate::numerics::dispatch::{Work, dispatch};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, L, M, N, Q};
-use crate::statics::engine::wanted_side;
+use crate::statics::engine::{turn_sections, wanted_side};
 use crate::statics::equations::SectionFailure;
 
 /// Rounds of one solve.
@@ -78,9 +78,25 @@ impl Settling {
         }
     }
 
-    /// Takes the solution of the statics, on a mesh for the motion.
-    pub(super) fn start_from(&mut self, given: &Guess, mesh: Mesh) {
-        let whole = with_places(given, self.moving.statics.arm(), &self.system);
+    /// Takes the unloaded arm, on a mesh for the motion.
+    pub(super) fn start_unloaded(&mut self, mesh: Mesh) {
+        let statics = &mut self.moving.statics;
+        let base = statics.arm().base;
+        let mut shape = Guess::constant(mesh, [base.angle, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+        statics.place_on(&self.system.gauss, &shape);
+        for (block, stage) in shape.stages.iter_mut().enumerate() {
+            stage.inner = statics.reference_in(block);
+        }
+        turn_sections(&self.system.gauss, &mut shape);
+        let force = statics.units.force;
+        let mesh = shape.mesh.clone();
+        self.start_from(&shape, force, mesh);
+    }
+
+    /// Takes the solution of the statics, whose unit of force is `force` (N), on a mesh for the motion.
+    pub(super) fn start_from(&mut self, given: &Guess, force: f64, mesh: Mesh) {
+        let statics = &self.moving.statics;
+        let whole = with_places(given, force / statics.units.force, statics.arm(), &self.system);
         let statics = &self.moving.statics;
         self.solution = Solution { mesh, ..Solution::default() };
         whole.remap(&self.system.gauss, |s| statics.jumps_at(s), &mut self.solution);
@@ -102,14 +118,31 @@ impl Settling {
         }
     }
 
+    /// Takes the rate cv (1/s) of the next solves, and the sizes of the states that go with it: powers of two, so that they
+    /// seldom change.
+    pub(super) fn set_rate(&mut self, cv: f64) {
+        self.moving.cv = cv;
+        let mass = self.moving.masses.first().map_or(0.0, |own| (own.wall + own.added).0[0]);
+        let wanted = (mass.sqrt() * cv).sqrt().clamp(1.0, 1e9);
+        let k = wanted.log2().round().exp2();
+        let scales = [1.0, k * k, k * k, k, 1.0 / k, 1.0 / k];
+        let before = std::mem::replace(&mut self.moving.scales, scales);
+        if before != scales {
+            let factors = std::array::from_fn(|a| before[a] / scales[a]);
+            rescale(&mut self.solution, &factors);
+            self.past.iter_mut().for_each(|(_, shape)| rescale(shape, &factors));
+        }
+    }
+
     /// Forgets the motion before, which leads nowhere after a jump.
     pub(super) fn forget(&mut self) {
         self.past.clear();
     }
 
     /// Goes back to a solution at `time`, and forgets all that came after it.
-    pub(super) fn restore(&mut self, solution: &Shape, time: f64) {
+    pub(super) fn restore(&mut self, solution: &Shape, scales: &[f64; S], time: f64) {
         self.solution.clone_from(solution);
+        rescale(&mut self.solution, &std::array::from_fn(|a| scales[a] / self.moving.scales[a]));
         self.past.retain(|(t, _)| *t <= time);
         self.moving.statics.place_ends(&self.solution);
     }
@@ -163,7 +196,7 @@ impl Settling {
             round += 1;
             dispatch(Correct(&mut self.system, &self.solution, &mut self.correction));
             let angle = self.correction.largest(0);
-            let moved = self.correction.largest(X).max(self.correction.largest(X + 1));
+            let moved = self.correction.largest(X).max(self.correction.largest(X + 1)) * self.moving.scales[X];
             let strained = self.correction.largest_inner();
             let size = angle.max(strained).max(moved);
             if !size.is_finite() {
@@ -234,6 +267,16 @@ impl Settling {
     }
 }
 
+/// Multiplies the states.
+fn rescale(shape: &mut Shape, factors: &[f64; S]) {
+    for node in &mut shape.nodes {
+        node.iter_mut().zip(factors).for_each(|(z, factor)| *z *= factor);
+    }
+    for stage in &mut shape.stages {
+        stage.slope.iter_mut().zip(factors).for_each(|(z, factor)| *z = Lanes::of(*factor) * *z);
+    }
+}
+
 /// The sum of `weights` times the shapes, which have one mesh and the same own ends.
 fn combine(out: &mut Shape, shapes: &[&(f64, Shape)], weights: &[f64]) {
     let terms = || shapes.iter().map(|(_, shape)| shape).zip(weights.iter().copied());
@@ -260,8 +303,8 @@ fn combine(out: &mut Shape, shapes: &[&(f64, Shape)], weights: &[f64]) {
     }
 }
 
-/// The solution of the statics with x and y, from the base, as states.
-fn with_places(given: &Guess, arm: &Arm, system: &Collocation<S, M, 0, L>) -> Shape {
+/// The solution of the statics with x and y, from the base, as states, and what it carries times `force`.
+fn with_places(given: &Guess, force: f64, arm: &Arm, system: &Collocation<S, M, 0, L>) -> Shape {
     let mut statics = Collocation::<N, M, Q, L>::with(system.gauss.clone());
     statics.take_stations(given);
     let mut out = Solution {
@@ -272,18 +315,19 @@ fn with_places(given: &Guess, arm: &Arm, system: &Collocation<S, M, 0, L>) -> Sh
         ends: given.ends.clone(),
     };
     for (station, stage) in statics.stations().iter().zip(&given.stages) {
+        let by = Lanes::of(force);
         let (sin, cos) = (station.z[0].map(f64::sin), station.z[0].map(f64::cos));
         let [nu, eta, _] = stage.inner;
         let [theta, n_x, n_y, m] = stage.slope;
         out.stages.push(hydrostat_bvp::Stage {
-            slope: [theta, n_x, n_y, m, nu * cos - eta * sin, nu * sin + eta * cos],
+            slope: [theta, by * n_x, by * n_y, by * m, nu * cos - eta * sin, nu * sin + eta * cos],
             inner: stage.inner,
             closure_slope: stage.closure_slope,
         });
     }
     let (mut x, mut y) = (arm.base.x / arm.length, arm.base.y / arm.length);
     for (i, [theta, n_x, n_y, m]) in given.nodes.iter().copied().enumerate() {
-        out.nodes.push([theta, n_x, n_y, m, x, y]);
+        out.nodes.push([theta, force * n_x, force * n_y, force * m, x, y]);
         if i < given.mesh.elements() {
             let h = given.mesh.step(i);
             for (j, b) in system.gauss.b.iter().enumerate() {

@@ -15,18 +15,18 @@ use super::history::Snapshot;
 use super::inputs::Inputs;
 use super::settling::{Settling, Unsolved};
 use super::tableau::{RUNNING, STARTING, Tableau};
-use super::equations::Shape;
+use super::equations::{S, Shape};
 use crate::rod::arm::Arm;
 use crate::rod::readings::{Support, Volume};
 use crate::statics::equations::SectionFailure;
 use crate::statics::solve::{Options, Solver};
-use crate::statics::verdict::SolveError;
+use crate::statics::verdict::{SolveError, VerdictKind};
 
 /// Steps of one run between two outputs: the most that one may take.
 const MOST_STEPS: usize = 1_000_000;
 
 /// What a step's embedded error may be over the tolerance of the tip: errors of steps add up.
-const SHARE: f64 = 0.01;
+const SHARE: f64 = 0.003;
 
 /// What is left of Newton's method over the error of a step: what is left is systematic and adds up.
 const LEFT: f64 = 0.01;
@@ -50,6 +50,7 @@ pub(super) struct Stepper {
     running: bool,
     stages: Vec<Snapshot>,
     kept: Shape,
+    kept_scales: [f64; S],
     /// Error of a step over L that is asked for.
     tolerance: f64,
     /// Whether steps keep the length they are given.
@@ -75,23 +76,18 @@ impl Stepper {
         let mut start = arm.clone();
         inputs.apply(&mut start, time);
         check_moving(&start)?;
-        let of_start = |error: SolveError| MotionError::Start(Box::new(error));
-        let mut solver = Solver::new(&start, Options::with_tol((0.01 * tol).clamp(1e-10, 1e-6))).map_err(of_start)?;
-        solver.solve().map_err(of_start)?;
         let mut settling = Settling::new(&start);
         let mesh = mesh(arm, elements.unwrap_or_else(|| fair_elements(arm, tol)));
-        let engine = solver.engine_mut();
-        settling.start_from(&engine.solution, mesh);
-        let layout = settling.moving.layout();
-        settling.solve(time, 1e-10).map_err(|_| not_found(time, 0.0, None, &start))?;
-        settling.solve(time, 1e-12).map_err(|_| not_found(time, 0.0, None, &start))?;
+        start_at_rest(&mut settling, &start, mesh, tol, time)?;
         settling.forget();
+        let layout = settling.moving.layout();
         let mut now = Snapshot::at_rest(layout);
-        now.take(&mut settling.system, &settling.solution);
+        now.take(&mut settling.system, &settling.solution, &settling.moving.scales);
         let running = !inputs.jumps_at(time);
         let most = RUNNING.c.len();
         Ok(Self {
             kept: settling.solution.clone(),
+            kept_scales: [1.0; S],
             settling,
             arm: start,
             inputs,
@@ -168,7 +164,7 @@ impl Stepper {
     fn reject(&mut self, next: f64) {
         self.rejected += 1;
         self.next = next;
-        self.settling.restore(&self.kept, self.time);
+        self.settling.restore(&self.kept, &self.kept_scales, self.time);
     }
 
     fn accept(&mut self, h: f64, corner: f64, to_corner: bool, tip_error: f64) {
@@ -180,6 +176,7 @@ impl Stepper {
         self.steps += 1;
         self.error += tip_error;
         self.kept.clone_from(&self.settling.solution);
+        self.kept_scales = self.settling.moving.scales;
         self.running = true;
         if to_corner && self.inputs.jumps_at(self.time) {
             self.running = false;
@@ -193,7 +190,7 @@ impl Stepper {
     /// Solves the stages of a step; the largest error along the arm and that of the tip, over L.
     fn try_step(&mut self, tableau: &Tableau, h: f64) -> Result<[f64; 2], Unsolved> {
         let cv = 1.0 / (h * tableau.gamma);
-        self.settling.moving.cv = cv;
+        self.settling.set_rate(cv);
         let first = usize::from(tableau.explicit_first);
         if tableau.explicit_first {
             self.stages[0].clone_from(&self.now);
@@ -214,7 +211,8 @@ impl Stepper {
             }
             self.settling.solve(time, LEFT * self.tolerance)?;
             let own = &mut rest[0];
-            own.take(&mut self.settling.system, &self.settling.solution);
+            let settling = &mut self.settling;
+            own.take(&mut settling.system, &settling.solution, &settling.moving.scales);
             own.rates_from(cv, &self.settling.moving.history);
         }
         Ok(self.errors(tableau, h))
@@ -271,6 +269,35 @@ impl Stepper {
     /// The arm with the loads of the last solve.
     pub(super) fn arm(&self) -> &Arm {
         &self.arm
+    }
+}
+
+/// Settles on the equilibrium of `arm`: that of the statics, or, where these find none and name no limit, the one that
+/// Newton's method finds from the unloaded arm (a hinge is too soft for the statics' evidence).
+fn start_at_rest(
+    settling: &mut Settling,
+    arm: &Arm,
+    mesh: Mesh,
+    tol: f64,
+    time: f64,
+) -> Result<(), MotionError> {
+    let of_start = |error: SolveError| MotionError::Start(Box::new(error));
+    let mut solver = Solver::new(arm, Options::with_tol((0.01 * tol).clamp(1e-10, 1e-6))).map_err(of_start)?;
+    let missing = match solver.solve() {
+        Ok(_) => {
+            let engine = solver.engine_mut();
+            settling.start_from(&engine.solution, engine.equations.units.force, mesh);
+            None
+        }
+        Err(SolveError::NoEquilibrium(no)) if no.verdict.kind == VerdictKind::NotFound => {
+            settling.start_unloaded(mesh);
+            Some(SolveError::NoEquilibrium(no))
+        }
+        Err(error) => return Err(of_start(error)),
+    };
+    match settling.solve(time, 1e-10).and_then(|()| settling.solve(time, 1e-12)) {
+        Ok(()) => Ok(()),
+        Err(_) => Err(missing.map_or_else(|| not_found(time, 0.0, None, arm), of_start)),
     }
 }
 

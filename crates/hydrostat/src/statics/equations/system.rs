@@ -96,6 +96,12 @@ impl Equations {
         this
     }
 
+    /// Takes another unit of force, N, before anything is placed.
+    pub(crate) fn set_force_unit(&mut self, force: f64) {
+        self.units.force = force;
+        self.set_tensions();
+    }
+
     /// The same equations with steps of the section law left up to `inner_tolerance`.
     pub(crate) fn leaving(self, inner_tolerance: f64) -> Self {
         Self { inner_tolerance, ..self }
