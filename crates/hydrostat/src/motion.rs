@@ -33,6 +33,7 @@ mod equations;
 mod error;
 mod history;
 mod inputs;
+mod modes;
 mod settling;
 mod simulation;
 mod stepper;
@@ -40,4 +41,5 @@ mod tableau;
 
 pub use self::error::{MotionError, MotionVerdict, MotionVerdictKind};
 pub use self::inputs::{Course, Inputs};
+pub use self::modes::{Mode, Modes};
 pub use self::simulation::{CableMotion, Instant, MotionOptions, MotionStatistics, Simulation};

@@ -8,11 +8,13 @@
 //! with r. = cv r + hv, r.. = cv r. + ha and so on, see [`super`]. States are (theta, n_f, m_f, x, y), the first four those of
 //! the statics; lengths are in L, forces in the static unit, times in s.
 
-use hydrostat_bvp::{Condition, EndPlace, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution, Station, each};
+use hydrostat_bvp::{Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution, Station, each};
 
 use super::history::{History, Layout};
+use super::modes::Linear;
 use crate::numerics::sincos::sin_cos;
 use crate::rod::arm::Arm;
+use crate::rod::area_law::area_law;
 use crate::rod::cable_list::CableList;
 use crate::rod::inertia::{Masses, inertia, turning};
 use crate::rod::loads::{Load, centreline, load};
@@ -188,6 +190,97 @@ impl Moving {
         (out, by_place, [turn.couple, cv * (cv * by_omega_rate + by_omega), by_nu + cv * by_nu_rate])
     }
 
+    /// What a small motion about rest adds in a block of stations.
+    pub(super) fn linear(&self, block: usize, station: &Station<S, L>) -> Linear {
+        let (place, masses, water) = (&self.places()[block], &self.masses[block], &self.statics.water);
+        let arm = self.statics.arm();
+        let (sin, cos) = sin_cos(station.z[0]);
+        let [nu, eta, _] = station.inner;
+        let section_stretch = area_law(self.statics.volume, nu);
+        let zero = Lanes::of(0.0);
+        let load = self.load_at_rest(block, station);
+        let along = centreline([cos, sin], [nu, eta]);
+        let inert = inertia(water, masses, &along, nu, &section_stretch, [zero; 2], [0.0; 2]);
+        let turn = turning(self.statics.volume, masses, [nu, zero], [zero; 2]);
+        let length = Lanes::of(self.statics.units.length);
+        let area = section_stretch.beta * section_stretch.beta;
+        let time = Lanes::of(arm.dynamics.relaxation_time);
+        Linear {
+            damping: each(|k| each(|c| length * load.by_stream[k][c])),
+            mass: inert.by_acceleration,
+            rotary: turn.by[0],
+            viscous: each(|k| time * place.stiffness.value[k] * area),
+        }
+    }
+
+    fn load_at_rest(&self, block: usize, station: &Station<S, L>) -> Load<Lanes> {
+        let (sin, cos) = sin_cos(station.z[0]);
+        let section_stretch = area_law(self.statics.volume, station.inner[0]);
+        let water = &self.statics.water;
+        let wet = self.statics.arm().flow.density != 0.0;
+        let stream = wet.then(|| each(|k| Lanes::of(water.stream[k])));
+        let body = &self.places()[block].body;
+        load(water, body, stream, [cos, sin], station.inner, &section_stretch, station.closure_slope)
+    }
+
+    /// A unit load at a station: a force along e1 or e2, or a couple, that resists as inertia does (`field` 0 to 2), or a
+    /// unit more of what its section carries (3 to 5). Sizes of states are one.
+    pub(super) fn push(
+        &self,
+        system: &Collocation<S, M, 0, L>,
+        [block, lane, field]: [usize; 3],
+        out: &mut Forcing<S, 0, L>,
+    ) {
+        let stage = &mut out.stages[block];
+        if field < 3 {
+            stage.slope[1 + field].0[lane] = 1.0;
+            return;
+        }
+        let station = &system.stations()[block];
+        let (sin, cos) = sin_cos(station.z[0]);
+        let contact = in_directors([cos, sin], &each(|a| station.z[a]));
+        let strain = less_carried(&system.locals()[block].inner, [cos, sin], field - 3);
+        let load = self.load_at_rest(block, station);
+        let slope = by_strain_change(&load, contact, strain);
+        let [nu, eta, _] = strain;
+        let moved = [nu * cos - eta * sin, nu * sin + eta * cos];
+        let value = area_law(self.statics.volume, station.inner[0]).slope * strain[0];
+        for a in 0..S {
+            stage.slope[a].0[lane] = if a < N { slope[a].0[lane] } else { moved[a - N].0[lane] };
+        }
+        for k in 0..L {
+            stage.inner[k].0[lane] = strain[k].0[lane];
+        }
+        stage.value.0[lane] = value.0[lane];
+        self.push_ends(system, [block, lane, field], out);
+    }
+
+    /// The same at the ends of the station's element, which follow the polynomial through its stages.
+    fn push_ends(&self, system: &Collocation<S, M, 0, L>, [block, lane, field]: [usize; 3], out: &mut Forcing<S, 0, L>) {
+        let element = self.statics.groups.element(block / M, lane);
+        let at_ends = [system.gauss.cardinals(0.0), system.gauss.cardinals(1.0)];
+        out.ends.resize(self.statics.end_places.len(), ([Lanes::of(0.0); L], Lanes::of(0.0)));
+        for (b, place) in self.statics.end_places.iter().enumerate() {
+            let station = &system.end_stations()[b];
+            let (sin, cos) = sin_cos(station.z[0]);
+            let strain = less_carried(&system.ends()[b], [cos, sin], field - 3);
+            let slope = area_law(self.statics.volume, station.inner[0]).slope;
+            for l in (0..LANES).filter(|l| place.elements[*l] == element) {
+                let weight = at_ends[place.sides[l].index()][block % M];
+                for k in 0..L {
+                    out.ends[b].0[k].0[l] = weight * strain[k].0[l];
+                }
+                out.ends[b].1.0[l] = weight * slope.0[l] * strain[0].0[l];
+            }
+        }
+    }
+
+    /// The time in which the arm swings, about, s.
+    pub(super) fn time_unit(&self) -> f64 {
+        let mass = self.masses.first().map_or(0.0, |own| (own.wall + own.added).0[0]);
+        if mass > 0.0 { mass.sqrt() } else { 1.0 }
+    }
+
     /// A station with the states themselves.
     #[inline(always)]
     fn unscaled(&self, station: &Station<S, L>) -> Station<S, L> {
@@ -304,6 +397,15 @@ impl Moving {
         given.inner = solved.strain;
         Ok(())
     }
+}
+
+/// The strains that follow a unit more of what a section carries, at fixed state: those of a unit less of the contact force or
+/// moment, whose derivatives the section law's gradient has.
+fn less_carried(inner: &Inner<S, L, Lanes>, [cos, sin]: [Lanes; 2], component: usize) -> [Lanes; L] {
+    each(|k| {
+        let [_, x, y, m, ..] = inner.gradient[k];
+        -[cos * x + sin * y, cos * y - sin * x, m][component]
+    })
 }
 
 /// The force that bends the arm as a whole, N: the mean of EI over L^2, soft pieces (a hinge) foremost.

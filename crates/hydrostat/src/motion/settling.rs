@@ -1,6 +1,6 @@
 //! Newton's method on the boundary-value problem of one stage.
 
-use hydrostat_bvp::{Collocation, Correction, Lanes, LinearisationError, Mesh, Real, Side, Solution};
+use hydrostat_bvp::{Collocation, Correction, Forcing, Lanes, LinearisationError, Mesh, Real, Side, Solution};
 
 use super::equations::{Moving, S, Shape, X};
 use crate::numerics::dispatch::{Work, dispatch};
@@ -49,6 +49,16 @@ impl Work for Correct<'_> {
     }
 }
 
+struct Respond<'a>(&'a Collocation<S, M, 0, L>, &'a Forcing<S, 0, L>, &'a mut Correction<S, M, 0, L>);
+
+impl Work for Respond<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        self.0.response::<FUSED>(self.1, self.2);
+    }
+}
+
 /// The solver of stages: the last solution, and those before it.
 #[derive(Debug, Clone)]
 pub(super) struct Settling {
@@ -76,6 +86,16 @@ impl Settling {
             rounds: 0,
             solves: 0,
         }
+    }
+
+    /// Linearises at the present solution.
+    pub(super) fn linearise(&mut self) -> Result<(), LinearisationError<SectionFailure>> {
+        dispatch(Linearise(&mut self.system, &self.moving, &self.solution))
+    }
+
+    /// The response of the solution at the last linearisation to changes of the equations.
+    pub(super) fn respond(&self, change: &Forcing<S, 0, L>, out: &mut Correction<S, M, 0, L>) {
+        dispatch(Respond(&self.system, change, out));
     }
 
     /// Takes the unloaded arm, on a mesh for the motion.

@@ -71,14 +71,12 @@ impl Stepper {
         elements: Option<usize>,
         fixed: Option<f64>,
     ) -> Result<Self, MotionError> {
-        check(arm)?;
+        arm.check()?;
         inputs.check(arm)?;
         let mut start = arm.clone();
         inputs.apply(&mut start, time);
-        check_moving(&start)?;
         let mut settling = Settling::new(&start);
-        let mesh = mesh(arm, elements.unwrap_or_else(|| fair_elements(arm, tol)));
-        start_at_rest(&mut settling, &start, mesh, tol, time)?;
+        start_at_rest(&mut settling, &start, elements, tol, time)?;
         settling.forget();
         let layout = settling.moving.layout();
         let mut now = Snapshot::at_rest(layout);
@@ -274,13 +272,16 @@ impl Stepper {
 
 /// Settles on the equilibrium of `arm`: that of the statics, or, where these find none and name no limit, the one that
 /// Newton's method finds from the unloaded arm (a hinge is too soft for the statics' evidence).
-fn start_at_rest(
+pub(super) fn start_at_rest(
     settling: &mut Settling,
     arm: &Arm,
-    mesh: Mesh,
+    elements: Option<usize>,
     tol: f64,
     time: f64,
 ) -> Result<(), MotionError> {
+    check(arm)?;
+    check_moving(arm)?;
+    let mesh = mesh(arm, elements.unwrap_or_else(|| fair_elements(arm, tol)));
     let of_start = |error: SolveError| MotionError::Start(Box::new(error));
     let mut solver = Solver::new(arm, Options::with_tol((0.01 * tol).clamp(1e-10, 1e-6))).map_err(of_start)?;
     let missing = match solver.solve() {
@@ -302,7 +303,7 @@ fn start_at_rest(
 }
 
 /// The verdict on a step that cannot be done.
-fn not_found(time: f64, step: f64, failure: Option<SectionFailure>, arm: &Arm) -> MotionError {
+pub(super) fn not_found(time: f64, step: f64, failure: Option<SectionFailure>, arm: &Arm) -> MotionError {
     let kind = match failure {
         Some(f) if f.openness < 0.1 => MotionVerdictKind::CableFold,
         Some(f) if arm.readings.volume == Volume::None && f.nu < 0.1 => MotionVerdictKind::SectionCrushed,
