@@ -273,8 +273,26 @@ fn build(v: &Values, name: String) -> Arm {
             force: v.profiles("distributed.force").unwrap_or_else(|| [zero(), zero()]),
             couple: v.profile("distributed.couple").unwrap_or_else(zero),
         },
-        dynamics: Dynamics::default(),
+        dynamics: dynamics(v),
         readings: readings(v),
+    }
+}
+
+fn dynamics(v: &Values) -> Dynamics {
+    let default = Dynamics::default();
+    let c1 = || match (v.number("material.young"), v.profile("material.c1")) {
+        (_, Some(Profile::Constant(c1))) | (Some(c1), _) => c1,
+        _ => f64::NAN,
+    };
+    let time = if v.has_viscosity() {
+        v.number("dynamics.viscosity").map(|viscosity| viscosity / c1())
+    } else {
+        v.number("dynamics.relaxation_time")
+    };
+    Dynamics {
+        added_mass: v.number("dynamics.added_mass").unwrap_or(default.added_mass),
+        relaxation_time: time.unwrap_or(default.relaxation_time),
+        inertia: v.flag("dynamics.inertia").unwrap_or(default.inertia),
     }
 }
 

@@ -6,7 +6,9 @@ use hydrostat::profile::TableError;
 use hydrostat::{ArmError, Join, Profile};
 
 use crate::document::{Entry, Field, Node, Origin, segment};
-use crate::format::{self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, JOINED, Key, Kind, MAX_CABLES, MAX_POINTS, PULL};
+use crate::format::{
+    self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, JOINED, Key, Kind, MAX_CABLES, MAX_POINTS, PULL, RATE,
+};
 use crate::quantity::Dimension;
 
 /// What is wrong, without the names of files.
@@ -31,6 +33,7 @@ pub(crate) enum Value {
     Text(String),
     Word(&'static str),
     Number(f64),
+    Flag(bool),
     Pair([f64; 2]),
     Profile(Profile),
     Profiles([Profile; 2]),
@@ -59,8 +62,12 @@ impl Values {
         let mut values = Self::default();
         values.table("", format::FILE, fields, Origin::Text(0));
         // What a key of a table should be is open while another is wrong.
-        let checks: [(&str, Check); 3] =
-            [("material", Self::check_material), ("flow", Self::check_drag), ("cable", Self::check_pull)];
+        let checks: [(&str, Check); 4] = [
+            ("material", Self::check_material),
+            ("flow", Self::check_drag),
+            ("cable", Self::check_pull),
+            ("dynamics", Self::check_rate),
+        ];
         for (table, check) in checks {
             if !values.is_faulty(table)
                 && let Err(fault) = check(&values)
@@ -157,6 +164,13 @@ impl Values {
         }
     }
 
+    pub(crate) fn flag(&self, key: &str) -> Option<bool> {
+        match self.found.get(key) {
+            Some((Value::Flag(flag), _)) => Some(*flag),
+            _ => None,
+        }
+    }
+
     pub(crate) fn pair(&self, key: &str) -> Option<[f64; 2]> {
         match self.found.get(key) {
             Some((Value::Pair(pair), _)) => Some(*pair),
@@ -214,6 +228,7 @@ impl Values {
                 Some(word) => Value::Word(word),
                 None => return Err(refuse(path, kind, entry)),
             },
+            (Kind::Flag, Node::Boolean(flag)) => Value::Flag(*flag),
             (Kind::Quantity(dimension), _) => Value::Number(quantity(path, dimension, entry)?),
             (Kind::Pair(dimension), Node::Array(entries)) => match entries.as_slice() {
                 [a, b] => Value::Pair([
@@ -357,6 +372,29 @@ impl Values {
         let [tension, stroke] = PULL.map(|name| format!("cable[{index}].{name}"));
         let overridden = self.has(&tension) && matches!(self.origin(&tension), Origin::Setting(_));
         self.has(&stroke) && !overridden
+    }
+
+    /// A file gives a relaxation time or a viscosity; an override of one takes the place of the other. A viscosity is one
+    /// time only where C1 is one number.
+    fn check_rate(&self) -> Result<(), Fault> {
+        let [time, viscosity] = RATE.map(|name| format!("dynamics.{name}"));
+        let by_setting = |key: &str| matches!(self.origin(key), Origin::Setting(_));
+        if self.has(&time) && self.has(&viscosity) && by_setting(&time) == by_setting(&viscosity) {
+            let expected = "either relaxation_time or viscosity".to_owned();
+            return Err(value_fault(&viscosity, self.origin(&viscosity), expected, "both".to_owned()));
+        }
+        if self.has_viscosity() && self.profile("material.c1").is_some_and(|c1| !matches!(c1, Profile::Constant(_))) {
+            let expected = "relaxation_time, as c1 varies along the arm".to_owned();
+            return Err(value_fault(&viscosity, self.origin(&viscosity), expected, "viscosity".to_owned()));
+        }
+        Ok(())
+    }
+
+    /// Whether the material's rate is given by a viscosity.
+    pub(crate) fn has_viscosity(&self) -> bool {
+        let [time, viscosity] = RATE.map(|name| format!("dynamics.{name}"));
+        let overridden = self.has(&time) && matches!(self.origin(&time), Origin::Setting(_));
+        self.has(&viscosity) && !overridden
     }
 
     fn check_drag(&self) -> Result<(), Fault> {

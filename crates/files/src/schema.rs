@@ -59,6 +59,7 @@ fn property(key: &Key) -> Value {
             ]);
         }
         "cable" => schema["items"]["not"] = json!({ "required": PULL }),
+        "dynamics" => schema["not"] = json!({ "required": format::RATE }),
         "flow" => {
             schema["if"] = json!({ "required": ["law"], "properties": { "law": { "const": "quadratic-drag" } } });
             schema["then"] = json!({ "required": DRAG });
@@ -95,6 +96,7 @@ fn kind(kind: Kind) -> Value {
     match kind {
         Kind::Text => json!({ "type": "string", "maxLength": MAX_NAME }),
         Kind::Choice(words) => json!({ "enum": words }),
+        Kind::Flag => json!({ "type": "boolean" }),
         Kind::Quantity(d) => json!({ "$ref": format!("#/$defs/{}", id("quantity", d)) }),
         Kind::Pair(d) => pair(id("quantity", d)),
         Kind::Profile(d) => json!({ "$ref": format!("#/$defs/{}", id("profile", d)) }),

@@ -142,7 +142,8 @@ pub use rod::{arm, parameter, profile, readings};
 pub use statics::{configuration, many, path, sensitivity, snap, solve, stability, verdict};
 
 pub use arm::{
-    Arm, ArmError, Base, Cable, Cavity, DistributedLoad, Dynamics, Flow, FlowLaw, Gravity, Material, Motion, Reference, TipLoad,
+    Arm, ArmError, Base, Cable, Cavity, DistributedLoad, Dynamics, Flow, FlowLaw, Gravity, Material, Motion, Reference,
+    TipLoad,
 };
 pub use configuration::{
     CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,

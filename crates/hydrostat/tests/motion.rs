@@ -54,7 +54,8 @@ fn small_vibrations_have_the_period_of_the_first_mode() {
     let arm = rod();
     let mut inputs = Inputs::default();
     inputs.set("tip.force[1]", Course::step(1e-9, 0.0, 0.0)).unwrap();
-    let mut simulation = Simulation::new(&arm, inputs, MotionOptions { tol: 1e-6, ..MotionOptions::default() }).unwrap();
+    let mut simulation =
+        Simulation::new(&arm, inputs, MotionOptions { tol: 1e-6, ..MotionOptions::default() }).unwrap();
     let at = crossings(&mut simulation, 4.25 * 4.0, 0.01);
     println!("{:?} {:?}", at, simulation.statistics());
     println!("{:?}", simulation.now());

@@ -8,13 +8,16 @@
 //! with r. = cv r + hv, r.. = cv r. + ha and so on, see [`super`]. States are (theta, n_f, m_f, x, y), the first four those of
 //! the statics; lengths are in L, forces in the static unit, times in s.
 
-use hydrostat_bvp::{Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution, Station, each};
+use hydrostat_bvp::{
+    Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution,
+    Station, each,
+};
 
 use super::history::{History, Layout};
 use super::modes::Linear;
 use crate::numerics::sincos::sin_cos;
-use crate::rod::arm::Arm;
 use crate::rod::area_law::area_law;
+use crate::rod::arm::Arm;
 use crate::rod::cable_list::CableList;
 use crate::rod::inertia::{Masses, inertia, turning};
 use crate::rod::loads::{Load, centreline, load};
@@ -23,9 +26,7 @@ use crate::rod::readings::{FlowSurface, Volume};
 use crate::rod::section::Stiffness;
 use crate::rod::section_solve::{Solved, solve_section};
 use crate::statics::dimensions::{L, M, N};
-use crate::statics::equations::gradients::{
-    by_strain_change, in_directors, jacobian, rate_gradient, strain_by_state,
-};
+use crate::statics::equations::gradients::{by_strain_change, in_directors, jacobian, rate_gradient, strain_by_state};
 use crate::statics::equations::place::Place;
 use crate::statics::equations::{Equations, SectionFailure, failure, inner};
 
@@ -176,9 +177,7 @@ impl Moving {
         let inert = inertia(water, masses, &along, nu, section_stretch, [x[1], y[1]], still);
         let nu_rate = cv * (nu - self.history.strain(block, 0));
         let turn = turning(self.statics.volume, masses, [nu, nu_rate], [omega, omega_rate]);
-        let by_place = each(|k| {
-            each(|c| cv * (-(length * out.by_stream[k][c]) - cv * inert.by_acceleration[k][c]))
-        });
+        let by_place = each(|k| each(|c| cv * (-(length * out.by_stream[k][c]) - cv * inert.by_acceleration[k][c])));
         for k in 0..2 {
             out.force[k] -= inert.force[k];
             out.by_theta[k] -= inert.by_theta[k];
@@ -256,7 +255,12 @@ impl Moving {
     }
 
     /// The same at the ends of the station's element, which follow the polynomial through its stages.
-    fn push_ends(&self, system: &Collocation<S, M, 0, L>, [block, lane, field]: [usize; 3], out: &mut Forcing<S, 0, L>) {
+    fn push_ends(
+        &self,
+        system: &Collocation<S, M, 0, L>,
+        [block, lane, field]: [usize; 3],
+        out: &mut Forcing<S, 0, L>,
+    ) {
         let element = self.statics.groups.element(block / M, lane);
         let at_ends = [system.gauss.cardinals(0.0), system.gauss.cardinals(1.0)];
         out.ends.resize(self.statics.end_places.len(), ([Lanes::of(0.0); L], Lanes::of(0.0)));
@@ -417,7 +421,10 @@ fn force_unit(arm: &Arm) -> f64 {
     let soft = |s: f64| arm.stiffness_at(s)[2].recip();
     let sum = |ends: &[f64]| -> f64 {
         let h = (ends[1] - ends[0]) / 8.0;
-        (0..8).map(|k| ends[0] + f64::from(k) * h).map(|s| h / 6.0 * (soft(s) + 4.0 * soft(s + 0.5 * h) + soft(s + h))).sum()
+        (0..8)
+            .map(|k| ends[0] + f64::from(k) * h)
+            .map(|s| h / 6.0 * (soft(s) + 4.0 * soft(s + 0.5 * h) + soft(s + h)))
+            .sum()
     };
     let compliance: f64 = at.windows(2).map(sum).sum();
     (compliance * arm.length).recip()

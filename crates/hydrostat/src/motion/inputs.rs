@@ -222,7 +222,10 @@ impl Inputs {
     pub fn set(&mut self, key: &str, course: Course) -> Result<(), MotionError> {
         let wrong = |reason: String| MotionError::Course { key: key.to_owned(), reason };
         let Some(driven) = Driven::read(key) else {
-            return Err(wrong(format!("no quantity of this name can change in time; those are {}", Self::names().join(", "))));
+            return Err(wrong(format!(
+                "no quantity of this name can change in time; those are {}",
+                Self::names().join(", ")
+            )));
         };
         course.check().map_err(wrong)?;
         if let (true, Course::Table(rows)) = (driven.is_of_base(), &course) {

@@ -252,11 +252,8 @@ impl Simulation {
             }
             self.stations.push(station);
         }
-        let at = StationData {
-            weights: &settling.system.gauss.b,
-            steps: settling.system.steps(),
-            stations: &self.stations,
-        };
+        let at =
+            StationData { weights: &settling.system.gauss.b, steps: settling.system.steps(), stations: &self.stations };
         let energy = units.force * units.length;
         let cables = (0..arm.cables.len())
             .map(|c| {

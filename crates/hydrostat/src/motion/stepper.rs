@@ -10,12 +10,12 @@
 
 use hydrostat_bvp::{Lanes, Mesh, Real};
 
+use super::equations::{S, Shape};
 use super::error::{MotionError, MotionVerdict, MotionVerdictKind};
 use super::history::Snapshot;
 use super::inputs::Inputs;
 use super::settling::{Settling, Unsolved};
 use super::tableau::{RUNNING, STARTING, Tableau};
-use super::equations::{S, Shape};
 use crate::rod::arm::Arm;
 use crate::rod::readings::{Support, Volume};
 use crate::statics::equations::SectionFailure;
@@ -347,10 +347,16 @@ fn check(arm: &Arm) -> Result<(), MotionError> {
         return refuse("model.support".to_owned(), "only a clamped arm can move");
     }
     if let Some(i) = arm.cables.iter().position(|c| c.friction > 0.0) {
-        return refuse(format!("cable[{i}].friction"), "cables with friction stick as they turn back, which motion leaves out");
+        return refuse(
+            format!("cable[{i}].friction"),
+            "cables with friction stick as they turn back, which motion leaves out",
+        );
     }
     if !arm.dynamics.inertia && arm.flow.density == 0.0 && arm.dynamics.relaxation_time == 0.0 {
-        return refuse("dynamics.inertia".to_owned(), "without inertia, water and relaxation time nothing resists the motion");
+        return refuse(
+            "dynamics.inertia".to_owned(),
+            "without inertia, water and relaxation time nothing resists the motion",
+        );
     }
     if arm.dynamics.inertia && arm.density == 0.0 {
         return refuse("arm.density".to_owned(), "an arm without mass has no motion; set `dynamics.inertia = false`");

@@ -107,9 +107,7 @@ pub(crate) fn inertia<R: Real>(
             let by = turned[k];
             [by * turn[0] + own_by_nu[k], by * turn[1], by * turn[2]]
         }),
-        by_acceleration: each(|k| {
-            each(|c| mass * w[k] * w[c] + if k == c { masses.wall } else { R::of(0.0) })
-        }),
+        by_acceleration: each(|k| each(|c| mass * w[k] * w[c] + if k == c { masses.wall } else { R::of(0.0) })),
     }
 }
 
@@ -146,8 +144,8 @@ pub(crate) fn turning<R: Real>(
 mod tests {
     use super::*;
     use crate::rod::area_law::area_law;
-    use crate::rod::loads::centreline;
     use crate::rod::flow::Law;
+    use crate::rod::loads::centreline;
     use crate::rod::readings::{Displaced, FlowSurface, Hydrostatics, WettedLength};
 
     #[test]
