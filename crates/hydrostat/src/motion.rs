@@ -37,6 +37,7 @@ mod modes;
 mod settling;
 mod simulation;
 mod stepper;
+mod strokes;
 mod tableau;
 
 pub use self::error::{MotionError, MotionVerdict, MotionVerdictKind};

@@ -10,21 +10,22 @@
 
 use hydrostat_bvp::{
     Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution,
-    Station, each,
+    StageForcing, Station, each,
 };
 
 use super::history::{History, Layout};
 use super::modes::Linear;
 use crate::numerics::sincos::sin_cos;
-use crate::rod::area_law::area_law;
+use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::arm::Arm;
+use crate::rod::cable::pull;
 use crate::rod::cable_list::CableList;
 use crate::rod::inertia::{Masses, inertia, turning};
 use crate::rod::loads::{Load, centreline, load};
 use crate::rod::profile::Profile;
 use crate::rod::readings::{FlowSurface, Volume};
-use crate::rod::section::Stiffness;
-use crate::rod::section_solve::{Solved, solve_section};
+use crate::rod::section::{CableAt, Stiffness};
+use crate::rod::section_solve::solve_section;
 use crate::statics::dimensions::{L, M, N};
 use crate::statics::equations::gradients::{by_strain_change, in_directors, jacobian, rate_gradient, strain_by_state};
 use crate::statics::equations::place::Place;
@@ -101,7 +102,27 @@ impl Moving {
     /// Takes the loads of `arm`, which has the same sections, and the acceleration of its stream.
     pub(super) fn set_loads(&mut self, arm: &Arm, stream_acceleration: [f64; 2]) {
         self.stream_acceleration = if arm.dynamics.inertia { stream_acceleration } else { [0.0; 2] };
+        // Tensions of held cables follow from their strokes.
+        let held: Vec<(usize, f64)> = self.held().map(|c| (c, self.statics.arm().cables[c].tension)).collect();
         self.statics.set_loads(arm);
+        for (cable, tension) in held {
+            self.statics.set_tension(cable, tension);
+        }
+    }
+
+    /// The cables whose stroke is commanded.
+    pub(super) fn held(&self) -> impl Iterator<Item = usize> + '_ {
+        self.statics.held.iter().flat_map(|held| held.cables.iter().copied())
+    }
+
+    /// Strokes of cables need no more of a station than this.
+    pub(super) fn for_strokes(stations: &[Station<S, L>], out: &mut Vec<Station<N, L>>) {
+        out.clear();
+        out.extend(stations.iter().map(|station| Station {
+            z: [Lanes::of(0.0); N],
+            inner: station.inner,
+            closure_slope: station.closure_slope,
+        }));
     }
 
     /// Takes what strain rates at the ends start from, by the polynomial through the stages of their elements.
@@ -152,7 +173,8 @@ impl Moving {
         block: usize,
         station: &Station<S, L>,
         direction: [Lanes; 2],
-        solved: &Solved<Lanes>,
+        strain: [Lanes; 3],
+        section_stretch: &SectionStretch<Lanes>,
     ) -> (Load<Lanes>, [[Lanes; 2]; 2], [Lanes; 3]) {
         let (place, masses) = (&self.places()[block], &self.masses[block]);
         let (arm, water) = (self.statics.arm(), &self.statics.water);
@@ -167,10 +189,8 @@ impl Moving {
         let wet = arm.flow.density != 0.0;
         let against = [x[0], y[0]];
         let stream = wet.then(|| each(|k| Lanes::of(water.stream[k]) - length * against[k]));
-        let section_stretch = &solved.balance.section_stretch;
-        let [nu, eta, _] = solved.strain;
-        let mut out =
-            load(water, &place.body, stream, direction, solved.strain, section_stretch, station.closure_slope);
+        let [nu, eta, _] = strain;
+        let mut out = load(water, &place.body, stream, direction, strain, section_stretch, station.closure_slope);
         let along = centreline(direction, [nu, eta]);
         let unit = 1.0 / self.statics.units.length;
         let still = self.stream_acceleration.map(|v| v * unit);
@@ -222,60 +242,72 @@ impl Moving {
         load(water, body, stream, [cos, sin], station.inner, &section_stretch, station.closure_slope)
     }
 
-    /// A unit load at a station: a force along e1 or e2, or a couple, that resists as inertia does (`field` 0 to 2), or a
-    /// unit more of what its section carries (3 to 5). Sizes of states are one.
-    pub(super) fn push(
+    /// What a change of what sections carry, in a block of stations, changes at fixed states: the strains follow, and with them
+    /// the slopes.
+    pub(super) fn drift(
         &self,
-        system: &Collocation<S, M, 0, L>,
-        [block, lane, field]: [usize; 3],
-        out: &mut Forcing<S, 0, L>,
-    ) {
-        let stage = &mut out.stages[block];
-        if field < 3 {
-            stage.slope[1 + field].0[lane] = 1.0;
-            return;
-        }
-        let station = &system.stations()[block];
+        block: usize,
+        given: &Station<S, L>,
+        local: &Local<S, 0, L, Lanes>,
+        carried: [Lanes; 3],
+    ) -> StageForcing<S, 0, L> {
+        let station = self.unscaled(given);
         let (sin, cos) = sin_cos(station.z[0]);
-        let contact = in_directors([cos, sin], &each(|a| station.z[a]));
-        let strain = less_carried(&system.locals()[block].inner, [cos, sin], field - 3);
-        let load = self.load_at_rest(block, station);
-        let slope = by_strain_change(&load, contact, strain);
+        let direction = [cos, sin];
+        let contact = in_directors(direction, &each(|a| station.z[a]));
+        let strain = self.follow(&local.inner, direction, carried);
+        let section_stretch = area_law(self.statics.volume, station.inner[0]);
+        let (load, _, [_, _, inert_by_nu]) = self.loads(block, &station, direction, station.inner, &section_stretch);
+        let [a, b, c, d] = by_strain_change(&load, contact, strain);
         let [nu, eta, _] = strain;
-        let moved = [nu * cos - eta * sin, nu * sin + eta * cos];
-        let value = area_law(self.statics.volume, station.inner[0]).slope * strain[0];
-        for a in 0..S {
-            stage.slope[a].0[lane] = if a < N { slope[a].0[lane] } else { moved[a - N].0[lane] };
+        let slope = [a, b, c, d + inert_by_nu * nu, nu * cos - eta * sin, nu * sin + eta * cos];
+        StageForcing {
+            slope: each(|a| Lanes::of(1.0 / self.scales[a]) * slope[a]),
+            rate: [],
+            inner: strain,
+            value: section_stretch.slope * strain[0],
         }
-        for k in 0..L {
-            stage.inner[k].0[lane] = strain[k].0[lane];
-        }
-        stage.value.0[lane] = value.0[lane];
-        self.push_ends(system, [block, lane, field], out);
     }
 
-    /// The same at the ends of the station's element, which follow the polynomial through its stages.
-    fn push_ends(
+    /// The same at a block of ends: strains, and the section stretch.
+    pub(super) fn end_drift(
         &self,
-        system: &Collocation<S, M, 0, L>,
-        [block, lane, field]: [usize; 3],
-        out: &mut Forcing<S, 0, L>,
-    ) {
-        let element = self.statics.groups.element(block / M, lane);
-        let at_ends = [system.gauss.cardinals(0.0), system.gauss.cardinals(1.0)];
-        out.ends.resize(self.statics.end_places.len(), ([Lanes::of(0.0); L], Lanes::of(0.0)));
-        for (b, place) in self.statics.end_places.iter().enumerate() {
-            let station = &system.end_stations()[b];
-            let (sin, cos) = sin_cos(station.z[0]);
-            let strain = less_carried(&system.ends()[b], [cos, sin], field - 3);
-            let slope = area_law(self.statics.volume, station.inner[0]).slope;
-            for l in (0..LANES).filter(|l| place.elements[*l] == element) {
-                let weight = at_ends[place.sides[l].index()][block % M];
-                for k in 0..L {
-                    out.ends[b].0[k].0[l] = weight * strain[k].0[l];
-                }
-                out.ends[b].1.0[l] = weight * slope.0[l] * strain[0].0[l];
-            }
+        given: &Station<S, L>,
+        inner: &Inner<S, L, Lanes>,
+        carried: [Lanes; 3],
+    ) -> ([Lanes; L], Lanes) {
+        let (sin, cos) = sin_cos(given.z[0]);
+        let strain = self.follow(inner, [cos, sin], carried);
+        (strain, area_law(self.statics.volume, given.inner[0]).slope * strain[0])
+    }
+
+    /// The strains that follow so much more of what a section carries, at a fixed state: those of that much less of contact force and
+    /// moment, whose derivatives the section law's gradient has.
+    fn follow(&self, inner: &Inner<S, L, Lanes>, [cos, sin]: [Lanes; 2], carried: [Lanes; 3]) -> [Lanes; L] {
+        each(|k| {
+            let by: [Lanes; 3] = each(|c| Lanes::of(1.0 / self.scales[c + 1]) * inner.gradient[k][c + 1]);
+            let [x, y, m] = by;
+            -((cos * x + sin * y) * carried[0] + (cos * y - sin * x) * carried[1] + m * carried[2])
+        })
+    }
+
+    /// What changes with a unit of the tension of cable `c` (in the unit of force), into `out`.
+    pub(super) fn pull_by(&self, c: usize, system: &Collocation<S, M, 0, L>, out: &mut Forcing<S, 0, L>) {
+        let statics = &self.statics;
+        let count = statics.tensions.len();
+        let carried = |cable: &CableAt<Lanes>, station: &Station<S, L>| {
+            let section_stretch = area_law(statics.volume, station.inner[0]);
+            pull(cable.tension, &cable.offset, station.inner, &section_stretch, station.closure_slope).0.load
+        };
+        out.stages.clear();
+        for (block, (station, local)) in system.stations().iter().zip(system.locals()).enumerate() {
+            let own = carried(&statics.cables_in(block)[c], station);
+            out.stages.push(self.drift(block, station, local, own));
+        }
+        out.ends.clear();
+        for (b, (station, inner)) in system.end_stations().iter().zip(system.ends()).enumerate() {
+            let own = carried(&statics.end_cables[b * count + c], station);
+            out.ends.push(self.end_drift(station, inner, own));
         }
     }
 
@@ -340,7 +372,8 @@ impl Moving {
             return Err(failure(place.s, &solved, tolerance));
         }
         let [nu, eta, mu] = solved.strain;
-        let (load, by_place, [inert, inert_by_theta, inert_by_nu]) = self.loads(block, station, direction, &solved);
+        let (load, by_place, [inert, inert_by_theta, inert_by_nu]) =
+            self.loads(block, station, direction, solved.strain, &solved.balance.section_stretch);
         let by_state = strain_by_state(&solved.inverse, direction, contact);
         let rates = |[nu, eta, _]: [Lanes; 3]| [nu * cos - eta * sin, nu * sin + eta * cos];
         let rate = rates(solved.strain);
@@ -401,15 +434,6 @@ impl Moving {
         given.inner = solved.strain;
         Ok(())
     }
-}
-
-/// The strains that follow a unit more of what a section carries, at fixed state: those of a unit less of the contact force or
-/// moment, whose derivatives the section law's gradient has.
-fn less_carried(inner: &Inner<S, L, Lanes>, [cos, sin]: [Lanes; 2], component: usize) -> [Lanes; L] {
-    each(|k| {
-        let [_, x, y, m, ..] = inner.gradient[k];
-        -[cos * x + sin * y, cos * y - sin * x, m][component]
-    })
 }
 
 /// The force that bends the arm as a whole, N: the mean of EI over L^2, soft pieces (a hinge) foremost.

@@ -228,10 +228,10 @@ impl Inputs {
             )));
         };
         course.check().map_err(wrong)?;
-        if let (true, Course::Table(rows)) = (driven.is_of_base(), &course) {
-            if let Some(pair) = rows.windows(2).find(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1) {
-                return Err(wrong(format!("the base cannot jump, as it does at {} s", pair[0].0)));
-            }
+        if let (true, Course::Table(rows)) = (driven.is_of_base(), &course)
+            && let Some(pair) = rows.windows(2).find(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1)
+        {
+            return Err(wrong(format!("the base cannot jump, as it does at {} s", pair[0].0)));
         }
         self.courses.retain(|(own, _)| *own != driven);
         self.courses.push((driven, course));

@@ -17,7 +17,7 @@
 //!
 //! in which slow motions are the largest and best known eigenvalues, and what a mesh does not resolve falls to zero.
 
-use hydrostat_bvp::{Correction, Forcing, LANES, Lanes, LinearisationError, StageForcing};
+use hydrostat_bvp::{Correction, Forcing, LANES, Lanes, LinearisationError, Real, StageForcing};
 use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -152,14 +152,31 @@ fn rates(settling: &mut Settling) -> Result<Vec<[f64; 2]>, MotionError> {
     let mut compliance = DMatrix::<f64>::zeros(size, size);
     let mut response = Correction::default();
     let mut forcing = Forcing { stages: vec![StageForcing::default(); linear.len()], ..Forcing::default() };
+    let at_ends = [system.gauss.cardinals(0.0), system.gauss.cardinals(1.0)];
     for k in 0..stations {
         let (block, lane) = groups.station(k);
         // The last group is filled up with its last element.
         let lanes = if groups.station_in(block, LANES - 1) == k { lane..LANES } else { lane..lane + 1 };
         for field in 0..fields {
-            forcing.stages[block] = StageForcing::default();
-            for lane in lanes.clone() {
-                moving.push(system, [block, lane, field], &mut forcing);
+            let stage = &mut forcing.stages[block];
+            if field < 3 {
+                for lane in lanes.clone() {
+                    stage.slope[1 + field].0[lane] = 1.0;
+                }
+            } else {
+                let mut carried = [Lanes::of(0.0); L];
+                for lane in lanes.clone() {
+                    carried[field - 3].0[lane] = 1.0;
+                }
+                *stage = moving.drift(block, &system.stations()[block], &system.locals()[block], carried);
+                // At ends sections follow the polynomial through the stages.
+                for (b, place) in moving.statics.end_places.iter().enumerate() {
+                    let mut carried = [Lanes::of(0.0); L];
+                    for l in (0..LANES).filter(|l| place.elements[*l] == k / M) {
+                        carried[field - 3].0[l] = at_ends[place.sides[l].index()][k % M];
+                    }
+                    forcing.ends.push(moving.end_drift(&system.end_stations()[b], &system.ends()[b], carried));
+                }
             }
             settling.respond(&forcing, &mut response);
             forcing.stages[block] = StageForcing::default();

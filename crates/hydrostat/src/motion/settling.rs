@@ -3,6 +3,7 @@
 use hydrostat_bvp::{Collocation, Correction, Forcing, Lanes, LinearisationError, Mesh, Real, Side, Solution};
 
 use super::equations::{Moving, S, Shape, X};
+use super::strokes::Border;
 use crate::numerics::dispatch::{Work, dispatch};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, L, M, N, Q};
@@ -17,6 +18,12 @@ const KEPT: usize = 8;
 
 /// Solves through which the motion is extrapolated: more do not predict better.
 const THROUGH: usize = 3;
+
+/// What strokes may be off by, over L.
+const STROKES: f64 = 1e-9;
+
+/// Changes of the set of taut cables that one solve may make.
+const SWITCHES: usize = 12;
 
 /// Changes of own ends that one solve may make.
 const TURNS: usize = 2;
@@ -65,7 +72,8 @@ pub(super) struct Settling {
     pub(super) moving: Moving,
     pub(super) system: Collocation<S, M, 0, L>,
     pub(super) solution: Shape,
-    correction: Correction<S, M, 0, L>,
+    pub(super) correction: Correction<S, M, 0, L>,
+    pub(super) border: Border,
     /// The last solves, the latest last, with their times.
     past: Vec<(f64, Shape)>,
     spare: Shape,
@@ -81,6 +89,7 @@ impl Settling {
             system: Collocation::new(),
             solution: Solution::default(),
             correction: Correction::default(),
+            border: Border::default(),
             past: Vec::new(),
             spare: Solution::default(),
             rounds: 0,
@@ -190,7 +199,7 @@ impl Settling {
     }
 
     fn iterate(&mut self, tolerance: f64) -> Result<(), Unsolved> {
-        let (mut applied, mut halvings, mut turns) = (0.0, 0, 0);
+        let (mut applied, mut halvings, mut turns, mut switches) = (0.0, 0, 0, 0);
         let mut before = f64::INFINITY;
         let mut round = 0;
         while round < MOST {
@@ -203,6 +212,7 @@ impl Settling {
                     applied *= 0.5;
                     halvings += 1;
                     self.solution.add(&self.correction, -applied);
+                    self.add_tensions(-applied);
                     continue;
                 }
                 Err(_) => return Err(Unsolved::Singular),
@@ -215,6 +225,7 @@ impl Settling {
             }
             round += 1;
             dispatch(Correct(&mut self.system, &self.solution, &mut self.correction));
+            self.border()?;
             let angle = self.correction.largest(0);
             let moved = self.correction.largest(X).max(self.correction.largest(X + 1)) * self.moving.scales[X];
             let strained = self.correction.largest_inner();
@@ -225,10 +236,19 @@ impl Settling {
             applied = if angle > 1.0 { 1.0 / angle } else { 1.0 };
             halvings = 0;
             self.solution.add(&self.correction, applied);
+            self.add_tensions(applied);
+            if switches < SWITCHES && self.switch_taut(size) {
+                switches += 1;
+                round -= 1;
+                continue;
+            }
             // Rounds fall with the square of their size, and no faster than the last one did.
             let rate = if applied < 1.0 { 1.0 } else { (size / before).min(1.0).max(size) };
             before = size;
-            if moved.max(0.1 * angle) * rate <= tolerance && applied == 1.0 {
+            if moved.max(0.1 * angle) * rate <= tolerance
+                && applied == 1.0
+                && self.border.off * rate.min(1.0) <= STROKES
+            {
                 return Ok(());
             }
         }

@@ -258,7 +258,11 @@ impl Simulation {
         let cables = (0..arm.cables.len())
             .map(|c| {
                 let [now, reference] = statics.cable_lengths(c, at);
-                CableMotion { tension: arm.cables[c].tension, stroke: (reference - now) * units.length }
+                let tension = match arm.cables[c].stroke {
+                    Some(_) => self.stepper.tension_at(c, self.time),
+                    None => arm.cables[c].tension,
+                };
+                CableMotion { tension, stroke: (reference - now) * units.length }
             })
             .collect();
         let length = units.length;

@@ -51,6 +51,9 @@ pub(super) struct Stepper {
     stages: Vec<Snapshot>,
     kept: Shape,
     kept_scales: [f64; S],
+    kept_tensions: (Vec<f64>, Vec<bool>),
+    /// Tensions (N) through the last step, with their times.
+    pub(super) tensions: Vec<(f64, Vec<f64>)>,
     /// Error of a step over L that is asked for.
     tolerance: f64,
     /// Whether steps keep the length they are given.
@@ -86,6 +89,8 @@ impl Stepper {
         Ok(Self {
             kept: settling.solution.clone(),
             kept_scales: [1.0; S],
+            kept_tensions: settling.tensions(),
+            tensions: vec![(time, settling.tensions().0)],
             settling,
             arm: start,
             inputs,
@@ -163,6 +168,7 @@ impl Stepper {
         self.rejected += 1;
         self.next = next;
         self.settling.restore(&self.kept, &self.kept_scales, self.time);
+        self.settling.take_tensions(&self.kept_tensions);
     }
 
     fn accept(&mut self, h: f64, corner: f64, to_corner: bool, tip_error: f64) {
@@ -174,6 +180,7 @@ impl Stepper {
         self.steps += 1;
         self.error += tip_error;
         self.kept.clone_from(&self.settling.solution);
+        self.kept_tensions = self.settling.tensions();
         self.kept_scales = self.settling.moving.scales;
         self.running = true;
         if to_corner && self.inputs.jumps_at(self.time) {
@@ -192,6 +199,10 @@ impl Stepper {
         let first = usize::from(tableau.explicit_first);
         if tableau.explicit_first {
             self.stages[0].clone_from(&self.now);
+        }
+        let holds = self.settling.moving.statics.held.is_some();
+        if holds {
+            self.tensions = vec![(self.time, self.kept_tensions.0.clone())];
         }
         for i in first..tableau.c.len() {
             let time = self.time + tableau.c[i] * h;
@@ -212,6 +223,9 @@ impl Stepper {
             let settling = &mut self.settling;
             own.take(&mut settling.system, &settling.solution, &settling.moving.scales);
             own.rates_from(cv, &self.settling.moving.history);
+            if holds {
+                self.tensions.push((time, self.settling.tensions().0));
+            }
         }
         Ok(self.errors(tableau, h))
     }
@@ -264,6 +278,17 @@ impl Stepper {
         not_found(self.time, h, failure, &self.arm)
     }
 
+    /// The tension of a held cable (N) at `time` in the last step, by straight lines between its stages.
+    pub(super) fn tension_at(&self, cable: usize, time: f64) -> f64 {
+        let before = self.tensions.iter().filter(|(t, _)| *t <= time).max_by(|a, b| a.0.total_cmp(&b.0));
+        let after = self.tensions.iter().filter(|(t, _)| *t >= time).min_by(|a, b| a.0.total_cmp(&b.0));
+        match (before, after) {
+            (Some((t, v)), Some((u, w))) if u > t => v[cable] + (w[cable] - v[cable]) * (time - t) / (u - t),
+            (Some((_, v)), _) | (None, Some((_, v))) => v[cable],
+            (None, None) => 0.0,
+        }
+    }
+
     /// The arm with the loads of the last solve.
     pub(super) fn arm(&self) -> &Arm {
         &self.arm
@@ -280,13 +305,19 @@ pub(super) fn start_at_rest(
     time: f64,
 ) -> Result<(), MotionError> {
     check(arm)?;
-    check_moving(arm)?;
     let mesh = mesh(arm, elements.unwrap_or_else(|| fair_elements(arm, tol)));
     let of_start = |error: SolveError| MotionError::Start(Box::new(error));
     let mut solver = Solver::new(arm, Options::with_tol((0.01 * tol).clamp(1e-10, 1e-6))).map_err(of_start)?;
     let missing = match solver.solve() {
         Ok(_) => {
             let engine = solver.engine_mut();
+            let statics = &mut settling.moving.statics;
+            for (c, cable) in
+                engine.equations.arm().cables.iter().enumerate().filter(|(_, cable)| cable.stroke.is_some())
+            {
+                statics.set_tension(c, cable.tension);
+            }
+            statics.hold_strokes();
             settling.start_from(&engine.solution, engine.equations.units.force, mesh);
             None
         }
@@ -362,15 +393,4 @@ fn check(arm: &Arm) -> Result<(), MotionError> {
         return refuse("arm.density".to_owned(), "an arm without mass has no motion; set `dynamics.inertia = false`");
     }
     Ok(())
-}
-
-/// Refuses commanded strokes.
-fn check_moving(arm: &Arm) -> Result<(), MotionError> {
-    match arm.cables.iter().position(|c| c.stroke.is_some()) {
-        Some(i) => Err(MotionError::Unsupported {
-            key: format!("cable[{i}].stroke"),
-            reason: "strokes cannot be commanded in motion yet, only tensions",
-        }),
-        None => Ok(()),
-    }
 }

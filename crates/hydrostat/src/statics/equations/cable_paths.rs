@@ -131,11 +131,11 @@ impl Equations {
     }
 
     /// Change of the stroke of `cable` (over L) with a change of the solution, at fixed tension.
-    pub(crate) fn stroke_change<const M: usize>(
+    pub(crate) fn stroke_change<const S: usize, const M: usize, const P: usize>(
         &self,
         cable: usize,
         at: StationData<'_>,
-        change: &Correction<N, M, Q, L>,
+        change: &Correction<S, M, P, L>,
     ) -> f64 {
         self.along_cable(cable, at, |block| {
             let (by_strain, by_beta_slope) = self.stretch_gradient(cable, block, &at.stations[block]);
