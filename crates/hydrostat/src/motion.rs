@@ -29,6 +29,8 @@
 //!
 //! **Eigenmodes** ([`modes`]) are those of the same equations, linearised about an equilibrium.
 
+mod border;
+mod dimensions;
 mod equations;
 mod error;
 mod history;

@@ -9,12 +9,12 @@
 //! the statics; lengths are in L, forces in the static unit, times in s.
 
 use hydrostat_bvp::{
-    Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution,
-    StageForcing, Station, each,
+    Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, StageForcing,
+    Station, each,
 };
 
+use super::dimensions::{S, Shape, X};
 use super::history::{History, Layout};
-use super::modes::Linear;
 use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::arm::Arm;
@@ -30,14 +30,6 @@ use crate::statics::dimensions::{L, M, N};
 use crate::statics::equations::gradients::{by_strain_change, in_directors, jacobian, rate_gradient, strain_by_state};
 use crate::statics::equations::place::Place;
 use crate::statics::equations::{Equations, SectionFailure, failure, inner};
-
-/// States: those of the statics, and x, y.
-pub(super) const S: usize = 6;
-/// Where x stands among them; y follows.
-pub(super) const X: usize = 4;
-
-/// A solution on the mesh of the motion.
-pub(super) type Shape = Solution<S, M, L>;
 
 /// Equations of a moving arm at one time.
 #[derive(Debug, Clone)]
@@ -311,6 +303,19 @@ impl Moving {
         }
     }
 
+    /// How much of the velocity of the water against the tip a change of place (over L) is, by the last history; zero in a
+    /// vacuum.
+    pub(super) fn drag_change(&self) -> f64 {
+        let water = &self.statics.water;
+        if self.statics.arm().flow.density == 0.0 {
+            return 0.0;
+        }
+        let length = self.statics.units.length;
+        let [_, vx, vy] = self.history.last_rate();
+        let speed = (water.stream[0] - length * vx).hypot(water.stream[1] - length * vy);
+        self.cv * length / speed.max(1e-6 * length)
+    }
+
     /// The time in which the arm swings, about, s.
     pub(super) fn time_unit(&self) -> f64 {
         let mass = self.masses.first().map_or(0.0, |own| (own.wall + own.added).0[0]);
@@ -545,4 +550,17 @@ impl Problem<S, 0, L> for Moving {
             out[k].gradient[0] = -inverse * turn[k];
         }
     }
+}
+
+/// What moves in a block of stations with a small motion.
+#[derive(Clone, Copy)]
+pub(super) struct Linear {
+    /// Derivative of -force by the velocity (L/s), in space.
+    pub(super) damping: [[Lanes; 2]; 2],
+    /// By the acceleration (L/s2).
+    pub(super) mass: [[Lanes; 2]; 2],
+    /// Couple by the angular acceleration.
+    pub(super) rotary: Lanes,
+    /// What the section carries by the strains' rates.
+    pub(super) viscous: [Lanes; L],
 }

@@ -5,7 +5,7 @@
 
 use hydrostat_bvp::{Collocation, LANES, Lanes, Real};
 
-use super::equations::{S, Shape, X};
+use super::dimensions::{S, Shape, X};
 use crate::statics::dimensions::{L, M};
 
 /// Where what stands.
@@ -51,6 +51,11 @@ impl History {
     #[inline(always)]
     pub(super) fn rate(&self, block: usize, k: usize) -> Lanes {
         self.rates[3 * block + k]
+    }
+
+    /// Rates of theta, x, y at the tip that a stage starts from.
+    pub(super) fn last_rate(&self) -> [f64; 3] {
+        if self.layout.nodes == 0 { [0.0; 3] } else { node_of(self.layout, &self.rates, self.layout.nodes - 1) }
     }
 
     /// Of nu, eta, mu in a block of stages.

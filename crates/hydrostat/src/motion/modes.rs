@@ -21,7 +21,8 @@ use hydrostat_bvp::{Correction, Forcing, LANES, Lanes, LinearisationError, Real,
 use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::equations::X;
+use super::dimensions::X;
+use super::equations::Linear;
 use super::error::MotionError;
 use super::settling::Settling;
 use super::stepper::{not_found, start_at_rest};
@@ -259,17 +260,4 @@ fn largest_eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
         let part = hessenberg.view((0, 0), (n, n)).into_owned();
         Some(Schur::try_new(part, f64::EPSILON, 200 * n)?.complex_eigenvalues().iter().copied().collect())
     })
-}
-
-/// What moves in a block of stations with a small motion.
-#[derive(Clone, Copy)]
-pub(super) struct Linear {
-    /// Derivative of -force by the velocity (L/s), in space.
-    pub(super) damping: [[Lanes; 2]; 2],
-    /// By the acceleration (L/s2).
-    pub(super) mass: [[Lanes; 2]; 2],
-    /// Couple by the angular acceleration.
-    pub(super) rotary: Lanes,
-    /// What the section carries by the strains' rates.
-    pub(super) viscous: [Lanes; L],
 }

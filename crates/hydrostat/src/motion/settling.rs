@@ -2,8 +2,9 @@
 
 use hydrostat_bvp::{Collocation, Correction, Forcing, Lanes, LinearisationError, Mesh, Real, Side, Solution};
 
-use super::equations::{Moving, S, Shape, X};
-use super::strokes::Border;
+use super::border::Border;
+use super::dimensions::{S, Shape, X};
+use super::equations::Moving;
 use crate::numerics::dispatch::{Work, dispatch};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, L, M, N, Q};
@@ -11,7 +12,7 @@ use crate::statics::engine::{turn_sections, wanted_side};
 use crate::statics::equations::SectionFailure;
 
 /// Rounds of one solve.
-const MOST: usize = 12;
+const MOST: usize = 20;
 
 /// Solves that are kept: those of a step that fails, and the last three before it.
 const KEPT: usize = 8;
@@ -242,13 +243,12 @@ impl Settling {
                 round -= 1;
                 continue;
             }
-            // Rounds fall with the square of their size, and no faster than the last one did.
-            let rate = if applied < 1.0 { 1.0 } else { (size / before).min(1.0).max(size) };
+            // Rounds fall with the square of their size, and no faster than the last one did. The drag's square, and its
+            // kinks, count by what a round changes of the velocity.
+            let of_drag = if before == f64::INFINITY { (0.5_f64).min(moved * self.moving.drag_change()) } else { 0.0 };
+            let rate = if applied < 1.0 { 1.0 } else { (size / before).min(1.0).max(size).max(of_drag) };
             before = size;
-            if moved.max(0.1 * angle) * rate <= tolerance
-                && applied == 1.0
-                && self.border.off * rate.min(1.0) <= STROKES
-            {
+            if moved.max(0.1 * angle) * rate <= tolerance && applied == 1.0 && self.border.off * rate <= STROKES {
                 return Ok(());
             }
         }

@@ -10,7 +10,7 @@
 
 use hydrostat_bvp::{Lanes, Mesh, Real};
 
-use super::equations::{S, Shape};
+use super::dimensions::{S, Shape};
 use super::error::{MotionError, MotionVerdict, MotionVerdictKind};
 use super::history::Snapshot;
 use super::inputs::Inputs;
@@ -305,7 +305,7 @@ pub(super) fn start_at_rest(
     time: f64,
 ) -> Result<(), MotionError> {
     check(arm)?;
-    let mesh = mesh(arm, elements.unwrap_or_else(|| fair_elements(arm, tol)));
+    let mut mesh = mesh(arm, elements.unwrap_or_else(|| fair_elements(arm, tol)));
     let of_start = |error: SolveError| MotionError::Start(Box::new(error));
     let mut solver = Solver::new(arm, Options::with_tol((0.01 * tol).clamp(1e-10, 1e-6))).map_err(of_start)?;
     let missing = match solver.solve() {
@@ -318,6 +318,12 @@ pub(super) fn start_at_rest(
                 statics.set_tension(c, cable.tension);
             }
             statics.hold_strokes();
+            // Kinks of the stream's load have nodes where the motion starts.
+            let kinks = engine.kinks(1e-6);
+            let fixed: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
+            if kinks.len() <= mesh.elements() {
+                mesh.pin(&fixed, &kinks);
+            }
             settling.start_from(&engine.solution, engine.equations.units.force, mesh);
             None
         }

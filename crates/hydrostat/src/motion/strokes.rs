@@ -5,12 +5,13 @@
 //! A dz + A_t dt = -residual            s_z dz + s_t dt = command - s
 //! ```
 
-use hydrostat_bvp::{Correction, Forcing, Station};
+use hydrostat_bvp::Correction;
 
-use super::equations::{Moving, S};
+use super::dimensions::S;
+use super::equations::Moving;
 use super::settling::{Settling, Unsolved};
 use crate::numerics::elimination::solved;
-use crate::statics::dimensions::{L, M, N};
+use crate::statics::dimensions::{L, M};
 use crate::statics::equations::StationData;
 
 /// Slacks (over L) below which a cable is too short to hang slack.
@@ -18,19 +19,6 @@ const SLACK: f64 = 1e-12;
 
 /// Corrections above which tensions do not yet say which cables are taut.
 const SETTLED: f64 = 0.3;
-
-/// What a round does to the tensions of held cables.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Border {
-    /// Changes of the tensions (in the unit of force), one a held cable.
-    pub(super) tensions: Vec<f64>,
-    /// Strokes less commands after the round, over L.
-    slack: Vec<f64>,
-    /// By how much the strokes of taut cables were off.
-    pub(super) off: f64,
-    stations: Vec<Station<N, L>>,
-    forcing: Forcing<S, 0, L>,
-}
 
 impl Settling {
     /// Adds to the correction of the last linearisation what the tensions of held cables do, so that their strokes are met.
