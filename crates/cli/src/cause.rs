@@ -106,9 +106,8 @@ impl<'a> Cause<'a> {
         match self {
             Self::Solve(error) => Some(error),
             Self::Path(PathError::Start { source, .. }) => Some(source),
-            Self::Motion(MotionError::Start(source)) => Some(source),
+            Self::Motion(MotionError::Start(source)) | Self::Study(StudyError::Solve { source, .. }) => Some(source),
             Self::Reach(error) => solve_of_reach(error),
-            Self::Study(StudyError::Solve { source, .. }) => Some(source),
             Self::Study(StudyError::Reach(error)) => solve_of_reach(error),
             Self::Path(_)
             | Self::Motion(_)

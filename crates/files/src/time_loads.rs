@@ -121,8 +121,9 @@ pub enum ShapedError {
     Load(#[from] MotionError),
 }
 
-/// Adds to `inputs` the loads of a CSV file: the column `t_s` (s), and columns with the keys of loads, in SI units, angles in degrees.
-/// Straight lines join the rows; two rows at one time are a jump. A cell that is empty says nothing of its load.
+/// Adds to `inputs` the loads of a CSV file: the column `t_s` (s), and columns with the keys of loads, in SI units,
+/// angles in degrees. Straight lines join the rows; two rows at one time are a jump. A cell that is empty says
+/// nothing of its load.
 ///
 /// # Errors
 /// [`TimeLoadsError`].

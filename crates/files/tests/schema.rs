@@ -153,5 +153,5 @@ fn defaults_in_the_schema_are_those_of_the_parser() {
             seen += 1;
         }
     }
-    assert_eq!(seen, 27);
+    assert_eq!(seen, 30);
 }

@@ -115,9 +115,8 @@ fn a_small_free_swing_has_the_period_of_the_first_mode() {
     let inputs = inputs(&[("tip.force[1]", Course::step(3e-3 * ei, 0.0, 0.0))]);
     let rows = motion(&arm, inputs, MotionOptions { elements: Some(4), ..options(1e-6) }, 20.0 * PERIOD, 0.02);
     // The phase of the first mode in the tip's motion, over five periods under a window.
-    let phase = |k: usize, omega: f64| -> f64 {
-        let from = (k as f64 * PERIOD / 0.02).round() as usize;
-        let count = (5.0 * PERIOD / 0.02).round() as usize;
+    let phase = |from: usize, omega: f64| -> f64 {
+        let count = 1062;
         let window = |i: usize| 0.5 - 0.5 * (2.0 * PI * i as f64 / count as f64).cos();
         let [mut re, mut im] = [0.0, 0.0];
         for i in 0..count {
@@ -129,8 +128,8 @@ fn a_small_free_swing_has_the_period_of_the_first_mode() {
     };
     let omega = 2.0 * PI / PERIOD;
     // The phase against the mode's frequency drifts with what the frequency is off.
-    let drift = phase(15, omega) - phase(0, omega);
-    let off = drift / (15.0 * PERIOD) / omega;
+    let drift = phase(3188, omega) - phase(0, omega);
+    let off = drift / (3188.0 * 0.02) / omega;
     assert!(off.abs() < 2e-5, "the frequency is off by {off:.1e}");
 }
 

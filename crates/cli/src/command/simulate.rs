@@ -1,7 +1,8 @@
 //! `hydrostat simulate`: the arm in motion.
 
+use std::fmt::Write as _;
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Write as _};
 use std::path::Path;
 use std::time::Instant as Clock;
 
@@ -151,16 +152,18 @@ impl<'a> Sink<'a> {
                     number(at.tip_velocity[0].hypot(at.tip_velocity[1]))
                 );
                 for (cable, own) in arm.cables.iter().zip(&at.cables) {
-                    text.push_str(&format!(
-                        "cable  {}: {} N, {} mm reeled in\n",
+                    let _ = writeln!(
+                        text,
+                        "cable  {}: {} N, {} mm reeled in",
                         cable.name,
                         number(own.tension),
                         number(1e3 * own.stroke)
-                    ));
+                    );
                 }
-                text.push_str(&format!(
+                let _ = writeln!(
+                    text,
                     "energy {} J kinetic, {} J of strain\nsteps  {} in time, {} taken back, on {} elements, in {} s: {} times as fast as the clock\n\
-                     error  about {} m at the tip by the steps\n",
+                     error  about {} m at the tip by the steps",
                     number(at.kinetic_energy),
                     number(at.strain_energy),
                     statistics.steps,
@@ -169,7 +172,7 @@ impl<'a> Sink<'a> {
                     number(wall),
                     number(at.time / wall),
                     number(estimate)
-                ));
+                );
                 output::put(self.path, &text)
             }
         }

@@ -5,8 +5,8 @@
 //! r' = nu a + eta b           m_f' = -(r' x n_f) . k - couple + d/dt (J omega)
 //! ```
 //!
-//! with r. = cv r + hv, r.. = cv r. + ha and so on, see [`super`]. States are (theta, n_f, m_f, x, y), the first four those of
-//! the statics; lengths are in L, forces in the static unit, times in s.
+//! with r. = cv r + hv, r.. = cv r. + ha and so on, see [`super`]. States are (theta, n_f, m_f, x, y), the first four
+//! those of the statics; lengths are in L, forces in the static unit, times in s.
 
 use hydrostat_bvp::{
     Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, StageForcing,
@@ -47,8 +47,9 @@ pub(super) struct Moving {
     end_rates: Vec<[Lanes; L]>,
     closed: bool,
     nodes: usize,
-    /// Sizes of the states: what a solution holds, times these, is the state. With k^4 = mass cv^2 and the sizes 1, k^2, k^2,
-    /// k, 1/k, 1/k all states of a bending wave that a step resolves are of one size, and elimination in order is stable.
+    /// Sizes of the states: what a solution holds, times these, is the state. With k^4 = mass cv^2 and the sizes 1,
+    /// k^2, k^2, k, 1/k, 1/k all states of a bending wave that a step resolves are of one size, and elimination in
+    /// order is stable.
     pub(super) scales: [f64; S],
 }
 
@@ -157,8 +158,8 @@ impl Moving {
         each(|k| Lanes::of(-self.cv) * self.history.strain(block, k))
     }
 
-    /// What acts along the arm at a station, inertia among it, as a load whose force is -n_f'; its derivative by (x, y); and the
-    /// couple of inertia with its derivatives by theta and nu.
+    /// What acts along the arm at a station, inertia among it, as a load whose force is -n_f'; its derivative by (x,
+    /// y); and the couple of inertia with its derivatives by theta and nu.
     #[inline(always)]
     fn loads(
         &self,
@@ -234,8 +235,8 @@ impl Moving {
         load(water, body, stream, [cos, sin], station.inner, &section_stretch, station.closure_slope)
     }
 
-    /// What a change of what sections carry, in a block of stations, changes at fixed states: the strains follow, and with them
-    /// the slopes.
+    /// What a change of what sections carry, in a block of stations, changes at fixed states: the strains follow, and
+    /// with them the slopes.
     pub(super) fn drift(
         &self,
         block: usize,
@@ -273,8 +274,8 @@ impl Moving {
         (strain, area_law(self.statics.volume, given.inner[0]).slope * strain[0])
     }
 
-    /// The strains that follow so much more of what a section carries, at a fixed state: those of that much less of contact force and
-    /// moment, whose derivatives the section law's gradient has.
+    /// The strains that follow so much more of what a section carries, at a fixed state: those of that much less of
+    /// contact force and moment, whose derivatives the section law's gradient has.
     fn follow(&self, inner: &Inner<S, L, Lanes>, [cos, sin]: [Lanes; 2], carried: [Lanes; 3]) -> [Lanes; L] {
         each(|k| {
             let by: [Lanes; 3] = each(|c| Lanes::of(1.0 / self.scales[c + 1]) * inner.gradient[k][c + 1]);
@@ -303,8 +304,8 @@ impl Moving {
         }
     }
 
-    /// How much of the velocity of the water against the tip a change of place (over L) is, by the last history; zero in a
-    /// vacuum.
+    /// How much of the velocity of the water against the tip a change of place (over L) is, by the last history; zero
+    /// in a vacuum.
     pub(super) fn drag_change(&self) -> f64 {
         let water = &self.statics.water;
         if self.statics.arm().flow.density == 0.0 {

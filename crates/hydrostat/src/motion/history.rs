@@ -1,7 +1,7 @@
 //! What the time methods know of an arm: values, rates and second rates at the stations, flat in memory.
 //!
-//! In blocks of four elements side by side: theta, x, y at the stages; the same at the nodes (one block each, its last lane
-//! empty); these have second rates. Then nu, eta, mu and beta' at the stages, which have rates alone.
+//! In blocks of four elements side by side: theta, x, y at the stages; the same at the nodes (one block each, its
+//! last lane empty); these have second rates. Then nu, eta, mu and beta' at the stages, which have rates alone.
 
 use hydrostat_bvp::{Collocation, LANES, Lanes, Real};
 
@@ -86,7 +86,8 @@ impl Snapshot {
         }
     }
 
-    /// Takes the values of a solution whose states have the sizes `scales`, that of theta one; `system` is for its memory.
+    /// Takes the values of a solution whose states have the sizes `scales`, that of theta one; `system` is for its
+    /// memory.
     pub(super) fn take(&mut self, system: &mut Collocation<S, M, 0, L>, solution: &Shape, scales: &[f64; S]) {
         system.take_stations(solution);
         let layout = self.layout;

@@ -10,8 +10,8 @@ use crate::rod::parameter::Parameter;
 /// A quantity over time, in its unit.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Course {
-    /// Straight lines between `(time in s, value)`, times not falling; two rows at one time are a jump. Before the first row and
-    /// after the last one the value stays.
+    /// Straight lines between `(time in s, value)`, times not falling; two rows at one time are a jump. Before the
+    /// first row and after the last one the value stays.
     Table(Vec<(f64, f64)>),
     /// mean + amplitude sin(2 pi frequency t + phase).
     Sine {

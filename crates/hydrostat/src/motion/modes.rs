@@ -1,15 +1,16 @@
 //! Small motions about an equilibrium: rates and frequencies.
 //!
-//! About rest the equations of a stage ([`super::equations`]) are, with u = (x, y, theta) and the strains e at the stages of
-//! the mesh, and G what loads and what changes of the section law there move, by the tangent of the statics (beta', ends,
-//! cables, stream and follower loads in it),
+//! About rest the equations of a stage ([`super::equations`]) are, with u = (x, y, theta) and the strains e at the
+//! stages of the mesh, and G what loads and what changes of the section law there move, by the tangent of the statics
+//! (beta', ends, cables, stream and follower loads in it),
 //!
 //! ```text
 //! (u, e) = G (D lambda + M lambda^2) (u, e)
 //! ```
 //!
-//! for a motion that grows as exp(lambda t). M has the masses of [`crate::rod::inertia`], D the drag's derivative by the velocity,
-//! and, for e, t_v times the section's stiffness. With kappa = 1/lambda and v = lambda u it is a plain eigenvalue problem,
+//! for a motion that grows as exp(lambda t). M has the masses of [`crate::rod::inertia`], D the drag's derivative by
+//! the velocity, and, for e, t_v times the section's stiffness. With kappa = 1/lambda and v = lambda u it is a plain
+//! eigenvalue problem,
 //!
 //! ```text
 //! kappa (u, e) = G D (u, e) + G M v        kappa v = u
@@ -32,8 +33,8 @@ use crate::statics::dimensions::{L, M};
 /// Real parts below this share of a rate are what rounding leaves of none.
 const NOTHING: f64 = 1e-7;
 
-/// Rates within this share of -1/t_v are left out: they gather there without end, and are no motion of the arm but its material
-/// that relaxes.
+/// Rates within this share of -1/t_v are left out: they gather there without end, and are no motion of the arm but
+/// its material that relaxes.
 const RELAXATION: f64 = 0.02;
 
 /// Vectors of the space in which the slowest motions are looked for.
@@ -42,7 +43,8 @@ const SPACE: usize = 96;
 /// One motion about an equilibrium: a real rate, or a conjugate pair of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode {
-    /// Real and imaginary part of lambda, 1/s: the motion goes as exp(lambda t); of a pair the one with the positive imaginary part.
+    /// Real and imaginary part of lambda, 1/s: the motion goes as exp(lambda t); of a pair the one with the positive
+    /// imaginary part.
     pub rate: [f64; 2],
 }
 
@@ -86,8 +88,9 @@ impl Modes {
 }
 
 impl Arm {
-    /// The `count` slowest motions about the equilibrium of this arm, by size of their rates, on a mesh of `elements` elements (8 are
-    /// fine for some eight bending modes). The relaxation of the material itself, at -1/t_v, is not among them.
+    /// The `count` slowest motions about the equilibrium of this arm, by size of their rates, on a mesh of `elements`
+    /// elements (8 are fine for some eight bending modes). The relaxation of the material itself, at -1/t_v, is not
+    /// among them.
     ///
     /// ```
     /// use hydrostat::{Arm, Volume};
@@ -228,9 +231,9 @@ fn rates(settling: &mut Settling) -> Result<Vec<[f64; 2]>, MotionError> {
         .collect())
 }
 
-/// The largest eigenvalues of a matrix, by Arnoldi's iteration: those of its projection onto the Krylov space of a vector that
-/// has a part of everything. Eigenvalues fall as the square of a mode's number, so that a space of this size has dozens.
-/// The whole matrix has so many of next to nothing that Schur's iteration does not settle.
+/// The largest eigenvalues of a matrix, by Arnoldi's iteration: those of its projection onto the Krylov space of a
+/// vector that has a part of everything. Eigenvalues fall as the square of a mode's number, so that a space of this
+/// size has dozens. The whole matrix has so many of next to nothing that Schur's iteration does not settle.
 fn largest_eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let size = matrix.nrows();
     let most = SPACE.min(size);

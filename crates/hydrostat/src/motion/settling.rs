@@ -148,8 +148,8 @@ impl Settling {
         }
     }
 
-    /// Takes the rate cv (1/s) of the next solves, and the sizes of the states that go with it: powers of two, so that they
-    /// seldom change.
+    /// Takes the rate cv (1/s) of the next solves, and the sizes of the states that go with it: powers of two, so
+    /// that they seldom change.
     pub(super) fn set_rate(&mut self, cv: f64) {
         self.moving.cv = cv;
         let mass = self.moving.masses.first().map_or(0.0, |own| (own.wall + own.added).0[0]);
@@ -243,8 +243,8 @@ impl Settling {
                 round -= 1;
                 continue;
             }
-            // Rounds fall with the square of their size, and no faster than the last one did. The drag's square, and its
-            // kinks, count by what a round changes of the velocity.
+            // Rounds fall with the square of their size, and no faster than the last one did. The drag's square, and
+            // its kinks, count by what a round changes of the velocity.
             let of_drag = if before == f64::INFINITY { (0.5_f64).min(moved * self.moving.drag_change()) } else { 0.0 };
             let rate = if applied < 1.0 { 1.0 } else { (size / before).min(1.0).max(size).max(of_drag) };
             before = size;

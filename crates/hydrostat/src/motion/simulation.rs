@@ -139,8 +139,8 @@ impl Simulation {
         }
     }
 
-    /// Sum of the embedded errors of all steps at the tip, m: of the method of order 3 inside that of order 4, so that it
-    /// says too much where the motion is smooth. The mesh's error is not in it.
+    /// Sum of the embedded errors of all steps at the tip, m: of the method of order 3 inside that of order 4, so
+    /// that it says too much where the motion is smooth. The mesh's error is not in it.
     pub fn error_estimate(&self) -> f64 {
         self.stepper.error * self.stepper.arm().length
     }

@@ -3,7 +3,8 @@
 //! With the weights a of a method ([`Tableau`]) and h the step, stage i has
 //!
 //! ```text
-//! q_i = Q + h gamma v_i    v_i = V + h gamma a_i    Q = q_n + h sum_j a_ij v_j    V = v_n + h sum_j a_ij a_j    (j < i)
+//! q_i = Q + h gamma v_i    v_i = V + h gamma a_i    Q = q_n + h sum_j a_ij v_j    V = v_n + h sum_j a_ij a_j    (j <
+//! i)
 //! ```
 //!
 //! so that v_i = cv (q_i - Q) and a_i = cv (v_i - V) with cv = 1/(h gamma). Strains do the same with their rates.

@@ -21,7 +21,8 @@ const SLACK: f64 = 1e-12;
 const SETTLED: f64 = 0.3;
 
 impl Settling {
-    /// Adds to the correction of the last linearisation what the tensions of held cables do, so that their strokes are met.
+    /// Adds to the correction of the last linearisation what the tensions of held cables do, so that their strokes
+    /// are met.
     pub(super) fn border(&mut self) -> Result<(), Unsolved> {
         let Some(held) = self.moving.statics.held.clone() else { return Ok(()) };
         let mut border = std::mem::take(&mut self.border);
@@ -77,8 +78,8 @@ impl Settling {
         statics.held = Some(held);
     }
 
-    /// Lets cables go slack that push, and takes slack ones up that are too short, given the size of the last correction; whether any
-    /// changed.
+    /// Lets cables go slack that push, and takes slack ones up that are too short, given the size of the last
+    /// correction; whether any changed.
     pub(super) fn switch_taut(&mut self, size: f64) -> bool {
         if size > SETTLED {
             return false;

@@ -1,11 +1,11 @@
 //! The time methods: diagonally implicit Runge-Kutta methods that are L-stable and stiffly accurate.
 //!
-//! `RUNNING` has an explicit first stage and so stage order 2, which stretch and shear, stiff against bending, ask for: with
-//! stage order 1 a large swing gains energy without bound. `STARTING` never looks at the slopes before it, which a jump of
-//! a load makes useless, and takes the one step after it.
+//! `RUNNING` has an explicit first stage and so stage order 2, which stretch and shear, stiff against bending, ask
+//! for: with stage order 1 a large swing gains energy without bound. `STARTING` never looks at the slopes before it,
+//! which a jump of a load makes useless, and takes the one step after it.
 
-/// A diagonally implicit method: stage i has the slopes of stages 0 to i with the weights `a[i]`; the last stage is the end of the
-/// step.
+/// A diagonally implicit method: stage i has the slopes of stages 0 to i with the weights `a[i]`; the last stage is
+/// the end of the step.
 #[derive(Debug)]
 pub(super) struct Tableau {
     /// Places of the stages in the step.
@@ -20,7 +20,8 @@ pub(super) struct Tableau {
 }
 
 /// ESDIRK4(3)6L[2]SA: Kennedy, C. A. and Carpenter, M. H. (2003). Additive Runge-Kutta schemes for
-/// convection-diffusion-reaction equations. Applied Numerical Mathematics 44, 139-181, the implicit half of ARK4(3)6L[2]SA.
+/// convection-diffusion-reaction equations. Applied Numerical Mathematics 44, 139-181, the implicit half of
+/// ARK4(3)6L[2]SA.
 pub(super) static RUNNING: Tableau = Tableau {
     c: &[0.0, 0.5, 83.0 / 250.0, 31.0 / 50.0, 17.0 / 20.0, 1.0],
     a: &[
@@ -69,7 +70,8 @@ pub(super) static STARTING: Tableau = Tableau {
 mod tests {
     use super::*;
 
-    /// The conditions of order 4 of the step and of order 3 of the embedded method, and stage order 2 of the running method.
+    /// The conditions of order 4 of the step and of order 3 of the embedded method, and stage order 2 of the running
+    /// method.
     #[test]
     fn tableaux_meet_their_order_conditions() {
         for tableau in [&RUNNING, &STARTING] {

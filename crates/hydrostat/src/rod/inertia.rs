@@ -8,9 +8,9 @@
 //! f_a  = rho_w C_a pi (beta R)^2 nu ((r.. - U.) . w) w          Morison's added mass, per reference length
 //! ```
 //!
-//! The water in a flooded cavity moves along across the arm: rho_w pi R_in^2 d is added to the mass there. A stream that
-//! speeds up acts on the displaced water as gravity does: f has rho_w d pi (R^2 - R_in^2) U. besides (sealed: R^2), and
-//! rho_w d pi R_in^2 (U. . w) w where the cavity's water moves along.
+//! The water in a flooded cavity moves along across the arm: rho_w pi R_in^2 d is added to the mass there. A stream
+//! that speeds up acts on the displaced water as gravity does: f has rho_w d pi (R^2 - R_in^2) U. besides (sealed:
+//! R^2), and rho_w d pi R_in^2 (U. . w) w where the cavity's water moves along.
 //!
 //! Left out: the section's own lateral motion, and the pull of omega^2 on the strains, both of the order (R/L)^2.
 
@@ -77,8 +77,8 @@ pub(crate) struct Inertia<R> {
     pub(crate) by_acceleration: [[R; 2]; 2],
 }
 
-/// rho_arm A_m r.. + (M p) w - rho_w d A U.,  p = (r.. - U.) . w,  M = rho_w (C_a pi R^2 beta^2 nu + pi R_in^2 d). `along` is the
-/// centreline's frame, accelerations are in L/s2.
+/// rho_arm A_m r.. + (M p) w - rho_w d A U.,  p = (r.. - U.) . w,  M = rho_w (C_a pi R^2 beta^2 nu + pi R_in^2 d).
+/// `along` is the centreline's frame, accelerations are in L/s2.
 #[inline(always)]
 pub(crate) fn inertia<R: Real>(
     water: &Water,
