@@ -94,6 +94,34 @@ pub(crate) fn inverse<const N: usize>(m: &Block<N>, smallest: f64) -> Option<Blo
     if fine > 0.0 { Some(inverse) } else { inverse_with_pivoting(*m, smallest) }
 }
 
+/// [`inverse`] of a matrix whose unknowns and equations may be of very different sizes: rows and columns are first brought
+/// to one size, by powers of two, and `smallest` is over that.
+pub(crate) fn balanced_inverse<const N: usize>(m: &Block<N>, smallest: f64) -> Option<Block<N>> {
+    let (mut rows, mut columns) = ([1.0; N], [1.0; N]);
+    let power = |size: f64| if size > 0.0 && size.is_finite() { (-0.5 * size.log2()).round().exp2() } else { 1.0 };
+    for _ in 0..4 {
+        for a in 0..N {
+            rows[a] *= power((0..N).fold(0.0_f64, |most, c| most.max((rows[a] * m[a][c] * columns[c]).abs())));
+        }
+        for c in 0..N {
+            columns[c] *= power((0..N).fold(0.0_f64, |most, a| most.max((rows[a] * m[a][c] * columns[c]).abs())));
+        }
+    }
+    let mut scaled = *m;
+    for a in 0..N {
+        for c in 0..N {
+            scaled[a][c] *= rows[a] * columns[c];
+        }
+    }
+    let mut out = inverse(&scaled, smallest)?;
+    for a in 0..N {
+        for c in 0..N {
+            out[a][c] *= columns[a] * rows[c];
+        }
+    }
+    Some(out)
+}
+
 /// A pivot below this share of what stands under it would lose digits.
 const SMALL_PIVOT: f64 = 0.1;
 

@@ -20,7 +20,9 @@
 //! dk_j = r_j + A_j dz_j + u_j dw'_j        dz_j = dz + h sum_l a_jl dk_l
 //! ```
 
-use crate::block::{Block, apply, determinant, inverse, invert_in_order, multiply, subtract_applied, subtract_product};
+use crate::block::{
+    Block, apply, balanced_inverse, determinant, invert_in_order, multiply, subtract_applied, subtract_product,
+};
 use crate::directions::Side;
 use crate::gauss::{Gauss, POINTS};
 use crate::groups::resize;
@@ -401,7 +403,7 @@ fn invert_lanes<const N: usize>(
             continue;
         }
         let own: Block<N> = given.map(|row| row.map(|v| v.0[lane]));
-        let inverse = inverse(&own, 1e-10).ok_or(lane)?;
+        let inverse = balanced_inverse(&own, 1e-10).ok_or(lane)?;
         product.0[lane] = product.0[lane] / by.0[lane] * determinant(own);
         for a in 0..N {
             for c in 0..N {

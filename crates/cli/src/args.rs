@@ -4,12 +4,14 @@ mod common;
 mod equilibria;
 mod identify;
 mod init;
+mod modes;
 mod path;
 mod picture;
 mod plot;
 mod reach;
 mod serve;
 mod shell;
+mod simulate;
 mod snaps;
 mod sweep;
 mod validate;
@@ -24,12 +26,14 @@ pub(crate) use common::{ArmArgs, Format};
 pub(crate) use equilibria::{EquilibriaArgs, Over};
 pub(crate) use identify::IdentifyArgs;
 pub(crate) use init::InitArgs;
+pub(crate) use modes::{ModesArgs, ModesFormat};
 pub(crate) use path::PathArgs;
 pub(crate) use picture::{Form, PageArgs, PictureArgs, form, picture};
 pub(crate) use plot::PlotArgs;
 pub(crate) use reach::{By, Point, ReachArgs};
 pub(crate) use serve::ServeArgs;
 pub(crate) use shell::{CompletionsArgs, ManArgs};
+pub(crate) use simulate::{MotionFormat, SimulateArgs};
 pub(crate) use snaps::SnapArgs;
 pub(crate) use sweep::SweepArgs;
 pub(crate) use validate::ValidateArgs;
@@ -51,6 +55,8 @@ Examples:
   hydrostat path silicone --vary 'cable[0].tension=0:0.9'   follow the shapes as a tension rises
   hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
                                                             all shapes under the same loads
+  hydrostat simulate silicone --input loads.csv --until 2s -o motion.csv
+                                                            move in time under changing loads
   hydrostat reach silicone --target 0.182,0.078             inverse kinematics
   hydrostat identify silicone data.csv --fit young          fit parameters to measured shapes
   hydrostat sweep silicone --vary flow.speed=0:0.4:21 --vary 'cable[0].tension=0:0.9:31' -o out.csv
@@ -77,6 +83,10 @@ pub(crate) enum Command {
     Path(PathArgs),
     #[command(about = "Find all equilibria under the same loads, with stability")]
     Equilibria(EquilibriaArgs),
+    #[command(about = "Move the arm in time under loads that change")]
+    Simulate(SimulateArgs),
+    #[command(about = "Find small motions about the equilibrium: frequencies, damping, flutter")]
+    Modes(ModesArgs),
     #[command(about = "Find tensions for tip positions (inverse kinematics)", visible_alias = "inverse")]
     Reach(ReachArgs),
     #[command(about = "Trace the boundary of the tip's workspace")]

@@ -2,9 +2,11 @@
 
 use std::error::Error;
 
-use hydrostat::{PathError, ReachError, SensitivityError, SolveError, SpatialError};
+use hydrostat::{MotionError, PathError, ReachError, SensitivityError, SolveError, SpatialError};
 use hydrostat_figures::source::StudyError;
-use hydrostat_files::{FileError, FitKeyError, MeasurementsError, TargetsError, WriteError};
+use hydrostat_files::{
+    FileError, FitKeyError, MeasurementsError, ShapedError, TargetsError, TimeLoadsError, WriteError,
+};
 use hydrostat_identify::{IdentifyError, Trial};
 use hydrostat_serve::ServeError;
 use hydrostat_sweep::SweepError;
@@ -30,6 +32,8 @@ pub(crate) enum Cause<'a> {
     Solve(&'a SolveError),
     Spatial(&'a SpatialError),
     Path(&'a PathError),
+    Motion(&'a MotionError),
+    TimeLoads,
     Sensitivity(&'a SensitivityError),
     Reach(&'a ReachError),
     Sweep(&'a SweepError),
@@ -51,6 +55,9 @@ impl<'a> Cause<'a> {
         let found = error.downcast_ref().map(Self::Solve);
         let found = found.or_else(|| error.downcast_ref().map(Self::Spatial));
         let found = found.or_else(|| error.downcast_ref().map(Self::Path));
+        let found = found.or_else(|| error.downcast_ref().map(Self::Motion));
+        let found = found.or_else(|| error.is::<TimeLoadsError>().then_some(Self::TimeLoads));
+        let found = found.or_else(|| error.is::<ShapedError>().then_some(Self::TimeLoads));
         let found = found.or_else(|| error.downcast_ref().map(Self::Sensitivity));
         let found = found.or_else(|| error.downcast_ref().map(Self::Reach));
         let found = found.or_else(|| error.downcast_ref().map(Self::Sweep));
@@ -76,6 +83,7 @@ impl<'a> Cause<'a> {
         match self {
             Self::Solve(error) => solve(error),
             Self::Path(error) => path(error),
+            Self::Motion(error) => motion(error),
             Self::Sensitivity(error) => sensitivity(error),
             Self::Reach(error) => reach(error),
             Self::Sweep(error) => sweep(error),
@@ -88,6 +96,7 @@ impl<'a> Cause<'a> {
             | Self::Measurements
             | Self::FitKey
             | Self::Targets
+            | Self::TimeLoads
             | Self::File
             | Self::Write
             | Self::Request(_) => Blame::Request,
@@ -100,11 +109,13 @@ impl<'a> Cause<'a> {
         match self {
             Self::Solve(error) => Some(error),
             Self::Path(PathError::Start { source, .. }) => Some(source),
+            Self::Motion(MotionError::Start(source)) | Self::Study(StudyError::Solve { source, .. }) => Some(source),
             Self::Reach(error) => solve_of_reach(error),
-            Self::Study(StudyError::Solve { source, .. }) => Some(source),
             Self::Study(StudyError::Reach(error)) => solve_of_reach(error),
             Self::Spatial(_)
             | Self::Path(_)
+            | Self::Motion(_)
+            | Self::TimeLoads
             | Self::Sensitivity(_)
             | Self::Sweep(_)
             | Self::Identify(_)
@@ -125,6 +136,18 @@ fn solve_of_reach(error: &ReachError) -> Option<&SolveError> {
     match error {
         ReachError::Solve(source) | ReachError::Sensitivity(SensitivityError::Solve(source)) => Some(source),
         ReachError::Sensitivity(_) | ReachError::NoCables | ReachError::Target | ReachError::Option { .. } => None,
+    }
+}
+
+fn motion(error: &MotionError) -> Blame {
+    match error {
+        MotionError::Ended(_) => Blame::Arm,
+        MotionError::Start(source) => solve(source),
+        MotionError::Arm(_)
+        | MotionError::Unfit(_)
+        | MotionError::Unsupported { .. }
+        | MotionError::Option { .. }
+        | MotionError::Course { .. } => Blame::Request,
     }
 }
 

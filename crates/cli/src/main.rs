@@ -34,6 +34,8 @@ fn main() -> ExitCode {
         Some(Command::Solve(args)) => command::solve::run(&args),
         Some(Command::Path(args)) => command::path::run(&args),
         Some(Command::Equilibria(args)) => command::equilibria::run(&args),
+        Some(Command::Simulate(args)) => command::simulate::run(&args),
+        Some(Command::Modes(args)) => command::modes::run(&args),
         Some(Command::Reach(args)) => command::reach::run(&args),
         Some(Command::Workspace(args)) => command::reach::run(&args.into()),
         Some(Command::Identify(args)) => command::identify::run(&args),

@@ -5,9 +5,9 @@ use std::io::Read;
 use std::path::Path;
 
 use hydrostat::{
-    Arm, Base, BaseDirections, Cable, Cavity, Displaced, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface,
-    Gravity, Hydrostatics, LayerMean, Material, Motion, Profile, Readings, Reference, Space, Support, TipLoad, Volume,
-    WettedLength,
+    Arm, Base, BaseDirections, Cable, Cavity, Displaced, DistributedLoad, Dynamics, EnteringSpeed, Flow, FlowLaw,
+    FlowSurface, Gravity, Hydrostatics, LayerMean, Material, Motion, Profile, Readings, Reference, Space, Support,
+    TipLoad, Volume, WettedLength,
 };
 
 use crate::document::{self, Field, Origin};
@@ -280,6 +280,7 @@ fn build(v: &Values, name: String) -> Arm {
                 None => v.profile("distributed.couple").unwrap_or_else(zero),
             },
         },
+        dynamics: dynamics(v),
         readings: readings(v),
         space: v.is_spatial().then(|| space(v)),
     }
@@ -311,6 +312,24 @@ fn space(v: &Values) -> Space {
         tau: profile("reference.tau"),
         kappa: profile("reference.kappa"),
         c4: v.profile("material.c4"),
+    }
+}
+
+fn dynamics(v: &Values) -> Dynamics {
+    let default = Dynamics::default();
+    let c1 = || match (v.number("material.young"), v.profile("material.c1")) {
+        (_, Some(Profile::Constant(c1))) | (Some(c1), _) => c1,
+        _ => f64::NAN,
+    };
+    let time = if v.has_viscosity() {
+        v.number("dynamics.viscosity").map(|viscosity| viscosity / c1())
+    } else {
+        v.number("dynamics.relaxation_time")
+    };
+    Dynamics {
+        added_mass: v.number("dynamics.added_mass").unwrap_or(default.added_mass),
+        relaxation_time: time.unwrap_or(default.relaxation_time),
+        inertia: v.flag("dynamics.inertia").unwrap_or(default.inertia),
     }
 }
 

@@ -18,8 +18,14 @@ const HEAD: &str = "\
 ";
 
 /// Keys that may be left out and have no default, with a value to show.
-const EXAMPLES: [(&str, &str); 5] =
-    [("stroke", "\"10 mm\""), ("stiffness", "\"2 kN\""), ("max_tension", "\"1.5 N\""), ("cn", "2.5"), ("ct", "0.005")];
+const EXAMPLES: [(&str, &str); 6] = [
+    ("stroke", "\"10 mm\""),
+    ("stiffness", "\"2 kN\""),
+    ("max_tension", "\"1.5 N\""),
+    ("cn", "2.5"),
+    ("ct", "0.005"),
+    ("viscosity", "\"300 Pa s\""),
+];
 
 /// Column at which comments begin, where the value leaves room.
 const COMMENTS: usize = 44;

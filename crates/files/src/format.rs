@@ -11,6 +11,8 @@ pub(crate) enum Kind {
     Text,
     /// One of some words.
     Choice(&'static [&'static str]),
+    /// True or false.
+    Flag,
     /// One number.
     Quantity(Dimension),
     /// Two numbers, `[_, _]`, or three in space.
@@ -71,8 +73,8 @@ const fn default(name: &'static str, kind: Kind, default: &'static str, doc: &'s
 
 use Dimension as D;
 use Kind::{
-    Axial, AxialProfile, Choice, Direction, Heading, Offset, Pair, Part, Profile, ProfilePair, Quantity, Table, Tables,
-    Text,
+    Axial, AxialProfile, Choice, Direction, Flag, Heading, Offset, Pair, Part, Profile, ProfilePair, Quantity, Table,
+    Tables, Text,
 };
 
 pub(crate) const FILE: &[Key] = &[
@@ -85,6 +87,7 @@ pub(crate) const FILE: &[Key] = &[
     optional("gravity", Table(GRAVITY), "Gravity in the plane. Default: none."),
     optional("tip", Table(TIP), "Loads on the tip."),
     optional("distributed", Table(DISTRIBUTED), "Dead loads along the arm, per metre of undeformed length."),
+    optional("dynamics", Table(DYNAMICS), "What motion depends on besides masses. Equilibria do not."),
     optional("model", Table(MODEL), "Options of the model."),
 ];
 
@@ -197,6 +200,16 @@ const DISTRIBUTED: &[Key] = &[
     ),
 ];
 
+/// Either of them, not both.
+pub(crate) const RATE: [&str; 2] = ["relaxation_time", "viscosity"];
+
+const DYNAMICS: &[Key] = &[
+    default("added_mass", Quantity(D::Number), "1.0", "Coefficient C_a of the water that moves along; 0 is none."),
+    default("relaxation_time", Quantity(D::Time), "0.0", "Relaxation time of the material (Kelvin-Voigt)."),
+    optional("viscosity", Quantity(D::Viscosity), "The same as a viscosity, relaxation_time times C1."),
+    default("inertia", Flag, "true", "Whether arm and water have inertia; without it motion is overdamped."),
+];
+
 const MODEL: &[Key] = &[
     default(
         "closure",
@@ -228,6 +241,7 @@ impl Kind {
                 let quoted: Vec<String> = words.iter().map(|w| format!("{w:?}")).collect();
                 quoted.join(" or ")
             }
+            Flag => "true or false".to_owned(),
             Quantity(dimension) => dimension.expected(),
             Pair(dimension) => {
                 format!("two values [_, _], each {}; in space also three", dimension.expected())

@@ -105,7 +105,7 @@ fn key_in(keys: &[Key], text: &str) -> Option<String> {
         let rest = text.strip_prefix(key.name)?;
         let rest = if rest.is_empty() { None } else { Some(rest.strip_prefix('_')?) };
         match key.kind {
-            Kind::Text | Kind::Choice(_) | Kind::Quantity(_) | Kind::Part => {
+            Kind::Text | Kind::Choice(_) | Kind::Flag | Kind::Quantity(_) | Kind::Part => {
                 rest.is_none().then(|| key.name.to_owned())
             }
             Kind::Axial(_) | Kind::Heading => match rest {
@@ -152,7 +152,7 @@ mod tests {
         for key in keys {
             let here = if path.is_empty() { key.name.to_owned() } else { format!("{path}.{}", key.name) };
             match key.kind {
-                Kind::Text | Kind::Choice(_) | Kind::Quantity(_) | Kind::Part => out.push(here),
+                Kind::Text | Kind::Choice(_) | Kind::Flag | Kind::Quantity(_) | Kind::Part => out.push(here),
                 Kind::Axial(_) | Kind::Heading => out.extend(["", "[2]"].map(|end| format!("{here}{end}"))),
                 Kind::Table(inner) => self::keys(inner, &here, out),
                 Kind::Tables(inner) => self::keys(inner, &format!("{here}[12]"), out),

@@ -35,6 +35,10 @@ pub enum Dimension {
     ForcePerLength,
     /// N m/m.
     MomentPerLength,
+    /// s.
+    Time,
+    /// Pa s.
+    Viscosity,
 }
 
 /// How a number in a unit becomes SI.
@@ -118,10 +122,21 @@ const FORCE_PER_LENGTH: &[Unit] =
     &[(&["N/m"], Decimal(0)), (&["mN/m"], Decimal(-3)), (&["N/cm"], Decimal(2)), (&["N/mm"], Decimal(3))];
 const MOMENT_PER_LENGTH: &[Unit] =
     &[(&["N m/m", "Nm/m", "N*m/m", "N\u{b7}m/m", "N"], Decimal(0)), (&["mN m/m", "mNm/m", "mN"], Decimal(-3))];
+const TIME: &[Unit] = &[
+    (&["s"], Decimal(0)),
+    (&["ms"], Decimal(-3)),
+    (&["us", "\u{b5}s", "\u{3bc}s"], Decimal(-6)),
+    (&["min"], Ratio(60.0, 1.0)),
+];
+const VISCOSITY: &[Unit] = &[
+    (&["Pa s", "Pas", "Pa*s", "Pa\u{b7}s"], Decimal(0)),
+    (&["kPa s", "kPas", "kPa*s", "kPa\u{b7}s"], Decimal(3)),
+    (&["mPa s", "mPas", "mPa*s", "mPa\u{b7}s"], Decimal(-3)),
+];
 
 impl Dimension {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Number,
         Self::Length,
         Self::Angle,
@@ -134,6 +149,8 @@ impl Dimension {
         Self::Curvature,
         Self::ForcePerLength,
         Self::MomentPerLength,
+        Self::Time,
+        Self::Viscosity,
     ];
 
     /// With its article, as in "expected a length".
@@ -151,6 +168,8 @@ impl Dimension {
             Self::Curvature => "a curvature",
             Self::ForcePerLength => "a force per length",
             Self::MomentPerLength => "a moment per length",
+            Self::Time => "a time",
+            Self::Viscosity => "a viscosity",
         }
     }
 
@@ -176,6 +195,8 @@ impl Dimension {
             Self::Curvature => CURVATURE,
             Self::ForcePerLength => FORCE_PER_LENGTH,
             Self::MomentPerLength => MOMENT_PER_LENGTH,
+            Self::Time => TIME,
+            Self::Viscosity => VISCOSITY,
         }
     }
 

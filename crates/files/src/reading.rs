@@ -7,7 +7,7 @@ use hydrostat::{ArmError, Join, Profile};
 
 use crate::document::{Entry, Field, Node, Origin, segment};
 use crate::format::{
-    self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, JOINED, Key, Kind, MAX_CABLES, MAX_POINTS, PULL, SPACES,
+    self, COEFFICIENTS, DRAG, ENDS, HOMOGENEOUS, JOINED, Key, Kind, MAX_CABLES, MAX_POINTS, PULL, RATE, SPACES,
 };
 use crate::quantity::Dimension;
 
@@ -33,6 +33,7 @@ pub(crate) enum Value {
     Text(String),
     Word(&'static str),
     Number(f64),
+    Flag(bool),
     Pair([f64; 2]),
     Triple([f64; 3]),
     Profile(Profile),
@@ -63,12 +64,13 @@ impl Values {
         let mut values = Self::default();
         values.table("", format::FILE, fields, Origin::Text(0));
         // What a key of a table should be is open while another is wrong.
-        let checks: [(&str, Check); 5] = [
+        let checks: [(&str, Check); 6] = [
             ("material", Self::check_material),
             ("flow", Self::check_drag),
             ("cable", Self::check_pull),
             ("arm", Self::check_base),
             ("arm.space", Self::check_space),
+            ("dynamics", Self::check_rate),
         ];
         for (table, check) in checks {
             if !values.is_faulty(table)
@@ -166,6 +168,13 @@ impl Values {
         }
     }
 
+    pub(crate) fn flag(&self, key: &str) -> Option<bool> {
+        match self.found.get(key) {
+            Some((Value::Flag(flag), _)) => Some(*flag),
+            _ => None,
+        }
+    }
+
     pub(crate) fn profile(&self, key: &str) -> Option<Profile> {
         match self.found.get(key) {
             Some((Value::Profile(profile), _)) => Some(profile.clone()),
@@ -216,6 +225,7 @@ impl Values {
                 Some(word) => Value::Word(word),
                 None => return Err(refuse(path, kind, entry)),
             },
+            (Kind::Flag, Node::Boolean(flag)) => Value::Flag(*flag),
             (Kind::Quantity(dimension), _) => Value::Number(quantity(path, dimension, entry)?),
             (Kind::Axial(dimension), Node::Number(_) | Node::Text(_)) => {
                 Value::Number(quantity(path, dimension, entry)?)
@@ -448,6 +458,29 @@ impl Values {
         let [tension, stroke] = PULL.map(|name| format!("cable[{index}].{name}"));
         let overridden = self.has(&tension) && matches!(self.origin(&tension), Origin::Setting(_));
         self.has(&stroke) && !overridden
+    }
+
+    /// A file gives a relaxation time or a viscosity; an override of one takes the place of the other. A viscosity is one
+    /// time only where C1 is one number.
+    fn check_rate(&self) -> Result<(), Fault> {
+        let [time, viscosity] = RATE.map(|name| format!("dynamics.{name}"));
+        let by_setting = |key: &str| matches!(self.origin(key), Origin::Setting(_));
+        if self.has(&time) && self.has(&viscosity) && by_setting(&time) == by_setting(&viscosity) {
+            let expected = "either relaxation_time or viscosity".to_owned();
+            return Err(value_fault(&viscosity, self.origin(&viscosity), expected, "both".to_owned()));
+        }
+        if self.has_viscosity() && self.profile("material.c1").is_some_and(|c1| !matches!(c1, Profile::Constant(_))) {
+            let expected = "relaxation_time, as c1 varies along the arm".to_owned();
+            return Err(value_fault(&viscosity, self.origin(&viscosity), expected, "viscosity".to_owned()));
+        }
+        Ok(())
+    }
+
+    /// Whether the material's rate is given by a viscosity.
+    pub(crate) fn has_viscosity(&self) -> bool {
+        let [time, viscosity] = RATE.map(|name| format!("dynamics.{name}"));
+        let overridden = self.has(&time) && matches!(self.origin(&time), Origin::Setting(_));
+        self.has(&viscosity) && !overridden
     }
 
     fn check_drag(&self) -> Result<(), Fault> {

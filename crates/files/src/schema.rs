@@ -92,6 +92,7 @@ fn property(key: &Key) -> Value {
             schema["dependentRequired"] = json!({ "section": ["direction"] });
         }
         "cable" => schema["items"]["not"] = json!({ "required": PULL }),
+        "dynamics" => schema["not"] = json!({ "required": format::RATE }),
         "flow" => {
             schema["if"] = json!({ "required": ["law"], "properties": { "law": { "const": "quadratic-drag" } } });
             schema["then"] = json!({ "required": DRAG });
@@ -130,6 +131,7 @@ fn kind(kind: Kind) -> Value {
     match kind {
         Kind::Text => json!({ "type": "string", "maxLength": MAX_NAME }),
         Kind::Choice(words) => json!({ "enum": words }),
+        Kind::Flag => json!({ "type": "boolean" }),
         Kind::Quantity(d) => json!({ "$ref": format!("#/$defs/{}", id("quantity", d)) }),
         Kind::Pair(d) => parts(one(id("quantity", d)), 2),
         Kind::Axial(d) => json!({ "anyOf": [one(id("quantity", d)), parts(one(id("quantity", d)), 3)] }),

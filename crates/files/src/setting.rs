@@ -200,7 +200,7 @@ fn into_value(entry: &mut Entry, path: &str, kind: Kind, steps: &[Step], target:
             _,
             _,
         ) => Err(target.refuse(path, kind.expected(), entry.node.describe())),
-        (Kind::Text | Kind::Choice(_) | Kind::Quantity(_) | Kind::Offset(_) | Kind::Part, ..) => {
+        (Kind::Text | Kind::Choice(_) | Kind::Flag | Kind::Quantity(_) | Kind::Offset(_) | Kind::Part, ..) => {
             Err(target.refuse(path, "the end of the key", "more of it"))
         }
     }

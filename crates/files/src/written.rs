@@ -85,6 +85,7 @@ fn assign(out: &mut String, name: &str, value: &Tree) {
 pub(crate) enum Tree {
     Text(String),
     Number(f64),
+    Flag(bool),
     Array(Vec<Tree>),
     Table(Vec<(&'static str, Tree)>),
 }
@@ -128,6 +129,7 @@ impl Tree {
                 let text = format!("{value:?}");
                 out.push_str(if value.is_nan() { "nan" } else { &text });
             }
+            Self::Flag(flag) => out.push_str(if *flag { "true" } else { "false" }),
             Self::Array(elements) => {
                 out.push('[');
                 for (i, element) in elements.iter().enumerate() {
@@ -154,6 +156,7 @@ impl Serialize for Tree {
         match self {
             Self::Text(text) => serializer.serialize_str(text),
             Self::Number(value) => serializer.serialize_f64(*value),
+            Self::Flag(flag) => serializer.serialize_bool(*flag),
             Self::Array(elements) => serializer.collect_seq(elements),
             Self::Table(keys) => serializer.collect_map(keys.iter().map(|(k, v)| (k, v))),
         }
@@ -279,6 +282,15 @@ fn tree(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
     };
     file.push(("tip", Tree::Table(tip)));
     file.push(("distributed", Tree::Table(distributed)));
+    if arm.dynamics != hydrostat::Dynamics::default() {
+        let own = arm.dynamics;
+        let keys = vec![
+            ("added_mass", number(own.added_mass)),
+            ("relaxation_time", number(own.relaxation_time)),
+            ("inertia", Tree::Flag(own.inertia)),
+        ];
+        file.push(("dynamics", Tree::Table(keys)));
+    }
     file.push(("model", model(arm.readings)));
     Tree::Table(file)
 }

@@ -10,7 +10,8 @@ use hydrostat::{
 };
 use hydrostat_files::{
     ArmFile, BoundaryDocument, Dimension, EquilibriaDocument, FollowedDocument, OverDocument, PathDocument,
-    ReachDocument, Varied, boundary_csv, followed_csv, over_csv, path_csv, reach_csv, schema, stations_csv,
+    ReachDocument, Varied, boundary_csv, followed_csv, motion_columns, over_csv, path_csv, reach_csv, schema,
+    stations_csv,
 };
 use serde_json::Value;
 
@@ -85,7 +86,7 @@ fn its_tables_are_the_schema() {
         }
         assert!(documented.is_empty(), "{heading}: {documented:?}");
     }
-    assert_eq!(defaults, 28);
+    assert_eq!(defaults, 31);
 }
 
 /// The two files have every key.
@@ -185,8 +186,9 @@ fn its_keys_are_those_of_the_documents() {
 fn its_names_are_those_of_the_results() {
     let header = stations_csv(&Stations::default());
     let reached = [reach_header(), followed_csv(1, &[]), boundary_csv(1, &Boundary { pieces: Vec::new() })];
-    assert_eq!(blocks("csv")[..3], [header, path_header(), over_header()]);
-    assert_eq!(blocks("csv")[3..], reached);
+    let motion = motion_columns(1).join(",") + "\n";
+    assert_eq!(blocks("csv")[..4], [header, path_header(), motion, over_header()]);
+    assert_eq!(blocks("csv")[4..], reached);
     let (arm, _) = pulled();
     let middle = Target { s: Some(0.1), ..Target::tip(0.09, 0.0) };
     let columns = reach_csv(1, &arm.reach(&[middle], &ReachOptions::default()).unwrap());

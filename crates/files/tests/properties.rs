@@ -140,6 +140,7 @@ fn arm() -> impl Strategy<Value = Arm> {
                     gravity,
                     tip,
                     distributed,
+                    dynamics: hydrostat::Dynamics::default(),
                     readings,
                     space: None,
                 }

@@ -181,5 +181,5 @@ fn defaults_in_the_schema_are_those_of_the_parser() {
             seen += 1;
         }
     }
-    assert_eq!(seen, 28);
+    assert_eq!(seen, 31);
 }

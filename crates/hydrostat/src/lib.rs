@@ -132,6 +132,7 @@
 
 pub mod cases;
 mod inverse;
+pub mod motion;
 mod numerics;
 mod rod;
 pub mod spatial;
@@ -142,13 +143,17 @@ pub use rod::{arm, parameter, profile, readings};
 pub use statics::{configuration, many, path, sensitivity, snap, solve, stability, verdict};
 
 pub use arm::{
-    Arm, ArmError, Base, BaseDirections, Cable, Cavity, DistributedLoad, Flow, FlowLaw, Gravity, Material, Motion,
-    Reference, Space, TipLoad,
+    Arm, ArmError, Base, BaseDirections, Cable, Cavity, DistributedLoad, Dynamics, Flow, FlowLaw, Gravity, Material,
+    Motion, Reference, Space, TipLoad,
 };
 pub use configuration::{
     CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,
 };
 pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
+pub use motion::{
+    CableMotion, Course, Inputs, Instant, Mode, Modes, MotionError, MotionOptions, MotionStatistics, MotionVerdict,
+    MotionVerdictKind, Simulation,
+};
 pub use numerics::dispatch::has_wide_vectors;
 pub use parameter::Parameter;
 pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError, PathOptions, PathPoint};

@@ -5,6 +5,7 @@ pub mod arm;
 pub(crate) mod cable;
 pub(crate) mod cable_list;
 pub(crate) mod flow;
+pub(crate) mod inertia;
 pub(crate) mod loads;
 pub mod parameter;
 pub mod profile;

@@ -32,6 +32,21 @@ pub(crate) fn area_law<R: Real>(volume: Volume, nu: R) -> SectionStretch<R> {
     }
 }
 
+/// beta^2 and its first two derivatives by nu: beta^2 = nu^-p with p = 2, 1, 0 under `planar`, `circular`, `none`.
+#[inline(always)]
+pub(crate) fn area_derivatives<R: Real>(volume: Volume, nu: R) -> [R; 3] {
+    let (zero, one) = (R::of(0.0), R::of(1.0));
+    let inverse = one / nu;
+    match volume {
+        Volume::Planar => {
+            let area = inverse * inverse;
+            [area, R::of(-2.0) * area * inverse, R::of(6.0) * area * area]
+        }
+        Volume::Circular => [inverse, -(inverse * inverse), R::of(2.0) * inverse * inverse * inverse],
+        Volume::None => [one, zero, zero],
+    }
+}
+
 /// The water that a section displaces over that of the unloaded arm, d, and d d / d nu.
 ///
 /// By (15) the arm keeps its volume, so d = 1 under `planar` and `circular`; rigid sections (`none`) sweep d = nu. The

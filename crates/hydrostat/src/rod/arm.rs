@@ -57,10 +57,38 @@ pub struct Arm {
     pub tip: TipLoad,
     /// Loads along the arm besides water and weight.
     pub distributed: DistributedLoad,
+    /// What moves it in time, besides its masses.
+    pub dynamics: Dynamics,
     /// Options of the model.
     pub readings: Readings,
     /// What takes the arm out of the plane; `None` for an arm in the plane.
     pub space: Option<Space>,
+}
+
+/// What the motion of an arm depends on besides its masses. Equilibria do not.
+///
+/// ```
+/// use hydrostat::{Arm, Dynamics};
+///
+/// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+/// // Silicone: 300 Pa s over 110 kPa.
+/// arm.dynamics = Dynamics { relaxation_time: 300.0 / 110e3, ..Dynamics::default() };
+/// arm.check().unwrap();
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dynamics {
+    /// Coefficient C_a of the mass of water that moves along across the arm; 0 turns it off.
+    pub added_mass: f64,
+    /// Relaxation time t_v of the material (Kelvin-Voigt), s, the same for all strains; 0 turns it off.
+    pub relaxation_time: f64,
+    /// Whether arm and water have inertia; without it the motion is overdamped.
+    pub inertia: bool,
+}
+
+impl Default for Dynamics {
+    fn default() -> Self {
+        Self { added_mass: 1.0, relaxation_time: 0.0, inertia: true }
+    }
 }
 
 /// What is inside a hollow arm.
@@ -221,6 +249,7 @@ impl Arm {
             gravity: None,
             tip: TipLoad::default(),
             distributed: DistributedLoad::default(),
+            dynamics: Dynamics::default(),
             readings: Readings::default(),
             space: None,
         }

@@ -14,6 +14,9 @@ pub(crate) struct Traction<R> {
     pub(crate) normal: R,
     pub(crate) tangential_turn: R,
     pub(crate) normal_turn: R,
+    /// Derivatives by U_t and U_n.
+    pub(crate) tangential_by: [R; 2],
+    pub(crate) normal_by: [R; 2],
 }
 
 /// The flow law of an arm, resolved to numbers.
@@ -70,6 +73,7 @@ pub(crate) fn traction<R: Real>(law: Law, u_t: R, u_n: R, normal_share: R) -> Tr
     let n = u_n * normal_share;
     let n_turn = -(u_t * normal_share);
     let n_abs = n.abs();
+    let zero = R::of(0.0);
     match law {
         Law::MomentumTangential { layer } => {
             let layer = R::of(layer);
@@ -80,6 +84,8 @@ pub(crate) fn traction<R: Real>(law: Law, u_t: R, u_n: R, normal_share: R) -> Tr
                 normal: n_abs * n,
                 tangential_turn: two * ((v_abs + n_abs) * v_turn + n.sign() * v * n_turn),
                 normal_turn: two * n_abs * n_turn,
+                tangential_by: [two * (v_abs + n_abs) * layer, two * n.sign() * v * normal_share],
+                normal_by: [zero, two * n_abs * normal_share],
             }
         }
         Law::MomentumResultant { layer } => {
@@ -92,6 +98,8 @@ pub(crate) fn traction<R: Real>(law: Law, u_t: R, u_n: R, normal_share: R) -> Tr
                 normal: n_abs * n,
                 tangential_turn: two * sum * (v_turn + sign * n.sign() * n_turn),
                 normal_turn: two * n_abs * n_turn,
+                tangential_by: [two * sum * layer, two * sum * sign * n.sign() * normal_share],
+                normal_by: [zero, two * n_abs * normal_share],
             }
         }
         Law::Quadratic { normal, tangential } => {
@@ -101,6 +109,8 @@ pub(crate) fn traction<R: Real>(law: Law, u_t: R, u_n: R, normal_share: R) -> Tr
                 normal: cn * n_abs * n,
                 tangential_turn: two * ct * u_t.abs() * u_n,
                 normal_turn: two * cn * n_abs * n_turn,
+                tangential_by: [two * ct * u_t.abs(), zero],
+                normal_by: [zero, two * cn * n_abs * normal_share],
             }
         }
     }

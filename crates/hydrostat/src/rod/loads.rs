@@ -48,6 +48,8 @@ pub(crate) struct Load<R> {
     pub(crate) by_strain: [[R; 3]; 2],
     /// By beta', which the lateral surface alone depends on.
     pub(crate) by_beta_slope: [R; 2],
+    /// By the velocity of the water against the section, per m/s: `by_stream[k][c]` = d f_k / d U_c.
+    pub(crate) by_stream: [[R; 2]; 2],
     /// Speeds whose change of sign kinks the load: along and across the surface, and, on the
     /// lateral surface, the tie of both sides, where it jumps. Over the stream's speed.
     pub(crate) switches: [R; 3],
@@ -65,10 +67,10 @@ struct Direction<R> {
 
 /// Unit vectors u, w = k x u in space and the turn of u by strain.
 #[derive(Clone, Copy)]
-struct Frame<R> {
-    u: [R; 2],
-    w: [R; 2],
-    turn: [R; 3],
+pub(crate) struct Frame<R> {
+    pub(crate) u: [R; 2],
+    pub(crate) w: [R; 2],
+    pub(crate) turn: [R; 3],
     turn_beta_slope: R,
 }
 
@@ -82,6 +84,14 @@ impl<R: Real> Direction<R> {
         let turn = each(|k| (self.x * self.y_strain[k] - self.y * self.x_strain[k]) * f);
         Frame { u, w: [-u[1], u[0]], turn, turn_beta_slope: self.x * self.y_beta_slope * f }
     }
+}
+
+/// The centreline: r' = nu a + eta b.
+#[inline(always)]
+pub(crate) fn centreline<R: Real>([cos, sin]: [R; 2], [nu, eta]: [R; 2]) -> Frame<R> {
+    let (zero, one) = (R::of(0.0), R::of(1.0));
+    Direction { x: nu, y: eta, x_strain: [one, zero, zero], y_strain: [zero, one, zero], y_beta_slope: zero }
+        .frame(cos, sin)
 }
 
 /// The surface of the left side (`sigma` 1) or the right (-1): x_sigma' = (nu - sigma beta R mu) a + (eta + sigma (beta
@@ -106,7 +116,7 @@ fn lateral<R: Real>(
 }
 
 #[inline(always)]
-fn dot<R: Real>(a: [R; 2], b: [R; 2]) -> R {
+pub(crate) fn dot<R: Real>(a: [R; 2], b: [R; 2]) -> R {
     a[0] * b[0] + a[1] * b[1]
 }
 
@@ -137,11 +147,19 @@ pub(crate) fn stream_along(
     }
 }
 
-/// The load of everything but cables, tip and support at a station.
+/// The stream of an arm at rest: the same everywhere, `None` in still water.
+#[inline(always)]
+pub(crate) fn uniform<R: Real>(water: &Water) -> Option<[R; 2]> {
+    (water.stream != [0.0; 2]).then(|| each(|k| R::of(water.stream[k])))
+}
+
+/// The load of everything but cables, tip and support at a station. `stream` is the velocity of the water against the
+/// section (m/s), U - r. where the arm moves; `None` where none acts.
 #[inline(always)]
 pub(crate) fn load<R: Real>(
     water: &Water,
     body: &Body<R>,
+    stream: Option<[R; 2]>,
     [cos, sin]: [R; 2],
     strain: [R; 3],
     section_stretch: &SectionStretch<R>,
@@ -149,23 +167,21 @@ pub(crate) fn load<R: Real>(
 ) -> Load<R> {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let [nu, eta, _] = strain;
-    let centreline =
-        Direction { x: nu, y: eta, x_strain: [one, zero, zero], y_strain: [zero, one, zero], y_beta_slope: zero };
-    let along = centreline.frame(cos, sin);
+    let along = centreline([cos, sin], [nu, eta]);
     let mut out = Load {
         force: body.force,
         by_theta: [zero; 2],
         by_strain: [[zero; 3]; 2],
         by_beta_slope: [zero; 2],
+        by_stream: [[zero; 2]; 2],
         switches: [zero; 3],
     };
 
-    let streams = water.stream != [0.0; 2];
     let wetted = wetted(water, body, strain, section_stretch);
     match water.surface {
         FlowSurface::Centreline => {
-            if streams {
-                stream_load(water, &along, one, wetted, one, &mut out);
+            if let Some(stream) = stream {
+                stream_load(water, stream, &along, one, wetted, one, &mut out);
             }
             add_hydrostatics(water, body, nu, section_stretch, &[(one, along)], &mut out);
         }
@@ -173,9 +189,9 @@ pub(crate) fn load<R: Real>(
             let radius = [body.radius, body.radius_slope];
             let side = |sigma| lateral(sigma, strain, section_stretch, radius, beta_slope).frame(cos, sin);
             let (left, right) = (side(1.0), side(-1.0));
-            let share = left_share(water, &left, &right);
-            if streams {
-                lateral_load(water, &left, &right, share, wetted, &mut out);
+            let share = left_share(stream.unwrap_or([zero; 2]), &left, &right);
+            if let Some(stream) = stream {
+                lateral_load(water, stream, &left, &right, share, wetted, &mut out);
             }
             add_hydrostatics(water, body, nu, section_stretch, &[(share, left), (one - share, right)], &mut out);
         }
@@ -200,17 +216,16 @@ fn wetted<R: Real>(water: &Water, body: &Body<R>, strain: [R; 3], section_stretc
 
 /// U . u_n on the left and on the right side, u_n = sigma k x u_t outward: the smaller is windward.
 #[inline(always)]
-fn hits<R: Real>(water: &Water, left: &Frame<R>, right: &Frame<R>) -> [R; 2] {
-    let stream: [R; 2] = each(|k| R::of(water.stream[k]));
+fn hits<R: Real>(stream: [R; 2], left: &Frame<R>, right: &Frame<R>) -> [R; 2] {
     [dot(stream, left.w), -dot(stream, right.w)]
 }
 
 /// The left side's share of what acts on the windward surface: one or nothing, and half where the sides tie, as they do
 /// without a stream.
 #[inline(always)]
-fn left_share<R: Real>(water: &Water, left: &Frame<R>, right: &Frame<R>) -> R {
+fn left_share<R: Real>(stream: [R; 2], left: &Frame<R>, right: &Frame<R>) -> R {
     let (zero, one, half) = (R::of(0.0), R::of(1.0), R::of(0.5));
-    let [hit_left, hit_right] = hits(water, left, right);
+    let [hit_left, hit_right] = hits(stream, left, right);
     hit_left.if_less(hit_right, one, hit_right.if_less(hit_left, zero, half))
 }
 
@@ -218,6 +233,7 @@ fn left_share<R: Real>(water: &Water, left: &Frame<R>, right: &Frame<R>) -> R {
 #[inline(always)]
 fn lateral_load<R: Real>(
     water: &Water,
+    stream: [R; 2],
     left: &Frame<R>,
     right: &Frame<R>,
     left_share: R,
@@ -225,10 +241,10 @@ fn lateral_load<R: Real>(
     out: &mut Load<R>,
 ) {
     let (zero, one) = (R::of(0.0), R::of(1.0));
-    let [hit_left, hit_right] = hits(water, left, right);
+    let [hit_left, hit_right] = hits(stream, left, right);
     let faces = |hit: R| hit.if_less(zero, one, zero);
-    stream_load(water, left, faces(hit_left), wetted, left_share, out);
-    stream_load(water, right, faces(hit_right), wetted, one - left_share, out);
+    stream_load(water, stream, left, faces(hit_left), wetted, left_share, out);
+    stream_load(water, stream, right, faces(hit_right), wetted, one - left_share, out);
     let speed = R::of(1.0 / water.stream[0].hypot(water.stream[1]));
     let windward = hit_left.min(hit_right);
     out.switches[1] = windward * speed;
@@ -280,13 +296,13 @@ fn add_hydrostatics<R: Real>(
 #[inline(always)]
 fn stream_load<R: Real>(
     water: &Water,
+    stream: [R; 2],
     frame: &Frame<R>,
     normal_share: R,
     (s, s_strain): (R, [R; 3]),
     share: R,
     out: &mut Load<R>,
 ) {
-    let stream: [R; 2] = each(|k| R::of(water.stream[k]));
     let (u_t, u_n) = (dot(stream, frame.u), dot(stream, frame.w));
     let t = traction(water.law, u_t, u_n, normal_share);
     let factor = R::of(water.tangential_factor);
@@ -300,6 +316,11 @@ fn stream_load<R: Real>(
         out.by_beta_slope[k] += turned * frame.turn_beta_slope;
         for c in 0..3 {
             out.by_strain[k][c] += turned * frame.turn[c] + share * s_strain[c] * per_s;
+        }
+        for c in 0..2 {
+            let by_speed = |[by_t, by_n]: [R; 2]| by_t * frame.u[c] + by_n * frame.w[c];
+            let (along, across) = (factor * by_speed(t.tangential_by), by_speed(t.normal_by));
+            out.by_stream[k][c] += s * (along * frame.u[k] + across * frame.w[k]);
         }
     }
     let speed = R::of(1.0 / water.stream[0].hypot(water.stream[1]));
@@ -351,14 +372,14 @@ mod tests {
     }
 
     fn check(water: &Water, body: &Body<f64>) {
-        let at = |x: [f64; 5]| {
+        let at = |x: [f64; 7]| {
             let e = [x[1], x[2], x[3]];
-            load(water, body, [x[0].cos(), x[0].sin()], e, &area_law(water.volume, e[0]), x[4])
+            load(water, body, Some([x[5], x[6]]), [x[0].cos(), x[0].sin()], e, &area_law(water.volume, e[0]), x[4])
         };
         for theta in [0.9, 2.2, -1.4] {
-            let x = [theta, 0.9, 0.1, 3.0, 0.3];
+            let x = [theta, 0.9, 0.1, 3.0, 0.3, 0.6, 0.3];
             let exact = at(x);
-            for c in 0..5 {
+            for c in 0..7 {
                 let (mut hi, mut lo) = (x, x);
                 hi[c] += 1e-6;
                 lo[c] -= 1e-6;
@@ -368,6 +389,7 @@ mod tests {
                     let got = match c {
                         0 => exact.by_theta[k],
                         4 => exact.by_beta_slope[k],
+                        5 | 6 => exact.by_stream[k][c - 5],
                         _ => exact.by_strain[k][c - 1],
                     };
                     assert!((want - got).abs() < 2e-7, "{water:?} theta {theta} by {c}: {got} {want}");

@@ -254,7 +254,9 @@ mod tests {
                 couple: 0.0,
             };
             let strains = [strain[0], strain[1], strain[5]];
-            let there = crate::rod::loads::load(&planar, &section, [theta.cos(), theta.sin()], strains, &own, 0.0);
+            let stream = crate::rod::loads::uniform(&planar);
+            let there =
+                crate::rod::loads::load(&planar, &section, stream, [theta.cos(), theta.sin()], strains, &own, 0.0);
             for k in 0..2 {
                 assert!((here.force[k] - there.force[k]).abs() < 1e-14);
                 assert!((here.by_turn[2][k] - there.by_theta[k]).abs() < 1e-14);

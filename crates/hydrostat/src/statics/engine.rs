@@ -21,7 +21,7 @@ pub(crate) use self::discrete::{Engine, State, response_change, shift_by_tangent
 pub(crate) use self::held::{NewtonStep, UnitPull, pull_taut};
 pub(crate) use self::outputs::{asked_in, sharpened};
 pub(crate) use self::settle::First;
-pub(crate) use self::start::turn_sections;
+pub(crate) use self::start::{turn_sections, wanted_side};
 pub(crate) use self::trouble::{HOP, Trouble, roughly};
 pub(crate) use super::dimensions::{Guess, M};
 pub(crate) use crate::numerics::rounds::{correct, linearise, respond};

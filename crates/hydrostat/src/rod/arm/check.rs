@@ -54,6 +54,8 @@ impl Arm {
         }
         self.check_flow()?;
         self.check_weight_and_tip()?;
+        not_negative("dynamics.added_mass", self.dynamics.added_mass)?;
+        not_negative("dynamics.relaxation_time", self.dynamics.relaxation_time)?;
         self.distributed.force[0].check("distributed.force[0]", length)?;
         self.distributed.force[1].check("distributed.force[1]", length)?;
         self.distributed.couple.check("distributed.couple", length)?;

@@ -15,7 +15,7 @@ use hydrostat_bvp::{Mesh, Solution};
 use super::{Engine, Trouble};
 use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Cable, Cavity, FlowLaw, Gravity, Material};
-use crate::rod::loads::{Body, Water, load};
+use crate::rod::loads::{Body, Water, load, uniform};
 use crate::rod::profile::Profile;
 use crate::rod::readings::{
     Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
@@ -194,7 +194,8 @@ impl Manufactured {
         let [nu, eta, mu] = shape.strain.map(Series::value);
         let (sin, cos) = shape.theta.value().sin_cos();
         let beta_slope = shape.beta.slope().value();
-        let present = load(water, body, [cos, sin], [nu, eta, mu], &area_law(self.arm.readings.volume, nu), beta_slope);
+        let stretch = area_law(self.arm.readings.volume, nu);
+        let present = load(water, body, uniform(water), [cos, sin], [nu, eta, mu], &stretch, beta_slope);
         let [n1, n2, m] = shape.carried.map(|c| c.slope().value());
         let [n_a, n_b] = shape.local.map(Series::value);
         // m_f' = -(r' x n_f) . k - couple, over L.

@@ -5,7 +5,7 @@ use hydrostat_bvp::{Collocation, Gauss, Lanes, Mesh, Side, Solution};
 use super::discrete::Engine;
 use super::trouble::Trouble;
 use crate::numerics::rounds::evaluate;
-use crate::statics::dimensions::{Guess, L, M, N, Q};
+use crate::statics::dimensions::{Guess, L, M};
 
 impl Engine {
     /// Strains from the cables alone (no stream, weight or tip load): a start that is exact when
@@ -97,7 +97,11 @@ pub(crate) fn turn_sections(gauss: &Gauss<M>, solution: &mut Guess) {
 }
 
 /// The end of element `i` towards which disturbances of beta fade, by its largest reach.
-fn wanted_side(system: &Collocation<N, M, Q, L>, solution: &Guess, i: usize) -> Side {
+pub(crate) fn wanted_side<const S: usize, const P: usize>(
+    system: &Collocation<S, M, P, L>,
+    solution: &Solution<S, M, L>,
+    i: usize,
+) -> Side {
     let mut largest = 0.0_f64;
     for j in 0..M {
         let reach = system.reach(i, j);

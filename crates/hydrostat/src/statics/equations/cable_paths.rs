@@ -11,10 +11,10 @@ use crate::statics::dimensions::{L, N, Q};
 #[derive(Clone, Copy)]
 pub(crate) struct StationData<'a> {
     /// Of the stages.
-    weights: &'a [f64],
+    pub(crate) weights: &'a [f64],
     /// Lengths of elements, a group.
-    steps: &'a [Lanes],
-    stations: &'a [Station<N, L>],
+    pub(crate) steps: &'a [Lanes],
+    pub(crate) stations: &'a [Station<N, L>],
 }
 
 impl<'a> StationData<'a> {
@@ -131,11 +131,11 @@ impl Equations {
     }
 
     /// Change of the stroke of `cable` (over L) with a change of the solution, at fixed tension.
-    pub(crate) fn stroke_change<const M: usize>(
+    pub(crate) fn stroke_change<const S: usize, const M: usize, const P: usize>(
         &self,
         cable: usize,
         at: StationData<'_>,
-        change: &Correction<N, M, Q, L>,
+        change: &Correction<S, M, P, L>,
     ) -> f64 {
         self.along_cable(cable, at, |block| {
             let (by_strain, by_beta_slope) = self.stretch_gradient(cable, block, &at.stations[block]);

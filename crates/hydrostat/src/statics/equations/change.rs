@@ -11,7 +11,7 @@ use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::area_law;
 use crate::rod::cable::pull;
 use crate::rod::cable_list::CableList;
-use crate::rod::loads::load;
+use crate::rod::loads::{load, uniform};
 use crate::rod::parameter::Parameter;
 use crate::rod::section::{CableAt, Stiffness, apply3, balance};
 use crate::statics::dimensions::{L, N, Q};
@@ -98,7 +98,8 @@ impl Equations {
                 let (sin, cos) = sin_cos(station.z[0]);
                 let section_stretch = area_law(self.volume, station.inner[0]);
                 let slope = station.closure_slope;
-                let force = load(&whole, &place.body, [cos, sin], station.inner, &section_stretch, slope).force;
+                let (body, stream) = (&place.body, uniform(&whole));
+                let force = load(&whole, body, stream, [cos, sin], station.inner, &section_stretch, slope).force;
                 Explicit { force, couple: place.body.couple, ..Explicit::ZERO }
             }));
         } else {

@@ -8,7 +8,7 @@ use crate::statics::dimensions::{N, Q};
 
 /// d(nu, eta, mu)/dz: the law depends on z through n_f.a, n_f.b and m_f alone.
 #[inline(always)]
-pub(super) fn strain_by_state<R: Real>(
+pub(crate) fn strain_by_state<R: Real>(
     inverse: &[[R; 3]; 3],
     [cos, sin]: [R; 2],
     [n_a, n_b, _]: [R; 3],
@@ -21,7 +21,7 @@ pub(super) fn strain_by_state<R: Real>(
 
 /// Change of z' with the strains, at fixed z and beta'.
 #[inline(always)]
-pub(super) fn by_strain_change<R: Real>(load: &Load<R>, contact: [R; 3], strain: [R; 3]) -> [R; N] {
+pub(crate) fn by_strain_change<R: Real>(load: &Load<R>, contact: [R; 3], strain: [R; 3]) -> [R; N] {
     let by = |k: usize| {
         -(load.by_strain[k][0] * strain[0] + load.by_strain[k][1] * strain[1] + load.by_strain[k][2] * strain[2])
     };
@@ -29,7 +29,7 @@ pub(super) fn by_strain_change<R: Real>(load: &Load<R>, contact: [R; 3], strain:
 }
 
 #[inline(always)]
-pub(super) fn jacobian<R: Real>(
+pub(crate) fn jacobian<R: Real>(
     [cos, sin]: [R; 2],
     [n_a, n_b, _]: [R; 3],
     solved: &Solved<R>,
@@ -59,7 +59,7 @@ pub(super) fn jacobian<R: Real>(
 }
 
 #[inline(always)]
-pub(super) fn rate_gradient<R: Real>([cos, sin]: [R; 2], rate: [R; 2], by_state: &[[R; N]; 3]) -> [[R; N]; Q] {
+pub(crate) fn rate_gradient<R: Real>([cos, sin]: [R; 2], rate: [R; 2], by_state: &[[R; N]; 3]) -> [[R; N]; Q] {
     let mut out = [[R::of(0.0); N]; Q];
     for b in 0..N {
         out[0][b] = cos * by_state[0][b] - sin * by_state[1][b];
@@ -72,6 +72,6 @@ pub(super) fn rate_gradient<R: Real>([cos, sin]: [R; 2], rate: [R; 2], by_state:
 
 /// n_f along a and b, and m_f.
 #[inline(always)]
-pub(super) fn in_directors<R: Real>([cos, sin]: [R; 2], z: &[R; N]) -> [R; 3] {
+pub(crate) fn in_directors<R: Real>([cos, sin]: [R; 2], z: &[R; N]) -> [R; 3] {
     [cos * z[1] + sin * z[2], cos * z[2] - sin * z[1], z[3]]
 }

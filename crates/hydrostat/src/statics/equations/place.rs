@@ -10,17 +10,17 @@ use crate::rod::section::{CableAt, Stiffness};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place<R> {
     /// Over L.
-    pub(super) s: R,
+    pub(crate) s: R,
     pub(crate) stiffness: Stiffness<R>,
     pub(crate) body: Body<R>,
 }
 
 /// Sections at the ends of four elements.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct EndSection {
+pub(crate) struct EndSection {
     /// Over L.
-    pub(super) s: Lanes,
-    pub(super) stiffness: Stiffness<Lanes>,
+    pub(crate) s: Lanes,
+    pub(crate) stiffness: Stiffness<Lanes>,
 }
 
 #[inline(always)]

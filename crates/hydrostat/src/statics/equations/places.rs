@@ -9,7 +9,7 @@ use crate::rod::cable::Offset;
 use crate::rod::loads::Body;
 use crate::rod::profile::Profile;
 use crate::rod::section::{CableAt, Stiffness};
-use crate::statics::dimensions::{L, N, Units};
+use crate::statics::dimensions::{L, Units};
 
 impl Equations {
     /// Data at `s` (over L).
@@ -81,7 +81,7 @@ impl Equations {
     }
 
     /// Takes the stations and ends of a solution's mesh.
-    pub(crate) fn place_on<const M: usize>(&mut self, gauss: &Gauss<M>, solution: &Solution<N, M, L>) {
+    pub(crate) fn place_on<const S: usize, const M: usize>(&mut self, gauss: &Gauss<M>, solution: &Solution<S, M, L>) {
         let mesh = &solution.mesh;
         let groups = solution.groups();
         let blocks = groups.count() * M;
@@ -125,7 +125,7 @@ impl Equations {
     }
 
     /// Takes the ends at which elements meet the section law.
-    pub(crate) fn place_ends<const M: usize>(&mut self, solution: &Solution<N, M, L>) {
+    pub(crate) fn place_ends<const S: usize, const M: usize>(&mut self, solution: &Solution<S, M, L>) {
         self.end_places.clear();
         self.end_places.extend_from_slice(solution.directions.ends());
         self.end_sections.clear();

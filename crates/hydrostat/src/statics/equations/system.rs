@@ -12,7 +12,7 @@ use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::arm::Arm;
 use crate::rod::cable_list::CableList;
 use crate::rod::flow::Law;
-use crate::rod::loads::{Load, Water, load};
+use crate::rod::loads::{Load, Water, load, uniform};
 use crate::rod::profile::Profile;
 use crate::rod::readings::{FlowSurface, Support, Volume};
 use crate::rod::section::{CableAt, apply3};
@@ -28,10 +28,10 @@ const ROUGH: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub(crate) struct Equations {
     pub(crate) units: Units,
-    pub(super) arm: Arm,
-    pub(super) water: Water,
-    pub(super) volume: Volume,
-    pub(super) tensions: Vec<f64>,
+    pub(crate) arm: Arm,
+    pub(crate) water: Water,
+    pub(crate) volume: Volume,
+    pub(crate) tensions: Vec<f64>,
     /// Arc length of each cable's anchor, over L.
     pub(super) ends: Vec<f64>,
     /// Fractions of the loads and of the tensions.
@@ -48,14 +48,14 @@ pub(crate) struct Equations {
     /// Steps of the section law that are left to the next round.
     pub(crate) inner_tolerance: f64,
     /// How the stations stand in blocks of four.
-    pub(super) groups: Groups,
-    pub(super) stations: Vec<f64>,
-    pub(super) places: Vec<Place<Lanes>>,
+    pub(crate) groups: Groups,
+    pub(crate) stations: Vec<f64>,
+    pub(crate) places: Vec<Place<Lanes>>,
     pub(super) cables: Vec<CableAt<Lanes>>,
     /// The ends at which elements meet the section law, in blocks, and what is there.
-    pub(super) end_places: Vec<EndPlace>,
-    pub(super) end_sections: Vec<EndSection>,
-    pub(super) end_cables: Vec<CableAt<Lanes>>,
+    pub(crate) end_places: Vec<EndPlace>,
+    pub(crate) end_sections: Vec<EndSection>,
+    pub(crate) end_cables: Vec<CableAt<Lanes>>,
     /// A chosen shape, with the loads that make it an equilibrium.
     #[cfg(test)]
     pub(crate) manufactured: Option<crate::statics::engine::manufactured::Manufactured>,
@@ -94,6 +94,12 @@ impl Equations {
         this.units.force = bending;
         this.set_tensions();
         this
+    }
+
+    /// Takes another unit of force, N, before anything is placed.
+    pub(crate) fn set_force_unit(&mut self, force: f64) {
+        self.units.force = force;
+        self.set_tensions();
     }
 
     /// The same equations with steps of the section law left up to `inner_tolerance`.
@@ -237,7 +243,8 @@ impl Equations {
         section_stretch: &SectionStretch<R>,
         beta_slope: R,
     ) -> Load<R> {
-        let mut load = load(&self.water, &place.body, direction, strain, section_stretch, beta_slope);
+        let stream = uniform(&self.water);
+        let mut load = load(&self.water, &place.body, stream, direction, strain, section_stretch, beta_slope);
         let fraction = R::of(self.fraction[0]);
         for k in 0..2 {
             load.force[k] = load.force[k] * fraction;
@@ -253,8 +260,8 @@ impl Equations {
     pub(crate) fn switches(&self, block: usize, station: &Station<N, L>) -> [Lanes; 3] {
         let (sin, cos) = sin_cos(station.z[0]);
         let section_stretch = area_law(self.volume, station.inner[0]);
-        load(&self.water, &self.places[block].body, [cos, sin], station.inner, &section_stretch, station.closure_slope)
-            .switches
+        let (body, stream) = (&self.places[block].body, uniform(&self.water));
+        load(&self.water, body, stream, [cos, sin], station.inner, &section_stretch, station.closure_slope).switches
     }
 
     /// Strains of the unloaded arm at station `k`, mu times L.
@@ -291,7 +298,7 @@ impl Equations {
 
     /// Fills `out` with the cables that pull in a block of stations, given all of them there.
     #[inline(always)]
-    pub(super) fn pulled_in(&self, cables: &[CableAt<Lanes>], out: &mut CableList<Lanes>) {
+    pub(crate) fn pulled_in(&self, cables: &[CableAt<Lanes>], out: &mut CableList<Lanes>) {
         out.clear();
         for (cable, tension) in cables.iter().zip(&self.tensions) {
             let tension = tension * self.fraction[1];
@@ -303,7 +310,7 @@ impl Equations {
 
     /// The cables of a block of stations.
     #[inline(always)]
-    pub(super) fn cables_in(&self, block: usize) -> &[CableAt<Lanes>] {
+    pub(crate) fn cables_in(&self, block: usize) -> &[CableAt<Lanes>] {
         let count = self.tensions.len();
         &self.cables[block * count..(block + 1) * count]
     }
@@ -374,18 +381,22 @@ impl Equations {
     }
 }
 
-/// The section law linearised and solved for the strains.
+/// The section law linearised and solved for the strains, which follow the state by `by_state`.
 #[inline(always)]
-fn inner(solved: &Solved<Lanes>, by_state: [[Lanes; N]; 3]) -> Inner<N, L, Lanes> {
+pub(crate) fn inner<const S: usize>(solved: &Solved<Lanes>, by_state: [[Lanes; S]; 3]) -> Inner<S, L, Lanes> {
     let section_stretch = &solved.balance.section_stretch;
     let less = apply3(&solved.inverse, solved.balance.by_beta_slope);
+    let mut value_gradient = [Lanes::of(0.0); S];
+    for a in 0..S {
+        value_gradient[a] = section_stretch.slope * by_state[0][a];
+    }
     Inner {
         change: solved.change,
         gradient: by_state,
         by_closure: each(|k| -less[k]),
         value: section_stretch.beta,
         value_change: section_stretch.slope * solved.change[0],
-        value_gradient: each(|a| section_stretch.slope * by_state[0][a]),
+        value_gradient,
         reach: -(section_stretch.slope * less[0]),
     }
 }
@@ -393,7 +404,7 @@ fn inner(solved: &Solved<Lanes>, by_state: [[Lanes; N]; 3]) -> Inner<N, L, Lanes
 /// The first station of a block, along the arm, that could not be solved.
 #[cold]
 #[inline(never)]
-fn failure(s: Lanes, solved: &Solved<Lanes>, tolerance: f64) -> SectionFailure {
+pub(crate) fn failure(s: Lanes, solved: &Solved<Lanes>, tolerance: f64) -> SectionFailure {
     let lane = (0..LANES).find(|lane| !solved.is_solved_in(*lane, tolerance)).unwrap_or(0);
     SectionFailure {
         s: s.0[lane],
@@ -472,7 +483,7 @@ impl Problem<N, Q, L> for Equations {
     }
 }
 
-pub(super) fn water(arm: &Arm) -> Water {
+pub(crate) fn water(arm: &Arm) -> Water {
     let r = &arm.readings;
     Water {
         stream: if arm.flow.density == 0.0 { [0.0; 2] } else { arm.stream() },

@@ -1,0 +1,48 @@
+//! Arguments of `hydrostat modes`.
+
+use std::path::PathBuf;
+
+use clap::{Args as ClapArgs, ValueEnum};
+
+use super::ArmArgs;
+
+const EXIT: &str = "\
+Exit status:
+  0  the modes were found
+  2  wrong request: arguments, arm file, or an output that cannot be written
+  3  there is no such equilibrium, or none was found; standard error says why
+  1  any other error";
+
+/// Finds the slowest small motions about the equilibrium: rates, frequencies and damping, with the inertia of arm and
+/// water, drag's linear part and the material's viscosity. Motions that grow are named: flutter where they swing,
+/// divergence where they do not.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = format!("\
+Examples:
+  hydrostat modes silicone
+  hydrostat modes silicone --flow-speed 0.1 --tension 0.2,0 --format json
+
+{EXIT}"))]
+pub(crate) struct ModesArgs {
+    #[command(flatten)]
+    pub(crate) arm: ArmArgs,
+    /// How many, the slowest first
+    #[arg(long, value_name = "N", default_value = "8")]
+    pub(crate) count: usize,
+    /// Elements of the mesh along the arm, from 1 to 64
+    #[arg(long, value_name = "N", default_value = "12")]
+    pub(crate) elements: usize,
+    /// text: a table; json: all results
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub(crate) format: ModesFormat,
+    /// Write the result to FILE instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum ModesFormat {
+    #[default]
+    Text,
+    Json,
+}

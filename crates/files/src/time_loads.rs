@@ -1,0 +1,294 @@
+//! Loads over time: as CSV with the column `t_s`, and as `KEY=SHAPE:...`.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use hydrostat::{Course, Inputs, MotionError};
+
+use crate::csv_text::{Dialect, Lines, is_missing, records, without_mark};
+use crate::error::shortened;
+use crate::format::{bracketed, dimension_at, nearest};
+use crate::quantity::{Dimension, WrongValue};
+
+/// The most that is read, in bytes.
+const MOST: u64 = 64 << 20;
+
+/// The column of times.
+const TIME: &str = "t_s";
+
+/// What is wrong with loads over time, and where.
+#[derive(Debug, thiserror::Error)]
+pub enum TimeLoadsError {
+    /// The file could not be read, or is no text.
+    #[error("{path}: cannot be read: {source}")]
+    Read {
+        /// The file.
+        path: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// More than 64 MiB.
+    #[error("{path}: expected at most {MOST} bytes, found more")]
+    TooLarge {
+        /// The file.
+        path: String,
+    },
+    /// A header without times, with a key twice, or with one that cannot change in time.
+    #[error("{path}:{line}: column {column}: {found}")]
+    Header {
+        /// The file.
+        path: String,
+        /// Its line, from 1.
+        line: usize,
+        /// Its column, from 1.
+        column: usize,
+        /// What is wrong with it.
+        found: String,
+    },
+    /// A row with more or fewer cells than the header.
+    #[error("{path}:{line}: expected {expected} cells as in the header, found {found}")]
+    Ragged {
+        /// The file.
+        path: String,
+        /// Its line, from 1.
+        line: usize,
+        /// Cells of the header.
+        expected: usize,
+        /// Cells of the row.
+        found: usize,
+    },
+    /// A cell that is no finite number.
+    #[error("{path}:{line}: column {column}, {key}: expected a finite number, found \"{}\"", shortened(.found))]
+    Value {
+        /// The file.
+        path: String,
+        /// Its line, from 1.
+        line: usize,
+        /// Its column, from 1.
+        column: usize,
+        /// Its head.
+        key: String,
+        /// What stands there.
+        found: String,
+    },
+    /// Times that fall.
+    #[error("{path}:{line}: t_s: expected a time not before that of the row above, {before} s, found {found} s")]
+    Falls {
+        /// The file.
+        path: String,
+        /// Its line, from 1.
+        line: usize,
+        /// The time before, s.
+        before: f64,
+        /// The time, s.
+        found: f64,
+    },
+    /// A file without rows.
+    #[error("{path}: expected a header with t_s and loads, and rows below it, found none")]
+    Empty {
+        /// The file.
+        path: String,
+    },
+    /// A load that cannot be, a jump of the base say.
+    #[error("{path}: {source}")]
+    Load {
+        /// The file.
+        path: String,
+        /// Why.
+        source: MotionError,
+    },
+}
+
+/// Why a text does not say how a load changes in time.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum ShapedError {
+    /// Not of a form that is known.
+    #[error(
+        "{}: expected KEY=ramp:FROM:TO:START:END, KEY=step:FROM:TO:AT or KEY=sine:MEAN:AMPLITUDE:PERIOD, such as \
+         'cable[0].tension=ramp:0:0.2 N:0 s:200 ms'",
+        shortened(.text)
+    )]
+    Form {
+        /// What was given.
+        text: String,
+    },
+    /// A part that is no value.
+    #[error(transparent)]
+    Value(#[from] WrongValue),
+    /// A load that cannot be.
+    #[error(transparent)]
+    Load(#[from] MotionError),
+}
+
+/// Adds to `inputs` the loads of a CSV file: the column `t_s` (s), and columns with the keys of loads, in SI units,
+/// angles in degrees. Straight lines join the rows; two rows at one time are a jump. A cell that is empty says
+/// nothing of its load.
+///
+/// # Errors
+/// [`TimeLoadsError`].
+pub fn read_time_loads(path: impl AsRef<Path>, inputs: &mut Inputs) -> Result<(), TimeLoadsError> {
+    let name = path.as_ref().display().to_string();
+    let read = |source| TimeLoadsError::Read { path: name.clone(), source };
+    let mut text = String::new();
+    File::open(path.as_ref()).and_then(|file| file.take(MOST + 1).read_to_string(&mut text)).map_err(read)?;
+    if text.len() as u64 > MOST {
+        return Err(TimeLoadsError::TooLarge { path: name });
+    }
+    parse_time_loads(&text, &name, inputs)
+}
+
+/// [`read_time_loads`] of text that came from `path`, which messages name.
+///
+/// # Errors
+/// [`TimeLoadsError`].
+///
+/// ```
+/// use hydrostat::Inputs;
+/// use hydrostat_files::parse_time_loads;
+///
+/// let mut inputs = Inputs::default();
+/// parse_time_loads("t_s,cable[0].tension\n0,0\n0.2,0.2\n0.2,0\n", "loads.csv", &mut inputs).unwrap();
+///
+/// let error = parse_time_loads("t_s,arm.length\n0,0\n", "loads.csv", &mut inputs).unwrap_err();
+/// assert!(error.to_string().starts_with("loads.csv:1: column 2: `arm.length`"), "{error}");
+/// let error = parse_time_loads("t_s,flow.speed\n0,fast\n", "loads.csv", &mut inputs).unwrap_err();
+/// assert_eq!(error.to_string(), "loads.csv:2: column 2, flow.speed: expected a finite number, found \"fast\"");
+/// ```
+pub fn parse_time_loads(text: &str, path: &str, inputs: &mut Inputs) -> Result<(), TimeLoadsError> {
+    let path = path.to_owned();
+    let text = without_mark(text);
+    let dialect = Dialect::of(text);
+    let mut reader = records(text, dialect);
+    let mut lines = Lines::new(text);
+    let mut header: Option<Header> = None;
+    let mut rows: Vec<Vec<(f64, f64)>> = Vec::new();
+    let mut before = f64::NEG_INFINITY;
+    for record in reader.records() {
+        // The text is in memory and is UTF-8.
+        let Ok(record) = record else { continue };
+        let line = record.position().map_or(0, |position| lines.of(position.byte()));
+        if record.iter().all(str::is_empty) {
+            continue;
+        }
+        let Some(header) = &header else {
+            let found = Header::read(record.iter()).map_err(|(column, found)| TimeLoadsError::Header {
+                path: path.clone(),
+                line,
+                column,
+                found,
+            })?;
+            rows.resize(found.keys.len(), Vec::new());
+            header = Some(found);
+            continue;
+        };
+        let expected = header.keys.len() + 1;
+        if record.len() != expected {
+            return Err(TimeLoadsError::Ragged { path, line, expected, found: record.len() });
+        }
+        let number = |column: usize, key: &str| {
+            let cell = record.get(column).unwrap_or_default();
+            let found = cell.to_owned();
+            let wrong =
+                || TimeLoadsError::Value { path: path.clone(), line, column: column + 1, key: key.to_owned(), found };
+            dialect.number(cell).ok_or_else(wrong)
+        };
+        let time = number(header.time, TIME)?;
+        if time < before {
+            return Err(TimeLoadsError::Falls { path, line, before, found: time });
+        }
+        before = time;
+        for ((column, key, dimension), rows) in header.keys.iter().zip(&mut rows) {
+            if !is_missing(record.get(*column).unwrap_or_default()) {
+                rows.push((time, dimension.bare(number(*column, key)?)));
+            }
+        }
+    }
+    let Some(header) = header.filter(|_| before.is_finite()) else { return Err(TimeLoadsError::Empty { path }) };
+    for ((_, key, _), rows) in header.keys.iter().zip(rows) {
+        if !rows.is_empty() {
+            let set = inputs.set(key, Course::Table(rows));
+            set.map_err(|source| TimeLoadsError::Load { path: path.clone(), source })?;
+        }
+    }
+    Ok(())
+}
+
+/// Where times stand, and the columns of loads with their keys.
+struct Header {
+    time: usize,
+    keys: Vec<(usize, String, Dimension)>,
+}
+
+impl Header {
+    /// The column (from 1) and what is wrong with it, where something is.
+    fn read<'a>(cells: impl Iterator<Item = &'a str>) -> Result<Self, (usize, String)> {
+        let known = Inputs::names();
+        let (mut time, mut keys) = (None, Vec::<(usize, String, Dimension)>::new());
+        for (k, cell) in cells.enumerate() {
+            if cell == TIME {
+                if time.replace(k).is_some() {
+                    return Err((k + 1, "`t_s` is there twice".to_owned()));
+                }
+                continue;
+            }
+            let key = bracketed(cell);
+            let mut probe = Inputs::default();
+            if probe.set(&key, Course::constant(0.0)).is_err() {
+                let near = nearest(&key, known.iter().map(String::as_str).chain([TIME]));
+                let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+                let all = known.join(", ");
+                return Err((
+                    k + 1,
+                    format!("`{}` is no load that can change in time{hint} Those are t_s, {all}", shortened(cell)),
+                ));
+            }
+            if keys.iter().any(|(_, other, _)| *other == key) {
+                return Err((k + 1, format!("`{key}` is there twice")));
+            }
+            let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
+            keys.push((k, key, dimension));
+        }
+        match time {
+            Some(time) => Ok(Self { time, keys }),
+            None => Err((1, "expected a column `t_s` with times in s, found none".to_owned())),
+        }
+    }
+}
+
+/// Adds to `inputs` one load that changes in time: `KEY=ramp:FROM:TO:START:END`, `KEY=step:FROM:TO:AT` or
+/// `KEY=sine:MEAN:AMPLITUDE:PERIOD`, values and times in SI units (angles in degrees) unless they have their own.
+///
+/// # Errors
+/// [`ShapedError`].
+///
+/// ```
+/// use hydrostat::Inputs;
+/// use hydrostat_files::set_shaped;
+///
+/// let mut inputs = Inputs::default();
+/// set_shaped("cable[0].tension=ramp:0:200 mN:0:0.2 s", &mut inputs).unwrap();
+/// set_shaped("flow.speed=sine:0.1:0.05:2", &mut inputs).unwrap();
+/// assert!(set_shaped("flow.speed=0:1", &mut inputs).is_err());
+/// ```
+pub fn set_shaped(text: &str, inputs: &mut Inputs) -> Result<(), ShapedError> {
+    let form = || ShapedError::Form { text: text.to_owned() };
+    let (key, shape) = text.split_once('=').ok_or_else(form)?;
+    let key = bracketed(key.trim());
+    let parts: Vec<&str> = shape.split(':').map(str::trim).collect();
+    let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
+    let value = |part: &str| dimension.value_of(&key, part).map(|(value, _)| value);
+    let time = |part: &str| Dimension::Time.value_of(&key, part).map(|(value, _)| value);
+    let course = match parts[..] {
+        ["ramp", from, to, start, end] => Course::ramp(value(from)?, value(to)?, time(start)?, time(end)?),
+        ["step", from, to, at] => Course::step(value(from)?, value(to)?, time(at)?),
+        ["sine", mean, amplitude, period] => Course::Sine {
+            mean: value(mean)?,
+            amplitude: value(amplitude)?,
+            frequency: 1.0 / time(period)?,
+            phase: 0.0,
+        },
+        _ => return Err(form()),
+    };
+    Ok(inputs.set(&key, course)?)
+}

@@ -1,0 +1,302 @@
+//! What changes in time: loads, stream, gravity and base as functions of it.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::error::MotionError;
+use crate::rod::arm::Arm;
+use crate::rod::parameter::Parameter;
+
+/// A quantity over time, in its unit.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Course {
+    /// Straight lines between `(time in s, value)`, times not falling; two rows at one time are a jump. Before the
+    /// first row and after the last one the value stays.
+    Table(Vec<(f64, f64)>),
+    /// mean + amplitude sin(2 pi frequency t + phase).
+    Sine {
+        /// Its mean.
+        mean: f64,
+        /// Its amplitude.
+        amplitude: f64,
+        /// Hz.
+        frequency: f64,
+        /// rad.
+        phase: f64,
+    },
+}
+
+impl Course {
+    /// The same at all times.
+    pub fn constant(value: f64) -> Self {
+        Self::Table(vec![(0.0, value)])
+    }
+
+    /// From one value to another between two times, s.
+    pub fn ramp(from: f64, to: f64, start: f64, end: f64) -> Self {
+        Self::Table(vec![(start, from), (end, to)])
+    }
+
+    /// A jump from one value to another.
+    pub fn step(from: f64, to: f64, at: f64) -> Self {
+        Self::Table(vec![(at, from), (at, to)])
+    }
+
+    /// Value and rate (1/s) at `time`, as they are just before it.
+    ///
+    /// ```
+    /// use hydrostat::Course;
+    ///
+    /// let course = Course::Table(vec![(0.0, 0.0), (0.2, 0.1), (0.2, 0.0)]);
+    /// assert_eq!(course.before(0.1), (0.05, 0.5));
+    /// assert_eq!(course.before(0.2).0, 0.1);
+    /// assert_eq!(course.before(0.3), (0.0, 0.0));
+    /// ```
+    pub fn before(&self, time: f64) -> (f64, f64) {
+        match self {
+            Self::Table(rows) => {
+                let next = rows.partition_point(|(t, _)| *t < time);
+                match (next.checked_sub(1).map(|k| rows[k]), rows.get(next).copied()) {
+                    (None, Some((_, value))) | (Some((_, value)), None) => (value, 0.0),
+                    (Some((t, v)), Some((u, w))) => {
+                        let rate = (w - v) / (u - t);
+                        (if time == u { w } else { v + rate * (time - t) }, rate)
+                    }
+                    (None, None) => (0.0, 0.0),
+                }
+            }
+            Self::Sine { mean, amplitude, frequency, phase } => {
+                let omega = 2.0 * std::f64::consts::PI * frequency;
+                let (sin, cos) = (omega * time + phase).sin_cos();
+                (mean + amplitude * sin, amplitude * omega * cos)
+            }
+        }
+    }
+
+    /// Value and rate just after `time`.
+    fn after(&self, time: f64) -> (f64, f64) {
+        let Self::Table(rows) = self else { return self.before(time) };
+        let next = rows.partition_point(|(t, _)| *t <= time);
+        match (next.checked_sub(1).map(|k| rows[k]), rows.get(next).copied()) {
+            (None, Some((_, value))) | (Some((_, value)), None) => (value, 0.0),
+            (Some((t, v)), Some((u, w))) => {
+                let rate = (w - v) / (u - t);
+                (v + rate * (time - t), rate)
+            }
+            (None, None) => (0.0, 0.0),
+        }
+    }
+
+    /// The first corner after `time`.
+    fn next_corner(&self, time: f64) -> Option<f64> {
+        let Self::Table(rows) = self else { return None };
+        rows.get(rows.partition_point(|(t, _)| *t <= time)).map(|(t, _)| *t)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        match self {
+            Self::Table(rows) => {
+                if rows.is_empty() {
+                    return Err("a table needs a row".to_owned());
+                }
+                for (t, v) in rows {
+                    if !t.is_finite() || !v.is_finite() {
+                        return Err(format!("{t}, {v} are no finite numbers"));
+                    }
+                }
+                for pair in rows.windows(2) {
+                    if pair[1].0 < pair[0].0 {
+                        return Err(format!("times must not fall, found {} s after {} s", pair[1].0, pair[0].0));
+                    }
+                }
+                Ok(())
+            }
+            Self::Sine { mean, amplitude, frequency, phase } => {
+                let fine = [mean, amplitude, frequency, phase].into_iter().all(|v| v.is_finite());
+                if fine { Ok(()) } else { Err("a sine needs finite numbers".to_owned()) }
+            }
+        }
+    }
+
+    /// Values that it comes to, among them the largest and the smallest.
+    fn values(&self) -> Vec<f64> {
+        match self {
+            Self::Table(rows) => rows.iter().map(|(_, v)| *v).collect(),
+            Self::Sine { mean, amplitude, .. } => vec![mean - amplitude, mean + amplitude],
+        }
+    }
+}
+
+/// A quantity of an arm that may change in time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Driven {
+    Of(Parameter),
+    BaseX,
+    BaseY,
+}
+
+impl fmt::Display for Driven {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Of(parameter) => parameter.fmt(f),
+            Self::BaseX => f.write_str("arm.base.x"),
+            Self::BaseY => f.write_str("arm.base.y"),
+        }
+    }
+}
+
+impl Driven {
+    /// Its place in the arm.
+    fn set(self, arm: &mut Arm, value: f64) -> Result<(), crate::rod::parameter::Unfit> {
+        match self {
+            Self::Of(parameter) => parameter.set(arm, value)?,
+            Self::BaseX => arm.base.x = value,
+            Self::BaseY => arm.base.y = value,
+        }
+        Ok(())
+    }
+
+    fn read(key: &str) -> Option<Self> {
+        match key {
+            "arm.base.x" => Some(Self::BaseX),
+            "arm.base.y" => Some(Self::BaseY),
+            _ => Parameter::from_str(key).ok().filter(|p| moves(*p)).map(Self::Of),
+        }
+    }
+
+    fn is_of_base(self) -> bool {
+        matches!(self, Self::BaseX | Self::BaseY | Self::Of(Parameter::BaseAngle))
+    }
+
+    fn is_of_stream(self) -> bool {
+        matches!(self, Self::Of(Parameter::FlowSpeed | Parameter::FlowDirection))
+    }
+}
+
+/// Whether it may change in time.
+fn moves(parameter: Parameter) -> bool {
+    matches!(
+        parameter,
+        Parameter::Tension(_)
+            | Parameter::Stroke(_)
+            | Parameter::FlowSpeed
+            | Parameter::FlowDirection
+            | Parameter::GravityAcceleration
+            | Parameter::GravityDirection
+            | Parameter::TipForce(_)
+            | Parameter::TipMoment
+            | Parameter::TipFollower(_)
+            | Parameter::BaseAngle
+    )
+}
+
+/// Loads and base of an arm as functions of time; what is not among them stays as the arm has it.
+///
+/// ```
+/// use hydrostat::{Course, Inputs};
+///
+/// let mut inputs = Inputs::default();
+/// inputs.set("cable[0].tension", Course::ramp(0.0, 0.2, 0.0, 0.2))?; // N over s
+/// inputs.set("flow.speed", Course::constant(0.1))?;
+/// assert!(inputs.set("arm.length", Course::constant(0.1)).is_err());
+/// # Ok::<(), hydrostat::MotionError>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Inputs {
+    courses: Vec<(Driven, Course)>,
+}
+
+impl Inputs {
+    /// The names of what may change in time, those of the cables with the index 0.
+    pub fn names() -> Vec<String> {
+        let of = crate::rod::parameter::names();
+        let base = ["arm.base.x", "arm.base.y"].map(str::to_owned);
+        of.into_iter().filter(|name| Driven::read(name).is_some()).chain(base).collect()
+    }
+
+    /// Sets the course of the quantity `key`, which has the name and the unit that [`Parameter`] gives it; also
+    /// `arm.base.x` and `arm.base.y`, m.
+    ///
+    /// # Errors
+    /// [`MotionError::Course`] when no such quantity may change in time, or the course is none.
+    pub fn set(&mut self, key: &str, course: Course) -> Result<(), MotionError> {
+        let wrong = |reason: String| MotionError::Course { key: key.to_owned(), reason };
+        let Some(driven) = Driven::read(key) else {
+            return Err(wrong(format!(
+                "no quantity of this name can change in time; those are {}",
+                Self::names().join(", ")
+            )));
+        };
+        course.check().map_err(wrong)?;
+        if let (true, Course::Table(rows)) = (driven.is_of_base(), &course)
+            && let Some(pair) = rows.windows(2).find(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1)
+        {
+            return Err(wrong(format!("the base cannot jump, as it does at {} s", pair[0].0)));
+        }
+        self.courses.retain(|(own, _)| *own != driven);
+        self.courses.push((driven, course));
+        Ok(())
+    }
+
+    /// Refuses what `arm` does not have, or values that it cannot have.
+    pub(super) fn check(&self, arm: &Arm) -> Result<(), MotionError> {
+        for (driven, course) in &self.courses {
+            for value in course.values() {
+                let mut arm = arm.clone();
+                driven.set(&mut arm, value)?;
+                arm.check()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The loads just before `time`, put into `arm`.
+    pub(super) fn apply(&self, arm: &mut Arm, time: f64) {
+        for (driven, course) in &self.courses {
+            // What does not fit was refused by `check`.
+            let _ = driven.set(arm, course.before(time).0);
+        }
+    }
+
+    /// The acceleration of the stream just before `time`, m/s2: the rate of speed (cos direction, sin direction).
+    pub(super) fn stream_acceleration(&self, arm: &Arm, time: f64) -> [f64; 2] {
+        let rate = |of: Parameter| {
+            self.courses.iter().find(|(driven, _)| *driven == Driven::Of(of)).map_or(0.0, |(_, c)| c.before(time).1)
+        };
+        let (sin, cos) = arm.flow.direction.sin_cos();
+        let (along, across) = (rate(Parameter::FlowSpeed), arm.flow.speed * rate(Parameter::FlowDirection));
+        [along * cos - across * sin, along * sin + across * cos]
+    }
+
+    /// The first corner or jump of a course after `time`.
+    pub(super) fn next_corner(&self, time: f64) -> Option<f64> {
+        self.courses.iter().filter_map(|(_, course)| course.next_corner(time)).min_by(f64::total_cmp)
+    }
+
+    /// Whether accelerations jump at `time`: a load does, the rate of the stream, or the velocity of the base.
+    pub(super) fn jumps_at(&self, time: f64) -> bool {
+        self.courses.iter().any(|(driven, course)| {
+            let ((v, rate), (w, next)) = (course.before(time), course.after(time));
+            v != w || (rate != next && (driven.is_of_base() || driven.is_of_stream()))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_and_jumps_are_met() {
+        let mut inputs = Inputs::default();
+        inputs.set("cable[0].tension", Course::Table(vec![(0.0, 0.0), (0.2, 0.1), (0.4, 0.1), (0.4, 0.0)])).unwrap();
+        inputs.set("flow.speed", Course::ramp(0.0, 0.1, 0.1, 0.3)).unwrap();
+        let mut at = -1.0;
+        let mut met = Vec::new();
+        while let Some(next) = inputs.next_corner(at) {
+            met.push((next, inputs.jumps_at(next)));
+            at = next;
+        }
+        assert_eq!(met, [(0.0, false), (0.1, true), (0.2, false), (0.3, true), (0.4, true)]);
+    }
+}

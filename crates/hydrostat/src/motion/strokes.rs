@@ -1,0 +1,120 @@
+//! Cables whose stroke is commanded in motion: shape and tensions in one bordered system, as in the statics
+//! (`statics::engine::held`), with taut and slack cables by an active set.
+//!
+//! ```text
+//! A dz + A_t dt = -residual            s_z dz + s_t dt = command - s
+//! ```
+
+use hydrostat_bvp::Correction;
+
+use super::dimensions::S;
+use super::equations::Moving;
+use super::settling::{Settling, Unsolved};
+use crate::numerics::elimination::solved;
+use crate::statics::dimensions::{L, M};
+use crate::statics::equations::StationData;
+
+/// Slacks (over L) below which a cable is too short to hang slack.
+const SLACK: f64 = 1e-12;
+
+/// Corrections above which tensions do not yet say which cables are taut.
+const SETTLED: f64 = 0.3;
+
+impl Settling {
+    /// Adds to the correction of the last linearisation what the tensions of held cables do, so that their strokes
+    /// are met.
+    pub(super) fn border(&mut self) -> Result<(), Unsolved> {
+        let Some(held) = self.moving.statics.held.clone() else { return Ok(()) };
+        let mut border = std::mem::take(&mut self.border);
+        Moving::for_strokes(self.system.stations(), &mut border.stations);
+        let statics = &self.moving.statics;
+        let at = StationData { weights: &self.system.gauss.b, steps: self.system.steps(), stations: &border.stations };
+        let taut = held.taut_cables();
+        let mut pulled: Vec<(Correction<S, M, 0, L>, Vec<f64>)> = Vec::with_capacity(taut.len());
+        for index in &taut {
+            self.moving.pull_by(held.cables[*index], &self.system, &mut border.forcing);
+            let mut response = Correction::default();
+            self.respond(&border.forcing, &mut response);
+            let mut strokes: Vec<f64> =
+                held.cables.iter().map(|cable| statics.stroke_change(*cable, at, &response)).collect();
+            strokes[*index] += statics.stroke(held.cables[*index], at)[1];
+            pulled.push((response, strokes));
+        }
+        border.off = 0.0;
+        border.slack.clear();
+        for (index, cable) in held.cables.iter().enumerate() {
+            let off = statics.stroke(*cable, at)[0] - statics.command(&held, index);
+            if held.taut[index] {
+                border.off = border.off.max(off.abs());
+            }
+            border.slack.push(off + statics.stroke_change(*cable, at, &self.correction));
+        }
+        let row =
+            |index: &usize| (pulled.iter().map(|(_, strokes)| strokes[*index]).collect(), [-border.slack[*index], 0.0]);
+        let found = solved(taut.iter().map(row).collect());
+        border.tensions.clear();
+        border.tensions.resize(held.cables.len(), 0.0);
+        if let Some((tensions, _)) = &found {
+            for ((index, (response, strokes)), [change, _]) in taut.iter().zip(&pulled).zip(tensions) {
+                self.correction.add(response, *change);
+                border.tensions[*index] = *change;
+                border.slack.iter_mut().zip(strokes).for_each(|(slack, by)| *slack += change * by);
+            }
+        }
+        self.border = border;
+        found.map(|_| ()).ok_or(Unsolved::Singular)
+    }
+
+    /// Adds `factor` times the last round to the tensions.
+    pub(super) fn add_tensions(&mut self, factor: f64) {
+        let Some(held) = self.moving.statics.held.take() else { return };
+        let statics = &mut self.moving.statics;
+        for ((cable, taut), change) in held.cables.iter().zip(&held.taut).zip(&self.border.tensions) {
+            if *taut {
+                let tension = statics.arm().cables[*cable].tension + factor * change * statics.units.force;
+                statics.set_tension(*cable, tension);
+            }
+        }
+        statics.held = Some(held);
+    }
+
+    /// Lets cables go slack that push, and takes slack ones up that are too short, given the size of the last
+    /// correction; whether any changed.
+    pub(super) fn switch_taut(&mut self, size: f64) -> bool {
+        if size > SETTLED {
+            return false;
+        }
+        let Some(mut held) = self.moving.statics.held.take() else { return false };
+        let statics = &mut self.moving.statics;
+        let mut changed = false;
+        for ((cable, taut), slack) in held.cables.iter().zip(&mut held.taut).zip(&self.border.slack) {
+            if *taut && statics.arm().cables[*cable].tension < 0.0 {
+                *taut = false;
+                statics.set_tension(*cable, 0.0);
+                changed = true;
+            } else if !*taut && *slack < -SLACK {
+                *taut = true;
+                changed = true;
+            }
+        }
+        statics.held = Some(held);
+        changed
+    }
+
+    /// Tensions (N) of all cables at the last solve, and which held ones are taut.
+    pub(super) fn tensions(&self) -> (Vec<f64>, Vec<bool>) {
+        let statics = &self.moving.statics;
+        let taut = statics.held.as_ref().map_or_else(Vec::new, |held| held.taut.clone());
+        (statics.arm().cables.iter().map(|cable| cable.tension).collect(), taut)
+    }
+
+    /// Takes the tensions of held cables back.
+    pub(super) fn take_tensions(&mut self, (tensions, taut): &(Vec<f64>, Vec<bool>)) {
+        let Some(mut held) = self.moving.statics.held.take() else { return };
+        held.taut.clone_from(taut);
+        for cable in &held.cables {
+            self.moving.statics.set_tension(*cable, tensions[*cable]);
+        }
+        self.moving.statics.held = Some(held);
+    }
+}
