@@ -122,6 +122,13 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         Self::with(Gauss::new())
     }
 
+    /// The same, for unknowns of very different sizes: rows and columns of an element are brought to one size before it is
+    /// called singular.
+    pub fn balanced(mut self) -> Self {
+        self.condensed.balances = true;
+        self
+    }
+
     /// An empty workspace, given the method.
     pub fn with(gauss: Gauss<M>) -> Self {
         Self {

@@ -21,7 +21,7 @@
 //! ```
 
 use crate::block::{
-    Block, apply, balanced_inverse, determinant, invert_in_order, multiply, subtract_applied, subtract_product,
+    Block, apply, balanced_inverse, determinant, inverse, invert_in_order, multiply, subtract_applied, subtract_product,
 };
 use crate::directions::Side;
 use crate::gauss::{Gauss, POINTS};
@@ -32,6 +32,8 @@ use crate::real::{LANES, Lanes, Real};
 /// All groups of elements, condensed, in flat memory.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Condensed<const N: usize, const M: usize> {
+    /// Whether rows and columns are brought to one size before an element is called singular.
+    pub(crate) balances: bool,
     lu: Vec<Lanes>,
     by_state: Vec<Lanes>,
     by_taken: Vec<[Lanes; N]>,
@@ -46,6 +48,7 @@ pub(crate) type BlockLu<const N: usize, const M: usize> = [[Block<N, Lanes>; M]]
 /// A group of elements, condensed.
 #[derive(Debug)]
 pub(crate) struct GroupMut<'a, const N: usize, const M: usize> {
+    pub(crate) balances: bool,
     pub(crate) lu: &'a mut BlockLu<N, M>,
     /// d (stage slopes) / d z.
     pub(crate) by_state: &'a mut [Block<N, Lanes>],
@@ -77,7 +80,7 @@ impl<const N: usize, const M: usize> Condensed<N, M> {
         let by_state = self.by_state[g * size..(g + 1) * size].as_chunks_mut::<N>().0.as_chunks_mut::<N>().0;
         let by_taken = &mut self.by_taken[g * M..(g + 1) * M];
         let w = if self.w.is_empty() { &mut [] } else { &mut self.w[g * (M + 1)..(g + 1) * (M + 1)] };
-        (GroupMut { lu, by_state, by_taken, w }, self.closures.get_mut(g))
+        (GroupMut { balances: self.balances, lu, by_state, by_taken, w }, self.closures.get_mut(g))
     }
 
     #[inline(always)]
@@ -192,7 +195,7 @@ pub(crate) fn condense<const FUSED: bool, const N: usize, const M: usize, const 
         }
         out.by_state[j] = *jacobian;
     }
-    factorise::<FUSED, N, M>(out.lu, product)?;
+    factorise::<FUSED, N, M>(out.lu, out.balances, product)?;
     solve_blocks::<FUSED, N, M>(out.lu, out.by_state);
     Ok(())
 }
@@ -352,7 +355,7 @@ pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize,
             out.lu[j][j][a][a] += Lanes::of(1.0);
         }
     }
-    factorise::<FUSED, N, M>(out.lu, product)?;
+    factorise::<FUSED, N, M>(out.lu, out.balances, product)?;
     solve_blocks::<FUSED, N, M>(out.lu, out.by_state);
     solve_column::<FUSED, N, M>(out.lu, out.by_taken);
     Ok(())
@@ -362,6 +365,7 @@ pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize,
 #[inline(always)]
 fn factorise<const FUSED: bool, const N: usize, const M: usize>(
     m: &mut BlockLu<N, M>,
+    balances: bool,
     product: &mut Lanes,
 ) -> Result<(), usize> {
     let m = &mut m[..M];
@@ -373,7 +377,7 @@ fn factorise<const FUSED: bool, const N: usize, const M: usize>(
         let (fine, by) = invert_in_order::<FUSED, N, Lanes>(inv);
         *product = *product * by;
         if !(-fine).all_below(0.0) {
-            invert_lanes(inv, &mut kept, fine, by, product)?;
+            invert_lanes(inv, &mut kept, fine, by, balances, product)?;
         }
         for block in row.iter_mut() {
             multiply::<FUSED, N, Lanes>(block, inv);
@@ -396,6 +400,7 @@ fn invert_lanes<const N: usize>(
     given: &mut Block<N, Lanes>,
     fine: Lanes,
     by: Lanes,
+    balances: bool,
     product: &mut Lanes,
 ) -> Result<(), usize> {
     for lane in 0..LANES {
@@ -403,7 +408,8 @@ fn invert_lanes<const N: usize>(
             continue;
         }
         let own: Block<N> = given.map(|row| row.map(|v| v.0[lane]));
-        let inverse = balanced_inverse(&own, 1e-10).ok_or(lane)?;
+        let inverse = if balances { balanced_inverse(&own, 1e-10) } else { inverse(&own, 1e-10) };
+        let inverse = inverse.ok_or(lane)?;
         product.0[lane] = product.0[lane] / by.0[lane] * determinant(own);
         for a in 0..N {
             for c in 0..N {

@@ -151,7 +151,6 @@ fn what_excludes_each_other_and_what_space_does_not_have_is_refused_with_its_key
         ("arm.base.direction", "[0, 0, 0]", "arm.base.direction"),
         ("flow.direction", "[0, 0, 0]", "flow.direction"),
         ("cable[0].friction", "0.1", "cable[0].friction"),
-        ("cable[0].stroke", "0.01", "cable[0].stroke"),
         ("model.closure", "literal", "model.flow_surface"),
         ("tip.force", "[0, 0, 1, 2]", "tip.force"),
         ("arm.base.direction", "[1, 0]", "arm.base.direction"),

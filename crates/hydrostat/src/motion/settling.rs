@@ -87,7 +87,7 @@ impl Settling {
     pub(super) fn new(arm: &Arm) -> Self {
         Self {
             moving: Moving::new(arm),
-            system: Collocation::new(),
+            system: Collocation::new().balanced(),
             solution: Solution::default(),
             correction: Correction::default(),
             border: Border::default(),

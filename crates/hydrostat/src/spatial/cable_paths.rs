@@ -1,7 +1,7 @@
 //! The paths that cables take through the deformed arm in space, and their strokes: as in the plane.
 //!
-//! The stroke of a cable is its length at the reference strains less its present one. An elastic cable of stiffness EA is
-//! longer by T/EA of its unstretched length, so that what is reeled in of it is counted unstretched:
+//! The stroke of a cable is its length at the reference strains less its present one. An elastic cable of stiffness
+//! EA is longer by T/EA of its unstretched length, so that what is reeled in of it is counted unstretched:
 //!
 //! ```text
 //! stroke = int |tau_ref| ds - int |tau| ds / (1 + T/EA)

@@ -1,4 +1,5 @@
-//! Newton rounds in which the lengths of taut cables are held: as in the plane, shape and tensions in one bordered system.
+//! Newton rounds in which the lengths of taut cables are held: as in the plane, shape and tensions in one bordered
+//! system.
 //!
 //! With A the linearised equations, t the tensions of the taut cables, and s their strokes,
 //!

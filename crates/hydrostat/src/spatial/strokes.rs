@@ -1,9 +1,10 @@
 //! Arms in space with commanded strokes: tension and slack of such a cable are not negative, and one of them is zero.
 //!
-//! The shape meant is the end of the path of `docs/model.md`, section 7: loads and given tensions first, the commanded
-//! cables slack, then all commanded strokes in proportion, from those that the slack cables have there to those asked
-//! for. The strokes are raised in steps that Newton's method takes with whole corrections, which keeps it on the branch;
-//! where no step is small enough, a limit point is told by the determinant, whose square falls linearly to zero there.
+//! The shape meant is the end of the path of `docs/model.md`, section 7: loads and given tensions first, the
+//! commanded cables slack, then all commanded strokes in proportion, from those that the slack cables have there to
+//! those asked for. The strokes are raised in steps that Newton's method takes with whole corrections, which keeps it
+//! on the branch; where no step is small enough, a limit point is told by the determinant, whose square falls
+//! linearly to zero there.
 
 use super::configuration::SpatialConfiguration;
 use super::engine::Engine;
