@@ -2,12 +2,12 @@
 //!
 //! # Design
 //!
-//! **Time first.** A diagonally implicit Runge-Kutta method ([`tableau`]) makes velocity, acceleration and strain
+//! **Time first.** A diagonally implicit Runge-Kutta method (`tableau`) makes velocity, acceleration and strain
 //! rate of a stage affine in its unknowns: v = cv q + hv, a = ca q + ha with q = (x, y, theta), and the strains' rate
 //! = cv e + he. So every stage is a boundary-value problem along the arm: the static one with x and y as states, and
 //! with loads that depend on them. At cv = 0 it is the static one.
 //!
-//! **The boundary-value problem** ([`equations`]) has the states (theta, n_f, m_f, x, y). It is written over the static
+//! **The boundary-value problem** (`equations`) has the states (theta, n_f, m_f, x, y). It is written over the static
 //! equations' own data, section law, loads and derivatives, and solved by the same collocation, `hydrostat-bvp` with 4
 //! Gauss stages: beta' stays exact (a polynomial on each element), cables, ends and elimination are those of the
 //! statics, and an arm at rest agrees with the static solver by construction. x and y could be eliminated at the
@@ -16,20 +16,20 @@
 //! **Material with memory of rate** only shifts the section law: C (e - e_o + t_v e.) = C (1 + t_v cv) (e - (e_o -
 //! t_v he)/(1 + t_v cv)).
 //!
-//! **History** ([`history`]) is what time methods need to know: q, v, a at the stages and nodes of the mesh, strains
+//! **History** (`history`) is what time methods need to know: q, v, a at the stages and nodes of the mesh, strains
 //! and their rates at the stages. n_f and m_f have none. At the ends of elements, where beta meets the section law,
 //! strain rates follow from the polynomial through the stages.
 //!
-//! **Steps** ([`stepper`]): Newton's method from the motion extrapolated through the last three solves, on a fixed
+//! **Steps** (`stepper`): Newton's method from the motion extrapolated through the last three solves, on a fixed
 //! mesh. The embedded error of the centreline over all stations decides the step. Steps end at every corner of an
 //! input; after a jump of a load, a stream's acceleration or the base's velocity the next one is by an all-implicit
 //! method.
 //!
-//! **Answers** ([`simulation`]) are read between the steps by Hermite interpolation, independent of the steps, and
+//! **Answers** (`simulation`) are read between the steps by Hermite interpolation, independent of the steps, and
 //! given one by one: memory does not grow with the run. A step that fails is halved; if it cannot be done the run
 //! ends with a [`MotionVerdict`] that names time and limit, after all before it was given.
 //!
-//! **Eigenmodes** ([`modes`]) are those of the same equations, linearised about an equilibrium.
+//! **Eigenmodes** (`modes`) are those of the same equations, linearised about an equilibrium.
 
 mod border;
 mod dimensions;

@@ -16,12 +16,15 @@ Exit status:
   1  any other error";
 
 /// Moves the arm in time: it starts at rest, in equilibrium under the loads at t = 0, and follows what changes.
-///
-/// The loads file is CSV with the column t_s and columns named as the keys of --vary of `hydrostat path`, such as
-/// cable[0].tension, flow.speed or tip.force[1], in SI units, angles in degrees. Straight lines join the rows; two rows
-/// at one time are a jump, so that a first pair at t = 0 is a release. Added mass, viscosity of the material and
-/// whether there is inertia are in the table [dynamics] of the arm file.
+// A doc comment would take [0] for a link.
 #[derive(Debug, ClapArgs)]
+#[command(long_about = "\
+Moves the arm in time: it starts at rest, in equilibrium under the loads at t = 0, and follows what changes.
+
+The loads file is CSV with the column t_s and columns named as the keys of --vary of `hydrostat path`, such as
+cable[0].tension, flow.speed or tip.force[1], in SI units, angles in degrees. Straight lines join the rows; two rows
+at one time are a jump, so that a first pair at t = 0 is a release. Added mass, viscosity of the material and
+whether there is inertia are in the table [dynamics] of the arm file.")]
 #[command(after_help = format!("\
 Examples:
   hydrostat simulate silicone --input loads.csv --until 2s --every 10ms --tol 1e-4 -o out.csv

@@ -57,7 +57,8 @@ impl Mode {
     /// -Re lambda/|lambda|: 0 of a free swing, 1 of one that only decays, negative where it grows.
     pub fn damping_ratio(&self) -> f64 {
         let size = self.rate[0].hypot(self.rate[1]);
-        if size > 0.0 { -self.rate[0] / size } else { 0.0 }
+        // Taken from zero, what is nothing is 0 and not -0.
+        if size > 0.0 { 0.0 - self.rate[0] / size } else { 0.0 }
     }
 
     /// Whether it grows.
@@ -112,6 +113,10 @@ impl Arm {
     pub fn modes(&self, count: usize, elements: usize) -> Result<Modes, MotionError> {
         if !(1..=64).contains(&elements) {
             return Err(MotionError::Option { option: "elements", value: elements as f64, expected: "in [1, 64]" });
+        }
+        if let Some(i) = self.cables.iter().position(|cable| cable.stroke.is_some()) {
+            let reason = "modes are those at given tensions: give the tension that `solve` finds";
+            return Err(MotionError::Unsupported { key: format!("cable[{i}].stroke"), reason });
         }
         let mut settling = Settling::new(self);
         start_at_rest(&mut settling, self, Some(elements), 1e-8, 0.0)?;
