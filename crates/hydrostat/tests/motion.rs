@@ -454,3 +454,12 @@ fn friction_and_jumps_of_the_base_are_refused_with_their_keys() {
     let refused = inputs.set("arm.radius.base", Course::constant(0.1)).unwrap_err();
     assert!(refused.to_string().contains("cable[0].tension"), "{refused}");
 }
+
+/// Modes at held lengths were those at the tensions that the cables take.
+#[test]
+fn modes_at_held_lengths_were_those_at_given_tensions() {
+    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    arm.cables.push(hydrostat::Cable::new("left", hydrostat::Profile::linear(0.005, 0.001)).reeled_in(0.005));
+    let refused = arm.modes(4, 8).unwrap_err();
+    assert!(refused.to_string().contains("cable[0].stroke"), "{refused}");
+}
