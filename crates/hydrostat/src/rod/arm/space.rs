@@ -2,8 +2,8 @@
 
 use crate::rod::profile::Profile;
 
-/// What an arm in space has beside what an arm in the plane has ([`super::Arm::space`]): the components that leave the plane
-/// e1-e2.
+/// What an arm in space has beside what an arm in the plane has ([`super::Arm::space`]): the components that leave
+/// the plane e1-e2.
 ///
 /// With the default, nothing does: the arm has the shape that it has in the plane, and may leave it where it is
 /// unstable.
