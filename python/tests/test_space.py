@@ -124,10 +124,15 @@ def test_a_solver_goes_on(arm: hs.Arm) -> None:
         lambda: solver.set_stroke(0, 0.01),
         lambda: solver.sensitivities(["cable[0].tension"]),
         lambda: solver.gradient(["cable[0].tension"], [0.1], x=1.0),
-        lambda: arm.solve(strokes=[0.01, None, None]),
     ):
         with pytest.raises(ValueError, match='`space = "spatial"`'):
             call()
+
+
+def test_commanded_strokes_take_the_tensions_that_make_them(arm: hs.Arm) -> None:
+    pulled = arm.solve(tensions=[0.11, 0.05, 0.02])
+    held = arm.solve(strokes=[cable.stroke for cable in pulled.cables])
+    assert abs(held.tip.x - pulled.tip.x) + abs(held.tip.z - pulled.tip.z) < 1e-7 * arm.length
 
 
 def test_what_is_for_arms_in_the_plane_says_so(arm: hs.Arm, solution: hs.SpatialSolution) -> None:
