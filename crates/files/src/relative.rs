@@ -127,7 +127,8 @@ fn share_at(node: &mut Node, s: f64, length: f64, radius: &Profile) {
         _ => None,
     };
     if let Some(share) = share {
-        *node = Node::Number(share * radius.at(s.clamp(0.0, length), length).value);
+        // Not `clamp`, which panics where a length is negative: that is refused later, by its key.
+        *node = Node::Number(share * radius.at(s.max(0.0).min(length), length).value);
     }
 }
 

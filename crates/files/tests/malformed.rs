@@ -348,3 +348,10 @@ fn names_of_load_cases_and_ends_of_ranges_filled_the_message() {
         assert!(!message.contains('\n') && message.len() < 500, "{} bytes: {message:.200?}", message.len());
     }
 }
+
+#[test]
+fn a_share_of_the_radius_of_an_arm_of_negative_length_panicked() {
+    let text = "[arm]\nlength = -0.2\nradius = { base = 0.010, tip = 0.002 }\n[material]\nyoung = 110e3\n[[cable]]\noffset = [[0, \"50 %\"], [0.2, \"20 %\"]]\n";
+    let error = ArmFile::parse(text, "case.toml").and_then(|file| file.arm()).unwrap_err();
+    assert!(error.to_string().contains("arm.length"), "{error}");
+}
