@@ -8,6 +8,7 @@ pub(crate) mod engine;
 pub(crate) mod equations;
 pub(crate) mod friction;
 mod friction_iteration;
+pub(crate) mod limit;
 pub mod many;
 pub mod path;
 pub(crate) mod phase;

@@ -5,7 +5,7 @@ use hydrostat_bvp::{Collocation, Correction, Forcing, Lanes, LinearisationError,
 use super::border::Border;
 use super::dimensions::{S, Shape, X};
 use super::equations::Moving;
-use crate::numerics::dispatch::{Work, dispatch};
+use crate::numerics::rounds::{correct, linearise, respond};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, L, M, N, Q};
 use crate::statics::engine::{turn_sections, wanted_side};
@@ -35,36 +35,6 @@ pub(super) enum Unsolved {
     Section(SectionFailure),
     Singular,
     Stalled,
-}
-
-struct Linearise<'a>(&'a mut Collocation<S, M, 0, L>, &'a Moving, &'a Shape);
-
-impl Work for Linearise<'_> {
-    type Output = Result<(), LinearisationError<SectionFailure>>;
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Self::Output {
-        self.0.linearise::<_, FUSED>(self.1, self.2)
-    }
-}
-
-struct Correct<'a>(&'a mut Collocation<S, M, 0, L>, &'a Shape, &'a mut Correction<S, M, 0, L>);
-
-impl Work for Correct<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        self.0.newton::<FUSED>(self.1, self.2);
-    }
-}
-
-struct Respond<'a>(&'a Collocation<S, M, 0, L>, &'a Forcing<S, 0, L>, &'a mut Correction<S, M, 0, L>);
-
-impl Work for Respond<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        self.0.response::<FUSED>(self.1, self.2);
-    }
 }
 
 /// The solver of stages: the last solution, and those before it.
@@ -100,12 +70,12 @@ impl Settling {
 
     /// Linearises at the present solution.
     pub(super) fn linearise(&mut self) -> Result<(), LinearisationError<SectionFailure>> {
-        dispatch(Linearise(&mut self.system, &self.moving, &self.solution))
+        linearise(&mut self.system, &self.moving, &self.solution)
     }
 
     /// The response of the solution at the last linearisation to changes of the equations.
     pub(super) fn respond(&self, change: &Forcing<S, 0, L>, out: &mut Correction<S, M, 0, L>) {
-        dispatch(Respond(&self.system, change, out));
+        respond(&self.system, change, out);
     }
 
     /// Takes the unloaded arm, on a mesh for the motion.
@@ -204,7 +174,7 @@ impl Settling {
         let mut before = f64::INFINITY;
         let mut round = 0;
         while round < MOST {
-            match dispatch(Linearise(&mut self.system, &self.moving, &self.solution)) {
+            match self.linearise() {
                 Ok(()) => {}
                 Err(LinearisationError::Slopes(failure)) => {
                     if applied == 0.0 || halvings == 6 {
@@ -225,7 +195,7 @@ impl Settling {
                 continue;
             }
             round += 1;
-            dispatch(Correct(&mut self.system, &self.solution, &mut self.correction));
+            correct(&mut self.system, &self.solution, &mut self.correction);
             self.border()?;
             let angle = self.correction.largest(0);
             let moved = self.correction.largest(X).max(self.correction.largest(X + 1)) * self.moving.scales[X];

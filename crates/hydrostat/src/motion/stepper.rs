@@ -3,8 +3,8 @@
 //! With the weights a of a method ([`Tableau`]) and h the step, stage i has
 //!
 //! ```text
-//! q_i = Q + h gamma v_i    v_i = V + h gamma a_i    Q = q_n + h sum_j a_ij v_j    V = v_n + h sum_j a_ij a_j    (j <
-//! i)
+//! q_i = Q + h gamma v_i        Q = q_n + h sum_j a_ij v_j        (j < i)
+//! v_i = V + h gamma a_i        V = v_n + h sum_j a_ij a_j
 //! ```
 //!
 //! so that v_i = cv (q_i - Q) and a_i = cv (v_i - V) with cv = 1/(h gamma). Strains do the same with their rates.
@@ -18,12 +18,13 @@ use super::inputs::Inputs;
 use super::settling::{Settling, Unsolved};
 use super::tableau::{RUNNING, STARTING, Tableau};
 use crate::rod::arm::Arm;
-use crate::rod::readings::{Support, Volume};
-use crate::statics::equations::SectionFailure;
+use crate::rod::readings::Support;
+use crate::statics::equations::{Margins, SectionFailure};
+use crate::statics::limit::limit_at;
 use crate::statics::solve::{Options, Solver};
 use crate::statics::verdict::{SolveError, VerdictKind};
 
-/// Steps of one run between two outputs: the most that one may take.
+/// The most steps that one run may take, those taken back included.
 const MOST_STEPS: usize = 1_000_000;
 
 /// What a step's embedded error may be over the tolerance of the tip: errors of steps add up.
@@ -342,10 +343,15 @@ pub(super) fn start_at_rest(
 
 /// The verdict on a step that cannot be done.
 pub(super) fn not_found(time: f64, step: f64, failure: Option<SectionFailure>, arm: &Arm) -> MotionError {
-    let kind = match failure {
-        Some(f) if f.openness < 0.1 => MotionVerdictKind::CableFold,
-        Some(f) if arm.readings.volume == Volume::None && f.nu < 0.1 => MotionVerdictKind::SectionCrushed,
-        Some(f) if f.regularity < 0.15 => MotionVerdictKind::NoSectionSolution,
+    let near = failure.map(|SectionFailure { s, openness, nu, regularity }| Margins {
+        openness: (openness, s),
+        nu: (nu, s),
+        regularity: (regularity, s),
+    });
+    let kind = match near.and_then(|near| limit_at(near, arm.readings.volume)) {
+        Some((VerdictKind::CableFold, _)) => MotionVerdictKind::CableFold,
+        Some((VerdictKind::SectionCrushed, _)) => MotionVerdictKind::SectionCrushed,
+        Some((VerdictKind::NoSectionSolution, _)) => MotionVerdictKind::NoSectionSolution,
         _ => MotionVerdictKind::NotFound,
     };
     MotionError::Ended(MotionVerdict { kind, time, s: failure.map(|f| f.s * arm.length), step })

@@ -11,10 +11,9 @@ use super::equations::{Guess, L, M, N, Q};
 use super::rotation::{Vector, dot};
 use super::tip::SpatialTip;
 use crate::numerics::rounds::{correct, linearise};
-use crate::rod::readings::Volume;
 use crate::statics::engine::{Trouble, roughly};
-use crate::statics::equations::Margins;
-use crate::statics::snap::SnapBounds;
+use crate::statics::limit::limit_at;
+use crate::statics::snap::{self, SnapBounds};
 use crate::statics::verdict::{Phase, Verdict, VerdictKind};
 
 /// Fractions start here, where the tangent by the fraction is defined.
@@ -62,16 +61,7 @@ impl SpatialSnap {
 
     /// What happens, in a phrase with its numbers.
     pub fn message(&self) -> String {
-        format!(
-            "the arm snaps at {}: its tip jumps by {:.3} mm and turns by {:.3} deg",
-            self.phase.load_at(self.load_fraction),
-            1e3 * self.distance(),
-            self.angle().to_degrees()
-        )
-    }
-
-    fn allowed_by(&self, bounds: &SnapBounds, length: f64) -> bool {
-        self.distance() <= bounds.distance * length && self.angle() <= bounds.angle
+        snap::message(self.phase, self.load_fraction, self.distance(), self.angle())
     }
 }
 
@@ -217,7 +207,7 @@ impl Ramp<'_, '_> {
                         if let (Some(before), Some(after), true) = (*tip, after, stays) {
                             let snap = SpatialSnap { phase: self.phase, load_fraction: *fraction, before, after };
                             self.travelled.snaps.push(snap);
-                            if !snap.allowed_by(&self.bounds, self.engine.equations.units.length) {
+                            if !self.bounds.hold(snap.distance(), snap.angle(), self.engine.equations.units.length) {
                                 let (fraction, state) = (*fraction, state.clone());
                                 self.engine.restore(&state);
                                 return Err(self.end(VerdictKind::LimitPoint, fraction));
@@ -390,10 +380,8 @@ impl Ramp<'_, '_> {
 
     /// Why no step leads on from the engine's shape.
     fn stuck(&mut self, fraction: f64) -> Verdict {
-        let near = self.engine.nearest_limits();
-        let (kind, s) = name_limit(near, self.trouble.as_ref(), self.engine.equations.volume);
-        let length = self.engine.equations.units.length;
-        verdict(self.engine, kind, self.phase, fraction, s.map(|s| s * length))
+        let (kind, s) = name_limit(self.engine, self.trouble.as_ref());
+        verdict(self.engine, kind, self.phase, fraction, s)
     }
 
     fn end(&self, kind: VerdictKind, fraction: f64) -> Verdict {
@@ -430,27 +418,16 @@ pub(super) fn largest_way(before: &[[f64; N]], solution: &Guess) -> f64 {
     way.fold(0.0, f64::max)
 }
 
-/// Names the limit that a shape is at, with its place (over L): as in the plane.
-pub(super) fn name_limit(near: Margins, trouble: Option<&Trouble>, volume: Volume) -> (VerdictKind, Option<f64>) {
-    let failed = match trouble {
-        Some(Trouble::Section(failure)) => Some(*failure),
-        _ => None,
+/// Names the limit that the engine's shape is at, with its place, m; `trouble` is what kept it from going on.
+pub(super) fn name_limit(engine: &Engine, trouble: Option<&Trouble>) -> (VerdictKind, Option<f64>) {
+    let mut near = engine.nearest_limits();
+    let failed = trouble.and_then(Trouble::failed_section);
+    if let Some(failure) = &failed {
+        near.note_failure(failure);
+    }
+    let (kind, s) = match limit_at(near, engine.equations.volume) {
+        Some((kind, s)) => (kind, Some(s)),
+        None => (VerdictKind::NotFound, failed.map(|f| f.s)),
     };
-    let Margins { mut openness, mut nu, mut regularity } = near;
-    if let Some(f) = failed {
-        for (least, value) in [(&mut openness, f.openness), (&mut nu, f.nu), (&mut regularity, f.regularity)] {
-            if value.abs() < least.0 {
-                *least = (value.abs(), f.s);
-            }
-        }
-    }
-    if openness.0 < 0.1 {
-        (VerdictKind::CableFold, Some(openness.1))
-    } else if volume == Volume::None && nu.0 < 0.1 {
-        (VerdictKind::SectionCrushed, Some(nu.1))
-    } else if regularity.0 < 0.15 {
-        (VerdictKind::NoSectionSolution, Some(regularity.1))
-    } else {
-        (VerdictKind::NotFound, failed.map(|f| f.s))
-    }
+    (kind, s.map(|s| s * engine.equations.units.length))
 }

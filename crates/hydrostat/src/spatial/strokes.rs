@@ -56,10 +56,7 @@ impl SpatialSolver {
         let settled = self.engine.settle(self.options.tol, First::Rough);
         let read = settled.and_then(|estimate| self.read(estimate, travelled));
         let Ok(mut configuration) = read else {
-            let verdict = Verdict {
-                phase: Phase::Stroke,
-                ..verdict(&self.engine, VerdictKind::NotFound, Phase::Stroke, 1.0, None)
-            };
+            let verdict = verdict(&self.engine, VerdictKind::NotFound, Phase::Stroke, 1.0, None);
             return Err(self.no_equilibrium(verdict, slack.snaps));
         };
         if self.engine.determinant().known_sign() == Some(-1.0) {
@@ -117,9 +114,8 @@ fn raise(engine: &mut Engine, way: &mut Way) -> Result<(), Verdict> {
     if let Some(at) = limit_point(&way.points) {
         return Err(verdict(engine, VerdictKind::LimitPoint, Phase::Stroke, at, None));
     }
-    let (kind, s) = name_limit(engine.nearest_limits(), trouble.as_ref(), engine.equations.volume);
-    let length = engine.equations.units.length;
-    Err(verdict(engine, kind, Phase::Stroke, here, s.map(|s| s * length)))
+    let (kind, s) = name_limit(engine, trouble.as_ref());
+    Err(verdict(engine, kind, Phase::Stroke, here, s))
 }
 
 /// One step to a share of the way.

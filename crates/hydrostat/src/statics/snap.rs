@@ -38,13 +38,14 @@ impl Snap {
 
     /// What happens, in a phrase with its numbers.
     pub fn message(&self) -> String {
-        format!(
-            "the arm snaps at {}: its tip jumps by {:.3} mm and turns by {:.3} deg",
-            self.phase.load_at(self.load_fraction),
-            1e3 * self.distance(),
-            self.angle().to_degrees()
-        )
+        message(self.phase, self.load_fraction, self.distance(), self.angle())
     }
+}
+
+/// What happens at a snap that moves the tip by a distance (m) and turns it by an angle (rad).
+pub(crate) fn message(phase: Phase, load_fraction: f64, distance: f64, angle: f64) -> String {
+    let (load, millimetres, degrees) = (phase.load_at(load_fraction), 1e3 * distance, angle.to_degrees());
+    format!("the arm snaps at {load}: its tip jumps by {millimetres:.3} mm and turns by {degrees:.3} deg")
 }
 
 /// How far the tip of an arm may jump at a snap on the way to its loads for the shape after it to be an answer. An arm
@@ -71,6 +72,11 @@ impl SnapBounds {
 
     /// Whether a snap of an arm of this length (m) is within the bounds.
     pub fn allow(&self, snap: &Snap, length: f64) -> bool {
-        snap.distance() <= self.distance * length && snap.angle() <= self.angle
+        self.hold(snap.distance(), snap.angle(), length)
+    }
+
+    /// Whether a distance (m) and an angle (rad) are within the bounds for an arm of this length (m).
+    pub(crate) fn hold(&self, distance: f64, angle: f64, length: f64) -> bool {
+        distance <= self.distance * length && angle <= self.angle
     }
 }

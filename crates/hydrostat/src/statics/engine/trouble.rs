@@ -14,6 +14,16 @@ pub(crate) enum Trouble {
     Spent,
 }
 
+impl Trouble {
+    /// The section that has no strains, if that is the trouble.
+    pub(crate) fn failed_section(&self) -> Option<SectionFailure> {
+        match self {
+            Self::Section(failure) => Some(*failure),
+            _ => None,
+        }
+    }
+}
+
 impl From<LinearisationError<SectionFailure>> for Trouble {
     fn from(error: LinearisationError<SectionFailure>) -> Self {
         match error {

@@ -28,6 +28,12 @@ impl Margins {
     pub(crate) const FAR: Self =
         Self { openness: (1.0, 0.0), nu: (f64::INFINITY, 0.0), regularity: (f64::INFINITY, 0.0) };
 
+    /// How near the section that failed was. It may be at an end, which is no station, or just past the limit.
+    pub(crate) fn note_failure(&mut self, failure: &SectionFailure) {
+        let SectionFailure { s, openness, nu, regularity } = *failure;
+        self.note(s, openness.abs(), nu.abs(), regularity.abs());
+    }
+
     #[inline(always)]
     pub(crate) fn note(&mut self, s: f64, openness: f64, nu: f64, regularity: f64) {
         for (least, value) in [(&mut self.openness, openness), (&mut self.nu, nu), (&mut self.regularity, regularity)] {
