@@ -1,5 +1,6 @@
 //! Equilibria of a rod: the equations, their solution, and what is asked of it.
 
+pub(crate) mod border;
 pub(crate) mod compliance;
 pub mod configuration;
 pub(crate) mod dense;

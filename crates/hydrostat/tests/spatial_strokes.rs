@@ -112,3 +112,21 @@ fn a_stroke_beyond_the_arm_is_a_verdict() {
     assert_ne!(no.verdict.kind, VerdictKind::NotFound);
     assert!(no.verdict.load_fraction > 0.1 && no.last_good.is_some(), "{:?}", no.verdict);
 }
+
+/// Small motions at held lengths in the plane are among those in space: what tensions move directly was left out.
+#[test]
+fn motions_at_held_lengths_are_those_of_the_plane() {
+    let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).reeled_in(0.012));
+    arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)).reeled_in(0.004));
+    (arm.flow.speed, arm.flow.direction) = (0.1, 1.0);
+    let flat = arm.solve().unwrap();
+    assert!(flat.cables.iter().all(|cable| cable.tension > 0.0), "{:?}", flat.cables);
+    let flat = flat.growth().unwrap();
+    let space = solved(&turned_arm(&arm, &rotation(0.7, -0.4, 1.9)), 1e-8).growth().unwrap();
+    // Both in units of their own: by the ratio of the two slowest.
+    let wanted = flat.rates[1][0] / flat.rates[0][0];
+    let pairs = space.rates.iter().flat_map(|a| space.rates.iter().map(move |b| b[0] / a[0]));
+    let off = pairs.map(|ratio| (ratio / wanted - 1.0).abs()).fold(f64::INFINITY, f64::min);
+    assert!(off < 1e-4, "{off:e}: {:?} not among {:?}", flat.rates, space.rates);
+}

@@ -1,21 +1,12 @@
-//! Cables whose stroke is commanded in motion: shape and tensions in one bordered system, as in the statics
-//! (`statics::engine::held`), with taut and slack cables by an active set.
-//!
-//! ```text
-//! A dz + A_t dt = -residual            s_z dz + s_t dt = command - s
-//! ```
+//! Cables whose stroke is commanded in motion: shape and tensions in one bordered system ([`crate::statics::border`]), with
+//! taut and slack cables by an active set.
 
 use hydrostat_bvp::Correction;
 
-use super::dimensions::S;
 use super::equations::Moving;
 use super::settling::{Settling, Unsolved};
-use crate::numerics::elimination::solved;
-use crate::statics::dimensions::{L, M};
+use crate::statics::border::{UnitPull, add_pulls, meeting};
 use crate::statics::equations::StationData;
-
-/// Slacks (over L) below which a cable is too short to hang slack.
-const SLACK: f64 = 1e-12;
 
 /// Corrections above which tensions do not yet say which cables are taut.
 const SETTLED: f64 = 0.3;
@@ -30,15 +21,15 @@ impl Settling {
         let statics = &self.moving.statics;
         let at = StationData { weights: &self.system.gauss.b, steps: self.system.steps(), stations: &border.stations };
         let taut = held.taut_cables();
-        let mut pulled: Vec<(Correction<S, M, 0, L>, Vec<f64>)> = Vec::with_capacity(taut.len());
-        for index in &taut {
-            self.moving.pull_by(held.cables[*index], &self.system, &mut border.forcing);
+        let mut pulled = Vec::with_capacity(taut.len());
+        for index in taut {
+            self.moving.pull_by(held.cables[index], &self.system, &mut border.forcing);
             let mut response = Correction::default();
             self.respond(&border.forcing, &mut response);
             let mut strokes: Vec<f64> =
                 held.cables.iter().map(|cable| statics.stroke_change(*cable, at, &response)).collect();
-            strokes[*index] += statics.stroke(held.cables[*index], at)[1];
-            pulled.push((response, strokes));
+            strokes[index] += statics.stroke(held.cables[index], at)[1];
+            pulled.push(UnitPull { response, strokes });
         }
         border.off = 0.0;
         border.slack.clear();
@@ -49,18 +40,9 @@ impl Settling {
             }
             border.slack.push(off + statics.stroke_change(*cable, at, &self.correction));
         }
-        let row =
-            |index: &usize| (pulled.iter().map(|(_, strokes)| strokes[*index]).collect(), [-border.slack[*index], 0.0]);
-        let found = solved(taut.iter().map(row).collect());
-        border.tensions.clear();
-        border.tensions.resize(held.cables.len(), 0.0);
-        if let Some((tensions, _)) = &found {
-            for ((index, (response, strokes)), [change, _]) in taut.iter().zip(&pulled).zip(tensions) {
-                self.correction.add(response, *change);
-                border.tensions[*index] = *change;
-                border.slack.iter_mut().zip(strokes).for_each(|(slack, by)| *slack += change * by);
-            }
-        }
+        let found = meeting(&held, &pulled, [&border.slack, &border.slack]);
+        let changes = found.iter().flat_map(|(tensions, _)| tensions.iter().map(|both| both[0]));
+        border.tensions = add_pulls(&held, &pulled, changes, &mut self.correction, &mut border.slack);
         self.border = border;
         found.map(|_| ()).ok_or(Unsolved::Singular)
     }
@@ -86,16 +68,9 @@ impl Settling {
         }
         let Some(mut held) = self.moving.statics.held.take() else { return false };
         let statics = &mut self.moving.statics;
-        let mut changed = false;
-        for ((cable, taut), slack) in held.cables.iter().zip(&mut held.taut).zip(&self.border.slack) {
-            if *taut && statics.arm().cables[*cable].tension < 0.0 {
-                *taut = false;
-                statics.set_tension(*cable, 0.0);
-                changed = true;
-            } else if !*taut && *slack < -SLACK {
-                *taut = true;
-                changed = true;
-            }
+        let changed = held.switch(|cable| statics.arm().cables[cable].tension, &self.border.slack);
+        if changed {
+            held.slack_cables().for_each(|cable| statics.set_tension(cable, 0.0));
         }
         statics.held = Some(held);
         changed

@@ -5,12 +5,9 @@ use hydrostat_bvp::Determinant;
 use super::cable_paths::StageData;
 use super::engine::Engine;
 use super::lengths::{HeldRound, hold_lengths, pull_taut};
-use crate::numerics::elimination::solved;
+use crate::statics::border::border;
 use crate::statics::engine::Trouble;
 use crate::statics::equations::StrokeControl;
-
-/// Slacks (over L) below which a cable is too short to hang slack.
-const SLACK: f64 = 1e-12;
 
 /// Corrections (rad) above which the tensions do not yet say which cables are taut.
 const SETTLED: f64 = 0.3;
@@ -51,9 +48,7 @@ impl Engine {
     pub(super) fn find_border(&mut self) -> Result<(), Trouble> {
         let Some(held) = &self.held else { return Ok(()) };
         let pulled = pull_taut(&self.equations, &self.system, &self.solution, held)?;
-        let taut = held.taut_cables();
-        let row = |index: &usize| (pulled.iter().map(|by| by.strokes[*index]).collect(), [0.0; 2]);
-        self.border = Some(solved(taut.iter().map(row).collect()).ok_or(Trouble::Singular)?.1);
+        self.border = Some(border(held, &pulled).ok_or(Trouble::Singular)?);
         Ok(())
     }
 
@@ -70,18 +65,9 @@ impl Engine {
     /// says which these are; whether any changed.
     pub(super) fn switch_taut(&mut self, size: f64, slack: &[f64]) -> bool {
         let Some(held) = &mut self.held else { return false };
-        let mut changed = false;
-        if size < SETTLED {
-            for ((cable, taut), slack) in held.cables.iter().zip(&mut held.taut).zip(slack) {
-                if *taut && self.equations.tension(*cable) < 0.0 {
-                    *taut = false;
-                    self.equations.set_tension(*cable, 0.0);
-                    changed = true;
-                } else if !*taut && *slack < -SLACK {
-                    *taut = true;
-                    changed = true;
-                }
-            }
+        let changed = size < SETTLED && held.switch(|cable| self.equations.tension(cable), slack);
+        if changed {
+            held.slack_cables().for_each(|cable| self.equations.set_tension(cable, 0.0));
         }
         changed
     }

@@ -1,21 +1,11 @@
-//! Newton rounds in which the lengths of taut cables are held: as in the plane, shape and tensions in one bordered
-//! system.
-//!
-//! With A the linearised equations, t the tensions of the taut cables, and s their strokes,
-//!
-//! ```text
-//! A dz + A_t dt = -residual            s_z dz + s_t dt = command - s
-//! ```
-//!
-//! is solved by blocks. Its determinant is that of A times that of B = s_t - s_z A^-1 A_t, the strokes that unit
-//! tensions reel in, which is positive in the unloaded arm.
+//! Newton rounds in which the lengths of taut cables are held, see [`crate::statics::border`].
 
-use hydrostat_bvp::{Collocation, Correction, Determinant, Solution};
+use hydrostat_bvp::{Collocation, Correction, Determinant, Forcing, Solution};
 
 use super::cable_paths::StageData;
 use super::equations::{Equations, L, N, Q};
-use crate::numerics::elimination::solved;
 use crate::numerics::rounds::respond;
+use crate::statics::border::{UnitPull, add_pulls, meeting};
 use crate::statics::engine::Trouble;
 use crate::statics::equations::StrokeControl;
 
@@ -32,13 +22,16 @@ pub(super) struct HeldRound {
     pub(super) border: Option<Determinant>,
 }
 
-/// What a unit of tension of a taut cable does at fixed tensions of all others.
-#[derive(Debug)]
-pub(super) struct UnitPull<const S: usize> {
-    /// To the solution.
-    pub(super) response: Correction<N, S, Q, L>,
-    /// To the strokes of all commanded cables, over L.
-    pub(super) strokes: Vec<f64>,
+/// The change of the equations with a unit of tension of cable `c`, at the last linearisation.
+pub(super) fn unit_change<const S: usize>(
+    equations: &Equations,
+    system: &Collocation<N, S, Q, L>,
+    c: usize,
+) -> Result<Forcing<N, Q, L>, Trouble> {
+    let mut unit = vec![0.0; equations.arm().cables.len()];
+    unit[c] = 1.0;
+    let change = equations.change_by_tensions(system.stations(), system.end_stations(), &unit);
+    change.map_err(Trouble::Section)
 }
 
 /// One for every taut cable, at the last linearisation.
@@ -47,15 +40,12 @@ pub(super) fn pull_taut<const S: usize>(
     system: &Collocation<N, S, Q, L>,
     solution: &Solution<N, S, L>,
     held: &StrokeControl,
-) -> Result<Vec<UnitPull<S>>, Trouble> {
+) -> Result<Vec<UnitPull<N, S, Q, L>>, Trouble> {
     let at = StageData::of(system, solution);
     let mut out = Vec::new();
     for index in held.taut_cables() {
         let cable = held.cables[index];
-        let mut unit = vec![0.0; equations.arm().cables.len()];
-        unit[cable] = 1.0;
-        let change =
-            equations.change_by_tensions(system.stations(), system.end_stations(), &unit).map_err(Trouble::Section)?;
+        let change = unit_change(equations, system, cable)?;
         let mut response = Correction::default();
         respond(system, &change, &mut response);
         let mut strokes: Vec<f64> = held.cables.iter().map(|c| equations.stroke_change(*c, at, &response)).collect();
@@ -75,7 +65,7 @@ pub(super) fn hold_lengths<const S: usize>(
 ) -> Result<HeldRound, Trouble> {
     let at = StageData::of(system, solution);
     let pulled = pull_taut(equations, system, solution, held)?;
-    let mut round = HeldRound { tensions: vec![0.0; held.cables.len()], ..HeldRound::default() };
+    let mut round = HeldRound::default();
     for (index, cable) in held.cables.iter().enumerate() {
         let off = equations.stroke(*cable, at)[0] - equations.command(held, index);
         if held.taut[index] {
@@ -83,16 +73,9 @@ pub(super) fn hold_lengths<const S: usize>(
         }
         round.slack.push(off + equations.stroke_change(*cable, at, correction));
     }
-    let taut = held.taut_cables();
-    let row = |index: &usize| (pulled.iter().map(|by| by.strokes[*index]).collect(), [-round.slack[*index], 0.0]);
-    let (tensions, border) = solved(taut.iter().map(row).collect()).ok_or(Trouble::Singular)?;
-    for ((index, pulled), [tension, _]) in taut.iter().zip(&pulled).zip(&tensions) {
-        correction.add(&pulled.response, *tension);
-        round.tensions[*index] = *tension;
-        for (slack, by) in round.slack.iter_mut().zip(&pulled.strokes) {
-            *slack += tension * by;
-        }
-    }
+    let (tensions, border) = meeting(held, &pulled, [&round.slack, &round.slack]).ok_or(Trouble::Singular)?;
+    let changes = tensions.iter().map(|both| both[0]);
+    round.tensions = add_pulls(held, &pulled, changes, correction, &mut round.slack);
     round.border = Some(border);
     Ok(round)
 }

@@ -10,8 +10,8 @@ use nalgebra::DMatrix;
 use super::cable_paths::StageData;
 use super::configuration::SpatialConfiguration;
 use super::engine::Engine;
-use super::equations::{FORCE, M, MOMENT, N, Q};
-use super::lengths::pull_taut;
+use super::equations::{FORCE, L, M, MOMENT, N, Q};
+use super::lengths::{pull_taut, unit_change};
 use super::rotation::{Directors, Vector, turn};
 use crate::numerics::elimination::solved;
 use crate::numerics::rounds::respond;
@@ -108,7 +108,11 @@ fn compliance(engine: &Engine, functions: usize) -> Option<DMatrix<f64>> {
     };
     let taut: Vec<(usize, usize)> =
         engine.held.iter().flat_map(|held| held.taut_cables().into_iter().map(|i| (i, held.cables[i]))).collect();
-    let motions: Vec<Vec<f64>> = pulled.iter().map(|by| project(engine, &basis, functions, &by.response)).collect();
+    let mut motions = Vec::with_capacity(taut.len());
+    for (by, (_, cable)) in pulled.iter().zip(&taut) {
+        let change = unit_change(&engine.equations, system, *cable).ok()?;
+        motions.push(project(engine, &basis, functions, &by.response, &change));
+    }
     for column in 0..size {
         let (l, g) = (column / FIELDS, column % FIELDS);
         for (block, drift) in change.stages.iter_mut().enumerate() {
@@ -117,7 +121,7 @@ fn compliance(engine: &Engine, functions: usize) -> Option<DMatrix<f64>> {
             drift.slope[if g < 3 { FORCE + g } else { MOMENT + g - 3 }] = -basis.both(l, block)[0];
         }
         respond(system, &change, &mut response);
-        for (row, moved) in project(engine, &basis, functions, &response).into_iter().enumerate() {
+        for (row, moved) in project(engine, &basis, functions, &response, &change).into_iter().enumerate() {
             out[(row, column)] = moved;
         }
         let row = |(index, cable): &(usize, usize)| {
@@ -134,8 +138,14 @@ fn compliance(engine: &Engine, functions: usize) -> Option<DMatrix<f64>> {
     Some(out)
 }
 
-/// Projection of the motion in a response.
-fn project(engine: &Engine, basis: &Basis, functions: usize, response: &Correction<N, M, Q, 6>) -> Vec<f64> {
+/// Projection of the motion in a response to a change of the equations, which moves places by itself, too.
+fn project(
+    engine: &Engine,
+    basis: &Basis,
+    functions: usize,
+    response: &Correction<N, M, Q, L>,
+    change: &Forcing<N, Q, L>,
+) -> Vec<f64> {
     let system = &engine.system;
     let states = system.moved_states(response);
     let elements = engine.solution.mesh.elements();
@@ -146,7 +156,7 @@ fn project(engine: &Engine, basis: &Basis, functions: usize, response: &Correcti
         let turns = turn(&q);
         let mut moved = [Lanes::of(0.0); FIELDS];
         for k in 0..Q {
-            moved[k] = local.rate_by_closure[k] * response.stages[block].closure_slope;
+            moved[k] = change.stages[block].rate[k] + local.rate_by_closure[k] * response.stages[block].closure_slope;
             for a in 0..N {
                 moved[k] += local.rate_gradient[k][a] * states[block][a];
             }

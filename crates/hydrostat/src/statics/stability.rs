@@ -28,12 +28,12 @@ use hydrostat_bvp::{Collocation, Correction, Determinant, Lanes, Solution};
 use nalgebra::DMatrix;
 use nalgebra::linalg::Schur;
 
-use crate::numerics::elimination::solved;
 use crate::rod::readings::Support;
+use crate::statics::border::{UnitPull, border};
 use crate::statics::compliance::{Basis, Compliance, FIELDS, project};
 use crate::statics::configuration::Configuration;
 use crate::statics::dense::Dense;
-use crate::statics::engine::{M, UnitPull, correct, linearise, pull_taut, response_change, turn_sections};
+use crate::statics::engine::{M, correct, linearise, pull_taut, response_change, turn_sections};
 use crate::statics::equations::{Equations, L, N, Q, StationData, Way};
 use crate::statics::verdict::Phase;
 
@@ -257,9 +257,7 @@ impl Tangent {
         self.determinant = self.system.determinant();
         if let Some(held) = self.equations.held.clone().filter(|held| held.taut.contains(&true)) {
             let pulled = pull_taut(&self.equations, &self.system, &self.solution, &held);
-            let taut = held.taut_cables();
-            let row = |i: &usize| (pulled.iter().map(|by| by.strokes[*i]).collect(), [0.0; 2]);
-            self.determinant = self.determinant.times(solved(taut.iter().map(row).collect())?.1);
+            self.determinant = self.determinant.times(border(&held, &pulled)?);
         }
         Some(())
     }
@@ -284,7 +282,7 @@ impl Tangent {
                 cables.iter().map(|cable| equations.stroke_change(*cable, StationData::of(system), response)).collect()
             });
         let basis = Basis::new(&self.system.gauss.c, &solution.mesh, functions);
-        let motion = |(pulled, cable): (&UnitPull, &usize)| {
+        let motion = |(pulled, cable): (&UnitPull<N, M, Q, L>, &usize)| {
             let change = response_change(equations, &self.system, solution, Way::Tension(*cable));
             project(&self.system, &basis, &pulled.response, &change)
         };

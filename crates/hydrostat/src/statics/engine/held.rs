@@ -1,30 +1,18 @@
-//! Rounds in which the lengths of taut cables are held: shape and tensions in one bordered system.
-//!
-//! With A the linearised equations, t the tensions of the taut cables, and s their strokes,
-//!
-//! ```text
-//! A dz + A_t dt = -residual            s_z dz + s_t dt = command - s
-//! ```
-//!
-//! is solved by blocks: a response of the shape for every taut cable, then a small system for the tensions. Its
-//! determinant is that of A times that of B = s_t - s_z A^-1 A_t, the strokes that unit tensions reel in: positive in
-//! the unloaded arm.
+//! Rounds in which the lengths of taut cables are held: shape and tensions in one bordered system, see
+//! [`crate::statics::border`].
 
 use hydrostat_bvp::{Collocation, Correction, Determinant};
 
 use super::discrete::{Engine, response_change};
 use super::newton::add_to_spans;
 use super::trouble::Trouble;
-use crate::numerics::elimination::solved;
 use crate::numerics::rounds::{correct, respond};
+use crate::statics::border::{UnitPull, add_pulls, meeting};
 use crate::statics::dimensions::{Guess, L, M, N, Q};
 use crate::statics::equations::{Equations, SectionFailure, StationData, StrokeControl, Way};
 
 /// What strokes may be off by (over L) before the last round, which leaves the square of that.
 const STROKES: f64 = 1e-10;
-
-/// Slacks (over L) below which a cable is too short to hang slack.
-const SLACK: f64 = 1e-12;
 
 /// Corrections (rad) above which the tensions do not yet say which cables are taut.
 const SETTLED: f64 = 0.3;
@@ -80,7 +68,6 @@ impl Engine {
             return Ok(());
         };
         let count = held.cables.len();
-        let taut = held.taut_cables();
         let pulled = pull_taut(&self.equations, &self.system, &self.solution, &held);
         let mut slack: [Vec<f64>; 2] = std::array::from_fn(|_| Vec::with_capacity(count));
         round.off = 0.0;
@@ -94,21 +81,11 @@ impl Engine {
             slack[0].push(off + change(*cable, &round.rest));
             slack[1].push(change(*cable, &round.response) - self.equations.command_derivative(&held, index));
         }
-        let row = |index: &usize| {
-            (pulled.iter().map(|by| by.strokes[*index]).collect(), [-slack[0][*index], -slack[1][*index]])
-        };
-        let (tensions, determinant) = solved(taut.iter().map(row).collect()).ok_or(Trouble::Singular)?;
+        let (tensions, determinant) = meeting(&held, &pulled, [&slack[0], &slack[1]]).ok_or(Trouble::Singular)?;
         self.border = determinant;
         for (which, shape) in [&mut round.rest, &mut round.response].into_iter().enumerate() {
-            round.tension[which] = vec![0.0; count];
-            for ((index, pulled), tension) in taut.iter().zip(&pulled).zip(&tensions) {
-                let change = tension[which];
-                shape.add(&pulled.response, change);
-                round.tension[which][*index] = change;
-                for (slack, by) in slack[which].iter_mut().zip(&pulled.strokes) {
-                    *slack += change * by;
-                }
-            }
+            let changes = tensions.iter().map(|both| both[which]);
+            round.tension[which] = add_pulls(&held, &pulled, changes, shape, &mut slack[which]);
         }
         round.slack = slack;
         Ok(())
@@ -205,31 +182,13 @@ impl Engine {
     /// Lets cables go slack that push, and takes slack ones up that are too short; whether any changed.
     fn switch_taut(&mut self, slack: &[f64]) -> bool {
         let Some(mut held) = self.equations.held.take() else { return false };
-        let mut changed = false;
-        if held.switching {
-            for ((cable, taut), slack) in held.cables.iter().zip(&mut held.taut).zip(slack) {
-                if *taut && self.equations.arm().cables[*cable].tension < 0.0 {
-                    *taut = false;
-                    self.equations.set_tension(*cable, 0.0);
-                    changed = true;
-                } else if !*taut && *slack < -SLACK {
-                    *taut = true;
-                    changed = true;
-                }
-            }
+        let changed = held.switching && held.switch(|cable| self.equations.arm().cables[cable].tension, slack);
+        if changed {
+            held.slack_cables().for_each(|cable| self.equations.set_tension(cable, 0.0));
         }
         self.equations.held = Some(held);
         changed
     }
-}
-
-/// What a unit of tension of a taut cable does at a fixed tension of all others.
-#[derive(Debug)]
-pub(crate) struct UnitPull {
-    /// To the solution.
-    pub(crate) response: Correction<N, M, Q, L>,
-    /// To the strokes of all commanded cables, over L.
-    pub(crate) strokes: Vec<f64>,
 }
 
 /// One for every taut cable, at the last linearisation.
@@ -238,7 +197,7 @@ pub(crate) fn pull_taut(
     system: &Collocation<N, M, Q, L>,
     solution: &Guess,
     held: &StrokeControl,
-) -> Vec<UnitPull> {
+) -> Vec<UnitPull<N, M, Q, L>> {
     let at = StationData::of(system);
     let mut out = Vec::new();
     for index in held.taut_cables() {

@@ -15,6 +15,9 @@ pub(crate) struct StrokeControl {
     pub(crate) switching: bool,
 }
 
+/// Slacks (over L) below which a cable is too short to hang slack.
+const SLACK: f64 = 1e-12;
+
 impl StrokeControl {
     /// Of these cables, all slack; `None` of none.
     pub(crate) fn slack(cables: Vec<usize>) -> Option<Self> {
@@ -32,5 +35,22 @@ impl StrokeControl {
     /// Which of the commanded cables are taut.
     pub(crate) fn taut_cables(&self) -> Vec<usize> {
         (0..self.cables.len()).filter(|index| self.taut[*index]).collect()
+    }
+
+    /// The cables that hang slack.
+    pub(crate) fn slack_cables(&self) -> impl Iterator<Item = usize> + '_ {
+        self.cables.iter().zip(&self.taut).filter(|(_, taut)| !**taut).map(|(cable, _)| *cable)
+    }
+
+    /// Lets cables go slack that push, and takes slack ones up that are too short, given what tensions and slacks are;
+    /// whether any changed. Those that went slack have no tension from then on.
+    pub(crate) fn switch(&mut self, tension: impl Fn(usize) -> f64, slack: &[f64]) -> bool {
+        let mut changed = false;
+        for ((cable, taut), slack) in self.cables.iter().zip(&mut self.taut).zip(slack) {
+            let switches = if *taut { tension(*cable) < 0.0 } else { *slack < -SLACK };
+            *taut ^= switches;
+            changed |= switches;
+        }
+        changed
     }
 }
