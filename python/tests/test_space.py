@@ -132,6 +132,7 @@ def test_a_solver_goes_on(arm: hs.Arm) -> None:
 def test_commanded_strokes_take_the_tensions_that_make_them(arm: hs.Arm) -> None:
     pulled = arm.solve(tensions=[0.11, 0.05, 0.02])
     held = arm.solve(strokes=[cable.stroke for cable in pulled.cables])
+    assert isinstance(pulled, hs.SpatialSolution) and isinstance(held, hs.SpatialSolution)
     assert abs(held.tip.x - pulled.tip.x) + abs(held.tip.z - pulled.tip.z) < 1e-7 * arm.length
 
 
