@@ -21,6 +21,7 @@ use crate::rod::arm::Arm;
 use crate::rod::readings::Support;
 use crate::statics::equations::{Margins, SectionFailure};
 use crate::statics::limit::limit_at;
+use crate::statics::refinement::graded;
 use crate::statics::solve::{Options, Solver};
 use crate::statics::verdict::{SolveError, VerdictKind};
 
@@ -377,10 +378,9 @@ fn fair_elements(arm: &Arm, tol: f64) -> usize {
     if arm.flow.density == 0.0 { 8.min(count) } else { count }
 }
 
-/// Shorter elements where the arm is thinner.
 fn mesh(arm: &Arm, elements: usize) -> Mesh {
     let breaks: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
-    Mesh::graded(elements, &breaks, |s| arm.radius.at(s * arm.length, arm.length).value.sqrt().recip())
+    graded(arm, &breaks, elements)
 }
 
 /// Refuses what cannot move.

@@ -90,7 +90,7 @@ pub(crate) struct Engine {
 
 /// A solution with all that belongs to it, to come back to.
 #[derive(Debug, Clone)]
-pub(super) struct State {
+pub(crate) struct State {
     pub(super) solution: Guess,
     pub(super) fraction: [f64; 2],
     tensions: Vec<f64>,

@@ -2,11 +2,11 @@
 
 use super::configuration::SpatialConfiguration;
 use super::engine::{Engine, State};
-use super::mesh::First;
 use super::path::{SpatialSnap, Travelled, follow, verdict};
 use super::rotation::dot;
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::engine::{Trouble, WORK};
+use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::solve::Options;
 use crate::statics::verdict::{Phase, Verdict, VerdictKind};
 

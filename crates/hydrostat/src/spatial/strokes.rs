@@ -8,10 +8,10 @@
 
 use super::configuration::SpatialConfiguration;
 use super::engine::Engine;
-use super::mesh::First;
 use super::path::{Travelled, name_limit, verdict};
 use super::solve::{SpatialError, SpatialSolver};
 use crate::statics::engine::Trouble;
+use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::verdict::{Phase, Verdict, VerdictKind};
 
 /// The least step, over the way of all strokes.

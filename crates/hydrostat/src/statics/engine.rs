@@ -20,7 +20,6 @@ pub(crate) use self::budget::WORK;
 pub(crate) use self::discrete::{Engine, State, response_change, shift_by_tangential_load};
 pub(crate) use self::held::{NewtonStep, pull_taut};
 pub(crate) use self::outputs::{asked_in, sharpened};
-pub(crate) use self::settle::First;
 pub(crate) use self::start::{turn_sections, wanted_side};
 pub(crate) use self::trouble::{HOP, Trouble, roughly};
 pub(crate) use super::dimensions::{Guess, M};

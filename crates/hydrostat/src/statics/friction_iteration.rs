@@ -9,9 +9,10 @@ use std::sync::Arc;
 
 use crate::numerics::elimination::solved;
 use crate::statics::configuration::Configuration;
-use crate::statics::engine::{First, Trouble};
+use crate::statics::engine::Trouble;
 use crate::statics::friction::{CapstanFactors, WrapAngles, exponents};
 use crate::statics::path::{PathSummary, name_limit};
+use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::solve::Solver;
 use crate::statics::verdict::{Phase, SolveError, Verdict, VerdictKind};
 

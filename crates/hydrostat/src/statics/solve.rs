@@ -2,8 +2,9 @@
 
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::configuration::{Configuration, Statistics, Tip};
-use crate::statics::engine::{Engine, First, State, Trouble, WORK};
+use crate::statics::engine::{Engine, State, Trouble, WORK};
 use crate::statics::path::{LOOSE, PathSummary, StepControl, Stopped, follow};
+use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::snap::SnapBounds;
 use crate::statics::stability::Stability;
 use crate::statics::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};

@@ -27,8 +27,9 @@
 
 use crate::rod::arm::Arm;
 use crate::statics::configuration::Configuration;
-use crate::statics::engine::{First, Trouble};
+use crate::statics::engine::Trouble;
 use crate::statics::path::{PathSummary, StepControl, Stopped, follow_strokes};
+use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::solve::{SAME, Solver, known_on_the_way};
 use crate::statics::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
@@ -232,7 +233,8 @@ fn without_strokes(arm: &Arm) -> Arm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statics::engine::{Engine, First};
+    use crate::statics::engine::Engine;
+    use crate::statics::refinement::First;
     use crate::{Cable, Options, Profile};
 
     fn arm(strokes: [f64; 2], speed: f64, direction: f64) -> Arm {

@@ -217,6 +217,7 @@ pub(crate) fn pull_taut(
 mod tests {
     use super::*;
     use crate::rod::parameter::Parameter;
+    use crate::statics::refinement::{First, Refinable as _};
     use crate::{Arm, Cable, Profile};
 
     /// Three cables, one of them elastic and one short, in a stream.
@@ -236,7 +237,7 @@ mod tests {
         let mut engine = Engine::new(arm);
         engine.equations.hold_strokes();
         engine.start_from_cables(8).unwrap();
-        engine.settle(1e-11, crate::statics::engine::First::Rough).unwrap();
+        engine.settle(1e-11, First::Rough).unwrap();
         engine
     }
 

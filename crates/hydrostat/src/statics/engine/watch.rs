@@ -2,8 +2,8 @@
 
 use super::discrete::Engine;
 use super::kinks::kink_resolution;
-use super::settle::First;
 use super::trouble::Trouble;
+use crate::statics::refinement::{First, Refinable as _};
 
 /// Places (over L) that are this near are the same.
 const SAME: f64 = 1e-9;

@@ -96,7 +96,8 @@ fn at(station: &Station<N, L>, lane: usize) -> ([f64; N], [f64; L]) {
 
 #[cfg(test)]
 mod tests {
-    use crate::statics::engine::{Engine, First};
+    use crate::statics::engine::Engine;
+    use crate::statics::refinement::{First, Refinable as _};
     use crate::{Arm, FlowLaw};
 
     /// Ten times the drag pushes ten times as hard, whichever number it comes from.

@@ -7,6 +7,7 @@ use hydrostat_bvp::{Correction, Mesh, Solution};
 use super::step_control::{CORNER, EVEN, FINEST, LOOSE, MANY, SYMMETRIC, StepControl};
 use crate::statics::engine::{Engine, HOP, M, NewtonStep, State, Trouble, roughly};
 use crate::statics::equations::{L, N, Q};
+use crate::statics::refinement::Refinable as _;
 use crate::statics::verdict::Phase;
 
 /// The largest correction (rad) of a prediction that leads to the same branch.
@@ -483,13 +484,14 @@ impl<'e> Stepper<'e> {
             self.correct_again(here, fraction)?;
         }
         for _ in 0..4 {
-            let estimate = self.engine.estimate_unless(accuracy, Some(accuracy))?;
+            let estimate = self.engine.estimate(accuracy, Some(accuracy))?;
             self.error = estimate;
             let many = self.engine.solution.mesh.elements() > MANY;
             if estimate <= accuracy || (many && estimate <= enough) {
                 return Ok(());
             }
-            self.engine.refine(0.05 * accuracy, 2 * MANY);
+            let mesh = self.engine.refined(0.05 * accuracy, 2 * MANY);
+            self.engine.move_to(mesh);
             self.correct_again(here, fraction)?;
         }
         Ok(())
