@@ -133,10 +133,12 @@ fn scale(parameter: Parameter, value: f64) -> f64 {
 fn differences(arm: &Arm, parameter: Parameter, s: f64) -> Vec<f64> {
     let value = parameter.of(arm).unwrap();
     let step = scale(parameter, value);
+    // By the length, a place keeps its fraction of it.
+    let part = s / arm.length;
     let at = |value: f64| {
         let mut arm = arm.clone();
         parameter.set(&mut arm, value).unwrap();
-        numbers(&Solver::new(&arm, TIGHT).unwrap().solve().unwrap(), s)
+        numbers(&Solver::new(&arm, TIGHT).unwrap().solve().unwrap(), part * arm.length)
     };
     let mut levels: Vec<Vec<f64>> = (0..4)
         .map(|k| {

@@ -146,6 +146,7 @@ pub fn natural_bounds(parameter: Parameter) -> [f64; 2] {
         | Parameter::GravityAcceleration
         | Parameter::Density
         | Parameter::Radius(_)
+        | Parameter::Length
         | Parameter::DragNormal
         | Parameter::DragTangential => [0.0, f64::INFINITY],
         Parameter::Poisson => [-1.0, 0.5],

@@ -26,6 +26,8 @@ pub enum Parameter {
     Offset(usize, Point),
     /// Radius of the arm, m: the same.
     Radius(Point),
+    /// Length of the arm, m, where no profile is a table: its points are at places in m.
+    Length,
     /// Speed of the stream, m/s.
     FlowSpeed,
     /// Direction of the stream from e1, rad.
@@ -110,6 +112,14 @@ pub enum Unfit {
         /// The parameter.
         key: String,
     },
+    /// The length where a profile is a table.
+    #[error(
+        "`arm.length`: `{key}` is a table, whose points stay where they are, so that the arm would not only be longer"
+    )]
+    Table {
+        /// The profile.
+        key: String,
+    },
     /// A drag coefficient without quadratic drag.
     #[error("`{key}` does not act: flow.law is momentum, not quadratic-drag")]
     Momentum {
@@ -127,7 +137,7 @@ pub fn names() -> Vec<String> {
 }
 
 /// All but the cables' and the geometry's.
-pub(crate) const PLAIN: [Parameter; 20] = [
+pub(crate) const PLAIN: [Parameter; 21] = [
     Parameter::FlowSpeed,
     Parameter::FlowDirection,
     Parameter::FlowDensity,
@@ -139,6 +149,7 @@ pub(crate) const PLAIN: [Parameter; 20] = [
     Parameter::TipFollower(0),
     Parameter::TipFollower(1),
     Parameter::BaseAngle,
+    Parameter::Length,
     Parameter::Density,
     Parameter::Young,
     Parameter::Poisson,
@@ -166,6 +177,7 @@ impl fmt::Display for Parameter {
             Self::TipMoment => f.write_str("tip.moment"),
             Self::TipFollower(k) => write!(f, "tip.follower[{k}]"),
             Self::BaseAngle => f.write_str("arm.base.angle"),
+            Self::Length => f.write_str("arm.length"),
             Self::Density => f.write_str("arm.density"),
             Self::Young => f.write_str("material.young"),
             Self::Poisson => f.write_str("material.poisson"),
@@ -209,7 +221,7 @@ impl Parameter {
             Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => "rad",
             Self::FlowDensity | Self::Density => "kg/m3",
             Self::GravityAcceleration => "m/s2",
-            Self::Stroke(_) | Self::Offset(..) | Self::Radius(_) => "m",
+            Self::Stroke(_) | Self::Offset(..) | Self::Radius(_) | Self::Length => "m",
             Self::TipMoment => "N m",
             Self::Young | Self::Coefficient(_) => "Pa",
             Self::Poisson | Self::ShearFactor | Self::DragNormal | Self::DragTangential => "",
@@ -312,6 +324,10 @@ impl Parameter {
             Self::TipMoment => &mut arm.tip.moment,
             Self::TipFollower(k) => &mut arm.tip.follower[k.min(1)],
             Self::BaseAngle => &mut arm.base.angle,
+            Self::Length => match arm.first_table() {
+                Some(key) => return Err(Unfit::Table { key }),
+                None => &mut arm.length,
+            },
             Self::Density => &mut arm.density,
             Self::Young | Self::Poisson | Self::ShearFactor => match &mut arm.material {
                 Material::Homogeneous { young, poisson, shear_factor } => match self {
@@ -353,7 +369,7 @@ impl Parameter {
             Self::TipMoment => force * arm.length,
             Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => return 1.0,
             Self::DragNormal | Self::DragTangential => 1.0,
-            Self::Young | Self::Poisson | Self::ShearFactor | Self::Coefficient(_) => 0.0,
+            Self::Length | Self::Young | Self::Poisson | Self::ShearFactor | Self::Coefficient(_) => 0.0,
         };
         let value = self.of(arm).unwrap_or(0.0).abs().max(least);
         if value > 0.0 { value } else { 1.0 }
@@ -365,6 +381,7 @@ impl Parameter {
             self,
             Self::Offset(..)
                 | Self::Radius(_)
+                | Self::Length
                 | Self::FlowDensity
                 | Self::GravityAcceleration
                 | Self::GravityDirection

@@ -12,6 +12,7 @@ use crate::statics::configuration::{Configuration, FoldMargin, Stations, Tip, Wa
 use crate::statics::engine::{Engine, Guess};
 use crate::statics::equations::StationData;
 use crate::statics::path::PathSummary;
+use crate::statics::prediction::Recent;
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::snap::{Snap, SnapBounds};
 use crate::statics::solve::{Options, Solver};
@@ -115,15 +116,8 @@ pub struct Tile {
     options: Options,
     wanted: Wanted,
     solver: Option<Solver>,
-    /// The row before the solver's, if that one started from it.
-    before: Option<Point>,
-}
-
-/// The solution of a row and the loads that it is at.
-#[derive(Debug, Clone)]
-struct Point {
-    solution: Guess,
-    loads: Vec<f64>,
+    /// The rows before the solver's, each of which the next one started from.
+    before: Recent<Guess>,
 }
 
 impl Tile {
@@ -133,7 +127,7 @@ impl Tile {
     /// [`SolveError::Option`] for a tolerance out of [1e-12, 1e-2] and bounds of snaps below 0.
     pub fn new(options: Options, wanted: Wanted) -> Result<Self, SolveError> {
         options.check()?;
-        Ok(Self { options, wanted, solver: None, before: None })
+        Ok(Self { options, wanted, solver: None, before: Recent::new() })
     }
 
     /// The next row.
@@ -155,7 +149,7 @@ impl Tile {
     }
 
     fn cold(&mut self, arm: &Arm) -> Result<Row, NoRow> {
-        self.before = None;
+        self.before.clear();
         let no_row = |error| match error {
             SolveError::Arm(error) => NoRow::Arm(error),
             SolveError::NoEquilibrium(no) => NoRow::Verdict(no.verdict),
@@ -171,13 +165,9 @@ impl Tile {
     /// From the last row: `None` unless the answer is surely that of the row's own ramp.
     fn warm(&mut self, solver: &mut Solver, arm: &Arm) -> Option<Row> {
         let engine = &mut solver.engine;
-        let here = Point { solution: engine.solution.clone(), loads: loads(engine.equations.arm()) };
-        if let Some(before) = &self.before
-            && let Some(share) = further(&before.loads, &here.loads, &loads(arm))
-        {
-            engine.lead_on(&before.solution, share);
-        }
-        self.before = Some(here);
+        let (solution, here) = (engine.solution.clone(), loads(engine.equations.arm()));
+        engine.lead_on(&self.before.steps(&here, &loads(arm)));
+        self.before.push(here, solution);
         engine.take_loads(arm);
         engine.set_phase(Phase::Tension, 1.0);
         engine.reset_statistics();
@@ -248,20 +238,6 @@ fn loads(arm: &Arm) -> Vec<f64> {
     let [fa, fb] = arm.tip.follower;
     let others = [speed, direction, density, gravity[0], gravity[1], fx, fy, fa, fb, arm.tip.moment];
     others.into_iter().chain(arm.cables.iter().map(|cable| cable.tension)).collect()
-}
-
-/// How far along the line from the loads `before` to those `here` further `loads` are, over that way; `None` where they
-/// are not on it or much further.
-fn further(before: &[f64], here: &[f64], loads: &[f64]) -> Option<f64> {
-    const LONGEST: f64 = 2.0;
-    let step = |k: usize| here[k] - before[k];
-    let steepest = (0..loads.len()).max_by(|a, b| step(*a).abs().total_cmp(&step(*b).abs()))?;
-    let share = (loads[steepest] - here[steepest]) / step(steepest);
-    let on_line = |k: usize| {
-        let size = here[k].abs().max(loads[k].abs());
-        (here[k] + share * step(k) - loads[k]).abs() <= 1e-9 * size
-    };
-    (share.abs() <= LONGEST && (0..loads.len()).all(on_line)).then_some(share)
 }
 
 /// Whether an arm differs from another in what a solver takes between two solves.

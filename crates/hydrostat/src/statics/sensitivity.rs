@@ -31,7 +31,8 @@ use crate::statics::solve::Solver;
 /// What is asked for beside the tip.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SensitivityOptions {
-    /// Places along the arm (m, in [0, L]) whose poses are differentiated.
+    /// Places along the arm (m, in [0, L]) whose poses are differentiated; by the length of the arm, places that keep
+    /// their fraction of it.
     pub stations: Vec<f64>,
     /// Which way.
     pub method: SensitivityMethod,

@@ -24,6 +24,17 @@ impl Arm {
         at
     }
 
+    /// The key of a profile that is a table, if there is one.
+    pub(crate) fn first_table(&self) -> Option<String> {
+        let mut found = None;
+        self.each_profile(|key, profile| {
+            if found.is_none() && matches!(profile, Profile::Table(_)) {
+                found = Some(key());
+            }
+        });
+        found
+    }
+
     /// What a station of this arm costs, in time and memory, over one of an arm with few cables.
     pub(crate) fn cost_factor(&self) -> usize {
         1 + self.cables.len() / AS_DEAR

@@ -45,14 +45,21 @@ impl Engine {
         self.equations.place_ends(&self.solution);
     }
 
-    /// Moves the solution on by `share` times its way from the solution `before`, nodes on kinks with it. Left as it is
-    /// where the two do not correspond node by node.
-    pub(crate) fn lead_on(&mut self, before: &Guess, share: f64) {
-        let Some(mesh) = self.solution.mesh.extrapolated(&before.mesh, share) else { return };
-        if !self.solution.extrapolate(before, share) || mesh == self.solution.mesh {
-            return;
+    /// Moves the solution on by each share times its way from that solution before, one after the other, and nodes on
+    /// kinks with it. Left as it is where one of them does not correspond node by node.
+    pub(crate) fn lead_on(&mut self, steps: &[(&Guess, f64)]) {
+        let mut next = self.solution.clone();
+        for (before, share) in steps {
+            let Some(mesh) = next.mesh.extrapolated(&before.mesh, *share) else { return };
+            if !next.extrapolate(before, *share) {
+                return;
+            }
+            next.mesh = mesh;
         }
-        self.solution.mesh = mesh;
-        self.equations.place_on(&self.system.gauss, &self.solution);
+        let moved = next.mesh != self.solution.mesh;
+        self.solution = next;
+        if moved {
+            self.equations.place_on(&self.system.gauss, &self.solution);
+        }
     }
 }

@@ -50,6 +50,8 @@ impl Equations {
     }
 
     pub(super) fn take_arm(&mut self, sections: bool) {
+        // The state is in units of the length that the arm has now; the unit of force stays.
+        self.units.length = self.arm.length;
         self.water = water(&self.arm);
         self.set_tensions();
         if sections {

@@ -252,6 +252,9 @@ impl About<'_> {
     fn add_quantity(&self, quantity: Quantity, weight: f64, sources: &[Parameter], row: &mut Row) -> Option<()> {
         let equations = &self.engine.equations;
         let (length, force) = (equations.units.length, equations.units.force);
+        if let Some(by_length) = sources.iter().position(|source| *source == Parameter::Length) {
+            row.direct[by_length] += weight * self.by_unit_of_length(quantity);
+        }
         let mut state = |i: usize, a: usize, weight: f64| {
             let mut weights = [0.0; N];
             weights[a] = weight;
@@ -266,6 +269,32 @@ impl About<'_> {
             Quantity::Command(c) => self.add_stroke(c, true, weight * length, sources, row),
         }
         Some(())
+    }
+
+    /// How a quantity follows the unit of length where its number in that unit stays.
+    fn by_unit_of_length(&self, quantity: Quantity) -> f64 {
+        let (equations, solution) = (&self.engine.equations, &self.engine.solution);
+        match quantity {
+            Quantity::Position(node, q) => {
+                let mut place = 0.0;
+                for (block, local) in self.system.locals().iter().enumerate() {
+                    let (g, j) = (block / M, block % M);
+                    for lane in 0..solution.groups().filled(g) {
+                        if g * LANES + lane < node {
+                            place += self.system.steps()[g].0[lane] * self.system.gauss.b[j] * local.rate[q].0[lane];
+                        }
+                    }
+                }
+                place
+            }
+            Quantity::Stroke(c) => {
+                let [now, reference] = equations.cable_lengths(c, StationData::of(self.system));
+                reference - now
+            }
+            Quantity::Command(c) => equations.stroke(c, StationData::of(self.system))[0],
+            Quantity::Base(2) => -solution.nodes[0][3] * equations.units.force,
+            Quantity::Theta(_) | Quantity::Alpha(_) | Quantity::Base(_) => 0.0,
+        }
     }
 
     /// x (0) or y (1) at a node: the integral of its slope.
