@@ -132,7 +132,7 @@ class Solver:
             ``"tip.force[1]"``, ``"material.young"``, ``"cable[0].offset.base"``, ``"arm.radius.tip"``, the third point of a table
             ``"cable[0].offset[2][1]"`` and so on. By default, all that the arm has.
         stations : array_like, shape (n,)
-            Further places along the arm, m, whose poses are differentiated.
+            Further places along the arm, m, whose poses are differentiated; by ``"arm.length"``, places that keep their fraction of it.
         method : str
             ``"forward"`` solves once per parameter, ``"adjoint"`` once per quantity, ``"best"`` takes the cheaper one. All agree to
             rounding.

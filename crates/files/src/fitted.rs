@@ -61,13 +61,13 @@ pub enum FitKeyError {
         expected: &'static str,
     },
     /// A key of the arm file without a derivative.
-    #[error("{} cannot be fitted: shapes have no derivative by it here; those that can are {}", shortened(.key), names().join(", "))]
+    #[error("{} cannot be fitted: shapes have no derivative by it here; those that can are {}", shortened(.key), fittable().join(", "))]
     NoDerivative {
         /// The key.
         key: String,
     },
     /// No key at all.
-    #[error("{} is no key of the arm file{}; those that can be fitted are {}", shortened(.key), hint(.suggestion.as_ref()), names().join(", "))]
+    #[error("{} is no key of the arm file{}; those that can be fitted are {}", shortened(.key), hint(.suggestion.as_ref()), fittable().join(", "))]
     Unknown {
         /// What was given.
         key: String,
@@ -88,14 +88,22 @@ pub enum FitKeyError {
     NotFitted(Parameter),
 }
 
+/// The names of what can be fitted: by the length there are derivatives at fractions of the arm, and what is measured is
+/// at places in m.
+fn fittable() -> Vec<String> {
+    names().into_iter().filter(|name| *name != Parameter::Length.to_string()).collect()
+}
+
 /// The parameter of a key, or of its last part where that says enough: `c1` for `material.c1`.
 pub(crate) fn parameter(key: &str) -> Result<Parameter, FitKeyError> {
     let key = bracketed(key);
     let key = key.as_str();
-    if let Ok(parameter) = key.parse() {
+    let known = fittable();
+    if let Ok(parameter) = key.parse()
+        && parameter != Parameter::Length
+    {
         return Ok(parameter);
     }
-    let known = names();
     let ending = format!(".{key}");
     let mut ends = known.iter().filter(|name| name.ends_with(&ending) && !name.contains('['));
     if let (Some(one), None) = (ends.next(), ends.next())

@@ -1,5 +1,6 @@
 //! Load cases as rows: what an equilibrium has of each measured number, and how it follows the parameters.
 
+use hydrostat::parameter::Unfit;
 use hydrostat::{
     Arm, Configuration, Options, Parameter, PoseChange, Sensitivities, SensitivityError, SensitivityOptions, Solver,
     Support,
@@ -52,6 +53,9 @@ impl Observed {
             };
             if let Some(wrong) = wrong {
                 return Err(IdentifyError::Start { case: name(), source: Box::new(wrong.into()) });
+            }
+            if one.parameter == Parameter::Length {
+                return Err(IdentifyError::Unfit { case: name(), source: Unfit::Places });
             }
             let source = one.parameter.set(&mut arm, one.start);
             source.map_err(|source| IdentifyError::Unfit { case: name(), source })?;

@@ -120,6 +120,11 @@ pub enum Unfit {
         /// The profile.
         key: String,
     },
+    /// The length where places in m are measured.
+    #[error(
+        "`arm.length`: by it there are derivatives at fractions of the arm, and the places of measurements are in m"
+    )]
+    Places,
     /// A drag coefficient without quadratic drag.
     #[error("`{key}` does not act: flow.law is momentum, not quadratic-drag")]
     Momentum {
