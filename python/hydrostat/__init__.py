@@ -31,6 +31,7 @@ from hydrostat._errors import (
     LoadJumpError,
     MeasurementsError,
     ModelWarning,
+    MotionError,
     NoDerivative,
     NoDerivativeError,
     NoEquilibrium,
@@ -57,8 +58,10 @@ from hydrostat.figures import (
     source_figures,
     workspace_figure,
 )
+from hydrostat.history import History, HistorySnap, history
 from hydrostat.identification import Estimate, Fit, LeftOut
 from hydrostat.many import Many, solve_many
+from hydrostat.motion import Moment, MovingShape, Simulation, motion_figures, simulate
 from hydrostat.paths import Branch, Equilibria, EquilibriumPath, Event, Path
 from hydrostat.reach import Bound, Boundary, BoundaryPiece, Followed, Follower, Reach, Reached, Target
 from hydrostat.sensitivity import Ellipse, PoseChange, Sensitivities
@@ -89,6 +92,8 @@ __all__ = [
     "FoldMargin",
     "Followed",
     "Follower",
+    "History",
+    "HistorySnap",
     "LeftOut",
     "LimitPoint",
     "LimitPointError",
@@ -97,6 +102,9 @@ __all__ = [
     "Many",
     "MeasurementsError",
     "ModelWarning",
+    "Moment",
+    "MotionError",
+    "MovingShape",
     "NoDerivative",
     "NoDerivativeError",
     "NoEquilibrium",
@@ -113,6 +121,7 @@ __all__ = [
     "SectionCrushed",
     "SectionCrushedError",
     "Sensitivities",
+    "Simulation",
     "Snap",
     "Solution",
     "Solver",
@@ -130,11 +139,14 @@ __all__ = [
     "arms",
     "curve_figure",
     "equilibria_figure",
+    "history",
     "load",
     "map_figure",
+    "motion_figures",
     "over_figure",
     "path_figure",
     "path_shapes_figure",
+    "simulate",
     "solve_many",
     "source_figures",
     "sweep",
@@ -155,6 +167,7 @@ _MEANT = {
     "arm": "`hydrostat.Arm(...)` or `hydrostat.Arm.load(...)`",
     "identification": "`hydrostat.Arm.identify(...)`",
     "many": "`hydrostat.solve_many(...)`",
+    "motion": "`hydrostat.simulate(...)` or `hydrostat.Simulation(...)`",
     "paths": "`hydrostat.Arm.path(...)` or `hydrostat.Arm.equilibria(...)`",
     "reach": "`hydrostat.Arm.reach(...)`",
     "sensitivity": "`hydrostat.Arm.sensitivities(...)`",

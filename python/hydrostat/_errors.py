@@ -172,6 +172,37 @@ class NotFoundError(NoEquilibriumError):
     """No limit was established: the solver gave up."""
 
 
+class MotionError(RuntimeError):
+    """A motion ends before its time, or an arm does not come to rest after a snap.
+
+    Attributes
+    ----------
+    kind : str
+        ``"cable_fold"``, ``"section_crushed"``, ``"no_section_solution"``, ``"not_found"``, ``"too_many_steps"`` or ``"no_rest"``.
+    time : float
+        Up to when the motion is known, s; NaN after a snap.
+    where : float or None
+        The place along the arm, m, if the limit is local.
+    data : object
+        What was found before: of `simulate` the dataset, of `history` the history, else None.
+    """
+
+    kind: str
+    time: float
+    where: float | None
+    data: Any
+
+    def __init__(self, message: str, kind: str = "", time: float = float("nan"), where: float | None = None, data: Any = None) -> None:
+        super().__init__(message)
+        self.kind = kind
+        self.time = time
+        self.where = where
+        self.data = data
+
+    def __reduce__(self) -> tuple[type[MotionError], tuple[object, ...]]:
+        return type(self), (str(self), self.kind, self.time, self.where, self.data)
+
+
 class NoDerivativeError(ArithmeticError):
     """The equilibrium has no derivative: it is at a limit point or a bifurcation, or did not converge closely enough."""
 

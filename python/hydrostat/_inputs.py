@@ -101,6 +101,12 @@ def snaps(distance: float, angle: float | str, follow: bool) -> tuple[float, flo
     return number("snap_distance", distance, negative=False), turn
 
 
+def after_snap(after: bool, distance: float, angle: float | str, follow: bool) -> None:
+    """Refuse what bounds or follows snaps along the curve where their motions are asked for."""
+    if after and (follow or distance != 0.01 or angle != 2.0):
+        raise ValueError("after_snap: expected it without follow_snaps, snap_distance and snap_angle, which are for snaps along the curve")
+
+
 def count(name: str, value: int) -> int:
     """A whole number that is not negative."""
     try:

@@ -405,10 +405,16 @@ def _arm(parts: tuple[Any, ...]) -> _native.Arm:
 
 
 def _solve(
-    arm: tuple[Any, ...], tensions: Any, strokes: Any, flow_speed: float | None, tol: float, snaps: Sequence[float]
+    arm: tuple[Any, ...],
+    tensions: Any,
+    strokes: Any,
+    flow_speed: float | None,
+    tol: float,
+    snaps: Sequence[float],
+    after_snap: bool = False,
 ) -> _native.Solution | _native.SpatialSolution:
     pulled = None if tensions is None else np.asarray(tensions, dtype=np.float64)
-    return _arm(arm).solve(pulled, strokes, flow_speed, tol, (snaps[0], snaps[1]))
+    return _arm(arm).solve(pulled, strokes, flow_speed, tol, (snaps[0], snaps[1]), after_snap)
 
 
 def _of_arm(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -263,6 +263,7 @@ class Arm:
         snap_distance: float = 0.01,
         snap_angle: float | str = 2.0,
         follow_snaps: bool = False,
+        after_snap: bool = False,
     ) -> Solution:
         """Solve for the static shape under the arm's loads, or under the given ones.
 
@@ -284,7 +285,10 @@ class Arm:
         snap_angle : float or str
             Largest turn of the tip at a snap: degrees, or a string with a unit.
         follow_snaps : bool
-            Whether to follow every snap, however far.
+            Whether to follow every snap along the curve of equilibria, however far.
+        after_snap : bool
+            Whether to follow the motion after each snap, with the arm's ``[dynamics]``, until the arm rests, and to go on from
+            there; `Snap.duration` says how long that takes.
 
         Returns
         -------
@@ -295,6 +299,8 @@ class Arm:
         ------
         NoEquilibriumError
             There is no equilibrium; the exception has the fields of the verdict.
+        MotionError
+            With `after_snap`: the arm does not come to rest after a snap.
         ValueError
             An argument is invalid; the message names it.
         """
@@ -302,12 +308,14 @@ class Arm:
         speed = None if flow_speed is None else _inputs.number("flow_speed", flow_speed, negative=False)
         reeled = None if strokes is None else _strokes(strokes)
         within = _inputs.number("tol", tol)
+        _inputs.after_snap(after_snap, snap_distance, snap_angle, follow_snaps)
         snaps = _inputs.snaps(snap_distance, snap_angle, follow_snaps)
 
         def origin() -> Origin:
-            return Origin("solve", (self._inner.parts(), None if pulled is None else pulled.tolist(), reeled, speed, within, snaps))
+            loads = (None if pulled is None else pulled.tolist(), reeled, speed)
+            return Origin("solve", (self._inner.parts(), *loads, within, snaps, bool(after_snap)))
 
-        return warn(solution_of(self._inner.solve(pulled, reeled, speed, within, snaps), origin), 2)
+        return warn(solution_of(self._inner.solve(pulled, reeled, speed, within, snaps, bool(after_snap)), origin), 2)
 
     def path(
         self,

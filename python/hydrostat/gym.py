@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 import gymnasium
 from gymnasium.spaces import Box
 from hydrostat import _inputs
-from hydrostat._errors import NoEquilibriumError
+from hydrostat._errors import MotionError, NoEquilibriumError
 from hydrostat.arm import Arm, arm_of
 from hydrostat.many import solve_many
+from hydrostat.motion import Simulation
 from hydrostat.solver import Solver
 
 #: The largest part of the most tension that a step changes a tension by.
@@ -25,7 +26,7 @@ _LOST = 5.0
 
 
 class ReachEnv(gymnasium.Env):  # type: ignore[misc]
-    """Pull the cables so that the tip follows a moving target; each step is an equilibrium. The target moves along the tips of tensions that
+    """Pull the cables so that the tip follows a moving target; each step is an equilibrium, or with `time_step` a piece of motion. The target moves along the tips of tensions that
     rise and fall, drawn at every reset, so that its whole course can be reached.
 
     An observation is, for an arm of c cables: the tip's x and y, the sine and cosine of its turn, the target's x and y and its change in a
@@ -45,6 +46,9 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
         Steps of an episode, at the end of which it is truncated.
     period : int
         Steps in which the target goes round once.
+    time_step : float, optional
+        Seconds a step takes: the arm then moves with its ``[dynamics]``, as `hydrostat.Simulation` has it, and the tensions change along
+        straight lines within a step. Without it each step is an equilibrium.
 
     Examples
     --------
@@ -68,6 +72,7 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
         flow_speed: tuple[float, float] = (0.0, 0.02),
         steps: int = 200,
         period: int = 100,
+        time_step: float | None = None,
     ) -> None:
         self._arm = arm_of(arm)
         self._most = _inputs.number("max_tension", max_tension, negative=False)
@@ -75,6 +80,10 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
         self._speeds = (_inputs.number("flow_speed", low, negative=False), _inputs.number("flow_speed", high, negative=False))
         self._steps = _inputs.count("steps", steps)
         self._period = max(_inputs.count("period", period), 1)
+        self._time_step = None if time_step is None else _inputs.number("time_step", time_step, negative=False)
+        if self._time_step == 0.0:
+            raise ValueError("time_step: expected a time above 0, s")
+        self._moving: Simulation | None = None
         self._count = len(self._arm.cables)
         self.action_space = Box(-1.0, 1.0, (self._count,), np.float64)
         bound = np.concatenate([np.full(2, 2.0), np.ones(2), np.full(4, 3.0), np.ones(self._count)])
@@ -101,6 +110,7 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
         self._course = np.stack([found.tip_x, found.tip_y], axis=-1) / self._arm.length
         # A solver of its own, so that an episode does not depend on the one before.
         self._solver = Solver(arm, 1e-6)
+        self._moving = None if self._time_step is None else Simulation(arm, tol=1e-3)
         self._tensions = np.zeros(self._count)
         tip = self._tip()
         return self._observed(tip), self._about(tip)
@@ -113,10 +123,10 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
         self._tensions = np.clip(before + _RATE * self._most * change, 0.0, self._most)
         truncated = self._step >= self._steps
         try:
-            tip = self._tip()
-        except NoEquilibriumError:
+            tip = self._tip(moves=True)
+        except (NoEquilibriumError, MotionError):
             self._tensions = before
-            tip = self._tip()
+            tip = self._tip(moves=False)
             return self._observed(tip), -_LOST, True, truncated, self._about(tip)
         about = self._about(tip)
         return self._observed(tip), -about["distance"], False, truncated, about
@@ -136,8 +146,11 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
         pulls: NDArray[np.float64] = np.clip(middle + swing * np.sin(angle + phase), 0.0, 1.0)
         return pulls
 
-    def _tip(self) -> NDArray[np.float64]:
-        """x and y over the length, theta."""
+    def _tip(self, *, moves: bool = False) -> NDArray[np.float64]:
+        """x and y over the length, theta; after a step of the motion where it moves."""
+        if self._moving is not None and self._time_step is not None:
+            at = self._moving.step(self._time_step, self._tensions) if moves else self._moving.now()
+            return np.array([at.tip_x / self._arm.length, at.tip_y / self._arm.length, at.tip_theta])
         self._solver.set_tensions(self._tensions)
         tip = self._solver.update().tip
         return np.array([tip.x / self._arm.length, tip.y / self._arm.length, tip.theta])

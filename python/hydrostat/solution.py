@@ -99,6 +99,11 @@ class Snap:
         The tip, m and rad, before the snap and where the arm lands; of an arm in space a `SpatialTip`.
     distance, angle : float
         How far the tip jumps, m, and turns, rad.
+    duration : float or None
+        Where the motion after the snap was followed (``after_snap=True``): how long it takes until the arm stays within
+        0.002 L of where it rests, s.
+    lands_elsewhere : bool or None
+        Whether that motion lands elsewhere than where the curve of equilibria leads on to; None where that is not known.
     """
 
     phase: str
@@ -107,13 +112,15 @@ class Snap:
     after: Tip
     distance: float
     angle: float
+    duration: float | None = None
+    lands_elsewhere: bool | None = None
 
 
 def snaps_of(fields: Iterable[Sequence[Any]], tip: Callable[..., Tip] = Tip) -> tuple[Snap, ...]:
     """Snaps of what the extension module, a pickle or a file has of them; `tip` makes a tip of its fields."""
     return tuple(
-        Snap(phase, load_fraction, tip(*before), tip(*after), distance, angle)
-        for phase, load_fraction, before, after, distance, angle in fields
+        Snap(phase, load_fraction, tip(*before), tip(*after), distance, angle, *motion)
+        for phase, load_fraction, before, after, distance, angle, *motion in fields
     )
 
 
@@ -586,7 +593,7 @@ class Solution(Stations):
 
 
 def animate(
-    solutions: Iterable[Solution],
+    solutions: Iterable[Solution] | xr.Dataset,
     output: str | PathLike[str] | None = None,
     *,
     fps: float = 20.0,
@@ -597,8 +604,8 @@ def animate(
 
     Parameters
     ----------
-    solutions : iterable of Solution
-        One frame each: a list, a branch of a path and so on.
+    solutions : iterable of Solution, or Dataset
+        One frame each: a list, a branch of a path and so on; or a motion of `simulate`, one frame a row.
     output : path, optional
         A file ``.gif``, ``.mp4`` (needs ffmpeg) or ``.html``.
     fps : float
@@ -615,9 +622,13 @@ def animate(
     matplotlib.animation.FuncAnimation
         What a notebook shows with ``IPython.display.HTML(animation.to_jshtml())``.
     """
+    from hydrostat.motion import shapes_of
     from hydrostat.plotting import animate as moving
 
-    return moving(solutions, output, fps=fps, unit=unit, sections=sections)
+    shapes: Any = solutions
+    if hasattr(solutions, "data_vars"):
+        shapes = shapes_of(shapes)
+    return moving(shapes, output, fps=fps, unit=unit, sections=sections)
 
 
 #: What a Python warning says of each kind; the same each time, so that Python's filters show it once.

@@ -15,7 +15,7 @@ from conftest import ROOT, needs_checkout
 pytestmark = needs_checkout
 
 #: How many pictures each shows.
-PICTURES = {"design": 4, "first_steps": 9, "workspace_and_flow": 4, "readings": 6}
+PICTURES = {"design": 4, "first_steps": 9, "motion": 4, "workspace_and_flow": 4, "readings": 6}
 
 
 def test_every_example_is_run() -> None:

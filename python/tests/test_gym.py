@@ -55,3 +55,21 @@ def test_the_target_can_be_followed() -> None:
         assert not ended
     assert truncated
     assert np.mean(far[30:]) < 0.25 * far[0], far
+
+
+def test_steps_may_be_motion() -> None:
+    from gymnasium.utils.env_checker import check_env
+    from hydrostat.gym import ReachEnv
+
+    arm = hs.Arm.load("silicone").replace({"dynamics.relaxation_time": "2.7 ms"})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(ReachEnv(arm, steps=20, time_step=0.02), skip_render_check=True)
+    still, moving = ReachEnv(arm, steps=20), ReachEnv(arm, steps=20, time_step=0.02)
+    for env in (still, moving):
+        env.reset(seed=1)
+    pull = np.array([1.0, -1.0])
+    one, two = still.step(pull)[0], moving.step(pull)[0]
+    assert two[1] < one[1] and abs(two[8] - one[8]) < 1e-12, "the arm lags behind its equilibrium"
+    with pytest.raises(ValueError, match="time_step"):
+        ReachEnv(time_step=0.0)

@@ -2,6 +2,7 @@
 
 mod common;
 mod equilibria;
+mod history;
 mod identify;
 mod init;
 mod modes;
@@ -24,6 +25,7 @@ use clap::{Args as ClapArgs, Parser, Subcommand};
 use common::count;
 pub(crate) use common::{ArmArgs, Format};
 pub(crate) use equilibria::{EquilibriaArgs, Over};
+pub(crate) use history::HistoryArgs;
 pub(crate) use identify::IdentifyArgs;
 pub(crate) use init::InitArgs;
 pub(crate) use modes::{ModesArgs, ModesFormat};
@@ -55,6 +57,8 @@ Examples:
   hydrostat path silicone --vary 'cable[0].tension=0:0.9'   follow the shapes as a tension rises
   hydrostat equilibria silicone --flow-speed 0.2 --set flow.direction=180
                                                             all shapes under the same loads
+  hydrostat history silicone --input loads.csv --plot loading.svg
+                                                            load and unload, with snaps
   hydrostat simulate silicone --input loads.csv --until 2s -o motion.csv
                                                             move in time under changing loads
   hydrostat reach silicone --target 0.182,0.078             inverse kinematics
@@ -83,6 +87,8 @@ pub(crate) enum Command {
     Path(PathArgs),
     #[command(about = "Find all equilibria under the same loads, with stability")]
     Equilibria(EquilibriaArgs),
+    #[command(about = "Follow equilibria along loads that rise and fall, with snaps")]
+    History(HistoryArgs),
     #[command(about = "Move the arm in time under loads that change")]
     Simulate(SimulateArgs),
     #[command(about = "Find small motions about the equilibrium: frequencies, damping, flutter")]

@@ -2,7 +2,9 @@
 
 use std::error::Error;
 
-use hydrostat::{MotionError, PathError, ReachError, SensitivityError, SolveError, SpatialError};
+use hydrostat::{
+    AfterSnapError, LoadingError, MotionError, PathError, ReachError, SensitivityError, SolveError, SpatialError,
+};
 use hydrostat_figures::source::StudyError;
 use hydrostat_files::{
     FileError, FitKeyError, MeasurementsError, ShapedError, TargetsError, TimeLoadsError, WriteError,
@@ -33,6 +35,8 @@ pub(crate) enum Cause<'a> {
     Spatial(&'a SpatialError),
     Path(&'a PathError),
     Motion(&'a MotionError),
+    AfterSnap(&'a AfterSnapError),
+    Loading(&'a LoadingError),
     TimeLoads,
     Sensitivity(&'a SensitivityError),
     Reach(&'a ReachError),
@@ -56,6 +60,8 @@ impl<'a> Cause<'a> {
         let found = found.or_else(|| error.downcast_ref().map(Self::Spatial));
         let found = found.or_else(|| error.downcast_ref().map(Self::Path));
         let found = found.or_else(|| error.downcast_ref().map(Self::Motion));
+        let found = found.or_else(|| error.downcast_ref().map(Self::AfterSnap));
+        let found = found.or_else(|| error.downcast_ref().map(Self::Loading));
         let found = found.or_else(|| error.is::<TimeLoadsError>().then_some(Self::TimeLoads));
         let found = found.or_else(|| error.is::<ShapedError>().then_some(Self::TimeLoads));
         let found = found.or_else(|| error.downcast_ref().map(Self::Sensitivity));
@@ -84,6 +90,8 @@ impl<'a> Cause<'a> {
             Self::Solve(error) => solve(error),
             Self::Path(error) => path(error),
             Self::Motion(error) => motion(error),
+            Self::AfterSnap(error) => after_snap(error),
+            Self::Loading(error) => loading(error),
             Self::Sensitivity(error) => sensitivity(error),
             Self::Reach(error) => reach(error),
             Self::Sweep(error) => sweep(error),
@@ -108,13 +116,17 @@ impl<'a> Cause<'a> {
     pub(crate) fn solve(&self) -> Option<&'a SolveError> {
         match self {
             Self::Solve(error) => Some(error),
-            Self::Path(PathError::Start { source, .. }) => Some(source),
+            Self::Path(PathError::Start { source, .. })
+            | Self::AfterSnap(AfterSnapError::Solve(source))
+            | Self::Loading(LoadingError::Start(AfterSnapError::Solve(source))) => Some(source),
             Self::Motion(MotionError::Start(source)) | Self::Study(StudyError::Solve { source, .. }) => Some(source),
             Self::Reach(error) => solve_of_reach(error),
             Self::Study(StudyError::Reach(error)) => solve_of_reach(error),
             Self::Spatial(_)
             | Self::Path(_)
             | Self::Motion(_)
+            | Self::AfterSnap(_)
+            | Self::Loading(_)
             | Self::TimeLoads
             | Self::Sensitivity(_)
             | Self::Sweep(_)
@@ -148,6 +160,23 @@ fn motion(error: &MotionError) -> Blame {
         | MotionError::Unsupported { .. }
         | MotionError::Option { .. }
         | MotionError::Course { .. } => Blame::Request,
+    }
+}
+
+fn after_snap(error: &AfterSnapError) -> Blame {
+    match error {
+        AfterSnapError::Solve(source) => solve(source),
+        AfterSnapError::Motion { motion: source, .. } => motion(source),
+        AfterSnapError::NoRest { .. } => Blame::Arm,
+    }
+}
+
+fn loading(error: &LoadingError) -> Blame {
+    match error {
+        LoadingError::Start(source) => after_snap(source),
+        LoadingError::Motion { motion: source, .. } => motion(source),
+        LoadingError::Limit { .. } | LoadingError::NoRest { .. } => Blame::Arm,
+        LoadingError::Arm(_) | LoadingError::Unsupported { .. } => Blame::Request,
     }
 }
 

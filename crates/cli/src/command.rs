@@ -6,6 +6,7 @@ pub(crate) mod check;
 pub(crate) mod equilibria;
 pub(crate) mod figures;
 mod follow;
+pub(crate) mod history;
 pub(crate) mod identify;
 pub(crate) mod init;
 mod limits;

@@ -34,6 +34,7 @@ fn main() -> ExitCode {
         Some(Command::Solve(args)) => command::solve::run(&args),
         Some(Command::Path(args)) => command::path::run(&args),
         Some(Command::Equilibria(args)) => command::equilibria::run(&args),
+        Some(Command::History(args)) => command::history::run(&args),
         Some(Command::Simulate(args)) => command::simulate::run(&args),
         Some(Command::Modes(args)) => command::modes::run(&args),
         Some(Command::Reach(args)) => command::reach::run(&args),

@@ -32,6 +32,8 @@ pub(crate) enum WrongRequest {
     Value(String, ArmError),
     /// A column that a sweep does not have, and those that it has.
     NoColumn(String, Vec<String>),
+    /// A load that a table does not have, and those that it has.
+    NoLoad(String, Vec<String>),
     /// A sweep without an answer, or without a value in a column.
     NothingToDraw(PathBuf, Option<String>),
     /// What an option needs of a sweep and does not find.
@@ -99,6 +101,7 @@ impl std::fmt::Display for WrongRequest {
             Self::NoColumn(name, columns) => {
                 write!(f, "--quantity {name}: expected one of {}", columns.join(", "))
             }
+            Self::NoLoad(name, keys) => write!(f, "--over {name}: expected one of {}", keys.join(", ")),
             Self::NothingToDraw(path, None) => write!(
                 f,
                 "{}: no row has an equilibrium, so there is nothing to draw; see the column `verdict`",

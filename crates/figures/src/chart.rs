@@ -230,7 +230,7 @@ pub fn over_figure(
 }
 
 /// Title, legend, and axes round all points.
-fn frame(
+pub(crate) fn frame(
     title: &str,
     legend: &Legend,
     points: &[[f64; 2]],
@@ -296,7 +296,7 @@ fn pieces(looks: &[Option<Look>], parts: &[Vec<Point>]) -> Vec<(Look, Vec<Point>
 }
 
 /// A smooth line through `points` (centripetal Catmull and Rom), one part for each two of them.
-fn smooth(points: &[Point]) -> Vec<Vec<Point>> {
+pub(crate) fn smooth(points: &[Point]) -> Vec<Vec<Point>> {
     const STEPS: u32 = 10;
     let last = points.len().saturating_sub(1);
     let part = |k: usize| {

@@ -8,7 +8,8 @@
 //! [`arm_figure`] draws one configuration to scale, [`spatial_arm_figure`] one in space, [`path_shapes_figure`] and [`equilibria_figure`]
 //! several, [`boundary_figure`] the places that a tip reaches; [`path_figure`] and [`over_figure`] draw a [`Quantity`]
 //! over a parameter; [`map_figure`], [`workspace_figure`], [`spatial_workspace_figure`] and [`curve_figure`] draw a sweep, [`fit_figure`] a fit beside
-//! its data, and [`lines_figure`] whatever numbers are compared. [`source`] solves what the source's Fig. 1
+//! its data, [`loading_figure`] a load that rises and falls, [`strobe_figure`] and [`motion_figure`] a motion, and
+//! [`lines_figure`] whatever numbers are compared. [`source`] solves what the source's Fig. 1
 //! shows, judges what its text says about it, and draws the three parts.
 
 mod arm_figure;
@@ -21,6 +22,8 @@ mod geometry;
 mod hull;
 mod legend;
 mod lines;
+mod loading;
+mod motion;
 mod numbers;
 mod outline;
 mod page;
@@ -50,6 +53,8 @@ pub use boundary::boundary_figure;
 pub use chart::{Abscissa, over_figure, path_figure};
 pub use fit::fit_figure;
 pub use lines::{Measure, Panel, lines_figure};
+pub use loading::{LoadingPoint, loading_figure};
+pub use motion::{MotionFrame, motion_figure, strobe_figure};
 pub use page::Page;
 pub use palette::{Palette, palette};
 pub use png::PngError;

@@ -16,6 +16,8 @@ const GAP: f64 = 14.0;
 const WIDE: f64 = 1.3;
 /// Every second line: the one below it shows through where both are the same.
 const DASH: [f64; 2] = [4.0, 4.0];
+/// More marks than this would hide their line.
+const MOST_MARKS: usize = 40;
 
 /// What an axis measures.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,7 +79,7 @@ pub fn lines_figure(title: &str, across: &Measure, names: &[&str], panels: &[Pan
                 line.iter().copied().filter(|p| length(*p, across.scale, panel).is_some()).collect();
             let points = axes.all(&shown);
             scene.line(&points, stroke(index));
-            for point in points {
+            for point in points.into_iter().filter(|_| shown.len() <= MOST_MARKS) {
                 Mark::Filled(series(index)).draw(&mut scene, point);
             }
         }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use hydrostat::Configuration;
+use hydrostat::{Configuration, Tip};
 
 use crate::font::Label;
 
@@ -67,11 +67,19 @@ impl Quantity {
     /// Its value in mm or degrees.
     pub(crate) fn of(self, c: &Configuration) -> f64 {
         match self {
-            Self::TipX => 1e3 * c.tip().x,
-            Self::TipY => 1e3 * c.tip().y,
-            Self::TipTheta => c.tip().theta.to_degrees(),
-            Self::TipAlpha => c.tip().alpha.to_degrees(),
             Self::Stroke(cable) => c.cables.get(cable).map_or(f64::NAN, |cable| 1e3 * cable.stroke),
+            of_tip => of_tip.of_tip(c.tip()).unwrap_or(f64::NAN),
+        }
+    }
+
+    /// The same of a tip alone, where that is enough.
+    pub(crate) fn of_tip(self, tip: Tip) -> Option<f64> {
+        match self {
+            Self::TipX => Some(1e3 * tip.x),
+            Self::TipY => Some(1e3 * tip.y),
+            Self::TipTheta => Some(tip.theta.to_degrees()),
+            Self::TipAlpha => Some(tip.alpha.to_degrees()),
+            Self::Stroke(_) => None,
         }
     }
 

@@ -5,13 +5,15 @@
 //! within a tenth of a point.
 
 use hydrostat::{
-    Arm, BoundaryOptions, Cable, Gravity, Material, Options, Parameter, PathOptions, Profile, Space, SpatialSolver,
+    Arm, BoundaryOptions, Cable, Gravity, Inputs, Loading, Material, MotionOptions, Options, Parameter, PathOptions,
+    Profile, Simulation, Space, SpatialSolver,
 };
 use hydrostat_figures::source::{Shown, Study};
 use hydrostat_figures::{
-    Abscissa, Coloured, ColouredColumn, KeyValues, Measure, Page, Panel, Quantity, Scale, Scene, arm_figure,
-    boundary_figure, curve_figure, equilibria_figure, fit_figure, last_good_note, lines_figure, map_figure,
-    over_figure, path_figure, path_shapes_figure, reach_figure, spatial_arm_figure, workspace_figure,
+    Abscissa, Coloured, ColouredColumn, KeyValues, LoadingPoint, Measure, MotionFrame, Page, Panel, Quantity, Scale,
+    Scene, arm_figure, boundary_figure, curve_figure, equilibria_figure, fit_figure, last_good_note, lines_figure,
+    loading_figure, map_figure, motion_figure, over_figure, path_figure, path_shapes_figure, reach_figure,
+    spatial_arm_figure, strobe_figure, workspace_figure,
 };
 use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, fit};
 use insta::comparator::Comparator;
@@ -257,4 +259,57 @@ fn the_source() {
     }
     let [.., angles] = study.figures(&Page::of_width(0.085).unwrap());
     check("fig1c_in_a_column", &angles.scene);
+}
+
+/// A base that is turned against the stream, and back.
+#[test]
+fn loading() {
+    let mut arm = arm();
+    (arm.gravity, arm.density) = (None, 1000.0);
+    arm.cables[0].tension = 0.0;
+    (arm.flow.speed, arm.flow.direction) = (0.2, std::f64::consts::PI);
+    arm.dynamics.relaxation_time = 2.7e-3;
+    let angles = [60.0_f64, 40.0, 20.0, 0.0, -20.0, -40.0, -60.0, -40.0, -20.0, 0.0, 20.0, 40.0, 60.0];
+    arm.base.angle = angles[0].to_radians();
+    let (mut loading, first) = Loading::start(&arm, 1e-6).unwrap();
+    let mut steps = Vec::new();
+    for pair in angles.windows(2) {
+        arm.base.angle = pair[1].to_radians();
+        let step = loading.go_to(&arm).unwrap();
+        let snaps = step.snaps.iter().map(|snap| (pair[0] + snap.share * (pair[1] - pair[0]), *snap)).collect();
+        steps.push((pair[1], step.configuration, snaps));
+    }
+    let mut points = vec![LoadingPoint { value: angles[0], configuration: &first.configuration, snaps: Vec::new() }];
+    for (value, configuration, snaps) in &steps {
+        let snaps: Vec<_> = Vec::clone(snaps);
+        points.push(LoadingPoint { value: *value, configuration, snaps });
+    }
+    let over = Abscissa { name: "arm.base.angle".to_owned(), unit: "deg".to_owned(), per_si: 1.0 };
+    check("loading", &loading_figure(&points, &over, Quantity::TipY, "to and fro", &page()));
+}
+
+/// An arm that sinks when it is let go.
+#[test]
+fn motion() {
+    let mut arm = arm();
+    arm.cables[0].tension = 0.0;
+    arm.flow.speed = 0.0;
+    arm.dynamics.relaxation_time = 2.7e-3;
+    let mut inputs = Inputs::default();
+    inputs.set("gravity.acceleration", hydrostat::Course::step(0.0, 9.81, 0.0)).unwrap();
+    let options = MotionOptions { tol: 1e-3, ..MotionOptions::default() };
+    let mut simulation = Simulation::new(&arm, inputs, options).unwrap();
+    let mut frames = Vec::new();
+    let every = |at: &hydrostat::Instant, simulation: &Simulation| {
+        frames.push(MotionFrame {
+            time: at.time,
+            centreline: simulation.shape().iter().map(|[_, x, y, _]| [*x, *y]).collect(),
+            kinetic_energy: at.kinetic_energy,
+            strain_energy: at.strain_energy,
+        });
+        true
+    };
+    simulation.run(1.0, 0.02, every).unwrap();
+    check("strobe", &strobe_figure(&frames, 11, "let go", &page()));
+    check("motion", &motion_figure(&frames, "let go", &page()));
 }

@@ -19,6 +19,7 @@ pub mod followed;
 mod format;
 mod heads;
 pub mod identification;
+mod loadings;
 mod marker_columns;
 mod measured_columns;
 mod measurements;
@@ -58,11 +59,12 @@ pub use fitted::{FitKey, FitKeyError, PriorKey, bare_unit, fitted};
 pub use followed::{FollowedDocument, followed_csv};
 pub use heads::{head_now, head_of, key_of_head};
 pub use identification::{IdentificationDocument, residuals_csv};
+pub use loadings::{LoadingDocument, LoadingRow, RowSnap, loading_csv};
 pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
 pub use measurements_template::measurements_template;
-pub use motions::{ModesDocument, MotionDocument, mode_kind, motion_columns, motion_row};
+pub use motions::{ModesDocument, MotionDocument, mode_kind, motion_columns, motion_numbers, motion_row};
 pub use output::{WriteError, is_same_file, remove_leftovers, write_whole, write_whole_with};
-pub use paths::{PathDocument, end_message, path_csv};
+pub use paths::{Landing, PathDocument, end_message, path_csv, path_csv_with_landings};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
 pub use reach::{ReachDocument, reach_csv};
 pub use results::{FailureDocument, Note, SolutionDocument, TOLERANCE_MISSED, json, stations_csv};
@@ -70,6 +72,9 @@ pub use shared_unit::{PartialUnit, shared_unit};
 pub use slips::{Slip, likeliest_slip, unit_slips};
 pub use spatial_results::{SpatialFailureDocument, SpatialSolutionDocument, spatial_stations_csv};
 pub use targets::{TargetsError, parse_targets, read_targets};
-pub use time_loads::{ShapedError, TimeLoadsError, parse_time_loads, read_time_loads, set_shaped};
+pub use time_loads::{
+    LoadRows, ShapedError, TimeLoadsError, parse_load_rows, parse_time_loads, read_load_rows, read_time_loads,
+    set_shaped,
+};
 pub use varied::{Varied, VariedError};
 pub use written::{Inputs, arm_to_toml};

@@ -14,8 +14,8 @@ pub fn motion_columns(cables: usize) -> Vec<String> {
     out
 }
 
-/// One time of a motion as the numbers of a row.
-fn numbers(at: &Instant) -> Vec<f64> {
+/// One time of a motion as the numbers of a row, in the order of [`motion_columns`].
+pub fn motion_numbers(at: &Instant) -> Vec<f64> {
     let mut out = vec![at.time, at.tip[0], at.tip[1], at.tip_theta];
     out.extend(at.cables.iter().flat_map(|cable| [cable.stroke, cable.tension]));
     out.extend([at.kinetic_energy, at.strain_energy, at.tip_velocity[0], at.tip_velocity[1]]);
@@ -24,7 +24,7 @@ fn numbers(at: &Instant) -> Vec<f64> {
 
 /// One time of a motion as a line of CSV, with its end of line. Of all numbers there are as many digits as it takes.
 pub fn motion_row(at: &Instant) -> String {
-    let cells: Vec<String> = numbers(at).into_iter().map(cell).collect();
+    let cells: Vec<String> = motion_numbers(at).into_iter().map(cell).collect();
     cells.join(",") + "\n"
 }
 
@@ -71,7 +71,7 @@ impl MotionDocument {
             error_estimate,
             statistics: StatisticsOut { steps, rejected, solves, rounds, elements },
             columns: motion_columns(arm.cables.len()),
-            rows: instants.iter().map(numbers).collect(),
+            rows: instants.iter().map(motion_numbers).collect(),
             inputs: Inputs::new(arm),
         }
     }

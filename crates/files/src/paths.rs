@@ -1,10 +1,10 @@
 //! Paths of equilibria as JSON and CSV.
 
-use hydrostat::{Branch, Event, Path, PathEnd, PathPoint, VerdictKind};
+use hydrostat::{Branch, Event, Path, PathEnd, PathPoint, Rest, VerdictKind};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
-use crate::results::{SCHEMA, cell, json};
+use crate::results::{SCHEMA, TipOut, cell, json};
 use crate::state::State;
 use crate::varied::Varied;
 use crate::written::Inputs;
@@ -35,6 +35,34 @@ pub(crate) struct EndOut {
     message: String,
 }
 
+/// Where an arm rests that is let go at a limit point of a path.
+#[derive(Debug, Clone)]
+pub struct Landing {
+    /// The branch and the point on it, from 0.
+    pub at: [usize; 2],
+    /// The shape and the time that it takes, or why there is none.
+    pub outcome: Result<Rest, String>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct LandingOut {
+    /// The tip where the arm rests.
+    tip: Option<TipOut>,
+    /// s
+    duration: Option<f64>,
+    /// Why it is not known where.
+    message: Option<String>,
+}
+
+impl From<&Landing> for LandingOut {
+    fn from(landing: &Landing) -> Self {
+        match &landing.outcome {
+            Ok(rest) => Self { tip: Some(TipOut::new(&rest.configuration)), duration: Some(rest.time), message: None },
+            Err(message) => Self { tip: None, duration: None, message: Some(message.clone()) },
+        }
+    }
+}
+
 #[derive(Debug, Clone, Serialize)]
 struct PointOut<'a> {
     value: f64,
@@ -43,6 +71,9 @@ struct PointOut<'a> {
     event: Option<&'static str>,
     /// Index of the cable that goes slack or taut.
     cable: Option<usize>,
+    /// Where the arm rests after a limit point, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    after_snap: Option<LandingOut>,
 }
 
 impl EndOut {
@@ -87,7 +118,7 @@ fn branch<'a>(branch: &'a Branch, varied: &Varied) -> BranchOut<'a> {
 fn point(point: &PathPoint) -> PointOut<'_> {
     let state = State::new(&point.configuration, point.stability);
     let cable = point.event.and_then(Event::cable);
-    PointOut { value: point.value, state, event: point.event.map(Event::name), cable }
+    PointOut { value: point.value, state, event: point.event.map(Event::name), cable, after_snap: None }
 }
 
 impl<'a> PathDocument<'a> {
@@ -105,6 +136,18 @@ impl<'a> PathDocument<'a> {
         })
     }
 
+    /// With where the arm rests after limit points.
+    pub fn with_landings(mut self, landings: &[Landing]) -> Self {
+        for landing in landings {
+            let [branch, point] = landing.at;
+            let point = self.branches.get_mut(branch).and_then(|branch| branch.points.get_mut(point));
+            if let Some(point) = point {
+                point.after_snap = Some(landing.into());
+            }
+        }
+        self
+    }
+
     /// The document, one line.
     pub fn to_json(&self) -> String {
         json(self)
@@ -113,19 +156,44 @@ impl<'a> PathDocument<'a> {
 
 /// The points of all branches, one row each, with names and SI units in the first row. Branches count from 0.
 pub fn path_csv(path: &Path, varied: &Varied) -> String {
-    let all = || path.branches.iter().enumerate().flat_map(|(b, branch)| branch.points.iter().map(move |p| (b, p)));
-    let cables = all().next().map_or(0, |(_, p)| p.configuration.cables.len());
+    csv(path, varied, None)
+}
+
+/// [`path_csv`] with the tip where the arm rests after limit points, and how long that takes.
+pub fn path_csv_with_landings(path: &Path, varied: &Varied, landings: &[Landing]) -> String {
+    csv(path, varied, Some(landings))
+}
+
+fn csv(path: &Path, varied: &Varied, landings: Option<&[Landing]>) -> String {
+    let points =
+        |(b, branch): (usize, &'_ Branch)| -> Vec<[usize; 2]> { (0..branch.points.len()).map(|p| [b, p]).collect() };
+    let all: Vec<[usize; 2]> = path.branches.iter().enumerate().flat_map(points).collect();
+    let point = |[branch, point]: [usize; 2]| &path.branches[branch].points[point];
+    let cables = all.first().map_or(0, |at| point(*at).configuration.cables.len());
     let mut names = vec!["branch".to_owned(), varied.column()];
-    names.extend(State::columns(cables, &["event"]));
+    let after = ["after_snap_x_m", "after_snap_y_m", "after_snap_theta_rad", "after_snap_s"];
+    let more: Vec<&str> = ["event"].into_iter().chain(after.into_iter().filter(|_| landings.is_some())).collect();
+    names.extend(State::columns(cables, &more));
     let mut out = Rows::new(&names);
-    for (branch, point) in all() {
-        let mut cells = vec![branch.to_string(), cell(point.value)];
+    for at in all {
+        let point = point(at);
+        let mut cells = vec![at[0].to_string(), cell(point.value)];
         let name = |event: Event| match event.cable() {
             Some(cable) => format!("{}[{cable}]", event.name()),
             None => event.name().to_owned(),
         };
-        let event = point.event.map(name).unwrap_or_default();
-        cells.extend(State::new(&point.configuration, point.stability).cells(&[&event]));
+        let mut more = vec![point.event.map(name).unwrap_or_default()];
+        if let Some(landings) = landings {
+            let rest =
+                landings.iter().find(|landing| landing.at == at).and_then(|landing| landing.outcome.as_ref().ok());
+            let numbers = rest.map(|rest| {
+                let tip = rest.configuration.tip();
+                [tip.x, tip.y, tip.theta, rest.time]
+            });
+            more.extend((0..after.len()).map(|k| numbers.map_or_else(String::new, |numbers| cell(numbers[k]))));
+        }
+        let more: Vec<&str> = more.iter().map(String::as_str).collect();
+        cells.extend(State::new(&point.configuration, point.stability).cells(&more));
         out.row(&cells);
     }
     out.text()

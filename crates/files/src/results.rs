@@ -4,7 +4,8 @@
 //! finite is `null` in JSON and an empty field in CSV.
 
 use hydrostat::{
-    CableState, Configuration, NoEquilibrium, Snap, Stability, Stations, Statistics, Tip, Verdict, Warning, Wrench,
+    AfterSnap, CableState, Configuration, NoEquilibrium, Snap, SnapMotion, Stability, Stations, Statistics, Tip,
+    Verdict, Warning, Wrench,
 };
 use serde::Serialize;
 
@@ -68,6 +69,18 @@ impl Note {
             let [found, asked] = [configuration.error_estimate, asked].map(|metres| 1e3 * metres);
             let message = format!("the tip error, about {found:.1e} mm, is above the tolerance of {asked:.1e} mm");
             notes.push(Self { kind: TOLERANCE_MISSED, message });
+        }
+        notes
+    }
+}
+
+impl Note {
+    /// The notes on a shape after snaps whose motions were followed.
+    pub fn after_snap(found: &AfterSnap, tol: f64) -> Vec<Self> {
+        let length = found.configuration.arm.length;
+        let mut notes = Self::all(&found.configuration, tol);
+        for (note, motion) in notes.iter_mut().filter(|note| note.kind == "snap").zip(&found.snaps) {
+            note.message = motion.message(length);
         }
         notes
     }
@@ -148,6 +161,25 @@ pub(crate) struct SnapOut {
     distance: f64,
     /// rad
     angle: f64,
+    /// Only where the motion after the snap was followed.
+    #[serde(flatten)]
+    motion: Option<SnapMotionOut>,
+}
+
+#[derive(Debug, Clone, Copy, Serialize)]
+struct SnapMotionOut {
+    /// s
+    duration: f64,
+    /// Whether the motion lands elsewhere than where the curve of equilibria leads on to; `null` where it does not.
+    lands_elsewhere: Option<bool>,
+}
+
+impl SnapOut {
+    fn of_motion(motion: &SnapMotion, length: f64) -> Self {
+        let lands_elsewhere = motion.on_curve.map(|_| motion.lands_elsewhere(length));
+        let followed = SnapMotionOut { duration: motion.duration, lands_elsewhere };
+        Self { motion: Some(followed), ..Self::from(&motion.snap) }
+    }
 }
 
 impl From<&Snap> for SnapOut {
@@ -159,6 +191,7 @@ impl From<&Snap> for SnapOut {
             after: snap.after.into(),
             distance: snap.distance(),
             angle: snap.angle(),
+            motion: None,
         }
     }
 }
@@ -277,6 +310,12 @@ impl<'a> SolutionDocument<'a> {
             inputs: Inputs::new(arm),
             statistics: (*statistics).into(),
         }
+    }
+
+    /// With what is known of the motions after its snaps.
+    pub fn with_motions(mut self, motions: &[SnapMotion], length: f64) -> Self {
+        self.snaps = motions.iter().map(|motion| SnapOut::of_motion(motion, length)).collect();
+        self
     }
 
     /// The document, one line.

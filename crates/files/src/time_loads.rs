@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use hydrostat::{Course, Inputs, MotionError};
+use hydrostat::{Arm, Course, Inputs, MotionError};
 
 use crate::csv_text::{Dialect, Lines, is_missing, records, without_mark};
 use crate::error::shortened;
@@ -128,13 +128,7 @@ pub enum ShapedError {
 /// # Errors
 /// [`TimeLoadsError`].
 pub fn read_time_loads(path: impl AsRef<Path>, inputs: &mut Inputs) -> Result<(), TimeLoadsError> {
-    let name = path.as_ref().display().to_string();
-    let read = |source| TimeLoadsError::Read { path: name.clone(), source };
-    let mut text = String::new();
-    File::open(path.as_ref()).and_then(|file| file.take(MOST + 1).read_to_string(&mut text)).map_err(read)?;
-    if text.len() as u64 > MOST {
-        return Err(TimeLoadsError::TooLarge { path: name });
-    }
+    let (text, name) = text_of(path.as_ref())?;
     parse_time_loads(&text, &name, inputs)
 }
 
@@ -156,56 +150,30 @@ pub fn read_time_loads(path: impl AsRef<Path>, inputs: &mut Inputs) -> Result<()
 /// assert_eq!(error.to_string(), "loads.csv:2: column 2, flow.speed: expected a finite number, found \"fast\"");
 /// ```
 pub fn parse_time_loads(text: &str, path: &str, inputs: &mut Inputs) -> Result<(), TimeLoadsError> {
+    let table = Table::read(text, path)?;
     let path = path.to_owned();
-    let text = without_mark(text);
-    let dialect = Dialect::of(text);
-    let mut reader = records(text, dialect);
-    let mut lines = Lines::new(text);
-    let mut header: Option<Header> = None;
-    let mut rows: Vec<Vec<(f64, f64)>> = Vec::new();
+    let Some(time_column) = table.header.time else {
+        let found = "expected a column `t_s` with times in s, found none".to_owned();
+        return Err(TimeLoadsError::Header { path, line: table.line, column: 1, found });
+    };
+    let mut rows: Vec<Vec<(f64, f64)>> = vec![Vec::new(); table.header.keys.len()];
     let mut before = f64::NEG_INFINITY;
-    for record in reader.records() {
-        // The text is in memory and is UTF-8.
-        let Ok(record) = record else { continue };
-        let line = record.position().map_or(0, |position| lines.of(position.byte()));
-        if record.iter().all(str::is_empty) {
-            continue;
-        }
-        let Some(header) = &header else {
-            let found = Header::read(record.iter()).map_err(|(column, found)| TimeLoadsError::Header {
-                path: path.clone(),
-                line,
-                column,
-                found,
-            })?;
-            rows.resize(found.keys.len(), Vec::new());
-            header = Some(found);
-            continue;
-        };
-        let expected = header.keys.len() + 1;
-        if record.len() != expected {
-            return Err(TimeLoadsError::Ragged { path, line, expected, found: record.len() });
-        }
-        let number = |column: usize, key: &str| {
-            let cell = record.get(column).unwrap_or_default();
-            let found = cell.to_owned();
-            let wrong =
-                || TimeLoadsError::Value { path: path.clone(), line, column: column + 1, key: key.to_owned(), found };
-            dialect.number(cell).ok_or_else(wrong)
-        };
-        let time = number(header.time, TIME)?;
+    for row in &table.rows {
+        let time = table.number(row, time_column, TIME)?;
         if time < before {
-            return Err(TimeLoadsError::Falls { path, line, before, found: time });
+            return Err(TimeLoadsError::Falls { path, line: row.line, before, found: time });
         }
         before = time;
-        for ((column, key, dimension), rows) in header.keys.iter().zip(&mut rows) {
-            if !is_missing(record.get(*column).unwrap_or_default()) {
-                rows.push((time, dimension.bare(number(*column, key)?)));
+        for ((column, key, dimension), rows) in table.header.keys.iter().zip(&mut rows) {
+            if !row.is_missing(*column) {
+                rows.push((time, dimension.bare(table.number(row, *column, key)?)));
             }
         }
     }
-    let Some(header) = header.filter(|_| before.is_finite()) else { return Err(TimeLoadsError::Empty { path }) };
-    for ((_, key, _), rows) in header.keys.iter().zip(rows) {
+    if !before.is_finite() {
+        return Err(TimeLoadsError::Empty { path });
+    }
+    for ((_, key, _), rows) in table.header.keys.iter().zip(rows) {
         if !rows.is_empty() {
             let set = inputs.set(key, Course::Table(rows));
             set.map_err(|source| TimeLoadsError::Load { path: path.clone(), source })?;
@@ -214,9 +182,182 @@ pub fn parse_time_loads(text: &str, path: &str, inputs: &mut Inputs) -> Result<(
     Ok(())
 }
 
+/// Loads in their order, one row after the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadRows {
+    /// The keys of the columns, as the file has them.
+    pub keys: Vec<String>,
+    /// The values of each row in SI units, angles in degrees, with the row's line in the file.
+    pub rows: Vec<(usize, Vec<f64>)>,
+    path: String,
+}
+
+impl LoadRows {
+    /// Of rows of values under these keys, SI units, angles in degrees; NaN keeps what the arm has.
+    pub fn new(keys: &[String], rows: Vec<Vec<f64>>) -> Self {
+        let rows = rows.into_iter().enumerate().map(|(k, values)| (k + 1, values)).collect();
+        Self { keys: keys.iter().map(|key| bracketed(key)).collect(), rows, path: "loads".to_owned() }
+    }
+
+    /// The unit of a column's numbers: that of the key in SI, `deg` for angles, empty for plain numbers.
+    pub fn unit(&self, column: usize) -> &'static str {
+        let dimension = self.keys.get(column).and_then(|key| dimension_at(key)).unwrap_or(Dimension::Number);
+        if dimension == Dimension::Angle { "deg" } else { dimension.bare_unit() }
+    }
+
+    /// The column of a key, with its indices in brackets or behind points.
+    pub fn column(&self, key: &str) -> Option<usize> {
+        let key = bracketed(key);
+        self.keys.iter().position(|own| *own == key)
+    }
+
+    /// The arm at each row.
+    ///
+    /// # Errors
+    /// [`TimeLoadsError::Load`] with the line of a row whose loads make no arm.
+    pub fn arms(&self, arm: &Arm) -> Result<Vec<Arm>, TimeLoadsError> {
+        let one = |(line, values): &(usize, Vec<f64>)| {
+            let load = |source| TimeLoadsError::Load { path: format!("{}:{line}", self.path), source };
+            let mut inputs = Inputs::default();
+            for (key, value) in self.keys.iter().zip(values).filter(|(_, value)| value.is_finite()) {
+                let dimension = dimension_at(key).unwrap_or(Dimension::Number);
+                inputs.set(key, Course::constant(dimension.bare(*value))).map_err(load)?;
+            }
+            inputs.arm_at(arm, 0.0).map_err(load)
+        };
+        self.rows.iter().map(one).collect()
+    }
+}
+
+/// Reads loads in their order from a CSV file: columns with the keys of loads, in SI units, angles in degrees. A
+/// column `t_s` is passed over. A cell that is empty keeps the value of the row above, or that of the arm.
+///
+/// # Errors
+/// [`TimeLoadsError`].
+pub fn read_load_rows(path: impl AsRef<Path>) -> Result<LoadRows, TimeLoadsError> {
+    let (text, name) = text_of(path.as_ref())?;
+    parse_load_rows(&text, &name)
+}
+
+/// [`read_load_rows`] of text that came from `path`, which messages name.
+///
+/// # Errors
+/// [`TimeLoadsError`].
+///
+/// ```
+/// use hydrostat_files::parse_load_rows;
+///
+/// let loads = parse_load_rows("cable[0].tension,flow.speed\n0,0.1\n0.2,\n0,\n", "loads.csv").unwrap();
+/// assert_eq!(loads.rows[1], (3, vec![0.2, 0.1]));
+/// let error = parse_load_rows("cable[0].tension\nmuch\n", "loads.csv").unwrap_err();
+/// assert_eq!(error.to_string(), "loads.csv:2: column 1, cable[0].tension: expected a finite number, found \"much\"");
+/// ```
+pub fn parse_load_rows(text: &str, path: &str) -> Result<LoadRows, TimeLoadsError> {
+    let table = Table::read(text, path)?;
+    let mut rows: Vec<(usize, Vec<f64>)> = Vec::new();
+    for row in &table.rows {
+        let mut values = Vec::with_capacity(table.header.keys.len());
+        for (k, (column, key, _)) in table.header.keys.iter().enumerate() {
+            let above = rows.last().map_or(f64::NAN, |(_, values)| values[k]);
+            values.push(if row.is_missing(*column) { above } else { table.number(row, *column, key)? });
+        }
+        rows.push((row.line, values));
+    }
+    if rows.is_empty() || table.header.keys.is_empty() {
+        return Err(TimeLoadsError::Empty { path: path.to_owned() });
+    }
+    let keys = table.header.keys.into_iter().map(|(_, key, _)| key).collect();
+    Ok(LoadRows { keys, rows, path: path.to_owned() })
+}
+
+/// The text of a file, and its name for messages.
+fn text_of(path: &Path) -> Result<(String, String), TimeLoadsError> {
+    let name = path.display().to_string();
+    let read = |source| TimeLoadsError::Read { path: name.clone(), source };
+    let mut text = String::new();
+    File::open(path).and_then(|file| file.take(MOST + 1).read_to_string(&mut text)).map_err(read)?;
+    if text.len() as u64 > MOST {
+        return Err(TimeLoadsError::TooLarge { path: name });
+    }
+    Ok((text, name))
+}
+
+/// A table of loads with its cells as they stand there.
+struct Table {
+    path: String,
+    dialect: Dialect,
+    header: Header,
+    /// The line of the header.
+    line: usize,
+    rows: Vec<Line>,
+}
+
+/// A row of a table.
+struct Line {
+    line: usize,
+    cells: Vec<String>,
+}
+
+impl Line {
+    fn is_missing(&self, column: usize) -> bool {
+        is_missing(self.cells.get(column).map_or("", String::as_str))
+    }
+}
+
+impl Table {
+    /// Rows that are as long as the header; empty ones are passed over.
+    fn read(text: &str, path: &str) -> Result<Self, TimeLoadsError> {
+        let path = path.to_owned();
+        let text = without_mark(text);
+        let dialect = Dialect::of(text);
+        let mut reader = records(text, dialect);
+        let mut lines = Lines::new(text);
+        let mut header: Option<(Header, usize, usize)> = None;
+        let mut rows = Vec::new();
+        for record in reader.records() {
+            // The text is in memory and is UTF-8.
+            let Ok(record) = record else { continue };
+            let line = record.position().map_or(0, |position| lines.of(position.byte()));
+            if record.iter().all(str::is_empty) {
+                continue;
+            }
+            let Some((_, expected, _)) = &header else {
+                let found = Header::read(record.iter()).map_err(|(column, found)| TimeLoadsError::Header {
+                    path: path.clone(),
+                    line,
+                    column,
+                    found,
+                })?;
+                header = Some((found, record.len(), line));
+                continue;
+            };
+            if record.len() != *expected {
+                return Err(TimeLoadsError::Ragged { path, line, expected: *expected, found: record.len() });
+            }
+            rows.push(Line { line, cells: record.iter().map(str::to_owned).collect() });
+        }
+        match header {
+            Some((header, _, line)) => Ok(Self { path, dialect, header, line, rows }),
+            None => Err(TimeLoadsError::Empty { path }),
+        }
+    }
+
+    /// A cell as a number.
+    fn number(&self, row: &Line, column: usize, key: &str) -> Result<f64, TimeLoadsError> {
+        let cell = row.cells.get(column).map_or("", String::as_str);
+        self.dialect.number(cell).ok_or_else(|| TimeLoadsError::Value {
+            path: self.path.clone(),
+            line: row.line,
+            column: column + 1,
+            key: key.to_owned(),
+            found: cell.to_owned(),
+        })
+    }
+}
+
 /// Where times stand, and the columns of loads with their keys.
 struct Header {
-    time: usize,
+    time: Option<usize>,
     keys: Vec<(usize, String, Dimension)>,
 }
 
@@ -249,10 +390,7 @@ impl Header {
             let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
             keys.push((k, key, dimension));
         }
-        match time {
-            Some(time) => Ok(Self { time, keys }),
-            None => Err((1, "expected a column `t_s` with times in s, found none".to_owned())),
-        }
+        Ok(Self { time, keys })
     }
 }
 

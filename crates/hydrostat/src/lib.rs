@@ -151,8 +151,9 @@ pub use configuration::{
 };
 pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
 pub use motion::{
-    CableMotion, Course, Inputs, Instant, Mode, Modes, MotionError, MotionOptions, MotionStatistics, MotionVerdict,
-    MotionVerdictKind, Simulation,
+    AfterSnap, AfterSnapError, CableMotion, Course, Inputs, Instant, Loading, LoadingError, LoadingSnap, LoadingStep,
+    Mode, Modes, MotionError, MotionOptions, MotionStatistics, MotionVerdict, MotionVerdictKind, Rest, Restless,
+    Simulation, SnapMotion,
 };
 pub use numerics::dispatch::has_wide_vectors;
 pub use parameter::Parameter;

@@ -31,20 +31,26 @@
 //!
 //! **Eigenmodes** (`modes`) are those of the same equations, linearised about an equilibrium.
 
+mod after_snap;
 mod border;
 mod dimensions;
 mod equations;
 mod error;
 mod history;
 mod inputs;
+mod loading;
 mod modes;
+mod rest;
 mod settling;
 mod simulation;
 mod stepper;
 mod strokes;
 mod tableau;
 
+pub use self::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
 pub use self::error::{MotionError, MotionVerdict, MotionVerdictKind};
 pub use self::inputs::{Course, Inputs};
+pub use self::loading::{Loading, LoadingError, LoadingSnap, LoadingStep};
 pub use self::modes::{Mode, Modes};
+pub use self::rest::{Rest, Restless};
 pub use self::simulation::{CableMotion, Instant, MotionOptions, MotionStatistics, Simulation};

@@ -9,6 +9,7 @@ pub(crate) use crate::arm_class::Arm;
 use crate::arm_class::Setting;
 use crate::arrays::finite;
 use crate::errors::{file_error, solve_error, spatial_error, wrong};
+use crate::motion::after_snap_error;
 use crate::solution::{Solution, options};
 use crate::spatial_solution::SpatialSolution;
 
@@ -79,7 +80,8 @@ impl Arm {
 
     /// Solves under these loads; `None` among the strokes leaves a cable its tension. `snaps` is how far the tip may jump (over the length) and
     /// turn (rad) at a snap. A `Solution`, or a `SpatialSolution` of an arm in space.
-    #[pyo3(signature = (tensions, strokes, flow_speed, tol, snaps))]
+    #[pyo3(signature = (tensions, strokes, flow_speed, tol, snaps, after_snap))]
+    #[allow(clippy::too_many_arguments, reason = "those of Python's function")]
     fn solve(
         &self,
         py: Python<'_>,
@@ -88,6 +90,7 @@ impl Arm {
         flow_speed: Option<f64>,
         tol: f64,
         snaps: (f64, f64),
+        after_snap: bool,
     ) -> PyResult<Py<PyAny>> {
         let mut arm = self.given.clone();
         if let Some(tensions) = tensions {
@@ -107,6 +110,11 @@ impl Arm {
             arm.flow.speed = speed;
         }
         let options = options(tol, snaps);
+        if after_snap {
+            let solved = py.detach(|| arm.solve_after_snap(tol));
+            let found = solved.map_err(|error| after_snap_error(py, error, options))?;
+            return Ok(Py::new(py, Solution::after_snap(found, options))?.into_any());
+        }
         if arm.space.is_some() {
             let solved = py.detach(|| SpatialSolver::new(&arm, options)?.solve());
             let found = solved.map_err(|error| spatial_error(py, error, options))?;

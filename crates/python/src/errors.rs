@@ -2,8 +2,8 @@
 //! the verdict's fields.
 
 use hydrostat::{
-    Configuration, NoEquilibrium, Options, PathError, ReachError, SensitivityError, SnapBounds, SolveError,
-    SpatialError, Verdict,
+    Configuration, MotionError, NoEquilibrium, Options, PathError, ReachError, SensitivityError, SnapBounds,
+    SolveError, SpatialError, Verdict,
 };
 use hydrostat_files::MeasurementsError;
 use hydrostat_identify::{IdentifyError, Trial};
@@ -68,6 +68,20 @@ pub(crate) fn measurements_error(py: Python<'_>, error: MeasurementsError) -> Py
     static MEASUREMENTS_ERROR: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let row = (error.row > 0).then_some(error.row);
     made(py, &MEASUREMENTS_ERROR, "MeasurementsError", (error.to_string(), row, error.column))
+}
+
+/// What a motion ends with.
+pub(crate) fn motion_error(py: Python<'_>, error: MotionError) -> PyErr {
+    static ENDED: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    match error {
+        MotionError::Start(source) => solve_error(py, *source, Options::default()),
+        MotionError::Ended(verdict) => {
+            let fields = (verdict.message(), verdict.kind.name(), verdict.time, verdict.s);
+            made(py, &ENDED, "MotionError", fields)
+        }
+        // An option's name is that of the argument.
+        other => wrong(other),
+    }
 }
 
 /// What a fit ends with.

@@ -11,6 +11,7 @@ mod figure;
 mod identification;
 mod interrupt;
 mod many;
+mod motion;
 mod order;
 mod paths;
 mod reach;
@@ -35,6 +36,8 @@ mod _native {
     use super::identification::{Fit, identify, measurements_template};
     #[pymodule_export]
     use super::many::{parameter_names, solve_many};
+    #[pymodule_export]
+    use super::motion::{History, Simulation, history, motion_figures};
     #[pymodule_export]
     use super::paths::{Equilibria, Path, equilibria, over_figure, path};
     #[pymodule_export]

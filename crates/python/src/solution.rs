@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hydrostat::{Configuration, Options, Snap, SnapBounds, Stability, Statistics, Tip, Wrench};
+use hydrostat::{AfterSnap, Configuration, Options, Snap, SnapBounds, SnapMotion, Stability, Statistics, Tip, Wrench};
 use hydrostat_files::{Dimension, Note, stations_csv};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyIndexError;
@@ -25,6 +25,8 @@ type Point = [f64; 2];
 pub(crate) struct Solution {
     pub(crate) configuration: Configuration,
     options: Options,
+    /// Those after its snaps, where they were followed.
+    motions: Vec<SnapMotion>,
 }
 
 /// Stations along an arm.
@@ -81,18 +83,23 @@ pub(crate) fn places(length: f64, s: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec
 }
 
 /// x, y, theta and alpha.
-type TipFields = (f64, f64, f64, f64);
+pub(crate) type TipFields = (f64, f64, f64, f64);
 
-/// Phase, load fraction, the tip before and after, distance and angle.
-pub(crate) type SnapFields = (&'static str, f64, TipFields, TipFields, f64, f64);
+/// Phase, load fraction, the tip before and after, distance and angle; where its motion was followed, the duration, and,
+/// where the curve leads on, whether the motion lands elsewhere.
+pub(crate) type SnapFields = (&'static str, f64, TipFields, TipFields, f64, f64, Option<f64>, Option<bool>);
 
 /// What Python's `Snap` is made of.
 pub(crate) fn snaps(all: &[Snap]) -> Vec<SnapFields> {
-    let fields = |s: &Snap| (s.phase.name(), s.load_fraction, tip(s.before), tip(s.after), s.distance(), s.angle());
-    all.iter().map(fields).collect()
+    all.iter().map(|snap| snap_fields(snap, None, None)).collect()
 }
 
-fn tip(Tip { x, y, theta, alpha }: Tip) -> TipFields {
+fn snap_fields(s: &Snap, duration: Option<f64>, elsewhere: Option<bool>) -> SnapFields {
+    let (before, after) = (tip(s.before), tip(s.after));
+    (s.phase.name(), s.load_fraction, before, after, s.distance(), s.angle(), duration, elsewhere)
+}
+
+pub(crate) fn tip(Tip { x, y, theta, alpha }: Tip) -> TipFields {
     (x, y, theta, alpha)
 }
 
@@ -109,7 +116,12 @@ pub(crate) fn angle(text: &str) -> PyResult<f64> {
 
 impl Solution {
     pub(crate) fn new(configuration: Configuration, options: Options) -> Self {
-        Self { configuration, options }
+        Self { configuration, options, motions: Vec::new() }
+    }
+
+    /// A shape after snaps whose motions were followed.
+    pub(crate) fn after_snap(found: AfterSnap, options: Options) -> Self {
+        Self { configuration: found.configuration, options, motions: found.snaps }
     }
 }
 
@@ -135,7 +147,15 @@ impl Solution {
 
     #[getter]
     fn snaps(&self) -> Vec<SnapFields> {
-        snaps(&self.configuration.snaps)
+        if self.motions.is_empty() {
+            return snaps(&self.configuration.snaps);
+        }
+        let length = self.configuration.arm.length;
+        let fields = |motion: &SnapMotion| {
+            let elsewhere = motion.on_curve.map(|_| motion.lands_elsewhere(length));
+            snap_fields(&motion.snap, Some(motion.duration), elsewhere)
+        };
+        self.motions.iter().map(fields).collect()
     }
 
     /// The arm with the loads that are balanced.
@@ -255,7 +275,11 @@ impl Solution {
     fn to_json(&self) -> String {
         let notes = Note::all(&self.configuration, self.options.tol);
         let margin = self.configuration.fold_margin().value;
-        hydrostat_files::SolutionDocument::new(&self.configuration, margin, &notes).to_json()
+        let document = hydrostat_files::SolutionDocument::new(&self.configuration, margin, &notes);
+        if self.motions.is_empty() {
+            return document.to_json();
+        }
+        document.with_motions(&self.motions, self.configuration.arm.length).to_json()
     }
 
     /// The stations as CSV.

@@ -1,8 +1,8 @@
 //! What became of a row, in the plane or in space.
 
 use hydrostat::{
-    Arm, FoldMargin, Options, Row, SpatialConfiguration, SpatialError, SpatialSolver, SpatialTip, SpatialWrench,
-    Stability, Verdict, Wanted, Warning,
+    AfterSnapError, Arm, FoldMargin, MotionError, Options, Row, SolveError, SpatialConfiguration, SpatialError,
+    SpatialSnap, SpatialSolver, SpatialTip, SpatialWrench, Stability, Verdict, Wanted, Warning,
 };
 
 /// Why a row has no answer.
@@ -34,6 +34,7 @@ pub(crate) struct SpatialRow {
     fold_margin: FoldMargin,
     stability: Option<Stability>,
     warnings: Vec<Warning>,
+    snaps: Vec<SpatialSnap>,
     /// Place and directors a and b at each station; empty unless asked for.
     shape: Vec<[f64; 9]>,
 }
@@ -50,6 +51,7 @@ impl SpatialRow {
             fold_margin: configuration.fold_margin(),
             stability: if wanted.stability { configuration.stability() } else { None },
             warnings: if wanted.warnings { configuration.warnings() } else { Vec::new() },
+            snaps: configuration.snaps.clone(),
             shape: if wanted.stations < 2 { Vec::new() } else { shape(configuration, wanted.stations) },
         }
     }
@@ -73,7 +75,46 @@ pub(crate) fn solve_in_space(arm: &Arm, options: Options, wanted: Wanted) -> Res
     }
 }
 
+/// Solves a row whose `verdict` is a snap, with the motion after it.
+pub(crate) fn solve_after_snap(arm: &Arm, tol: f64, wanted: Wanted, verdict: Verdict) -> Result<Found, NoAnswer> {
+    match arm.solve_after_snap(tol) {
+        Ok(found) => {
+            let snap_durations = found.snaps.iter().map(|motion| motion.duration).collect();
+            Ok(Found::Plane(Row { snap_durations, ..Row::new(&found.configuration, wanted) }))
+        }
+        Err(AfterSnapError::Solve(SolveError::NoEquilibrium(no))) => Err(NoAnswer::Verdict(no.verdict)),
+        Err(AfterSnapError::Solve(error)) => Err(NoAnswer::Arm(error.to_string())),
+        Err(error @ AfterSnapError::Motion { motion: MotionError::Unsupported { .. }, .. }) => {
+            Err(NoAnswer::Arm(error.to_string()))
+        }
+        // It snaps, and where to is not known.
+        Err(AfterSnapError::Motion { .. } | AfterSnapError::NoRest { .. }) => Err(NoAnswer::Verdict(verdict)),
+    }
+}
+
 impl Found {
+    /// How many snaps the arm makes on its way to the loads; of the one that goes furthest load fraction, distance (m),
+    /// angle (rad) and, where its motion was followed, duration (s).
+    pub(crate) fn snaps(&self) -> (usize, [Option<f64>; 4]) {
+        match self {
+            Self::Plane(row) => {
+                let distance = |k: &usize| row.snaps[*k].distance();
+                let furthest = (0..row.snaps.len()).max_by(|a, b| distance(a).total_cmp(&distance(b)));
+                let of = furthest.map_or([None; 4], |k| {
+                    let snap = row.snaps[k];
+                    let duration = row.snap_durations.get(k).copied();
+                    [Some(snap.load_fraction), Some(snap.distance()), Some(snap.angle()), duration]
+                });
+                (row.snaps.len(), of)
+            }
+            Self::Space(row) => {
+                let furthest = row.snaps.iter().max_by(|a, b| a.distance().total_cmp(&b.distance()));
+                let of = |s: &SpatialSnap| [Some(s.load_fraction), Some(s.distance()), Some(s.angle()), None];
+                (row.snaps.len(), furthest.map_or([None; 4], of))
+            }
+        }
+    }
+
     pub(crate) fn error_estimate(&self) -> f64 {
         match self {
             Self::Plane(row) => row.error_estimate,

@@ -27,6 +27,8 @@ pub enum Output {
     Stability,
     /// Estimated error of the tip position.
     Error,
+    /// The snaps on the way to the loads: how many, and of the one that goes furthest load fraction, distance, angle and duration.
+    Snaps,
     /// What should be known about the answer.
     Warnings,
     /// Why there is no answer: kind, phase, load fraction and place, or in words why there is no arm.
@@ -35,7 +37,7 @@ pub enum Output {
 
 impl Output {
     /// All, in the order of their columns.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Tip,
         Self::Alpha,
         Self::Strokes,
@@ -44,6 +46,7 @@ impl Output {
         Self::Fold,
         Self::Stability,
         Self::Error,
+        Self::Snaps,
         Self::Warnings,
         Self::Verdict,
     ];
@@ -63,6 +66,7 @@ impl Output {
             Self::Fold => "fold",
             Self::Stability => "stability",
             Self::Error => "error",
+            Self::Snaps => "snaps",
             Self::Warnings => "warnings",
             Self::Verdict => "verdict",
         }
@@ -217,6 +221,12 @@ impl Layout {
                     out.push(Column { name: "unstable_directions".to_owned(), data: Data::Whole(Vec::new()) });
                     continue;
                 }
+                Output::Snaps => {
+                    out.push(Column { name: "snaps".to_owned(), data: Data::Whole(Vec::new()) });
+                    let of = ["snap_load_fraction", "snap_distance_m", "snap_angle_rad", "snap_duration_s"];
+                    out.extend(of.map(|name| number(name.to_owned())));
+                    continue;
+                }
                 Output::Warnings => {
                     out.push(text(WARNINGS));
                     continue;
@@ -286,6 +296,11 @@ impl Layout {
                     let stability = found.and_then(Found::stability);
                     cells.text(stability.map(Stability::name));
                     cells.whole(stability.and_then(Stability::directions).and_then(|count| i64::try_from(count).ok()));
+                }
+                Output::Snaps => {
+                    let snaps = found.map(Found::snaps);
+                    cells.whole(snaps.and_then(|(count, _)| i64::try_from(count).ok()));
+                    cells.numbers(snaps.map_or([None; 4], |(_, of)| of));
                 }
                 Output::Warnings => {
                     let kinds = found.map(|row| kinds_of(row.warnings(), row.error_estimate(), *asked));

@@ -189,6 +189,7 @@ pub(crate) fn difference(found: &str, plan: &str) -> &'static str {
         ("tol", "tolerance"),
         ("snap_distance", "bound of snaps"),
         ("snap_angle", "bound of snaps"),
+        ("after_snap", "way of snaps"),
         ("columns", "list of columns"),
         ("shapes", "number of stations"),
         ("shard", "shard"),

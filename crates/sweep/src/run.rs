@@ -5,12 +5,12 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use hydrostat::{Arm, NoRow, Options, SnapBounds, Tile};
+use hydrostat::{Arm, NoRow, Options, SnapBounds, Tile, VerdictKind};
 use hydrostat_files::{ArmFile, arm_to_toml, write_whole, write_whole_with};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::answer::{Found, NoAnswer, solve_in_space};
+use crate::answer::{Found, NoAnswer, solve_after_snap, solve_in_space};
 use crate::arms::{Arms, Last};
 use crate::column::{Answer, Answered, Column, Data, Layout, Output, WARNINGS};
 use crate::error::{SweepError, parquet_error};
@@ -35,6 +35,8 @@ pub struct SweepOptions {
     pub tol: f64,
     /// How far an arm may snap on its way to its loads.
     pub snaps: SnapBounds,
+    /// Whether to follow the motion after each snap until the arm rests, whatever the bounds.
+    pub after_snap: bool,
     /// What is written of every row.
     pub outputs: Vec<Output>,
     /// So many equally spaced stations of every row; none below two.
@@ -45,7 +47,14 @@ pub struct SweepOptions {
 
 impl Default for SweepOptions {
     fn default() -> Self {
-        Self { tol: 1e-6, snaps: SnapBounds::default(), outputs: Output::DEFAULT.to_vec(), stations: 0, shard: None }
+        Self {
+            tol: 1e-6,
+            snaps: SnapBounds::default(),
+            after_snap: false,
+            outputs: Output::DEFAULT.to_vec(),
+            stations: 0,
+            shard: None,
+        }
     }
 }
 
@@ -91,6 +100,8 @@ pub struct Sweep {
     /// The rows of these tiles that are wanted: all but where there are more shards than tiles.
     rows: Range<u64>,
     options: Options,
+    /// Whether to follow the motion after each snap.
+    after_snap: bool,
     name: String,
     note: String,
 }
@@ -106,6 +117,8 @@ struct Note<'a> {
     tol: f64,
     snap_distance: Option<f64>,
     snap_angle: Option<f64>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    after_snap: bool,
     columns: Vec<&'static str>,
     shapes: usize,
     shard: Option<String>,
@@ -129,7 +142,10 @@ impl Sweep {
     pub fn new(file: &ArmFile, plan: Plan, options: &SweepOptions) -> Result<Self, SweepError> {
         let arms = Arms::new(file, plan.axes())?;
         let layout = Layout::new(&options.outputs, arms.base(), options.stations);
-        let each = Options { tol: options.tol, snaps: options.snaps };
+        // Where motions are followed every snap is one.
+        let every = SnapBounds { distance: 0.0, angle: 0.0 };
+        let snaps = if options.after_snap { every } else { options.snaps };
+        let each = Options { tol: options.tol, snaps };
         let start = Tile::new(each, layout.wanted())?;
         let (tiles, rows) = match options.shard {
             None => (0..plan.tiles(), 0..plan.rows()),
@@ -137,7 +153,8 @@ impl Sweep {
         };
         let note = note(&plan, &arms, &layout, options, &rows);
         let name = arms.base().name.clone();
-        Ok(Self { plan, arms, layout, start, tiles, rows, options: each, name, note })
+        let after_snap = options.after_snap;
+        Ok(Self { plan, arms, layout, start, tiles, rows, options: each, after_snap, name, note })
     }
 
     /// The name of the arm.
@@ -404,10 +421,14 @@ impl Sweep {
     fn answer(&self, arm: &Arm, solver: &mut Tile) -> Answer {
         match (arm.space.is_some(), self.layout.is_spatial()) {
             (true, true) => solve_in_space(arm, self.options, self.layout.wanted()),
-            (false, false) => solver.solve(arm).map(Found::Plane).map_err(|no| match no {
-                NoRow::Verdict(verdict) => NoAnswer::Verdict(verdict),
-                NoRow::Arm(error) => NoAnswer::Arm(error.to_string()),
-            }),
+            (false, false) => match solver.solve(arm) {
+                Ok(row) => Ok(Found::Plane(row)),
+                Err(NoRow::Verdict(verdict)) if self.after_snap && verdict.kind == VerdictKind::LimitPoint => {
+                    solve_after_snap(arm, self.options.tol, self.layout.wanted(), verdict)
+                }
+                Err(NoRow::Verdict(verdict)) => Err(NoAnswer::Verdict(verdict)),
+                Err(NoRow::Arm(error)) => Err(NoAnswer::Arm(error.to_string())),
+            },
             // Their columns differ.
             _ => Err(NoAnswer::Arm("`arm.space`: expected the same in all rows; give it in the arm file".to_owned())),
         }
@@ -473,6 +494,7 @@ fn note(plan: &Plan, arms: &Arms, layout: &Layout, options: &SweepOptions, rows:
         // Without bounds these are null.
         snap_distance: Some(options.snaps.distance).filter(|bound| bound.is_finite()),
         snap_angle: Some(options.snaps.angle).filter(|bound| bound.is_finite()),
+        after_snap: options.after_snap,
         columns: layout.outputs().iter().map(|output| output.name()).collect(),
         shapes: options.stations,
         shard: options.shard.map(|shard| format!("{}/{}", shard.index, shard.of)),

@@ -14,7 +14,7 @@ fn it_has_every_column_of_arms_in_space() {
     let options = SweepOptions { outputs: Output::ALL.to_vec(), stations: 2, ..SweepOptions::default() };
     Sweep::new(&file, plan, &options).unwrap().run(&out, false, 1, &|_| {}).unwrap();
     let columns = names(&out).unwrap();
-    assert_eq!(columns.len(), 56);
+    assert_eq!(columns.len(), 61);
     // Of directors the page has the first of each kind.
     let rest = ["tip_b_y", "tip_b_z", "tip_c_", "_1_", "_2_", "shape_a_", "shape_b_", "_1"];
     for column in columns.iter().filter(|column| !rest.iter().any(|part| column.contains(part))) {
@@ -35,7 +35,7 @@ fn it_has_every_column() {
         assert!(PAGE.contains(&format!("`{}`", file.to_str().unwrap())), "{file:?}");
     }
     let columns = names(&out).unwrap();
-    assert_eq!(columns.len(), 30);
+    assert_eq!(columns.len(), 35);
     assert!(columns.iter().all(|column| column.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')), "{columns:?}");
     for column in columns.iter().filter(|column| !column.contains("_1_")) {
         assert!(PAGE.contains(&format!("`{column}`")), "{column}");

@@ -56,6 +56,9 @@ pub(crate) struct PathArgs {
     /// Also follow the branches that cross at bifurcations
     #[arg(long)]
     pub(crate) branches: bool,
+    /// At each limit point of a stable part, follow the motion until the arm rests, and say where and after how long
+    #[arg(long)]
+    pub(crate) after_snap: bool,
     /// text: ends and events; json: all results except shapes; csv: one row per point
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) format: Format,

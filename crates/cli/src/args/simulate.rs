@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args as ClapArgs, ValueEnum};
 use hydrostat_files::Dimension;
 
-use super::ArmArgs;
+use super::{ArmArgs, PictureArgs, picture};
 
 const EXIT: &str = "\
 Exit status:
@@ -29,6 +29,7 @@ whether there is inertia are in the table [dynamics] of the arm file.")]
 Examples:
   hydrostat simulate silicone --input loads.csv --until 2s --every 10ms --tol 1e-4 -o out.csv
   hydrostat simulate silicone --vary 'cable[0].tension=ramp:0:0.2 N:0:0.2 s' --until 1s
+  hydrostat simulate silicone --input loads.csv --until 1s --plot strobe.svg --plot-time energies.svg
   hydrostat simulate silicone --vary flow.speed=sine:0.1:0.05:2s --until 10s --every 50ms -o out.json
 
 {EXIT}"))]
@@ -65,6 +66,14 @@ pub(crate) struct SimulateArgs {
     /// Write the rows to FILE; CSV grows as the motion goes on
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// Draw shapes at equal times, from pale to dark, and the tip trace; FILE ends in .svg, .pdf or .png
+    #[arg(long, value_name = "FILE", value_parser = picture)]
+    pub(crate) plot: Option<PathBuf>,
+    /// Draw the place of the tip and the energies over time; FILE ends in .svg, .pdf or .png
+    #[arg(long, value_name = "FILE", value_parser = picture)]
+    pub(crate) plot_time: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

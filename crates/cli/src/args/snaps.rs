@@ -17,12 +17,18 @@ pub(crate) struct SnapArgs {
     /// Answer at the full loads however far the arm snaps on its way
     #[arg(long, conflicts_with_all = ["snap_distance", "snap_angle"])]
     pub(crate) follow_snaps: bool,
+    /// Follow the motion after each snap until the arm rests, and answer at the full loads with the shape that follows
+    #[arg(long, conflicts_with_all = ["snap_distance", "snap_angle", "follow_snaps"])]
+    pub(crate) after_snap: bool,
 }
 
 impl SnapArgs {
     pub(crate) fn bounds(&self) -> SnapBounds {
         if self.follow_snaps {
             return SnapBounds::NONE;
+        }
+        if self.after_snap {
+            return SnapBounds { distance: 0.0, angle: 0.0 };
         }
         SnapBounds { distance: self.snap_distance, angle: self.snap_angle }
     }

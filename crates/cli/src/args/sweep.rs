@@ -44,7 +44,7 @@ pub(crate) struct SweepArgs {
     /// Seed of the sample
     #[arg(long, value_name = "SEED", default_value = "0")]
     pub(crate) seed: u64,
-    /// Columns of the table: tip, alpha, strokes, tensions, base, fold, stability, error, warnings, verdict
+    /// Columns of the table: tip, alpha, strokes, tensions, base, fold, stability, error, snaps, warnings, verdict
     #[arg(
         long,
         value_name = "NAMES",

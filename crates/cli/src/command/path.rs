@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use hydrostat::{Arm, Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint, Stability};
 use hydrostat_figures::{Abscissa, Quantity, path_figure, path_shapes_figure};
-use hydrostat_files::{PathDocument, Varied, end_message, number, path_csv};
+use hydrostat_files::{Landing, PathDocument, Varied, end_message, number, path_csv, path_csv_with_landings};
 
 use super::NoAnswer;
-use super::table::{TIP, stability_words, table, tip_cells};
+use super::table::{TIP, decimals, stability_words, table, tip_cells};
 use crate::args::{Format, PathArgs};
 use crate::output;
 use crate::progress::Progress;
@@ -35,13 +35,60 @@ pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
     if let Some(file) = &args.plot_shapes {
         output::draw(&path_shapes_figure(&path, &abscissa(varied), &title, &page), file, &args.picture.page)?;
     }
-    let text = match args.format {
-        Format::Text => summary(&arm, &path, varied),
-        Format::Json => output::line(document.to_json()),
-        Format::Csv => path_csv(&path, varied),
+    let landings = args.after_snap.then(|| landings(&path, varied));
+    let text = match (args.format, landings.as_deref()) {
+        (Format::Text, landings) => summary(&arm, &path, varied) + &rests(&path, varied, landings.unwrap_or_default()),
+        (Format::Json, Some(landings)) => output::line(document.with_landings(landings).to_json()),
+        (Format::Json, None) => output::line(document.to_json()),
+        (Format::Csv, Some(landings)) => path_csv_with_landings(&path, varied, landings),
+        (Format::Csv, None) => path_csv(&path, varied),
     };
     output::put(args.output.as_deref(), &text)?;
     say_ends(&path, varied)
+}
+
+/// The share of the range by which the parameter is past a limit point while the arm moves.
+const PAST: f64 = 1e-3;
+
+/// Where the arm rests that is let go at limit points which a stable part of the path leads up to.
+fn landings(path: &Path, varied: &Varied) -> Vec<Landing> {
+    const TOLERANCE: f64 = 1e-8;
+    let mut progress = Progress::new();
+    let mut out = Vec::new();
+    for (b, branch) in path.branches.iter().enumerate() {
+        for (p, pair) in branch.points.windows(2).enumerate() {
+            let [before, at] = pair else { continue };
+            if at.event != Some(Event::LimitPoint) || before.stability != Some(Stability::Stable) {
+                continue;
+            }
+            progress.say(|| format!("motion from the limit point at {}", varied.with_unit(at.value)));
+            let past = at.value + PAST * (path.range[1] - path.range[0]).abs() * (at.value - before.value).signum();
+            let mut arm = at.configuration.arm.clone();
+            // The arm has the parameter: the path varies it.
+            let _ = path.parameter.set(&mut arm, past);
+            let outcome = at.configuration.let_go(&arm, TOLERANCE).map_err(|restless| restless.to_string());
+            out.push(Landing { at: [b, p + 1], outcome });
+        }
+    }
+    out
+}
+
+/// A line a limit point.
+fn rests(path: &Path, varied: &Varied, landings: &[Landing]) -> String {
+    let mut out = String::new();
+    for (k, Landing { at: [branch, point], outcome }) in landings.iter().enumerate() {
+        let value = varied.with_unit(path.branches[*branch].points[*point].value);
+        let words = match outcome {
+            Ok(rest) => {
+                let [x, y, theta, _] = tip_cells(&rest.configuration);
+                let seconds = decimals(rest.time, 2);
+                format!("the arm rests after {seconds} s, with the tip at x {x} mm, y {y} mm, turned by {theta} deg")
+            }
+            Err(message) => message.clone(),
+        };
+        let _ = writeln!(out, "{}past the limit point at {value}: {words}", if k == 0 { "\n" } else { "" });
+    }
+    out
 }
 
 /// A cable that is not there has no stroke.

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::time::Instant as Clock;
 
 use hydrostat::{Arm, Inputs, Instant, MotionError, MotionOptions, Simulation};
+use hydrostat_figures::{MotionFrame, motion_figure, strobe_figure};
 use hydrostat_files::{MotionDocument, WriteError, motion_columns, motion_row, number, read_time_loads, set_shaped};
 
 use crate::args::{MotionFormat, SimulateArgs};
@@ -20,7 +21,10 @@ const MOST_ROWS: f64 = 1e7;
 pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let arm = request::arm(&args.arm)?;
     let loads = args.input.as_deref().map(|file| ("--input", file));
-    request::check_outputs(&[request::arm_input(&args.arm.file), loads], &[("-o", args.output.as_deref())])?;
+    let pictures = [("--plot", args.plot.as_deref()), ("--plot-time", args.plot_time.as_deref())];
+    let outputs = [("-o", args.output.as_deref()), pictures[0], pictures[1]];
+    request::check_outputs(&[request::arm_input(&args.arm.file), loads], &outputs)?;
+    request::check_picture(&args.picture, &pictures)?;
     let mut inputs = Inputs::default();
     if let Some(file) = &args.input {
         read_time_loads(file, &mut inputs)?;
@@ -43,7 +47,12 @@ pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let mut sink = Sink::new(args, &arm)?;
     let mut progress = Progress::new();
     let mut failure: Option<io::Error> = None;
-    let outcome = simulation.run(args.until, every, |at, _| {
+    let draws = args.plot.is_some() || args.plot_time.is_some();
+    let mut frames = Frames::default();
+    let outcome = simulation.run(args.until, every, |at, simulation| {
+        if draws {
+            frames.take(at, simulation);
+        }
         progress.say(|| {
             let wall = start.elapsed().as_secs_f64();
             format!(
@@ -60,9 +69,61 @@ pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     if let Some(source) = failure {
         return Err(sink.error(source));
     }
+    draw(args, &arm, &frames.kept)?;
     let verdict = outcome.as_ref().err().map(ToString::to_string);
     sink.end(&arm, &simulation, verdict, start.elapsed().as_secs_f64())?;
     outcome.map_err(refused)
+}
+
+/// Shapes that a strobe figure shows.
+const SHAPES: usize = 24;
+
+/// The most frames that figures keep: memory does not grow with the run.
+const MOST_FRAMES: usize = 4000;
+
+/// Frames of a run at equal times: every second one goes where there are too many.
+#[derive(Default)]
+struct Frames {
+    kept: Vec<MotionFrame>,
+    /// Rows so far, and those from one frame to the next, less one.
+    rows: usize,
+    skipped: usize,
+}
+
+impl Frames {
+    fn take(&mut self, at: &Instant, simulation: &Simulation) {
+        let row = self.rows;
+        self.rows += 1;
+        if !row.is_multiple_of(self.skipped + 1) {
+            return;
+        }
+        self.kept.push(MotionFrame {
+            time: at.time,
+            centreline: simulation.shape().iter().map(|[_, x, y, _]| [*x, *y]).collect(),
+            kinetic_energy: at.kinetic_energy,
+            strain_energy: at.strain_energy,
+        });
+        if self.kept.len() > MOST_FRAMES {
+            let mut index = 0;
+            self.kept.retain(|_| {
+                index += 1;
+                index % 2 == 1
+            });
+            self.skipped = 2 * self.skipped + 1;
+        }
+    }
+}
+
+fn draw(args: &SimulateArgs, arm: &Arm, frames: &[MotionFrame]) -> anyhow::Result<()> {
+    let page = args.picture.page();
+    if let Some(file) = &args.plot {
+        let title = format!("{}: shapes at equal times", arm.name);
+        output::draw(&strobe_figure(frames, SHAPES, &title, &page), file, &args.picture.page)?;
+    }
+    if let Some(file) = &args.plot_time {
+        output::draw(&motion_figure(frames, &format!("{} in motion", arm.name), &page), file, &args.picture.page)?;
+    }
+    Ok(())
 }
 
 /// An error of the motion in terms of the command's options.

@@ -1,6 +1,9 @@
 //! `hydrostat solve`: one arm.
 
-use hydrostat::{Arm, Configuration, NoEquilibrium, Options, SolveError, Solver, Stability, VerdictKind};
+use hydrostat::{
+    AfterSnapError, Arm, ArmError, Configuration, NoEquilibrium, Options, SnapMotion, SolveError, Solver, Stability,
+    VerdictKind,
+};
 use hydrostat_figures::{arm_figure, last_good_note};
 use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, likeliest_slip, stations_csv};
 
@@ -13,16 +16,43 @@ use crate::request;
 pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
     let arm = request::arm_in_space(&args.arm)?;
     if arm.space.is_some() {
+        if args.snaps.after_snap {
+            return Err(SolveError::Arm(ArmError::OnlyInPlane { what: "`--after-snap`" }).into());
+        }
         return super::solve_spatial::run(args, &arm);
     }
     let mut solver = Solver::new(&arm, Options { tol: args.tol, snaps: args.snaps.bounds() })?;
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
+    if args.snaps.after_snap {
+        return after_snap(args, &arm);
+    }
     match solver.solve() {
-        Ok(configuration) => report(args, configuration),
-        Err(SolveError::NoEquilibrium(failure)) => {
-            let others = others(&arm, args.tol, failure.verdict.kind);
+        Ok(configuration) => {
+            let notes = Note::all(&configuration, args.tol);
+            report(args, configuration, &[], &notes)
+        }
+        Err(error) => report_error(args, &arm, error),
+    }
+}
+
+/// The shape after all snaps on the way.
+fn after_snap(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
+    match arm.solve_after_snap(args.tol) {
+        Ok(found) => {
+            let notes = Note::after_snap(&found, args.tol);
+            report(args, found.configuration, &found.snaps, &notes)
+        }
+        Err(AfterSnapError::Solve(error)) => report_error(args, arm, error),
+        Err(error) => Err(error.into()),
+    }
+}
+
+fn report_error(args: &SolveArgs, arm: &Arm, error: SolveError) -> anyhow::Result<()> {
+    match error {
+        SolveError::NoEquilibrium(failure) => {
+            let others = others(arm, args.tol, failure.verdict.kind);
             report_failure(args, *failure.clone(), others)?;
             if let Some(message) = beyond(&failure) {
                 eprintln!("note: {message}");
@@ -30,27 +60,37 @@ pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
             if let Some(others) = others {
                 eprintln!("note: {}", others_message(others));
             }
-            let advice = slip(&arm, failure.verdict.kind);
+            let advice = slip(arm, failure.verdict.kind);
             Err(Advised::with(SolveError::NoEquilibrium(failure), advice))
         }
-        Err(error) => Err(error.into()),
+        error => Err(error.into()),
     }
 }
 
-fn report(args: &SolveArgs, mut configuration: Configuration) -> anyhow::Result<()> {
+/// `motions` are those after its snaps, where they were followed.
+fn report(
+    args: &SolveArgs,
+    mut configuration: Configuration,
+    motions: &[SnapMotion],
+    notes: &[Note],
+) -> anyhow::Result<()> {
     if let Some(plot) = &args.plot {
         output::draw(&arm_figure(&configuration, None, &args.picture.page()), plot, &args.picture.page)?;
     }
-    let notes = Note::all(&configuration, args.tol);
     let margin = configuration.fold_margin();
     resample(args, &mut configuration);
     let text = match args.format {
         Format::Text => summary(&configuration),
         Format::Csv => stations_csv(&configuration.stations),
-        Format::Json => output::line(SolutionDocument::new(&configuration, margin.value, &notes).to_json()),
+        Format::Json => {
+            let document = SolutionDocument::new(&configuration, margin.value, notes);
+            let length = configuration.arm.length;
+            let document = if motions.is_empty() { document } else { document.with_motions(motions, length) };
+            output::line(document.to_json())
+        }
     };
     output::put(args.output.as_deref(), &text)?;
-    for note in &notes {
+    for note in notes {
         // A snap within its bounds is known to be harmless.
         let word = if note.kind == "snap" { "note" } else { "warning" };
         eprintln!("{word}: {}", note.message);

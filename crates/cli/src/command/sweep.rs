@@ -22,6 +22,7 @@ pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let options = SweepOptions {
         tol: args.tol,
         snaps: args.snaps.bounds(),
+        after_snap: args.snaps.after_snap,
         outputs: args.columns.clone(),
         stations: args.shapes.unwrap_or(0),
         shard: args.shard,

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use super::error::MotionError;
 use crate::rod::arm::Arm;
 use crate::rod::parameter::Parameter;
+use crate::rod::profile::Table;
 
 /// A quantity over time, in its unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +14,9 @@ pub enum Course {
     /// Straight lines between `(time in s, value)`, times not falling; two rows at one time are a jump. Before the
     /// first row and after the last one the value stays.
     Table(Vec<(f64, f64)>),
+    /// A smooth line through points at times in s, the monotone cubic of [`Profile`](crate::Profile)'s tables. Before
+    /// the first point and after the last one the value stays.
+    Smooth(Table),
     /// mean + amplitude sin(2 pi frequency t + phase).
     Sine {
         /// Its mean.
@@ -65,6 +69,11 @@ impl Course {
                     (None, None) => (0.0, 0.0),
                 }
             }
+            Self::Smooth(table) => {
+                let [first, last] = table.ends();
+                let at = table.at(time.clamp(first, last));
+                (at.value, if time > first && time <= last { at.slope } else { 0.0 })
+            }
             Self::Sine { mean, amplitude, frequency, phase } => {
                 let omega = 2.0 * std::f64::consts::PI * frequency;
                 let (sin, cos) = (omega * time + phase).sin_cos();
@@ -75,7 +84,15 @@ impl Course {
 
     /// Value and rate just after `time`.
     fn after(&self, time: f64) -> (f64, f64) {
-        let Self::Table(rows) = self else { return self.before(time) };
+        let rows = match self {
+            Self::Table(rows) => rows,
+            Self::Smooth(table) => {
+                let [first, last] = table.ends();
+                let at = table.at(time.clamp(first, last));
+                return (at.value, if time >= first && time < last { at.slope } else { 0.0 });
+            }
+            Self::Sine { .. } => return self.before(time),
+        };
         let next = rows.partition_point(|(t, _)| *t <= time);
         match (next.checked_sub(1).map(|k| rows[k]), rows.get(next).copied()) {
             (None, Some((_, value))) | (Some((_, value)), None) => (value, 0.0),
@@ -89,7 +106,11 @@ impl Course {
 
     /// The first corner after `time`.
     fn next_corner(&self, time: f64) -> Option<f64> {
-        let Self::Table(rows) = self else { return None };
+        let rows = match self {
+            Self::Table(rows) => rows,
+            Self::Smooth(table) => return table.ends().into_iter().find(|end| *end > time),
+            Self::Sine { .. } => return None,
+        };
         rows.get(rows.partition_point(|(t, _)| *t <= time)).map(|(t, _)| *t)
     }
 
@@ -111,6 +132,8 @@ impl Course {
                 }
                 Ok(())
             }
+            // Its points were looked at when it was made.
+            Self::Smooth(_) => Ok(()),
             Self::Sine { mean, amplitude, frequency, phase } => {
                 let fine = [mean, amplitude, frequency, phase].into_iter().all(|v| v.is_finite());
                 if fine { Ok(()) } else { Err("a sine needs finite numbers".to_owned()) }
@@ -122,6 +145,8 @@ impl Course {
     fn values(&self) -> Vec<f64> {
         match self {
             Self::Table(rows) => rows.iter().map(|(_, v)| *v).collect(),
+            // Between its points is no value beyond theirs.
+            Self::Smooth(table) => table.points().map(|[_, value]| value).collect(),
             Self::Sine { mean, amplitude, .. } => vec![mean - amplitude, mean + amplitude],
         }
     }
@@ -238,6 +263,27 @@ impl Inputs {
         Ok(())
     }
 
+    /// `arm` with the loads just before `time`, s.
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Course, Inputs};
+    ///
+    /// let mut inputs = Inputs::default();
+    /// inputs.set("tip.force[1]", Course::ramp(0.0, 0.2, 0.0, 1.0))?; // N over s
+    /// let arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// assert_eq!(inputs.arm_at(&arm, 0.5)?.tip.force, [0.0, 0.1]);
+    /// # Ok::<(), hydrostat::MotionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`MotionError`] where the arm has no such load, or cannot have one of its values at any time.
+    pub fn arm_at(&self, arm: &Arm, time: f64) -> Result<Arm, MotionError> {
+        self.check(arm)?;
+        let mut out = arm.clone();
+        self.apply(&mut out, time);
+        Ok(out)
+    }
+
     /// Refuses what `arm` does not have, or values that it cannot have.
     pub(super) fn check(&self, arm: &Arm) -> Result<(), MotionError> {
         for (driven, course) in &self.courses {
@@ -248,6 +294,22 @@ impl Inputs {
             }
         }
         Ok(())
+    }
+
+    /// Leads the quantity `key` from its value in `arm` at the first time to `value` at the second one, and keeps it
+    /// there.
+    pub(super) fn lead(&mut self, key: &str, value: f64, arm: &Arm, [start, end]: [f64; 2]) -> Result<(), MotionError> {
+        let now = match Driven::read(key) {
+            Some(Driven::Of(parameter)) => parameter.of(arm)?,
+            Some(Driven::BaseX) => arm.base.x,
+            Some(Driven::BaseY) => arm.base.y,
+            // Which has no such name.
+            None => 0.0,
+        };
+        let mut one = Self::default();
+        one.set(key, Course::ramp(now, value, start, end))?;
+        one.check(arm)?;
+        self.set(key, Course::ramp(now, value, start, end))
     }
 
     /// The loads just before `time`, put into `arm`.

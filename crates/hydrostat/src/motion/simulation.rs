@@ -158,6 +158,53 @@ impl Simulation {
         self.advance_to(self.time + dt)
     }
 
+    /// Moves on by `dt` (s) while the quantities `loads`, named as in [`Inputs::set`], change to these values along straight
+    /// lines, and keep them from then on: a step of a control loop. Steps in time end where it ends.
+    ///
+    /// # Errors
+    /// [`MotionError::Course`], [`MotionError::Arm`], [`MotionError::Unfit`] where a load is refused, [`MotionError::Option`] where
+    /// the motion is known further than its present time, because [`Simulation::advance_to`] or
+    /// [`Simulation::step`] brought it there; [`MotionError::Ended`].
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Cable, Inputs, MotionOptions, Profile, Simulation};
+    ///
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.dynamics.relaxation_time = 2.7e-3; // s
+    /// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
+    /// let mut simulation = Simulation::new(&arm, Inputs::default(), MotionOptions::default())?;
+    /// let mut tension: f64 = 0.0;
+    /// for _ in 0..50 {
+    ///     let tip = simulation.now().tip;
+    ///     tension = (tension + 2.0 * (0.05 - tip[1]) * 0.02).max(0.0); // N: towards y = 50 mm
+    ///     simulation.step_to(0.02, &[("cable[0].tension", tension)])?;
+    /// }
+    /// assert!(simulation.now().tip[1] > 0.02);
+    /// # Ok::<(), hydrostat::MotionError>(())
+    /// ```
+    pub fn step_to(&mut self, dt: f64, loads: &[(&str, f64)]) -> Result<Instant, MotionError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(MotionError::Option { option: "dt", value: dt, expected: "above 0" });
+        }
+        if self.stepper.time > self.time {
+            let (option, value) = ("time", self.stepper.time);
+            let expected = "the end of a step: loads can be led on only in a run of which every step does so";
+            return Err(MotionError::Option { option, value, expected });
+        }
+        let end = self.time + dt;
+        let mut arm = self.stepper.arm().clone();
+        self.stepper.inputs.apply(&mut arm, self.time);
+        for (key, value) in loads {
+            self.stepper.inputs.lead(key, *value, &arm, [self.time, end])?;
+        }
+        while self.stepper.time < end {
+            self.stepper.advance(end)?;
+        }
+        self.asked.clone_from(&self.stepper.now);
+        self.time = end;
+        Ok(self.read())
+    }
+
     /// Moves on to `time` (s), which is not before the present one.
     ///
     /// # Errors

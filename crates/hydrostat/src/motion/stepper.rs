@@ -19,6 +19,7 @@ use super::settling::{Settling, Unsolved};
 use super::tableau::{RUNNING, STARTING, Tableau};
 use crate::rod::arm::Arm;
 use crate::rod::readings::Support;
+use crate::statics::engine::Engine;
 use crate::statics::equations::{Margins, SectionFailure};
 use crate::statics::limit::limit_at;
 use crate::statics::refinement::graded;
@@ -83,13 +84,25 @@ impl Stepper {
         inputs.apply(&mut start, time);
         let mut settling = Settling::new(&start);
         start_at_rest(&mut settling, &start, elements, tol, time)?;
+        Ok(Self::at_rest(settling, start, inputs, time, tol, fixed))
+    }
+
+    /// At rest in the shape that `settling` has, in equilibrium or not.
+    pub(super) fn at_rest(
+        mut settling: Settling,
+        start: Arm,
+        inputs: Inputs,
+        time: f64,
+        tol: f64,
+        fixed: Option<f64>,
+    ) -> Self {
         settling.forget();
         let layout = settling.moving.layout();
         let mut now = Snapshot::at_rest(layout);
         now.take(&mut settling.system, &settling.solution, &settling.moving.scales);
         let running = !inputs.jumps_at(time);
         let most = RUNNING.c.len();
-        Ok(Self {
+        Self {
             kept: settling.solution.clone(),
             kept_scales: [1.0; S],
             kept_tensions: settling.tensions(),
@@ -109,7 +122,13 @@ impl Stepper {
             error: 0.0,
             steps: 0,
             rejected: 0,
-        })
+        }
+    }
+
+    /// Takes the accelerations at the present time for unknown, as those of a shape that is let go.
+    pub(super) fn let_go(mut self) -> Self {
+        self.running = false;
+        self
     }
 
     /// One step towards `until`, or to the first corner of an input before it.
@@ -308,7 +327,7 @@ pub(super) fn start_at_rest(
     time: f64,
 ) -> Result<(), MotionError> {
     check(arm)?;
-    let mut mesh = mesh(arm, elements.unwrap_or_else(|| fair_elements(arm, tol)));
+    let elements = elements.unwrap_or_else(|| fair_elements(arm, tol));
     let of_start = |error: SolveError| MotionError::Start(Box::new(error));
     let mut solver = Solver::new(arm, Options::with_tol((0.01 * tol).clamp(1e-10, 1e-6))).map_err(of_start)?;
     let missing = match solver.solve() {
@@ -321,17 +340,12 @@ pub(super) fn start_at_rest(
                 statics.set_tension(c, cable.tension);
             }
             statics.hold_strokes();
-            // Kinks of the stream's load have nodes where the motion starts.
-            let kinks = engine.kinks(1e-6);
-            let fixed: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
-            if kinks.len() <= mesh.elements() {
-                mesh.pin(&fixed, &kinks);
-            }
+            let mesh = mesh_at(engine, arm, elements);
             settling.start_from(&engine.solution, engine.equations.units.force, mesh);
             None
         }
         Err(SolveError::NoEquilibrium(no)) if no.verdict.kind == VerdictKind::NotFound => {
-            settling.start_unloaded(mesh);
+            settling.start_unloaded(mesh(arm, elements));
             Some(SolveError::NoEquilibrium(no))
         }
         Err(error) => return Err(of_start(error)),
@@ -378,13 +392,24 @@ fn fair_elements(arm: &Arm, tol: f64) -> usize {
     if arm.flow.density == 0.0 { 8.min(count) } else { count }
 }
 
+/// A mesh with nodes on the kinks that the stream's load has at the shape of the engine.
+pub(super) fn mesh_at(engine: &mut Engine, arm: &Arm, elements: usize) -> Mesh {
+    let mut mesh = mesh(arm, elements);
+    let kinks = engine.kinks(1e-6);
+    let fixed: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
+    if kinks.len() <= mesh.elements() {
+        mesh.pin(&fixed, &kinks);
+    }
+    mesh
+}
+
 fn mesh(arm: &Arm, elements: usize) -> Mesh {
     let breaks: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
     graded(arm, &breaks, elements)
 }
 
 /// Refuses what cannot move.
-fn check(arm: &Arm) -> Result<(), MotionError> {
+pub(super) fn check(arm: &Arm) -> Result<(), MotionError> {
     arm.check()?;
     let refuse = |key: String, reason| Err(MotionError::Unsupported { key, reason });
     if arm.readings.support == Support::UnstrainedBase {

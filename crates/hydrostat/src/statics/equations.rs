@@ -34,6 +34,7 @@ pub(crate) use self::cable_paths::StationData;
 pub(crate) use self::change::Way;
 pub(crate) use self::limits::{Margins, SectionFailure};
 pub(crate) use self::places::section_data;
+pub(crate) use self::range::Change;
 pub(crate) use self::section_state::{SectionQuery, SectionState};
 pub(crate) use self::stroke_control::StrokeControl;
 pub(crate) use self::system::{Equations, failure, inner};

@@ -79,6 +79,8 @@ pub struct Row {
     pub warnings: Vec<Warning>,
     /// The snaps that the arm makes as its loads grow from nothing to these.
     pub snaps: Vec<Snap>,
+    /// How long each of them takes, s, where their motions were followed; else empty.
+    pub snap_durations: Vec<f64>,
     /// Empty unless asked for.
     pub stations: Stations,
 }
@@ -207,15 +209,32 @@ impl Tile {
             stability: None,
             warnings: Vec::new(),
             snaps: Vec::new(),
+            snap_durations: Vec::new(),
             stations: Stations::default(),
         })
     }
 
     /// A row from a whole configuration.
     fn row(&self, configuration: &Configuration) -> Row {
-        let Wanted { strokes, fold_margin, stability, warnings, stations } = self.wanted;
+        Row::new(configuration, self.wanted)
+    }
+}
+
+impl Row {
+    /// What is wanted of a configuration.
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Row, Wanted};
+    ///
+    /// let shape = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve()?;
+    /// let row = Row::new(&shape, Wanted { fold_margin: true, ..Wanted::default() });
+    /// assert_eq!((row.tip, row.fold_margin.is_some()), (shape.tip(), true));
+    /// # Ok::<(), hydrostat::SolveError>(())
+    /// ```
+    pub fn new(configuration: &Configuration, wanted: Wanted) -> Self {
+        let Wanted { strokes, fold_margin, stability, warnings, stations } = wanted;
         let cables = &configuration.cables;
-        Row {
+        Self {
             tip: configuration.tip(),
             base_reaction: configuration.base_reaction,
             error_estimate: configuration.error_estimate,
@@ -225,6 +244,7 @@ impl Tile {
             stability: if stability { configuration.stability() } else { None },
             warnings: if warnings { configuration.warnings() } else { Vec::new() },
             snaps: configuration.snaps.clone(),
+            snap_durations: Vec::new(),
             stations: if stations < 2 { Stations::default() } else { configuration.resampled(stations) },
         }
     }

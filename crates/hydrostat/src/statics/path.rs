@@ -14,6 +14,6 @@ mod stepper;
 
 pub use circle::{Equilibria, Equilibrium};
 pub(crate) use limits::name_limit;
-pub(crate) use load_stepping::{Stopped, follow, follow_strokes};
+pub(crate) use load_stepping::{Stopped, follow, follow_on, follow_range, follow_strokes};
 pub use range::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub(crate) use step_control::{LOOSE, PathSummary, StepControl};

@@ -3,7 +3,7 @@
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::configuration::{Configuration, Statistics, Tip};
 use crate::statics::engine::{Engine, State, Trouble, WORK};
-use crate::statics::path::{LOOSE, PathSummary, StepControl, Stopped, follow};
+use crate::statics::path::{LOOSE, PathSummary, StepControl, Stopped, follow, follow_on, follow_range};
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::snap::SnapBounds;
 use crate::statics::stability::Stability;
@@ -350,6 +350,53 @@ impl Solver {
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
     pub(crate) fn solve_along_the_path(&mut self, pace: StepControl) -> Result<Configuration, SolveError> {
         let travelled = follow(&mut self.engine, pace, self.options.snaps).map_err(|at| self.no_equilibrium(at))?;
+        self.end_of_path(travelled)
+    }
+
+    /// Follows the path on to whole loads from the engine's equilibrium at a fraction of a phase.
+    pub(crate) fn solve_on(&mut self, from: (Phase, f64)) -> Result<Configuration, SolveError> {
+        self.forget();
+        self.engine.allow(WORK);
+        let travelled = follow_on(&mut self.engine, from, StepControl::BRISK, self.options.snaps);
+        let solved = travelled.map_err(|at| self.no_equilibrium(at)).and_then(|travelled| self.end_of_path(travelled));
+        self.engine.lift_limit();
+        solved
+    }
+
+    /// The engine's equilibrium, read again.
+    pub(crate) fn resettle(&mut self) -> Result<Configuration, SolveError> {
+        let settled = self.engine.settle(self.options.tol, First::Warm);
+        if let Ok(estimate) = settled
+            && let Ok(configuration) = self.read(estimate, PathSummary::default())
+        {
+            return Ok(configuration);
+        }
+        let verdict = self.last_verdict(None);
+        Err(self.no_equilibrium(verdict))
+    }
+
+    /// Follows the engine's range to its end, from the engine's equilibrium at a share of it, behind a limit point down
+    /// to a lowest one.
+    pub(crate) fn solve_along_range(&mut self, from: [f64; 2]) -> Result<Configuration, SolveError> {
+        self.forget();
+        self.engine.allow(WORK);
+        let travelled = follow_range(&mut self.engine, from, StepControl::BRISK, self.options.snaps);
+        let solved =
+            travelled.map_err(|at| self.stopped_in_range(at)).and_then(|travelled| self.end_of_path(travelled));
+        self.engine.lift_limit();
+        solved
+    }
+
+    /// The verdict on a range that was not followed to its end, with the last good point, which the engine holds.
+    fn stopped_in_range(&mut self, stopped: Stopped) -> SolveError {
+        let Stopped { verdict, snaps, after_snap, at_full_loads } = stopped;
+        let last_good = self.engine.measure().ok().and_then(|()| self.read(LOOSE, PathSummary::default()).ok());
+        let [after_snap, at_full_loads] = [after_snap, at_full_loads].map(|state| self.read_state(state?.as_ref()));
+        SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good, snaps, after_snap, at_full_loads }))
+    }
+
+    /// The answer at the end of a path, which the engine is at.
+    fn end_of_path(&mut self, travelled: PathSummary) -> Result<Configuration, SolveError> {
         let before = self.engine.tip;
         let sign = self.engine.system.determinant().sign;
         let settled = self.engine.settle(self.options.tol, First::Rough);

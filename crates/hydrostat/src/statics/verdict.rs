@@ -116,7 +116,7 @@ impl Verdict {
                 "lower the flow speed or the axial load, or stiffen the section: the section law softens in tension (`planar` peaks at a stretch of 2)"
             }
             VerdictKind::LimitPoint => {
-                "stay below that load, or ask for the shape after the snap (`--follow-snaps`); `hydrostat path` and `hydrostat equilibria` show the shapes beyond it"
+                "stay below that load, or ask for the shape after the snap (`--after-snap` by its motion, `--follow-snaps` along the curve); `hydrostat path` and `hydrostat equilibria` show the shapes beyond it"
             }
             VerdictKind::LoadJump => {
                 "set `flow_surface = \"centreline\"` and `entering_speed = \"tangential\"`, with which the load is continuous"

@@ -112,12 +112,17 @@ impl Table {
         self.s.iter().zip(&self.value).map(|(s, v)| [*s, *v])
     }
 
+    /// The first place and the last one.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        [self.s[0], self.s[self.s.len() - 1]]
+    }
+
     /// How they are joined.
     pub fn join(&self) -> Join {
         if self.slope.is_empty() { Join::Linear } else { Join::Cubic }
     }
 
-    pub(super) fn at(&self, s: f64) -> Sample {
+    pub(crate) fn at(&self, s: f64) -> Sample {
         let last = self.s.len() - 2;
         let i = self.s.partition_point(|knot| *knot <= s).saturating_sub(1).min(last);
         let h = self.s[i + 1] - self.s[i];

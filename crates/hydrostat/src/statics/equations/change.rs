@@ -5,6 +5,7 @@ use hydrostat_bvp::{Condition, Forcing, Lanes, Local, Problem, Real, StageForcin
 use super::cable_paths::StationData;
 use super::gradients::{by_strain_change, in_directors};
 use super::place::Place;
+use super::range::Change;
 use super::section_state::SectionQuery;
 use super::system::Equations;
 use crate::numerics::sincos::sin_cos;
@@ -141,12 +142,22 @@ impl Equations {
             Way::Of(Parameter::Tension(c)) => Some(one(c, 1.0 / self.units.force)),
             Way::Path if self.imposed.is_some() => None,
             Way::Path => match self.varied_over() {
-                Some((Parameter::Tension(c), change)) => Some(one(c, change / self.units.force)),
+                Some(ways) => self.pulled_together(ways),
                 None if self.phase == Phase::Tension => Some(self.tensions.clone()),
                 _ => None,
             },
             Way::Of(_) => None,
         }
+    }
+
+    /// The same where several parameters vary together.
+    fn pulled_together(&self, ways: &[Change]) -> Option<Vec<f64>> {
+        let mut out = vec![0.0; self.tensions.len()];
+        for way in ways {
+            let Parameter::Tension(c) = way.parameter else { return None };
+            out[c] += way.whole() / self.units.force;
+        }
+        Some(out)
     }
 
     /// What sections carry of these tensions.
@@ -293,8 +304,11 @@ impl Equations {
         let step = |parameter| if parameter == Parameter::FlowDirection { SHORT_STEP } else { STEP };
         match way {
             Way::Path => match self.varied_over() {
-                Some((parameter, change)) => {
-                    step(parameter) * parameter.scale(&self.arm, self.units.force) / change.abs()
+                Some(ways) => {
+                    let one = |way: &Change| {
+                        step(way.parameter) * way.parameter.scale(&self.arm, self.units.force) / way.whole().abs()
+                    };
+                    ways.iter().map(one).fold(f64::INFINITY, f64::min)
                 }
                 None => STEP,
             },

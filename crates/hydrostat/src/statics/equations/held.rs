@@ -67,7 +67,10 @@ impl Equations {
         let cable = held.cables[index];
         match self.varied_over() {
             _ if self.imposed.is_some() => 0.0,
-            Some((Parameter::Stroke(varied), change)) if varied == cable => change / self.units.length,
+            Some(ways) => {
+                let own = ways.iter().filter(|way| way.parameter == Parameter::Stroke(cable));
+                own.map(|way| way.whole() / self.units.length).sum()
+            }
             None if self.phase == Phase::Stroke => self.whole_command(cable) - held.from[index],
             _ => 0.0,
         }
@@ -77,7 +80,7 @@ impl Equations {
     pub(crate) fn only_commands_move(&self) -> bool {
         match self.varied_over() {
             _ if self.imposed.is_some() => false,
-            Some((parameter, _)) => matches!(parameter, Parameter::Stroke(_)),
+            Some(ways) => ways.iter().all(|way| matches!(way.parameter, Parameter::Stroke(_))),
             None => self.phase == Phase::Stroke,
         }
     }

@@ -1,20 +1,31 @@
-//! An arm along the range of a parameter.
+//! An arm along a range of one parameter, or of several that change together.
 
 use crate::rod::parameter::Parameter;
 
-/// An arm along the range of a parameter.
+/// An arm along a range of one parameter, or of several that change together.
 #[derive(Debug, Clone)]
 pub(crate) struct Varied {
-    pub(super) parameter: Parameter,
-    /// Values at the shares 0 and 1 of the range.
-    pub(super) from: f64,
-    pub(super) to: f64,
+    pub(super) ways: Vec<Change>,
     /// Where the equations are.
     pub(super) share: f64,
 }
 
-impl Varied {
-    pub(super) fn value(&self, share: f64) -> f64 {
+/// A parameter with its values at the shares 0 and 1 of a range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Change {
+    pub(crate) parameter: Parameter,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+}
+
+impl Change {
+    /// The value at a share of the range.
+    pub(crate) fn value(self, share: f64) -> f64 {
         self.from + share * (self.to - self.from)
+    }
+
+    /// The change over the whole range.
+    pub(super) fn whole(self) -> f64 {
+        self.to - self.from
     }
 }

@@ -1,6 +1,6 @@
-//! The equations of an arm whose loads, support or material follow one parameter over a range.
+//! The equations of an arm whose loads, support or material follow a range of parameters.
 
-use super::range::Varied;
+use super::range::{Change, Varied};
 use super::system::{Equations, water};
 use crate::rod::arm::Arm;
 use crate::rod::parameter::Parameter;
@@ -8,13 +8,18 @@ use crate::rod::parameter::Parameter;
 impl Equations {
     /// Lets `parameter` run from `from` to `to`; the equations are at share 0 of the range.
     pub(crate) fn vary(&mut self, parameter: Parameter, from: f64, to: f64) {
-        self.varied = Some(Varied { parameter, from, to, share: 0.0 });
+        self.vary_together(vec![Change { parameter, from, to }]);
+    }
+
+    /// Lets several parameters run together, along a straight line; the equations are at share 0 of it.
+    pub(crate) fn vary_together(&mut self, ways: Vec<Change>) {
+        self.varied = Some(Varied { ways, share: 0.0 });
         self.set_share(0.0);
     }
 
-    /// The parameter's value at a share of its range.
+    /// The value of the (first) parameter at a share of its range.
     pub(crate) fn value_at(&self, share: f64) -> f64 {
-        self.varied.as_ref().map_or(share, |v| v.value(share))
+        self.varied_over().and_then(|ways| ways.first()).map_or(share, |way| way.value(share))
     }
 
     /// Takes the arm at a share of the range, within it or beyond.
@@ -26,17 +31,19 @@ impl Equations {
     pub(super) fn set_share_with(&mut self, share: f64, sections: bool) {
         let Some(varied) = &mut self.varied else { return };
         varied.share = share;
-        let (parameter, value) = (varied.parameter, varied.value(share));
-        // That the arm has the parameter was checked when the range was.
-        let _ = parameter.set(&mut self.arm, value);
-        self.take_arm(sections && parameter.is_of_sections());
+        for way in &varied.ways {
+            // That the arm has the parameter was checked when the range was.
+            let _ = way.parameter.set(&mut self.arm, way.value(share));
+        }
+        let of_sections = varied.ways.iter().any(|way| way.parameter.is_of_sections());
+        self.take_arm(sections && of_sections);
     }
 
     /// Takes the arm of other equations, which may be at another share of a range.
     pub(crate) fn take_arm_of(&mut self, other: &Self) {
         if let Some(varied) = &other.varied {
             self.arm.clone_from(&other.arm);
-            self.take_arm(varied.parameter.is_of_sections());
+            self.take_arm(varied.ways.iter().any(|way| way.parameter.is_of_sections()));
         }
         self.tensions.clone_from(&other.tensions);
     }
@@ -59,9 +66,9 @@ impl Equations {
         }
     }
 
-    /// What is varied, and by how much over its range.
-    pub(super) fn varied_over(&self) -> Option<(Parameter, f64)> {
-        self.varied.as_ref().map(|v| (v.parameter, v.to - v.from))
+    /// What is varied.
+    pub(super) fn varied_over(&self) -> Option<&[Change]> {
+        self.varied.as_ref().map(|varied| varied.ways.as_slice())
     }
 
     /// Sets the tension of one cable, N.

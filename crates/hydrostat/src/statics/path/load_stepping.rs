@@ -96,6 +96,52 @@ fn follow_at(
     way.whole(engine)
 }
 
+/// Follows the path on to whole loads, or to a verdict, from the engine's equilibrium at the fraction `from` of
+/// `phase`.
+pub(crate) fn follow_on(
+    engine: &mut Engine,
+    (phase, from): (Phase, f64),
+    control: StepControl,
+    bounds: SnapBounds,
+) -> Result<PathSummary, Stopped> {
+    let mut way = Way::new(bounds);
+    if from < 1.0 {
+        let outcome = way.along_from(engine, phase, Some(from), control);
+        engine.equations.let_cables_switch(true);
+        if let Err(verdict) = outcome {
+            return Err(way.stopped(engine, verdict));
+        }
+    }
+    engine.set_phase(phase, 1.0);
+    if phase == Phase::Loads && engine.equations.has_tension() {
+        if let Err(verdict) = way.along(engine, Phase::Tension, control) {
+            return Err(way.stopped(engine, verdict));
+        }
+        engine.set_phase(Phase::Tension, 1.0);
+    }
+    way.whole(engine)
+}
+
+/// Follows the range that the engine's equations vary over to its end, or to a verdict, from the engine's equilibrium
+/// at the share `from` of it. Behind a limit point it is followed down to the share `lowest`. Fractions of snaps and verdicts are shares of the range, and their phase says nothing.
+pub(crate) fn follow_range(
+    engine: &mut Engine,
+    [from, lowest]: [f64; 2],
+    control: StepControl,
+    bounds: SnapBounds,
+) -> Result<PathSummary, Stopped> {
+    let mut way = Way::new(bounds);
+    let stepper = Stepper::new(engine, Along::Range, [f64::NEG_INFINITY, 1.0]);
+    let outcome = Ramp { stepper, phase: Phase::Tension, from: Some(from), lowest, way: &mut way, turned_back: None }
+        .follow(control);
+    engine.equations.let_cables_switch(true);
+    if let Err(verdict) = outcome {
+        return Err(way.stopped(engine, verdict));
+    }
+    engine.equations.set_share(1.0);
+    way.whole(engine)
+}
+
 /// Follows the strokes to those commanded, or to a verdict, from the engine's equilibrium without them.
 pub(crate) fn follow_strokes(
     engine: &mut Engine,
@@ -127,8 +173,19 @@ impl Way {
 
     /// One phase of the path.
     fn along(&mut self, engine: &mut Engine, phase: Phase, control: StepControl) -> Result<(), Verdict> {
+        self.along_from(engine, phase, None, control)
+    }
+
+    /// The rest of a phase, from the engine's equilibrium at a fraction of it where there is one.
+    fn along_from(
+        &mut self,
+        engine: &mut Engine,
+        phase: Phase,
+        from: Option<f64>,
+        control: StepControl,
+    ) -> Result<(), Verdict> {
         let stepper = Stepper::new(engine, Along::Phase(phase), [f64::NEG_INFINITY, 1.0]);
-        Ramp { stepper, phase, way: self, turned_back: None }.follow(control)
+        Ramp { stepper, phase, from, lowest: 0.0, way: self, turned_back: None }.follow(control)
     }
 
     /// The end of the path at whole loads.
@@ -168,6 +225,10 @@ struct TurnedBack {
 struct Ramp<'e, 'w> {
     stepper: Stepper<'e>,
     phase: Phase,
+    /// The fraction at which the engine has an equilibrium to start from, where it does.
+    from: Option<f64>,
+    /// The fraction below which it is not followed once it has turned back.
+    lowest: f64,
     way: &'w mut Way,
     turned_back: Option<TurnedBack>,
 }
@@ -218,7 +279,7 @@ impl Ramp<'_, '_> {
                         self.way.travelled.bifurcations += 1;
                     }
                     if self.turned_back.is_some() {
-                        if next.fraction <= 0.0
+                        if next.fraction <= self.lowest
                             && let Some(verdict) = self.does_not_lead_on()
                         {
                             return Err(verdict);
@@ -275,7 +336,7 @@ impl Ramp<'_, '_> {
     fn turn_back(&mut self, fraction: f64) {
         let engine = &self.stepper.engine;
         self.turned_back = Some(TurnedBack { fraction, state: engine.state(), tip: engine.read_tip().ok() });
-        self.stepper.bounds[0] = 0.0;
+        self.stepper.bounds[0] = self.lowest;
     }
 
     /// Whether a step leads past the load of the limit point again, upwards.
@@ -338,7 +399,7 @@ impl Ramp<'_, '_> {
     /// [`Ramp::start`], or why there is no such point.
     fn start_or_verdict(&mut self) -> Result<Point, Verdict> {
         // What the phase before it ended with is what is last good.
-        let kept = (self.phase != Phase::Loads).then(|| self.stepper.engine.state());
+        let kept = (self.phase != Phase::Loads || self.from.is_some()).then(|| self.stepper.engine.state());
         self.start().map_err(|_| {
             if let Some(kept) = kept {
                 self.stepper.engine.restore(&kept);
@@ -376,6 +437,12 @@ impl Ramp<'_, '_> {
     /// The point that a phase starts from. An arm that lies in the stream, or along another load, has tiny angles to it
     /// whose signs decide where it goes, so this point is made very accurate then, as far as that can be had.
     fn start(&mut self) -> Result<Point, Trouble> {
+        if let Some(from) = self.from {
+            self.stepper.set(from);
+            roughly(self.stepper.engine.newton(1e-6, 12))?;
+            self.stepper.keep_accuracy(None, &mut Fraction::Fixed(from), [LOOSE, LOOSE])?;
+            return self.stepper.first_contacts(from);
+        }
         let whole = self.stepper.engine.solution.clone();
         let mut fraction = START;
         loop {

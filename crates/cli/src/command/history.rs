@@ -1,0 +1,141 @@
+//! `hydrostat history`: equilibria along loads that rise and fall.
+
+use std::fmt::Write as _;
+
+use hydrostat::{Arm, Loading, LoadingError, LoadingStep};
+use hydrostat_figures::{Abscissa, LoadingPoint, loading_figure};
+use hydrostat_files::{LoadRows, LoadingDocument, LoadingRow, loading_csv, number, read_load_rows};
+
+use super::path::check_quantity;
+use super::table::{TIP, counted, decimals, table, tip_cells};
+use crate::args::{Format, HistoryArgs};
+use crate::output;
+use crate::progress::Progress;
+use crate::request::{self, WrongRequest};
+
+pub(crate) fn run(args: &HistoryArgs) -> anyhow::Result<()> {
+    let arm = request::arm(&args.arm)?;
+    check_quantity(&arm, args.quantity)?;
+    let inputs = [request::arm_input(&args.arm.file), Some(("--input", args.input.as_path()))];
+    let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
+    request::check_outputs(&inputs, &outputs)?;
+    request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
+    let loads = read_load_rows(&args.input)?;
+    let over = column(&loads, args.over.as_deref())?;
+    let arms = loads.arms(&arm)?;
+    let (rows, failure) = follow(&arms, &loads, args.tol);
+    let verdict = failure.as_ref().map(|(row, error)| at_row(&loads, *row, error));
+    if let Some(file) = args.plot.as_ref().filter(|_| rows.len() > 1) {
+        output::draw(&diagram(args, &arm, &loads, over, &rows), file, &args.picture.page)?;
+    }
+    let text = match args.format {
+        Format::Text => summary(&arm, &loads, &rows),
+        Format::Json => output::line(LoadingDocument::new(&arm, &loads, &rows, verdict.clone()).to_json()),
+        Format::Csv => loading_csv(&loads, &rows),
+    };
+    output::put(args.output.as_deref(), &text)?;
+    match failure {
+        Some((_, error)) => {
+            let message = verdict.unwrap_or_default();
+            Err(anyhow::Error::new(error).context(message))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The rows that were reached, and the index of the one that was not, with why.
+fn follow(arms: &[Arm], loads: &LoadRows, tol: f64) -> (Vec<LoadingRow>, Option<(usize, LoadingError)>) {
+    let mut progress = Progress::new();
+    let mut rows: Vec<LoadingRow> = Vec::new();
+    let Some(first) = arms.first() else { return (rows, None) };
+    let (mut loading, start) = match Loading::start(first, tol) {
+        Ok(started) => started,
+        Err(error) => return (rows, Some((0, error))),
+    };
+    let values = |row: usize| loads.rows[row].1.clone();
+    let step = LoadingStep { configuration: start.configuration, snaps: Vec::new() };
+    rows.push(LoadingRow::new(None, values(0), step));
+    for (k, arm) in arms.iter().enumerate().skip(1) {
+        progress.say(|| format!("row {k} of {}", arms.len()));
+        match loading.go_to(arm) {
+            Ok(step) => rows.push(LoadingRow::new(Some(&values(k - 1)), values(k), step)),
+            Err(error) => return (rows, Some((k, error))),
+        }
+    }
+    (rows, None)
+}
+
+/// What ended the way to a row.
+fn at_row(loads: &LoadRows, row: usize, error: &LoadingError) -> String {
+    let line = loads.rows.get(row).map_or(0, |(line, _)| *line);
+    format!("row {} (line {line}): {error}", row + 1)
+}
+
+/// The column that the diagram runs over.
+fn column(loads: &LoadRows, asked: Option<&str>) -> Result<usize, WrongRequest> {
+    if let Some(key) = asked {
+        return loads.column(key).ok_or_else(|| WrongRequest::NoLoad(key.to_owned(), loads.keys.clone()));
+    }
+    let changes = |k: &usize| loads.rows.windows(2).any(|pair| pair[0].1[*k] != pair[1].1[*k]);
+    Ok((0..loads.keys.len()).find(changes).unwrap_or(0))
+}
+
+fn diagram(
+    args: &HistoryArgs,
+    arm: &Arm,
+    loads: &LoadRows,
+    over: usize,
+    rows: &[LoadingRow],
+) -> hydrostat_figures::Scene {
+    let points: Vec<LoadingPoint<'_>> = rows
+        .iter()
+        .map(|row| LoadingPoint {
+            value: row.loads[over],
+            configuration: &row.step.configuration,
+            snaps: row.snaps.iter().map(|snap| (snap.loads[over], snap.snap)).collect(),
+        })
+        .collect();
+    let key = &loads.keys[over];
+    let abscissa = Abscissa { name: key.clone(), unit: loads.unit(over).to_owned(), per_si: 1.0 };
+    loading_figure(&points, &abscissa, args.quantity, &format!("{}: {key} up and down", arm.name), &args.picture.page())
+}
+
+/// The snaps, and where the arm is at the end.
+fn summary(arm: &Arm, loads: &LoadRows, rows: &[LoadingRow]) -> String {
+    let with_unit = |k: usize, value: f64| format!("{} {}", number(value), loads.unit(k)).trim_end().to_owned();
+    let mut out = format!("history {}, {} of {}\n", arm.name, counted(rows.len(), "row"), loads.keys.join(", "));
+    let snaps: Vec<_> =
+        rows.iter().enumerate().flat_map(|(k, row)| row.snaps.iter().map(move |s| (k + 1, s))).collect();
+    if !snaps.is_empty() {
+        let mut head = vec!["row".to_owned()];
+        head.extend(loads.keys.iter().cloned());
+        head.extend(["jumps (mm)", "turns (deg)", "rests after (s)", "lands"].map(str::to_owned));
+        let mut lines = vec![head];
+        for (row, snap) in &snaps {
+            let mut line = vec![row.to_string()];
+            line.extend(snap.loads.iter().enumerate().map(|(k, value)| with_unit(k, *value)));
+            line.extend([
+                decimals(1e3 * snap.snap.distance(), 3),
+                decimals(snap.snap.angle().to_degrees(), 3),
+                decimals(snap.snap.duration, 2),
+            ]);
+            let lands = match snap.snap.on_curve {
+                None => "the curve does not lead on",
+                Some(_) if snap.snap.lands_elsewhere(arm.length) => "elsewhere than the curve",
+                Some(_) => "as the curve",
+            };
+            line.push(lands.to_owned());
+            lines.push(line);
+        }
+        let _ = write!(out, "\n{}", table(&lines, 1));
+    }
+    let mut lines = vec![[vec!["row".to_owned()], TIP.map(str::to_owned).into()].concat()];
+    for k in [0, rows.len().saturating_sub(1)] {
+        if let Some(row) = rows.get(k) {
+            lines.push([vec![(k + 1).to_string()], tip_cells(&row.step.configuration).into()].concat());
+        }
+    }
+    let _ = write!(out, "\n{}", table(&lines, 0));
+    let _ = writeln!(out, "\n{}", if snaps.is_empty() { "no snap".to_owned() } else { counted(snaps.len(), "snap") });
+    out
+}

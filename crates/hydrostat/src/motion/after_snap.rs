@@ -1,0 +1,216 @@
+//! What comes after a snap: where the path of the loads ends in a limit point, the arm moves from just past it until it
+//! rests, and the path goes on from there.
+
+use super::error::MotionError;
+use super::rest::{Rest, Restless, can_rest, come_to_rest};
+use super::stepper::not_found;
+use crate::rod::arm::Arm;
+use crate::statics::configuration::{Configuration, Tip};
+use crate::statics::engine::Engine;
+use crate::statics::refinement::{First, Refinable as _};
+use crate::statics::snap::{Snap, SnapBounds};
+use crate::statics::solve::{Options, Solver};
+use crate::statics::verdict::{NoEquilibrium, Phase, SolveError, VerdictKind};
+
+/// The share of the loads by which they are past the limit point while the arm moves.
+pub(super) const PAST: f64 = 1e-3;
+
+/// Tips (over L) that are as near as this are those of one equilibrium.
+const SAME: f64 = 1e-4;
+
+/// The most snaps on one way.
+const MOST_SNAPS: usize = 50;
+
+/// A snap whose motion was followed until the arm rested.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SnapMotion {
+    /// At which load, from where, and where the arm rests.
+    pub snap: Snap,
+    /// How long it takes from rest at the limit point, with the loads 0.1 % of the whole past it, until the arm stays
+    /// within 0.002 L of the shape in which it rests, s.
+    pub duration: f64,
+    /// The tip where the curve of equilibria leads on to at the same loads, which is where
+    /// [`crate::Options::snaps`] without bounds lands; `None` where it does not lead on.
+    pub on_curve: Option<Tip>,
+}
+
+impl SnapMotion {
+    /// Whether the motion lands elsewhere than where the curve leads on to, for an arm of this length (m).
+    ///
+    /// ```
+    /// use hydrostat::{Phase, Snap, SnapMotion, Tip};
+    ///
+    /// let at = |x| Tip { x, y: 0.0, theta: 0.0, alpha: 0.0 };
+    /// let snap = Snap { phase: Phase::Loads, load_fraction: 0.5, before: at(0.1), after: at(0.15) };
+    /// let motion = SnapMotion { snap, duration: 2.0, on_curve: Some(at(0.2)) };
+    /// assert!(motion.lands_elsewhere(0.2));
+    /// assert!(!SnapMotion { on_curve: None, ..motion }.lands_elsewhere(0.2), "there is nothing to compare with");
+    /// ```
+    pub fn lands_elsewhere(&self, length: f64) -> bool {
+        elsewhere(self.snap.after, self.on_curve, length)
+    }
+
+    /// What happens, in a phrase with its numbers, for an arm of this length (m).
+    pub fn message(&self, length: f64) -> String {
+        let curve = match self.on_curve {
+            _ if self.lands_elsewhere(length) => ", elsewhere than the curve of equilibria leads on to",
+            Some(_) => ", where the curve of equilibria leads on to",
+            None => "; the curve of equilibria does not lead on",
+        };
+        format!("{}; it rests after {:.3} s{curve}", self.snap.message(), self.duration)
+    }
+}
+
+/// The equilibrium in which an arm rests whose loads grow slowly, after all snaps on its way.
+#[derive(Debug, Clone)]
+pub struct AfterSnap {
+    /// The shape at the whole loads.
+    pub configuration: Configuration,
+    /// The snaps on the way, in their order; none where the arm does not snap.
+    pub snaps: Vec<SnapMotion>,
+}
+
+/// Why there is no shape after a snap.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum AfterSnapError {
+    /// The way to the loads ends at something else than a snap, or the arm or an option is refused.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The arm snaps, and is one that cannot move, or its motion ends.
+    #[error("the arm snaps at {}, and its motion is not known: {motion}", phase.load_at(*load_fraction))]
+    Motion {
+        /// In which phase of loading.
+        phase: Phase,
+        /// The fraction of the phase's loads at the limit point.
+        load_fraction: f64,
+        /// Why.
+        motion: MotionError,
+    },
+    /// The arm snaps and does not come to rest.
+    #[error(
+        "the arm snaps at {}, and does not come to rest: after {time:.3} s its tip still moves at {speed:.2e} m/s",
+        phase.load_at(*load_fraction)
+    )]
+    NoRest {
+        /// In which phase of loading.
+        phase: Phase,
+        /// The fraction of the phase's loads at the limit point.
+        load_fraction: f64,
+        /// For how long the motion was followed, s.
+        time: f64,
+        /// The speed of the tip then, m/s.
+        speed: f64,
+    },
+}
+
+impl Arm {
+    /// The equilibrium in which this arm rests after its loads have grown slowly from nothing, as [`Arm::solve`] says,
+    /// whatever snaps it makes on the way: at each limit point it moves, by its own `dynamics`, from the shape there with
+    /// the loads 0.1 % of the whole past it, until it rests, and the path goes on from there. The tip position is good to `tol` L.
+    ///
+    /// ```
+    /// use hydrostat::Arm;
+    ///
+    /// // An arm that lies against the stream, and snaps as the stream grows.
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.density = 1080.0;
+    /// arm.dynamics.relaxation_time = 2.7e-3; // s
+    /// arm.flow.speed = 0.2;
+    /// arm.flow.direction = 2.8; // rad
+    /// let found = arm.solve_after_snap(1e-8)?;
+    /// assert_eq!(found.snaps.len(), 1);
+    /// assert!(found.snaps[0].duration > 0.1 && found.snaps[0].snap.distance() > 0.1 * arm.length);
+    /// # Ok::<(), hydrostat::AfterSnapError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`AfterSnapError`]. Arms that need no motion need nothing to damp it.
+    pub fn solve_after_snap(&self, tol: f64) -> Result<AfterSnap, AfterSnapError> {
+        let snaps = SnapBounds { distance: 0.0, angle: 0.0 };
+        let mut solver = Solver::new(self, Options { tol, snaps })?;
+        let mut motions: Vec<SnapMotion> = Vec::new();
+        let mut solved = solver.solve();
+        loop {
+            let before = |own: &mut Vec<Snap>| drop(own.splice(0..0, motions.iter().map(|motion| motion.snap)));
+            match solved {
+                Ok(mut configuration) => {
+                    before(&mut configuration.snaps);
+                    return Ok(AfterSnap { configuration, snaps: motions });
+                }
+                Err(SolveError::NoEquilibrium(no)) if snaps_at(&no) && motions.len() < MOST_SNAPS => {
+                    let (motion, past) = follow(&mut solver, &no, tol)?;
+                    motions.push(motion);
+                    solved = solver.solve_on((no.verdict.phase, past));
+                }
+                Err(SolveError::NoEquilibrium(mut no)) => {
+                    before(&mut no.snaps);
+                    return Err(SolveError::NoEquilibrium(no).into());
+                }
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+}
+
+/// Whether the tip is elsewhere than `on_curve`, where there is such a place.
+pub(super) fn elsewhere(after: Tip, on_curve: Option<Tip>, length: f64) -> bool {
+    on_curve.is_some_and(|tip| {
+        (tip.x - after.x).hypot(tip.y - after.y) > SAME * length || (tip.theta - after.theta).abs() > 0.01
+    })
+}
+
+/// Whether a motion begins where the path ended.
+fn snaps_at(no: &NoEquilibrium) -> bool {
+    no.verdict.kind == VerdictKind::LimitPoint && no.last_good.is_some()
+}
+
+/// The motion from the limit point at which the path ended, with the fraction of the loads that it was at. The solver's
+/// engine is left where the arm rests.
+fn follow(solver: &mut Solver, no: &NoEquilibrium, tol: f64) -> Result<(SnapMotion, f64), AfterSnapError> {
+    let (phase, load_fraction) = (no.verdict.phase, no.verdict.load_fraction);
+    let of_motion = |motion| AfterSnapError::Motion { phase, load_fraction, motion };
+    let past = (load_fraction + PAST).min(1.0);
+    let engine = solver.engine_mut();
+    let landed = land(engine, no, tol, |engine| engine.set_phase(phase, past));
+    let Landed { before, rest: Rest { configuration, time }, on_curve } =
+        landed.map_err(|restless| match restless {
+            Restless::Motion(motion) => of_motion(motion),
+            Restless::Moving { time, speed } => AfterSnapError::NoRest { phase, load_fraction, time, speed },
+        })?;
+    let snap = Snap { phase, load_fraction, before, after: configuration.tip() };
+    Ok((SnapMotion { snap, duration: time, on_curve }, past))
+}
+
+/// A motion from a limit point.
+pub(super) struct Landed {
+    /// The tip at the limit point.
+    pub(super) before: Tip,
+    pub(super) rest: Rest,
+    /// The tip where the curve leads on to at the same loads.
+    pub(super) on_curve: Option<Tip>,
+}
+
+/// The motion from the limit point at which a path ended, with the loads past it that `past` gives the engine, which is
+/// left where the arm rests.
+pub(super) fn land(
+    engine: &mut Engine,
+    no: &NoEquilibrium,
+    tol: f64,
+    past: impl Fn(&mut Engine),
+) -> Result<Landed, Restless> {
+    let ended = || Restless::Motion(not_found(0.0, 0.0, None, engine.equations.arm()));
+    let last_good = no.last_good.as_ref().ok_or_else(ended)?;
+    let take = |engine: &mut Engine, shape: &Configuration| {
+        engine.equations.clone_from(&shape.dense().equations);
+        engine.solution.clone_from(&shape.dense().solution);
+        past(engine);
+    };
+    let on_curve = no.after_snap.as_ref().and_then(|shape| {
+        take(engine, shape);
+        let settled = engine.settle(tol, First::Warm).ok();
+        settled.and_then(|_| engine.read_tip().ok())
+    });
+    take(engine, last_good);
+    can_rest(engine).map_err(Restless::Motion)?;
+    Ok(Landed { before: last_good.tip(), rest: come_to_rest(engine, tol)?, on_curve })
+}

@@ -1,0 +1,291 @@
+//! The motion under constant loads, from a shape that is let go until it rests in an equilibrium.
+//!
+//! An arm that creeps away from a limit point is as slow as one that comes to rest. So rest is no matter of speed: where
+//! the arm is slow the statics look for an equilibrium at its shape, and the arm rests once it stays within [`NEAR`] of a
+//! stable one.
+
+use hydrostat_bvp::{Lanes, Real, Solution, Stage};
+
+use super::dimensions::{Shape, X};
+use super::error::MotionError;
+use super::history::{Snapshot, between};
+use super::inputs::Inputs;
+use super::settling::Settling;
+use super::stepper::{Stepper, check, mesh_at};
+use crate::rod::arm::Arm;
+use crate::statics::configuration::Configuration;
+use crate::statics::dimensions::Guess;
+use crate::statics::engine::Engine;
+use crate::statics::refinement::{First, Refinable as _};
+use crate::statics::stability::Stability;
+
+/// An arm rests that stays within this of an equilibrium, over L.
+const NEAR: f64 = 2e-3;
+
+/// Equilibria further away (over L) than this are not where an arm comes to rest.
+const FAR: f64 = 0.05;
+
+/// Steps that it has to stay there.
+const STEADY: usize = 20;
+
+/// Steps before the statics look for the first time.
+const FIRST_LOOK: usize = 20;
+
+/// The part of the largest speed until then below which an arm may be coming to rest.
+const SLOW: f64 = 0.5;
+
+/// The most steps of one motion.
+const MOST_STEPS: usize = 5000;
+
+/// Elements along the arm, and the tolerance of the tip.
+const ELEMENTS: usize = 20;
+const TOLERANCE: f64 = 1e-4;
+
+/// Where an arm came to rest.
+#[derive(Debug, Clone)]
+pub struct Rest {
+    /// The equilibrium, which is stable.
+    pub configuration: Configuration,
+    /// When the arm came within 0.002 L of it to stay, s after it was let go.
+    pub time: f64,
+}
+
+/// Why an arm did not come to rest.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum Restless {
+    /// The motion could not be followed.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+    /// It goes on.
+    #[error("the arm does not come to rest: after {time:.3} s its tip still moves at {speed:.2e} m/s")]
+    Moving {
+        /// For how long it was followed, s.
+        time: f64,
+        /// The speed of the tip then, m/s.
+        speed: f64,
+    },
+}
+
+impl Configuration {
+    /// Lets this shape go, at rest, under the loads of `arm`, which has the same geometry, and follows the motion until
+    /// the arm rests in an equilibrium. The tip position of that is good to `tol` L.
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Cable, Profile};
+    ///
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.density = 1080.0;
+    /// arm.dynamics.relaxation_time = 2.7e-3; // s
+    /// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.2));
+    /// let bent = arm.solve()?;
+    /// arm.cables[0].tension = 0.0;
+    /// let rest = bent.let_go(&arm, 1e-8).expect("water and material damp it");
+    /// assert!(rest.configuration.tip().theta.abs() < 1e-9 && rest.time > 0.1);
+    /// # Ok::<(), hydrostat::SolveError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Restless`].
+    pub fn let_go(&self, arm: &Arm, tol: f64) -> Result<Rest, Restless> {
+        arm.check().map_err(MotionError::Arm)?;
+        let mut engine = Engine::new(arm);
+        let dense = self.dense();
+        if !self.arm.has_geometry_of(arm) {
+            let reason = "a shape can be let go under other loads only, not as another arm";
+            return Err(MotionError::Unsupported { key: "arm".to_owned(), reason }.into());
+        }
+        let strokes = |arm: &Arm| arm.cables.iter().map(|cable| cable.stroke.is_some()).collect::<Vec<_>>();
+        engine.solution.clone_from(&dense.solution);
+        engine.solution.nodes.iter_mut().for_each(|z| {
+            let by = dense.equations.units.force / engine.equations.units.force;
+            z[1..].iter_mut().for_each(|v| *v *= by);
+        });
+        engine.solution.stages.iter_mut().for_each(|stage| {
+            let by = Lanes::of(dense.equations.units.force / engine.equations.units.force);
+            stage.slope[1..].iter_mut().for_each(|v| *v = *v * by);
+        });
+        if strokes(arm).contains(&true) {
+            if strokes(arm) != strokes(&self.arm) || dense.equations.held.is_none() {
+                let reason = "a cable keeps its tension or its stroke while the arm is let go";
+                return Err(MotionError::Unsupported { key: "cable.stroke".to_owned(), reason }.into());
+            }
+            for (c, cable) in self.arm.cables.iter().enumerate().filter(|(_, cable)| cable.stroke.is_some()) {
+                engine.equations.set_tension(c, cable.tension);
+            }
+            engine.equations.hold_strokes();
+        }
+        engine.equations.place_on(&engine.system.gauss, &engine.solution);
+        can_rest(&engine)?;
+        come_to_rest(&mut engine, tol)
+    }
+}
+
+/// Refuses arms that cannot move or whose motion never ends.
+pub(super) fn can_rest(engine: &Engine) -> Result<(), MotionError> {
+    let arm = engine.equations.arm();
+    check(arm)?;
+    let refuse = |key: String, reason| Err(MotionError::Unsupported { key, reason });
+    if engine.equations.held.is_none()
+        && let Some(i) = arm.cables.iter().position(|cable| cable.stroke.is_some())
+    {
+        let reason = "the arm snaps before its cables are reeled in, and no motion leads from there to a stroke";
+        return refuse(format!("cable[{i}].stroke"), reason);
+    }
+    if arm.flow.density == 0.0 && arm.dynamics.relaxation_time == 0.0 {
+        let reason =
+            "in a vacuum nothing but a relaxation time brings an arm to rest; give one, or the density of the water";
+        return refuse("dynamics.relaxation_time".to_owned(), reason);
+    }
+    Ok(())
+}
+
+/// Lets the shape of `engine` go under the loads that its equations have, and leaves it at the equilibrium in which the
+/// arm comes to rest, settled to `tol`.
+pub(super) fn come_to_rest(engine: &mut Engine, tol: f64) -> Result<Rest, Restless> {
+    let arm = engine.equations.arm_at_fraction();
+    let mut stepper = let_go(engine, &arm);
+    let (mut next_look, mut fastest) = (FIRST_LOOK, 0.0_f64);
+    let mut found: Option<Found> = None;
+    while stepper.steps + stepper.rejected < MOST_STEPS {
+        stepper.advance(stepper.time + 1e6).map_err(Restless::Motion)?;
+        let speed = speed(&stepper.now);
+        fastest = fastest.max(speed);
+        if let Some(at) = &mut found {
+            let off = at.distance(&stepper.now);
+            if off > FAR {
+                found = None;
+            } else if off > NEAR {
+                at.since = None;
+            } else if at.since.is_none() {
+                at.since = Some((stepper.steps, at.entry(&stepper)));
+            }
+        }
+        match found {
+            Some(Found { since: Some((step, time)), configuration, .. }) if stepper.steps >= step + STEADY => {
+                return Ok(Rest { configuration: *configuration, time });
+            }
+            other => found = other,
+        }
+        if found.is_none() && stepper.steps >= next_look && speed <= SLOW * fastest {
+            next_look = stepper.steps + FIRST_LOOK.max(stepper.steps / 8);
+            found = look(engine, &stepper, tol);
+        }
+    }
+    let [_, u, v] = stepper.now.node_rate(stepper.now.layout.nodes - 1);
+    Err(Restless::Moving { time: stepper.time, speed: arm.length * u.hypot(v) })
+}
+
+/// The motion of the engine's shape from rest.
+fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper {
+    let mut settling = Settling::new(arm);
+    let mesh = mesh_at(engine, arm, ELEMENTS);
+    if engine.equations.held.is_some() {
+        settling.moving.statics.hold_strokes();
+    }
+    settling.start_from(&engine.solution, engine.equations.units.force, mesh);
+    Stepper::at_rest(settling, arm.clone(), Inputs::default(), 0.0, TOLERANCE, None).let_go()
+}
+
+/// A stable equilibrium near the moving arm.
+struct Found {
+    configuration: Box<Configuration>,
+    /// x, y over L at the nodes of the motion's mesh.
+    places: Vec<[f64; 2]>,
+    /// Step and time (s) since when the arm is within [`NEAR`].
+    since: Option<(usize, f64)>,
+}
+
+impl Found {
+    /// How far the arm is from it, over L.
+    fn distance(&self, at: &Snapshot) -> f64 {
+        let off = |(i, place): (usize, &[f64; 2])| {
+            let [_, x, y] = at.node(i);
+            (x - place[0]).hypot(y - place[1])
+        };
+        self.places.iter().enumerate().map(off).fold(0.0, f64::max)
+    }
+
+    /// When in the last step the arm came within [`NEAR`].
+    fn entry(&self, stepper: &Stepper) -> f64 {
+        let mut at = stepper.before.clone();
+        if self.distance(&at) <= NEAR {
+            return stepper.time - stepper.step;
+        }
+        let (mut outside, mut inside) = (0.0, 1.0);
+        for _ in 0..30 {
+            let middle = 0.5 * (outside + inside);
+            between(&stepper.before, &stepper.now, stepper.step, middle, &mut at);
+            if self.distance(&at) <= NEAR { inside = middle } else { outside = middle }
+        }
+        stepper.time - (1.0 - inside) * stepper.step
+    }
+}
+
+/// The stable equilibrium at the shape of the moving arm, where there is one, with the engine left there.
+fn look(engine: &mut Engine, stepper: &Stepper, tol: f64) -> Option<Found> {
+    let kept = engine.state();
+    let found = look_from(engine, stepper, tol);
+    if found.is_none() {
+        engine.restore(&kept);
+    }
+    found
+}
+
+fn look_from(engine: &mut Engine, stepper: &Stepper, tol: f64) -> Option<Found> {
+    let settling = &stepper.settling;
+    let force = settling.moving.statics.units.force / engine.equations.units.force;
+    engine.solution = without_places(&settling.solution, &settling.moving.scales, force);
+    engine.equations.place_on(&engine.system.gauss, &engine.solution);
+    if let (Some(held), Some(moving)) = (&mut engine.equations.held, &settling.moving.statics.held) {
+        held.taut.clone_from(&moving.taut);
+        held.switching = true;
+        let tensions: Vec<(usize, f64)> =
+            held.cables.iter().map(|c| (*c, settling.moving.statics.arm().cables[*c].tension)).collect();
+        for (cable, tension) in tensions {
+            engine.equations.set_tension(cable, tension);
+        }
+    }
+    let estimate = engine.settle(tol, First::Rough).ok()?;
+    let statistics = engine.statistics(0);
+    let length = engine.equations.units.length;
+    let configuration = Configuration::read(engine, estimate * length, statistics).ok()?;
+    let nodes = settling.solution.mesh.nodes().iter();
+    let place = |s: &f64| {
+        let at = configuration.at(s * length);
+        [at.x / length, at.y / length]
+    };
+    let places = nodes.map(place).collect();
+    let found = Found { configuration: Box::new(configuration), places, since: None };
+    let near = found.distance(&stepper.now) < FAR;
+    (near && matches!(found.configuration.stability(), Some(Stability::Stable) | None)).then_some(found)
+}
+
+/// The largest speed of the centreline, over L.
+fn speed(at: &Snapshot) -> f64 {
+    let own = |i: usize| {
+        let [_, u, v] = at.node_rate(i);
+        u.hypot(v)
+    };
+    (0..at.layout.nodes).map(own).fold(0.0, f64::max)
+}
+
+/// The states of the statics in a solution of the motion whose states have the sizes `scales`, what it carries times
+/// `force`.
+fn without_places(given: &Shape, scales: &[f64; X + 2], force: f64) -> Guess {
+    let by: [f64; X] = std::array::from_fn(|a| scales[a] * if a == 0 { 1.0 } else { force });
+    Solution {
+        mesh: given.mesh.clone(),
+        directions: given.directions.clone(),
+        nodes: given.nodes.iter().map(|z| std::array::from_fn(|a| by[a] * z[a])).collect(),
+        stages: given
+            .stages
+            .iter()
+            .map(|stage| Stage {
+                slope: std::array::from_fn(|a| Lanes::of(by[a]) * stage.slope[a]),
+                inner: stage.inner,
+                closure_slope: stage.closure_slope,
+            })
+            .collect(),
+        ends: given.ends.clone(),
+    }
+}
