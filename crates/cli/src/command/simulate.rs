@@ -18,7 +18,7 @@ use crate::request;
 const MOST_ROWS: f64 = 1e7;
 
 pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm)?;
+    let arm = request::arm(&args.arm, "`hydrostat simulate`")?;
     let loads = args.input.as_deref().map(|file| ("--input", file));
     request::check_outputs(&[request::arm_input(&args.arm.file), loads], &[("-o", args.output.as_deref())])?;
     let mut inputs = Inputs::default();
