@@ -195,7 +195,7 @@ def test_a_refused_value_is_named(watched: Watched) -> None:
 
 def test_a_stroke_can_be_given(watched: Watched) -> None:
     page = watched.open("#arm=silicone&cable[0].tension=0.3")
-    page.get_by_label("What is given of cable left").select_option("stroke")
+    page.get_by_label("Control of cable left").select_option("stroke")
     settle(page)
     stroke = hash_of(page)["cable[0].stroke"]
     agree(page, solved("silicone", "--set", f"cable[0].stroke={stroke}"))

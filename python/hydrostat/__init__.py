@@ -1,4 +1,4 @@
-"""The static shape of soft arms under water.
+"""The shape of soft arms under water.
 
 An arm is a Cosserat rod, in a plane or in space: it bends, shears and stretches, and in space it twists. Its section widens under compression, so that the
 volume is kept. Cables, a stream, weight and buoyancy act on it.

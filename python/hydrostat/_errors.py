@@ -13,13 +13,13 @@ class ModelWarning(UserWarning):
     """A warning about a solution: its surface folds, its shape depends strongly on an uncertain load, and so on.
 
     Raised by `Arm.solve` and `Solver.solve`, once per kind and place of the program with Python's usual filters;
-    ``warnings.filterwarnings("ignore", category=hydrostat.ModelWarning)`` ends that. `Solution.warnings` has them with their numbers.
+    ``warnings.filterwarnings("ignore", category=hydrostat.ModelWarning)`` silences it. `Solution.warnings` has them with their numbers.
 
     Attributes
     ----------
     kind : str
         ``"surface_fold"``, ``"strain_range"``, ``"tension_above_max"``, ``"sealed_cavity"``, ``"tangential_load"`` or
-        ``"tolerance_missed"``. A snap is none: it is within the bounds that were asked for.
+        ``"tolerance_missed"``. Not a snap: an accepted snap is within the given bounds.
     """
 
     kind: str
@@ -91,7 +91,7 @@ class NoEquilibriumError(RuntimeError):
     where : float or None
         The place along the arm, m, if the limit is local.
     residual : float
-        The last Newton correction when the solver stopped, the largest change of an angle, rad; no residual of the equations.
+        The last Newton correction when the solver stopped, the largest change of an angle, rad; not a residual of the equations.
     message, advice : str
         The verdict in a sentence, and advice.
     last_good : Solution or None
@@ -101,7 +101,7 @@ class NoEquilibriumError(RuntimeError):
     after_snap : Solution or None
         The shape after such a snap, with the loads of that moment.
     at_full_loads : Solution or None
-        The shape at the full loads, if the path leads there after such a snap: the answer with ``follow_snaps=True``.
+        The shape at the full loads, if the path continues to them after such a snap: the answer with ``follow_snaps=True``.
     """
 
     kind: str
@@ -149,7 +149,7 @@ class NoEquilibriumError(RuntimeError):
 
 
 class CableFoldError(NoEquilibriumError):
-    """A cable compresses its side of the arm to length zero."""
+    """A cable compresses its side of the arm to zero length."""
 
 
 class SectionCrushedError(NoEquilibriumError):
@@ -161,7 +161,7 @@ class NoSectionSolutionError(NoEquilibriumError):
 
 
 class LimitPointError(NoEquilibriumError):
-    """The equilibrium path turns back: past this load the arm would snap to another shape."""
+    """The equilibrium path turns back: beyond this load the arm would snap to another shape."""
 
 
 class LoadJumpError(NoEquilibriumError):

@@ -48,7 +48,7 @@ class Progress:
 
 
 class Line:
-    """A line that what is said last takes the place of; drawn when `shown` is true, or on a terminal when it is None."""
+    """A line that shows the last message; drawn when `shown` is true, or on a terminal when it is None."""
 
     def __init__(self, shown: bool | None) -> None:
         self.shown = sys.stderr.isatty() if shown is None else shown

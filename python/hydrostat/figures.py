@@ -74,7 +74,7 @@ class Figure:
 
 
 def arm_figure(solution: Solution, note: str | None = None) -> Figure:
-    """One shape to scale, with its cables, the stream and the tip; `note` stands below."""
+    """One shape to scale, with its cables, the stream and the tip; `note` is the text below."""
     return Figure(solution._inner.figure(note))
 
 

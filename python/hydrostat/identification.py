@@ -73,7 +73,7 @@ class Estimate(NamedTuple):
 
 
 class LeftOut(NamedTuple):
-    """Cross-validation of one load case: how the others predict it.
+    """Cross-validation of one load case: how well the others predict it.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ class Fit(Result):
     verdict : tuple of str
         Which parameters the data do not determine, in sentences.
     misfit : str or None
-        Whether residuals are as large as their standard deviations say.
+        Whether residuals agree with the standard deviations.
     chi_square : float
         Sum of the squares of all residuals.
     freedom : int
@@ -172,7 +172,7 @@ class Fit(Result):
 
     @cached_property
     def residuals(self) -> dict[str, NDArray[Any]]:
-        """Every measured number beside the fit, columns by name: ``case``, ``quantity``, ``s`` (m, NaN for what has no place), ``unit``,
+        """Every measured value beside the fit, columns by name: ``case``, ``quantity``, ``s`` (m, NaN for what has no place), ``unit``,
         ``measured``, ``sd``, ``fitted``, ``residual`` (fitted minus measured, over sd), ``weight`` (its weight under the loss) and
         ``row`` (of the file)."""
         types: dict[str, Any] = {"case": object, "quantity": object, "unit": object, "row": np.int64}
@@ -191,7 +191,7 @@ class Fit(Result):
         return self._inner.to_json()
 
     def to_csv(self) -> str:
-        """One row a measured number, as ``hydrostat identify --format csv`` prints them."""
+        """One row per measured value, as ``hydrostat identify --format csv`` prints them."""
         return self._inner.to_csv()
 
     def figure(self) -> Figure:

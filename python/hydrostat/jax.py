@@ -26,7 +26,7 @@ def function(arm: Arm | str | PathLike[str], keys: Sequence[str], *, tol: float 
     arm : Arm, str or path
         The arm, or the name or file of one.
     keys : sequence of str
-        What the numbers are: p keys as in `solve_many`, in SI units, angles in degrees.
+        The keys of the p numbers, as in `solve_many`, in SI units, angles in degrees.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
 

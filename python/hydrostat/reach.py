@@ -111,7 +111,7 @@ class Reached(Result):
         return self.solution.at([target.s for target in self._targets if target.s is not None])
 
     def figure(self, note: str | None = None) -> Figure:
-        """The shape to scale with the targets, as ``hydrostat reach --plot`` draws it; `note` stands below."""
+        """The shape to scale with the targets, as ``hydrostat reach --plot`` draws it; `note` is the text below."""
         return Figure(self._native.figure(self._index, note))
 
     def __repr__(self) -> str:
@@ -147,8 +147,8 @@ class BoundaryPiece(NamedTuple):
 
 
 class Boundary(Result, Sequence[BoundaryPiece]):
-    """All that bounds what a tip reaches, and pieces inside where the image lies over itself; see `Arm.reachable`. A sequence of
-    `BoundaryPiece`: edges first, then folds, then limits."""
+    """The boundary of the workspace, with pieces inside it where the workspace covers itself; see `Arm.reachable`. A sequence of
+    `BoundaryPiece`: edges first, then singularities (kind ``fold``), then limits."""
 
     def __init__(self, native: _native.Boundary, origin: Origin) -> None:
         self._inner = native
@@ -182,7 +182,7 @@ class Boundary(Result, Sequence[BoundaryPiece]):
         return self._inner.to_json()
 
     def to_csv(self) -> str:
-        """One row a point, as ``hydrostat reach --boundary --format csv`` prints them."""
+        """One row per point, as ``hydrostat reach --boundary --format csv`` prints them."""
         return self._inner.to_csv()
 
     def figure(self) -> Figure:
@@ -256,7 +256,7 @@ class Reach(Result, Sequence[Reached]):
         return self._inner.to_json()
 
     def to_csv(self) -> str:
-        """One row a solution, as ``hydrostat reach --format csv`` prints them."""
+        """One row per solution, as ``hydrostat reach --format csv`` prints them."""
         return self._inner.to_csv()
 
     def plot(self, ax: Axes | None = None) -> Axes:

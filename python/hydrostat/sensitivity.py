@@ -52,7 +52,7 @@ class Ellipse(NamedTuple):
         return cls((half_axes[0], half_axes[1]), direction)
 
     def points(self, count: int = 90) -> NDArray[np.float64]:
-        """`count` places on it about the origin, shape (count, 2), m a unit of the parameters."""
+        """`count` places on it about the origin, shape (count, 2), m per unit of the parameters."""
         turn = np.linspace(0.0, 2.0 * np.pi, count)
         along, across = self.half_axes[0] * np.cos(turn), self.half_axes[1] * np.sin(turn)
         cos, sin = np.cos(self.direction), np.sin(self.direction)
@@ -158,7 +158,7 @@ class Sensitivities(Result):
         return picked
 
     def tip_jacobian(self, parameters: Sequence[str]) -> NDArray[np.float64]:
-        """d (x, y) of the tip by some parameters, shape (2, k), m a unit."""
+        """d (x, y) of the tip by some parameters, shape (2, k), m per unit."""
         return self.jacobian(("tip.x", "tip.y"), parameters)
 
     def compliance(self) -> NDArray[np.float64] | None:

@@ -87,7 +87,7 @@ class CableState(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Snap:
-    """A jump that the arm makes as its loads grow slowly, where the path of its equilibria turns back and then leads on.
+    """A jump that the arm makes as its loads grow slowly, where the path of its equilibria turns back and then continues.
 
     Attributes
     ----------

@@ -204,7 +204,7 @@ class SpatialStations(_InSpace, Stations):
 class SpatialSolution(_InSpace, Solution):
     """An arm in space in equilibrium: what `Arm.solve` and `Solver.solve` give for an arm with ``space = "spatial"``.
 
-    It has what a `Solution` has, with three components where that has two; `theta`, `m`, `surfaces` and `layer_speed` are only in the plane.
+    It has the attributes of a `Solution`, with three components in place of two; `theta`, `m`, `surfaces` and `layer_speed` are only in the plane.
 
     Examples
     --------

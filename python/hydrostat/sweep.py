@@ -292,7 +292,7 @@ def _key(column: str, found: Columns) -> Variable:
 
 
 def assembled(found: Columns, variable: Variable) -> NDArray[np.generic]:
-    """The values of a variable, a row each: numbers, or words with the empty one for none."""
+    """The values of a variable, one row each: numbers, or words with the empty one for none."""
     if variable.words:
         codes, words = found[variable.columns[0]]
         # The code -1 of none is the last place.

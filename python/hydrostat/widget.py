@@ -17,7 +17,7 @@ _STEPS = 100
 
 
 class Explorer(ipywidgets.VBox):  # type: ignore[misc]
-    """Sliders above the shape that they lead to; `explore` makes it.
+    """Sliders above the resulting shape; `explore` makes it.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Explorer(ipywidgets.VBox):  # type: ignore[misc]
 
 
 def explore(arm: Arm | str | PathLike[str], *, max_tension: float | None = None, max_speed: float = 0.2) -> Explorer:
-    """An arm under sliders: a tension a cable, speed and direction of the stream; the arm's own other loads act, too.
+    """Show an arm under sliders: one tension per cable, speed and direction of the stream. The other loads of the arm act, too.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def explore(arm: Arm | str | PathLike[str], *, max_tension: float | None = None,
     Returns
     -------
     Explorer
-        What a notebook shows; its ``solution`` is the shape under the present values, or None where there is no equilibrium.
+        The widget for a notebook; its ``solution`` is the shape under the present values, or None where there is no equilibrium.
 
     Examples
     --------

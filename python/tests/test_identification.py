@@ -133,7 +133,7 @@ def test_pictures(silicone: hs.Arm, tmp_path: Path) -> None:
     texts = [text.get_text() for text in axis.get_legend().get_texts()]  # type: ignore[union-attr]
     assert texts == ["0.1 N", "0.2 N", "0.3 N"]
     plt.close("all")
-    assert "fitted less measured (sd)" in fit.figure().texts()
+    assert "fitted minus measured (sd)" in fit.figure().texts()
     assert fit.figure().save(tmp_path / "fit.png").stat().st_size > 5000
 
 

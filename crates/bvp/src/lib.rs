@@ -9,16 +9,16 @@
 //! - **Gauss collocation** with four stages on each element: order 8 at the nodes (superconvergence), 5 between them.
 //! - **Newton's method** with affine-invariant damping (Deuflhard 2004, NLEQ-ERR): see [`newton`].
 //! - **Static condensation**: the stages of each element are eliminated from its equations, which leaves the states at the nodes.
-//! - **Almost block diagonal elimination with row pivoting**, node by node from a. The rows carried on say which combinations of states the
-//!   conditions at a still determine: that is a transfer of boundary conditions. It is stable as long as the problem has a dichotomy, that
-//!   is, as long as conditions at a hold the solutions that grow away from b, and conditions at b those that grow away from a; row pivoting then
-//!   keeps the carried rows apart, however fast solutions grow (Ascher, Mattheij and Russell, "Numerical Solution of Boundary Value
+//! - **Almost block diagonal elimination with row pivoting**, node by node from a. The rows carried on are the
+//!   combinations of states that the conditions at a still determine: a transfer of boundary conditions. It is stable if the problem has a
+//!   dichotomy: if conditions at a fix the solutions that grow away from b, and conditions at b those that grow away from a. Row pivoting then
+//!   keeps the carried rows independent, however fast solutions grow (Ascher, Mattheij and Russell, "Numerical Solution of Boundary Value
 //!   Problems for Ordinary Differential Equations", 1995, chapters 6 and 7). Shooting overflows there. Where the problem has no such
-//!   dichotomy, it is ill conditioned itself: small changes of the data change the solution much, and no elimination helps. What is seen of it
-//!   is a small [`Determinant::clearance`], Newton's method that stalls, or [`Error::Singular`].
+//!   dichotomy, the problem itself is ill conditioned: small changes of the data change the solution strongly, and no elimination helps. The symptoms
+//!   are a small [`Determinant::clearance`], a Newton method that stalls, or [`Error::Singular`].
 //! - **An error estimate** from one more stage: the solution is sampled with five stages, and one Newton iteration there (two where the
 //!   first was large) gives a solution that is more accurate by an order between nodes and by two at them. The difference is the estimate. It is
-//!   exact to leading order, and no bound.
+//!   exact to leading order, but not a bound.
 //! - **Mesh adaptation** by the norm of all unknowns, of one of them, or by a goal functional ([`Norm`]); by the goal with adjoints (dual
 //!   weighted residuals).
 //!
@@ -89,7 +89,7 @@
 //! # A shock layer
 //!
 //! `e u'' + s u' = -e pi^2 cos(pi s) - pi s sin(pi s)`, `u(-1) = -2`, `u(1) = 0` (Ascher, Mattheij and Russell, example 9.2), with
-//! `e = 1e-6`: a layer at s = 0 that is 0.001 wide. Analytic derivatives, for once.
+//! `e = 1e-6`: a layer at s = 0 that is 0.001 wide. This example gives analytic derivatives.
 //! The exact solution is `cos(pi s) + erf(s / sqrt(2 e)) / erf(1 / sqrt(2 e))`.
 //!
 //! ```

@@ -199,9 +199,13 @@ pub(crate) struct ArmsArgs {
 ///
 /// Numbers that look like a wrong unit get a warning.
 #[derive(Debug, ClapArgs)]
+#[command(after_help = "\
+Examples:
+  hydrostat check my.toml
+  hydrostat check my.toml --set arm.length='300 mm' --set material.young='80 kPa'")]
 pub(crate) struct CheckArgs {
-    /// Arm file, name of a shipped arm, or - for standard input
-    pub(crate) arm: String,
+    #[command(flatten)]
+    pub(crate) arm: ArmArgs,
 }
 
 /// A number of stations.

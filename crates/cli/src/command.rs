@@ -38,7 +38,7 @@ impl std::fmt::Display for NoAnswer {
 
 impl std::error::Error for NoAnswer {}
 
-/// An error with what to try, where that hangs on the request.
+/// An error with advice that depends on the request.
 #[derive(Debug)]
 pub(crate) struct Advised {
     error: anyhow::Error,

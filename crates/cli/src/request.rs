@@ -40,9 +40,9 @@ pub(crate) fn shipped_arm(name: &str) -> anyhow::Result<Arm> {
     Ok(shipped_file(name)?.arm()?)
 }
 
-/// The arm that is asked for: a file, then what overrides it.
-pub(crate) fn arm(args: &ArmArgs) -> anyhow::Result<Arm> {
-    arm_of(&overridden(args)?)
+/// The arm that `command`, a command for arms in the plane, is asked for: a file, then what overrides it.
+pub(crate) fn arm(args: &ArmArgs, command: &'static str) -> anyhow::Result<Arm> {
+    arm_of(&overridden(args)?, command)
 }
 
 /// The same, in the plane or in space.
@@ -50,16 +50,16 @@ pub(crate) fn arm_in_space(args: &ArmArgs) -> anyhow::Result<Arm> {
     arm_anywhere(&overridden(args)?)
 }
 
-/// The arm that a file means. Numbers that look like a slip of the unit are named on standard error.
-pub(crate) fn arm_of(file: &ArmFile) -> anyhow::Result<Arm> {
+/// The arm that a file means, for `command`, which is for arms in the plane.
+pub(crate) fn arm_of(file: &ArmFile, command: &'static str) -> anyhow::Result<Arm> {
     let arm = arm_anywhere(file)?;
     if arm.space.is_some() {
-        return Err(SolveError::Arm(ArmError::OnlyInPlane { what: "this command" }).into());
+        return Err(SolveError::Arm(ArmError::OnlyInPlane { what: command }).into());
     }
     Ok(arm)
 }
 
-/// The arm of a file, in the plane or in space.
+/// The arm of a file, in the plane or in space. Numbers that look like a slip of the unit are named on standard error.
 pub(crate) fn arm_anywhere(file: &ArmFile) -> anyhow::Result<Arm> {
     let arm = file.arm().map_err(|first| wrong(file, first))?;
     for slip in unit_slips(&arm) {

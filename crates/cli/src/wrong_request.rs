@@ -71,7 +71,7 @@ impl std::fmt::Display for WrongRequest {
         match self {
             Self::UnknownArm(name) => {
                 write!(f, "`{name}` is neither a file nor an arm that ships with the program (")?;
-                for (i, shipped) in shipped::names().enumerate() {
+                for (i, shipped) in shipped_names().enumerate() {
                     write!(f, "{}{shipped}", if i == 0 { "" } else { ", " })?;
                 }
                 f.write_str(")")?;
@@ -151,5 +151,9 @@ impl std::error::Error for WrongRequest {}
 
 fn nearest(name: &str) -> Option<&'static str> {
     let score = |candidate: &str| strsim::jaro_winkler(name, candidate);
-    shipped::names().max_by(|a, b| score(a).total_cmp(&score(b))).filter(|best| score(best) > 0.75)
+    shipped_names().max_by(|a, b| score(a).total_cmp(&score(b))).filter(|best| score(best) > 0.75)
+}
+
+fn shipped_names() -> impl Iterator<Item = &'static str> {
+    shipped::names().chain(shipped::spatial_names())
 }

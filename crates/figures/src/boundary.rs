@@ -42,7 +42,7 @@ const TOL: f64 = 1e-4;
 pub fn boundary_figure(found: &Boundary, slack: &Configuration, page: &Page) -> Scene {
     let style = |kind: BoundaryKind| match kind {
         BoundaryKind::Edge(_) => (0, Stroke::solid(series(1), 1.2), "a cable at a bound"),
-        BoundaryKind::Fold(_) => (1, Stroke::solid(series(0), 1.2), "two cables move the tip the same way"),
+        BoundaryKind::Fold(_) => (1, Stroke::solid(series(0), 1.2), "two cables move the tip along the same line"),
         BoundaryKind::Limit(_) => (2, Stroke::dashed(series(2), 1.2, [4.0, 2.5]), "no equilibrium beyond"),
     };
     let outline = Outline::new(slack, SECTIONS);

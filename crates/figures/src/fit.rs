@@ -164,7 +164,7 @@ fn draw_residuals(scene: &mut Scene, top: f64, cases: &[FittedCase<'_>], page: &
             Mark::Filled(series(index)).draw(scene, axes.at([number, *residual]));
         }
     }
-    axes.draw(scene, &Label::plain("measured number"), &Label::plain("fitted less measured (sd)"));
+    axes.draw(scene, &Label::plain("measured number"), &Label::plain("fitted minus measured (sd)"));
 }
 
 /// What room there is for each square beside the names.

@@ -85,7 +85,7 @@ fn suggested(suggestion: Option<&String>) -> String {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AxisError {
     /// Not of the form `KEY=VALUES`.
-    #[error("{}: expected KEY=FROM:TO:COUNT, KEY=V1,V2,... or, to draw from, KEY=FROM:TO, such as flow.speed=0:0.5:26", shortened(.text))]
+    #[error("{}: expected KEY=FROM:TO:COUNT, KEY=V1,V2,... or, for a sample, KEY=FROM:TO, such as flow.speed=0:0.5:26", shortened(.text))]
     Form {
         /// What was given.
         text: String,
@@ -131,7 +131,7 @@ pub enum AxisError {
         count: u64,
     },
     /// A range of words.
-    #[error("{}: expected words with commas between, because it is no number, found \"{}\"", shortened(.key), shortened(.text))]
+    #[error("{}: expected words separated by commas, because the values of this key are not numbers, found \"{}\"", shortened(.key), shortened(.text))]
     Range {
         /// The key.
         key: String,
@@ -381,6 +381,6 @@ mod tests {
         assert!(error("flow.sped=0:1:5").ends_with("did you mean `flow.speed`?"));
         assert!(error("K=0:1:20").ends_with("`hydrostat check ARM` lists the keys, such as cable[0].tension"));
         assert!(error("young=1,2").ends_with("did you mean `material.young`?"));
-        assert!(error("flow.law=a:b").contains("words with commas"));
+        assert!(error("flow.law=a:b").contains("words separated by commas"));
     }
 }

@@ -56,7 +56,7 @@ pub fn side_message(end: PathEnd, base: f64) -> String {
     let at = format!("with the base at {} deg", number(base.to_degrees()));
     match end {
         PathEnd::Limit { kind, s } => format!("{} {at}", limit_message(kind, s)),
-        PathEnd::MostPoints => format!("the curve was given up after too many points {at}"),
+        PathEnd::MostPoints => format!("the curve reached the largest number of points {at}"),
         PathEnd::Stopped => format!("the search was stopped {at}"),
         PathEnd::ReachedEnd | PathEnd::ReachedStart => format!("the curve ended {at}"),
     }

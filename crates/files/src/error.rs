@@ -46,7 +46,7 @@ pub enum FileError {
         source: io::Error,
     },
     /// Far more than an arm needs.
-    #[error("{path}: larger than {limit} bytes, the most of an arm file")]
+    #[error("{path}: larger than {limit} bytes, the limit for an arm file")]
     TooLarge {
         /// The file.
         path: String,
@@ -184,11 +184,11 @@ fn expected(error: &ArmError) -> String {
         ArmError::TooManyBreaks { most, .. } => {
             format!("at most {most} places at which tables have points and cables end")
         }
-        ArmError::TensionCount { cables, .. } => format!("{cables} tensions, one a cable"),
+        ArmError::TensionCount { cables, .. } => format!("{cables} tensions, one per cable"),
         ArmError::OutOfPlane { .. } => "`space = \"spatial\"` in `[arm]` for a value out of the plane".to_owned(),
-        ArmError::OnlyInPlane { what } => format!("an arm in the plane: {what} is for those alone"),
-        ArmError::NotInSpace { .. } => "nothing of that with `space = \"spatial\"`".to_owned(),
-        ArmError::Direction { why, .. } => format!("a direction that {why}"),
+        ArmError::OnlyInPlane { what } => format!("an arm in the plane, which {what} requires"),
+        ArmError::NotInSpace { .. } => "a value that is supported with `space = \"spatial\"`".to_owned(),
+        ArmError::Direction { .. } => "another direction".to_owned(),
     }
 }
 
@@ -212,7 +212,7 @@ fn found(error: &ArmError) -> String {
         ArmError::OutOfPlane { .. } => "an arm in the plane".to_owned(),
         ArmError::OnlyInPlane { .. } => "`space = \"spatial\"`".to_owned(),
         ArmError::NotInSpace { key, why } => format!("`{key}`, which {why} in space"),
-        ArmError::Direction { .. } => "one that does not".to_owned(),
+        ArmError::Direction { why, .. } => format!("one that {why}"),
     }
 }
 

@@ -61,13 +61,13 @@ pub enum FitKeyError {
         expected: &'static str,
     },
     /// A key of the arm file without a derivative.
-    #[error("{} cannot be fitted: shapes have no derivative by it here; those that can are {}", shortened(.key), fittable().join(", "))]
+    #[error("{} cannot be fitted, because there is no derivative with respect to it; keys that can be fitted: {}", shortened(.key), fittable().join(", "))]
     NoDerivative {
         /// The key.
         key: String,
     },
     /// No key at all.
-    #[error("{} is no key of the arm file{}; those that can be fitted are {}", shortened(.key), hint(.suggestion.as_ref()), fittable().join(", "))]
+    #[error("{} is not a key of the arm file{}", shortened(.key), hint_or_list(.suggestion.as_ref()))]
     Unknown {
         /// What was given.
         key: String,
@@ -92,6 +92,14 @@ pub enum FitKeyError {
 /// at places in m.
 fn fittable() -> Vec<String> {
     names().into_iter().filter(|name| *name != Parameter::Length.to_string()).collect()
+}
+
+/// With a suggestion the list of all keys is left out: it is long.
+fn hint_or_list(suggestion: Option<&String>) -> String {
+    match suggestion {
+        Some(_) => hint(suggestion),
+        None => format!("; keys that can be fitted: {}", fittable().join(", ")),
+    }
 }
 
 /// The parameter of a key, or of its last part where that says enough: `c1` for `material.c1`.
@@ -256,7 +264,7 @@ mod tests {
         }
         assert!(error("materiel.young").contains("did you mean `material.young`?"));
         // Of arm and of water.
-        assert!(error("density").contains("is no key"));
+        assert!(error("density").contains("is not a key"));
         assert!(error("young=3 N").contains("a pressure"));
         assert!(error("young=1:2").contains("expected KEY"));
         assert!("cn=2".parse::<PriorKey>().is_err());

@@ -87,7 +87,7 @@ pub(crate) const FILE: &[Key] = &[
     optional("gravity", Table(GRAVITY), "Gravity in the plane. Default: none."),
     optional("tip", Table(TIP), "Loads on the tip."),
     optional("distributed", Table(DISTRIBUTED), "Dead loads along the arm, per metre of undeformed length."),
-    optional("dynamics", Table(DYNAMICS), "What motion depends on besides masses. Equilibria do not."),
+    optional("dynamics", Table(DYNAMICS), "Settings of motion; equilibria do not depend on them."),
     optional("model", Table(MODEL), "Options of the model."),
 ];
 
@@ -151,7 +151,7 @@ const CABLE: &[Key] = &[
         "offset",
         Offset(D::Length),
         "{ base = 0.005, tip = 0.001 }",
-        "Offset from the centreline, left positive, or a share of the radius: \"70 %\".",
+        "Offset from the centreline, left positive, or a fraction of the radius: \"70 %\".",
     ),
     optional("angle", Profile(D::Angle), "Angle of the offset in the section, from b towards c, in space. Default: 0."),
     default("tension", Quantity(D::Force), "0", "Tension at the base. Either this or stroke."),
@@ -174,7 +174,7 @@ const FLOW: &[Key] = &[
     default("direction", Heading, "0", "Direction of the free stream, from e1; in space also [_, _, _]."),
     default("density", Quantity(D::Density), "1000", "Density of the water; 0 is a vacuum."),
     default("layer_thickness", Quantity(D::Length), "0.005", "Thickness of the boundary layer h_inf."),
-    default("law", Choice(&["momentum", "quadratic-drag"]), "\"momentum\"", "Law of the load of the stream."),
+    default("law", Choice(&["momentum", "quadratic-drag"]), "\"momentum\"", "Law of the stream's load."),
     optional("cn", Quantity(D::Number), "Normal drag coefficient, of quadratic-drag only."),
     optional("ct", Quantity(D::Number), "Tangential drag coefficient, of quadratic-drag only."),
 ];
@@ -204,9 +204,9 @@ const DISTRIBUTED: &[Key] = &[
 pub(crate) const RATE: [&str; 2] = ["relaxation_time", "viscosity"];
 
 const DYNAMICS: &[Key] = &[
-    default("added_mass", Quantity(D::Number), "1.0", "Coefficient C_a of the water that moves along; 0 is none."),
+    default("added_mass", Quantity(D::Number), "1.0", "Coefficient C_a of the added mass of the water; 0 is none."),
     default("relaxation_time", Quantity(D::Time), "0.0", "Relaxation time of the material (Kelvin-Voigt)."),
-    optional("viscosity", Quantity(D::Viscosity), "The same as a viscosity, relaxation_time times C1."),
+    optional("viscosity", Quantity(D::Viscosity), "relaxation_time as a viscosity: relaxation_time times C1."),
     default("inertia", Flag, "true", "Whether arm and water have inertia; without it motion is overdamped."),
 ];
 
@@ -260,7 +260,7 @@ impl Kind {
                 format!("{}; in space also three profiles, [_, _, _]", Profile(dimension).expected())
             }
             Offset(dimension) => {
-                format!("{}; or a share of the radius, such as \"70 %\"", Profile(dimension).expected())
+                format!("{}; or a fraction of the radius, such as \"70 %\"", Profile(dimension).expected())
             }
             Part => "a fraction of the length (a number, or a string such as \"40 %\"), or a length such as \"98 mm\""
                 .to_owned(),

@@ -164,7 +164,7 @@ fn unknown(readings: &[(&str, &str)]) -> String {
     });
     let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     format!(
-        "is no column of measurements: expected {}, `sd` with one of the measured names, or a key of the arm file such as flow.speed{hint}",
+        "is not a column of measurements: expected {}, `sd` with one of the measured names, or a key of the arm file such as flow.speed{hint}",
         KNOWN.join(", ")
     )
 }
@@ -180,6 +180,6 @@ fn wrong_unit(name: &str, unit: &str, dimension: Dimension) -> String {
     }
     match Dimension::ALL.into_iter().find(|other| unit_of(*other, unit).is_some()) {
         Some(other) => format!("{expected}; `{unit}` is the unit of {other}"),
-        None => format!("{expected}; `{}` is no unit known here", shortened(unit)),
+        None => format!("{expected}; `{}` is not a known unit here", shortened(unit)),
     }
 }

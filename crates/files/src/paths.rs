@@ -92,9 +92,9 @@ pub fn end_message(end: PathEnd, varied: &Varied, value: f64) -> String {
     match end {
         PathEnd::ReachedEnd => format!("the end of the range was reached, {}", varied.with_unit(varied.range[1])),
         PathEnd::ReachedStart => {
-            format!("it came back to the start of the range, {}", varied.with_unit(varied.range[0]))
+            format!("the path returned to the start of the range, {}", varied.with_unit(varied.range[0]))
         }
-        PathEnd::MostPoints => format!("the most points allowed were reached {at}"),
+        PathEnd::MostPoints => format!("the largest number of points was reached {at}"),
         PathEnd::Stopped => format!("it was stopped {at}"),
         PathEnd::Limit { kind, s } => format!("{} {at}", limit_message(kind, s)),
     }

@@ -353,7 +353,7 @@ pub enum QuantityError {
         near: Option<&'static str>,
     },
     /// A comma in a number.
-    #[error("a comma stands in the number; decimals follow a point, and nothing parts thousands")]
+    #[error("the number contains a comma; write decimals with a point, and thousands without a separator")]
     Comma,
     /// A unit of another dimension.
     #[error("`{unit}` is the unit of {found}")]

@@ -5,7 +5,7 @@ use hydrostat::Join;
 use crate::document::{Entry, Field, Node, Origin, parse_setting};
 use crate::format::{self, JOINED, Key, Kind};
 use crate::quantity::{Dimension, bare_number};
-use crate::reading::{Fault, join, unknown, value_fault};
+use crate::reading::{Fault, join, quantity_at, unknown, value_fault};
 
 /// One step of a dotted path.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,15 +64,17 @@ fn into_table(
     };
     let at = fields.iter().position(|f| f.name == *name).unwrap_or(fields.len());
     if at == fields.len() {
-        let entry = Entry { node: empty(key.kind), origin: target.origin };
+        let entry = Entry { node: empty(key), origin: target.origin };
         fields.push(Field { name: name.clone(), origin: target.origin, entry });
     }
     into_value(&mut fields[at].entry, &here, key.kind, rest, target)
 }
 
 /// What a value that is not there yet is made of when only a part of it is set.
-fn empty(kind: Kind) -> Node {
-    match kind {
+fn empty(key: &Key) -> Node {
+    match key.kind {
+        // A direction of a load is that of its angle until a component is set.
+        Kind::Heading => Node::Number(key.default.and_then(bare_number).unwrap_or(0.0)),
         Kind::Tables(_) => Node::Array(Vec::new()),
         Kind::Pair(_) | Kind::ProfilePair(_) => {
             let zero = Entry { node: Node::Number(0.0), origin: Origin::Text(0) };
@@ -171,6 +173,17 @@ fn into_value(entry: &mut Entry, path: &str, kind: Kind, steps: &[Step], target:
             Some(part) => into_value(part, &format!("{path}[{i}]"), Kind::Quantity(Dimension::Number), rest, target),
             None => Err(target.refuse(path, "the index 0, 1 or 2", format!("{i}"))),
         },
+        // An angle is a direction in the plane e1-e2.
+        (Kind::Heading, Step::Index(_), Node::Number(_) | Node::Text(_)) => {
+            let Some(angle) = quantity_at(Dimension::Angle, entry) else {
+                return Err(target.refuse(path, kind.expected(), entry.node.describe()));
+            };
+            let origin = entry.origin;
+            // Along an axis the other component is zero, not what rounding leaves of it.
+            let parts = [angle.cos(), angle.sin(), 0.0].map(|x| if x.abs() < f64::EPSILON { 0.0 } else { x });
+            entry.node = Node::Array(parts.map(|part| Entry { node: Node::Number(part), origin }).to_vec());
+            into_value(entry, path, kind, steps, target)
+        }
         // A number is the component along e3.
         (Kind::Axial(_), Step::Index(_), Node::Number(own)) => {
             let (own, origin) = (*own, entry.origin);

@@ -3,10 +3,10 @@
 use crate::error::shortened;
 use crate::quantity::{Dimension, parted};
 
-/// A unit that stands behind some numbers, so that it is open which unit the others have.
+/// A unit after some numbers only: the unit of the others is open.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{}: \"{}\" has a unit behind some of its numbers only, and none that holds for all behind the last; write {}",
+    "{}: only some of the numbers in \"{}\" have a unit; write {}",
     shortened(.key),
     shortened(.text),
     spellings(.shared.as_deref(), .each)
@@ -26,9 +26,9 @@ fn spellings(shared: Option<&str>, each: &str) -> String {
     let each = shortened(each);
     match shared {
         Some(shared) => {
-            format!("\"{}\" where the unit holds for all, or \"{each}\" where it does not", shortened(shared))
+            format!("\"{}\" if it is the unit of all, else \"{each}\"", shortened(shared))
         }
-        None => format!("a unit behind each number, such as \"{each}\""),
+        None => format!("a unit after each number, such as \"{each}\""),
     }
 }
 
@@ -109,11 +109,11 @@ mod tests {
     #[test]
     fn units_that_leave_others_open_are_refused() {
         let error = read(Dimension::Angle, &["1 rad", "20"]).unwrap_err();
-        assert!(error.starts_with("key: \"1 rad:20\" has a unit behind some of its numbers only"), "{error}");
+        assert!(error.starts_with("key: only some of the numbers in \"1 rad:20\" have a unit"), "{error}");
         assert!(error.contains("\"1:20 rad\"") && error.contains("\"1 rad:20 deg\""), "{error}");
         let error = read(Dimension::Force, &["1", "2 mN", "3"]).unwrap_err();
         assert!(error.contains("\"1:2:3 mN\"") && error.contains("\"1 N:2 mN:3 N\""), "{error}");
         let error = read(Dimension::Force, &["1", "2 mN", "3 N"]).unwrap_err();
-        assert!(error.ends_with("a unit behind each number, such as \"1 N:2 mN:3 N\""), "{error}");
+        assert!(error.ends_with("a unit after each number, such as \"1 N:2 mN:3 N\""), "{error}");
     }
 }

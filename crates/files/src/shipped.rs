@@ -48,7 +48,7 @@ const SPATIAL: [Shipped; 2] = [
     },
 ];
 
-/// The names of those in space: what all commands but `solve` and `check` refuse.
+/// The names of those in space.
 pub fn spatial_names() -> impl Iterator<Item = &'static str> {
     SPATIAL.iter().map(|arm| arm.name)
 }

@@ -77,7 +77,7 @@ fn geometry(arm: &Arm) -> Vec<Slip> {
     } else if length < SHORTEST {
         out.push(Slip::new("arm.length", 1e3 * length, "mm", "m"));
     }
-    let widest = places(length).map(|s| arm.radius.at(s, length).value).fold(0.0, f64::max);
+    let widest = places(length).chain([0.0, length]).map(|s| arm.radius.at(s, length).value).fold(0.0, f64::max);
     if widest >= WIDEST || widest > length {
         out.push(Slip::new("arm.radius", widest, "m", "mm"));
     }

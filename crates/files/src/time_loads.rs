@@ -9,6 +9,7 @@ use hydrostat::{Arm, Course, Inputs, MotionError};
 use crate::csv_text::{Dialect, Lines, is_missing, records, without_mark};
 use crate::error::shortened;
 use crate::format::{bracketed, dimension_at, nearest};
+use crate::heads::{key_named, readings, unit_of};
 use crate::quantity::{Dimension, WrongValue};
 
 /// The most that is read, in bytes.
@@ -121,9 +122,9 @@ pub enum ShapedError {
     Load(#[from] MotionError),
 }
 
-/// Adds to `inputs` the loads of a CSV file: the column `t_s` (s), and columns with the keys of loads, in SI units,
-/// angles in degrees. Straight lines join the rows; two rows at one time are a jump. A cell that is empty says
-/// nothing of its load.
+/// Adds to `inputs` the loads of a CSV file: the column `t_s` (s), and columns with the keys of loads, in SI units and
+/// angles in degrees, or with a unit in the head: `cable_0_tension_mN`, `flow.speed [cm/s]`. Straight lines join the
+/// rows; two rows at one time are a jump. An empty cell is skipped.
 ///
 /// # Errors
 /// [`TimeLoadsError`].
@@ -152,21 +153,21 @@ pub fn read_time_loads(path: impl AsRef<Path>, inputs: &mut Inputs) -> Result<()
 pub fn parse_time_loads(text: &str, path: &str, inputs: &mut Inputs) -> Result<(), TimeLoadsError> {
     let table = Table::read(text, path)?;
     let path = path.to_owned();
-    let Some(time_column) = table.header.time else {
+    let Some((time_column, unit)) = table.header.time else {
         let found = "expected a column `t_s` with times in s, found none".to_owned();
         return Err(TimeLoadsError::Header { path, line: table.line, column: 1, found });
     };
     let mut rows: Vec<Vec<(f64, f64)>> = vec![Vec::new(); table.header.keys.len()];
     let mut before = f64::NEG_INFINITY;
     for row in &table.rows {
-        let time = table.number(row, time_column, TIME)?;
+        let time = unit.in_si(table.number(row, time_column, TIME)?);
         if time < before {
             return Err(TimeLoadsError::Falls { path, line: row.line, before, found: time });
         }
         before = time;
-        for ((column, key, dimension), rows) in table.header.keys.iter().zip(&mut rows) {
+        for ((column, key, unit), rows) in table.header.keys.iter().zip(&mut rows) {
             if !row.is_missing(*column) {
-                rows.push((time, dimension.bare(table.number(row, *column, key)?)));
+                rows.push((time, unit.in_si(table.number(row, *column, key)?)));
             }
         }
     }
@@ -257,9 +258,9 @@ pub fn parse_load_rows(text: &str, path: &str) -> Result<LoadRows, TimeLoadsErro
     let mut rows: Vec<(usize, Vec<f64>)> = Vec::new();
     for row in &table.rows {
         let mut values = Vec::with_capacity(table.header.keys.len());
-        for (k, (column, key, _)) in table.header.keys.iter().enumerate() {
+        for (k, (column, key, unit)) in table.header.keys.iter().enumerate() {
             let above = rows.last().map_or(f64::NAN, |(_, values)| values[k]);
-            values.push(if row.is_missing(*column) { above } else { table.number(row, *column, key)? });
+            values.push(if row.is_missing(*column) { above } else { unit.bare(table.number(row, *column, key)?) });
         }
         rows.push((row.line, values));
     }
@@ -355,43 +356,86 @@ impl Table {
     }
 }
 
-/// Where times stand, and the columns of loads with their keys.
+/// Where times stand with their unit, and the columns of loads with their keys and units.
 struct Header {
-    time: Option<usize>,
-    keys: Vec<(usize, String, Dimension)>,
+    time: Option<(usize, Unit)>,
+    keys: Vec<(usize, String, Unit)>,
+}
+
+/// What the numbers of a column are in: the unit in its head, or that of bare numbers.
+#[derive(Debug, Clone, Copy)]
+struct Unit(Dimension, Option<&'static str>);
+
+impl Unit {
+    fn in_si(self, value: f64) -> f64 {
+        let Self(dimension, unit) = self;
+        // As text, so that 200 mN here are those of the arm file, to the last bit.
+        let with_unit = unit.and_then(|unit| dimension.parse(&format!("{value:?} {unit}")).ok());
+        with_unit.unwrap_or_else(|| dimension.bare(value))
+    }
+
+    /// The number as one without a unit has it: SI, angles in degrees.
+    fn bare(self, value: f64) -> f64 {
+        match self {
+            Self(_, None) => value,
+            Self(Dimension::Angle, Some(_)) => self.in_si(value).to_degrees(),
+            Self(_, Some(_)) => self.in_si(value),
+        }
+    }
+}
+
+/// The load of a head, such as `cable[0].tension`, `cable_0_tension_mN` or `flow.speed [cm/s]`.
+fn load(head: &str) -> Option<(String, Unit)> {
+    let can_change = |key: &str| Inputs::default().set(key, Course::constant(0.0)).is_ok();
+    readings(head).into_iter().find_map(|(name, unit)| {
+        let bare = bracketed(name);
+        let key = if can_change(&bare) { bare } else { key_named(name).filter(|key| can_change(key))? };
+        let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
+        let known = unit_of(dimension, unit);
+        (unit.is_empty() || known.is_some()).then_some((key, Unit(dimension, known)))
+    })
+}
+
+/// The unit of a column of times: `t_s`, `t_ms`, `time [s]`.
+fn times(head: &str) -> Option<Unit> {
+    readings(head).into_iter().find_map(|(name, unit)| {
+        let unit = unit_of(Dimension::Time, unit).filter(|_| ["t", "time"].contains(&name))?;
+        Some(Unit(Dimension::Time, Some(unit)))
+    })
 }
 
 impl Header {
     /// The column (from 1) and what is wrong with it, where something is.
     fn read<'a>(cells: impl Iterator<Item = &'a str>) -> Result<Self, (usize, String)> {
-        let known = Inputs::names();
-        let (mut time, mut keys) = (None, Vec::<(usize, String, Dimension)>::new());
+        let (mut time, mut keys) = (None, Vec::<(usize, String, Unit)>::new());
         for (k, cell) in cells.enumerate() {
-            if cell == TIME {
-                if time.replace(k).is_some() {
-                    return Err((k + 1, "`t_s` is there twice".to_owned()));
+            if let Some(unit) = times(cell) {
+                if time.replace((k, unit)).is_some() {
+                    return Err((k + 1, "the times are there twice".to_owned()));
                 }
                 continue;
             }
-            let key = bracketed(cell);
-            let mut probe = Inputs::default();
-            if probe.set(&key, Course::constant(0.0)).is_err() {
-                let near = nearest(&key, known.iter().map(String::as_str).chain([TIME]));
-                let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-                let all = known.join(", ");
-                return Err((
-                    k + 1,
-                    format!("`{}` is no load that can change in time{hint} Those are t_s, {all}", shortened(cell)),
-                ));
-            }
+            let Some((key, unit)) = load(cell) else { return Err((k + 1, unknown(cell))) };
             if keys.iter().any(|(_, other, _)| *other == key) {
                 return Err((k + 1, format!("`{key}` is there twice")));
             }
-            let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
-            keys.push((k, key, dimension));
+            keys.push((k, key, unit));
         }
         Ok(Self { time, keys })
     }
+}
+
+/// What is wrong with a head that is neither times nor a load. With a suggestion the list of all heads is left out.
+fn unknown(head: &str) -> String {
+    let known = Inputs::names();
+    let is_time = ["t", "time", "times"].contains(&head.to_lowercase().as_str());
+    let near = nearest(&bracketed(head), known.iter().map(String::as_str).chain([TIME]));
+    let hint = match (is_time, near) {
+        (true, _) => format!("; did you mean `{TIME}`?"),
+        (false, Some(near)) => format!("; did you mean `{near}`?"),
+        (false, None) => format!("; columns that can: {TIME}, {}", known.join(", ")),
+    };
+    format!("`{}` cannot change over time{hint}", shortened(head))
 }
 
 /// Adds to `inputs` one load that changes in time: `KEY=ramp:FROM:TO:START:END`, `KEY=step:FROM:TO:AT` or
@@ -429,4 +473,46 @@ pub fn set_shaped(text: &str, inputs: &mut Inputs) -> Result<(), ShapedError> {
         _ => return Err(form()),
     };
     Ok(inputs.set(&key, course)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Inputs, String> {
+        let mut inputs = Inputs::default();
+        parse_time_loads(text, "loads.csv", &mut inputs).map(|()| inputs).map_err(|error| error.to_string())
+    }
+
+    /// Only keys without a unit were read, not the heads that all other tables have.
+    #[test]
+    fn heads_are_those_of_other_tables() {
+        let plain = read("t_s,cable[0].tension,flow.direction\n0,0,90\n2,0.2,180\n").unwrap();
+        for heads in [
+            "t_ms,cable_0_tension_mN,flow_direction_deg",
+            "t [ms],cable[0].tension [mN],flow.direction [deg]",
+            "time_ms,cable.0.tension [mN],flow.direction",
+        ] {
+            let other = read(&format!("{heads}\n0,0,90\n2000,200,180\n")).unwrap();
+            assert_eq!(other, plain, "{heads}");
+        }
+    }
+
+    #[test]
+    fn heads_that_are_none_get_a_hint() {
+        for (heads, words) in [
+            ("time,flow.speed", "column 1: `time` cannot change over time; did you mean `t_s`?"),
+            ("t_s,flow.sped", "column 2: `flow.sped` cannot change over time; did you mean `flow.speed`?"),
+            (
+                "t_s,arm.length",
+                "column 2: `arm.length` cannot change over time; columns that can: t_s, cable[0].tension, ",
+            ),
+            ("t_s,t_ms", "column 2: the times are there twice"),
+            ("t_s,cable_0_tension_mm", "column 2: `cable_0_tension_mm` cannot change over time; "),
+            ("flow.speed", "column 1: expected a column `t_s` with times in s, found none"),
+        ] {
+            let error = read(&format!("{heads}\n0,0\n")).unwrap_err();
+            assert!(error.starts_with(&format!("loads.csv:1: {words}")), "{error}");
+        }
+    }
 }

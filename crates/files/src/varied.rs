@@ -46,7 +46,7 @@ pub enum VariedError {
         text: String,
     },
     /// Nothing that can vary.
-    #[error("{source}{}", hint(.suggestion.as_ref()))]
+    #[error("{}", unknown(source, .suggestion.as_ref()))]
     Unknown {
         /// What was given, and what can vary.
         source: UnknownParameter,
@@ -61,7 +61,7 @@ pub enum VariedError {
     Unit(#[from] PartialUnit),
     /// A number of values, where there are as many as it takes.
     #[error(
-        "{}: expected {}=FROM:TO, found a COUNT behind the range: a path has as many points as it needs; for equally spaced values see \
+        "{}: expected {}=FROM:TO, found a COUNT after the range: a path chooses its own points; for equally spaced values see \
          `hydrostat sweep --vary` and `hydrostat equilibria --over`",
         shortened(.text),
         shortened(.key)
@@ -84,6 +84,14 @@ pub enum VariedError {
 
 pub(crate) fn hint(suggestion: Option<&String>) -> String {
     suggestion.map_or_else(String::new, |key| format!("; did you mean `{key}`?"))
+}
+
+/// With a suggestion the list of all keys is left out: it is long.
+fn unknown(source: &UnknownParameter, suggestion: Option<&String>) -> String {
+    match suggestion {
+        Some(key) => format!("`{}` cannot vary along a path; did you mean `{key}`?", shortened(&source.name)),
+        None => source.to_string(),
+    }
 }
 
 impl FromStr for Varied {
@@ -217,9 +225,9 @@ mod tests {
         }
         assert!(error("flow.sped=0:1").ends_with("did you mean `flow.speed`?"));
         assert!(error("E=0:1").ends_with("did you mean `material.young`?"));
-        assert!(error("flow.speed=0:1:20").contains("found a COUNT behind the range"));
+        assert!(error("flow.speed=0:1:20").contains("found a COUNT after the range"));
         assert!(error("tension=0:1").ends_with("did you mean `cable[0].tension`?"));
-        assert!(error("arm.length=0:1").contains("those are cable[0].tension, cable[0].stroke, flow.speed"));
+        assert!(error("arm.length=0:1").contains("keys that can: cable[0].tension, cable[0].stroke, flow.speed"));
         assert!(error("flow.speed=0:1 N").contains("expected a speed"));
         assert!(error("flow.speed=0:1 N").contains("`N` is the unit of a force"));
         assert!(error("flow.speed=0:").contains("does not start with a number"));

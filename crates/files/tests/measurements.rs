@@ -133,15 +133,15 @@ fn columns_that_cannot_be_meant_are_named() {
     for (head, says) in [
         ("x [N]", "expected a length in m, cm, mm, um, in, ft; `N` is the unit of a force"),
         ("x", "write the unit behind the name, as in \"x [m]\""),
-        ("x [parsec]", "`parsec` is no unit known here"),
-        ("z [mm]", "is no column of measurements"),
+        ("x [parsec]", "`parsec` is not a known unit here"),
+        ("z [mm]", "is not a column of measurements"),
         ("angel [deg]", "did you mean `angle`?"),
         ("case [m]", "expected no unit, found [m]"),
         ("flow.speed", "write the unit behind the name, as in \"flow.speed [m/s]\""),
         ("flow.sped [m/s]", "did you mean `flow.speed`?"),
         ("cable[0].tension [mm]", "`mm` is the unit of a length"),
-        ("sd bending [mm]", "is no column"),
-        ("", "is no column"),
+        ("sd bending [mm]", "is not a column"),
+        ("", "is not a column"),
     ] {
         let message = refused(&format!("case,{head},s [mm]\na,1,1\n"));
         assert!(message.starts_with(&format!("data.csv, row 1, column \"{head}\": ")), "{message}");

@@ -114,6 +114,31 @@ fn overrides_reach_the_third_component() {
     assert!((arm.cables[1].angle.at(0.0, 1.0).value - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
 }
 
+/// A component needed three numbers in the file before.
+#[test]
+fn a_component_of_a_direction_replaces_that_of_the_angle() {
+    const PLAIN: &str = "[arm]\nlength = 0.2\nradius = 0.01\nspace = \"spatial\"\n[material]\nyoung = 1e5\n";
+    let space = |text: &str, settings: &[(&str, &str)]| {
+        let mut file = ArmFile::parse(text, "arm.toml").unwrap();
+        for (key, value) in settings {
+            file.set(key, value).unwrap_or_else(|error| panic!("{error}"));
+        }
+        file.arm().unwrap().space.unwrap()
+    };
+    let stream = |text: &str, settings: &[(&str, &str)]| space(text, settings).stream.unwrap();
+    assert_eq!(stream(PLAIN, &[("flow.direction[2]", "0.1")]), [1.0, 0.0, 0.1]);
+    assert_eq!(stream(PLAIN, &[("flow.direction[1]", "2"), ("flow.direction[2]", "3")]), [1.0, 2.0, 3.0]);
+    assert_eq!(space(PLAIN, &[("gravity.direction[2]", "1")]).gravity, Some([0.0, -1.0, 1.0]));
+    for (angle, x) in [("30", 0.75_f64.sqrt()), ("\"30 deg\"", 0.75_f64.sqrt()), ("180", -1.0)] {
+        let text = format!("{PLAIN}[flow]\ndirection = {angle}\n");
+        let found = stream(&text, &[("flow.direction[2]", "1")]);
+        assert!((found[0] - x).abs() < 1e-15 && found[2] == 1.0, "{angle}: {found:?}");
+    }
+    let mut file = ArmFile::parse(&format!("{PLAIN}[flow]\ndirection = \"30 mm\"\n"), "arm.toml").unwrap();
+    let error = file.set("flow.direction[2]", "1").unwrap_err().to_string();
+    assert!(error.contains("expected an angle") && error.contains("\"30 mm\""), "{error}");
+}
+
 /// Whatever leaves the plane without the word for it is named, with what to write.
 #[test]
 fn what_leaves_the_plane_of_a_planar_file_is_named() {

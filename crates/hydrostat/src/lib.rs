@@ -1,5 +1,5 @@
 //! The static shape of a soft arm under water: a planar Cosserat rod, driven by cables, whose
-//! section swells or thins so that its volume is kept, in a stream, with weight and buoyancy.
+//! section widens under compression so that the volume is kept, in a stream, with weight and buoyancy.
 //!
 //! SI units throughout, angles in radians. The arm is straight and along e1 before anything acts;
 //! `s` in [0, L] is the length along it, from base to tip; left is the side of positive y. Numbers
@@ -8,7 +8,7 @@
 //!
 //! # A tour
 //!
-//! An [`Arm`] says what is given, [`Arm::solve`] finds its [`Configuration`]:
+//! An [`Arm`] holds geometry, material and loads; [`Arm::solve`] finds its [`Configuration`]:
 //!
 //! ```
 //! use hydrostat::{Arm, Cable, Profile};
@@ -44,7 +44,7 @@
 //! # arm.flow.speed = 0.1;
 //! let shape = arm.solve()?;
 //!
-//! // Nodes: one array a field.
+//! // Nodes: one array per field.
 //! let st = &shape.stations;
 //! assert_eq!(st.s.len(), st.alpha.len());
 //! assert_eq!((st.s[0], st.x[0], st.y[0]), (0.0, 0.0, 0.0));
@@ -61,11 +61,11 @@
 //! let to = |p: [f64; 2]| (p[0] - middle.x).hypot(p[1] - middle.y);
 //! assert!((to(left) - to(right)).abs() < 1e-12 && to(cable) < to(left));
 //!
-//! // How far each cable was reeled in, and what the support has to hold.
+//! // The stroke of each cable, and the base reaction.
 //! assert!(shape.cables[0].stroke > 0.0 && shape.cables[1].stroke < shape.cables[0].stroke);
 //! println!("base reaction {:?} N, {} N m", shape.base_reaction.force, shape.base_reaction.moment);
 //!
-//! // What should be known about the answer: a folding surface, strains too large for the law, ...
+//! // Limits of the model that the answer is near: a folding surface, strains outside the linear range, ...
 //! for warning in shape.warnings() {
 //!     println!("{}: {}", warning.kind(), warning.message());
 //! }
@@ -74,8 +74,8 @@
 //!
 //! ## Other loads, readings and tolerances
 //!
-//! Every field of an arm is public. Weight, tip loads and loads along the arm are fields; where the
-//! source can be read in more than one way, [`Readings`] says which reading is solved.
+//! Every field of an arm is public, and so are weight, tip loads and loads along the arm. Where the
+//! source leaves a point open, [`Readings`] selects the reading that is solved.
 //!
 //! ```
 //! use hydrostat::{Arm, Gravity, Options, Readings, Solver, Volume};
@@ -98,10 +98,10 @@
 //!
 //! ## No answer
 //!
-//! Not every arm has an equilibrium. A soft tip under a strong pull folds shut on the cable's side;
-//! a stream against the arm makes it snap. Then the error is a [`Verdict`]: which limit, at which part
-//! of the loads (first all but the cables, then the tensions), where along the arm, and the last
-//! good configuration before it.
+//! Not every arm has an equilibrium. A strong pull compresses the cable's side of a soft tip to zero
+//! length; a stream against the arm makes it snap. Then the error is a [`Verdict`]: the kind of limit, the
+//! fraction of the loads at which it was met (first all loads but the cables', then the tensions), the
+//! place along the arm, and the last good configuration before it.
 //!
 //! ```
 //! use hydrostat::{Arm, Cable, Phase, Profile, SolveError, VerdictKind};
@@ -109,12 +109,12 @@
 //! let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
 //! arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(1.5)); // N: too much
 //!
-//! let Err(SolveError::NoEquilibrium(no)) = arm.solve() else { panic!("1.5 N fold the tip") };
+//! let Err(SolveError::NoEquilibrium(no)) = arm.solve() else { panic!("1.5 N are too much") };
 //! assert_eq!(no.verdict.kind, VerdictKind::CableFold);
 //! assert_eq!(no.verdict.phase, Phase::Tension);
 //! println!("{}; {}", no.verdict.message(), no.verdict.advice());
 //!
-//! // The last good shape carries its own loads: the tension just below the fold.
+//! // The last good shape carries its own loads: the tension just below the limit.
 //! let last = no.last_good.expect("most of the pull can be carried");
 //! let tension = last.arm.cables[0].tension;
 //! assert!((tension / 1.5 - no.verdict.load_fraction).abs() < 1e-3);
@@ -123,12 +123,13 @@
 //!
 //! # What is not in the model
 //!
-//! The arm moves slowly (quasi-static). An arm in space ([`Arm::space`]) has a solver of its own, [`SpatialSolver`];
-//! everything else is for arms in the plane. The section law is linear in the strains. Cables act by their tension
-//! alone: they do not press into the material. The surface may touch itself unseen; [`Configuration::fold_margin`]
-//! sees only a section that folds. The outside pressure on the wall of a sealed cavity is left out. The tangential
-//! load of the source's flow law corresponds to C_t = 4/9, where published coefficients of arms are 0.005 to 0.03: an
-//! answer that hangs on it carries a [`Warning::TangentialLoad`], and [`FlowLaw::QuadraticDrag`] is the alternative.
+//! Equilibria are quasi-static; [`motion`] has the arm in time, in the plane. An arm in space ([`Arm::space`]) has a
+//! solver of its own, [`SpatialSolver`]; everything else is for arms in the plane. The section law is linear in the
+//! strains. Cables act by their tension alone: they do not press into the material. Contact of the arm with itself is
+//! not detected; [`Configuration::fold_margin`] is about the surface of a single section. The outside pressure on the
+//! wall of a sealed cavity is left out. The tangential load of the source's flow law corresponds to C_t = 4/9; published
+//! coefficients of arms are 0.005 to 0.03. An answer that depends strongly on this load carries a
+//! [`Warning::TangentialLoad`]; [`FlowLaw::QuadraticDrag`] is the alternative.
 
 pub mod cases;
 mod inverse;

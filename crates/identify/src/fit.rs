@@ -155,7 +155,7 @@ impl Fit {
         verdict(&self.findings, |parameter| self.scale(parameter))
     }
 
-    /// Whether residuals are as large as standard deviations say, in a sentence: by the chi-square distribution, on both sides, three in a
+    /// Whether residuals agree with the standard deviations, in a sentence: by the chi-square distribution, on both sides, three in a
     /// thousand being too few. `None` where there are too few numbers to tell.
     pub fn misfit(&self) -> Option<String> {
         let freedom = usize::try_from(self.freedom).ok().filter(|freedom| *freedom > 0)?;
@@ -163,17 +163,20 @@ impl Fit {
         let below = below(self.chi_square, freedom);
         Some(if below > 1.0 - 0.5 * RARE {
             format!(
-                "residuals are {ratio:.2} times as large as their standard deviations say: these are too small, or the model misses something"
+                "residuals are {ratio:.2} times as large as the standard deviations predict: the standard deviations are too small, or the model \
+                 is incomplete"
             )
         } else if below < 0.5 * RARE && ratio < FAR {
             format!(
-                "residuals are far smaller than their standard deviations say ({ratio:.1e} times as large): these are too large, or the numbers \
-                 were not measured"
+                "residuals are far smaller than the standard deviations predict ({ratio:.1e} times): the standard deviations are too large, or \
+                 the values were not measured"
             )
         } else if below < 0.5 * RARE {
-            format!("residuals are {ratio:.2} times as large as their standard deviations say: these are too large")
+            format!(
+                "residuals are {ratio:.2} times as large as the standard deviations predict: the standard deviations are too large"
+            )
         } else {
-            "residuals are as large as their standard deviations say".to_owned()
+            "residuals agree with the standard deviations".to_owned()
         })
     }
 }

@@ -279,7 +279,7 @@ impl Follower {
         });
         let found = solved.map_err(|error| solve_error(py, error, Options::with_tol(SHAPE)))?;
         found.ok_or_else(|| {
-            PyRuntimeError::new_err("the follower is at a shape that no solve from the unloaded arm leads to")
+            PyRuntimeError::new_err("the follower is at a shape that no solve from the unloaded arm gives")
         })
     }
 

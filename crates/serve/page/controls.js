@@ -71,7 +71,7 @@ export class Controls {
         this.range({ key: "flow.direction", label: "Direction", unit: "\u00b0", per: 1, min: -180, max: 180, value: inputs.flow.direction }),
         this.choice(this.options.flow_law, inputs.flow.law),
         ...this.drag(inputs),
-        this.range({ key: "flow.layer_thickness", label: "Layer", unit: "mm", per: 1e3, min: 0.001, max: 0.02, value: inputs.flow.layer_thickness }),
+        this.range({ key: "flow.layer_thickness", label: "Boundary layer", unit: "mm", per: 1e3, min: 0.001, max: 0.02, value: inputs.flow.layer_thickness }),
       ]),
       this.group("Gravity", [
         this.range({ key: "gravity.acceleration", label: "Acceleration", unit: "m/s\u00b2", per: 1, min: 0, max: 20, value: inputs.gravity?.acceleration ?? 0 }),
@@ -83,7 +83,7 @@ export class Controls {
         this.range({ key: "arm.base.angle", label: "Angle", unit: "\u00b0", per: 1, min: -180, max: 180, value: inputs.arm.base.angle }),
       ]),
       this.group("Readings of the source", this.options.readings.map((choice) => this.choice(choice, inputs.model[choice.key.replace("model.", "")]))),
-      element("p", {}, [this.button("Take everything back", () => this.state.choose(this.state.arm))]),
+      element("p", {}, [this.button("Reset to the arm file", () => this.state.choose(this.state.arm))]),
     );
     this.refresh();
   }
@@ -131,7 +131,7 @@ export class Controls {
     const range = stroke
       ? { key: strokeKey, label: cable.name, unit: "mm", per: 1e3, min: -0.25 * length, max: 0.25 * length, value: cable.stroke ?? 0, colour: c % 7 }
       : { key: tensionKey, label: cable.name, unit: milli ? "mN" : "N", per: milli ? 1e3 : 1, min: 0, max: most, value: cable.tension ?? 0, colour: c % 7 };
-    const mode = element("select", { "aria-label": `What is given of cable ${cable.name}` }, [
+    const mode = element("select", { "aria-label": `Control of cable ${cable.name}` }, [
       element("option", { value: "tension", text: "tension" }), element("option", { value: "stroke", text: "stroke" }),
     ]);
     mode.value = stroke ? "stroke" : "tension";

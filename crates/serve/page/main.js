@@ -188,7 +188,7 @@ function receive(reply, asked) {
   const took = performance.now() - asked;
   latencies.push(took);
   if (latencies.length > 1000) latencies.shift();
-  sayTook(`${took.toFixed(1)} ms`, `From wish to picture; ${(reply.microseconds / 1e3).toFixed(1)} ms of it in the server`);
+  sayTook(`${took.toFixed(1)} ms`, `From input to picture; ${(reply.microseconds / 1e3).toFixed(1)} ms of it in the server`);
   if (letGo && connection.asked.size === 0) endPull();
 }
 
@@ -296,7 +296,7 @@ byId("pin", HTMLButtonElement).addEventListener("click", () => {
 
 function showPins() {
   byId("pins", HTMLElement).replaceChildren(...pins.map((pin) => {
-    const off = element("button", { type: "button", text: "\u00d7", "aria-label": `Take off ${pin.label}` });
+    const off = element("button", { type: "button", text: "\u00d7", "aria-label": `Remove ${pin.label}` });
     off.addEventListener("click", () => {
       pins = pins.filter((other) => other !== pin);
       showPins();
@@ -310,7 +310,7 @@ function showPins() {
 
 /** @type {[string, string][]} */
 const LAYERS = [
-  ["sections", "Section lines"], ["directors", "Directors at the tip"], ["stream", "Stream"], ["gravity", "Gravity"], ["layer", "Layer of the stream"],
+  ["sections", "Section lines"], ["directors", "Directors at the tip"], ["stream", "Stream"], ["gravity", "Gravity"], ["layer", "Boundary layer"],
   ["ghost", "Unloaded arm"], ["trail", "Trail of the tip"], ["contact", "Contact forces"],
 ];
 const tints = element("select", { "aria-label": "Colour of the body" }, [

@@ -79,7 +79,7 @@ export class Studies {
     if (this.traced !== "" && this.traced !== this.others()) {
       this.traced = "";
       this.view.scene.way = [];
-      byId("path-words", HTMLElement).textContent = "The other loads have changed since: trace again.";
+      byId("path-words", HTMLElement).textContent = "The other loads have changed: trace again.";
     }
   }
 
@@ -113,7 +113,7 @@ export class Studies {
       /** @type {PathDocument} */
       const path = await response.json();
       if (epoch !== this.epoch) {
-        words.textContent = "The loads have changed since: trace again.";
+        words.textContent = "The loads have changed: trace again.";
         return;
       }
       this.traced = this.others();
@@ -157,7 +157,7 @@ export class Studies {
       } catch (error) {
         rows.push([name, "", "", "", "", said(error)]);
       }
-      place.replaceChildren(table(["Reading", "Tip x (mm)", "Tip y (mm)", "\u03b1(L) (\u00b0)", "Tip moves (mm)", "What the solver says"], rows));
+      place.replaceChildren(table(["Reading", "Tip x (mm)", "Tip y (mm)", "\u03b1(L) (\u00b0)", "Tip moves (mm)", "Verdict"], rows));
       this.choosableRows("readings-table");
     }
   }

@@ -1,4 +1,4 @@
-// What the solver says about a state, in words.
+// The answer of the solver in words.
 
 /** @import { Answer, CableState, Drawing, Pulled, Solution } from "./types" */
 
@@ -30,7 +30,7 @@ export function wordsOf(answer, drawing) {
   }
   const lines = answer.warnings.map((note) => sentence(note.message));
   if (answer.unmet) {
-    lines.push(`The tip's balance is not met: a force of (${answer.unmet.force.map((f) => number(f, 4)).join(", ")}) N and a moment of ${number(answer.unmet.moment, 4)} N m are left.`);
+    lines.push(`The balance at the tip is not met: a force of (${answer.unmet.force.map((f) => number(f, 4)).join(", ")}) N and a moment of ${number(answer.unmet.moment, 4)} N m remain.`);
   }
   const { title, level } = stabilityOf(answer);
   if (drawing?.crossing) {
@@ -54,7 +54,7 @@ function kindsOf(answer) {
 function stabilityOf(answer) {
   if (answer.stable === true) return { title: "In equilibrium, stable", level: "good" };
   if (answer.stable === false) return { title: "In equilibrium, but unstable: the arm would leave this shape at the slightest push", level: "warn" };
-  return { title: "In equilibrium; whether it is stable is not established", level: "warn" };
+  return { title: "In equilibrium; stability is not established", level: "warn" };
 }
 
 /**
@@ -67,13 +67,13 @@ export function wordsOfPull(pulled, cables) {
   if (!pulled.reached) {
     const bounds = pulled.bounds.map(({ cable, kind }) => {
       const { name, tension } = cables[cable] ?? { name: String(cable), tension: 0 };
-      return kind === "slack" ? `cable ${name} is slack` : `cable ${name} has its largest tension (${force(tension)})`;
+      return kind === "slack" ? `cable ${name} is slack` : `cable ${name} is at its largest tension (${force(tension)})`;
     });
     const why = bounds.length > 0 ? `: ${bounds.join(", ")}` : ": pulling further does not bring it closer";
     lines.push(`The tip cannot go there; it is ${fixed(1e3 * pulled.distance, 1)} mm away${why}.`);
   }
   if (pulled.elsewhere) lines.push("A solve from the unloaded arm at these tensions gives another shape than this drag. The picture shows the shape of the solve.");
-  else if (pulled.jumped) lines.push("The arm has jumped to another branch of its equilibria on the way.");
+  else if (pulled.jumped) lines.push("On the way, the arm jumped to another branch of equilibria.");
   return lines;
 }
 
@@ -102,7 +102,7 @@ export function numbersOf(shape) {
   ];
   for (const cable of cables) {
     const slack = cable.command?.slack ? " (slack)" : "";
-    rows.push([`Cable ${cable.name}`, `${force(cable.tension)}${slack}`], [`${cable.name} reeled in`, `${fixed(1e3 * cable.stroke, 2)} mm`]);
+    rows.push([`Tension, ${cable.name}`, `${force(cable.tension)}${slack}`], [`Stroke, ${cable.name}`, `${fixed(1e3 * cable.stroke, 2)} mm`]);
   }
   rows.push(
     ["Base force", `(${base.force.map((f) => clean(factor * f)).join(", ")}) ${unit}`],

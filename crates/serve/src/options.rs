@@ -52,11 +52,11 @@ impl OptionsDocument {
                 words: vec![
                     Word {
                         word: "momentum",
-                        meaning: "The source's (8) and (9): the momentum that the layer of the stream loses along the arm",
+                        meaning: "The source's (8) and (9): the momentum that the boundary layer loses along the arm",
                     },
                     Word {
                         word: "quadratic-drag",
-                        meaning: "Drag across and along the arm with coefficients C_n and C_t of your own, which both have to be given",
+                        meaning: "Drag across and along the arm with your own coefficients C_n and C_t; both are required",
                     },
                 ],
             },
@@ -70,7 +70,7 @@ fn readings() -> Vec<Choice> {
         choice(
             "model.volume",
             "Volume",
-            "How a section widens where the arm is shortened, (15) and (16)",
+            "How a section widens where the arm is compressed, (15) and (16)",
             words(&Volume::ALL, Volume::name, |one| match one {
                 Volume::Planar => "beta = 1/nu: the area in the plane is kept, as the source writes it",
                 Volume::Circular => "beta = 1/sqrt(nu): the volume of a round section is kept",
@@ -80,7 +80,7 @@ fn readings() -> Vec<Choice> {
         choice(
             "model.flow_surface",
             "Surface of the flow",
-            "Which surface gives the loads of the stream their directions, (7) to (10)",
+            "Which surface gives the direction of the stream's load, (7) to (10)",
             words(&FlowSurface::ALL, FlowSurface::name, |one| match one {
                 FlowSurface::Centreline => "Tangent and normal of the centreline",
                 FlowSurface::Lateral => {
@@ -91,7 +91,7 @@ fn readings() -> Vec<Choice> {
         choice(
             "model.entering_speed",
             "Entering speed",
-            "What V_in in (8) is, which has no subscript in the source",
+            "The meaning of V_in in (8), which has no subscript in the source",
             words(&EnteringSpeed::ALL, EnteringSpeed::name, |one| match one {
                 EnteringSpeed::Tangential => "The tangential speed alone",
                 EnteringSpeed::Resultant => {
@@ -102,10 +102,10 @@ fn readings() -> Vec<Choice> {
         choice(
             "model.layer_mean",
             "Mean over the layer",
-            "Which mean of the layer's profile (7) enters",
+            "Which mean of the speed profile (7) is used",
             words(&LayerMean::ALL, LayerMean::name, |one| match one {
-                LayerMean::Speed => "The mean of the speed, 2/3 of that outside",
-                LayerMean::Momentum => "The root of its mean square, sqrt(8/15) of that outside",
+                LayerMean::Speed => "The mean of the speed, 2/3 of the speed outside the layer",
+                LayerMean::Momentum => "The root of the mean square, sqrt(8/15) of the speed outside the layer",
             }),
         ),
         choice(
@@ -113,8 +113,8 @@ fn readings() -> Vec<Choice> {
             "Wetted length",
             "The length on which the stream acts",
             words(&WettedLength::ALL, WettedLength::name, |one| match one {
-                WettedLength::Reference => "That of the undeformed arm",
-                WettedLength::Deformed => "That of the deformed arm, which is the one in the water",
+                WettedLength::Reference => "The length of the undeformed arm",
+                WettedLength::Deformed => "The length of the deformed arm, which is the one in the water",
             }),
         ),
         choice(
@@ -131,8 +131,8 @@ fn readings() -> Vec<Choice> {
             "Hydrostatics",
             "Which part of weight and buoyancy acts, (9) and (10)",
             words(&Hydrostatics::ALL, Hydrostatics::name, |one| match one {
-                Hydrostatics::Archimedes => "The whole of it",
-                Hydrostatics::NormalOnly => "Its part across the surface of the flow, as the source writes it",
+                Hydrostatics::Archimedes => "All of it",
+                Hydrostatics::NormalOnly => "Its part normal to the flow surface, as the source writes it",
             }),
         ),
         choice(

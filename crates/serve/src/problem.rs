@@ -69,17 +69,17 @@ impl Problem {
     }
 
     pub(crate) fn defect() -> Self {
-        let message = "this is a defect of the program, not of the request";
+        let message = "this is a bug in the program, not a mistake in the request";
         Self::new(StatusCode::INTERNAL_SERVER_ERROR, "defect", None, message)
     }
 
     pub(crate) fn not_found() -> Self {
-        let message = "there is nothing here; /api/openapi.json lists what there is";
+        let message = "unknown address; /api/openapi.json lists all addresses";
         Self::new(StatusCode::NOT_FOUND, "not_found", None, message)
     }
 
     pub(crate) fn method_not_allowed() -> Self {
-        let message = "this address takes another method; /api/openapi.json says which";
+        let message = "this address accepts another method; /api/openapi.json says which";
         Self::new(StatusCode::METHOD_NOT_ALLOWED, "method_not_allowed", None, message)
     }
 

@@ -134,7 +134,7 @@ async fn open_session(
     let taken = shared.sessions.fetch_add(1, Ordering::Relaxed);
     let seat = Seat(Arc::clone(&shared.sessions));
     if taken >= limits::SESSIONS {
-        return Err(Problem::busy("as many viewers as the server takes are here already"));
+        return Err(Problem::busy("the largest number of open viewers is reached; close one first"));
     }
     let upgrade = upgrade.max_message_size(limits::BODY).max_frame_size(limits::BODY);
     Ok(upgrade.on_upgrade(async move |socket| {

@@ -91,12 +91,12 @@ impl Work {
         };
         if self.waiting.fetch_add(1, Ordering::Relaxed) >= limits::WAITING {
             self.waiting.fetch_sub(1, Ordering::Relaxed);
-            return Err(Problem::busy("too many requests wait already; try again in a second"));
+            return Err(Problem::busy("too many requests are waiting; try again in a second"));
         }
         let _waiting = Waiting(&self.waiting);
         match timeout(limits::PATIENCE, Arc::clone(places).acquire_owned()).await {
             Ok(Ok(place)) => Ok(place),
-            _ => Err(Problem::busy("all places are taken; try again in a second")),
+            _ => Err(Problem::busy("the server is busy; try again in a second")),
         }
     }
 }

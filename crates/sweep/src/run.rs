@@ -85,7 +85,7 @@ pub struct Summary {
 /// let sweep = Sweep::new(&file, plan, &SweepOptions::default()).unwrap();
 /// let out = directory.path().join("out.parquet");
 /// let summary = sweep.run(&out, false, 1, &|_| {}).unwrap();
-/// // Steps of 0.25 N: from 0.943 N on the cable folds the tip shut.
+/// // Steps of 0.25 N: from 0.943 N on the cable compresses its side of the tip to zero length.
 /// assert_eq!((summary.rows, summary.answered), (7, 4));
 /// let table = hydrostat_sweep::Table::read(&out, &["tip_y_m", "verdict"]).unwrap();
 /// assert_eq!(table.numbers("tip_y_m").unwrap().len(), 7);

@@ -110,8 +110,8 @@ pub(crate) fn section(scope: Scope, listener: &dyn Listener) -> Section {
     let mut section = Section::new("grid", "A grid of arms: solved, or a physical reason why not");
     section.text(
         "Every shipped arm with its left, its right or all cables at 0 to 12 twelfths of their largest tension, in still water and streams of 0.05, 0.1, \
-         0.3, 0.5 and 1 m/s from 0, 60, 90 and 180 degrees, with and without weight. A verdict names a limit: a cable that folds its side of the \
-         arm shut, a section that no strains can balance, a limit point past which the arm snaps.",
+         0.3, 0.5 and 1 m/s from 0, 60, 90 and 180 degrees, with and without weight. A verdict names a limit: a cable that compresses its side of the \
+         arm to zero length, a section that no strains can balance, a limit point beyond which the arm snaps.",
     );
     let arms = shipped::arms();
     let names: Vec<&str> = arms.iter().map(|arm| arm.name.as_str()).collect();

@@ -5,7 +5,7 @@ use clap::{Args as ClapArgs, ValueEnum};
 /// What `stable` means wherever it is said.
 pub(super) const STABLE: &str = "\
 Stable means stable against static divergence, for overdamped motion (docs/model.md, section 7).
-Flutter is a dynamic instability and is not checked.";
+Flutter is a dynamic instability: see `hydrostat modes`.";
 
 // An arm and what is to be different from its file. As a doc comment this would replace the help of each command.
 #[derive(Debug, ClapArgs)]

@@ -26,8 +26,8 @@ Examples:
 pub(crate) struct ModesArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
-    /// How many, the slowest first
-    #[arg(long, value_name = "N", default_value = "8")]
+    /// Number of modes, the slowest first
+    #[arg(long, value_name = "N", default_value = "8", value_parser = some)]
     pub(crate) count: usize,
     /// Elements of the mesh along the arm, from 1 to 64
     #[arg(long, value_name = "N", default_value = "12")]
@@ -38,6 +38,11 @@ pub(crate) struct ModesArgs {
     /// Write the result to FILE instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+}
+
+/// A number of modes.
+fn some(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|count| *count > 0).ok_or_else(|| "expected a whole number from 1".to_owned())
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]

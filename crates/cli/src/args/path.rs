@@ -13,8 +13,8 @@ const EXIT: &str = "\
 Exit status:
   0  the path reached an end of the range, or the largest number of points
   2  wrong request: arguments, arm file, or an output that cannot be written
-  3  no equilibrium at the start, or the path ends at a limit of the arm inside the range (the points
-     before it are written); standard error says why and where
+  3  no equilibrium at the start, or a limit of the arm inside the range;
+     standard error says which and where, and the points before it are written
   1  any other error";
 
 /// Follows equilibria while one parameter varies: around limit points, where the parameter turns back, and past

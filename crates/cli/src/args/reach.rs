@@ -45,7 +45,7 @@ pub(crate) struct ReachArgs {
     /// Follow the targets of a CSV file with columns x_m,y_m (or x_mm,y_mm) and optionally angle_deg; - is standard input
     #[arg(long, value_name = "FILE", group = "what")]
     pub(crate) path: Option<PathBuf>,
-    /// Trace the boundary of the tip's workspace: tensions at their bounds, folds, and tensions without equilibrium
+    /// Trace the boundary of the tip's workspace: tensions at their bounds, singularities, and the last equilibria
     #[arg(long, group = "what")]
     pub(crate) boundary: bool,
     /// Target angle of the section, from e1, deg [default: any]

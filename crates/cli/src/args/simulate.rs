@@ -11,8 +11,8 @@ const EXIT: &str = "\
 Exit status:
   0  the motion was found up to the end
   2  wrong request: arguments, arm file, loads, or an output that cannot be written
-  3  no equilibrium to start from, or the motion ends before its time (all before is written);
-     standard error says why, when and where
+  3  no equilibrium to start from, or the motion ends early;
+     standard error says why, when and where, and the rows before are written
   1  any other error";
 
 /// Moves the arm in time: it starts at rest, in equilibrium under the loads at t = 0, and follows what changes.
@@ -21,10 +21,10 @@ Exit status:
 #[command(long_about = "\
 Moves the arm in time: it starts at rest, in equilibrium under the loads at t = 0, and follows what changes.
 
-The loads file is CSV with the column t_s and columns named as the keys of --vary of `hydrostat path`, such as
-cable[0].tension, flow.speed or tip.force[1], in SI units, angles in degrees. Straight lines join the rows; two rows
-at one time are a jump, so that a first pair at t = 0 is a release. Added mass, viscosity of the material and
-whether there is inertia are in the table [dynamics] of the arm file.")]
+The loads file is a CSV table with the column t_s and columns named by keys of the arm file, such as \
+cable[0].tension, flow.speed or tip.force[1], in SI units, angles in degrees; a head may have a unit, as in \
+cable_0_tension_mN. Straight lines join the rows. Two rows at one time are a jump; such a pair at t = 0 is a \
+release. The table [dynamics] of the arm file sets added mass, viscosity of the material and inertia.")]
 #[command(after_help = format!("\
 Examples:
   hydrostat simulate silicone --input loads.csv --until 2s --every 10ms --tol 1e-4 -o out.csv
@@ -50,17 +50,17 @@ pub(crate) struct SimulateArgs {
     /// End of the motion, s
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub(crate) until: f64,
-    /// Time between rows, s; a hundredth of the whole if not given
+    /// Time between rows, s [default: a hundredth of --until]
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub(crate) every: Option<f64>,
     /// Tolerance on the tip position, relative to the arm's length, from 1e-9 to 1e-2
     #[arg(long, value_name = "TOL", default_value = "1e-4", allow_hyphen_values = true)]
     pub(crate) tol: f64,
-    /// Elements of the mesh along the arm; by the tolerance if not given
+    /// Elements of the mesh along the arm [default: by the tolerance]
     #[arg(long, value_name = "N")]
     pub(crate) elements: Option<usize>,
-    /// text: the end and what it took; json: all rows in one document; csv: one row per time. Default: by the ending of
-    /// the output, csv with another one, text without
+    /// text: the end of the motion; json: all rows in one document; csv: one row per time [default: by the ending of
+    /// --output, else csv; text without --output]
     #[arg(long, value_name = "FORMAT", value_enum)]
     pub(crate) format: Option<MotionFormat>,
     /// Write the rows to FILE; CSV grows as the motion goes on

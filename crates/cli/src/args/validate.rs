@@ -8,7 +8,8 @@ const EXIT: &str = "\
 Exit status:
   0  all checks hold
   1  a check fails; the report is written and names it
-  2  wrong request: arguments, a directory that cannot be written, or a --peers file that cannot be read";
+  2  wrong request: arguments, a directory that cannot be written,
+     or a --peers file that cannot be read";
 
 /// Runs all validation checks and writes a report with numbers and plots.
 ///

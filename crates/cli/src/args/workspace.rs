@@ -13,7 +13,7 @@ Exit status:
   3  there is no equilibrium without tensions
   1  any other error";
 
-/// Traces the boundary of the tip's workspace: tensions at their bounds, folds, and tensions without equilibrium.
+/// Traces the boundary of the tip's workspace: tensions at their bounds, singularities, and the last equilibria.
 ///
 /// Each cable has a tension between 0 and its largest. The same as `hydrostat reach ARM --boundary`.
 #[derive(Debug, ClapArgs)]

@@ -53,9 +53,9 @@ fn summary(arm: &Arm, found: &Boundary) -> String {
     let head = ["pieces", "points", "kind of boundary"].map(str::to_owned).to_vec();
     let mut rows = vec![head];
     for (kind, words) in [
-        (BoundaryKind::Edge(0), "all cables except one at a bound"),
-        (BoundaryKind::Fold([0; 2]), "two cables move the tip along the same line"),
-        (BoundaryKind::Limit([0; 2]), "no equilibrium beyond"),
+        (BoundaryKind::Edge(0), "edge: all cables except one at a bound"),
+        (BoundaryKind::Fold([0; 2]), "singularity: two cables move the tip along the same line"),
+        (BoundaryKind::Limit([0; 2]), "limit: no equilibrium beyond"),
     ] {
         let is = |piece: &&BoundaryPiece| std::mem::discriminant(&piece.kind) == std::mem::discriminant(&kind);
         let own: Vec<&BoundaryPiece> = found.pieces.iter().filter(is).collect();

@@ -11,7 +11,7 @@ use crate::output;
 use crate::request;
 
 pub(crate) fn run(args: &CheckArgs) -> anyhow::Result<()> {
-    let arm = request::arm_anywhere(&request::arm_file(&args.arm)?)?;
+    let arm = request::arm_in_space(&args.arm)?;
     let mut out = String::new();
     let _ = writeln!(out, "# {}: a valid arm. In full, in SI units and degrees:\n", arm.name);
     out.push_str(&arm_to_toml(&arm));
@@ -33,7 +33,7 @@ fn cauchy(out: &mut String, arm: &Arm) {
     };
     let _ = writeln!(
         out,
-        "# Cauchy number Ca = 1/2 rho C_n D U^2 L^3 / (C3 A), {law}; the stream bends the arm from Ca = 1 on:"
+        "# Cauchy number Ca = 1/2 rho C_n D U^2 L^3 / (C3 A), {law}; above Ca = 1 the stream bends the arm noticeably:"
     );
     for (place, s) in [("at the base", 0.0), ("at half length", 0.5 * arm.length)] {
         let radius = arm.radius.at(s, arm.length).value;
@@ -56,12 +56,12 @@ fn weight(out: &mut String, arm: &Arm) {
     }
     out.push_str(
         "# The arm has weight, and model.volume is \"planar\", the law of the source's figure. Rubber and muscle keep the volume of a\n\
-         # round section: for a real arm take \"circular\".\n",
+         # round section: use \"circular\" for a real arm.\n",
     );
     if arm.readings.displaced == Displaced::Section && arm.flow.density > 0.0 {
         out.push_str(
-            "# model.displaced is \"section\": the water displaced grows with the section, so that the arm may float as its cables pull;\n\
-             # by \"volume\" it stays what it is.\n",
+            "# model.displaced is \"section\": the water displaced grows with the section, so that the arm can float when its cables pull;\n\
+             # with \"volume\" it is constant.\n",
         );
     }
 }
@@ -70,13 +70,13 @@ fn tension_limits(out: &mut String, arm: &Arm) {
     if arm.cables.is_empty() {
         return;
     }
-    let _ = writeln!(out, "# The most tension that the arm carries in still water without other loads:");
+    let _ = writeln!(out, "# Largest tension that the arm carries, in still water without other loads:");
     for (who, limit) in limits(arm) {
         let text = match limit {
             Limit::Reached { tension, why, s: Some(s) } => {
-                format!("{} N, then {why} at s = {} mm", number(tension), number(1e3 * s))
+                format!("{} N; beyond it {why}, at s = {} mm", number(tension), number(1e3 * s))
             }
-            Limit::Reached { tension, why, s: None } => format!("{} N, then {why}", number(tension)),
+            Limit::Reached { tension, why, s: None } => format!("{} N; beyond it {why}", number(tension)),
             Limit::NoneBelow(tension) => format!("no limit below {} N", number(tension)),
             Limit::Unknown(tension) => format!("not established; shapes were found up to {} N", number(tension)),
         };

@@ -18,7 +18,7 @@ use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &EquilibriaArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm)?;
+    let arm = request::arm(&args.arm, "`hydrostat equilibria`")?;
     check_quantity(&arm, args.quantity)?;
     if let Some(Over { varied, .. }) = &args.over {
         varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--over", e))?;

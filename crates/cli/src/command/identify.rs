@@ -27,7 +27,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         return Err(WrongRequest::InputTwice(["ARM", "DATA"]).into());
     }
     let file = request::overridden(&args.arm)?;
-    let arm = request::arm_of(&file)?;
+    let arm = request::arm_of(&file, "`hydrostat identify`")?;
     // Told before anything is measured.
     if let Some(cable) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
         return Err(SensitivityError::Friction(cable).into());
@@ -198,7 +198,10 @@ fn together(found: &Fit) -> String {
         rows.push(cells);
     }
     out.push_str(&table(&rows, 0));
-    out.push_str("\nsingular value: change of all measured values, in standard deviations, for a unit of the combination beside it (parameters relative to their scales)\n");
+    out.push_str(
+        "\nsingular value: change of all measured values, in standard deviations, per unit of the combination in its row (parameters \
+         relative to their scales)\n",
+    );
     let mut head = vec!["value".to_owned()];
     head.extend(names);
     let mut rows = vec![head];
@@ -216,10 +219,10 @@ fn predictions(cases: &[Case], found: &Fit) -> String {
         return String::new();
     }
     let mut out =
-        "\nresiduals of each load case, root mean square in standard deviations: in the fit, and predicted from the other cases\n"
+        "\nresiduals of each load case, root mean square in standard deviations: in the fit, and when predicted from the other cases\n"
             .to_owned();
     let mut head = ["case", "fit", "predicted"].map(str::to_owned).to_vec();
-    head.extend(found.estimates.iter().map(|one| format!("{} moves (sd)", one.fitted.parameter)));
+    head.extend(found.estimates.iter().map(|one| format!("{} shift (sd)", one.fitted.parameter)));
     let mut rows = vec![head];
     for one in &found.left_out {
         let mut row = vec![cases[one.case].name.clone(), format!("{:.2}", one.within)];

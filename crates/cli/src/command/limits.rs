@@ -21,8 +21,8 @@ pub(super) enum Limit {
 /// Each group of cables and its limit.
 pub(super) fn limits(arm: &Arm) -> Vec<(String, Limit)> {
     let mut groups: Vec<(String, Vec<usize>)> =
-        arm.cables.iter().enumerate().map(|(i, c)| (format!("{} alone", c.name), vec![i])).collect();
-    for (name, sign) in [("all of the left side, each", 1.0), ("all of the right side, each", -1.0)] {
+        arm.cables.iter().enumerate().map(|(i, c)| (format!("cable {} alone", c.name), vec![i])).collect();
+    for (name, sign) in [("all cables on the left, each", 1.0), ("all cables on the right, each", -1.0)] {
         let side: Vec<usize> = (0..arm.cables.len()).filter(|i| sign * side_of(arm, *i) > 0.0).collect();
         if side.len() > 1 {
             groups.push((name.to_owned(), side));

@@ -12,7 +12,7 @@ use crate::output;
 use crate::request;
 
 pub(crate) fn run(args: &ModesArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm)?;
+    let arm = request::arm(&args.arm, "`hydrostat modes`")?;
     request::check_outputs(&[request::arm_input(&args.arm.file)], &[("-o", args.output.as_deref())])?;
     let modes = arm.modes(args.count, args.elements).map_err(refused)?;
     let text = match args.format {
@@ -24,7 +24,7 @@ pub(crate) fn run(args: &ModesArgs) -> anyhow::Result<()> {
 
 fn summary(arm: &Arm, modes: &Modes) -> String {
     let mut out = format!("modes  {}\n\n", arm.name);
-    let heads = ["mode", "rate 1/s", "swing rad/s", "frequency Hz", "damping ratio", ""];
+    let heads = ["mode", "growth rate (1/s)", "angular frequency (rad/s)", "frequency (Hz)", "damping ratio", "kind"];
     let mut rows = vec![heads.map(str::to_owned).to_vec()];
     for (k, mode) in modes.modes.iter().enumerate() {
         let numbers = [mode.rate[0], mode.rate[1], mode.frequency(), mode.damping_ratio()].map(number);
@@ -34,7 +34,8 @@ fn summary(arm: &Arm, modes: &Modes) -> String {
         rows.push(row);
     }
     out.push_str(&table(&rows, 1));
-    let words = if modes.is_stable() { "none of these motions grows" } else { "the equilibrium is unstable" };
+    let words =
+        if modes.is_stable() { "stable: none of these motions grows" } else { "UNSTABLE: a small motion grows" };
     let _ = writeln!(out, "\n{words}");
     out
 }

@@ -14,7 +14,7 @@ use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm)?;
+    let arm = request::arm(&args.arm, "`hydrostat path`")?;
     let varied = &args.vary;
     varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--vary", e))?;
     check_quantity(&arm, args.quantity)?;
@@ -188,7 +188,7 @@ fn stability_along(branch: &Branch) -> &'static str {
     } else if regular().any(|p| p.stability == Some(Stability::Stable)) {
         "stable in part"
     } else {
-        "not known to be stable anywhere"
+        "no point established as stable"
     }
 }
 
@@ -231,7 +231,7 @@ fn say_ends(path: &Path, varied: &Varied) -> anyhow::Result<()> {
         match branch.end {
             PathEnd::ReachedEnd => {}
             PathEnd::Limit { .. } if index == 0 => {}
-            PathEnd::MostPoints => eprintln!("note: {what}: {message}; --max-points allows more"),
+            PathEnd::MostPoints => eprintln!("note: {what}: {message}; raise it with --max-points"),
             PathEnd::ReachedStart | PathEnd::Stopped | PathEnd::Limit { .. } => eprintln!("note: {what}: {message}"),
         }
     }

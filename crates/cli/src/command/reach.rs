@@ -20,7 +20,8 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
     if input::is_standard(&args.arm.file) && args.path.as_ref().is_some_and(input::is_standard) {
         return Err(WrongRequest::InputTwice(["ARM", "--path"]).into());
     }
-    let arm = request::arm(&args.arm)?;
+    let command = if args.boundary { "`hydrostat workspace`" } else { "`hydrostat reach`" };
+    let arm = request::arm(&args.arm, command)?;
     let inputs = [request::arm_input(&args.arm.file), args.path.as_deref().map(|path| ("--path", path))];
     request::check_outputs(&inputs, &[("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())])?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
@@ -62,7 +63,7 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
 
 /// By how much the closest misses.
 fn miss(arm: &Arm, closest: &Reached) -> String {
-    format!("the closest shape that was found misses it by {} mm", number(1e3 * closest.distance * arm.length))
+    format!("the closest shape that was found is {} mm away", number(1e3 * closest.distance * arm.length))
 }
 
 /// Misses up to this, over L, are those of a target that was rounded.

@@ -19,7 +19,7 @@ use crate::request;
 const MOST_ROWS: f64 = 1e7;
 
 pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm)?;
+    let arm = request::arm(&args.arm, "`hydrostat simulate`")?;
     let loads = args.input.as_deref().map(|file| ("--input", file));
     let pictures = [("--plot", args.plot.as_deref()), ("--plot-time", args.plot_time.as_deref())];
     let outputs = [("-o", args.output.as_deref()), pictures[0], pictures[1]];

@@ -2,10 +2,10 @@
 
 use hydrostat::{
     AfterSnapError, Arm, ArmError, Configuration, NoEquilibrium, Options, SnapMotion, SolveError, Solver, Stability,
-    VerdictKind,
+    Verdict, VerdictKind,
 };
 use hydrostat_figures::{arm_figure, last_good_note};
-use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, likeliest_slip, stations_csv};
+use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, likeliest_slip, stations_csv, unit_slips};
 
 use super::Advised;
 use super::summary::summary;
@@ -21,7 +21,14 @@ pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
         }
         return super::solve_spatial::run(args, &arm);
     }
-    let mut solver = Solver::new(&arm, Options { tol: args.tol, snaps: args.snaps.bounds() })?;
+    let options = Options { tol: args.tol, snaps: args.snaps.bounds() };
+    let mut solver = Solver::new(&arm, options).map_err(|error| match error {
+        SolveError::Option { option, value, expected } => {
+            let message = format!("--{option}: expected a number {expected}, found {value}");
+            anyhow::Error::new(error).context(message)
+        }
+        other => other.into(),
+    })?;
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
@@ -60,7 +67,7 @@ fn report_error(args: &SolveArgs, arm: &Arm, error: SolveError) -> anyhow::Resul
             if let Some(others) = others {
                 eprintln!("note: {}", others_message(others));
             }
-            let advice = slip(arm, failure.verdict.kind);
+            let advice = slip(arm, &failure.verdict);
             Err(Advised::with(SolveError::NoEquilibrium(failure), advice))
         }
         error => Err(error.into()),
@@ -138,12 +145,14 @@ fn beyond(failure: &NoEquilibrium) -> Option<String> {
     Some(format!("{}; {leads}", snap.message()))
 }
 
-/// What to look at where no limit of the arm was established: more often than not, a number is not in its unit.
-fn slip(arm: &Arm, kind: VerdictKind) -> Option<String> {
-    if kind != VerdictKind::NotFound {
-        return None;
+/// Advice about the units, which comes first: where no limit of the arm was established, and where a number looks like
+/// a slip, a unit is mostly wrong.
+pub(super) fn slip(arm: &Arm, verdict: &Verdict) -> Option<String> {
+    if verdict.kind == VerdictKind::NotFound {
+        return likeliest_slip(arm).map(|slip| format!("look at the units first: {slip}"));
     }
-    likeliest_slip(arm).map(|slip| format!("look at the units first: {slip}"))
+    let slip = unit_slips(arm).into_iter().next()?;
+    Some(format!("look at the units first: {slip} If the unit is right: {}", verdict.advice()))
 }
 
 /// The equilibria that the path does not lead to, where it turns back: looked for with no finer tolerance than a count needs.

@@ -9,7 +9,9 @@ use hydrostat::{
 use hydrostat_figures::{last_good_note, spatial_arm_figure};
 use hydrostat_files::{Note, SpatialFailureDocument, SpatialSolutionDocument, number, spatial_stations_csv};
 
-use super::summary::{cable_rows, signed, stability_in_words};
+use super::Advised;
+use super::solve::slip;
+use super::summary::{cable_rows, signed, stability_in_words, work};
 use crate::args::{Format, SolveArgs};
 use crate::output;
 use crate::request;
@@ -23,7 +25,8 @@ pub(super) fn run(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
         Ok(configuration) => report(args, configuration),
         Err(SpatialError::NoEquilibrium(failure)) => {
             report_failure(args, *failure.clone())?;
-            Err(SpatialError::NoEquilibrium(failure).into())
+            let advice = slip(arm, &failure.verdict);
+            Err(Advised::with(SpatialError::NoEquilibrium(failure), advice))
         }
         Err(error) => Err(error.into()),
     }
@@ -113,14 +116,7 @@ fn summary(c: &SpatialConfiguration) -> String {
         &format!("{:.3}, least at s = {} mm (the surface folds at 0)", fold.value, number(1e3 * fold.s)),
     );
     row("tip error", &format!("about {:.1e} mm", 1e3 * c.error_estimate));
-    let s = &c.statistics;
-    row(
-        "work",
-        &format!(
-            "{} elements of {} stages, {} Newton rounds on {} meshes, {} load steps, {} sections",
-            s.elements, s.stages, s.newton_rounds, s.meshes, s.load_steps, s.evaluations
-        ),
-    );
+    row("work", &work(&c.statistics));
     out
 }
 

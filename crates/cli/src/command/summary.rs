@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{CableState, Configuration, Stability, Wrench};
+use hydrostat::{CableState, Configuration, Stability, Statistics, Wrench};
 use hydrostat_files::number;
 
-use super::table::decimals;
+use super::table::{counted, decimals};
 
 /// What is known of the stability of `c`, in words.
 pub(super) fn stability(c: &Configuration) -> Option<String> {
@@ -54,21 +54,21 @@ pub(super) fn summary(c: &Configuration) -> String {
     let place = format!("{:.2e}", 1e3 * fold.s).parse().unwrap_or(1e3 * fold.s);
     row("fold margin", &format!("{:.3}, least at s = {place} mm (the surface folds at 0)", fold.value));
     row("tip error", &format!("about {:.1e} mm", 1e3 * c.error_estimate));
-    let s = &c.statistics;
-    row(
-        "work",
-        &format!(
-            "{} elements of {} stages, {} Newton rounds on {} {}, {}, {} sections",
-            s.elements,
-            s.stages,
-            s.newton_rounds,
-            s.meshes,
-            if s.meshes == 1 { "mesh" } else { "meshes" },
-            if s.load_steps == 0 { "no load steps".to_owned() } else { format!("{} load steps", s.load_steps) },
-            s.evaluations
-        ),
-    );
+    row("work", &work(&c.statistics));
     out
+}
+
+/// What a solve took.
+pub(super) fn work(s: &Statistics) -> String {
+    format!(
+        "{} elements of {} stages, {} on {}, {}, {} sections",
+        s.elements,
+        s.stages,
+        counted(s.newton_rounds, "Newton round"),
+        if s.meshes == 1 { "1 mesh".to_owned() } else { format!("{} meshes", s.meshes) },
+        if s.load_steps == 0 { "no load steps".to_owned() } else { counted(s.load_steps, "load step") },
+        s.evaluations
+    )
 }
 
 /// A line a cable.
@@ -76,15 +76,19 @@ pub(super) fn cable_rows(cables: &[CableState]) -> Vec<String> {
     let widest = cables.iter().map(|cable| cable.name.chars().count()).max().unwrap_or(0);
     let row = |cable: &CableState| {
         let mut text = format!(
-            "{:widest$}  tension {} N, length {:.3} mm, reeled in by {:.3} mm",
+            "{:widest$}  tension {} N, length {:.3} mm, stroke {:.3} mm",
             cable.name,
             number(cable.tension),
             1e3 * cable.length,
             1e3 * cable.stroke + 0.0
         );
         if let Some(command) = cable.command.filter(|command| command.slack) {
-            let _ =
-                write!(text, " (slack: {:.3} mm of cable, for {:.3} mm)", 1e3 * command.length, 1e3 * command.stroke);
+            let _ = write!(
+                text,
+                " (slack: commanded stroke {:.3} mm, {:.3} mm of cable)",
+                1e3 * command.stroke,
+                1e3 * command.length
+            );
         }
         text
     };

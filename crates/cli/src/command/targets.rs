@@ -23,8 +23,7 @@ pub(super) fn far_off(arm: &Arm, target: &Target) -> Option<String> {
     (lengths > FAR).then(|| {
         let [far, x, y] = [lengths, target.x, target.y].map(number);
         format!(
-            "\"{x} mm,{y} mm\", or in a file the columns x_mm,y_mm, if millimetres are meant: ({x}, {y}) m is {far} lengths of the arm \
-             from its base"
+            "if you mean millimetres, write \"{x} mm,{y} mm\", in a file the heads x_mm,y_mm: ({x}, {y}) m is {far} arm lengths from the base"
         )
     })
 }

@@ -22,7 +22,7 @@ fn a_stroke_takes_the_place_of_a_tension() {
 fn a_slack_cable_is_called_slack() {
     let slack = "cable[1].stroke=\"-30 mm\"";
     let run = solved(&["solve", "silicone", "--set", LEFT, "--set", slack]);
-    assert!(run.out.contains("slack: ") && run.out.contains("for -30.000 mm"), "{}", run.out);
+    assert!(run.out.contains("(slack: commanded stroke -30.000 mm, 275.033 mm of cable)"), "{}", run.out);
 }
 
 #[test]

@@ -149,7 +149,7 @@ fn check_says_which_volume_law_a_weight_asks_for() {
         std::fs::write(directory.path().join("heavy.toml"), format!("{heavy}[model]\n{model}\n")).unwrap();
         let run = hydrostat_in(directory.path(), &["check", "heavy.toml"]);
         assert_eq!(run.code, 0, "{}", run.err);
-        [run.out.contains("for a real arm take \"circular\""), run.out.contains("may float")]
+        [run.out.contains("use \"circular\" for a real arm"), run.out.contains("can float")]
     };
     assert_eq!(says(""), [true, false]);
     assert_eq!(says("displaced = \"section\""), [true, true]);

@@ -138,7 +138,11 @@ fn a_start_without_equilibrium_ends_with_status_3() {
     measure(here.path());
     let run = hydrostat_in(here.path(), &identify("young=10 kPa", &[]));
     assert_eq!((run.code, run.out.as_str()), (3, ""), "{}", run.err);
-    assert!(run.err.contains("case pulled has no equilibrium at the start values: a cable folds"), "{}", run.err);
+    assert!(
+        run.err.contains("case pulled has no equilibrium at the start values: a cable compresses its side"),
+        "{}",
+        run.err
+    );
 }
 
 /// The words of a command, with those in quotes as one.

@@ -113,7 +113,7 @@ fn a_limit_inside_the_range_ends_the_path_and_keeps_what_was_found() {
     let drawn: Vec<&str> = args.into_iter().chain(["--plot", "path.svg", "--plot-shapes", "shapes.svg"]).collect();
     let run = hydrostat_in(here, &drawn);
     assert_eq!((run.code, run.out.as_str()), (3, ""));
-    assert!(run.err.starts_with("error: the path ends inside the range: a cable folds its side"), "{}", run.err);
+    assert!(run.err.starts_with("error: the path ends inside the range: a cable compresses its side"), "{}", run.err);
     assert!(run.err.contains("at cable[0].tension = 0.943"), "{}", run.err);
     assert_eq!(files(here), ["path.json", "path.svg", "shapes.svg"]);
     let document = json(&std::fs::read_to_string(here.join("path.json")).unwrap());
@@ -129,8 +129,8 @@ fn a_limit_inside_the_range_ends_the_path_and_keeps_what_was_found() {
 fn other_ends_are_no_failure_but_said() {
     let run = solved(&turned(&["--max-points", "10"]));
     assert!(run.out.contains("\n10 points"), "{}", run.out);
-    assert!(run.err.starts_with("note: the path ends: the most points allowed were reached at arm.base.angle = "));
-    assert!(run.err.ends_with("; --max-points allows more\n"), "{}", run.err);
+    assert!(run.err.starts_with("note: the path ends: the largest number of points was reached at arm.base.angle = "));
+    assert!(run.err.ends_with("; raise it with --max-points\n"), "{}", run.err);
     // From the limit point the path goes back to where it came from, on another branch.
     let run = solved(&[
         "path",
@@ -142,7 +142,7 @@ fn other_ends_are_no_failure_but_said() {
         "--vary",
         "arm.base.angle=0:20",
     ]);
-    assert!(run.err.contains("note: the path ends: it came back to the start of the range, 0 deg"), "{}", run.err);
+    assert!(run.err.contains("note: the path ends: the path returned to the start of the range, 0 deg"), "{}", run.err);
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn a_start_without_equilibrium_is_a_verdict() {
 fn what_cannot_vary_is_refused() {
     let vary = |text: &str| refused(&["path", "paper", "--vary", text]);
     assert!(vary("cabel[0].tension=0:1").contains("did you mean `cable[0].tension`?"));
-    assert!(vary("arm.length=0.1:0.2").contains("those are cable[0].tension, cable[0].stroke, flow.speed"));
+    assert!(vary("arm.length=0.1:0.2").contains("keys that can: cable[0].tension, cable[0].stroke, flow.speed"));
     assert!(vary("cable[9].tension=0:1").contains("`cable[9].tension`: the arm has 2 cables, counted from 0"));
     assert!(vary("material.young=1e5:1e6").contains("the arm gives c1, c2 and c3"));
     assert!(vary("cable[0].tension=0").contains("expected KEY=FROM:TO"));

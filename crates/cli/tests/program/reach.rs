@@ -46,7 +46,7 @@ fn what_is_out_of_reach_ends_with_status_3_and_the_closest() {
     let run = hydrostat(&reach("0.3,0", &["--format", "json"]));
     assert_eq!(run.code, 3, "{}", run.err);
     assert!(
-        run.err.starts_with("error: the target is not reached: the closest shape that was found misses it by "),
+        run.err.starts_with("error: the target is not reached: the closest shape that was found is "),
         "{}",
         run.err
     );
@@ -123,7 +123,10 @@ fn what_to_try_was_not_said() {
         run.err.lines().find_map(|line| line.strip_prefix("try: ")).unwrap_or_default().to_owned()
     };
     let far = advice(&reach("182,78", &[]));
-    assert!(far.starts_with("\"182 mm,78 mm\"") && far.contains("(182, 78) m is 808."), "{far}");
+    assert!(
+        far.starts_with("if you mean millimetres, write \"182 mm,78 mm\"") && far.contains("(182, 78) m is 808."),
+        "{far}"
+    );
     assert_eq!(advice(&reach("0.3,0", &[])), "", "a little too far is no slip of units");
     let rounded = ["reach", "silicone", "--target", "0.182,0.078", "--angle", "161.665", "--max-tension", "0.6"];
     let near = advice(&rounded);
@@ -136,7 +139,11 @@ fn what_to_try_was_not_said() {
     let here = directory();
     std::fs::write(here.path().join("far.csv"), "x_m,y_m\n0.24,0.01\n182,78\n").unwrap();
     let run = hydrostat_in(here.path(), &along("far.csv", &[]));
-    assert!(run.err.contains("\ntry: \"182 mm,78 mm\", or in a file the columns x_mm,y_mm"), "{}", run.err);
+    assert!(
+        run.err.contains("\ntry: if you mean millimetres, write \"182 mm,78 mm\", in a file the heads x_mm,y_mm"),
+        "{}",
+        run.err
+    );
 }
 
 /// Four of them ended with status 3, and nothing said so.

@@ -35,6 +35,9 @@ fn a_wrong_unit_was_answered_in_silence() {
     }
     let run = solved(&["check", "silicone"]);
     assert_eq!(run.err, "");
+    let run = solved(&["check", "silicone", "--set", "arm.length=300", "--tension", "0.1,0"]);
+    assert_eq!(run.err, "warning: arm.length = 300 m: is it mm?\n");
+    assert!(run.out.contains("\nlength = 300.0\n") && run.out.contains("\ntension = 0.1\n"), "{}", run.out);
 }
 
 #[test]
@@ -100,7 +103,7 @@ fn hints_name_what_was_meant() {
     assert!(refused(&["solve", "silicone", "--set", "E=1e5"]).contains("did you mean `material.young`?"));
     assert!(refused(&["path", "silicone", "--vary", "E=1e5:2e5"]).contains("did you mean `material.young`?"));
     let message = refused(&["path", "silicone", "--vary", "flow.speed=0:1:20"]);
-    assert!(message.contains("found a COUNT behind the range") && message.contains("sweep --vary"), "{message}");
+    assert!(message.contains("found a COUNT after the range") && message.contains("sweep --vary"), "{message}");
     // Both are in mm: a target far away is not what is wrong.
     let run = super::hydrostat(&["reach", "silicone", "--target", "150,-200 mm", "--max-tension", "0.6 N"]);
     assert!(!run.err.contains("millimetres are meant"), "{}", run.err);

@@ -1,6 +1,6 @@
 //! Arms in space.
 
-use super::{columns, directory, hydrostat_in, json, refused, solved};
+use super::{columns, directory, hydrostat, hydrostat_in, json, refused, solved};
 
 #[test]
 fn an_arm_in_space_is_solved_in_every_format() {
@@ -85,13 +85,21 @@ fn what_is_for_arms_in_the_plane_says_so() {
         &["path", "silicone-spatial", "--vary", "flow.speed=0:0.1"][..],
         &["equilibria", "silicone-spatial"],
         &["reach", "silicone-spatial", "--target", "200 mm,50 mm"],
+        &["workspace", "silicone-spatial"],
+        &["identify", "silicone-spatial", "--template"],
+        &["figures", "silicone-spatial"],
     ] {
         let words = refused(args);
-        assert!(words.contains("in the plane") && words.contains("spatial"), "{args:?}: {words}");
+        let start = format!("error: `hydrostat {}` is for arms in the plane", args[0]);
+        assert!(words.starts_with(&start) && words.contains("spatial"), "{args:?}: {words}");
     }
     let words = refused(&["solve", "silicone", "--set", "tip.force=[0, 0, 1]"]);
     assert!(words.contains("tip.force") && words.contains("space = \"spatial\""), "{words}");
     let words = refused(&["solve", "silicone-spatial", "--set", "cable[0].friction=0.1"]);
     assert!(words.contains("cable[0].friction"), "{words}");
     assert!(solved(&["check", "silicone-spatial"]).out.contains("space = \"spatial\""));
+    let unknown = refused(&["solve", "silicon-spatial"]);
+    assert!(unknown.contains("octopus-spatial, silicone-spatial); did you mean `silicone-spatial`?"), "{unknown}");
+    let far = hydrostat(&["solve", "silicone-spatial", "--set", "arm.length=300"]);
+    assert!(far.err.ends_with("try: look at the units first: arm.length = 300 m: is it mm?\n"), "{}", far.err);
 }

@@ -30,7 +30,7 @@ fn text_and_csv_have_nothing_to_say() {
 fn advice_for_a_stroke_was_that_for_a_tension() {
     let run = hydrostat(&["solve", "silicone", "--set", "cable[0].stroke=\"100 mm\""]);
     assert_eq!(run.code, 3, "{}", run.err);
-    assert!(run.err.contains("\ntry: wind in less") && !run.err.contains("lower the tension"), "{}", run.err);
+    assert!(run.err.contains("\ntry: reel in less") && !run.err.contains("lower the tension"), "{}", run.err);
 }
 
 #[test]

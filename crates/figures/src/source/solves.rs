@@ -56,7 +56,7 @@ fn nearest_words(nearest: Option<[f64; 2]>) -> String {
             let tension = format!("{tension:.2e}").parse().unwrap_or(tension);
             format!("the nearest that was found is {angle:.2} deg, at {tension} N")
         }
-        None => "no solve leads to the shapes that have this angle".to_owned(),
+        None => "no solve gives a shape with this angle".to_owned(),
     }
 }
 

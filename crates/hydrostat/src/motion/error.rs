@@ -7,7 +7,7 @@ use crate::statics::verdict::SolveError;
 /// What ended a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum MotionVerdictKind {
-    /// nu - y_i beta mu reaches zero: a cable folds its side of the arm shut.
+    /// nu - y_i beta mu reaches zero: a cable compresses its side of the arm to zero length.
     CableFold,
     /// Net compression crushes the section: nu reaches zero (volume law `none`).
     SectionCrushed,
@@ -34,7 +34,7 @@ impl MotionVerdictKind {
     /// What happens, in a phrase.
     pub fn phrase(self) -> &'static str {
         match self {
-            Self::CableFold => "a cable folds its side of the arm shut",
+            Self::CableFold => "a cable compresses its side of the arm to zero length",
             Self::SectionCrushed => "net compression crushes the section",
             Self::NoSectionSolution => "no section strains carry the contact force",
             Self::NotFound => "no step could be solved, and no physical limit was identified",
@@ -63,7 +63,8 @@ impl MotionVerdict {
     /// use hydrostat::{MotionVerdict, MotionVerdictKind};
     ///
     /// let verdict = MotionVerdict { kind: MotionVerdictKind::CableFold, time: 0.5, s: Some(0.2), step: 1e-9 };
-    /// assert!(verdict.message().starts_with("a cable folds its side of the arm shut at s = 0.2000 m, after 0.5"));
+    /// let words = "a cable compresses its side of the arm to zero length at s = 0.2000 m, after 0.5";
+    /// assert!(verdict.message().starts_with(words));
     /// ```
     pub fn message(&self) -> String {
         let place = self.s.map_or_else(String::new, |s| format!(" at s = {s:.4} m"));

@@ -248,7 +248,7 @@ impl Inputs {
         let wrong = |reason: String| MotionError::Course { key: key.to_owned(), reason };
         let Some(driven) = Driven::read(key) else {
             return Err(wrong(format!(
-                "no quantity of this name can change in time; those are {}",
+                "this key cannot change over time; keys that can: {}",
                 Self::names().join(", ")
             )));
         };

@@ -64,7 +64,7 @@ pub enum Parameter {
 
 /// A name that no parameter has.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{}` is no quantity that a path can vary; those are {}", on_one_line(.name), names().join(", "))]
+#[error("`{}` cannot vary along a path; keys that can: {}", on_one_line(.name), names().join(", "))]
 pub struct UnknownParameter {
     /// The name given.
     pub name: String,

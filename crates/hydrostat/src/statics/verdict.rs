@@ -5,10 +5,10 @@ use crate::statics::snap::Snap;
 
 pub use crate::statics::phase::Phase;
 
-/// Which physical limit was met on the way from the unloaded arm to the loads asked for.
+/// The physical limit that was met on the way from the unloaded arm to the requested loads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum VerdictKind {
-    /// nu - y_i beta mu reaches zero: a cable folds its side of the arm shut.
+    /// nu - y_i beta mu reaches zero: a cable compresses its side of the arm to zero length.
     CableFold,
     /// Net compression crushes the section: nu reaches zero (volume law `none`).
     SectionCrushed,
@@ -39,7 +39,7 @@ impl VerdictKind {
     /// What happens, in a phrase.
     pub fn phrase(self) -> &'static str {
         match self {
-            Self::CableFold => "a cable folds its side of the arm shut",
+            Self::CableFold => "a cable compresses its side of the arm to zero length",
             Self::SectionCrushed => "net compression crushes the section",
             Self::NoSectionSolution => "no section strains carry the contact force",
             Self::LimitPoint => "the equilibrium ends in a limit point",
@@ -60,11 +60,11 @@ pub struct Verdict {
     pub load_fraction: f64,
     /// Where along the arm (m), if the limit is local.
     pub s: Option<f64>,
-    /// The last Newton correction when the solver stopped: the largest change of an angle, in rad. It is no residual of
-    /// the equations, which no verdict has; its name in results is older than what it is.
+    /// The last Newton correction when the solver stopped: the largest change of an angle, in rad. It is not a residual
+    /// of the equations; the name in results is kept for compatibility.
     pub residual: f64,
-    /// The evaluations of the section law that were made (those of arms with many cables count for more), where the
-    /// solver stopped because a solve may take no more.
+    /// The evaluations of the section law (those of arms with many cables or friction count more), if the solver
+    /// stopped at the limit for one solve.
     pub spent: Option<usize>,
 }
 
@@ -75,7 +75,7 @@ impl Verdict {
         let load = self.phase.load_at(self.load_fraction);
         if let Some(spent) = self.spent {
             return format!(
-                "no equilibrium was found beyond {load}, within {spent} evaluations of the section law, the most that one solve may make \
+                "no equilibrium was found beyond {load}, within {spent} evaluations of the section law, the limit for one solve \
                  (last correction {:.1e} rad)",
                 self.residual
             );
@@ -97,14 +97,14 @@ impl Verdict {
     /// What to try.
     pub fn advice(&self) -> &'static str {
         if self.spent.is_some() {
-            return "run `hydrostat check` on the file and look for a wrong unit, or for loads far beyond what the arm carries";
+            return "look for a wrong unit, or for loads far above the tension limits of the arm: `hydrostat check` prints both";
         }
         match self.kind {
             VerdictKind::CableFold if self.phase == Phase::Stroke => {
-                "wind in less, move the cable towards the centreline near that place, or stiffen the section there"
+                "reel in less, move the cable towards the centreline near that place, or stiffen the section there"
             }
             VerdictKind::SectionCrushed if self.phase == Phase::Stroke => {
-                "wind in less or stiffen the section; the volume law `none` does not conserve volume"
+                "reel in less or stiffen the section; the volume law `none` does not conserve volume"
             }
             VerdictKind::CableFold => {
                 "lower the tension, move the cable towards the centreline near that place, or stiffen the section there"
@@ -113,7 +113,7 @@ impl Verdict {
                 "lower the tensions or stiffen the section; the volume law `none` does not conserve volume"
             }
             VerdictKind::NoSectionSolution => {
-                "lower the flow speed or the axial load, or stiffen the section: the section law softens in tension (`planar` peaks at a stretch of 2)"
+                "lower the flow speed or the axial load, or stiffen the section: the section law softens in tension (the axial force of `planar` has its maximum at a stretch of 2)"
             }
             VerdictKind::LimitPoint => {
                 "stay below that load, or ask for the shape after the snap (`--after-snap` by its motion, `--follow-snaps` along the curve); `hydrostat path` and `hydrostat equilibria` show the shapes beyond it"
@@ -121,12 +121,14 @@ impl Verdict {
             VerdictKind::LoadJump => {
                 "set `flow_surface = \"centreline\"` and `entering_speed = \"tangential\"`, with which the load is continuous"
             }
-            VerdictKind::NotFound => "check the units, loosen the tolerance, or apply the loads in smaller steps",
+            VerdictKind::NotFound => {
+                "check the units (`hydrostat check`), use a looser tolerance, or approach the loads with `hydrostat path`"
+            }
         }
     }
 }
 
-/// Why a solve gives no configuration at the loads asked for.
+/// Why a solve gives no configuration at the requested loads.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum SolveError {
     /// The numbers do not make an arm.
@@ -161,7 +163,7 @@ pub struct NoEquilibrium {
     pub snaps: Vec<Snap>,
     /// With such a verdict: the shape that the arm snaps to, at the loads of the limit point.
     pub after_snap: Option<Configuration>,
-    /// With such a verdict: the shape at whole loads, if the path leads there. [`crate::Options::snaps`] without bounds
-    /// gives it as an answer.
+    /// With such a verdict: the shape at the full loads, if the path continues to them. [`crate::Options::snaps`]
+    /// without bounds gives it as an answer.
     pub at_full_loads: Option<Configuration>,
 }

@@ -35,7 +35,7 @@ pub enum Warning {
     SealedCavity,
     /// The arm snaps on the way to its loads, no further than [`crate::Options::snaps`] lets it.
     Snap(Snap),
-    /// The answer hangs on the tangential load of the source's momentum law.
+    /// The answer depends strongly on the tangential load of the source's momentum law.
     TangentialLoad {
         /// C_t that the law corresponds to along the stream: 4/9, or 8/15 with [`crate::LayerMean::Momentum`].
         ct: f64,

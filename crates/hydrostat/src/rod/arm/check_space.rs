@@ -29,7 +29,7 @@ impl Arm {
                 let b = unit("arm.base.section", section)?;
                 let along: f64 = (0..3).map(|k| a[k] * b[k]).sum();
                 if along.abs() > 1.0 - 1e-12 {
-                    let why = "must not be parallel to `arm.base.direction`";
+                    let why = "is parallel to `arm.base.direction`";
                     return Err(ArmError::Direction { key: "arm.base.section", why });
                 }
             }
@@ -105,7 +105,7 @@ fn unit(key: &'static str, direction: [f64; 3]) -> Result<[f64; 3], ArmError> {
     }
     let largest = direction.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     if largest == 0.0 {
-        return Err(ArmError::Direction { key, why: "must have a length: a direction of zeros is none" });
+        return Err(ArmError::Direction { key, why: "is the zero vector" });
     }
     let scaled = direction.map(|v| v / largest);
     let norm = scaled.iter().map(|v| v * v).sum::<f64>().sqrt();

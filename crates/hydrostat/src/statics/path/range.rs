@@ -168,8 +168,8 @@ pub enum PathError {
     Support,
     /// Cables whose stroke is commanded, where all equilibria are asked for.
     #[error(
-        "cable `{cable}` has a commanded stroke: the equilibria for all angles of the base are one curve at given tensions \
-         only; give it the tension that `solve` finds"
+        "cable `{cable}` has a commanded stroke: the equilibria for all base angles are one curve at given tensions \
+         only; set the tension that `solve` finds"
     )]
     Stroke {
         /// The first such cable's name.
@@ -177,7 +177,7 @@ pub enum PathError {
     },
     /// Cables that rub: what they carry depends on how they slid.
     #[error(
-        "cable `{cable}` has friction, so that its tension depends on the way it came: paths are of cables without"
+        "cable `{cable}` has friction, so that its tension depends on the history of loading; paths need cables without friction"
     )]
     Friction {
         /// The first such cable's name.

@@ -14,10 +14,10 @@ pub enum SensitivityError {
     #[error(transparent)]
     Unfit(#[from] Unfit),
     /// The tension of a cable whose stroke is commanded.
-    #[error("`cable[{0}].tension` follows from the stroke that is commanded of the cable")]
+    #[error("`cable[{0}].tension` follows from the commanded stroke of the cable")]
     Commanded(usize),
     /// The stroke of a cable whose tension is given.
-    #[error("`cable[{0}].stroke` follows from the tension of the cable: command it to differentiate by it")]
+    #[error("`cable[{0}].stroke` follows from the tension of the cable; command the stroke to get this derivative")]
     NotCommanded(usize),
     /// A place off the arm.
     #[error("there is no station at {s} m: the arm is {length} m long")]
@@ -29,8 +29,8 @@ pub enum SensitivityError {
     },
     /// A cable that rubs, by its index: which way it slides decides what a change does.
     #[error(
-        "`cable[{0}].friction` is above 0: which way the cable slides decides what a change does, so that there is no one \
-         derivative; with 0 there is"
+        "`cable[{0}].friction` is above 0: the effect of a change depends on the direction in which the cable slides, so that \
+         there is no single derivative; set the friction to 0"
     )]
     Friction(usize),
     /// The support option whose arm is no equilibrium at the tip.
@@ -40,7 +40,7 @@ pub enum SensitivityError {
     #[error("the equilibrium is at a limit point or a bifurcation, where it has no derivative")]
     Singular,
     /// The rounds do not settle.
-    #[error("the equilibrium could not be settled closely enough: rounds still move it by {0:e}")]
+    #[error("the equilibrium is not accurate enough for derivatives: the last correction was {0:e}")]
     Unsettled(f64),
 }
 
