@@ -63,7 +63,7 @@ pub struct Verdict {
     /// The last Newton correction when the solver stopped: the largest change of an angle, in rad. It is not a residual
     /// of the equations; the name in results is kept for compatibility.
     pub residual: f64,
-    /// The evaluations of the section law (those of arms with many cables or friction count more), if the solver
+    /// The evaluations of the section law (those of arms with many cables count more), if the solver
     /// stopped at the limit for one solve.
     pub spent: Option<usize>,
 }

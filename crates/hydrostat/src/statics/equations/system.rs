@@ -186,9 +186,7 @@ impl Equations {
 
     /// Pieces of work that an evaluation of a station is.
     pub(crate) fn work(&self) -> usize {
-        // Measured: with friction, two thirds of the time goes into the turns of the cables.
-        let friction = if self.arm.rubs() { 3 } else { 1 };
-        self.arm.cost_factor() * friction
+        self.arm.cost_factor()
     }
 
     pub(crate) fn stations(&self) -> &[f64] {
