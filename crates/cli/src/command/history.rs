@@ -14,7 +14,7 @@ use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &HistoryArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm)?;
+    let arm = request::arm(&args.arm, "`hydrostat history`")?;
     check_quantity(&arm, args.quantity)?;
     let inputs = [request::arm_input(&args.arm.file), Some(("--input", args.input.as_path()))];
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
