@@ -291,6 +291,7 @@ class Sweep:
         snaps: _Bounds,
         columns: Sequence[str] | None,
         shapes: int,
+        after_snap: bool,
     ) -> Sweep: ...
     @property
     def rows(self) -> int: ...

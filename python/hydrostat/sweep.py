@@ -28,7 +28,7 @@ Values = Union[str, float, Sequence[float], Sequence[str], "NDArray[np.generic]"
 _COLUMN = re.compile(r"(?P<name>.+?)(_(?P<index>\d+))?(_(?P<unit>m|rad|N|Nm))?$")
 _UNITS = {"Nm": "N m"}
 #: Numbers of a row that are not of cables or stations, all columns together.
-_NUMBERS = {"plane": 18, "space": 30}
+_NUMBERS = {"plane": 23, "space": 35}
 #: What is held of a station, as columns and put together of them.
 _OF_STATIONS = {"plane": 6, "space": 18}
 _ENDINGS = (".parquet", ".csv")
@@ -45,6 +45,7 @@ class Plan(NamedTuple):
     snaps: tuple[float, float]
     columns: tuple[str, ...] | None
     shapes: int
+    after_snap: bool = False
 
     def native(self) -> _native.Sweep:
         """The sweep, made once a process."""
@@ -79,6 +80,7 @@ def sweep(
     snap_distance: float = ...,
     snap_angle: float | str = ...,
     follow_snaps: bool = ...,
+    after_snap: bool = ...,
     columns: Sequence[str] | None = ...,
     shapes: int = ...,
     output: None = ...,
@@ -100,6 +102,7 @@ def sweep(
     snap_distance: float = ...,
     snap_angle: float | str = ...,
     follow_snaps: bool = ...,
+    after_snap: bool = ...,
     columns: Sequence[str] | None = ...,
     shapes: int = ...,
     output: str | PathLike[str],
@@ -120,6 +123,7 @@ def sweep(
     snap_distance: float = 0.01,
     snap_angle: float | str = 2.0,
     follow_snaps: bool = False,
+    after_snap: bool = False,
     columns: Sequence[str] | None = None,
     shapes: int = 0,
     output: str | PathLike[str] | None = None,
@@ -149,8 +153,8 @@ def sweep(
         Seed of the sample.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
-    snap_distance, snap_angle, follow_snaps
-        Which snaps are followed; see `Arm.solve`.
+    snap_distance, snap_angle, follow_snaps, after_snap
+        Which snaps are followed, and how; see `Arm.solve`. The column ``snaps`` says what became of them.
     columns : sequence of str, optional
         The outputs: some of ``tip``, ``alpha``, ``strokes``, ``tensions``, ``base``, ``fold``, ``stability``, ``error``,
         ``warnings``, ``verdict``.
@@ -201,6 +205,7 @@ def sweep(
     texts = tuple(f"{key}={_values(key, values)}" for key, values in given.items())
     asked = None if columns is None else _inputs.items("columns", columns, "names, such as ['tip', 'strokes']")
     names = None if asked is None else tuple(_inputs.text("columns", name, "tip") for name in asked)
+    _inputs.after_snap(after_snap, snap_distance, snap_angle, follow_snaps)
     plan = Plan(
         arm_of(arm),
         texts,
@@ -210,6 +215,7 @@ def sweep(
         _inputs.snaps(snap_distance, snap_angle, follow_snaps),
         names,
         _memory.stations("shapes", _inputs.count("shapes", shapes)),
+        bool(after_snap),
     )
     native = plan.native()
     if output is not None and client is None and FilePath(output).suffix.lower() not in _ENDINGS:

@@ -84,7 +84,7 @@ def test_other_loads_change_within_a_step(arm: hs.Arm) -> None:
 
 def test_a_fold_ends_a_run_with_what_was_before(arm: hs.Arm) -> None:
     with pytest.raises(hs.MotionError, match="cable folds") as caught:
-        hs.simulate(arm, {"cable[0].tension": [[0, 0], [0.2, 20]]}, until=0.2, every=0.01, tol=1e-3)
+        hs.simulate(arm, {"cable[0].tension": [[0, 0], [0.2, 1.4]]}, until=0.2, every=0.01, tol=1e-3)
     error = caught.value
     assert error.kind == "cable_fold" and 0 < error.time < 0.2
     assert 0 < error.data.sizes["time"] < 21 and "folds" in error.data.attrs["verdict"]
@@ -163,7 +163,16 @@ def test_a_history_has_hysteresis(arm: hs.Arm) -> None:
 
 def test_a_fold_ends_a_history_with_the_rows_before(arm: hs.Arm) -> None:
     with pytest.raises(hs.MotionError, match="row 2: .*cable folds") as caught:
-        hs.history(arm, {"cable[0].tension": [0, 0.2, 20]})
+        hs.history(arm, {"cable[0].tension": [0, 0.2, 1.4]})
     assert len(caught.value.data) == 2
     with pytest.raises(ValueError, match="table"):
         hs.history(arm, {"cable[0].tension": [0, 1], "flow.speed": [0]})
+
+
+def test_rows_of_a_sweep_may_be_after_their_snaps(arm: hs.Arm) -> None:
+    against = arm.replace(flow_direction=math.degrees(3.0))
+    rows = hs.sweep(against, {"flow.speed": [0.1, 0.4]}, after_snap=True, columns=["tip", "snaps"])
+    one = against.solve(flow_speed=0.4, after_snap=True)
+    assert rows.snaps.to_numpy().tolist() == [0, 1]
+    assert rows.tip_theta[1].item() == pytest.approx(one.tip.theta, abs=1e-5)
+    assert rows.snap_duration[1].item() == pytest.approx(one.snaps[0].duration, rel=1e-2)

@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use hydrostat::VerdictKind::{CableFold, LimitPoint, LoadJump, NoSectionSolution, NotFound, SectionCrushed};
 use hydrostat::parameter::names;
 use hydrostat::{
-    Arm, Boundary, BoundaryOptions, Cable, Event, Follower, PathEnd, PathOptions, Phase, Reach, ReachOptions, Stations,
-    Target,
+    Arm, Boundary, BoundaryOptions, Cable, Event, Follower, Loading, LoadingStep, PathEnd, PathOptions, Phase, Reach,
+    ReachOptions, Stations, Target,
 };
 use hydrostat_files::{
-    ArmFile, BoundaryDocument, Dimension, EquilibriaDocument, FollowedDocument, OverDocument, PathDocument,
-    ReachDocument, Varied, boundary_csv, followed_csv, motion_columns, over_csv, path_csv, reach_csv, schema,
-    stations_csv,
+    ArmFile, BoundaryDocument, Dimension, EquilibriaDocument, FollowedDocument, LoadRows, LoadingRow, OverDocument,
+    PathDocument, ReachDocument, Varied, boundary_csv, followed_csv, loading_csv, motion_columns, over_csv, path_csv,
+    reach_csv, schema, stations_csv,
 };
 use serde_json::Value;
 
@@ -182,14 +182,22 @@ fn its_keys_are_those_of_the_documents() {
     assert_eq!(documents[2]["values"][1], serde_json::json!({ "value": 0.01, "message": "none" }));
 }
 
+fn loading_header(arm: &Arm) -> String {
+    let (_, first) = Loading::start(arm, 1e-8).unwrap();
+    let step = LoadingStep { configuration: first.configuration, snaps: Vec::new() };
+    let loads = LoadRows::new(&["arm.base.angle".to_owned()], vec![vec![0.0]]);
+    let csv = loading_csv(&loads, &[LoadingRow::new(None, vec![0.0], step)]);
+    csv.lines().next().unwrap().to_owned() + "\n"
+}
+
 #[test]
 fn its_names_are_those_of_the_results() {
     let header = stations_csv(&Stations::default());
     let reached = [reach_header(), followed_csv(1, &[]), boundary_csv(1, &Boundary { pieces: Vec::new() })];
     let motion = motion_columns(1).join(",") + "\n";
-    assert_eq!(blocks("csv")[..4], [header, path_header(), motion, over_header()]);
-    assert_eq!(blocks("csv")[4..], reached);
     let (arm, _) = pulled();
+    assert_eq!(blocks("csv")[..5], [header, path_header(), motion, loading_header(&arm), over_header()]);
+    assert_eq!(blocks("csv")[5..], reached);
     let middle = Target { s: Some(0.1), ..Target::tip(0.09, 0.0) };
     let columns = reach_csv(1, &arm.reach(&[middle], &ReachOptions::default()).unwrap());
     for name in columns.lines().next().unwrap().split(',').filter(|name| name.starts_with("place")) {

@@ -36,6 +36,7 @@ impl Sweep {
         snaps: (f64, f64),
         columns: Option<Vec<String>>,
         shapes: usize,
+        after_snap: bool,
     ) -> PyResult<Self> {
         let axes: Vec<Axis> = vary.iter().map(|text| text.parse().map_err(wrong)).collect::<PyResult<_>>()?;
         let sample = match sample {
@@ -44,7 +45,7 @@ impl Sweep {
         };
         let plan = Plan::new(axes, sample, seed).map_err(|error| wrong(format!("vary: {error}")))?;
         let snaps = SnapBounds { distance: snaps.0, angle: snaps.1 };
-        let mut options = SweepOptions { tol, snaps, stations: shapes, ..SweepOptions::default() };
+        let mut options = SweepOptions { tol, snaps, after_snap, stations: shapes, ..SweepOptions::default() };
         if let Some(names) = columns {
             let read = |name: &String| name.parse().map_err(|error| wrong(format!("columns: {error}")));
             options.outputs = names.iter().map(read).collect::<PyResult<Vec<Output>>>()?;

@@ -5,6 +5,7 @@ mod commands;
 mod equilibria;
 mod formats;
 mod guide;
+mod histories;
 mod hostile;
 mod identify;
 mod overwriting;

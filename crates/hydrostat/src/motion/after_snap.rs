@@ -105,8 +105,9 @@ pub enum AfterSnapError {
 
 impl Arm {
     /// The equilibrium in which this arm rests after its loads have grown slowly from nothing, as [`Arm::solve`] says,
-    /// whatever snaps it makes on the way: at each limit point it moves, by its own `dynamics`, from the shape there with
-    /// the loads 0.1 % of the whole past it, until it rests, and the path goes on from there. The tip position is good to `tol` L.
+    /// whatever snaps it makes on the way: at each limit point it moves, by its own `dynamics`, from the shape there
+    /// with the loads 0.1 % of the whole past it, until it rests, and the path goes on from there. The tip position is
+    /// good to `tol` L.
     ///
     /// ```
     /// use hydrostat::Arm;
@@ -115,8 +116,8 @@ impl Arm {
     /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
     /// arm.density = 1080.0;
     /// arm.dynamics.relaxation_time = 2.7e-3; // s
-    /// arm.flow.speed = 0.2;
-    /// arm.flow.direction = 2.8; // rad
+    /// arm.flow.speed = 0.4;
+    /// arm.flow.direction = 3.0; // rad
     /// let found = arm.solve_after_snap(1e-8)?;
     /// assert_eq!(found.snaps.len(), 1);
     /// assert!(found.snaps[0].duration > 0.1 && found.snaps[0].snap.distance() > 0.1 * arm.length);

@@ -294,8 +294,8 @@ fn ways(own: &Arm, arm: &Arm) -> Result<Vec<Change>, LoadingError> {
     Err(LoadingError::Unsupported { key: key.to_owned(), reason })
 }
 
-/// The share of the way, at most 0, down to which the curve behind a limit point is followed: there the first load that is
-/// not negative is nothing.
+/// The share of the way, at most 0, down to which the curve behind a limit point is followed: there the first load that
+/// is not negative is nothing.
 fn lowest(ways: &[Change]) -> f64 {
     /// How many ways back is far enough.
     const FAR: f64 = -100.0;

@@ -1,8 +1,8 @@
 //! The motion under constant loads, from a shape that is let go until it rests in an equilibrium.
 //!
-//! An arm that creeps away from a limit point is as slow as one that comes to rest. So rest is no matter of speed: where
-//! the arm is slow the statics look for an equilibrium at its shape, and the arm rests once it stays within [`NEAR`] of a
-//! stable one.
+//! An arm that creeps away from a limit point is as slow as one that comes to rest. So rest is no matter of speed:
+//! where the arm is slow the statics look for an equilibrium at its shape, and the arm rests once it stays within
+//! [`NEAR`] of a stable one.
 
 use hydrostat_bvp::{Lanes, Real, Solution, Stage};
 

@@ -158,13 +158,13 @@ impl Simulation {
         self.advance_to(self.time + dt)
     }
 
-    /// Moves on by `dt` (s) while the quantities `loads`, named as in [`Inputs::set`], change to these values along straight
-    /// lines, and keep them from then on: a step of a control loop. Steps in time end where it ends.
+    /// Moves on by `dt` (s) while the quantities `loads`, named as in [`Inputs::set`], change to these values along
+    /// straight lines, and keep them from then on: a step of a control loop. Steps in time end where it ends.
     ///
     /// # Errors
-    /// [`MotionError::Course`], [`MotionError::Arm`], [`MotionError::Unfit`] where a load is refused, [`MotionError::Option`] where
-    /// the motion is known further than its present time, because [`Simulation::advance_to`] or
-    /// [`Simulation::step`] brought it there; [`MotionError::Ended`].
+    /// [`MotionError::Course`], [`MotionError::Arm`], [`MotionError::Unfit`] where a load is refused;
+    /// [`MotionError::Option`] where the motion is known further than its present time, because
+    /// [`Simulation::advance_to`] or [`Simulation::step`] brought it there; [`MotionError::Ended`].
     ///
     /// ```
     /// use hydrostat::{Arm, Cable, Inputs, MotionOptions, Profile, Simulation};
