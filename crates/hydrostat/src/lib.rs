@@ -151,8 +151,9 @@ pub use configuration::{
 };
 pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
 pub use motion::{
-    CableMotion, Course, Inputs, Instant, Mode, Modes, MotionError, MotionOptions, MotionStatistics, MotionVerdict,
-    MotionVerdictKind, Simulation,
+    CableMotion, Course, Inputs, Instant, Mode, Modes, MotionError, MotionEvent, MotionEventKind, MotionOptions,
+    MotionState, MotionStation, MotionStatistics, MotionVerdict, MotionVerdictKind, MotionWarning, QuasiStatic,
+    Simulation, Works,
 };
 pub use numerics::dispatch::has_wide_vectors;
 pub use parameter::Parameter;

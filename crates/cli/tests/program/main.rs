@@ -7,6 +7,7 @@ mod formats;
 mod guide;
 mod hostile;
 mod identify;
+mod motions;
 mod overwriting;
 mod paths;
 mod reach;
