@@ -97,6 +97,17 @@ impl Mesh {
         mesh
     }
 
+    /// With these nodes, of which the `breaks` (in (0, 1), increasing) are pinned; `None` unless they increase from 0 to 1
+    /// and have the breaks among them.
+    pub fn with_nodes(nodes: &[f64], breaks: &[f64]) -> Option<Self> {
+        let whole = nodes.first() == Some(&0.0) && nodes.last() == Some(&1.0);
+        // Not a number is not longer than anything.
+        let apart = nodes.windows(2).all(|pair| pair[1] - pair[0] >= SHORTEST);
+        let broken = breaks.iter().all(|at| nodes.contains(at));
+        let pin = |node: &f64| if [0.0, 1.0].contains(node) || breaks.contains(node) { Pin::Pinned } else { Pin::Free };
+        (whole && apart && broken).then(|| Self { nodes: nodes.to_vec(), pinned: nodes.iter().map(pin).collect() })
+    }
+
     /// The nodes.
     pub fn nodes(&self) -> &[f64] {
         &self.nodes

@@ -35,7 +35,7 @@ pub(crate) use plot::PlotArgs;
 pub(crate) use reach::{By, Point, ReachArgs};
 pub(crate) use serve::ServeArgs;
 pub(crate) use shell::{CompletionsArgs, ManArgs};
-pub(crate) use simulate::{MotionFormat, SimulateArgs};
+pub(crate) use simulate::{MotionFormat, ShapeTimes, SimulateArgs, StationAt};
 pub(crate) use snaps::SnapArgs;
 pub(crate) use sweep::SweepArgs;
 pub(crate) use validate::ValidateArgs;

@@ -7,7 +7,7 @@ use hydrostat::{
 };
 use hydrostat_figures::source::StudyError;
 use hydrostat_files::{
-    FileError, FitKeyError, MeasurementsError, ShapedError, TargetsError, TimeLoadsError, WriteError,
+    FileError, FitKeyError, MeasurementsError, SavedMotionError, ShapedError, TargetsError, TimeLoadsError, WriteError,
 };
 use hydrostat_identify::{IdentifyError, Trial};
 use hydrostat_serve::ServeError;
@@ -38,6 +38,7 @@ pub(crate) enum Cause<'a> {
     AfterSnap(&'a AfterSnapError),
     Loading(&'a LoadingError),
     TimeLoads,
+    SavedMotion,
     Sensitivity(&'a SensitivityError),
     Reach(&'a ReachError),
     Sweep(&'a SweepError),
@@ -64,6 +65,7 @@ impl<'a> Cause<'a> {
         let found = found.or_else(|| error.downcast_ref().map(Self::Loading));
         let found = found.or_else(|| error.is::<TimeLoadsError>().then_some(Self::TimeLoads));
         let found = found.or_else(|| error.is::<ShapedError>().then_some(Self::TimeLoads));
+        let found = found.or_else(|| error.is::<SavedMotionError>().then_some(Self::SavedMotion));
         let found = found.or_else(|| error.downcast_ref().map(Self::Sensitivity));
         let found = found.or_else(|| error.downcast_ref().map(Self::Reach));
         let found = found.or_else(|| error.downcast_ref().map(Self::Sweep));
@@ -98,13 +100,14 @@ impl<'a> Cause<'a> {
             Self::Identify(error) => identify(error),
             Self::Study(error) => study(error),
             Self::Serve(ServeError::Run(_)) => Blame::Other,
-            Self::Request(WrongRequest::Declined) => Blame::User,
+            Self::Request(WrongRequest::Declined | WrongRequest::Interrupted(..)) => Blame::User,
             Self::Serve(ServeError::Bind { .. })
             | Self::Spatial(SpatialError::Arm(_) | SpatialError::Option { .. })
             | Self::Measurements
             | Self::FitKey
             | Self::Targets
             | Self::TimeLoads
+            | Self::SavedMotion
             | Self::File
             | Self::Write
             | Self::Request(_) => Blame::Request,
@@ -128,6 +131,7 @@ impl<'a> Cause<'a> {
             | Self::AfterSnap(_)
             | Self::Loading(_)
             | Self::TimeLoads
+            | Self::SavedMotion
             | Self::Sensitivity(_)
             | Self::Sweep(_)
             | Self::Identify(_)
@@ -159,6 +163,7 @@ fn motion(error: &MotionError) -> Blame {
         | MotionError::Unfit(_)
         | MotionError::Unsupported { .. }
         | MotionError::Option { .. }
+        | MotionError::State { .. }
         | MotionError::Course { .. } => Blame::Request,
     }
 }

@@ -12,6 +12,7 @@ pub(crate) mod init;
 mod limits;
 pub(crate) mod main_job;
 pub(crate) mod modes;
+mod motion_output;
 pub(crate) mod path;
 pub(crate) mod plot;
 pub(crate) mod reach;

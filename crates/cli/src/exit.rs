@@ -2,6 +2,8 @@
 
 use std::io;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use hydrostat::{SolveError, SpatialError, VerdictKind};
 use hydrostat_figures::source::StudyError;
@@ -48,6 +50,21 @@ pub(crate) fn at_ctrl_c(words: &'static str) {
             std::process::exit(i32::from(INTERRUPTED));
         }
     });
+}
+
+/// From now on Ctrl-C raises the flag, so that what is there can be written; a second one ends the program at once.
+pub(crate) fn flag_at_ctrl_c() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let raised = Arc::clone(&flag);
+    std::thread::spawn(move || {
+        let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };
+        while runtime.block_on(tokio::signal::ctrl_c()).is_ok() {
+            if raised.swap(true, Ordering::Relaxed) {
+                std::process::exit(i32::from(INTERRUPTED));
+            }
+        }
+    });
+    flag
 }
 
 /// Of arguments that the parser refused, or of a request for help.

@@ -54,6 +54,18 @@ pub(crate) enum WrongRequest {
     NothingDrawn(&'static str, String),
     /// More work than was meant.
     Declined,
+    /// A motion that was interrupted at this time (s), and whether another run can go on from there.
+    Interrupted(f64, bool),
+    /// An interrupted run of another command.
+    OtherRun(PathBuf),
+    /// A run that cannot be resumed, because its output does not grow.
+    NotResumable(PathBuf),
+    /// Whole shapes without a place for them.
+    ShapesNowhere,
+    /// A station past the tip (m), of an arm of such a length.
+    PastTheTip(f64, f64),
+    /// An end (s) that is not after the start.
+    EndsBefore { until: f64, start: f64 },
     /// Everything that is wrong with an arm file, where that is more than one thing.
     File(Vec<FileError>),
     /// What standard input brought is not what was asked for.
@@ -138,6 +150,27 @@ impl std::fmt::Display for WrongRequest {
             Self::Exists(path) => write!(f, "{} exists; remove it or choose another name", path.display()),
             Self::NoCommand(name, all) => write!(f, "`{name}` is not a command; the commands are {}", all.join(", ")),
             Self::Declined => f.write_str("nothing was solved"),
+            Self::Interrupted(time, resumable) => {
+                write!(f, "interrupted after {time} s, all until then is written")?;
+                f.write_str(if *resumable { "; go on with the same command and --resume" } else { "" })
+            }
+            Self::OtherRun(path) => write!(
+                f,
+                "--resume: {} is of another arm, other loads or other options; remove it, or choose another output",
+                path.display()
+            ),
+            Self::NotResumable(path) => write!(
+                f,
+                "--resume: {}: only CSV grows as the motion goes on and can be resumed; go on from another output with --from",
+                path.display()
+            ),
+            Self::ShapesNowhere => f.write_str("--shapes: nowhere to write them; give --shapes-output, or -o FILE.json"),
+            Self::PastTheTip(s, length) => {
+                write!(f, "--station {s} m: expected a place in [0, {length}] m along the arm")
+            }
+            Self::EndsBefore { until, start } => {
+                write!(f, "--until {until} s: expected a time after the start at {start} s")
+            }
             Self::NothingDrawn(option, pictures) => write!(f, "{option}: nothing is drawn; give {pictures}"),
             Self::NothingMeasured(path) => {
                 let path = path.display();

@@ -24,6 +24,7 @@ mod marker_columns;
 mod measured_columns;
 mod measurements;
 mod measurements_template;
+mod motion_states;
 pub mod motions;
 mod others;
 mod output;
@@ -62,7 +63,12 @@ pub use identification::{IdentificationDocument, residuals_csv};
 pub use loadings::{LoadingDocument, LoadingRow, RowSnap, loading_csv};
 pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
 pub use measurements_template::measurements_template;
-pub use motions::{ModesDocument, MotionDocument, mode_kind, motion_columns, motion_numbers, motion_row};
+pub use motion_states::{SavedMotion, SavedMotionError, motion_state_beside};
+pub use motions::{
+    EventOut, MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, ModesDocument, MotionDocument, equilibrium_numbers, mode_kind,
+    motion_columns, motion_event_line, motion_heads, motion_line, motion_numbers, motion_row, motion_shape_lines,
+    place_numbers,
+};
 pub use output::{WriteError, is_same_file, remove_leftovers, write_whole, write_whole_with};
 pub use paths::{Landing, PathDocument, end_message, path_csv, path_csv_with_landings};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};

@@ -153,8 +153,9 @@ pub use configuration::{
 pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
 pub use motion::{
     AfterSnap, AfterSnapError, CableMotion, Course, Inputs, Instant, Loading, LoadingError, LoadingSnap, LoadingStep,
-    Mode, Modes, MotionError, MotionOptions, MotionStatistics, MotionVerdict, MotionVerdictKind, Rest, Restless,
-    Simulation, SnapMotion,
+    Mode, Modes, MotionError, MotionEvent, MotionEventKind, MotionOptions, MotionState, MotionStation,
+    MotionStatistics, MotionVerdict, MotionVerdictKind, MotionWarning, QuasiStatic, Rest, Restless, Simulation,
+    SnapMotion, Works,
 };
 pub use numerics::dispatch::has_wide_vectors;
 pub use parameter::Parameter;

@@ -25,6 +25,9 @@
 //! input; after a jump of a load, a stream's acceleration or the base's velocity the next one is by an all-implicit
 //! method.
 //!
+//! **Works** (`powers`, `works`) are added up beside the motion by the weights of the time method, so that what is left
+//! of the balance of energy says what the steps did to it.
+//!
 //! **Answers** (`simulation`) are read between the steps by Hermite interpolation, independent of the steps, and
 //! given one by one: memory does not grow with the run. A step that fails is halved; if it cannot be done the run
 //! ends with a [`MotionVerdict`] that names time and limit, after all before it was given.
@@ -36,21 +39,34 @@ mod border;
 mod dimensions;
 mod equations;
 mod error;
+mod event;
 mod history;
 mod inputs;
 mod loading;
 mod modes;
+mod places;
+mod powers;
+mod quasi_static;
 mod rest;
 mod settling;
 mod simulation;
+mod state;
 mod stepper;
 mod strokes;
 mod tableau;
+mod warning;
+mod works;
 
 pub use self::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
 pub use self::error::{MotionError, MotionVerdict, MotionVerdictKind};
+pub use self::event::{MotionEvent, MotionEventKind};
 pub use self::inputs::{Course, Inputs};
 pub use self::loading::{Loading, LoadingError, LoadingSnap, LoadingStep};
 pub use self::modes::{Mode, Modes};
+pub use self::places::MotionStation;
+pub use self::quasi_static::QuasiStatic;
 pub use self::rest::{Rest, Restless};
 pub use self::simulation::{CableMotion, Instant, MotionOptions, MotionStatistics, Simulation};
+pub use self::state::MotionState;
+pub use self::warning::MotionWarning;
+pub use self::works::Works;

@@ -25,6 +25,7 @@ pub use column::{Column, Data, NO_ARM, Output, kinds as warning_kinds};
 pub use csv_file::beside as note_beside;
 pub use error::SweepError;
 pub use file_format::{Format, NOTE};
+pub use parquet_file::{parquet_bytes, parquet_columns};
 pub use plan::{Plan, PlanError, Sample};
 pub use run::{Summary, Sweep, SweepOptions};
 pub use shard::Shard;

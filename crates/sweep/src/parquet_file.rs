@@ -84,6 +84,14 @@ pub(crate) fn part(columns: &[Column]) -> Result<Vec<u8>, ParquetError> {
     writer.into_inner()
 }
 
+/// Columns as the bytes of a Parquet file of one row group, which `path` is for.
+///
+/// # Errors
+/// [`SweepError`] when the library cannot write them.
+pub fn parquet_bytes(columns: &[Column], path: &Path) -> Result<Vec<u8>, SweepError> {
+    part(columns).map_err(|error| parquet_error(path, error))
+}
+
 fn put<T: DataType>(
     group: &mut SerializedRowGroupWriter<'_, Vec<u8>>,
     values: impl Iterator<Item = Option<T::T>>,
@@ -151,6 +159,19 @@ fn check_places(path: &Path, metadata: &ParquetMetaData) -> Result<(), SweepErro
     } else {
         Err(read_error(path, "expected columns that begin within the file, found one before its begin"))
     }
+}
+
+/// All columns of a Parquet file of this program.
+///
+/// # Errors
+/// [`SweepError`] when it cannot be read, or has columns that no table here has.
+pub fn parquet_columns(path: &Path) -> Result<Vec<Column>, SweepError> {
+    let reader = Reader::open(path)?;
+    let mut out = Vec::new();
+    for name in reader.names() {
+        out.extend(reader.column(&name)?);
+    }
+    Ok(out)
 }
 
 /// A file that is read column by column.

@@ -1,78 +1,132 @@
 //! `hydrostat simulate`: the arm in motion.
 
-use std::fmt::Write as _;
-use std::fs::File;
-use std::io::{self, Write as _};
-use std::path::Path;
-use std::time::Instant as Clock;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant as Clock};
 
-use hydrostat::{Arm, Inputs, Instant, MotionError, MotionOptions, Simulation};
+use hydrostat::{Arm, Inputs, Instant, MotionError, MotionOptions, QuasiStatic, Simulation};
 use hydrostat_figures::{MotionFrame, motion_figure, strobe_figure};
-use hydrostat_files::{MotionDocument, WriteError, motion_columns, motion_row, number, read_time_loads, set_shaped};
+use hydrostat_files::{
+    SavedMotion, equilibrium_numbers, motion_numbers, motion_state_beside, number, place_numbers, read_time_loads,
+    set_shaped,
+};
 
-use crate::args::{MotionFormat, SimulateArgs};
-use crate::output;
+use super::motion_output::{Ending, MotionOutput};
+use crate::args::{MotionFormat, ShapeTimes, SimulateArgs, StationAt};
 use crate::progress::Progress;
-use crate::request;
+use crate::request::WrongRequest;
+use crate::{exit, output, request};
 
-/// The most rows of one document.
+/// The most rows of one document, and of whole shapes.
 const MOST_ROWS: f64 = 1e7;
+
+/// Time between states that are kept for a run that is broken off.
+const KEPT_EVERY: Duration = Duration::from_secs(5);
 
 pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let arm = request::arm(&args.arm, "`hydrostat simulate`")?;
-    let loads = args.input.as_deref().map(|file| ("--input", file));
     let pictures = [("--plot", args.plot.as_deref()), ("--plot-time", args.plot_time.as_deref())];
-    let outputs = [("-o", args.output.as_deref()), pictures[0], pictures[1]];
-    request::check_outputs(&[request::arm_input(&args.arm.file), loads], &outputs)?;
+    let state_file = args.output.as_deref().map(motion_state_beside);
+    let from_file = args.from.as_deref().map(|file| {
+        let beside = motion_state_beside(file);
+        if beside.exists() { beside } else { file.to_owned() }
+    });
+    let inputs = [
+        request::arm_input(&args.arm.file),
+        args.input.as_deref().map(|file| ("--input", file)),
+        args.from.as_deref().map(|file| ("--from", file)),
+        from_file.as_deref().map(|file| ("--from", file)),
+    ];
+    let outputs = [
+        ("-o", args.output.as_deref()),
+        ("-o", state_file.as_deref()),
+        ("--shapes-output", args.shapes_output.as_deref()),
+        ("--events", args.events.as_deref()),
+        pictures[0],
+        pictures[1],
+    ];
+    request::check_outputs(&inputs, &outputs)?;
     request::check_picture(&args.picture, &pictures)?;
-    let mut inputs = Inputs::default();
+    let loads = loads(args)?;
+    let earlier = args.from.as_deref().map(SavedMotion::read).transpose()?;
+    let start = earlier.as_ref().map_or(0.0, |earlier| earlier.state.time);
+    let plan = Plan::new(args, &arm, start)?;
+    let options = MotionOptions { tol: args.tol, elements: args.elements, ..MotionOptions::default() };
+    let request = {
+        let mut hasher = DefaultHasher::new();
+        let typed = (&args.station, &args.shapes, args.shape_stations, args.quasi_static);
+        format!("{arm:?} {loads:?} {options:?} {:?} {typed:?} {start:?}", plan.every).hash(&mut hasher);
+        hasher.finish()
+    };
+    let resumed = resumed(args, request)?;
+    let clock = Clock::now();
+    let mut simulation = match (&resumed, earlier) {
+        (Some(saved), _) => Simulation::resume(&arm, loads, options, &saved.state),
+        (None, Some(earlier)) => Simulation::resume(&arm, loads, options, &earlier.state.under_other_loads()),
+        (None, None) => Simulation::new(&arm, loads, options),
+    }
+    .map_err(refused)?;
+    let mut equilibria = args.quasi_static.then(|| simulation.quasi_static()).transpose().map_err(refused)?;
+    let mut output = MotionOutput::new(args, &arm, plan.stations.len(), resumed.as_ref(), request)?;
+    let mut frames = (args.plot.is_some() || args.plot_time.is_some()).then(Frames::default);
+    let outcome = follow(&plan, &arm, &mut simulation, equilibria.as_mut(), &mut output, frames.as_mut());
+    let ending = match &outcome {
+        Ok(()) => None,
+        Err(Stop::Motion(error)) => Some(error.to_string()),
+        Err(Stop::User) => Some(format!("interrupted after {} s", number(simulation.time()))),
+        Err(Stop::Output(_)) => Some(String::new()),
+    };
+    if let Err(Stop::Output(error)) = outcome {
+        return Err(error);
+    }
+    let limit = match &outcome {
+        Err(Stop::Motion(MotionError::Ended(verdict))) => Some(*verdict),
+        _ => None,
+    };
+    output.end(&arm, &simulation, &Ending { verdict: ending, limit, wall: clock.elapsed().as_secs_f64() })?;
+    if let Some(frames) = &frames {
+        draw(args, &arm, &frames.kept)?;
+    }
+    for warning in simulation.warnings() {
+        eprintln!("warning: {}", warning.message());
+    }
+    match outcome {
+        Ok(()) => Ok(()),
+        Err(Stop::Motion(error)) => Err(refused(error)),
+        Err(Stop::User) => Err(WrongRequest::Interrupted(simulation.time(), output.is_resumable()).into()),
+        Err(Stop::Output(error)) => Err(error),
+    }
+}
+
+/// The loads over time.
+fn loads(args: &SimulateArgs) -> anyhow::Result<Inputs> {
+    let mut loads = Inputs::default();
     if let Some(file) = &args.input {
-        read_time_loads(file, &mut inputs)?;
+        read_time_loads(file, &mut loads)?;
     }
     for text in &args.vary {
-        set_shaped(text, &mut inputs).map_err(|error| {
+        set_shaped(text, &mut loads).map_err(|error| {
             let message = format!("--vary {error}");
             anyhow::Error::new(error).context(message)
         })?;
     }
-    let every = args.every.unwrap_or(0.01 * args.until);
-    if args.until / every > MOST_ROWS {
-        let error =
-            MotionError::Option { option: "every", value: every, expected: "longer: at most 1e7 rows are written" };
-        return Err(refused(error));
+    Ok(loads)
+}
+
+/// The interrupted run that is to go on, where there is one.
+fn resumed(args: &SimulateArgs, request: u64) -> anyhow::Result<Option<SavedMotion>> {
+    let Some(path) = args.output.as_deref().filter(|_| args.resume) else { return Ok(None) };
+    if MotionOutput::format(args) != MotionFormat::Csv {
+        return Err(WrongRequest::NotResumable(path.to_owned()).into());
     }
-    let options = MotionOptions { tol: args.tol, elements: args.elements, ..MotionOptions::default() };
-    let start = Clock::now();
-    let mut simulation = Simulation::new(&arm, inputs, options).map_err(refused)?;
-    let mut sink = Sink::new(args, &arm)?;
-    let mut progress = Progress::new();
-    let mut failure: Option<io::Error> = None;
-    let draws = args.plot.is_some() || args.plot_time.is_some();
-    let mut frames = Frames::default();
-    let outcome = simulation.run(args.until, every, |at, simulation| {
-        if draws {
-            frames.take(at, simulation);
-        }
-        progress.say(|| {
-            let wall = start.elapsed().as_secs_f64();
-            format!(
-                "{} s of {} s, {} times as fast as the clock",
-                number(at.time),
-                number(args.until),
-                number(at.time / wall)
-            )
-        });
-        failure = sink.take(at).err();
-        failure.is_none()
-    });
-    drop(progress);
-    if let Some(source) = failure {
-        return Err(sink.error(source));
+    if !path.exists() || !motion_state_beside(path).exists() {
+        return Ok(None);
     }
-    draw(args, &arm, &frames.kept)?;
-    let verdict = outcome.as_ref().err().map(ToString::to_string);
-    sink.end(&arm, &simulation, verdict, start.elapsed().as_secs_f64())?;
-    outcome.map_err(refused)
+    let saved = SavedMotion::read(path)?;
+    if saved.request != request {
+        return Err(WrongRequest::OtherRun(path.to_owned()).into());
+    }
+    Ok(Some(saved))
 }
 
 /// Shapes that a strobe figure shows.
@@ -133,109 +187,145 @@ pub(super) fn refused(error: MotionError) -> anyhow::Error {
             let message = format!("--{option}: expected a number {expected}, found {value}");
             anyhow::Error::new(error).context(message)
         }
+        MotionError::State { ref reason } => {
+            let message = format!("--from: the earlier motion does not fit: {reason}");
+            anyhow::Error::new(error).context(message)
+        }
         other => other.into(),
     }
 }
 
-/// Where the rows go.
-struct Sink<'a> {
-    format: MotionFormat,
-    path: Option<&'a Path>,
-    /// CSV grows as the motion goes on, so that what is there stays if it is broken off.
-    file: Option<File>,
-    rows: Vec<Instant>,
+/// What is wanted, and when.
+struct Plan {
+    start: f64,
+    until: f64,
+    every: f64,
+    /// Places of stations in the table, and of those of whole shapes, m.
+    stations: Vec<f64>,
+    shape: Vec<f64>,
+    shapes: Option<ShapeTimes>,
 }
 
-impl<'a> Sink<'a> {
-    fn new(args: &'a SimulateArgs, arm: &Arm) -> anyhow::Result<Self> {
-        let path = args.output.as_deref();
-        let by_ending = match path {
-            None => MotionFormat::Text,
-            Some(path) if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) => {
-                MotionFormat::Json
-            }
-            Some(_) => MotionFormat::Csv,
+impl Plan {
+    fn new(args: &SimulateArgs, arm: &Arm, start: f64) -> anyhow::Result<Self> {
+        let until = args.until;
+        if until <= start {
+            return Err(WrongRequest::EndsBefore { until, start }.into());
+        }
+        let every = args.every.unwrap_or(0.01 * (until - start));
+        let few = |option, value: f64, count: f64| {
+            let expected = "longer: at most 1e7 rows are written";
+            if count > MOST_ROWS { Err(refused(MotionError::Option { option, value, expected })) } else { Ok(()) }
         };
-        let mut out = Self { format: args.format.unwrap_or(by_ending), path, file: None, rows: Vec::new() };
-        if out.format == MotionFormat::Csv {
-            if let Some(path) = path {
-                let file = File::create(path).map_err(|source| WriteError { path: path.to_owned(), source })?;
-                out.file = Some(file);
-            }
-            let head = output::line(motion_columns(arm.cables.len()).join(","));
-            if let Err(source) = out.write(&head) {
-                return Err(out.error(source));
-            }
+        few("every", every, (until - start) / every)?;
+        if let Some(ShapeTimes::Every(every)) = args.shapes {
+            few("shapes", every, (until - start) / every * args.shape_stations as f64)?;
         }
-        Ok(out)
+        if let Some(ShapeTimes::At(times)) = &args.shapes
+            && let Some(value) = times.iter().copied().find(|time| !(start..=until * (1.0 + 1e-12)).contains(time))
+        {
+            let expected = "from the start to the end of the motion, in s";
+            return Err(refused(MotionError::Option { option: "shapes", value, expected }));
+        }
+        if args.shapes.is_some() && args.shapes_output.is_none() && MotionOutput::format(args) != MotionFormat::Json {
+            return Err(WrongRequest::ShapesNowhere.into());
+        }
+        let length = arm.length;
+        let place = |at: &StationAt| match *at {
+            StationAt::Share(share) => Ok(share * length),
+            StationAt::Length(s) if s > length * (1.0 + 1e-12) => Err(WrongRequest::PastTheTip(s, length)),
+            StationAt::Length(s) => Ok(s),
+        };
+        let stations = args.station.iter().map(place).collect::<Result<_, _>>()?;
+        let last = args.shape_stations - 1;
+        let shape = (0..=last).map(|k| length * k as f64 / last as f64).collect();
+        Ok(Self { start, until, every, stations, shape, shapes: args.shapes.clone() })
     }
 
-    fn write(&mut self, text: &str) -> io::Result<()> {
-        match &mut self.file {
-            Some(file) => file.write_all(text.as_bytes()),
-            None => output::print(text),
-        }
+    /// The time of row `k`, up to the end.
+    fn row(&self, k: u64) -> Option<f64> {
+        self.within(self.start + k as f64 * self.every, self.every)
     }
 
-    fn take(&mut self, at: &Instant) -> io::Result<()> {
-        match self.format {
-            MotionFormat::Csv => self.write(&motion_row(at))?,
-            MotionFormat::Json => self.rows.push(at.clone()),
-            MotionFormat::Text => self.rows = vec![at.clone()],
-        }
-        Ok(())
-    }
-
-    fn error(&self, source: io::Error) -> anyhow::Error {
-        match self.path {
-            Some(path) => WriteError { path: path.to_owned(), source }.into(),
-            None => source.into(),
-        }
-    }
-
-    fn end(self, arm: &Arm, simulation: &Simulation, verdict: Option<String>, wall: f64) -> anyhow::Result<()> {
-        let (statistics, estimate) = (simulation.statistics(), simulation.error_estimate());
-        match self.format {
-            MotionFormat::Csv => Ok(()),
-            MotionFormat::Json => {
-                let document = MotionDocument::new(arm, &self.rows, statistics, estimate, verdict);
-                output::put(self.path, &output::line(document.to_json()))
-            }
-            MotionFormat::Text => {
-                let Some(at) = self.rows.last() else { return Ok(()) };
-                let mut text = format!(
-                    "motion {}\n\nafter  {} s the tip is at ({}, {}) m, turned by {} deg, and moves at {} m/s\n",
-                    arm.name,
-                    number(at.time),
-                    number(at.tip[0]),
-                    number(at.tip[1]),
-                    number(at.tip_theta.to_degrees()),
-                    number(at.tip_velocity[0].hypot(at.tip_velocity[1]))
-                );
-                for (cable, own) in arm.cables.iter().zip(&at.cables) {
-                    let _ = writeln!(
-                        text,
-                        "cable  {}: {} N, {} mm reeled in",
-                        cable.name,
-                        number(own.tension),
-                        number(1e3 * own.stroke)
-                    );
-                }
-                let _ = writeln!(
-                    text,
-                    "energy {} J kinetic, {} J of strain\nsteps  {} in time, {} taken back, on {} elements, in {} s: {} times as fast as the clock\n\
-                     error  about {} m at the tip by the steps",
-                    number(at.kinetic_energy),
-                    number(at.strain_energy),
-                    statistics.steps,
-                    statistics.rejected,
-                    statistics.elements,
-                    number(wall),
-                    number(at.time / wall),
-                    number(estimate)
-                );
-                output::put(self.path, &text)
+    /// The time of whole shape `k`, up to the end.
+    fn shape(&self, k: u64) -> Option<f64> {
+        match self.shapes.as_ref()? {
+            ShapeTimes::Every(every) => self.within(self.start + k as f64 * every, *every),
+            ShapeTimes::At(times) => {
+                let own = times.iter().copied().filter(|time| *time >= self.start);
+                own.clone().nth(usize::try_from(k).ok()?).and_then(|time| self.within(time, self.every))
             }
         }
+    }
+
+    fn within(&self, time: f64, every: f64) -> Option<f64> {
+        (time <= self.until + 1e-9 * every).then_some(time)
+    }
+
+    /// How many times of a sequence are over at `time`.
+    fn past(time: f64, of: impl Fn(u64) -> Option<f64>) -> u64 {
+        (0..u64::MAX).find(|k| of(*k).is_none_or(|own| own > time)).unwrap_or(u64::MAX)
+    }
+}
+
+/// Why a run stops before its end.
+enum Stop {
+    Motion(MotionError),
+    User,
+    Output(anyhow::Error),
+}
+
+/// Moves on from row to row and from shape to shape.
+fn follow(
+    plan: &Plan,
+    arm: &Arm,
+    simulation: &mut Simulation,
+    mut equilibria: Option<&mut QuasiStatic>,
+    output: &mut MotionOutput,
+    mut frames: Option<&mut Frames>,
+) -> Result<(), Stop> {
+    let clock = Clock::now();
+    let begin = simulation.time();
+    let mut progress = Progress::new();
+    let interrupted = exit::flag_at_ctrl_c();
+    let mut kept = Clock::now();
+    let mut row = output.rows();
+    let mut shape = if row == 0 { 0 } else { Plan::past(begin, |k| plan.shape(k)) };
+    loop {
+        let next = [plan.row(row), plan.shape(shape)];
+        let Some(time) = next.into_iter().flatten().min_by(f64::total_cmp) else { return Ok(()) };
+        let at = simulation.advance_to(time).map_err(Stop::Motion)?;
+        output.note_events(simulation.events()).map_err(Stop::Output)?;
+        if next[1] == Some(time) {
+            shape += 1;
+            let stations = plan.shape.iter().map(|s| simulation.station(*s)).collect();
+            output.take_shape(time, stations).map_err(|error| Stop::Output(error.into()))?;
+        }
+        if next[0] != Some(time) {
+            continue;
+        }
+        row += 1;
+        if let Some(frames) = &mut frames {
+            frames.take(&at, simulation);
+        }
+        let mut numbers = motion_numbers(&at);
+        numbers.extend(plan.stations.iter().flat_map(|s| place_numbers(&simulation.station(*s))));
+        if let Some(equilibria) = &mut equilibria {
+            let own = equilibrium_numbers(&at, equilibria.tip(time).ok(), arm.length);
+            output.take_equilibrium(own);
+            numbers.extend(own);
+        }
+        output.take_row(&at, numbers).map_err(Stop::Output)?;
+        if interrupted.load(Ordering::Relaxed) && plan.row(row).is_some() {
+            return Err(Stop::User);
+        }
+        if kept.elapsed() > KEPT_EVERY {
+            output.keep(simulation).map_err(|error| Stop::Output(error.into()))?;
+            kept = Clock::now();
+        }
+        progress.say(|| {
+            let speed = (time - begin) / clock.elapsed().as_secs_f64();
+            format!("{} s of {} s, {} times as fast as the clock", number(time), number(plan.until), number(speed))
+        });
     }
 }

@@ -108,7 +108,8 @@ fn steady(text: &str) -> Vec<String> {
         let kept = line.split_once(" with an equilibrium, ").map_or(line, |(rows, _)| rows);
         kept.split_whitespace().map(word).collect::<Vec<_>>().join(" ")
     };
-    let took = |line: &&str| !line.starts_with("work ") && !line.starts_with("tip error ");
+    let effort = ["work ", "tip error ", "steps  ", "error  "];
+    let took = |line: &&str| !effort.iter().any(|begin| line.starts_with(begin));
     text.lines().filter(took).map(line).collect()
 }
 

@@ -8,6 +8,7 @@ mod guide;
 mod histories;
 mod hostile;
 mod identify;
+mod motions;
 mod overwriting;
 mod paths;
 mod reach;

@@ -37,7 +37,7 @@ pub(super) struct Moving {
     /// Data along the arm, loads at this time.
     pub(super) statics: Equations,
     /// Acceleration of the stream, m/s2.
-    stream_acceleration: [f64; 2],
+    pub(super) stream_acceleration: [f64; 2],
     pub(super) masses: Vec<Masses<Lanes>>,
     /// d rate / d value, 1/s; zero at rest.
     pub(super) cv: f64,

@@ -107,6 +107,12 @@ pub enum MotionError {
         /// What is wrong with it.
         reason: String,
     },
+    /// A state that this arm cannot go on from.
+    #[error("the earlier motion does not fit: {reason}")]
+    State {
+        /// What does not fit.
+        reason: String,
+    },
     /// There is no equilibrium to start from.
     #[error("no equilibrium to start from: {0}")]
     Start(#[from] Box<SolveError>),

@@ -132,6 +132,11 @@ impl Snapshot {
         [of(&self.values), of(&self.rates)]
     }
 
+    /// Accelerations of x, y in a block of stages.
+    pub(super) fn acceleration(&self, block: usize) -> [Lanes; 2] {
+        [self.second[3 * block + 1], self.second[3 * block + 2]]
+    }
+
     /// nu, eta, mu, beta' in a block of stages, and their rates.
     pub(super) fn strains(&self, block: usize) -> [[Lanes; 4]; 2] {
         let first = self.layout.second() + 4 * block;
@@ -149,7 +154,7 @@ fn node_of(layout: Layout, list: &[Lanes], i: usize) -> [f64; 3] {
 pub(super) fn between(from: &Snapshot, to: &Snapshot, h: f64, x: f64, out: &mut Snapshot) {
     out.clone_from(from);
     let quintic = quintic(x);
-    let quintic_rate = quintic_rate(x);
+    let (quintic_rate, quintic_second) = (quintic_rate(x), quintic_second(x));
     let (value, rate) = (cubic(x), cubic_rate(x));
     let second = from.layout.second();
     let by = |w: f64| Lanes::of(w);
@@ -161,7 +166,7 @@ pub(super) fn between(from: &Snapshot, to: &Snapshot, h: f64, x: f64, out: &mut 
             let sum = |w: &[f64; 6]| terms.iter().zip(w).fold(by(0.0), |sum, (term, w)| sum + *term * by(*w));
             out.values[i] = sum(&quintic);
             out.rates[i] = sum(&quintic_rate) * by(1.0 / h);
-            out.second[i] = a + (b - a) * by(x);
+            out.second[i] = sum(&quintic_second) * by(1.0 / (h * h));
         } else {
             let terms = [p.0, by(h) * p.1, q.0, by(h) * q.1];
             let sum = |w: &[f64; 4]| terms.iter().zip(w).fold(by(0.0), |sum, (term, w)| sum + *term * by(*w));
@@ -193,6 +198,18 @@ fn quintic_rate(x: f64) -> [f64; 6] {
         30.0 * x2 - 60.0 * x3 + 30.0 * x4,
         -12.0 * x2 + 28.0 * x3 - 15.0 * x4,
         0.5 * (3.0 * x2 - 8.0 * x3 + 5.0 * x4),
+    ]
+}
+
+fn quintic_second(x: f64) -> [f64; 6] {
+    let (x2, x3) = (x * x, x.powi(3));
+    [
+        -60.0 * x + 180.0 * x2 - 120.0 * x3,
+        -36.0 * x + 96.0 * x2 - 60.0 * x3,
+        1.0 - 9.0 * x + 18.0 * x2 - 10.0 * x3,
+        60.0 * x - 180.0 * x2 + 120.0 * x3,
+        -24.0 * x + 84.0 * x2 - 60.0 * x3,
+        3.0 * x - 12.0 * x2 + 10.0 * x3,
     ]
 }
 
@@ -234,6 +251,7 @@ mod tests {
         for i in 0..layout.all() {
             assert!((out.values[i].0[0] - want.values[i].0[0]).abs() < 1e-14);
             assert!((out.rates[i].0[0] - want.rates[i].0[0]).abs() < 1e-13);
+            assert!(i >= layout.second() || (out.second[i].0[0] - want.second[i].0[0]).abs() < 1e-12);
         }
     }
 }

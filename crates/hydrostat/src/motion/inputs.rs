@@ -342,6 +342,14 @@ impl Inputs {
             v != w || (rate != next && (driven.is_of_base() || driven.is_of_stream()))
         })
     }
+
+    /// The same for an arm that is at rest until `time`, base and stream with it.
+    pub(super) fn jumps_from_rest(&self, time: f64) -> bool {
+        let rate = |(driven, course): &(Driven, Course)| {
+            (driven.is_of_base() || driven.is_of_stream()) && course.after(time).1 != 0.0
+        };
+        self.jumps_at(time) || self.courses.iter().any(rate)
+    }
 }
 
 #[cfg(test)]

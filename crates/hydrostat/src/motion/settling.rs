@@ -78,6 +78,17 @@ impl Settling {
         respond(&self.system, change, out);
     }
 
+    /// n_f(0) and m_f(0) of the solution, in the unit of force.
+    pub(super) fn at_base(&self) -> [f64; 3] {
+        self.contact().next().unwrap_or_default()
+    }
+
+    /// n_f and m_f of the solution at the nodes, in the unit of force.
+    pub(super) fn contact(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let scales = self.moving.scales;
+        self.solution.nodes.iter().map(move |z| std::array::from_fn(|k| scales[k + 1] * z[k + 1]))
+    }
+
     /// Takes the unloaded arm, on a mesh for the motion.
     pub(super) fn start_unloaded(&mut self, mesh: Mesh) {
         let statics = &mut self.moving.statics;

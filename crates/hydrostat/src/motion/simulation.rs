@@ -3,13 +3,19 @@
 use hydrostat_bvp::{Lanes, Real, Station};
 
 use super::error::MotionError;
+use super::event::MotionEvent;
 use super::history::{Snapshot, between};
 use super::inputs::Inputs;
+use super::places::{MotionStation, station};
+use super::quasi_static::QuasiStatic;
+use super::state::{MotionState, flat};
 use super::stepper::Stepper;
-use crate::rod::area_law::area_derivatives;
+use super::warning::MotionWarning;
+use super::works::Works;
 use crate::rod::arm::Arm;
-use crate::statics::dimensions::{M, N};
+use crate::statics::dimensions::N;
 use crate::statics::equations::StationData;
+use crate::statics::shape::Wrench;
 
 /// How a run is done.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +33,26 @@ pub struct MotionOptions {
 impl Default for MotionOptions {
     fn default() -> Self {
         Self { tol: 1e-4, start: 0.0, elements: None, step: None }
+    }
+}
+
+impl MotionOptions {
+    /// Refuses what is out of range.
+    fn check(&self) -> Result<(), MotionError> {
+        let refuse = |option, value, expected| Err(MotionError::Option { option, value, expected });
+        if !(1e-9..=1e-2).contains(&self.tol) {
+            return refuse("tol", self.tol, "in [1e-9, 1e-2]");
+        }
+        if !self.start.is_finite() {
+            return refuse("start", self.start, "finite");
+        }
+        if let Some(elements) = self.elements.filter(|n| !(1..=1000).contains(n)) {
+            return refuse("elements", elements as f64, "in [1, 1000]");
+        }
+        if let Some(step) = self.step.filter(|h| !(*h >= 1e-9 && h.is_finite())) {
+            return refuse("step", step, "at least 1e-9 s");
+        }
+        Ok(())
     }
 }
 
@@ -56,6 +82,10 @@ pub struct Instant {
     pub kinetic_energy: f64,
     /// 1/2 int (C1 (nu - nu_o)^2 + ...) A ds, J: the energy of strain where the volume law is `none`, else a measure.
     pub strain_energy: f64,
+    /// What support and cable anchors exert on the arm at the base: force in space (N) and moment about r(0) (N m).
+    pub base_reaction: Wrench,
+    /// What was done on the arm since the start. Kinetic energy and that of strain less [`Works::sum`] are constant.
+    pub works: Works,
 }
 
 /// What a run took.
@@ -105,21 +135,23 @@ impl Simulation {
     /// # Errors
     /// [`MotionError`] where an option, the arm or an input is refused, or where there is no equilibrium.
     pub fn new(arm: &Arm, inputs: Inputs, options: MotionOptions) -> Result<Self, MotionError> {
-        let refuse = |option, value, expected| Err(MotionError::Option { option, value, expected });
-        if !(1e-9..=1e-2).contains(&options.tol) {
-            return refuse("tol", options.tol, "in [1e-9, 1e-2]");
-        }
-        if !options.start.is_finite() {
-            return refuse("start", options.start, "finite");
-        }
-        if let Some(elements) = options.elements.filter(|n| !(1..=1000).contains(n)) {
-            return refuse("elements", elements as f64, "in [1, 1000]");
-        }
-        if let Some(step) = options.step.filter(|h| !(*h >= 1e-9 && h.is_finite())) {
-            return refuse("step", step, "at least 1e-9 s");
-        }
+        options.check()?;
         let stepper = Stepper::new(arm, inputs, options.start, options.tol, options.elements, options.step)?;
-        Ok(Self { asked: stepper.now.clone(), time: options.start, stepper, stations: Vec::new() })
+        Ok(Self::of(stepper))
+    }
+
+    /// Goes on from the end of another run of `arm`, or of one with the same length and mesh, at the state's time in place
+    /// of [`MotionOptions::start`]. Under other loads give [`MotionState::under_other_loads`].
+    ///
+    /// # Errors
+    /// [`MotionError`] where an option, the arm, an input or the state is refused.
+    pub fn resume(arm: &Arm, inputs: Inputs, options: MotionOptions, state: &MotionState) -> Result<Self, MotionError> {
+        options.check()?;
+        Ok(Self::of(Stepper::resumed(arm, inputs, state, options.tol, options.step)?))
+    }
+
+    fn of(stepper: Stepper) -> Self {
+        Self { asked: stepper.now.clone(), time: stepper.time, stepper, stations: Vec::new() }
     }
 
     /// The time of the last answer, s.
@@ -139,10 +171,74 @@ impl Simulation {
         }
     }
 
-    /// Sum of the embedded errors of all steps at the tip, m: of the method of order 3 inside that of order 4, so
-    /// that it says too much where the motion is smooth. The mesh's error is not in it.
+    /// The error of the tip, m: the sum of the embedded errors of all steps, of the method of order 3 inside that of order
+    /// 4, so that it says too much where the motion is smooth; after a jump that is not resolved (see
+    /// [`Simulation::warnings`]) two hundredths of the way of the tip besides. The mesh's error is not in it.
     pub fn error_estimate(&self) -> f64 {
-        self.stepper.error * self.stepper.arm().length
+        self.stepper.estimate() * self.stepper.arm().length
+    }
+
+    /// By how much the steps changed the energy of the arm beside all works, J: negative where they damp what they do not
+    /// resolve. Zero but for the error of the steps.
+    pub fn energy_gap(&self) -> f64 {
+        let units = self.stepper.settling.moving.statics.units;
+        self.stepper.ledger.gap()[0] * units.force * units.length
+    }
+
+    /// What should be known about the motion until now.
+    pub fn warnings(&self) -> Vec<MotionWarning> {
+        let warning = |time| MotionWarning::UnresolvedJump { time };
+        self.stepper.unresolved_jump().map(warning).into_iter().collect()
+    }
+
+    /// What happened until the end of the last step, in order: the first 10000 events.
+    pub fn events(&self) -> &[MotionEvent] {
+        &self.stepper.events
+    }
+
+    /// The arm at the place `s` (m, kept within the arm) at the present time.
+    pub fn station(&self, s: f64) -> MotionStation {
+        let settling = &self.stepper.settling;
+        let length = settling.moving.statics.units.length;
+        station(&self.asked, &settling.solution.mesh, &settling.system, length, s.clamp(0.0, length))
+    }
+
+    /// What the equilibria of the same loads are asked with.
+    ///
+    /// # Errors
+    /// [`MotionError::Start`] where the statics refuse the arm.
+    pub fn quasi_static(&self) -> Result<QuasiStatic, MotionError> {
+        QuasiStatic::new(self.stepper.arm(), self.stepper.inputs.clone())
+    }
+
+    /// What it takes to go on from the present time in another run, see [`Simulation::resume`].
+    pub fn state(&self) -> MotionState {
+        let (stepper, settling) = (&self.stepper, &self.stepper.settling);
+        let units = settling.moving.statics.units;
+        let energy = units.force * units.length;
+        let (next, running) = stepper.next_step();
+        let at_end = self.time == stepper.time;
+        let [works, powers] = stepper.ledger.at(stepper.share_at(self.time), stepper.step);
+        let mut tensions = vec![0.0; stepper.arm().cables.len()];
+        for cable in settling.moving.held() {
+            tensions[cable] = stepper.tension_at(cable, self.time);
+        }
+        MotionState {
+            time: self.time,
+            length: units.length,
+            nodes: settling.solution.mesh.nodes().to_vec(),
+            values: flat(&self.asked.values),
+            rates: flat(&self.asked.rates),
+            second: flat(&self.asked.second),
+            contact: settling.contact().map(|[x, y, m]| [x * units.force, y * units.force, m * energy]).collect(),
+            tensions,
+            works: works.map(|work| work * energy).to_vec(),
+            powers: powers.map(|power| power * energy).to_vec(),
+            error: stepper.error,
+            next,
+            jumped: stepper.jumped,
+            smooth: running || !at_end,
+        }
     }
 
     /// The motion at the present time.
@@ -222,7 +318,7 @@ impl Simulation {
         if stepper.time == time || stepper.step == 0.0 {
             self.asked.clone_from(&stepper.now);
         } else {
-            let x = 1.0 - (stepper.time - time) / stepper.step;
+            let x = stepper.share_at(time);
             between(&stepper.before, &stepper.now, stepper.step, x, &mut self.asked);
         }
         self.time = time;
@@ -280,25 +376,12 @@ impl Simulation {
         let units = statics.units;
         let last = self.asked.layout.nodes - 1;
         let ([theta, x, y], [_, u, v]) = (self.asked.node(last), self.asked.node_rate(last));
-        let groups = statics.groups;
-        let (mut kinetic, mut strained) = (0.0, 0.0);
         self.stations.clear();
         for block in 0..self.asked.layout.blocks {
-            let [_, [omega, vx, vy]] = self.asked.stage(block);
             let [[nu, eta, mu, slope], _] = self.asked.strains(block);
-            let station = Station { z: [Lanes::of(0.0); N], inner: [nu, eta, mu], closure_slope: slope };
-            let masses = &settling.moving.masses[block];
-            let [area, ..] = area_derivatives(statics.volume, nu);
-            let moving = masses.wall * (vx * vx + vy * vy) + masses.rotary * area * omega * omega;
-            let strain = statics.strain_energy(block, &station);
-            let weight = settling.system.gauss.b[block % M];
-            for lane in 0..groups.filled(block / M) {
-                let h = weight * settling.system.steps()[block / M].0[lane];
-                kinetic += 0.5 * h * moving.0[lane];
-                strained += h * strain.0[lane];
-            }
-            self.stations.push(station);
+            self.stations.push(Station { z: [Lanes::of(0.0); N], inner: [nu, eta, mu], closure_slope: slope });
         }
+        let [kinetic, strained] = settling.moving.energies(&settling.system, &self.asked);
         let at =
             StationData { weights: &settling.system.gauss.b, steps: settling.system.steps(), stations: &self.stations };
         let energy = units.force * units.length;
@@ -313,6 +396,7 @@ impl Simulation {
             })
             .collect();
         let length = units.length;
+        let [n_x, n_y, moment] = self.stepper.ledger.base_at(self.time);
         Instant {
             time: self.time,
             tip: [x * length, y * length],
@@ -321,6 +405,12 @@ impl Simulation {
             cables,
             kinetic_energy: kinetic * energy,
             strain_energy: strained * energy,
+            base_reaction: Wrench::of_base([0.0, n_x, n_y, moment], &units),
+            works: self
+                .stepper
+                .ledger
+                .works_at(self.stepper.share_at(self.time), self.stepper.step)
+                .in_units_of(energy),
         }
     }
 }

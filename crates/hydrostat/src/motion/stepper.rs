@@ -13,10 +13,13 @@ use hydrostat_bvp::{Lanes, Mesh, Real};
 
 use super::dimensions::{S, Shape};
 use super::error::{MotionError, MotionVerdict, MotionVerdictKind};
-use super::history::Snapshot;
+use super::event::{MotionEvent, MotionEventKind};
+use super::history::{Snapshot, between};
 use super::inputs::Inputs;
 use super::settling::{Settling, Unsolved};
+use super::state::MotionState;
 use super::tableau::{RUNNING, STARTING, Tableau};
+use super::works::{Ledger, Reading, WORKS};
 use crate::rod::arm::Arm;
 use crate::rod::readings::Support;
 use crate::statics::engine::Engine;
@@ -31,6 +34,17 @@ const MOST_STEPS: usize = 1_000_000;
 
 /// What a step's embedded error may be over the tolerance of the tip: errors of steps add up.
 const SHARE: f64 = 0.003;
+
+/// What unresolved waves of a jump move the tip by, over its way until then, as measured: 1.2 to 1.7 % where a cable of the silicone arm is let go,
+/// at any tolerance.
+const UNRESOLVED: f64 = 0.02;
+
+/// To how much of the time in which the arm swings it is known when cables become slack or taut.
+const EVENT: f64 = 1e-4;
+
+/// Events whose time is looked for within a step, and that are kept, in one run.
+const LOCATED: usize = 1000;
+const EVENTS: usize = 10_000;
 
 /// What is left of Newton's method over the error of a step: what is left is systematic and adds up.
 const LEFT: f64 = 0.01;
@@ -58,6 +72,16 @@ pub(super) struct Stepper {
     kept_tensions: (Vec<f64>, Vec<bool>),
     /// Tensions (N) through the last step, with their times.
     pub(super) tensions: Vec<(f64, Vec<f64>)>,
+    /// Works, and what the base carries.
+    pub(super) ledger: Ledger,
+    /// What happened, the first [`EVENTS`] times.
+    pub(super) events: Vec<MotionEvent>,
+    /// Whether the surface is folded at `time`.
+    folded: bool,
+    /// The first jump of a load that the motion passed.
+    pub(super) jumped: Option<f64>,
+    /// Smallest and largest x and y of the tip, over L.
+    pub(super) reached: [[f64; 2]; 2],
     /// Error of a step over L that is asked for.
     tolerance: f64,
     /// Whether steps keep the length they are given.
@@ -96,17 +120,66 @@ impl Stepper {
         tol: f64,
         fixed: Option<f64>,
     ) -> Self {
-        settling.forget();
         let layout = settling.moving.layout();
         let mut now = Snapshot::at_rest(layout);
         now.take(&mut settling.system, &settling.solution, &settling.moving.scales);
-        let running = !inputs.jumps_at(time);
+        let (running, jumped) = (!inputs.jumps_from_rest(time), inputs.jumps_at(time).then_some(time));
+        let nothing = [[0.0; WORKS]; 2];
+        let this = Self::starting(settling, start, inputs, time, now, nothing);
+        Self { running, jumped, tolerance: SHARE * tol, fixed, next: fixed.unwrap_or(0.0), ..this }
+    }
+
+    /// From a state that another run was in.
+    pub(super) fn resumed(
+        arm: &Arm,
+        inputs: Inputs,
+        state: &MotionState,
+        tol: f64,
+        fixed: Option<f64>,
+    ) -> Result<Self, MotionError> {
+        arm.check()?;
+        inputs.check(arm)?;
+        let mut start = arm.clone();
+        inputs.apply(&mut start, state.time);
+        check(&start)?;
+        let mesh = state.check(&start)?;
+        let mut settling = Settling::new(&start);
+        let statics = &mut settling.moving.statics;
+        for (c, tension) in state.tensions.iter().enumerate().filter(|(c, _)| start.cables[*c].stroke.is_some()) {
+            statics.set_tension(c, *tension);
+        }
+        statics.hold_strokes();
+        let now = state.restore(&mut settling, mesh);
+        let energy = settling.moving.statics.units.force * start.length;
+        let works = [&state.works, &state.powers].map(|list| std::array::from_fn(|k| list[k] / energy));
+        let running = state.smooth && !inputs.jumps_at(state.time);
+        let this = Self::starting(settling, start, inputs, state.time, now, works);
+        let next = fixed.unwrap_or(if running { state.next } else { 0.0 });
+        Ok(Self { running, tolerance: SHARE * tol, fixed, next, error: state.error, jumped: state.jumped, ..this })
+    }
+
+    fn starting(
+        mut settling: Settling,
+        start: Arm,
+        inputs: Inputs,
+        time: f64,
+        now: Snapshot,
+        works: [[f64; WORKS]; 2],
+    ) -> Self {
+        settling.forget();
         let most = RUNNING.c.len();
+        let energy = settling.moving.energies(&settling.system, &now).iter().sum();
+        let [_, x, y] = now.node(now.layout.nodes - 1);
         Self {
             kept: settling.solution.clone(),
             kept_scales: [1.0; S],
             kept_tensions: settling.tensions(),
             tensions: vec![(time, settling.tensions().0)],
+            ledger: Ledger::new(time, settling.at_base(), energy, works),
+            events: Vec::new(),
+            folded: settling.moving.fold_margin(&now)[0] <= 0.0,
+            jumped: None,
+            reached: [[x, y]; 2],
             settling,
             arm: start,
             inputs,
@@ -115,10 +188,10 @@ impl Stepper {
             stages: vec![now.clone(); most],
             now,
             step: 0.0,
-            next: fixed.unwrap_or(0.0),
-            running,
-            tolerance: SHARE * tol,
-            fixed,
+            next: 0.0,
+            running: true,
+            tolerance: SHARE,
+            fixed: None,
             error: 0.0,
             steps: 0,
             rejected: 0,
@@ -152,13 +225,17 @@ impl Stepper {
             } else {
                 self.next
             };
-            let tableau = if self.running { &RUNNING } else { &STARTING };
-            match self.try_step(tableau, h) {
+            match self.try_step(self.tableau(), h) {
                 Ok([whole, tip]) => {
                     let ratio = whole / self.tolerance;
                     let factor = 0.9 * ratio.max(1e-8).powf(-0.25);
                     if ratio > 1.0 && self.fixed.is_none() && h > shortest {
                         self.reject(h * factor.clamp(0.1, 0.9));
+                        reduced = true;
+                        continue;
+                    }
+                    if let Some(shorter) = self.before_event(h) {
+                        self.reject(shorter);
                         reduced = true;
                         continue;
                     }
@@ -186,6 +263,11 @@ impl Stepper {
         }
     }
 
+    /// The method of the next step.
+    fn tableau(&self) -> &'static Tableau {
+        if self.running { &RUNNING } else { &STARTING }
+    }
+
     fn reject(&mut self, next: f64) {
         self.rejected += 1;
         self.next = next;
@@ -195,22 +277,75 @@ impl Stepper {
 
     fn accept(&mut self, h: f64, corner: f64, to_corner: bool, tip_error: f64) {
         std::mem::swap(&mut self.before, &mut self.now);
-        let last = if self.running { RUNNING.c.len() } else { STARTING.c.len() } - 1;
-        std::mem::swap(&mut self.now, &mut self.stages[last]);
+        let tableau = self.tableau();
+        std::mem::swap(&mut self.now, &mut self.stages[tableau.c.len() - 1]);
+        let energy = self.settling.moving.energies(&self.settling.system, &self.now).iter().sum();
+        self.ledger.accept(tableau, h, energy);
         self.time = if to_corner { corner } else { self.time + h };
         self.step = h;
         self.steps += 1;
         self.error += tip_error;
+        let [_, x, y] = self.now.node(self.now.layout.nodes - 1);
+        let [least, most] = self.reached;
+        self.reached = [[least[0].min(x), least[1].min(y)], [most[0].max(x), most[1].max(y)]];
         self.kept.clone_from(&self.settling.solution);
-        self.kept_tensions = self.settling.tensions();
+        let tensions = std::mem::replace(&mut self.kept_tensions, self.settling.tensions());
         self.kept_scales = self.settling.moving.scales;
+        self.note_events(&tensions.1);
         self.running = true;
         if to_corner && self.inputs.jumps_at(self.time) {
             self.running = false;
+            self.jumped = self.jumped.or(Some(self.time));
             self.settling.forget();
             if self.fixed.is_none() {
                 self.next = 0.0;
             }
+        }
+    }
+
+    /// A shorter step, where cables became slack or taut in the one of length `h` and it is not known well when.
+    fn before_event(&self, h: f64) -> Option<f64> {
+        let changed = self.settling.tensions().1 != self.kept_tensions.1;
+        let known = h <= EVENT * self.settling.moving.time_unit() || self.events.len() >= LOCATED;
+        (changed && !known && self.fixed.is_none()).then_some(0.5 * h)
+    }
+
+    /// Notes what happened in the last step, before which the cables were taut as `taut` says.
+    fn note_events(&mut self, taut: &[bool]) {
+        let held: Vec<usize> = self.settling.moving.held().collect();
+        for ((cable, before), now) in held.into_iter().zip(taut).zip(self.kept_tensions.1.clone()) {
+            if *before != now {
+                let kind = if now { MotionEventKind::Taut(cable) } else { MotionEventKind::Slack(cable) };
+                self.note(MotionEvent { time: self.time, kind });
+            }
+        }
+        let folded = self.settling.moving.fold_margin(&self.now)[0] <= 0.0;
+        if folded != self.folded {
+            self.folded = folded;
+            self.note_fold(folded);
+        }
+    }
+
+    /// Finds when in the last step the surface folded, or unfolded.
+    fn note_fold(&mut self, folded: bool) {
+        let mut at = Snapshot::default();
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            between(&self.before, &self.now, self.step, middle, &mut at);
+            let there = self.settling.moving.fold_margin(&at)[0] <= 0.0;
+            if there == folded { high = middle } else { low = middle }
+        }
+        between(&self.before, &self.now, self.step, high, &mut at);
+        let [_, s] = self.settling.moving.fold_margin(&at);
+        let place = s * self.arm.length;
+        let kind = if folded { MotionEventKind::SurfaceFolds(place) } else { MotionEventKind::SurfaceUnfolds };
+        self.note(MotionEvent { time: self.time - (1.0 - high) * self.step, kind });
+    }
+
+    fn note(&mut self, event: MotionEvent) {
+        if self.events.len() < EVENTS {
+            self.events.push(event);
         }
     }
 
@@ -222,6 +357,7 @@ impl Stepper {
         if tableau.explicit_first {
             self.stages[0].clone_from(&self.now);
         }
+        self.ledger.start(self.time, tableau.explicit_first);
         let holds = self.settling.moving.statics.held.is_some();
         if holds {
             self.tensions = vec![(self.time, self.kept_tensions.0.clone())];
@@ -244,7 +380,10 @@ impl Stepper {
             let own = &mut rest[0];
             let settling = &mut self.settling;
             own.take(&mut settling.system, &settling.solution, &settling.moving.scales);
-            own.rates_from(cv, &self.settling.moving.history);
+            own.rates_from(cv, &settling.moving.history);
+            let base = settling.at_base();
+            let powers = settling.moving.powers(&settling.system, own, base);
+            self.ledger.take(Reading { time, powers, base });
             if holds {
                 self.tensions.push((time, self.settling.tensions().0));
             }
@@ -309,6 +448,29 @@ impl Stepper {
             (Some((_, v)), _) | (None, Some((_, v))) => v[cable],
             (None, None) => 0.0,
         }
+    }
+
+    /// The share of the last step that is over at `time`: 1 before the first one.
+    pub(super) fn share_at(&self, time: f64) -> f64 {
+        if self.step == 0.0 { 1.0 } else { 1.0 - (self.time - time) / self.step }
+    }
+
+    /// The first jump of a load whose waves no step resolves: the material has no memory of rate that damps them.
+    pub(super) fn unresolved_jump(&self) -> Option<f64> {
+        let dynamics = &self.arm.dynamics;
+        self.jumped.filter(|_| dynamics.inertia && dynamics.relaxation_time == 0.0)
+    }
+
+    /// What the tip is off by, over L, as far as that is known.
+    pub(super) fn estimate(&self) -> f64 {
+        let [least, most] = self.reached;
+        let way = (most[0] - least[0]).hypot(most[1] - least[1]);
+        self.error + self.unresolved_jump().map_or(0.0, |_| UNRESOLVED * way)
+    }
+
+    /// The next step, and whether accelerations at `time` go on.
+    pub(super) fn next_step(&self) -> (f64, bool) {
+        (self.next, self.running)
     }
 
     /// The arm with the loads of the last solve.

@@ -27,7 +27,7 @@ impl<'a> StationData<'a> {
 impl Equations {
     /// The tangent of cable `c` in a block of stations.
     #[inline(always)]
-    fn cable_tangent(&self, c: usize, block: usize, station: &Station<N, L>) -> Tangent<Lanes> {
+    pub(crate) fn cable_tangent(&self, c: usize, block: usize, station: &Station<N, L>) -> Tangent<Lanes> {
         let offset = &self.cables_in(block)[c].offset;
         let [nu, ..] = station.inner;
         tangent(offset, station.inner, &area_law(self.volume, nu), station.closure_slope)
