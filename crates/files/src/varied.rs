@@ -227,7 +227,7 @@ mod tests {
         assert!(error("E=0:1").ends_with("did you mean `material.young`?"));
         assert!(error("flow.speed=0:1:20").contains("found a COUNT after the range"));
         assert!(error("tension=0:1").ends_with("did you mean `cable[0].tension`?"));
-        assert!(error("arm.length=0:1").contains("keys that can: cable[0].tension, cable[0].stroke, flow.speed"));
+        assert!(error("arm.inner_radius=0:1").contains("keys that can: cable[0].tension, cable[0].stroke, flow.speed"));
         assert!(error("flow.speed=0:1 N").contains("expected a speed"));
         assert!(error("flow.speed=0:1 N").contains("`N` is the unit of a force"));
         assert!(error("flow.speed=0:").contains("does not start with a number"));

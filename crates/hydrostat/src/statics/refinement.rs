@@ -59,7 +59,8 @@ pub(crate) fn graded(arm: &Arm, breaks: &[f64], elements: usize) -> Mesh {
     Mesh::graded(elements, breaks, |s| arm.radius.at(s * arm.length, arm.length).value.sqrt().recip())
 }
 
-/// The error of the tip (over L) that the last Newton round may have left, `correction` by its own measure, or rounding.
+/// The error of the tip (over L) that the last Newton round may have left, `correction` by its own measure, or
+/// rounding.
 pub(crate) fn unseen(correction: f64) -> f64 {
     (LEFT * correction).max(ROUNDED)
 }

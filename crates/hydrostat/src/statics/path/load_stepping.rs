@@ -123,7 +123,8 @@ pub(crate) fn follow_on(
 }
 
 /// Follows the range that the engine's equations vary over to its end, or to a verdict, from the engine's equilibrium
-/// at the share `from` of it. Behind a limit point it is followed down to the share `lowest`. Fractions of snaps and verdicts are shares of the range, and their phase says nothing.
+/// at the share `from` of it. Behind a limit point it is followed down to the share `lowest`. Fractions of snaps and
+/// verdicts are shares of the range, and their phase says nothing.
 pub(crate) fn follow_range(
     engine: &mut Engine,
     [from, lowest]: [f64; 2],
