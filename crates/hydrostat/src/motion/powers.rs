@@ -3,7 +3,8 @@
 //! With e the strains, W = 1/2 sum C_k A (e_k - e_ok)^2 and J = J_0 beta^2, the equations of motion say
 //!
 //! ```text
-//! d/dt (kinetic + int W) = int ((f - f_a) . r. + couple omega) + tip load on r., omega - n_f(0) . r.(0) - m_f(0) omega(0)
+//! d/dt (kinetic + int W) = int ((f - f_a) . r. + couple omega) + tip load on r., omega
+//!                          - n_f(0) . r.(0) - m_f(0) omega(0)
 //!                          - int sum T |tau|.  - t_v int sum C_k A e_k.^2  + volume
 //! volume = int (1/2 sum C_k A' nu. (e_k - e_ok)^2 - 1/2 J. omega^2 + sum T (|tau|. - its part by e.))
 //! ```
@@ -68,8 +69,8 @@ impl Moving {
         out
     }
 
-    /// The smallest (nu - beta R |mu|)/nu at the stages in the motion `at`, and where over L: at or below zero the surface
-    /// folds.
+    /// The smallest (nu - beta R |mu|)/nu at the stages in the motion `at`, and where over L: at or below zero the
+    /// surface folds.
     pub(super) fn fold_margin(&self, at: &Snapshot) -> [f64; 2] {
         let groups = self.statics.groups;
         let mut least = [f64::INFINITY, 0.0];

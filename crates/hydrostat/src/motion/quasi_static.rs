@@ -22,7 +22,8 @@ impl QuasiStatic {
         Ok(Self { solver, arm: arm.clone(), inputs })
     }
 
-    /// The tip of the equilibrium under the loads just before `time` (s), from the equilibrium that was asked for before.
+    /// The tip of the equilibrium under the loads just before `time` (s), from the equilibrium that was asked for
+    /// before.
     ///
     /// # Errors
     /// [`SolveError::NoEquilibrium`] where there is none, or none was found.

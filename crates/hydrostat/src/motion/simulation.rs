@@ -140,8 +140,8 @@ impl Simulation {
         Ok(Self::of(stepper))
     }
 
-    /// Goes on from the end of another run of `arm`, or of one with the same length and mesh, at the state's time in place
-    /// of [`MotionOptions::start`]. Under other loads give [`MotionState::under_other_loads`].
+    /// Goes on from the end of another run of `arm`, or of one with the same length and mesh, at the state's time in
+    /// place of [`MotionOptions::start`]. Under other loads give [`MotionState::under_other_loads`].
     ///
     /// # Errors
     /// [`MotionError`] where an option, the arm, an input or the state is refused.
@@ -171,15 +171,15 @@ impl Simulation {
         }
     }
 
-    /// The error of the tip, m: the sum of the embedded errors of all steps, of the method of order 3 inside that of order
-    /// 4, so that it says too much where the motion is smooth; after a jump that is not resolved (see
+    /// The error of the tip, m: the sum of the embedded errors of all steps, of the method of order 3 inside that of
+    /// order 4, so that it says too much where the motion is smooth; after a jump that is not resolved (see
     /// [`Simulation::warnings`]) two hundredths of the way of the tip besides. The mesh's error is not in it.
     pub fn error_estimate(&self) -> f64 {
         self.stepper.estimate() * self.stepper.arm().length
     }
 
-    /// By how much the steps changed the energy of the arm beside all works, J: negative where they damp what they do not
-    /// resolve. Zero but for the error of the steps.
+    /// By how much the steps changed the energy of the arm beside all works, J: negative where they damp what they do
+    /// not resolve. Zero but for the error of the steps.
     pub fn energy_gap(&self) -> f64 {
         let units = self.stepper.settling.moving.statics.units;
         self.stepper.ledger.gap()[0] * units.force * units.length
