@@ -97,8 +97,8 @@ impl Mesh {
         mesh
     }
 
-    /// With these nodes, of which the `breaks` (in (0, 1), increasing) are pinned; `None` unless they increase from 0 to 1
-    /// and have the breaks among them.
+    /// With these nodes, of which the `breaks` (in (0, 1), increasing) are pinned; `None` unless they increase from 0
+    /// to 1 and have the breaks among them.
     pub fn with_nodes(nodes: &[f64], breaks: &[f64]) -> Option<Self> {
         let whole = nodes.first() == Some(&0.0) && nodes.last() == Some(&1.0);
         // Not a number is not longer than anything.

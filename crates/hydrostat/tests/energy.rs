@@ -157,8 +157,8 @@ fn the_work_of_a_cable_is_its_tension_over_its_stroke() {
     assert!((before.works.cables / work - 1.0).abs() < 1e-3, "{} {work}", before.works.cables);
 }
 
-/// A rigid rod on a soft hinge that is let go level: the hinge carries a quarter of its weight at first, 2.5 times it at
-/// the bottom, and weight does m g L/2 of work on the way.
+/// A rigid rod on a soft hinge that is let go level: the hinge carries a quarter of its weight at first, 2.5 times it
+/// at the bottom, and weight does m g L/2 of work on the way.
 #[test]
 fn the_hinge_of_a_rod_that_falls_carries_what_the_closed_form_says() {
     let (length, d, radius) = (1.0, 1e-5, 0.02);

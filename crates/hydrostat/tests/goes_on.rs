@@ -195,7 +195,8 @@ fn equilibria_beside_a_slow_motion_are_near_and_beside_a_fast_one_are_not() {
     assert!(fast > 0.05 && slow < 0.01, "{fast:.1e} {slow:.1e}");
 }
 
-/// The estimate of a motion after a jump without relaxation time was less than a fifth of the error, and nothing said so.
+/// The estimate of a motion after a jump without relaxation time was less than a fifth of the error, and nothing said
+/// so.
 #[test]
 fn a_jump_that_is_not_resolved_was_not_told() {
     let mut arm = silicone();

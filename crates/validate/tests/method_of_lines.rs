@@ -1,8 +1,8 @@
 //! The motion against an explicit method of lines that shares nothing with the program: a staggered grid along the arm,
 //! second differences, the classical Runge-Kutta method of order 4 at the steps that stretch waves allow.
 //!
-//! Places stand at nodes, angles between them. Sections are rigid (`volume = "none"`); what acts are the tip's load, drag
-//! by the square of the speed, and added mass. Two grids are extrapolated.
+//! Places stand at nodes, angles between them. Sections are rigid (`volume = "none"`); what acts are the tip's load,
+//! drag by the square of the speed, and added mass. Two grids are extrapolated.
 
 use std::f64::consts::PI;
 

@@ -174,7 +174,9 @@ fn a_start_without_equilibrium_is_a_verdict() {
 fn what_cannot_vary_is_refused() {
     let vary = |text: &str| refused(&["path", "paper", "--vary", text]);
     assert!(vary("cabel[0].tension=0:1").contains("did you mean `cable[0].tension`?"));
-    assert!(vary("arm.inner_radius=0.001:0.002").contains("keys that can: cable[0].tension, cable[0].stroke, flow.speed"));
+    assert!(
+        vary("arm.inner_radius=0.001:0.002").contains("keys that can: cable[0].tension, cable[0].stroke, flow.speed")
+    );
     assert!(vary("cable[9].tension=0:1").contains("`cable[9].tension`: the arm has 2 cables, counted from 0"));
     assert!(vary("material.young=1e5:1e6").contains("the arm gives c1, c2 and c3"));
     assert!(vary("cable[0].tension=0").contains("expected KEY=FROM:TO"));

@@ -3,8 +3,8 @@
 //! With e the strains, W = 1/2 sum C_k A (e_k - e_ok)^2 and J = J_0 beta^2, the equations of motion say
 //!
 //! ```text
-//! d/dt (kinetic + int W) = int ((f - f_a) . r. + couple omega) + tip load on r., omega - n_f(0) . r.(0) - m_f(0)
-//! omega(0)
+//! d/dt (kinetic + int W) = int ((f - f_a) . r. + couple omega) + tip load on r., omega
+//!                          - n_f(0) . r.(0) - m_f(0) omega(0)
 //!                          - int sum T |tau|.  - t_v int sum C_k A e_k.^2  + volume
 //! volume = int (1/2 sum C_k A' nu. (e_k - e_ok)^2 - 1/2 J. omega^2 + sum T (|tau|. - its part by e.))
 //! ```

@@ -35,8 +35,8 @@ const MOST_STEPS: usize = 1_000_000;
 /// What a step's embedded error may be over the tolerance of the tip: errors of steps add up.
 const SHARE: f64 = 0.003;
 
-/// What unresolved waves of a jump move the tip by, over its way until then, as measured: 1.2 to 1.7 % where a cable
-/// of the silicone arm is let go, at any tolerance.
+/// What unresolved waves of a jump move the tip by, over its way until then, as measured: 0.3 to 1.7 % where a cable of
+/// the silicone arm is released, at any tolerance.
 const UNRESOLVED: f64 = 0.02;
 
 /// To how much of the time in which the arm swings it is known when cables become slack or taut.

@@ -1,5 +1,5 @@
-//! Cables whose stroke is commanded in motion: shape and tensions in one bordered system ([`crate::statics::border`]),
-//! with taut and slack cables by an active set.
+//! Cables whose stroke is commanded in motion: shape and tensions in one bordered system
+//! ([`crate::statics::border`]), with taut and slack cables by an active set.
 
 use hydrostat_bvp::Correction;
 
