@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 #: Values of a key: a grid ``"0:1:26"``, a range to draw from ``"0:1"``, a list with commas, an array, or one value.
 Values = Union[str, float, Sequence[float], Sequence[str], "NDArray[np.generic]"]
 
-_COLUMN = re.compile(r"(?P<name>.+?)(_(?P<index>\d+))?(_(?P<unit>m|rad|N|Nm))?$")
+_COLUMN = re.compile(r"(?P<name>.+?)(_(?P<index>\d+))?(_(?P<unit>m|rad|N|Nm|s))?$")
 _UNITS = {"Nm": "N m"}
 #: Numbers of a row that are not of cables or stations, all columns together.
 _NUMBERS = {"plane": 23, "space": 35}
