@@ -32,10 +32,12 @@ pub(crate) enum Cause<'a> {
     Solve(&'a SolveError),
     Spatial(&'a SpatialError),
     Path(&'a PathError),
+    PathInSpace(&'a PathError<SpatialError>),
     Motion(&'a MotionError),
     TimeLoads,
     Sensitivity(&'a SensitivityError),
     Reach(&'a ReachError),
+    ReachInSpace(&'a ReachError<SpatialError>),
     Sweep(&'a SweepError),
     Identify(&'a IdentifyError),
     Study(&'a StudyError),
@@ -55,11 +57,13 @@ impl<'a> Cause<'a> {
         let found = error.downcast_ref().map(Self::Solve);
         let found = found.or_else(|| error.downcast_ref().map(Self::Spatial));
         let found = found.or_else(|| error.downcast_ref().map(Self::Path));
+        let found = found.or_else(|| error.downcast_ref().map(Self::PathInSpace));
         let found = found.or_else(|| error.downcast_ref().map(Self::Motion));
         let found = found.or_else(|| error.is::<TimeLoadsError>().then_some(Self::TimeLoads));
         let found = found.or_else(|| error.is::<ShapedError>().then_some(Self::TimeLoads));
         let found = found.or_else(|| error.downcast_ref().map(Self::Sensitivity));
         let found = found.or_else(|| error.downcast_ref().map(Self::Reach));
+        let found = found.or_else(|| error.downcast_ref().map(Self::ReachInSpace));
         let found = found.or_else(|| error.downcast_ref().map(Self::Sweep));
         let found = found.or_else(|| error.downcast_ref().map(Self::Identify));
         let found = found.or_else(|| error.downcast_ref().map(Self::Study));
@@ -82,17 +86,19 @@ impl<'a> Cause<'a> {
     pub(crate) fn blame(&self) -> Blame {
         match self {
             Self::Solve(error) => solve(error),
-            Self::Path(error) => path(error),
+            Self::Spatial(error) => solve_in_space(error),
+            Self::Path(error) => path(error, solve),
+            Self::PathInSpace(error) => path(error, solve_in_space),
             Self::Motion(error) => motion(error),
-            Self::Sensitivity(error) => sensitivity(error),
-            Self::Reach(error) => reach(error),
+            Self::Sensitivity(error) => sensitivity(error, solve),
+            Self::Reach(error) => reach(error, solve),
+            Self::ReachInSpace(error) => reach(error, solve_in_space),
             Self::Sweep(error) => sweep(error),
             Self::Identify(error) => identify(error),
             Self::Study(error) => study(error),
             Self::Serve(ServeError::Run(_)) => Blame::Other,
             Self::Request(WrongRequest::Declined) => Blame::User,
             Self::Serve(ServeError::Bind { .. })
-            | Self::Spatial(SpatialError::Arm(_) | SpatialError::Option { .. })
             | Self::Measurements
             | Self::FitKey
             | Self::Targets
@@ -100,7 +106,7 @@ impl<'a> Cause<'a> {
             | Self::File
             | Self::Write
             | Self::Request(_) => Blame::Request,
-            Self::NoAnswer | Self::Spatial(SpatialError::NoEquilibrium(_)) => Blame::Arm,
+            Self::NoAnswer => Blame::Arm,
         }
     }
 
@@ -114,6 +120,8 @@ impl<'a> Cause<'a> {
             Self::Study(StudyError::Reach(error)) => solve_of_reach(error),
             Self::Spatial(_)
             | Self::Path(_)
+            | Self::PathInSpace(_)
+            | Self::ReachInSpace(_)
             | Self::Motion(_)
             | Self::TimeLoads
             | Self::Sensitivity(_)
@@ -158,7 +166,14 @@ fn solve(error: &SolveError) -> Blame {
     }
 }
 
-fn path(error: &PathError) -> Blame {
+fn solve_in_space(error: &SpatialError) -> Blame {
+    match error {
+        SpatialError::Arm(_) | SpatialError::Option { .. } => Blame::Request,
+        SpatialError::NoEquilibrium(_) => Blame::Arm,
+    }
+}
+
+fn path<E>(error: &PathError<E>, solve: impl Fn(&E) -> Blame) -> Blame {
     match error {
         PathError::Value { .. }
         | PathError::Option { .. }
@@ -169,7 +184,7 @@ fn path(error: &PathError) -> Blame {
     }
 }
 
-fn sensitivity(error: &SensitivityError) -> Blame {
+fn sensitivity<E>(error: &SensitivityError<E>, solve: impl Fn(&E) -> Blame) -> Blame {
     match error {
         SensitivityError::Solve(source) => solve(source),
         SensitivityError::Singular | SensitivityError::Unsettled(_) => Blame::Arm,
@@ -182,10 +197,10 @@ fn sensitivity(error: &SensitivityError) -> Blame {
     }
 }
 
-fn reach(error: &ReachError) -> Blame {
+fn reach<E>(error: &ReachError<E>, solve: impl Fn(&E) -> Blame) -> Blame {
     match error {
         ReachError::Solve(source) => solve(source),
-        ReachError::Sensitivity(source) => sensitivity(source),
+        ReachError::Sensitivity(source) => sensitivity(source, solve),
         ReachError::NoCables | ReachError::Target | ReachError::Option { .. } => Blame::Request,
     }
 }
@@ -212,7 +227,7 @@ fn sweep(error: &SweepError) -> Blame {
 fn identify(error: &IdentifyError) -> Blame {
     match error {
         IdentifyError::Start { source, .. } => match source.as_ref() {
-            Trial::Sensitivity(source) => sensitivity(source),
+            Trial::Sensitivity(source) => sensitivity(source, solve),
             Trial::Arm(_) => Blame::Request,
         },
         IdentifyError::NoParameter
@@ -230,6 +245,6 @@ fn study(error: &StudyError) -> Blame {
     match error {
         StudyError::NoCable { .. } | StudyError::Faster { .. } | StudyError::NoTension { .. } => Blame::Request,
         StudyError::Solve { source, .. } => solve(source),
-        StudyError::Reach(source) => reach(source),
+        StudyError::Reach(source) => reach(source, solve),
     }
 }

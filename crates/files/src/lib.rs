@@ -62,9 +62,9 @@ pub use measurements::{MeasurementsError, parse_measurements, read_measurements}
 pub use measurements_template::measurements_template;
 pub use motions::{ModesDocument, MotionDocument, mode_kind, motion_columns, motion_row};
 pub use output::{WriteError, is_same_file, remove_leftovers, write_whole, write_whole_with};
-pub use paths::{PathDocument, end_message, path_csv};
+pub use paths::{PathDocument, end_message, path_csv, spatial_path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
-pub use reach::{ReachDocument, reach_csv};
+pub use reach::{ReachDocument, reach_csv, spatial_reach_csv};
 pub use results::{FailureDocument, Note, SolutionDocument, TOLERANCE_MISSED, json, stations_csv};
 pub use shared_unit::{PartialUnit, shared_unit};
 pub use slips::{Slip, likeliest_slip, unit_slips};

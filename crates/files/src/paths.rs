@@ -1,6 +1,6 @@
 //! Paths of equilibria as JSON and CSV.
 
-use hydrostat::{Branch, Event, Path, PathEnd, PathPoint, VerdictKind};
+use hydrostat::{Arm, Branch, Event, Path, PathEnd, PathPoint, SpatialConfiguration, VerdictKind};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
@@ -75,17 +75,28 @@ pub fn limit_message(kind: VerdictKind, s: Option<f64>) -> String {
     s.map_or_else(|| why.to_owned(), |s| format!("{why}, at s = {s:.4} m,"))
 }
 
-fn branch<'a>(branch: &'a Branch, varied: &Varied) -> BranchOut<'a> {
+fn branch<'a, C>(
+    branch: &'a Branch<C>,
+    varied: &Varied,
+    state: impl Fn(&'a PathPoint<C>) -> State<'a>,
+) -> BranchOut<'a> {
     let last = branch.points.last().map_or(f64::NAN, |point| point.value);
     BranchOut {
         switched_at: branch.switched_at,
         end: EndOut::new(branch.end, end_message(branch.end, varied, last)),
-        points: branch.points.iter().map(point).collect(),
+        points: branch.points.iter().map(|own| point(own, state(own))).collect(),
     }
 }
 
-fn point(point: &PathPoint) -> PointOut<'_> {
-    let state = State::new(&point.configuration, point.stability);
+fn in_plane(point: &PathPoint) -> State<'_> {
+    State::new(&point.configuration, point.stability)
+}
+
+fn in_space(point: &PathPoint<SpatialConfiguration>) -> State<'_> {
+    State::in_space(&point.configuration, point.stability)
+}
+
+fn point<'a, C>(point: &PathPoint<C>, state: State<'a>) -> PointOut<'a> {
     let cable = point.event.and_then(Event::cable);
     PointOut { value: point.value, state, event: point.event.map(Event::name), cable }
 }
@@ -93,6 +104,20 @@ fn point(point: &PathPoint) -> PointOut<'_> {
 impl<'a> PathDocument<'a> {
     /// Of a path of what varies; `inputs` are the arm's, with the value at the start of the path.
     pub fn new(path: &'a Path, varied: &Varied) -> Option<Self> {
+        Self::of(path, varied, in_plane, |first| &first.arm)
+    }
+
+    /// The same of an arm in space.
+    pub fn in_space(path: &'a Path<SpatialConfiguration>, varied: &Varied) -> Option<Self> {
+        Self::of(path, varied, in_space, |first| &first.arm)
+    }
+
+    fn of<C>(
+        path: &'a Path<C>,
+        varied: &Varied,
+        state: impl Fn(&'a PathPoint<C>) -> State<'a> + Copy,
+        arm: impl Fn(&C) -> &Arm,
+    ) -> Option<Self> {
         let first = path.branches.first()?.points.first()?;
         Some(Self {
             schema: SCHEMA,
@@ -100,8 +125,8 @@ impl<'a> PathDocument<'a> {
             parameter: path.parameter.to_string(),
             unit: path.parameter.unit(),
             range: path.range,
-            branches: path.branches.iter().map(|b| branch(b, varied)).collect(),
-            inputs: Inputs::new(&first.configuration.arm),
+            branches: path.branches.iter().map(|b| branch(b, varied, state)).collect(),
+            inputs: Inputs::new(arm(&first.configuration)),
         })
     }
 
@@ -113,19 +138,34 @@ impl<'a> PathDocument<'a> {
 
 /// The points of all branches, one row each, with names and SI units in the first row. Branches count from 0.
 pub fn path_csv(path: &Path, varied: &Varied) -> String {
-    let all = || path.branches.iter().enumerate().flat_map(|(b, branch)| branch.points.iter().map(move |p| (b, p)));
-    let cables = all().next().map_or(0, |(_, p)| p.configuration.cables.len());
+    let cables = path.branches.iter().flat_map(|b| &b.points).next().map_or(0, |p| p.configuration.cables.len());
+    rows(path, varied, State::columns(cables, &["event"]), in_plane)
+}
+
+/// The same of an arm in space.
+pub fn spatial_path_csv(path: &Path<SpatialConfiguration>, varied: &Varied) -> String {
+    let cables = path.branches.iter().flat_map(|b| &b.points).next().map_or(0, |p| p.configuration.cables.len());
+    rows(path, varied, State::columns_in_space(cables, &["event"]), in_space)
+}
+
+fn rows<'a, C>(
+    path: &'a Path<C>,
+    varied: &Varied,
+    columns: Vec<String>,
+    state: impl Fn(&'a PathPoint<C>) -> State<'a>,
+) -> String {
+    let all = path.branches.iter().enumerate().flat_map(|(b, branch)| branch.points.iter().map(move |p| (b, p)));
     let mut names = vec!["branch".to_owned(), varied.column()];
-    names.extend(State::columns(cables, &["event"]));
+    names.extend(columns);
     let mut out = Rows::new(&names);
-    for (branch, point) in all() {
+    for (branch, point) in all {
         let mut cells = vec![branch.to_string(), cell(point.value)];
         let name = |event: Event| match event.cable() {
             Some(cable) => format!("{}[{cable}]", event.name()),
             None => event.name().to_owned(),
         };
         let event = point.event.map(name).unwrap_or_default();
-        cells.extend(State::new(&point.configuration, point.stability).cells(&[&event]));
+        cells.extend(state(point).cells(&[&event]));
         out.row(&cells);
     }
     out.text()

@@ -123,12 +123,13 @@
 //!
 //! # What is not in the model
 //!
-//! The arm moves slowly (quasi-static). An arm in space ([`Arm::space`]) has a solver of its own, [`SpatialSolver`];
-//! everything else is for arms in the plane. The section law is linear in the strains. Cables act by their tension
-//! alone: they do not press into the material. The surface may touch itself unseen; [`Configuration::fold_margin`]
-//! sees only a section that folds. The outside pressure on the wall of a sealed cavity is left out. The tangential
-//! load of the source's flow law corresponds to C_t = 4/9, where published coefficients of arms are 0.005 to 0.03: an
-//! answer that hangs on it carries a [`Warning::TangentialLoad`], and [`FlowLaw::QuadraticDrag`] is the alternative.
+//! The arm moves slowly (quasi-static). Arms in space ([`Arm::space`]) have [`SpatialSolver`], [`Arm::path_in_space`]
+//! and [`Arm::reach_in_space`]; all else is for arms in the plane. The section law is linear in the strains. Cables act
+//! by their tension alone: they do not press into the material. The surface may touch itself unseen;
+//! [`Configuration::fold_margin`] sees only a section that folds. The outside pressure on the wall of a sealed cavity
+//! is left out. The tangential load of the source's flow law corresponds to C_t = 4/9, where published coefficients of
+//! arms are 0.005 to 0.03: an answer that hangs on it carries a [`Warning::TangentialLoad`], and
+//! [`FlowLaw::QuadraticDrag`] is the alternative.
 
 pub mod cases;
 mod inverse;
@@ -160,7 +161,7 @@ pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError,
 pub use profile::{Join, Point, Profile, Sample, TableError};
 pub use reach::{
     Bound, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, BoundaryProgress, Followed, Follower,
-    Reach, ReachError, ReachOptions, Reached, Target,
+    Reach, ReachError, ReachOptions, Reached, SpatialTarget, Target,
 };
 pub use readings::{
     Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
@@ -171,8 +172,8 @@ pub use sensitivity::{
 pub use snap::{Snap, SnapBounds};
 pub use solve::{Answer, Options, Solver};
 pub use spatial::{
-    NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialSnap, SpatialSolver, SpatialStation,
-    SpatialStations, SpatialTip, SpatialWrench,
+    Ellipsoid, NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialPoseChange, SpatialSnap, SpatialSolver,
+    SpatialStation, SpatialStations, SpatialTip, SpatialWrench,
 };
 pub use stability::{Growth, Stability};
 pub use verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};

@@ -79,7 +79,7 @@ impl Engine {
         solution.resample(&methods.to_check, finer);
         self.check_equations.fraction = self.equations.fraction;
         self.check_equations.phase = self.equations.phase;
-        self.check_equations.tensions.clone_from(&self.equations.tensions);
+        self.check_equations.take_arm_of(&self.equations);
         self.check_equations.place_on(&methods.check, &self.finer);
         let mut estimate = self.compare()?;
         let unseen = (LEFT * self.left_over).max(ROUNDED);

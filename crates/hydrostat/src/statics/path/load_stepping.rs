@@ -3,7 +3,8 @@
 
 use super::contact::Contact;
 use super::step_control::{LOOSE, MEET, PathSummary, START, StepControl};
-use super::stepper::{Along, Fraction, Point, StepOutcome, Stepper};
+use super::stepper::{self, Fraction, StepOutcome, Stepper};
+use super::traced::Along;
 use crate::statics::configuration::{Configuration, Tip};
 use crate::statics::engine::{Engine, First, State, Trouble, roughly};
 use crate::statics::snap::{Snap, SnapBounds};
@@ -24,6 +25,8 @@ const BEYOND: usize = 400;
 
 /// The first step on that mesh.
 const SHARP_STEP: f64 = 1e-3;
+
+type Point = stepper::Point<Engine>;
 
 /// Where a path ends without an answer. The engine is at the last good point.
 #[derive(Debug, Clone)]
@@ -165,7 +168,7 @@ struct TurnedBack {
 
 /// One phase of the path.
 struct Ramp<'e, 'w> {
-    stepper: Stepper<'e>,
+    stepper: Stepper<'e, Engine>,
     phase: Phase,
     way: &'w mut Way,
     turned_back: Option<TurnedBack>,
