@@ -63,8 +63,25 @@ from hydrostat.identification import Estimate, Fit, LeftOut
 from hydrostat.many import Many, solve_many
 from hydrostat.motion import Moment, MovingShape, Simulation, motion_figures, simulate
 from hydrostat.paths import Branch, Equilibria, EquilibriumPath, Event, Path
-from hydrostat.reach import Bound, Boundary, BoundaryPiece, Followed, Follower, Reach, Reached, Target
-from hydrostat.sensitivity import Ellipse, PoseChange, Sensitivities
+from hydrostat.reach import (
+    Bound,
+    Boundary,
+    BoundaryPiece,
+    Followed,
+    Follower,
+    Reach,
+    Reached,
+    SpatialTarget,
+    Target,
+)
+from hydrostat.sensitivity import (
+    Ellipse,
+    Ellipsoid,
+    PoseChange,
+    Sensitivities,
+    SpatialPoseChange,
+    SpatialSensitivities,
+)
 from hydrostat.solution import CableState, Command, FoldMargin, Note, Snap, Solution, Stations, Tip, Wrench, animate
 from hydrostat.solver import Answer, Solver
 from hydrostat.spatial import SpatialSolution, SpatialStations, SpatialTip, SpatialWrench
@@ -83,6 +100,7 @@ __all__ = [
     "CableState",
     "Command",
     "Ellipse",
+    "Ellipsoid",
     "Equilibria",
     "EquilibriumPath",
     "Estimate",
@@ -125,8 +143,11 @@ __all__ = [
     "Snap",
     "Solution",
     "Solver",
+    "SpatialPoseChange",
+    "SpatialSensitivities",
     "SpatialSolution",
     "SpatialStations",
+    "SpatialTarget",
     "SpatialTip",
     "SpatialWrench",
     "Stations",

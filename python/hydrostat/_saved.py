@@ -189,6 +189,10 @@ class SavedPath(Saved):
     def branches(self) -> list[tuple[int, str, str, float | None]]:
         return list(self._stored["branches"])
 
+    @property
+    def in_space(self) -> bool:
+        return bool(self._stored.get("in_space", False))
+
     def values(self, branch: int) -> NDArray[np.float64]:
         return _fixed(self._stored["values"][branch])
 
@@ -208,6 +212,7 @@ def path_state(native: Any, origin: Origin) -> dict[str, Any]:
     points = [range(count) for count, *_ in native.branches]
     return {
         "axis": native.axis,
+        "in_space": native.in_space,
         "range": native.range,
         "branches": native.branches,
         "values": [native.values(branch) for branch in branches],

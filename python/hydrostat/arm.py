@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from hydrostat.identification import Fit, Keys, Measured, Priors
     from hydrostat.paths import Equilibria, EquilibriumPath
-    from hydrostat.reach import Boundary, Reach, Targets
+    from hydrostat.reach import Boundary, Reach, SpatialTargets, Targets
     from hydrostat.sensitivity import Sensitivities
 
 #: A table of the arm file.
@@ -386,7 +386,7 @@ class Arm:
 
     def reach(
         self,
-        targets: Targets,
+        targets: Targets | SpatialTargets,
         *,
         by: str = "tensions",
         max_tension: float | None = None,
@@ -403,7 +403,7 @@ class Arm:
         Parameters
         ----------
         targets : Target, sequence of Target, or (x, y)
-            Targets for places of the arm, m and rad; (x, y) is a target for the tip.
+            Targets for places of the arm, m and rad; (x, y) is a target for the tip. Of an arm in space `SpatialTarget` and (x, y, z).
         by : str
             ``"tensions"``, or ``"strokes"``: then the strokes that belong to the tensions are commanded, and stability is that with
             cable lengths held.
@@ -436,13 +436,19 @@ class Arm:
         >>> round(tip.x, 6), round(tip.y, 6)
         (0.182, 0.078)
         """
-        from hydrostat.reach import Reach, most_of, targets_of
+        from hydrostat.reach import Reach, most_of, spatial_targets_of, targets_of
 
-        goals = targets_of(targets)
         most = most_of(max_tension, max_stroke)
         if by not in ("tensions", "strokes"):
             raise ValueError(f"by: expected tensions or strokes, found {by!r}")
-        asked = (goals, most, _inputs.number("tol", tol), find_all, by == "strokes")
+        options = (most, _inputs.number("tol", tol), find_all, by == "strokes")
+        if self.is_spatial:
+            there = spatial_targets_of(targets)
+            places = [((one.x, one.y, one.z), one.s, one.direction, one.weight) for one in there]
+            found = _native.reach(self._inner, places, *options)
+            return Reach(found, tuple(there), self._origin("reach", (places, *options)))
+        goals = targets_of(cast("Targets", targets))
+        asked = (goals, *options)
         return Reach(_native.reach(self._inner, *asked), tuple(goals), self._origin("reach", asked))
 
     def reachable(self, *, max_tension: float | None = None, spacing: float = 0.01, tol: float = 1e-7) -> Boundary:

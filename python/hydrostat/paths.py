@@ -10,7 +10,7 @@ import numpy as np
 from hydrostat import _native, _saved
 from hydrostat._saved import Origin
 from hydrostat.figures import Figure, equilibria_figure, path_figure, path_shapes_figure
-from hydrostat.solution import Result, Solution
+from hydrostat.solution import Result, Solution, solution_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,8 +35,8 @@ class Branch(Result, Sequence[Solution]):
     ----------
     values : ndarray, shape (n,)
         The parameter, in the path's unit.
-    tip_x, tip_y, tip_theta, tip_alpha : ndarray, shape (n,)
-        The tip, m and rad.
+    tip_x, tip_y, tip_z, tip_theta, tip_alpha : ndarray, shape (n,)
+        The tip, m and rad: `tip_z` is 0 in the plane, `tip_theta` not a number in space.
     stability : tuple of str or None
         Of each point.
     unstable_directions : tuple of int or None
@@ -54,6 +54,7 @@ class Branch(Result, Sequence[Solution]):
     values: NDArray[np.float64]
     tip_x: NDArray[np.float64]
     tip_y: NDArray[np.float64]
+    tip_z: NDArray[np.float64]
     tip_theta: NDArray[np.float64]
     tip_alpha: NDArray[np.float64]
     stability: tuple[str | None, ...]
@@ -67,7 +68,11 @@ class Branch(Result, Sequence[Solution]):
         self._count, self.end, self.message, self.switched_at = path.branches[index]
         self.values = path.values(index)
         tip, state, directions = path.states(index)
-        self.tip_x, self.tip_y, self.tip_theta, self.tip_alpha = tip
+        self.tip_x, self.tip_y, third, self.tip_alpha = tip
+        if path.in_space:
+            self.tip_z, self.tip_theta = third, np.full_like(third, np.nan)
+        else:
+            self.tip_z, self.tip_theta = np.zeros_like(third), third
         self.stability = tuple(state)
         self.unstable_directions = tuple(directions)
         self.events = tuple(
@@ -89,7 +94,7 @@ class Branch(Result, Sequence[Solution]):
         at = point + self._count if point < 0 else point
         if not 0 <= at < self._count:
             raise IndexError(f"point {point} of a branch of {self._count}")
-        return Solution(self._path.solution(self._index, at), Origin("point", (self._origin, self._index, at)))
+        return solution_of(self._path.solution(self._index, at), Origin("point", (self._origin, self._index, at)))
 
     def __repr__(self) -> str:
         return f"<Branch: {len(self)} points, {self.end}>"
@@ -163,7 +168,7 @@ class EquilibriumPath(Result):
                 self.parameter: branch.values,
                 "tip_x": branch.tip_x,
                 "tip_y": branch.tip_y,
-                "tip_theta": branch.tip_theta,
+                **({"tip_z": branch.tip_z} if self._inner.in_space else {"tip_theta": branch.tip_theta}),
                 "tip_alpha": branch.tip_alpha,
                 "stability": branch.stability,
                 "event": [events.get(point) for point in range(len(branch))],
@@ -188,7 +193,8 @@ class EquilibriumPath(Result):
         return path_shapes_figure(self, title)
 
     def plot(self, quantity: str = "tip_y", ax: Axes | None = None) -> Axes:
-        """Draw ``tip_x``, ``tip_y``, ``tip_theta`` or ``tip_alpha`` over the parameter: stable solid, others dashed. Needs matplotlib."""
+        """Draw ``tip_x``, ``tip_y``, ``tip_z``, ``tip_theta`` or ``tip_alpha`` over the parameter: stable solid, others dashed. Needs
+        matplotlib."""
         from hydrostat.plotting import plot_path
 
         return plot_path(self, quantity, ax)

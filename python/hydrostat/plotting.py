@@ -173,6 +173,7 @@ def plot_strains(solution: Solution, *, label: str | None, figure: Figure | None
 _QUANTITIES = {
     "tip_x": (MM, "x of the tip (mm)"),
     "tip_y": (MM, "y of the tip (mm)"),
+    "tip_z": (MM, "z of the tip (mm)"),
     "tip_theta": (180.0 / np.pi, "the tip's turn (deg)"),
     "tip_alpha": (180.0 / np.pi, r"$\alpha$ at the tip (deg)"),
 }
@@ -224,6 +225,11 @@ def plot_reach(reach: Reach, ax: Axes | None) -> Axes:
     """See `Reach.plot`."""
     import matplotlib.pyplot as plt
 
+    from hydrostat.reach import Target
+
+    targets = [target for target in reach.targets if isinstance(target, Target)]
+    if len(targets) < len(reach.targets):
+        raise ValueError("plot: of targets in the plane; the solutions of a search in space have `plot`")
     ax = _new_axes(ax)
     per_m = UNITS[unit_of(ax, None)]
     shown = [*reach] or [one for one in (reach.closest,) if one is not None]
@@ -232,7 +238,7 @@ def plot_reach(reach: Reach, ax: Axes | None) -> Axes:
         pulls = ", ".join(f"{tension:.3g}" for tension in one.tensions)
         label = f"{pulls} N" if reach.closest is None else f"closest: {pulls} N"
         plot_shape(one.solution, ax, color=color, sections=0, cables=len(shown) == 1, flow=index == 0, label=label)
-    for target in reach.targets:
+    for target in targets:
         ax.plot(per_m * target.x, per_m * target.y, "+", color=_MARK, markersize=12, markeredgewidth=1.8, zorder=6)
         if target.angle is not None:
             # Across the section that is asked for.

@@ -14,7 +14,7 @@ from hydrostat import _inputs, _native, _saved
 from hydrostat._saved import Origin
 from hydrostat.arm import Arm, arm_of
 from hydrostat.figures import Figure
-from hydrostat.solution import Result, Solution, Stations, Tip
+from hydrostat.solution import Result, Solution, Stations, Tip, solution_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,6 +43,32 @@ class Target(NamedTuple):
     angle: float | None = None
     weight: float = 1.0
 
+
+class SpatialTarget(NamedTuple):
+    """A target for one place of an arm in space.
+
+    Attributes
+    ----------
+    x, y, z : float
+        The target, m.
+    s : float or None
+        The place of the arm, m along it; None for the tip.
+    direction : tuple of float or None
+        Direction of the section's normal a, of any length, if it matters. In distances, one radian counts as one length of the arm.
+    weight : float
+        Weight of its distance among several targets.
+    """
+
+    x: float
+    y: float
+    z: float
+    s: float | None = None
+    direction: tuple[float, float, float] | None = None
+    weight: float = 1.0
+
+
+#: One target of an arm in space, several, or the tip's ``(x, y, z)``, m.
+SpatialTargets = Union[SpatialTarget, tuple[float, float, float], Sequence[SpatialTarget], "NDArray[Any]"]
 
 #: One target, several, or the tip's ``(x, y)``, m, a pair or an array of two.
 Targets = Union[Target, tuple[float, float], Sequence[Target], "NDArray[Any]"]
@@ -79,7 +105,7 @@ class Reached(Result):
 
     tensions: NDArray[np.float64]
 
-    def __init__(self, native: _native.Reach, index: int, targets: tuple[Target, ...], origin: Origin) -> None:
+    def __init__(self, native: _native.Reach, index: int, targets: tuple[Target, ...] | tuple[SpatialTarget, ...], origin: Origin) -> None:
         self._native = native
         self._origin = origin
         self._index = index
@@ -91,7 +117,7 @@ class Reached(Result):
     @cached_property
     def solution(self) -> Solution:
         """The shape."""
-        return Solution(self._native.solution(self._index), Origin("reached", (self._origin, self._index)))
+        return solution_of(self._native.solution(self._index), Origin("reached", (self._origin, self._index)))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Reached):
@@ -205,13 +231,13 @@ class Reach(Result, Sequence[Reached]):
 
     Attributes
     ----------
-    targets : tuple of Target
+    targets : tuple of Target or SpatialTarget
         The targets.
     closest : Reached or None
         If nothing reaches them, the nearest shape found.
     """
 
-    def __init__(self, native: _native.Reach, targets: tuple[Target, ...], origin: Origin) -> None:
+    def __init__(self, native: _native.Reach, targets: tuple[Target, ...] | tuple[SpatialTarget, ...], origin: Origin) -> None:
         self._inner = native
         self._origin = origin
         count, closest = native.counts
@@ -271,7 +297,8 @@ def _reached(reach: Reach, index: int) -> Reached:
     return found[index]
 
 
-def _reach(version: int, writer: str, targets: tuple[Target, ...], state: dict[str, Any]) -> Reach:
+def _reach(
+    version: int, writer: str, targets: tuple[Target, ...] | tuple[SpatialTarget, ...], state: dict[str, Any]) -> Reach:
     _saved.check("Reach", version, writer)
     origin = Origin(*state["origin"])
     return Reach(cast("_native.Reach", _saved.SavedReach(state, origin)), targets, origin)
@@ -439,6 +466,40 @@ def targets_of(targets: Targets) -> list[Target]:
     if len(given) != 2:
         raise ValueError(f"targets: expected targets or (x, y), found {targets!r}")
     return [Target(_inputs.number("targets[0]", given[0]), _inputs.number("targets[1]", given[1]))]
+
+
+def spatial_targets_of(targets: Any) -> list[SpatialTarget]:
+    """Targets of an arm in space as a list; what is wrong is a `ValueError`."""
+    if isinstance(targets, SpatialTarget):
+        return [_checked_in_space("targets", targets)]
+    try:
+        given: list[Any] = list(targets)
+    except TypeError as error:
+        raise ValueError(f"targets: expected targets or (x, y, z), found {targets!r}") from error
+    if given and all(isinstance(target, SpatialTarget) for target in given):
+        return [_checked_in_space(f"targets[{k}]", target) for k, target in enumerate(given)]
+    if len(given) != 3:
+        raise ValueError(f"targets: expected SpatialTarget or (x, y, z) of an arm in space, found {targets!r}")
+    x, y, z = (_inputs.number(f"targets[{k}]", value) for k, value in enumerate(given))
+    return [SpatialTarget(x, y, z)]
+
+
+def _checked_in_space(name: str, target: SpatialTarget) -> SpatialTarget:
+    x, y, z, s, direction, weight = target
+    along = None
+    if direction is not None:
+        if len(direction) != 3:
+            raise ValueError(f"{name}.direction: expected three numbers, found {direction!r}")
+        one, two, three = (_inputs.number(f"{name}.direction[{k}]", value) for k, value in enumerate(direction))
+        along = (one, two, three)
+    return SpatialTarget(
+        _inputs.number(f"{name}.x", x),
+        _inputs.number(f"{name}.y", y),
+        _inputs.number(f"{name}.z", z),
+        None if s is None else _inputs.number(f"{name}.s", s),
+        along,
+        _inputs.number(f"{name}.weight", weight),
+    )
 
 
 def _checked(name: str, target: Target) -> Target:

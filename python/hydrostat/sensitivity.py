@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 
@@ -26,6 +26,33 @@ class PoseChange(NamedTuple):
     y: NDArray[np.float64]
     theta: NDArray[np.float64]
     alpha: NDArray[np.float64]
+
+
+class SpatialPoseChange(NamedTuple):
+    """Changes of `x`, `y`, `z` (m) in space, and turns of the section about e1, e2, e3 (rad), per unit of each parameter; the last
+    dimension is the parameters. A director d changes by turn x d."""
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    z: NDArray[np.float64]
+    turn_x: NDArray[np.float64]
+    turn_y: NDArray[np.float64]
+    turn_z: NDArray[np.float64]
+
+
+class Ellipsoid(NamedTuple):
+    """Manipulability ellipsoid in space: the image of the unit ball of tensions or strokes.
+
+    Attributes
+    ----------
+    half_axes : ndarray, shape (3,)
+        The longest first, m per unit of the parameters.
+    directions : ndarray, shape (3, 3)
+        The direction of each, one a row.
+    """
+
+    half_axes: NDArray[np.float64]
+    directions: NDArray[np.float64]
 
 
 class Ellipse(NamedTuple):
@@ -84,9 +111,15 @@ class Sensitivities(Result):
         Of these places, arrays of shape (n, p).
     """
 
+    tip: PoseChange
     strokes: NDArray[np.float64]
     tensions: NDArray[np.float64]
     stations: NDArray[np.float64]
+    poses: PoseChange
+    #: Units of the changes of a pose.
+    _pose: ClassVar[dict[str, str]] = _POSE
+    #: What changes of a pose are.
+    _change: ClassVar[Any] = PoseChange
 
     def __init__(self, native: _native.Sensitivities, solution: Solution, stations: NDArray[np.float64]) -> None:
         self._inner = native
@@ -94,11 +127,11 @@ class Sensitivities(Result):
         self.parameters = tuple(name for name, _ in native.parameters)
         self.units = tuple(unit for _, unit in native.parameters)
         count = len(self.parameters)
-        self.tip = PoseChange(*native.tip())
+        self.tip = self._change(*native.tip())
         self.strokes = native.strokes().reshape(-1, count)
         self.tensions = native.tensions().reshape(-1, count)
         self.stations = stations
-        self.poses = PoseChange(*(array.reshape(-1, count) for array in native.stations()))
+        self.poses = self._change(*(array.reshape(-1, count) for array in native.stations()))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sensitivities):
@@ -111,10 +144,13 @@ class Sensitivities(Result):
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = _saved.sensitivities_state(self._inner)
-        return _sensitivities, (_saved.FORMAT, _native.__version__, state, self.solution, self.stations)
+        return self._restored, (_saved.FORMAT, _native.__version__, state, self.solution, self.stations)
+
+    #: What a pickle is read by.
+    _restored: ClassVar[Any]
 
     def __repr__(self) -> str:
-        return f"<Sensitivities by {', '.join(self.parameters)}>"
+        return f"<{type(self).__name__} by {', '.join(self.parameters)}>"
 
     def index(self, parameter: str) -> int:
         """The place of a parameter in the last dimension of the arrays."""
@@ -126,9 +162,9 @@ class Sensitivities(Result):
     def quantities(self) -> tuple[str, ...]:
         """The rows of `jacobian`: ``"tip.x"``, ``"stroke[0]"``, ``"tension[0]"``, ``"station[0].theta"`` and so on."""
         cables = range(len(self.strokes))
-        tip = [f"tip.{name}" for name in _POSE]
+        tip = [f"tip.{name}" for name in self._pose]
         ropes = [f"stroke[{c}]" for c in cables] + [f"tension[{c}]" for c in cables]
-        return (*tip, *ropes, *(f"station[{k}].{name}" for k in range(len(self.stations)) for name in _POSE))
+        return (*tip, *ropes, *(f"station[{k}].{name}" for k in range(len(self.stations)) for name in self._pose))
 
     def jacobian(
         self, quantities: Sequence[str] | None = None, parameters: Sequence[str] | None = None
@@ -184,7 +220,7 @@ class Sensitivities(Result):
         import xarray as xr
 
         variables: dict[str, tuple[tuple[str, ...], NDArray[np.float64], dict[str, str]]] = {}
-        for name, unit in _POSE.items():
+        for name, unit in self._pose.items():
             about = {"units": f"{unit} a unit of the parameter"}
             variables[f"tip_{name}"] = (("parameter",), getattr(self.tip, name), about)
             if len(self.stations):
@@ -221,9 +257,52 @@ class Sensitivities(Result):
         return plot_manipulability(self, ax, effort)
 
 
+class SpatialSensitivities(Sensitivities):
+    """Derivatives of a shape in space by parameters; see `Sensitivities`.
+
+    `tip` and `poses` are `SpatialPoseChange`: motions in space, and turns of the sections.
+    """
+
+    tip: SpatialPoseChange  # type: ignore[assignment]
+    poses: SpatialPoseChange  # type: ignore[assignment]
+    _pose: ClassVar[dict[str, str]] = {"x": "m", "y": "m", "z": "m", "turn_x": "rad", "turn_y": "rad", "turn_z": "rad"}
+    _change: ClassVar[Any] = SpatialPoseChange
+
+    def tip_jacobian(self, parameters: Sequence[str]) -> NDArray[np.float64]:
+        """d (x, y, z) of the tip by some parameters, shape (3, k), m a unit."""
+        return self.jacobian(("tip.x", "tip.y", "tip.z"), parameters)
+
+    def compliance(self) -> NDArray[np.float64] | None:
+        """Compliance of the tip, shape (6, 6): rows x, y, z (m) and turns about e1, e2, e3 (rad); columns the dead forces (N) and moments
+        (N m) along and about them. None if one of ``"tip.force[0]"`` to ``"tip.force[2]"``, ``"tip.moment[0]"``, ``"tip.moment[1]"``
+        and ``"tip.moment"`` is not among the parameters."""
+        return super().compliance()
+
+    def manipulability(self) -> Ellipsoid | None:  # type: ignore[override]
+        """The ellipsoid of the tip by the tensions (m/N) or strokes (m/m) among the parameters; None if there are none."""
+        found: Any = self._inner.manipulability()
+        return None if found is None else Ellipsoid(np.array(found[0]), np.array(found[1]))
+
+    def plot_manipulability(self, ax: Axes | None = None, *, effort: float | None = None) -> Axes:
+        """Of arms in the plane."""
+        raise ValueError('plot_manipulability: for arms in the plane, and this arm has `space = "spatial"`')
+
+
 def _sensitivities(
     version: int, writer: str, state: dict[str, Any], solution: Solution, stations: NDArray[np.float64]
 ) -> Sensitivities:
     _saved.check("Sensitivities", version, writer)
     saved = _saved.SavedSensitivities(state, Origin("none", ()))
     return Sensitivities(cast("_native.Sensitivities", saved), solution, stations)
+
+
+def _spatial_sensitivities(
+    version: int, writer: str, state: dict[str, Any], solution: Solution, stations: NDArray[np.float64]
+) -> SpatialSensitivities:
+    _saved.check("SpatialSensitivities", version, writer)
+    saved = _saved.SavedSensitivities(state, Origin("none", ()))
+    return SpatialSensitivities(cast("_native.Sensitivities", saved), solution, stations)
+
+
+Sensitivities._restored = staticmethod(_sensitivities)
+SpatialSensitivities._restored = staticmethod(_spatial_sensitivities)

@@ -112,11 +112,6 @@ class Solver:
         """The full solution of the last `update`."""
         return solution_of(self._inner.configuration())
 
-    def _in_plane(self, what: str) -> _native.Solver:
-        if isinstance(self._inner, _native.SpatialSolver):
-            raise ValueError(f'{what}: for arms in the plane, and this arm has `space = "spatial"`')
-        return self._inner
-
     def sensitivities(
         self, parameters: Sequence[str] | None = None, *, stations: ArrayLike = (), method: str = "best"
     ) -> Sensitivities:
@@ -140,7 +135,7 @@ class Solver:
         Returns
         -------
         Sensitivities
-            Arrays by quantity, one column per parameter, in SI units and radians.
+            Arrays by quantity, one column per parameter, in SI units and radians; `SpatialSensitivities` of an arm in space.
 
         Raises
         ------
@@ -151,13 +146,16 @@ class Solver:
         ValueError
             An argument is invalid; the message names it.
         """
-        from hydrostat.sensitivity import Sensitivities
+        from hydrostat.sensitivity import Sensitivities, SpatialSensitivities
 
         names = None if parameters is None else _names(parameters)
         places = np.atleast_1d(_inputs.finite("stations", stations))
         if places.ndim != 1:
             raise ValueError(f"stations: expected one dimension, found shape {places.shape}")
-        native, solution = self._in_plane("sensitivities").sensitivities(names, places, method)
+        if isinstance(self._inner, _native.SpatialSolver):
+            found, shape = self._inner.sensitivities(names, places, method)
+            return SpatialSensitivities(cast("_native.Sensitivities", found), solution_of(shape), places)
+        native, solution = self._inner.sensitivities(names, places, method)
         return Sensitivities(native, Solution(solution), places)
 
     def gradient(
@@ -169,6 +167,8 @@ class Solver:
         y: ArrayLike = 0.0,
         theta: ArrayLike = 0.0,
         alpha: ArrayLike = 0.0,
+        z: ArrayLike = 0.0,
+        turn: ArrayLike = (0.0, 0.0, 0.0),
     ) -> NDArray[np.float64]:
         """Return the gradient of one number that depends on the shape, such as an objective, from one adjoint solve.
 
@@ -181,7 +181,12 @@ class Solver:
         stations : array_like, shape (n,)
             Places along the arm, m; the tip is at its length.
         x, y, theta, alpha : array_like, shape (n,) or ()
-            Derivatives of the number by these quantities at the stations, per metre or radian.
+            Derivatives of the number by these quantities at the stations, per metre or radian; `theta` and `alpha` of arms in the
+            plane.
+        z : array_like, shape (n,) or ()
+            The same of an arm in space.
+        turn : array_like, shape (n, 3) or (3,)
+            The same by turns of the sections about e1, e2, e3 of an arm in space.
 
         Returns
         -------
@@ -213,13 +218,26 @@ class Solver:
         places = np.atleast_1d(_inputs.finite("stations", stations))
         if places.ndim != 1:
             raise ValueError(f"stations: expected one dimension, found shape {places.shape}")
-        weights = []
-        for name, given in (("x", x), ("y", y), ("theta", theta), ("alpha", alpha)):
-            own = _inputs.finite(name, given)
-            if own.shape not in ((), places.shape):
-                raise ValueError(f"{name}: expected the shape {places.shape} of the stations, found {own.shape}")
-            weights.append(np.ascontiguousarray(np.broadcast_to(own, places.shape)))
-        return self._in_plane("gradient").gradient(_names(parameters), places, weights)
+        turns = _inputs.finite("turn", turn)
+        if turns.shape not in ((3,), (*places.shape, 3)):
+            raise ValueError(f"turn: expected the shape {(*places.shape, 3)}, found {turns.shape}")
+        given = {"x": x, "y": y, "z": z, "theta": theta, "alpha": alpha}
+        own = {name: _inputs.finite(name, value) for name, value in given.items()}
+        for name, value in own.items():
+            if value.shape not in ((), places.shape):
+                raise ValueError(f"{name}: expected the shape {places.shape} of the stations, found {value.shape}")
+        own |= {f"turn {axis}": np.broadcast_to(turns, (*places.shape, 3))[:, axis] for axis in range(3)}
+
+        def picked(names: Sequence[str]) -> list[NDArray[np.float64]]:
+            for name in own.keys() - set(names):
+                if np.any(own[name] != 0.0):
+                    raise ValueError(f"{name}: not of an arm {'in space' if spatial else 'in the plane'}")
+            return [np.ascontiguousarray(np.broadcast_to(own[name], places.shape)) for name in names]
+
+        inner, spatial = self._inner, isinstance(self._inner, _native.SpatialSolver)
+        if isinstance(inner, _native.SpatialSolver):
+            return inner.gradient(_names(parameters), places, picked(["x", "y", "z", "turn 0", "turn 1", "turn 2"]))
+        return inner.gradient(_names(parameters), places, picked(["x", "y", "theta", "alpha"]))
 
 
 def _names(parameters: Sequence[str]) -> list[str]:

@@ -94,7 +94,7 @@ CALLS: list[tuple[Callable[[hs.Arm], object], str]] = [
     (lambda arm: arm.equilibria(time_limit=-1.0), "^time_limit"),
     (lambda arm: arm.equilibria(tol=1.0), "`tol`"),
     (lambda arm: arm.reach((np.nan, 0.1)), r"^targets\[0\]: expected a finite number"),
-    (lambda arm: arm.reach((0.1, 0.1, 0.1)), "^targets: expected targets"),  # type: ignore[arg-type]
+    (lambda arm: arm.reach((0.1, 0.1, 0.1)), "^targets: expected targets"),
     (lambda arm: arm.reach(0.1), "^targets: expected targets"),  # type: ignore[arg-type]
     (lambda arm: arm.reach([]), "^targets: expected targets"),
     (lambda arm: arm.reach([hs.Target(0.1, 0.1), hs.Target(0.1, np.inf)]), r"^targets\[1\].y"),

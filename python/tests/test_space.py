@@ -120,13 +120,65 @@ def test_a_solver_goes_on(arm: hs.Arm) -> None:
     other = copy.copy(solver)
     other.set_flow_speed(0.0)
     assert other.resolve().tip.z < tip.z
-    for call in (
-        lambda: solver.set_stroke(0, 0.01),
-        lambda: solver.sensitivities(["cable[0].tension"]),
-        lambda: solver.gradient(["cable[0].tension"], [0.1], x=1.0),
-    ):
-        with pytest.raises(ValueError, match='`space = "spatial"`'):
-            call()
+    with pytest.raises(ValueError, match='`space = "spatial"`'):
+        solver.set_stroke(0, 0.01)
+
+
+def test_derivatives_are_those_of_differences(arm: hs.Arm) -> None:
+    solver = hs.Solver(arm, tol=1e-10)
+    names = ["cable[0].tension", "flow.direction[2]", "tip.force[2]"]
+    found = solver.sensitivities(names, stations=[0.1])
+    assert isinstance(found, hs.SpatialSensitivities) and isinstance(found.solution, hs.SpatialSolution)
+    assert found.parameters == tuple(names) and found.tip.z.shape == (3,) and found.poses.turn_x.shape == (1, 3)
+    step = 1e-4
+    tensions = np.array(solver.tensions)
+    tips: list[Any] = [arm.solve(tensions=tensions + [by, 0, 0], tol=1e-11).tip for by in (-step, step)]
+    for axis in "xyz":
+        difference = (getattr(tips[1], axis) - getattr(tips[0], axis)) / (2 * step)
+        assert getattr(found.tip, axis)[0] == pytest.approx(difference, rel=1e-5, abs=1e-6)
+    turn = np.array([found.tip.turn_x[0], found.tip.turn_y[0], found.tip.turn_z[0]])
+    difference = (np.array(tips[1].a) - np.array(tips[0].a)) / (2 * step)
+    assert np.allclose(np.cross(turn, found.solution.a[-1]), difference, rtol=1e-4, atol=1e-6)
+    assert found.tip_jacobian(names).shape == (3, 3) and found.compliance() is None
+    ellipsoid = found.manipulability()
+    assert ellipsoid is not None and ellipsoid.half_axes[0] >= ellipsoid.half_axes[1] >= ellipsoid.half_axes[2]
+    assert pickle.loads(pickle.dumps(found)) == found
+    gradient = solver.gradient(names, [arm.length], z=2.0, turn=[0.0, 1.0, 0.0])
+    assert np.allclose(gradient, 2.0 * found.tip.z + found.tip.turn_y, rtol=1e-6)
+    with pytest.raises(ValueError, match="theta"):
+        solver.gradient(names, [0.1], theta=1.0)
+    with pytest.raises(ValueError, match="in the plane"):
+        found.plot_manipulability()
+
+
+def test_a_path_varies_a_part_of_a_direction(arm: hs.Arm) -> None:
+    path = arm.path("flow.direction[1]", -1, 1)
+    branch = path.branches[0]
+    assert branch.end == "reached_end" and set(branch.stability) == {"stable"}
+    assert isinstance(branch[0], hs.SpatialSolution) and branch[-1].tip[2] == branch.tip_z[-1]
+    assert np.all(np.isnan(branch.tip_theta)) and "tip_z" in path.to_pandas()
+    assert pickle.loads(pickle.dumps(path)) == path
+    assert "tip_z_m" in path.to_csv() and len(path.plot("tip_z").lines) > 0
+    with pytest.raises(ValueError, match="tip.theta"):
+        path.figure("tip.theta")
+
+
+def test_places_in_space_are_reached(arm: hs.Arm) -> None:
+    pulled: Any = arm.solve(tensions=[0.12, 0.03, 0.07])
+    target = (pulled.tip.x, pulled.tip.y, pulled.tip.z)
+    found = arm.reach(target, max_tension=0.5, find_all=False)
+    assert isinstance(found[0].solution, hs.SpatialSolution) and found.targets == (hs.SpatialTarget(*target),)
+    assert np.allclose(found[0].tensions, [0.12, 0.03, 0.07], atol=1e-4)
+    place = pulled.at(0.15)
+    there = hs.SpatialTarget(float(place.x), float(place.y), float(place.z), s=0.15)
+    along = arm.reach(there, max_tension=0.5, find_all=False)
+    places: Any = along[0].places
+    assert places.z[0] == pytest.approx(float(place.z), abs=1e-7)
+    missed = arm.reach((0.4, 0, 0), max_tension=0.5, find_all=False)
+    assert len(missed) == 0 and missed.closest is not None and missed.closest.distance > 0.1
+    assert pickle.loads(pickle.dumps(found)) == found
+    with pytest.raises(ValueError, match=r"\(x, y, z\)"):
+        arm.reach((0.2, 0.05))
 
 
 def test_commanded_strokes_take_the_tensions_that_make_them(arm: hs.Arm) -> None:
@@ -138,9 +190,8 @@ def test_commanded_strokes_take_the_tensions_that_make_them(arm: hs.Arm) -> None
 
 def test_what_is_for_arms_in_the_plane_says_so(arm: hs.Arm, solution: hs.SpatialSolution) -> None:
     calls: list[Any] = [
-        lambda: arm.path("flow.speed", 0, 0.1),
         lambda: arm.equilibria(),
-        lambda: arm.reach((0.2, 0.05), max_tension=0.5),
+        lambda: arm.path("flow.speed", 0, 0.1).shapes_figure(),
         lambda: arm.reachable(max_tension=0.2),
         lambda: hs.animate([solution]),
     ]

@@ -32,7 +32,7 @@ pub(crate) use modes::{ModesArgs, ModesFormat};
 pub(crate) use path::PathArgs;
 pub(crate) use picture::{Form, PageArgs, PictureArgs, form, picture};
 pub(crate) use plot::PlotArgs;
-pub(crate) use reach::{By, Point, ReachArgs};
+pub(crate) use reach::{By, Direction, Point, ReachArgs};
 pub(crate) use serve::ServeArgs;
 pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use simulate::{MotionFormat, ShapeTimes, SimulateArgs, StationAt};

@@ -34,6 +34,7 @@ pub(crate) enum Cause<'a> {
     Solve(&'a SolveError),
     Spatial(&'a SpatialError),
     Path(&'a PathError),
+    PathInSpace(&'a PathError<SpatialError>),
     Motion(&'a MotionError),
     AfterSnap(&'a AfterSnapError),
     Loading(&'a LoadingError),
@@ -41,6 +42,7 @@ pub(crate) enum Cause<'a> {
     SavedMotion,
     Sensitivity(&'a SensitivityError),
     Reach(&'a ReachError),
+    ReachInSpace(&'a ReachError<SpatialError>),
     Sweep(&'a SweepError),
     Identify(&'a IdentifyError),
     Study(&'a StudyError),
@@ -60,6 +62,7 @@ impl<'a> Cause<'a> {
         let found = error.downcast_ref().map(Self::Solve);
         let found = found.or_else(|| error.downcast_ref().map(Self::Spatial));
         let found = found.or_else(|| error.downcast_ref().map(Self::Path));
+        let found = found.or_else(|| error.downcast_ref().map(Self::PathInSpace));
         let found = found.or_else(|| error.downcast_ref().map(Self::Motion));
         let found = found.or_else(|| error.downcast_ref().map(Self::AfterSnap));
         let found = found.or_else(|| error.downcast_ref().map(Self::Loading));
@@ -68,6 +71,7 @@ impl<'a> Cause<'a> {
         let found = found.or_else(|| error.is::<SavedMotionError>().then_some(Self::SavedMotion));
         let found = found.or_else(|| error.downcast_ref().map(Self::Sensitivity));
         let found = found.or_else(|| error.downcast_ref().map(Self::Reach));
+        let found = found.or_else(|| error.downcast_ref().map(Self::ReachInSpace));
         let found = found.or_else(|| error.downcast_ref().map(Self::Sweep));
         let found = found.or_else(|| error.downcast_ref().map(Self::Identify));
         let found = found.or_else(|| error.downcast_ref().map(Self::Study));
@@ -90,19 +94,21 @@ impl<'a> Cause<'a> {
     pub(crate) fn blame(&self) -> Blame {
         match self {
             Self::Solve(error) => solve(error),
-            Self::Path(error) => path(error),
+            Self::Spatial(error) => solve_in_space(error),
+            Self::Path(error) => path(error, solve),
+            Self::PathInSpace(error) => path(error, solve_in_space),
             Self::Motion(error) => motion(error),
             Self::AfterSnap(error) => after_snap(error),
             Self::Loading(error) => loading(error),
-            Self::Sensitivity(error) => sensitivity(error),
-            Self::Reach(error) => reach(error),
+            Self::Sensitivity(error) => sensitivity(error, solve),
+            Self::Reach(error) => reach(error, solve),
+            Self::ReachInSpace(error) => reach(error, solve_in_space),
             Self::Sweep(error) => sweep(error),
             Self::Identify(error) => identify(error),
             Self::Study(error) => study(error),
             Self::Serve(ServeError::Run(_)) => Blame::Other,
             Self::Request(WrongRequest::Declined | WrongRequest::Interrupted(..)) => Blame::User,
             Self::Serve(ServeError::Bind { .. })
-            | Self::Spatial(SpatialError::Arm(_) | SpatialError::Option { .. })
             | Self::Measurements
             | Self::FitKey
             | Self::Targets
@@ -111,7 +117,7 @@ impl<'a> Cause<'a> {
             | Self::File
             | Self::Write
             | Self::Request(_) => Blame::Request,
-            Self::NoAnswer | Self::Spatial(SpatialError::NoEquilibrium(_)) => Blame::Arm,
+            Self::NoAnswer => Blame::Arm,
         }
     }
 
@@ -127,6 +133,8 @@ impl<'a> Cause<'a> {
             Self::Study(StudyError::Reach(error)) => solve_of_reach(error),
             Self::Spatial(_)
             | Self::Path(_)
+            | Self::PathInSpace(_)
+            | Self::ReachInSpace(_)
             | Self::Motion(_)
             | Self::AfterSnap(_)
             | Self::Loading(_)
@@ -192,7 +200,14 @@ fn solve(error: &SolveError) -> Blame {
     }
 }
 
-fn path(error: &PathError) -> Blame {
+fn solve_in_space(error: &SpatialError) -> Blame {
+    match error {
+        SpatialError::Arm(_) | SpatialError::Option { .. } => Blame::Request,
+        SpatialError::NoEquilibrium(_) => Blame::Arm,
+    }
+}
+
+fn path<E>(error: &PathError<E>, solve: impl Fn(&E) -> Blame) -> Blame {
     match error {
         PathError::Value { .. }
         | PathError::Option { .. }
@@ -203,7 +218,7 @@ fn path(error: &PathError) -> Blame {
     }
 }
 
-fn sensitivity(error: &SensitivityError) -> Blame {
+fn sensitivity<E>(error: &SensitivityError<E>, solve: impl Fn(&E) -> Blame) -> Blame {
     match error {
         SensitivityError::Solve(source) => solve(source),
         SensitivityError::Singular | SensitivityError::Unsettled(_) => Blame::Arm,
@@ -216,10 +231,10 @@ fn sensitivity(error: &SensitivityError) -> Blame {
     }
 }
 
-fn reach(error: &ReachError) -> Blame {
+fn reach<E>(error: &ReachError<E>, solve: impl Fn(&E) -> Blame) -> Blame {
     match error {
         ReachError::Solve(source) => solve(source),
-        ReachError::Sensitivity(source) => sensitivity(source),
+        ReachError::Sensitivity(source) => sensitivity(source, solve),
         ReachError::NoCables | ReachError::Target | ReachError::Option { .. } => Blame::Request,
     }
 }
@@ -246,7 +261,7 @@ fn sweep(error: &SweepError) -> Blame {
 fn identify(error: &IdentifyError) -> Blame {
     match error {
         IdentifyError::Start { source, .. } => match source.as_ref() {
-            Trial::Sensitivity(source) => sensitivity(source),
+            Trial::Sensitivity(source) => sensitivity(source, solve),
             Trial::Arm(_) => Blame::Request,
         },
         IdentifyError::NoParameter
@@ -264,6 +279,6 @@ fn study(error: &StudyError) -> Blame {
     match error {
         StudyError::NoCable { .. } | StudyError::Faster { .. } | StudyError::NoTension { .. } => Blame::Request,
         StudyError::Solve { source, .. } => solve(source),
-        StudyError::Reach(source) => reach(source),
+        StudyError::Reach(source) => reach(source, solve),
     }
 }

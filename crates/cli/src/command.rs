@@ -17,6 +17,7 @@ pub(crate) mod path;
 pub(crate) mod plot;
 pub(crate) mod reach;
 pub(crate) mod serve;
+mod shape;
 pub(crate) mod shell;
 pub(crate) mod simulate;
 pub(crate) mod solve;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use hydrostat::ArmError;
 use hydrostat::parameter::Unfit;
+use hydrostat_figures::Quantity;
 use hydrostat_files::{FileError, PartialUnit, shipped};
 
 /// What messages call standard input.
@@ -46,6 +47,14 @@ pub(crate) enum WrongRequest {
     Peers(PathBuf, String),
     /// A cable without a largest tension, where one is needed.
     Unbounded(String),
+    /// An option that is for arms in the plane, and what there is in space.
+    NotInSpace(&'static str, &'static str),
+    /// An option that is for arms in space, and what there is in the plane.
+    OnlyInSpace(&'static str, &'static str),
+    /// A target with two coordinates in space, or with three in the plane.
+    Coordinates { in_space: bool },
+    /// A quantity that an arm in the plane, or in space, does not have.
+    NotOfArm { quantity: Quantity, in_space: bool },
     /// A cable whose stroke was asked for.
     NoCable { asked: usize, cables: usize },
     /// A table of measurements without any.
@@ -133,6 +142,25 @@ impl std::fmt::Display for WrongRequest {
                     f,
                     "--boundary: cable {cable} has no largest tension; give --max-tension, or set `max_tension` in the arm file"
                 )
+            }
+            Self::NotInSpace(option, instead) => {
+                write!(f, "{option}: it is for arms in the plane, and this arm has `space = \"spatial\"`; {instead}")
+            }
+            Self::OnlyInSpace(option, instead) => {
+                write!(f, "{option}: it is for arms with `space = \"spatial\"`, and this arm is in the plane; {instead}")
+            }
+            Self::Coordinates { in_space: true } => {
+                f.write_str("--target: expected X,Y,Z of an arm with `space = \"spatial\"`, found two coordinates")
+            }
+            Self::Coordinates { in_space: false } => {
+                f.write_str("--target: expected X,Y of an arm in the plane, found three coordinates")
+            }
+            Self::NotOfArm { quantity, in_space: true } => write!(
+                f,
+                "--quantity {quantity}: an arm with `space = \"spatial\"` has tip.x, tip.y, tip.z, tip.alpha and the strokes of its cables"
+            ),
+            Self::NotOfArm { quantity, in_space: false } => {
+                write!(f, "--quantity {quantity}: an arm in the plane has no such quantity; it has tip.x, tip.y, tip.theta, tip.alpha and the strokes of its cables")
             }
             Self::NoCable { asked, cables } => {
                 write!(f, "--quantity stroke[{asked}]: the arm has {cables} cables, counted from 0")

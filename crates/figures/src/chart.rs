@@ -1,6 +1,6 @@
 //! A quantity of many equilibria over a parameter.
 
-use hydrostat::{Equilibria, Event, Path, PathEnd, PathPoint, Stability};
+use hydrostat::{Equilibria, Event, Path, PathEnd, PathPoint, SpatialConfiguration, Stability};
 
 use crate::arm_figure::place_label;
 use crate::axes::{Axes, BELOW, LEFT};
@@ -126,10 +126,34 @@ const END: Mark = Mark::Cross(INK);
 /// assert!(figure.texts().any(|text| text == "force (mN)"));
 /// ```
 pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str, page: &Page) -> Scene {
-    let at = |p: &PathPoint| [over.per_si * p.value, quantity.of(&p.configuration)];
+    chart(path, over, |c| quantity.of(c), quantity, title, page)
+}
+
+/// [`path_figure`] of an arm in space.
+pub fn spatial_path_figure(
+    path: &Path<SpatialConfiguration>,
+    over: &Abscissa,
+    quantity: Quantity,
+    title: &str,
+    page: &Page,
+) -> Scene {
+    chart(path, over, |c| quantity.of_spatial(c), quantity, title, page)
+}
+
+/// The chart of a path, given the value of the quantity.
+fn chart<C>(
+    path: &Path<C>,
+    over: &Abscissa,
+    value: impl Fn(&C) -> f64,
+    quantity: Quantity,
+    title: &str,
+    page: &Page,
+) -> Scene {
+    let at = |p: &PathPoint<C>| [over.per_si * p.value, value(&p.configuration)];
     let all: Vec<[f64; 2]> = path.branches.iter().flat_map(|b| b.points.iter().map(at)).collect();
-    let events: Vec<&PathPoint> = path.branches.iter().flat_map(|b| &b.points).filter(|p| p.event.is_some()).collect();
-    let stopped: Vec<&PathPoint> = path
+    let events: Vec<&PathPoint<C>> =
+        path.branches.iter().flat_map(|b| &b.points).filter(|p| p.event.is_some()).collect();
+    let stopped: Vec<&PathPoint<C>> = path
         .branches
         .iter()
         .filter(|b| matches!(b.end, PathEnd::Limit { .. }))
@@ -157,8 +181,9 @@ pub fn path_figure(path: &Path, over: &Abscissa, quantity: Quantity, title: &str
         .iter()
         .map(|branch| {
             // A branch switched to begins at the bifurcation, which is a point of another.
-            let left = |p: &&&PathPoint| branch.switched_at == Some(p.value);
-            let points: Vec<&PathPoint> = events.iter().find(left).copied().into_iter().chain(&branch.points).collect();
+            let left = |p: &&&PathPoint<C>| branch.switched_at == Some(p.value);
+            let points: Vec<&PathPoint<C>> =
+                events.iter().find(left).copied().into_iter().chain(&branch.points).collect();
             let looks: Vec<Option<Look>> = points.iter().map(|p| look(p)).collect();
             pieces(&looks, &smooth(&axes.all(&points.iter().map(|p| at(p)).collect::<Vec<_>>())))
         })
@@ -263,7 +288,7 @@ pub(crate) fn padded([low, high]: [f64; 2], share: f64) -> [f64; 2] {
 }
 
 /// `None` at events, where one direction is neither stable nor unstable.
-fn look(point: &PathPoint) -> Option<Look> {
+fn look<C>(point: &PathPoint<C>) -> Option<Look> {
     point.event.is_none().then(|| Look::of(point.stability))
 }
 

@@ -50,7 +50,7 @@ mod view;
 pub use arm_figure::{arm_figure, last_good_note, reach_figure};
 pub use axes::Scale;
 pub use boundary::boundary_figure;
-pub use chart::{Abscissa, over_figure, path_figure};
+pub use chart::{Abscissa, over_figure, path_figure, spatial_path_figure};
 pub use fit::fit_figure;
 pub use lines::{Measure, Panel, lines_figure};
 pub use loading::{LoadingPoint, loading_figure};

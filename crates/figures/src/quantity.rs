@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use hydrostat::{Configuration, Tip};
+use hydrostat::{Configuration, SpatialConfiguration, Tip};
 
 use crate::font::Label;
 
@@ -14,7 +14,7 @@ use crate::font::Label;
 ///
 /// assert_eq!("tip.y".parse(), Ok(Quantity::TipY));
 /// assert_eq!("stroke[1]".parse(), Ok(Quantity::Stroke(1)));
-/// assert!("tip.z".parse::<Quantity>().is_err());
+/// assert!("tip".parse::<Quantity>().is_err());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
@@ -22,7 +22,9 @@ pub enum Quantity {
     TipX,
     /// y of the tip.
     TipY,
-    /// The angle of the tip's section.
+    /// z of the tip, in space.
+    TipZ,
+    /// The angle of the tip's section, in the plane.
     TipTheta,
     /// alpha at the tip.
     TipAlpha,
@@ -32,7 +34,7 @@ pub enum Quantity {
 
 /// A name that no quantity has.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("expected tip.x, tip.y, tip.theta, tip.alpha or the stroke of a cable such as stroke[0]")]
+#[error("expected tip.x, tip.y, tip.z, tip.theta, tip.alpha or the stroke of a cable such as stroke[0]")]
 pub struct UnknownQuantity;
 
 impl FromStr for Quantity {
@@ -44,6 +46,7 @@ impl FromStr for Quantity {
         match name {
             "tip.x" => Ok(Self::TipX),
             "tip.y" => Ok(Self::TipY),
+            "tip.z" => Ok(Self::TipZ),
             "tip.theta" => Ok(Self::TipTheta),
             "tip.alpha" => Ok(Self::TipAlpha),
             _ => stroke().map(Self::Stroke).ok_or(UnknownQuantity),
@@ -56,6 +59,7 @@ impl fmt::Display for Quantity {
         match self {
             Self::TipX => f.write_str("tip.x"),
             Self::TipY => f.write_str("tip.y"),
+            Self::TipZ => f.write_str("tip.z"),
             Self::TipTheta => f.write_str("tip.theta"),
             Self::TipAlpha => f.write_str("tip.alpha"),
             Self::Stroke(cable) => write!(f, "stroke[{cable}]"),
@@ -64,9 +68,32 @@ impl fmt::Display for Quantity {
 }
 
 impl Quantity {
-    /// Its value in mm or degrees.
+    /// Whether an arm in space has it, or, if `in_space` is false, one in the plane.
+    pub fn is_of(self, in_space: bool) -> bool {
+        match self {
+            Self::TipZ => in_space,
+            Self::TipTheta => !in_space,
+            Self::TipX | Self::TipY | Self::TipAlpha | Self::Stroke(_) => true,
+        }
+    }
+
+    /// Its value in space, in mm or degrees.
+    pub(crate) fn of_spatial(self, c: &SpatialConfiguration) -> f64 {
+        let tip = c.tip();
+        match self {
+            Self::TipX => 1e3 * tip.x,
+            Self::TipY => 1e3 * tip.y,
+            Self::TipZ => 1e3 * tip.z,
+            Self::TipTheta => f64::NAN,
+            Self::TipAlpha => tip.alpha.to_degrees(),
+            Self::Stroke(cable) => c.cables.get(cable).map_or(f64::NAN, |cable| 1e3 * cable.stroke),
+        }
+    }
+
+    /// Its value in the plane, in mm or degrees.
     pub(crate) fn of(self, c: &Configuration) -> f64 {
         match self {
+            Self::TipZ => 0.0,
             Self::Stroke(cable) => c.cables.get(cable).map_or(f64::NAN, |cable| 1e3 * cable.stroke),
             of_tip => of_tip.of_tip(c.tip()).unwrap_or(f64::NAN),
         }
@@ -79,6 +106,7 @@ impl Quantity {
             Self::TipY => Some(1e3 * tip.y),
             Self::TipTheta => Some(tip.theta.to_degrees()),
             Self::TipAlpha => Some(tip.alpha.to_degrees()),
+            Self::TipZ => Some(0.0),
             Self::Stroke(_) => None,
         }
     }
@@ -88,6 +116,7 @@ impl Quantity {
         match self {
             Self::TipX => Label::math("$x$($L$) (mm)"),
             Self::TipY => Label::math("$y$($L$) (mm)"),
+            Self::TipZ => Label::math("$z$($L$) (mm)"),
             Self::TipTheta => Label::math("$θ$($L$) (°)"),
             Self::TipAlpha => Label::math("$α$($L$) (°)"),
             Self::Stroke(cable) => Label::plain(format!("stroke of cable {cable} (mm)")),

@@ -70,9 +70,9 @@ pub use motions::{
     place_numbers,
 };
 pub use output::{WriteError, is_same_file, remove_leftovers, write_whole, write_whole_with};
-pub use paths::{Landing, PathDocument, end_message, path_csv, path_csv_with_landings};
+pub use paths::{Landing, PathDocument, end_message, path_csv, path_csv_with_landings, spatial_path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
-pub use reach::{ReachDocument, reach_csv};
+pub use reach::{ReachDocument, reach_csv, spatial_reach_csv};
 pub use results::{FailureDocument, Note, SolutionDocument, TOLERANCE_MISSED, json, stations_csv};
 pub use shared_unit::{PartialUnit, shared_unit};
 pub use slips::{Slip, likeliest_slip, unit_slips};

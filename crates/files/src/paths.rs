@@ -1,6 +1,6 @@
 //! Paths of equilibria as JSON and CSV.
 
-use hydrostat::{Branch, Event, Path, PathEnd, PathPoint, Rest, VerdictKind};
+use hydrostat::{Arm, Branch, Event, Path, PathEnd, PathPoint, Rest, SpatialConfiguration, VerdictKind};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
@@ -106,17 +106,28 @@ pub fn limit_message(kind: VerdictKind, s: Option<f64>) -> String {
     s.map_or_else(|| why.to_owned(), |s| format!("{why}, at s = {s:.4} m,"))
 }
 
-fn branch<'a>(branch: &'a Branch, varied: &Varied) -> BranchOut<'a> {
+fn branch<'a, C>(
+    branch: &'a Branch<C>,
+    varied: &Varied,
+    state: impl Fn(&'a PathPoint<C>) -> State<'a>,
+) -> BranchOut<'a> {
     let last = branch.points.last().map_or(f64::NAN, |point| point.value);
     BranchOut {
         switched_at: branch.switched_at,
         end: EndOut::new(branch.end, end_message(branch.end, varied, last)),
-        points: branch.points.iter().map(point).collect(),
+        points: branch.points.iter().map(|own| point(own, state(own))).collect(),
     }
 }
 
-fn point(point: &PathPoint) -> PointOut<'_> {
-    let state = State::new(&point.configuration, point.stability);
+fn in_plane(point: &PathPoint) -> State<'_> {
+    State::new(&point.configuration, point.stability)
+}
+
+fn in_space(point: &PathPoint<SpatialConfiguration>) -> State<'_> {
+    State::in_space(&point.configuration, point.stability)
+}
+
+fn point<'a, C>(point: &PathPoint<C>, state: State<'a>) -> PointOut<'a> {
     let cable = point.event.and_then(Event::cable);
     PointOut { value: point.value, state, event: point.event.map(Event::name), cable, after_snap: None }
 }
@@ -124,6 +135,20 @@ fn point(point: &PathPoint) -> PointOut<'_> {
 impl<'a> PathDocument<'a> {
     /// Of a path of what varies; `inputs` are the arm's, with the value at the start of the path.
     pub fn new(path: &'a Path, varied: &Varied) -> Option<Self> {
+        Self::of(path, varied, in_plane, |first| &first.arm)
+    }
+
+    /// The same of an arm in space.
+    pub fn in_space(path: &'a Path<SpatialConfiguration>, varied: &Varied) -> Option<Self> {
+        Self::of(path, varied, in_space, |first| &first.arm)
+    }
+
+    fn of<C>(
+        path: &'a Path<C>,
+        varied: &Varied,
+        state: impl Fn(&'a PathPoint<C>) -> State<'a> + Copy,
+        arm: impl Fn(&C) -> &Arm,
+    ) -> Option<Self> {
         let first = path.branches.first()?.points.first()?;
         Some(Self {
             schema: SCHEMA,
@@ -131,8 +156,8 @@ impl<'a> PathDocument<'a> {
             parameter: path.parameter.to_string(),
             unit: path.parameter.unit(),
             range: path.range,
-            branches: path.branches.iter().map(|b| branch(b, varied)).collect(),
-            inputs: Inputs::new(&first.configuration.arm),
+            branches: path.branches.iter().map(|b| branch(b, varied, state)).collect(),
+            inputs: Inputs::new(arm(&first.configuration)),
         })
     }
 
@@ -156,27 +181,41 @@ impl<'a> PathDocument<'a> {
 
 /// The points of all branches, one row each, with names and SI units in the first row. Branches count from 0.
 pub fn path_csv(path: &Path, varied: &Varied) -> String {
-    csv(path, varied, None)
+    let columns = |more: &[&str]| State::columns(cables_of(path, |c| c.cables.len()), more);
+    rows(path, varied, columns, in_plane, None)
 }
 
 /// [`path_csv`] with the tip where the arm rests after limit points, and how long that takes.
 pub fn path_csv_with_landings(path: &Path, varied: &Varied, landings: &[Landing]) -> String {
-    csv(path, varied, Some(landings))
+    let columns = |more: &[&str]| State::columns(cables_of(path, |c| c.cables.len()), more);
+    rows(path, varied, columns, in_plane, Some(landings))
 }
 
-fn csv(path: &Path, varied: &Varied, landings: Option<&[Landing]>) -> String {
-    let points =
-        |(b, branch): (usize, &'_ Branch)| -> Vec<[usize; 2]> { (0..branch.points.len()).map(|p| [b, p]).collect() };
-    let all: Vec<[usize; 2]> = path.branches.iter().enumerate().flat_map(points).collect();
-    let point = |[branch, point]: [usize; 2]| &path.branches[branch].points[point];
-    let cables = all.first().map_or(0, |at| point(*at).configuration.cables.len());
+/// The same of an arm in space.
+pub fn spatial_path_csv(path: &Path<SpatialConfiguration>, varied: &Varied) -> String {
+    let columns = |more: &[&str]| State::columns_in_space(cables_of(path, |c| c.cables.len()), more);
+    rows(path, varied, columns, in_space, None)
+}
+
+fn cables_of<C>(path: &Path<C>, cables: impl Fn(&C) -> usize) -> usize {
+    path.branches.iter().flat_map(|b| &b.points).next().map_or(0, |point| cables(&point.configuration))
+}
+
+fn rows<'a, C>(
+    path: &'a Path<C>,
+    varied: &Varied,
+    columns: impl Fn(&[&str]) -> Vec<String>,
+    state: impl Fn(&'a PathPoint<C>) -> State<'a>,
+    landings: Option<&[Landing]>,
+) -> String {
     let mut names = vec!["branch".to_owned(), varied.column()];
     let after = ["after_snap_x_m", "after_snap_y_m", "after_snap_theta_rad", "after_snap_s"];
     let more: Vec<&str> = ["event"].into_iter().chain(after.into_iter().filter(|_| landings.is_some())).collect();
-    names.extend(State::columns(cables, &more));
+    names.extend(columns(&more));
     let mut out = Rows::new(&names);
-    for at in all {
-        let point = point(at);
+    let all = path.branches.iter().enumerate();
+    let all = all.flat_map(|(b, branch)| branch.points.iter().enumerate().map(move |(p, point)| ([b, p], point)));
+    for (at, point) in all {
         let mut cells = vec![at[0].to_string(), cell(point.value)];
         let name = |event: Event| match event.cable() {
             Some(cable) => format!("{}[{cable}]", event.name()),
@@ -193,7 +232,7 @@ fn csv(path: &Path, varied: &Varied, landings: Option<&[Landing]>) -> String {
             more.extend((0..after.len()).map(|k| numbers.map_or_else(String::new, |numbers| cell(numbers[k]))));
         }
         let more: Vec<&str> = more.iter().map(String::as_str).collect();
-        cells.extend(State::new(&point.configuration, point.stability).cells(&more));
+        cells.extend(state(point).cells(&more));
         out.row(&cells);
     }
     out.text()

@@ -41,7 +41,7 @@ pub struct SpatialFailureDocument<'a> {
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct TipOut {
+pub(crate) struct TipOut {
     x: f64,
     y: f64,
     z: f64,
@@ -49,6 +49,30 @@ struct TipOut {
     b: [f64; 3],
     c: [f64; 3],
     alpha: f64,
+}
+
+impl TipOut {
+    /// The heads of [`TipOut::numbers`].
+    pub(crate) const COLUMNS: [&str; 13] = [
+        "tip_x_m",
+        "tip_y_m",
+        "tip_z_m",
+        "tip_a_x",
+        "tip_a_y",
+        "tip_a_z",
+        "tip_b_x",
+        "tip_b_y",
+        "tip_b_z",
+        "tip_c_x",
+        "tip_c_y",
+        "tip_c_z",
+        "tip_alpha_rad",
+    ];
+
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        let directors = self.a.into_iter().chain(self.b).chain(self.c);
+        [self.x, self.y, self.z].into_iter().chain(directors).chain([self.alpha]).collect()
+    }
 }
 
 #[derive(Debug, Clone, Serialize)]

@@ -1,9 +1,10 @@
 //! One equilibrium of several: what documents and tables say of it.
 
-use hydrostat::{Configuration, Stability};
+use hydrostat::{Configuration, SpatialConfiguration, Stability};
 use serde::Serialize;
 
 use crate::results::{CableOut, TipOut, cell};
+use crate::spatial_results::TipOut as SpatialTipOut;
 
 /// Whether an equilibrium is stable, and in how many directions it is not.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -18,10 +19,18 @@ impl From<Option<Stability>> for StabilityOut {
     }
 }
 
+/// The tip in the plane or in space.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+enum AnyTip {
+    Plane(TipOut),
+    Space(SpatialTipOut),
+}
+
 /// An equilibrium without its stations.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct State<'a> {
-    tip: TipOut,
+    tip: AnyTip,
     cables: Vec<CableOut<'a>>,
     stability: StabilityOut,
     error_estimate: f64,
@@ -30,8 +39,17 @@ pub(crate) struct State<'a> {
 impl<'a> State<'a> {
     pub(crate) fn new(configuration: &'a Configuration, stability: Option<Stability>) -> Self {
         Self {
-            tip: TipOut::new(configuration),
+            tip: AnyTip::Plane(TipOut::new(configuration)),
             cables: CableOut::all(configuration),
+            stability: stability.into(),
+            error_estimate: configuration.error_estimate,
+        }
+    }
+
+    pub(crate) fn in_space(configuration: &'a SpatialConfiguration, stability: Option<Stability>) -> Self {
+        Self {
+            tip: AnyTip::Space(configuration.tip().into()),
+            cables: CableOut::of(&configuration.cables),
             stability: stability.into(),
             error_estimate: configuration.error_estimate,
         }
@@ -39,7 +57,16 @@ impl<'a> State<'a> {
 
     /// The heads of [`State::cells`] for an arm with so many cables; `more` come before the last one.
     pub(crate) fn columns(cables: usize, more: &[&str]) -> Vec<String> {
-        let mut out: Vec<String> = ["tip_x_m", "tip_y_m", "tip_theta_rad", "tip_alpha_rad"].map(str::to_owned).into();
+        Self::columns_after(&["tip_x_m", "tip_y_m", "tip_theta_rad", "tip_alpha_rad"], cables, more)
+    }
+
+    /// The same of an arm in space.
+    pub(crate) fn columns_in_space(cables: usize, more: &[&str]) -> Vec<String> {
+        Self::columns_after(&SpatialTipOut::COLUMNS, cables, more)
+    }
+
+    fn columns_after(tip: &[&str], cables: usize, more: &[&str]) -> Vec<String> {
+        let mut out: Vec<String> = tip.iter().map(|name| (*name).to_owned()).collect();
         out.extend((0..cables).flat_map(|c| [format!("stroke_{c}_m"), format!("tension_{c}_N")]));
         out.extend(["stability", "unstable_directions"].map(str::to_owned));
         out.extend(more.iter().chain(&["error_estimate_m"]).map(|name| (*name).to_owned()));
@@ -47,8 +74,10 @@ impl<'a> State<'a> {
     }
 
     pub(crate) fn cells(&self, more: &[&str]) -> Vec<String> {
-        let TipOut { x, y, theta, alpha } = self.tip;
-        let mut out: Vec<String> = [x, y, theta, alpha].map(cell).into();
+        let mut out: Vec<String> = match &self.tip {
+            AnyTip::Plane(TipOut { x, y, theta, alpha }) => [x, y, theta, alpha].map(|v| cell(*v)).into(),
+            AnyTip::Space(tip) => tip.numbers().into_iter().map(cell).collect(),
+        };
         out.extend(self.cables.iter().flat_map(|c| [cell(c.stroke), cell(c.tension)]));
         out.push(self.stability.state.unwrap_or_default().to_owned());
         out.push(self.stability.directions.map_or_else(String::new, |count| count.to_string()));

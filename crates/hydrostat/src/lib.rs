@@ -124,8 +124,8 @@
 //! # What is not in the model
 //!
 //! Equilibria are quasi-static; [`motion`] has the arm in time, in the plane. An arm in space ([`Arm::space`]) has a
-//! solver of its own, [`SpatialSolver`]; everything else is for arms in the plane. The section law is linear in the
-//! strains. Cables act by their tension alone: they do not press into the material. Contact of the arm with itself is
+//! solver of its own, [`SpatialSolver`], with derivatives, paths ([`Arm::path_in_space`]) and tensions for a place
+//! ([`Arm::reach_in_space`]); everything else is for arms in the plane. The section law is linear in the strains. Cables act by their tension alone: they do not press into the material. Contact of the arm with itself is
 //! not detected; [`Configuration::fold_margin`] is about the surface of a single section. The outside pressure on the
 //! wall of a sealed cavity is left out. The tangential load of the source's flow law corresponds to C_t = 4/9;
 //! published coefficients of arms are 0.005 to 0.03. An answer that depends strongly on this load carries a
@@ -163,7 +163,7 @@ pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError,
 pub use profile::{Join, Point, Profile, Sample, TableError};
 pub use reach::{
     Bound, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, BoundaryProgress, Followed, Follower,
-    Reach, ReachError, ReachOptions, Reached, Target,
+    Reach, ReachError, ReachOptions, Reached, SpatialTarget, Target,
 };
 pub use readings::{
     Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
@@ -174,8 +174,8 @@ pub use sensitivity::{
 pub use snap::{Snap, SnapBounds};
 pub use solve::{Answer, Options, Solver};
 pub use spatial::{
-    NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialSnap, SpatialSolver, SpatialStation,
-    SpatialStations, SpatialTip, SpatialWrench,
+    Ellipsoid, NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialPoseChange, SpatialSnap, SpatialSolver,
+    SpatialStation, SpatialStations, SpatialTip, SpatialWrench,
 };
 pub use stability::{Growth, Stability};
 pub use verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};

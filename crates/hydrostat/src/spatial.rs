@@ -6,6 +6,7 @@
 
 mod adversity;
 mod cable_paths;
+mod change;
 mod configuration;
 mod engine;
 mod equations;
@@ -15,11 +16,13 @@ mod lengths;
 mod loads;
 mod mesh;
 mod path;
+mod paths;
 mod place;
 mod places;
 mod rotation;
 mod section;
 mod section_solve;
+mod sensitivity;
 mod solve;
 mod stability;
 mod start;
@@ -27,8 +30,12 @@ mod strokes;
 #[cfg(test)]
 mod tests;
 mod tip;
+mod traced;
+mod varied;
 
 pub use self::configuration::{SpatialConfiguration, SpatialStation, SpatialStations, SpatialWrench};
 pub use self::path::SpatialSnap;
+pub use self::sensitivity::{Ellipsoid, SpatialPoseChange};
+pub(crate) use self::sensitivity::{Quantity, turn_between};
 pub use self::solve::{NoSpatialEquilibrium, SpatialError, SpatialSolver};
 pub use self::tip::SpatialTip;

@@ -34,11 +34,41 @@ pub(crate) fn path_error(py: Python<'_>, error: PathError, options: Options) -> 
     }
 }
 
+/// What a path in space ends with.
+pub(crate) fn spatial_path_error(py: Python<'_>, error: PathError<SpatialError>, options: Options) -> PyErr {
+    match error {
+        PathError::Start { source: source @ SpatialError::NoEquilibrium(_), .. } => spatial_error(py, source, options),
+        other => wrong(other),
+    }
+}
+
+/// What derivatives in space end with.
+pub(crate) fn spatial_sensitivity_error(
+    py: Python<'_>,
+    error: SensitivityError<SpatialError>,
+    options: Options,
+) -> PyErr {
+    match error {
+        SensitivityError::Solve(error) => spatial_error(py, error, options),
+        other => no_derivative(py, &other),
+    }
+}
+
 /// What derivatives end with.
 pub(crate) fn sensitivity_error(py: Python<'_>, error: SensitivityError, options: Options) -> PyErr {
-    static NO_DERIVATIVE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     match error {
         SensitivityError::Solve(error) => solve_error(py, error, options),
+        other => no_derivative(py, &other),
+    }
+}
+
+fn no_derivative<E: std::fmt::Display + std::error::Error + 'static>(
+    py: Python<'_>,
+    error: &SensitivityError<E>,
+) -> PyErr {
+    static NO_DERIVATIVE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    match error {
+        SensitivityError::Solve(error) => wrong(error),
         SensitivityError::Station { .. } => wrong(format!("stations: {error}")),
         SensitivityError::Unfit(_) | SensitivityError::Commanded(_) | SensitivityError::NotCommanded(_) => {
             wrong(format!("parameters: {error}"))
@@ -47,6 +77,18 @@ pub(crate) fn sensitivity_error(py: Python<'_>, error: SensitivityError, options
         SensitivityError::Singular | SensitivityError::Unsettled(_) => {
             made(py, &NO_DERIVATIVE, "NoDerivative", (error.to_string(),))
         }
+    }
+}
+
+/// What a search for tensions in space ends with.
+pub(crate) fn spatial_reach_error(py: Python<'_>, error: ReachError<SpatialError>, options: Options) -> PyErr {
+    match error {
+        ReachError::Solve(error) => spatial_error(py, error, options),
+        ReachError::Sensitivity(error @ SensitivityError::Station { .. }) => wrong(format!("targets: {error}")),
+        ReachError::Sensitivity(error) => spatial_sensitivity_error(py, error, options),
+        ReachError::NoCables => wrong(format!("arm: {error}")),
+        ReachError::Target => wrong(format!("targets: {error}")),
+        ReachError::Option { .. } => wrong(error),
     }
 }
 

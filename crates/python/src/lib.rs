@@ -43,7 +43,7 @@ mod _native {
     #[pymodule_export]
     use super::reach::{Boundary, Follower, Reach, reach, reachable};
     #[pymodule_export]
-    use super::sensitivity::{Sensitivities, ellipse};
+    use super::sensitivity::{Sensitivities, SpatialSensitivities, ellipse};
     #[pymodule_export]
     use super::solution::{Solution, Stations, angle};
     #[pymodule_export]

@@ -3,26 +3,35 @@
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use hydrostat::{Configuration, Event, Options, PathOptions, Stability};
+use hydrostat::{Configuration, Options, PathOptions, SpatialConfiguration, Stability};
 use hydrostat_figures::Page;
-use hydrostat_files::{EquilibriaDocument, PathDocument, Varied, end_message, equilibria_csv, path_csv};
+use hydrostat_files::{
+    EquilibriaDocument, PathDocument, Varied, end_message, equilibria_csv, path_csv, spatial_path_csv,
+};
 use numpy::PyArray1;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
 use crate::arm::Arm;
 use crate::arrays::given;
-use crate::errors::{path_error, wrong};
+use crate::errors::{path_error, spatial_path_error, wrong};
 use crate::figure::{Axis, Figure, abscissa, quantity};
 use crate::interrupt::interruptible;
 use crate::solution::{Solution, words};
+use crate::spatial_solution::SpatialSolution;
 
 /// A path and what it varies, in the unit that was asked for.
 #[pyclass(frozen, module = "hydrostat._native")]
 pub(crate) struct Path {
-    found: hydrostat::Path,
+    found: Found,
     varied: Varied,
     tol: f64,
+}
+
+/// In the plane or in space.
+enum Found {
+    Plane(hydrostat::Path),
+    Space(hydrostat::Path<SpatialConfiguration>),
 }
 
 /// All equilibria of an arm.
@@ -39,7 +48,7 @@ type Numbers<'py> = Bound<'py, PyArray1<f64>>;
 /// The name of an event, and its cable.
 type Named = (&'static str, Option<usize>);
 
-/// x, y, theta and alpha of the tip, state and count of unstable directions, a value each.
+/// x, y, theta (in space z) and alpha of the tip, state and count of unstable directions, a value each.
 type States<'py> = ([Numbers<'py>; 4], Vec<Option<&'static str>>, Vec<Option<usize>>);
 
 fn states<'py>(py: Python<'py>, all: &[(&Configuration, Option<Stability>)]) -> States<'py> {
@@ -47,6 +56,14 @@ fn states<'py>(py: Python<'py>, all: &[(&Configuration, Option<Stability>)]) -> 
     let column = |of: fn(&hydrostat::Tip) -> f64| given(py, tips.iter().map(of).collect());
     let tip = [column(|t| t.x), column(|t| t.y), column(|t| t.theta), column(|t| t.alpha)];
     let (state, directions) = all.iter().map(|(_, stability)| words(*stability)).unzip();
+    (tip, state, directions)
+}
+
+fn states_in_space<'py>(py: Python<'py>, branch: &hydrostat::Branch<SpatialConfiguration>) -> States<'py> {
+    let tips: Vec<hydrostat::SpatialTip> = branch.points.iter().map(|point| point.configuration.tip()).collect();
+    let column = |of: fn(&hydrostat::SpatialTip) -> f64| given(py, tips.iter().map(of).collect());
+    let tip = [column(|t| t.x), column(|t| t.y), column(|t| t.z), column(|t| t.alpha)];
+    let (state, directions) = branch.points.iter().map(|point| words(point.stability)).unzip();
     (tip, state, directions)
 }
 
@@ -65,12 +82,21 @@ pub(crate) fn path(
     let varied: Varied = vary.parse().map_err(wrong)?;
     varied.parameter.of(&arm.given).map_err(wrong)?;
     let options = PathOptions { tol, longest, most, branches };
+    if arm.given.space.is_some() {
+        let follow = |stop: &std::sync::atomic::AtomicBool| {
+            let go_on = |_: &_| !stop.load(Ordering::Relaxed);
+            arm.given.path_in_space_with(varied.parameter, varied.range, &options, go_on)
+        };
+        let found = interruptible(py, |_| Ok(()), follow)?
+            .map_err(|error| spatial_path_error(py, error, Options::with_tol(tol)))?;
+        return Ok(Path { found: Found::Space(found), varied, tol });
+    }
     let follow = |stop: &std::sync::atomic::AtomicBool| {
         arm.given.path_with(varied.parameter, varied.range, &options, |_| !stop.load(Ordering::Relaxed))
     };
     let found =
         interruptible(py, |_| Ok(()), follow)?.map_err(|error| path_error(py, error, Options::with_tol(tol)))?;
-    Ok(Path { found, varied, tol })
+    Ok(Path { found: Found::Plane(found), varied, tol })
 }
 
 #[pymethods]
@@ -84,75 +110,121 @@ impl Path {
     /// The ends of the range in the unit shown.
     #[getter]
     fn range(&self) -> [f64; 2] {
-        self.found.range.map(|value| self.varied.shown(value))
+        self.varied.range.map(|value| self.varied.shown(value))
+    }
+
+    #[getter]
+    fn in_space(&self) -> bool {
+        matches!(self.found, Found::Space(_))
     }
 
     /// For each branch: how many points, the name and the words of its end, the value at which it was switched to.
     #[getter]
     fn branches(&self) -> Vec<(usize, &'static str, String, Option<f64>)> {
-        let branch = |branch: &hydrostat::Branch| {
-            let last = branch.points.last().map_or(f64::NAN, |point| point.value);
-            let end = end_message(branch.end, &self.varied, last);
-            let switched_at = branch.switched_at.map(|value| self.varied.shown(value));
-            (branch.points.len(), branch.end.name(), end, switched_at)
-        };
-        self.found.branches.iter().map(branch).collect()
+        match &self.found {
+            Found::Plane(path) => path.branches.iter().map(|branch| ends(branch, &self.varied)).collect(),
+            Found::Space(path) => path.branches.iter().map(|branch| ends(branch, &self.varied)).collect(),
+        }
     }
 
     /// Values of the parameter on a branch, in the unit shown.
     fn values<'py>(&self, py: Python<'py>, branch: usize) -> PyResult<Numbers<'py>> {
-        let points = &self.branch(branch)?.points;
-        Ok(given(py, points.iter().map(|point| self.varied.shown(point.value)).collect()))
+        let values = match &self.found {
+            Found::Plane(path) => self.values_of(one(path, branch)?),
+            Found::Space(path) => self.values_of(one(path, branch)?),
+        };
+        Ok(given(py, values))
     }
 
     fn states<'py>(&self, py: Python<'py>, branch: usize) -> PyResult<States<'py>> {
-        let points = &self.branch(branch)?.points;
+        let path = match &self.found {
+            Found::Plane(path) => path,
+            Found::Space(path) => return Ok(states_in_space(py, one(path, branch)?)),
+        };
+        let points = &one(path, branch)?.points;
         let all: Vec<_> = points.iter().map(|point| (&point.configuration, point.stability)).collect();
         Ok(states(py, &all))
     }
 
     /// The name of each point's event, and its cable.
     fn events(&self, branch: usize) -> PyResult<Vec<Option<Named>>> {
-        let event = |event: Event| (event.name(), event.cable());
-        Ok(self.branch(branch)?.points.iter().map(|point| point.event.map(event)).collect())
+        match &self.found {
+            Found::Plane(path) => Ok(events(one(path, branch)?)),
+            Found::Space(path) => Ok(events(one(path, branch)?)),
+        }
     }
 
     /// The shape at a point.
-    fn solution(&self, branch: usize, point: usize) -> PyResult<Solution> {
-        let points = &self.branch(branch)?.points;
-        let point = points.get(point).ok_or_else(|| PyIndexError::new_err("point: the branch has no such point"))?;
-        Ok(Solution::new(point.configuration.clone(), Options::with_tol(self.tol)))
+    fn solution(&self, py: Python<'_>, branch: usize, point: usize) -> PyResult<Py<PyAny>> {
+        let none = || PyIndexError::new_err("point: the branch has no such point");
+        let options = Options::with_tol(self.tol);
+        match &self.found {
+            Found::Plane(path) => {
+                let point = one(path, branch)?.points.get(point).ok_or_else(none)?;
+                Ok(Py::new(py, Solution::new(point.configuration.clone(), options))?.into_any())
+            }
+            Found::Space(path) => {
+                let point = one(path, branch)?.points.get(point).ok_or_else(none)?;
+                Ok(Py::new(py, SpatialSolution::new(point.configuration.clone(), options))?.into_any())
+            }
+        }
     }
 
     fn figure(&self, asked: &str, title: &str) -> PyResult<Figure> {
-        let scene = hydrostat_figures::path_figure(
-            &self.found,
-            &abscissa(self.axis()),
-            quantity(asked)?,
-            title,
-            &Page::default(),
-        );
-        Ok(Figure::new(scene))
+        let (asked, over, page) = (quantity(asked)?, abscissa(self.axis()), Page::default());
+        if !asked.is_of(self.in_space()) {
+            let where_ = if self.in_space() { "in space" } else { "in the plane" };
+            return Err(wrong(format!("quantity: an arm {where_} has no {asked}")));
+        }
+        Ok(Figure::new(match &self.found {
+            Found::Plane(path) => hydrostat_figures::path_figure(path, &over, asked, title, &page),
+            Found::Space(path) => hydrostat_figures::spatial_path_figure(path, &over, asked, title, &page),
+        }))
     }
 
-    fn shapes_figure(&self, title: &str) -> Figure {
+    fn shapes_figure(&self, title: &str) -> PyResult<Figure> {
+        let Found::Plane(path) = &self.found else {
+            return Err(wrong("shapes along a path are drawn of arms in the plane"));
+        };
         let page = Page::default();
-        Figure::new(hydrostat_figures::path_shapes_figure(&self.found, &abscissa(self.axis()), title, &page))
+        Ok(Figure::new(hydrostat_figures::path_shapes_figure(path, &abscissa(self.axis()), title, &page)))
     }
 
     fn to_json(&self) -> Option<String> {
-        PathDocument::new(&self.found, &self.varied).map(|document| document.to_json())
+        let document = match &self.found {
+            Found::Plane(path) => PathDocument::new(path, &self.varied),
+            Found::Space(path) => PathDocument::in_space(path, &self.varied),
+        };
+        document.map(|document| document.to_json())
     }
 
     fn to_csv(&self) -> String {
-        path_csv(&self.found, &self.varied)
+        match &self.found {
+            Found::Plane(path) => path_csv(path, &self.varied),
+            Found::Space(path) => spatial_path_csv(path, &self.varied),
+        }
     }
 }
 
 impl Path {
-    fn branch(&self, index: usize) -> PyResult<&hydrostat::Branch> {
-        self.found.branches.get(index).ok_or_else(|| PyIndexError::new_err("branch: the path has no such branch"))
+    fn values_of<C>(&self, branch: &hydrostat::Branch<C>) -> Vec<f64> {
+        branch.points.iter().map(|point| self.varied.shown(point.value)).collect()
     }
+}
+
+fn one<C>(path: &hydrostat::Path<C>, index: usize) -> PyResult<&hydrostat::Branch<C>> {
+    path.branches.get(index).ok_or_else(|| PyIndexError::new_err("branch: the path has no such branch"))
+}
+
+fn ends<C>(branch: &hydrostat::Branch<C>, varied: &Varied) -> (usize, &'static str, String, Option<f64>) {
+    let last = branch.points.last().map_or(f64::NAN, |point| point.value);
+    let end = end_message(branch.end, varied, last);
+    let switched_at = branch.switched_at.map(|value| varied.shown(value));
+    (branch.points.len(), branch.end.name(), end, switched_at)
+}
+
+fn events<C>(branch: &hydrostat::Branch<C>) -> Vec<Option<Named>> {
+    branch.points.iter().map(|point| point.event.map(|event| (event.name(), event.cable()))).collect()
 }
 
 /// All equilibria of `arm`, or those found within so many seconds.

@@ -4,23 +4,40 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hydrostat::{
     Bound as TensionBound, BoundaryOptions, Configuration, Followed, Options, ReachError, ReachOptions, Reached,
-    Solver, Target,
+    Solver, SpatialConfiguration, SpatialStation, SpatialTarget, Target,
 };
-use hydrostat_figures::{Page, boundary_figure, reach_figure};
-use hydrostat_files::{BoundaryDocument, ReachDocument, boundary_csv, reach_csv};
+use hydrostat_figures::{Page, boundary_figure, reach_figure, spatial_arm_figure};
+use hydrostat_files::{BoundaryDocument, ReachDocument, boundary_csv, reach_csv, spatial_reach_csv};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};
 use pyo3::prelude::*;
 
 use crate::arm::Arm;
 use crate::arrays::given;
-use crate::errors::{reach_error, solve_error, wrong};
+use crate::errors::{reach_error, solve_error, spatial_reach_error, wrong};
 use crate::figure::Figure;
 use crate::interrupt::interruptible;
 use crate::solution::{Solution, words};
+use crate::spatial_solution::SpatialSolution;
 
 /// x, y, s, angle and weight of a target.
 type Goal = (f64, f64, Option<f64>, Option<f64>, f64);
+
+/// Place, s, direction and weight of a target in space.
+type GoalInSpace = ([f64; 3], Option<f64>, Option<[f64; 3]>, f64);
+
+/// Targets in the plane or in space.
+#[derive(FromPyObject)]
+pub(crate) enum Goals {
+    Plane(Vec<Goal>),
+    Space(Vec<GoalInSpace>),
+}
+
+/// In the plane or in space.
+enum Found {
+    Plane(Box<hydrostat::Reach>),
+    Space(Box<hydrostat::Reach<SpatialConfiguration, SpatialStation>>),
+}
 
 /// Tensions, effort, distance, kind and cable of each bound, whether a solve leads there, state and count of unstable directions.
 type ReachedFields<'py> =
@@ -32,7 +49,7 @@ type FollowedFields<'py> = (Bound<'py, PyArray1<f64>>, (f64, f64, f64, f64), f64
 /// What was found for targets.
 #[pyclass(frozen, module = "hydrostat._native")]
 pub(crate) struct Reach {
-    found: hydrostat::Reach,
+    found: Found,
     arm: hydrostat::Arm,
     targets: Vec<Target>,
     tol: f64,
@@ -65,15 +82,32 @@ type Most = (Option<f64>, Option<f64>);
 pub(crate) fn reach(
     py: Python<'_>,
     arm: &Arm,
-    targets: Vec<Goal>,
+    targets: Goals,
     most: Most,
     tol: f64,
     all: bool,
     by_strokes: bool,
 ) -> PyResult<Reach> {
-    let targets = targets_of(targets);
     let (max_tension, max_stroke) = most;
     let options = ReachOptions { max_tension, max_stroke, tol, all };
+    let targets = match targets {
+        Goals::Plane(goals) => targets_of(goals),
+        Goals::Space(goals) => {
+            let target = |(place, s, direction, weight): GoalInSpace| SpatialTarget { s, place, direction, weight };
+            let targets: Vec<SpatialTarget> = goals.into_iter().map(target).collect();
+            let search = |stop: &AtomicBool| {
+                let go_on = || !stop.load(Ordering::Relaxed);
+                if by_strokes {
+                    arm.given.reach_in_space_by_strokes_while(&targets, &options, go_on)
+                } else {
+                    arm.given.reach_in_space_while(&targets, &options, go_on)
+                }
+            };
+            let found = interruptible(py, |_| Ok(()), search)?
+                .map_err(|error| spatial_reach_error(py, error, Options::with_tol(tol)))?;
+            return Ok(Reach { found: Found::Space(found.into()), arm: arm.given.clone(), targets: Vec::new(), tol });
+        }
+    };
     let search = |stop: &AtomicBool| {
         let go_on = || !stop.load(Ordering::Relaxed);
         if by_strokes {
@@ -84,7 +118,7 @@ pub(crate) fn reach(
     };
     let found =
         interruptible(py, |_| Ok(()), search)?.map_err(|error| reach_error(py, error, Options::with_tol(tol)))?;
-    Ok(Reach { found, arm: arm.given.clone(), targets, tol })
+    Ok(Reach { found: Found::Plane(found.into()), arm: arm.given.clone(), targets, tol })
 }
 
 /// What bounds the places that the tip reaches.
@@ -130,12 +164,25 @@ impl Boundary {
     }
 }
 
-impl Reach {
-    /// One of the solutions, or the closest, which comes after them.
-    fn one(&self, index: usize) -> PyResult<&Reached> {
-        let mut all = self.found.solutions.iter().chain(&self.found.closest);
-        all.nth(index).ok_or_else(|| PyIndexError::new_err("there is no such solution"))
-    }
+/// One of the solutions, or the closest, which comes after them.
+fn one<C, P>(found: &hydrostat::Reach<C, P>, index: usize) -> PyResult<&Reached<C, P>> {
+    let mut all = found.solutions.iter().chain(&found.closest);
+    all.nth(index).ok_or_else(|| PyIndexError::new_err("there is no such solution"))
+}
+
+fn counts<C, P>(found: &hydrostat::Reach<C, P>) -> (usize, bool) {
+    (found.solutions.len(), found.closest.is_some())
+}
+
+fn fields<'py, C, P>(py: Python<'py>, one: &Reached<C, P>) -> ReachedFields<'py> {
+    let bound = |bound: &TensionBound| match *bound {
+        TensionBound::Slack(cable) => ("slack", cable),
+        TensionBound::Most(cable) => ("most", cable),
+        TensionBound::Stroke(cable) => ("stroke", cable),
+    };
+    let bounds = one.bounds.iter().map(bound).collect();
+    let tensions = given(py, one.tensions.clone());
+    (tensions, one.effort, one.distance, bounds, one.on_the_path, words(one.stability))
 }
 
 #[pymethods]
@@ -143,37 +190,55 @@ impl Reach {
     /// How many solutions there are, and whether there is a closest.
     #[getter]
     fn counts(&self) -> (usize, bool) {
-        (self.found.solutions.len(), self.found.closest.is_some())
+        match &self.found {
+            Found::Plane(found) => counts(found),
+            Found::Space(found) => counts(found),
+        }
     }
 
     fn fields<'py>(&self, py: Python<'py>, index: usize) -> PyResult<ReachedFields<'py>> {
-        let one = self.one(index)?;
-        let bound = |bound: &TensionBound| match *bound {
-            TensionBound::Slack(cable) => ("slack", cable),
-            TensionBound::Most(cable) => ("most", cable),
-            TensionBound::Stroke(cable) => ("stroke", cable),
-        };
-        let bounds = one.bounds.iter().map(bound).collect();
-        let tensions = given(py, one.tensions.clone());
-        Ok((tensions, one.effort, one.distance, bounds, one.on_the_path, words(one.stability)))
+        match &self.found {
+            Found::Plane(found) => Ok(fields(py, one(found, index)?)),
+            Found::Space(found) => Ok(fields(py, one(found, index)?)),
+        }
     }
 
-    fn solution(&self, index: usize) -> PyResult<Solution> {
-        Ok(Solution::new(self.one(index)?.configuration.clone(), Options::with_tol(self.tol)))
+    fn solution(&self, py: Python<'_>, index: usize) -> PyResult<Py<PyAny>> {
+        let options = Options::with_tol(self.tol);
+        match &self.found {
+            Found::Plane(found) => {
+                Ok(Py::new(py, Solution::new(one(found, index)?.configuration.clone(), options))?.into_any())
+            }
+            Found::Space(found) => {
+                Ok(Py::new(py, SpatialSolution::new(one(found, index)?.configuration.clone(), options))?.into_any())
+            }
+        }
     }
 
     /// The shape with the targets.
     fn figure(&self, index: usize, note: Option<&str>) -> PyResult<Figure> {
-        let targets: Vec<[f64; 2]> = self.targets.iter().map(|target| [target.x, target.y]).collect();
-        Ok(Figure::new(reach_figure(&self.one(index)?.configuration, &targets, note, &Page::default())))
+        let page = Page::default();
+        Ok(Figure::new(match &self.found {
+            Found::Plane(found) => {
+                let targets: Vec<[f64; 2]> = self.targets.iter().map(|target| [target.x, target.y]).collect();
+                reach_figure(&one(found, index)?.configuration, &targets, note, &page)
+            }
+            Found::Space(found) => spatial_arm_figure(&one(found, index)?.configuration, note, &page),
+        }))
     }
 
     fn to_json(&self) -> String {
-        ReachDocument::new(&self.arm, &self.found).to_json()
+        match &self.found {
+            Found::Plane(found) => ReachDocument::new(&self.arm, found).to_json(),
+            Found::Space(found) => ReachDocument::in_space(&self.arm, found).to_json(),
+        }
     }
 
     fn to_csv(&self) -> String {
-        reach_csv(self.arm.cables.len(), &self.found)
+        match &self.found {
+            Found::Plane(found) => reach_csv(self.arm.cables.len(), found),
+            Found::Space(found) => spatial_reach_csv(self.arm.cables.len(), found),
+        }
     }
 }
 

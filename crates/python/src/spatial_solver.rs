@@ -1,12 +1,16 @@
 //! One arm in space, again and again as its loads change.
 
-use hydrostat::{Arm as Given, ArmError, Options, SpatialConfiguration, SpatialError};
-use numpy::PyReadonlyArray1;
+use hydrostat::{
+    Arm as Given, ArmError, Options, SensitivityError, SensitivityOptions, SpatialConfiguration, SpatialError,
+    SpatialPoseChange,
+};
+use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::arm::Arm;
-use crate::arrays::finite;
-use crate::errors::{spatial_error, wrong};
+use crate::arrays::{finite, given};
+use crate::errors::{spatial_error, spatial_sensitivity_error, wrong};
+use crate::sensitivity::{SpatialSensitivities, method, parameters};
 use crate::solution::options;
 use crate::spatial_solution::{SpatialSolution, TipFields, tip};
 
@@ -66,6 +70,52 @@ impl SpatialSolver {
     /// The shape at the present loads.
     fn configuration(&mut self, py: Python<'_>) -> PyResult<SpatialSolution> {
         self.whole(py, hydrostat::SpatialSolver::resolve)
+    }
+
+    /// Derivatives, and the solution that they are about.
+    fn sensitivities(
+        &mut self,
+        py: Python<'_>,
+        names: Option<Vec<String>>,
+        stations: PyReadonlyArray1<'_, f64>,
+        by: &str,
+    ) -> PyResult<(SpatialSensitivities, SpatialSolution)> {
+        let parameters = parameters(names, self.solver.arm())?;
+        let asked = SensitivityOptions { stations: finite("stations", &stations, true)?, method: method(by)? };
+        let (solver, options) = (&mut self.solver, self.options);
+        let found = py.detach(|| {
+            let found = solver.sensitivities_with(&parameters, &asked)?;
+            let solution = solver.resolve().map_err(SensitivityError::Solve)?;
+            Ok((found, solution))
+        });
+        let (found, solution) = found.map_err(|error| spatial_sensitivity_error(py, error, options))?;
+        Ok((SpatialSensitivities::new(found), SpatialSolution::new(solution, options)))
+    }
+
+    /// The gradient of a number by parameters, given its derivatives by x, y, z and the turns about e1, e2, e3 at
+    /// places.
+    fn gradient<'py>(
+        &mut self,
+        py: Python<'py>,
+        names: Vec<String>,
+        stations: PyReadonlyArray1<'py, f64>,
+        weights: [PyReadonlyArray1<'py, f64>; 6],
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let parameters = parameters(Some(names), self.solver.arm())?;
+        let stations = finite("stations", &stations, true)?;
+        let columns = weights.iter().map(|array| finite("weights", array, true)).collect::<PyResult<Vec<_>>>()?;
+        let part = |k: usize, row: usize| columns[k].get(row).copied().unwrap_or(0.0);
+        let weights: Vec<(f64, SpatialPoseChange)> = stations
+            .iter()
+            .enumerate()
+            .map(|(row, s)| {
+                let three = |first: usize| [0, 1, 2].map(|axis| part(first + axis, row));
+                (*s, SpatialPoseChange { place: three(0), turn: three(3) })
+            })
+            .collect();
+        let (solver, options) = (&mut self.solver, self.options);
+        let found = py.detach(|| solver.gradient(&parameters, &weights));
+        Ok(given(py, found.map_err(|error| spatial_sensitivity_error(py, error, options))?))
     }
 
     /// The tip, and the estimated error.

@@ -29,6 +29,7 @@ Examples:
   hydrostat path silicone --vary cable.0.tension=0:0.9 --quantity stroke.0 --plot stroke.png
   hydrostat path silicone --flow-speed 0.2 --set flow.direction=180 --vary 'arm.base.angle=90:-90'
   hydrostat path my.toml --vary flow.speed=0:0.5 --branches --format csv -o path.csv
+  hydrostat path silicone-spatial --vary 'flow.direction[2]=0:1' --quantity tip.z --plot turned.svg
 
 {STABLE}
 
@@ -71,7 +72,7 @@ pub(crate) struct PathArgs {
     /// Draw shapes along the path to scale; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot_shapes: Option<PathBuf>,
-    /// Quantity of --plot: tip.x, tip.y, tip.theta, tip.alpha, or the stroke of a cable, stroke.0
+    /// Quantity of --plot: tip.x, tip.y, tip.theta (in space tip.z), tip.alpha, or the stroke of a cable, stroke.0
     #[arg(long, value_name = "NAME", default_value = "tip.y")]
     pub(crate) quantity: Quantity,
     #[command(flatten)]

@@ -31,6 +31,7 @@ Examples:
   hydrostat reach silicone --target 0.182,0.078 --by strokes --max-stroke '20 mm'
   hydrostat reach silicone --target 0.182,0.078 --max-stroke '12 mm'    not reached
   hydrostat reach silicone --path targets.csv --max-tension '0.6 N' --format csv -o followed.csv
+  hydrostat reach silicone-spatial --target 0.2,0.05,0.05 --max-tension '0.5 N'
   hydrostat reach silicone --boundary --max-tension '0.6 N' --plot boundary.svg
 
 {STABLE}
@@ -39,7 +40,7 @@ Examples:
 pub(crate) struct ReachArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
-    /// Target position, m, such as 0.12,0.05 or '120,50 mm'
+    /// Target position, m, such as 0.12,0.05 or '120,50 mm'; of an arm in space X,Y,Z
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, group = "what", required_unless_present_any = ["path", "boundary"])]
     pub(crate) target: Option<Point>,
     /// Follow the targets of a CSV file with columns x_m,y_m (or x_mm,y_mm) and optionally angle_deg; - is standard input
@@ -51,6 +52,9 @@ pub(crate) struct ReachArgs {
     /// Target angle of the section, from e1, deg [default: any]
     #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true, requires = "target")]
     pub(crate) angle: Option<f64>,
+    /// Target direction of the section's normal a of an arm in space, of any length, such as 1,0,-1 [default: any]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true, requires = "target", conflicts_with = "angle")]
+    pub(crate) direction: Option<Direction>,
     /// Station that is to reach the target, m along the arm [default: the tip]
     #[arg(long, value_name = "S", value_parser = length, allow_hyphen_values = true, conflicts_with = "boundary")]
     pub(crate) station: Option<f64>,
@@ -90,19 +94,46 @@ pub(crate) enum By {
     Strokes,
 }
 
-/// A place in the plane, m.
+/// A place in the plane or in space, m.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Point(pub(crate) [f64; 2]);
+pub(crate) enum Point {
+    Plane([f64; 2]),
+    Space([f64; 3]),
+}
+
+/// Three numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Direction(pub(crate) [f64; 3]);
+
+fn direction(text: &str) -> Result<Direction, String> {
+    let wrong = || format!("expected three numbers X,Y,Z that are not all 0, as in 1,0,-1; found \"{text}\"");
+    let parts: Vec<f64> =
+        text.split(',').map(|part| part.trim().parse()).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    match parts[..] {
+        [x, y, z] if [x, y, z].iter().all(|v| v.is_finite()) && [x, y, z] != [0.0; 3] => Ok(Direction([x, y, z])),
+        _ => Err(wrong()),
+    }
+}
 
 impl FromStr for Point {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (x, y) = text.split_once(',').ok_or_else(|| format!("expected X,Y, as in 0.12,0.05; found \"{text}\""))?;
-        // Two quantities, not the numbers of one: a bare y beside an x with a unit is in m.
-        match shared_unit(Dimension::Length, "X,Y", &[x, y], ",").as_deref() {
-            Ok([x, y]) => Ok(Self([length(x)?, length(y)?])),
-            _ => Ok(Self([length(x)?, length(y)?])),
+        let parts: Vec<&str> = text.split(',').collect();
+        let wrong = || format!("expected X,Y, or X,Y,Z of an arm in space, as in 0.12,0.05; found \"{text}\"");
+        let names = match parts.len() {
+            2 => "X,Y",
+            3 => "X,Y,Z",
+            _ => return Err(wrong()),
+        };
+        // Several quantities, not the numbers of one: a bare y beside an x with a unit is in m.
+        let shared = shared_unit(Dimension::Length, names, &parts, ",");
+        let texts = shared.unwrap_or_else(|_| parts.iter().map(|part| (*part).to_owned()).collect());
+        let values = texts.iter().map(|part| length(part)).collect::<Result<Vec<f64>, _>>()?;
+        match values[..] {
+            [x, y] => Ok(Self::Plane([x, y])),
+            [x, y, z] => Ok(Self::Space([x, y, z])),
+            _ => Err(wrong()),
         }
     }
 }

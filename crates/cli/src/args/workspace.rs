@@ -52,6 +52,7 @@ impl From<WorkspaceArgs> for ReachArgs {
     fn from(args: WorkspaceArgs) -> Self {
         let WorkspaceArgs { arm, max_tension, tol, spacing, format, output, plot, picture } = args;
         Self {
+            direction: None,
             arm,
             target: None,
             path: None,

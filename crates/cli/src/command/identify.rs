@@ -30,7 +30,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     let arm = request::arm_of(&file, "`hydrostat identify`")?;
     // Told before anything is measured.
     if let Some(cable) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
-        return Err(SensitivityError::Friction(cable).into());
+        return Err(SensitivityError::<hydrostat::SolveError>::Friction(cable).into());
     }
     let outputs =
         [("-o", args.output.as_deref()), ("--fitted", args.fitted.as_deref()), ("--plot", args.plot.as_deref())];

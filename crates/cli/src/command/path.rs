@@ -2,19 +2,23 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{Arm, Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint, Stability};
-use hydrostat_figures::{Abscissa, Quantity, path_figure, path_shapes_figure};
-use hydrostat_files::{Landing, PathDocument, Varied, end_message, number, path_csv, path_csv_with_landings};
+use hydrostat::{
+    Arm, Branch, Configuration, Event, Path, PathEnd, PathError, PathOptions, PathPoint, SpatialConfiguration,
+    Stability,
+};
+use hydrostat_figures::{Abscissa, Quantity, path_shapes_figure};
+use hydrostat_files::{Landing, Varied, end_message, number};
 
 use super::NoAnswer;
-use super::table::{TIP, decimals, stability_words, table, tip_cells};
+use super::shape::Shape;
+use super::table::{decimals, stability_words, table, tip_cells};
 use crate::args::{Format, PathArgs};
 use crate::output;
 use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm, "`hydrostat path`")?;
+    let arm = request::arm_in_space(&args.arm)?;
     let varied = &args.vary;
     varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--vary", e))?;
     check_quantity(&arm, args.quantity)?;
@@ -22,29 +26,48 @@ pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
     let outputs = [("-o", args.output.as_deref()), pictures[0], pictures[1]];
     request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &pictures)?;
-    let path = follow(&arm, args)?;
-    let Some(document) = PathDocument::new(&path, varied) else {
-        let start = varied.with_unit(varied.range[0]);
-        return Err(NoAnswer(format!("no point of the path was established at its start, {start}")).into());
-    };
-    let (title, page) = (title(&arm, varied), args.picture.page());
-    if let Some(file) = &args.plot {
-        let figure = path_figure(&path, &abscissa(varied), args.quantity, &title, &page);
-        output::draw(&figure, file, &args.picture.page)?;
+    if arm.space.is_some() {
+        if args.plot_shapes.is_some() {
+            let instead = "--plot draws a quantity along the path, and `solve --plot` one shape in space";
+            return Err(WrongRequest::NotInSpace("--plot-shapes", instead).into());
+        }
+        if args.after_snap {
+            let instead = "motion is of arms in the plane";
+            return Err(WrongRequest::NotInSpace("--after-snap", instead).into());
+        }
+        let path = follow::<SpatialConfiguration>(&arm, args)?;
+        return report(&arm, &path, None, args);
     }
-    if let Some(file) = &args.plot_shapes {
+    let path = follow::<Configuration>(&arm, args)?;
+    if let Some(file) = &args.plot_shapes
+        && Configuration::document(&path, varied).is_some()
+    {
+        let (title, page) = (title(&arm, varied), args.picture.page());
         output::draw(&path_shapes_figure(&path, &abscissa(varied), &title, &page), file, &args.picture.page)?;
     }
     let landings = args.after_snap.then(|| landings(&path, varied));
-    let text = match (args.format, landings.as_deref()) {
-        (Format::Text, landings) => summary(&arm, &path, varied) + &rests(&path, varied, landings.unwrap_or_default()),
-        (Format::Json, Some(landings)) => output::line(document.with_landings(landings).to_json()),
-        (Format::Json, None) => output::line(document.to_json()),
-        (Format::Csv, Some(landings)) => path_csv_with_landings(&path, varied, landings),
-        (Format::Csv, None) => path_csv(&path, varied),
+    report(&arm, &path, landings.as_deref(), args)
+}
+
+/// Writes what was asked for.
+fn report<C: Shape>(arm: &Arm, path: &Path<C>, landings: Option<&[Landing]>, args: &PathArgs) -> anyhow::Result<()> {
+    let varied = &args.vary;
+    let Some(document) = C::document(path, varied) else {
+        let start = varied.with_unit(varied.range[0]);
+        return Err(NoAnswer(format!("no point of the path was established at its start, {start}")).into());
+    };
+    if let Some(file) = &args.plot {
+        let (title, page) = (title(arm, varied), args.picture.page());
+        let figure = C::chart(path, &abscissa(varied), args.quantity, &title, &page);
+        output::draw(&figure, file, &args.picture.page)?;
+    }
+    let text = match args.format {
+        Format::Text => summary(arm, path, varied) + &rests(path, varied, landings.unwrap_or_default()),
+        Format::Json => output::line(document.with_landings(landings.unwrap_or_default()).to_json()),
+        Format::Csv => C::csv(path, varied, landings),
     };
     output::put(args.output.as_deref(), &text)?;
-    say_ends(&path, varied)
+    say_ends(path, varied)
 }
 
 /// The share of the range by which the parameter is past a limit point while the arm moves.
@@ -74,7 +97,7 @@ fn landings(path: &Path, varied: &Varied) -> Vec<Landing> {
 }
 
 /// A line a limit point.
-fn rests(path: &Path, varied: &Varied, landings: &[Landing]) -> String {
+fn rests<C>(path: &Path<C>, varied: &Varied, landings: &[Landing]) -> String {
     let mut out = String::new();
     for (k, Landing { at: [branch, point], outcome }) in landings.iter().enumerate() {
         let value = varied.with_unit(path.branches[*branch].points[*point].value);
@@ -94,18 +117,20 @@ fn rests(path: &Path, varied: &Varied, landings: &[Landing]) -> String {
 /// A cable that is not there has no stroke.
 pub(super) fn check_quantity(arm: &Arm, quantity: Quantity) -> Result<(), WrongRequest> {
     let cables = arm.cables.len();
+    let in_space = arm.space.is_some();
     match quantity {
+        quantity if !quantity.is_of(in_space) => Err(WrongRequest::NotOfArm { quantity, in_space }),
         Quantity::Stroke(asked) if asked >= cables => Err(WrongRequest::NoCable { asked, cables }),
         _ => Ok(()),
     }
 }
 
-fn follow(arm: &Arm, args: &PathArgs) -> anyhow::Result<Path> {
+fn follow<C: Shape>(arm: &Arm, args: &PathArgs) -> anyhow::Result<Path<C>> {
     let options = PathOptions { tol: args.tol, longest: args.max_step, most: args.max_points, branches: args.branches };
     let mut progress = Progress::new();
     let mut count = 0;
     let varied = &args.vary;
-    let path = arm.path_with(varied.parameter, varied.range, &options, |point| {
+    let path = C::path(arm, varied.parameter, varied.range, &options, |point| {
         count += 1;
         progress.say(|| format!("{count} points, {} = {}", varied.parameter, varied.with_unit(point.value)));
         true
@@ -140,7 +165,7 @@ pub(super) fn title(arm: &Arm, varied: &Varied) -> String {
 }
 
 /// Ends, events and a line on the whole.
-fn summary(arm: &Arm, path: &Path, varied: &Varied) -> String {
+fn summary<C: Shape>(arm: &Arm, path: &Path<C>, varied: &Varied) -> String {
     let [from, to] = varied.range.map(|value| varied.with_unit(value));
     let mut out = format!("path   {}, {} from {from} to {to}\n", arm.name, varied.parameter);
     for (index, branch) in path.branches.iter().enumerate() {
@@ -165,7 +190,7 @@ fn summary(arm: &Arm, path: &Path, varied: &Varied) -> String {
 }
 
 /// How often cables go slack or taut, where any does.
-fn contacts(branch: &Branch) -> String {
+fn contacts<C>(branch: &Branch<C>) -> String {
     match branch.points.iter().filter(|p| p.event.is_some_and(|event| event.cable().is_some())).count() {
         0 => String::new(),
         1 => ", a cable goes slack or taut once".to_owned(),
@@ -181,7 +206,7 @@ fn counted(count: usize, one: &str, many: &str) -> String {
     }
 }
 
-fn stability_along(branch: &Branch) -> &'static str {
+fn stability_along<C>(branch: &Branch<C>) -> &'static str {
     let regular = || branch.points.iter().filter(|p| p.event.is_none());
     if regular().all(|p| p.stability == Some(Stability::Stable)) {
         "stable throughout"
@@ -193,10 +218,10 @@ fn stability_along(branch: &Branch) -> &'static str {
 }
 
 /// The first point, the last one and the events between.
-fn events_table(branch: &Branch, varied: &Varied) -> String {
+fn events_table<C: Shape>(branch: &Branch<C>, varied: &Varied) -> String {
     let unit = if varied.unit.is_empty() { "value".to_owned() } else { varied.unit.to_owned() };
     let mut head = vec![unit];
-    head.extend(TIP.map(str::to_owned));
+    head.extend(C::TIP.map(str::to_owned));
     head.extend(["stability", "event"].map(str::to_owned));
     let mut rows = vec![head];
     let last = branch.points.len().saturating_sub(1);
@@ -204,8 +229,8 @@ fn events_table(branch: &Branch, varied: &Varied) -> String {
         let event = match point.event {
             Some(Event::LimitPoint) => "limit point".to_owned(),
             Some(Event::Bifurcation) => "bifurcation".to_owned(),
-            Some(Event::Slack(cable)) => format!("{} goes slack", point.configuration.cables[cable].name),
-            Some(Event::Taut(cable)) => format!("{} is taken up", point.configuration.cables[cable].name),
+            Some(Event::Slack(cable)) => format!("{} goes slack", point.configuration.cables()[cable].name),
+            Some(Event::Taut(cable)) => format!("{} is taken up", point.configuration.cables()[cable].name),
             None if index == 0 => "start".to_owned(),
             None if index == last => "end".to_owned(),
             None => continue,
@@ -215,15 +240,15 @@ fn events_table(branch: &Branch, varied: &Varied) -> String {
     table(&rows, 2)
 }
 
-fn row(point: &PathPoint, varied: &Varied, event: &str) -> Vec<String> {
+fn row<C: Shape>(point: &PathPoint<C>, varied: &Varied, event: &str) -> Vec<String> {
     let mut row = vec![number(varied.shown(point.value))];
-    row.extend(tip_cells(&point.configuration));
+    row.extend(point.configuration.tip_cells());
     row.extend([stability_words(point.stability), event.to_owned()]);
     row
 }
 
 /// Says why branches ended elsewhere than at the end of the range. A limit that ends the first one is no success.
-fn say_ends(path: &Path, varied: &Varied) -> anyhow::Result<()> {
+fn say_ends<C>(path: &Path<C>, varied: &Varied) -> anyhow::Result<()> {
     for (index, branch) in path.branches.iter().enumerate() {
         let value = branch.points.last().map_or(f64::NAN, |p| p.value);
         let message = end_message(branch.end, varied, value);

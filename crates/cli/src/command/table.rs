@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{Configuration, Stability, Tip};
+use hydrostat::{Configuration, SpatialTip, Stability, Tip};
 
 /// Rows of cells in columns as wide as they need to be, numbers to the right and `words` last columns to the left.
 pub(super) fn table(rows: &[Vec<String>], words: usize) -> String {
@@ -29,6 +29,15 @@ pub(super) const TIP: [&str; 4] = ["x (mm)", "y (mm)", "turned (deg)", "alpha (d
 /// Where the tip is, by how much it is turned, and alpha there.
 pub(super) fn tip_cells(c: &Configuration) -> [String; 4] {
     place_cells(c.tip())
+}
+
+/// The heads of [`spatial_tip_cells`].
+pub(super) const SPATIAL_TIP: [&str; 4] = ["x (mm)", "y (mm)", "z (mm)", "alpha (deg)"];
+
+/// Where the tip is in space, and alpha there.
+pub(super) fn spatial_tip_cells(tip: &SpatialTip) -> [String; 4] {
+    let [x, y, z] = [tip.x, tip.y, tip.z].map(|v| decimals(1e3 * v, 3));
+    [x, y, z, decimals(tip.alpha.to_degrees(), 3)]
 }
 
 /// The same of any place.

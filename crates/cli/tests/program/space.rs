@@ -82,9 +82,8 @@ fn a_fold_in_space_is_a_verdict_with_the_last_good_shape() {
 #[test]
 fn what_is_for_arms_in_the_plane_says_so() {
     for args in [
-        &["path", "silicone-spatial", "--vary", "flow.speed=0:0.1"][..],
-        &["equilibria", "silicone-spatial"],
-        &["reach", "silicone-spatial", "--target", "200 mm,50 mm"],
+        &["equilibria", "silicone-spatial"][..],
+        &["modes", "silicone-spatial"],
         &["workspace", "silicone-spatial"],
         &["identify", "silicone-spatial", "--template"],
         &["figures", "silicone-spatial"],
@@ -92,6 +91,20 @@ fn what_is_for_arms_in_the_plane_says_so() {
         let words = refused(args);
         let start = format!("error: `hydrostat {}` is for arms in the plane", args[0]);
         assert!(words.starts_with(&start) && words.contains("spatial"), "{args:?}: {words}");
+    }
+    for (args, words) in [
+        (&["reach", "silicone-spatial", "--target", "200 mm,50 mm"][..], "expected X,Y,Z"),
+        (&["reach", "silicone", "--target", "0.2,0.05,0"], "expected X,Y of an arm in the plane"),
+        (&["reach", "silicone-spatial", "--target", "0.2,0.05,0", "--angle", "10"], "--direction"),
+        (&["reach", "silicone", "--target", "0.2,0.05", "--direction", "1,0,0"], "space = \"spatial\""),
+        (&["reach", "silicone-spatial", "--target", "0.2,0.05,0", "--direction", "0,0,0"], "not all 0"),
+        (&["path", "silicone-spatial", "--vary", "flow.speed=0:0.1", "--quantity", "tip.theta"], "tip.z"),
+        (&["path", "silicone", "--vary", "flow.speed=0:0.1", "--quantity", "tip.z"], "tip.theta"),
+        (&["path", "silicone", "--vary", "flow.direction[2]=0:1"], "is of an arm in space"),
+        (&["path", "silicone-spatial", "--vary", "material.c4=1:2"], "homogeneous"),
+    ] {
+        let said = refused(args);
+        assert!(said.contains(words), "{args:?}: {said}");
     }
     let words = refused(&["solve", "silicone", "--set", "tip.force=[0, 0, 1]"]);
     assert!(words.contains("tip.force") && words.contains("space = \"spatial\""), "{words}");
@@ -102,4 +115,57 @@ fn what_is_for_arms_in_the_plane_says_so() {
     assert!(unknown.contains("octopus-spatial, silicone-spatial); did you mean `silicone-spatial`?"), "{unknown}");
     let far = hydrostat(&["solve", "silicone-spatial", "--set", "arm.length=300"]);
     assert!(far.err.ends_with("try: look at the units first: arm.length = 300 m: is it mm?\n"), "{}", far.err);
+}
+
+#[test]
+fn a_path_in_space_has_every_format() {
+    let directory = directory();
+    let path = ["path", "silicone-spatial", "--vary", "flow.direction[2]=-1:1", "--set", "flow.speed=0.05"];
+    let text = solved(&path).out;
+    assert!(text.contains("z (mm)") && text.contains("stable throughout"), "{text}");
+    let document = json(&solved(&[&path[..], &["--format", "json"]].concat()).out);
+    let points = document["branches"][0]["points"].as_array().unwrap();
+    assert!(points.len() > 3 && points[0]["tip"]["z"].is_number() && points[0]["tip"]["a"][2].is_number());
+    assert_eq!(points[0]["value"], -1.0);
+    let (names, rows) = columns_of(&solved(&[&path[..], &["--format", "csv"]].concat()).out);
+    assert_eq!(rows, points.len());
+    for name in ["branch", "tip_z_m", "tip_a_x", "tip_c_z", "tip_alpha_rad", "stroke_2_m", "event"] {
+        assert!(names.iter().any(|own| own == name), "{name}: {names:?}");
+    }
+    let drawn = hydrostat_in(
+        directory.path(),
+        &[&path[..], &["--quantity", "tip.z", "--plot", "z.svg", "--svg-text"]].concat(),
+    );
+    assert_eq!(drawn.code, 0, "{}", drawn.err);
+    assert!(std::fs::read_to_string(directory.path().join("z.svg")).unwrap().contains("flow.direction[2]"));
+}
+
+#[test]
+fn a_target_in_space_is_reached_or_missed_with_the_closest() {
+    let arm = ["silicone-spatial", "--set", "flow.speed=0.05"];
+    let tip = json(&solved(&[&["solve"], &arm[..], &["--format", "json"]].concat()).out)["tip"].clone();
+    let [x, y, z] = ["x", "y", "z"].map(|name| tip[name].as_f64().unwrap());
+    let target = format!("{x},{y},{z}");
+    let reach = [&["reach"], &arm[..], &["--target", &target, "--max-tension", "0.5"]].concat();
+    let document = json(&solved(&[&reach[..], &["--format", "json"]].concat()).out);
+    assert_eq!(document["reached"], true);
+    let found = &document["solutions"][0]["tip"];
+    for (name, value) in [("x", x), ("y", y), ("z", z)] {
+        assert!((found[name].as_f64().unwrap() - value).abs() < 1e-8, "{name}");
+    }
+    let (names, rows) = columns_of(&solved(&[&reach[..], &["--format", "csv"]].concat()).out);
+    assert!(rows >= 1 && names.contains(&"tip_b_y".to_owned()));
+    let directory = directory();
+    let far = ["--target", "0.4,0,0", "--max-tension", "0.5", "--plot", "closest.svg"];
+    let missed = hydrostat_in(directory.path(), &[&["reach"], &arm[..], &far].concat());
+    assert_eq!(missed.code, 3, "{}", missed.err);
+    assert!(missed.err.contains("the target is not reached") && missed.out.contains("z (mm)"), "{}", missed.err);
+    assert!(directory.path().join("closest.svg").exists());
+}
+
+/// The names of a table, and how many rows it has.
+fn columns_of(table: &str) -> (Vec<String>, usize) {
+    let mut lines = table.lines();
+    let names = lines.next().unwrap().split(',').map(str::to_owned).collect();
+    (names, lines.count())
 }

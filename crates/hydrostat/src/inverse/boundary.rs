@@ -18,8 +18,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
+use super::in_plane::Goal;
 use super::problem::{ReachError, ReachOptions, Target};
-use super::search::{Goal, Search, State};
+use super::search::{Search, State};
 use crate::rod::arm::Arm;
 use crate::statics::configuration::Tip;
 use crate::statics::verdict::SolveError;
@@ -145,7 +146,7 @@ impl Arm {
             }
         }
         let reach = ReachOptions { max_tension: options.max_tension, tol: options.tol, ..ReachOptions::default() };
-        let search = Search::new(self, Goal::Places(vec![Target::tip(self.base.x, self.base.y)]), &reach)?;
+        let search: Search = Search::new(self, Goal::Places(vec![Target::tip(self.base.x, self.base.y)]), &reach)?;
         if let Some(value) = search.most.iter().copied().find(|most| !most.is_finite()) {
             return Err(ReachError::Option {
                 option: "max_tension",

@@ -2,8 +2,9 @@
 
 use super::conditions::ByTensions;
 use super::effort::dot;
+use super::in_plane::{Goal, SAME};
 use super::problem::{ReachError, ReachOptions, Reached, Target};
-use super::search::{Goal, SAME, STILL, Search, State};
+use super::search::{STILL, Search, State};
 use crate::rod::arm::Arm;
 use crate::statics::configuration::Tip;
 use crate::statics::sensitivity::SensitivityError;
@@ -80,7 +81,7 @@ impl Follower {
     /// # Errors
     /// [`ReachError`].
     pub fn new(arm: &Arm, targets: &[Target], options: &ReachOptions) -> Result<Self, ReachError> {
-        let search = Search::new(arm, Goal::Places(targets.to_vec()), options)?;
+        let search = Search::<Solver>::new(arm, Goal::Places(targets.to_vec()), options)?;
         let own: Vec<f64> = arm.cables.iter().map(|cable| cable.tension).collect();
         let mut state = search.begin(&own)?;
         if state.distance() > search.tol {

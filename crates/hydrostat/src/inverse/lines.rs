@@ -15,6 +15,7 @@
 use nalgebra::DMatrix;
 
 use super::effort::dot;
+use super::reaching::Reaching;
 use super::search::{Search, State};
 use crate::numerics::elimination::solved;
 
@@ -37,8 +38,8 @@ const FARTHEST: f64 = 5.0;
 const STRAIGHT: f64 = 0.9;
 
 /// A line through the targets.
-struct Line<'a> {
-    search: &'a Search,
+struct Line<'a, S: Reaching> {
+    search: &'a Search<S>,
     along: Vec<f64>,
     across: Vec<Vec<f64>>,
     /// Largest tensions over their scale.
@@ -46,21 +47,21 @@ struct Line<'a> {
 }
 
 /// A shape on the curve, with the derivatives of its distances by the tensions over their scale.
-struct Point {
-    state: State,
+struct Point<S> {
+    state: State<S>,
     columns: Vec<Vec<f64>>,
     tangent: Vec<f64>,
 }
 
-impl Search {
+impl<S: Reaching> Search<S> {
     /// Whether lines determine their tensions.
-    pub(super) fn has_lines(&self, state: &State) -> bool {
+    pub(super) fn has_lines(&self, state: &State<S>) -> bool {
         let conditions = state.rest.len();
         conditions > 1 && conditions == self.most.len()
     }
 
     /// The direction in which tensions move the places least: across a fold that is near.
-    pub(super) fn stiffest(&self, state: &State) -> Option<Vec<f64>> {
+    pub(super) fn stiffest(&self, state: &State<S>) -> Option<Vec<f64>> {
         let jacobian = self.jacobian(&state.solver)?;
         let scaled = DMatrix::from_fn(state.rest.len(), jacobian.len(), |r, c| jacobian[c][r] * self.scale[c]);
         let svd = scaled.try_svd(true, false, f64::EPSILON, 100)?;
@@ -70,7 +71,7 @@ impl Search {
 
     /// Tensions near solutions on the line through the targets along `direction`, which the places of `from` are on:
     /// both ways from there. `go_on` is asked before every step.
-    pub(super) fn along(&self, from: &State, direction: &[f64], go_on: &mut dyn FnMut() -> bool) -> Vec<Vec<f64>> {
+    pub(super) fn along(&self, from: &State<S>, direction: &[f64], go_on: &mut dyn FnMut() -> bool) -> Vec<Vec<f64>> {
         let size = dot(direction, direction).sqrt();
         if !(size > 0.0 && size.is_finite()) {
             return Vec::new();
@@ -88,12 +89,12 @@ impl Search {
     }
 }
 
-impl Line<'_> {
-    fn shares(&self, state: &State) -> Vec<f64> {
+impl<S: Reaching> Line<'_, S> {
+    fn shares(&self, state: &State<S>) -> Vec<f64> {
         state.tensions.iter().zip(&self.search.scale).map(|(t, scale)| t / scale).collect()
     }
 
-    fn columns(&self, state: &State) -> Option<Vec<Vec<f64>>> {
+    fn columns(&self, state: &State<S>) -> Option<Vec<Vec<f64>>> {
         let jacobian = self.search.jacobian(&state.solver)?;
         let scaled = |(column, scale): (&Vec<f64>, &f64)| column.iter().map(|v| v * scale).collect();
         Some(jacobian.iter().zip(&self.search.scale).map(scaled).collect())
@@ -120,7 +121,7 @@ impl Line<'_> {
         Some(tangent.iter().map(|v| v / size).collect())
     }
 
-    fn start(&self, from: &State) -> Option<Point> {
+    fn start(&self, from: &State<S>) -> Option<Point<S>> {
         let columns = self.columns(from)?;
         let n = columns.len();
         // The cable that moves most along the curve keeps its conditions best apart.
@@ -130,19 +131,19 @@ impl Line<'_> {
         Some(Point { state: from.clone(), columns, tangent })
     }
 
-    fn offset(&self, state: &State) -> f64 {
+    fn offset(&self, state: &State<S>) -> f64 {
         dot(&self.along, &state.rest)
     }
 
     /// One way; what is near a solution goes to `out`.
-    fn walk(&self, start: &Point, sign: f64, go_on: &mut dyn FnMut() -> bool, out: &mut Vec<Vec<f64>>) {
+    fn walk(&self, start: &Point<S>, sign: f64, go_on: &mut dyn FnMut() -> bool, out: &mut Vec<Vec<f64>>) {
         let begun = self.shares(&start.state);
         let mut here = Point {
             state: start.state.clone(),
             columns: start.columns.clone(),
             tangent: start.tangent.iter().map(|v| sign * v).collect(),
         };
-        let solution = |point: &Point| self.offset(&point.state).abs() <= 10.0 * self.search.tol;
+        let solution = |point: &Point<S>| self.offset(&point.state).abs() <= 10.0 * self.search.tol;
         // The offsets of the last two points.
         let mut before: Option<f64> = None;
         let mut size = FIRST;
@@ -177,7 +178,7 @@ impl Line<'_> {
                 }
                 break;
             }
-            let turned = (next.state.solver.engine.tip_angle() - here.state.solver.engine.tip_angle()).abs();
+            let turned = next.state.solver.turned(&here.state.solver);
             let moved = apart(&next.state.rest, &here.state.rest);
             let fit = (TURN / turned.max(1e-12)).min(0.5 * MOVED / moved.max(1e-12));
             let reached = self.shares(&next.state);
@@ -192,7 +193,7 @@ impl Line<'_> {
     }
 
     /// A step, and whether it ended at a bound.
-    fn step(&self, here: &Point, shares: &[f64], size: f64) -> Option<(Point, bool)> {
+    fn step(&self, here: &Point<S>, shares: &[f64], size: f64) -> Option<(Point<S>, bool)> {
         // As far as there is room.
         let (mut length, mut stop) = (size, None);
         for (c, (t, share)) in here.tangent.iter().zip(shares).enumerate() {
@@ -222,8 +223,8 @@ impl Line<'_> {
             let tensions: Vec<f64> = (0..to.len())
                 .map(|c| (to[c].clamp(0.0, self.most[c]) * self.search.scale[c]).min(self.search.most[c]))
                 .collect();
-            solver.set_tensions(&tensions).ok()?;
-            solver.update().ok()?;
+            solver.pull(&tensions)?;
+            solver.settle()?;
             let rest = self.search.rest(&solver);
             if apart(&rest, &here.state.rest) > MOVED {
                 return None;
@@ -239,7 +240,7 @@ impl Line<'_> {
             let change = self.change(&here.columns, &off, &guide, 0.0)?;
             to.iter_mut().zip(&change).for_each(|(to, d)| *to += d);
         }
-        let tensions = solver.arm().cables.iter().map(|cable| cable.tension).collect();
+        let tensions = solver.tensions();
         let state = self.search.state(solver, tensions);
         let columns = self.columns(&state)?;
         let tangent = self.tangent(&columns, &here.tangent)?;

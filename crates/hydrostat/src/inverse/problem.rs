@@ -67,9 +67,10 @@ pub enum Bound {
     Stroke(usize),
 }
 
-/// Tensions, and the shape that they lead to.
+/// Tensions, and the shape that they lead to: in the plane, or with [`crate::SpatialConfiguration`] and
+/// [`crate::SpatialStation`] in space.
 #[derive(Debug, Clone)]
-pub struct Reached {
+pub struct Reached<C = Configuration, P = Station> {
     /// N.
     pub tensions: Vec<f64>,
     /// Sum of their squares, N^2.
@@ -84,29 +85,29 @@ pub struct Reached {
     /// `None` where it is not established.
     pub stability: Option<Stability>,
     /// The arm at the places of targets that are not for the tip, in the order of the targets.
-    pub places: Vec<Station>,
+    pub places: Vec<P>,
     /// The shape; with strokes commanded where they hold it and a solve leads here.
-    pub configuration: Configuration,
+    pub configuration: C,
 }
 
 /// What was found.
 #[derive(Debug, Clone)]
-pub struct Reach {
+pub struct Reach<C = Configuration, P = Station> {
     /// Different tensions that reach the targets, least effort first.
-    pub solutions: Vec<Reached>,
+    pub solutions: Vec<Reached<C, P>>,
     /// Where nothing does, the nearest that was found.
-    pub closest: Option<Reached>,
+    pub closest: Option<Reached<C, P>>,
 }
 
-/// Why tensions cannot be looked for.
+/// Why tensions cannot be looked for: in the plane, or with [`crate::SpatialError`] in space.
 #[derive(Debug, Clone, thiserror::Error)]
-pub enum ReachError {
+pub enum ReachError<E = SolveError> {
     /// The arm is none, or has no equilibrium at any start.
     #[error(transparent)]
-    Solve(#[from] SolveError),
+    Solve(E),
     /// The arm has no derivatives, or a target lies off it.
     #[error(transparent)]
-    Sensitivity(#[from] SensitivityError),
+    Sensitivity(#[from] SensitivityError<E>),
     /// An arm without cables reaches nothing.
     #[error("the arm has no cable that could be pulled")]
     NoCables,
@@ -123,4 +124,10 @@ pub enum ReachError {
         /// What is.
         expected: &'static str,
     },
+}
+
+impl From<SolveError> for ReachError {
+    fn from(error: SolveError) -> Self {
+        Self::Solve(error)
+    }
 }

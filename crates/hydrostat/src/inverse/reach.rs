@@ -9,4 +9,5 @@
 
 pub use super::boundary::{Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, BoundaryProgress};
 pub use super::follow::{Followed, Follower};
+pub use super::in_space::SpatialTarget;
 pub use super::problem::{Bound, Reach, ReachError, ReachOptions, Reached, Target};

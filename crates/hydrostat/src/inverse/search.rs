@@ -2,20 +2,14 @@
 
 use super::conditions::{ByTensions, Pulled};
 use super::effort::{dot, least_effort, nearest};
-use super::problem::{Bound, ReachError, ReachOptions, Reached, Target};
+use super::problem::{Bound, ReachError, ReachOptions, Reached};
+use super::reaching::Reaching;
 use crate::rod::arm::Arm;
-use crate::rod::parameter::Parameter;
-use crate::statics::configuration::Configuration;
-use crate::statics::engine::Engine;
-use crate::statics::sensitivity::{Quantity, SensitivityError, SensitivityMethod, check};
-use crate::statics::solve::{Options, Solver};
-use crate::statics::verdict::SolveError;
+use crate::statics::sensitivity::{SensitivityError, check};
+use crate::statics::solve::Solver;
 
 /// Most rounds from a start.
 const ROUNDS: usize = 60;
-
-/// Tips (over L) that are this near are at the same place.
-pub(super) const SAME: f64 = 1e-6;
 
 /// The longest step: how far it moves what has a target, over L, to first order.
 const LONGEST: f64 = 0.3;
@@ -38,26 +32,17 @@ pub(super) const STILL: f64 = 1e-9;
 /// Change of the tensions, over their scale, within which solutions may be one.
 const NEIGHBOURS: f64 = 0.05;
 
-/// What is to be reached.
-#[derive(Debug, Clone)]
-pub(super) enum Goal {
-    /// Places of the arm.
-    Places(Vec<Target>),
-    /// The angle alpha of the tip section, rad.
-    TipAngle(f64),
-}
-
 /// A solved arm at tensions, with the distances to the targets.
 #[derive(Debug, Clone)]
-pub(super) struct State {
-    pub(super) solver: Solver,
+pub(super) struct State<S = Solver> {
+    pub(super) solver: S,
     pub(super) tensions: Vec<f64>,
     pub(super) rest: Vec<f64>,
     /// Strokes over L; none where they have no bound.
     pub(super) strokes: Vec<f64>,
 }
 
-impl State {
+impl<S> State<S> {
     pub(super) fn distance(&self) -> f64 {
         dot(&self.rest, &self.rest).sqrt()
     }
@@ -74,9 +59,9 @@ impl State {
 
 /// What is looked for.
 #[derive(Debug, Clone)]
-pub(super) struct Search {
+pub(super) struct Search<S: Reaching = Solver> {
     pub(super) arm: Arm,
-    pub(super) goal: Goal,
+    pub(super) goal: S::Goal,
     /// Largest tensions, N; 0 for what is not pulled.
     pub(super) most: Vec<f64>,
     /// Tensions, N, that bend the arm a good deal.
@@ -88,21 +73,17 @@ pub(super) struct Search {
     by_strokes: bool,
 }
 
-impl Search {
-    pub(super) fn new(arm: &Arm, goal: Goal, options: &ReachOptions) -> Result<Self, ReachError> {
+impl<S: Reaching> Search<S> {
+    pub(super) fn new(arm: &Arm, goal: S::Goal, options: &ReachOptions) -> Result<Self, ReachError<S::Error>> {
         if arm.cables.is_empty() {
             return Err(ReachError::NoCables);
         }
         let arm = arm.slackened();
-        arm.check().map_err(SolveError::from)?;
-        let fine = match &goal {
-            Goal::Places(targets) => !targets.is_empty() && targets.iter().all(|target| target.is_for(&arm)),
-            Goal::TipAngle(angle) => angle.is_finite(),
-        };
-        if !fine {
+        arm.check().map_err(|error| ReachError::Solve(S::wrong(error)))?;
+        if !S::fits(&goal, &arm) {
             return Err(ReachError::Target);
         }
-        check(&arm, &[], &goal.stations().collect::<Vec<f64>>())?;
+        check(&arm, &[], &S::stations(&goal))?;
         if !(1e-10..=1e-2).contains(&options.tol) {
             return Err(ReachError::Option { option: "tol", value: options.tol, expected: "in [1e-10, 1e-2]" });
         }
@@ -111,7 +92,7 @@ impl Search {
                 return Err(ReachError::Option { option, value, expected: "above 0" });
             }
         }
-        let bending = Engine::new(&arm).equations.units.force * arm.length * arm.length;
+        let bending = S::unit_force(&arm) * arm.length * arm.length;
         let scale: Vec<f64> = arm
             .cables
             .iter()
@@ -183,37 +164,36 @@ impl Search {
 
     /// Whether two solutions are near each other and what is between them is one, too: at the edge of what is reached,
     /// the tensions that bring the arm to within the tolerance of a target are as many as its root allows.
-    pub(super) fn joined(&self, a: &State, b: &State) -> bool {
+    pub(super) fn joined(&self, a: &State<S>, b: &State<S>) -> bool {
         if self.change(&a.tensions, &b.tensions) >= NEIGHBOURS {
             return false;
         }
         let between: Vec<f64> = a.tensions.iter().zip(&b.tensions).map(|(a, b)| 0.5 * (a + b)).collect();
         let mut solver = a.solver.clone();
-        let solved = solver.set_tensions(&between).is_ok() && solver.update_warm().is_some();
+        let solved = solver.pull(&between).is_some() && solver.settle_warm().is_some();
         solved && self.state(solver, between).distance() <= 3.0 * self.tol
     }
 
     /// Settled at these tensions, from nothing.
-    pub(super) fn at(&self, tensions: &[f64]) -> Result<State, ReachError> {
+    pub(super) fn at(&self, tensions: &[f64]) -> Result<State<S>, ReachError<S::Error>> {
         let mut arm = self.arm.clone();
-        arm.set_tensions(tensions).map_err(SolveError::from)?;
-        let mut solver = Solver::new(&arm, Options::with_tol((SOLVED * self.tol).clamp(1e-11, 1e-6)))?;
-        solver.update()?;
-        let places: Vec<f64> = self.goal.stations().map(|s| s / self.arm.length).collect();
-        if solver.engine.watch(&places, solver.options.tol).is_err() {
+        arm.set_tensions(tensions).map_err(|error| ReachError::Solve(S::wrong(error)))?;
+        let mut solver = S::begin(&arm, (SOLVED * self.tol).clamp(1e-11, 1e-6)).map_err(ReachError::Solve)?;
+        let places: Vec<f64> = S::stations(&self.goal).iter().map(|s| s / self.arm.length).collect();
+        if !solver.watch(&places) {
             return Err(SensitivityError::Unsettled(f64::NAN).into());
         }
         Ok(self.state(solver, tensions.to_vec()))
     }
 
     /// The state of a solved arm.
-    pub(super) fn state(&self, solver: Solver, tensions: Vec<f64>) -> State {
+    pub(super) fn state(&self, solver: S, tensions: Vec<f64>) -> State<S> {
         let (rest, strokes) = (self.rest(&solver), self.strokes(&solver));
         State { solver, tensions, rest, strokes }
     }
 
     /// [`Search::at`], with less of the tensions where there is no equilibrium or strokes are too long.
-    pub(super) fn begin(&self, start: &[f64]) -> Result<State, ReachError> {
+    pub(super) fn begin(&self, start: &[f64]) -> Result<State<S>, ReachError<S::Error>> {
         let mut tensions = start.to_vec();
         let mut found = self.at(&tensions).map(|state| self.within(state));
         for _ in 0..LESS {
@@ -233,7 +213,7 @@ impl Search {
     }
 
     /// With strokes within their bounds, if they get there.
-    fn within(&self, mut state: State) -> Option<State> {
+    fn within(&self, mut state: State<S>) -> Option<State<S>> {
         if self.longest.is_none() {
             return Some(state);
         }
@@ -243,73 +223,32 @@ impl Search {
     }
 
     /// Weighted distances to the targets, over L.
-    pub(super) fn rest(&self, solver: &Solver) -> Vec<f64> {
-        let engine = &solver.engine;
-        let (base, length) = (self.arm.base, self.arm.length);
-        let targets = match &self.goal {
-            Goal::Places(targets) => targets,
-            // Where the end has no strains it is as far off as can be.
-            Goal::TipAngle(angle) => return vec![engine.read_tip().map_or(f64::INFINITY, |tip| tip.alpha - angle)],
-        };
-        let mut out = Vec::with_capacity(3 * targets.len());
-        for target in targets {
-            let [x, y, theta] = engine.pose_of(target.s.map_or(1.0, |s| s / length));
-            out.push(target.weight * (x - (target.x - base.x) / length));
-            out.push(target.weight * (y - (target.y - base.y) / length));
-            if let Some(angle) = target.angle {
-                let turns = std::f64::consts::TAU;
-                let off = (theta - angle).rem_euclid(turns);
-                out.push(target.weight * if off > 0.5 * turns { off - turns } else { off });
-            }
-        }
-        out
+    pub(super) fn rest(&self, solver: &S) -> Vec<f64> {
+        solver.rest(&self.goal, &self.arm)
     }
 
     /// Derivatives of the distances by the tensions: one column a cable. `None` at a limit point.
-    pub(super) fn jacobian(&self, solver: &Solver) -> Option<Vec<Vec<f64>>> {
+    pub(super) fn jacobian(&self, solver: &S) -> Option<Vec<Vec<f64>>> {
         self.derivatives(solver, false).map(|slopes| slopes.rest)
     }
 
     /// [`Search::jacobian`], with the derivatives of strokes where they have a bound.
-    pub(super) fn slopes(&self, solver: &Solver) -> Option<ByTensions> {
+    pub(super) fn slopes(&self, solver: &S) -> Option<ByTensions> {
         self.derivatives(solver, self.longest.is_some())
     }
 
-    fn derivatives(&self, solver: &Solver, of_strokes: bool) -> Option<ByTensions> {
-        let cables: Vec<Parameter> = (0..self.scale.len()).map(Parameter::Tension).collect();
-        let mut quantities = Vec::new();
-        let mut weights = Vec::new();
-        let targets: &[Target] = match &self.goal {
-            Goal::Places(targets) => targets,
-            Goal::TipAngle(_) => {
-                quantities.push(solver.engine.pose_at(1.0)[3]);
-                weights.push(1.0);
-                &[]
-            }
-        };
-        for target in targets {
-            let [x, y, theta, _] = solver.engine.pose_at(target.s.map_or(1.0, |s| s / self.arm.length));
-            quantities.extend([x, y]);
-            weights.extend([target.weight / self.arm.length; 2]);
-            if target.angle.is_some() {
-                quantities.push(theta);
-                weights.push(target.weight);
-            }
-        }
-        let count = quantities.len();
-        if of_strokes {
-            quantities.extend((0..cables.len()).map(Quantity::Command));
-            weights.resize(quantities.len(), 1.0 / self.arm.length);
-        }
-        let found = solver.engine.derivatives(&quantities, &cables, SensitivityMethod::Best)?;
-        let column = |c: usize| found.rows.iter().zip(&weights).map(|(row, weight)| weight * row[c]).collect();
-        let mut rest: Vec<Vec<f64>> = (0..cables.len()).map(column).collect();
+    fn derivatives(&self, solver: &S, of_strokes: bool) -> Option<ByTensions> {
+        let cables = self.scale.len();
+        let rows = solver.derivatives(&self.goal, &self.arm, of_strokes)?;
+        let count = rows.len() - if of_strokes { cables } else { 0 };
+        let column = |c: usize| rows.iter().map(|row| row[c]).collect();
+        let mut rest: Vec<Vec<f64>> = (0..cables).map(column).collect();
         let strokes = rest.iter_mut().map(|column| column.split_off(count)).collect();
         Some(ByTensions { rest, strokes })
     }
 
     /// From a start to the nearest that can be had, of least effort.
-    pub(super) fn from(&self, start: &[f64], go_on: &dyn Fn() -> bool) -> Result<State, ReachError> {
+    pub(super) fn from(&self, start: &[f64], go_on: &dyn Fn() -> bool) -> Result<State<S>, ReachError<S::Error>> {
         let mut state = self.begin(start)?;
         let mut damping = 1e-3;
         let mut refined = 0;
@@ -361,7 +300,7 @@ impl Search {
     }
 
     /// Tensions of least effort that meet the targets to first order, or as much of the way as a step may go.
-    pub(super) fn towards_least_effort(&self, slopes: &ByTensions, state: &State) -> Option<Vec<f64>> {
+    pub(super) fn towards_least_effort(&self, slopes: &ByTensions, state: &State<S>) -> Option<Vec<f64>> {
         let distance = state.distance();
         let share = if distance > LONGEST { LONGEST / distance } else { 1.0 };
         let wanted = linear(&slopes.rest, state, share);
@@ -375,7 +314,7 @@ impl Search {
     }
 
     /// A damped least-squares step within the bounds.
-    pub(super) fn damped(&self, slopes: &ByTensions, state: &State, damping: f64) -> Vec<f64> {
+    pub(super) fn damped(&self, slopes: &ByTensions, state: &State<S>, damping: f64) -> Vec<f64> {
         let sizes = slopes.rest.iter().zip(&self.scale).map(|(column, scale)| scale * scale * dot(column, column));
         let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
         let wanted = linear(&slopes.rest, state, 1.0);
@@ -404,7 +343,13 @@ impl Search {
 
     /// The arm at other tensions, changed by what strokes are too long there, if that is nearer; near enough where a
     /// distance is `allowed`.
-    pub(super) fn step(&self, state: &State, slopes: &ByTensions, next: &[f64], allowed: Option<f64>) -> Option<State> {
+    pub(super) fn step(
+        &self,
+        state: &State<S>,
+        slopes: &ByTensions,
+        next: &[f64],
+        allowed: Option<f64>,
+    ) -> Option<State<S>> {
         let mut solver = state.solver.clone();
         let mut tensions = next.to_vec();
         self.pull(&mut solver, &mut tensions, slopes, updated)?;
@@ -413,8 +358,9 @@ impl Search {
         (better.distance() <= enough).then_some(better)
     }
 
-    pub(super) fn read(&self, mut state: State) -> Result<Reached, ReachError> {
-        let configuration = state.solver.configuration()?;
+    #[expect(clippy::type_complexity, reason = "what the solver makes of an arm")]
+    pub(super) fn read(&self, mut state: State<S>) -> Result<Reached<S::Shape, S::Place>, ReachError<S::Error>> {
+        let configuration = state.solver.shape().map_err(ReachError::Solve)?;
         let mut bounds = Vec::new();
         for c in 0..self.scale.len() {
             if self.is_slack(c, state.tensions[c]) {
@@ -428,8 +374,8 @@ impl Search {
                 bounds.push(Bound::Stroke(c));
             }
         }
-        let asked = if self.by_strokes { self.commanded(&configuration) } else { configuration.arm.clone() };
-        let led = asked.solve().ok().filter(|other| near(other, &configuration));
+        let asked = if self.by_strokes { self.commanded(&configuration) } else { S::arm(&configuration).clone() };
+        let led = S::on_the_path(&asked).filter(|other| S::is_near(other, &configuration));
         let on_the_path = led.is_some();
         let configuration = led.filter(|_| self.by_strokes).unwrap_or(configuration);
         Ok(Reached {
@@ -437,21 +383,21 @@ impl Search {
             distance: state.distance(),
             bounds,
             on_the_path,
-            stability: configuration.stability(),
-            places: self.goal.stations().map(|s| configuration.at(s)).collect(),
+            stability: S::stability(&configuration),
+            places: S::stations(&self.goal).iter().map(|s| S::place(&configuration, *s)).collect(),
             tensions: state.tensions,
             configuration,
         })
     }
 }
 
-impl Search {
+impl<S: Reaching> Search<S> {
     /// The arm with its cables at the lengths that they have; of an elastic one what its tension stretches is reeled
     /// in, too. One that hangs slack is paid out a little beyond that: any longer one has the same shape, and one just
     /// taut is not to pull on the way there.
-    fn commanded(&self, configuration: &Configuration) -> Arm {
-        let mut arm = configuration.arm.clone();
-        for (c, (cable, state)) in arm.cables.iter_mut().zip(&configuration.cables).enumerate() {
+    fn commanded(&self, configuration: &S::Shape) -> Arm {
+        let mut arm = S::arm(configuration).clone();
+        for (c, (cable, state)) in arm.cables.iter_mut().zip(S::cables(configuration)).enumerate() {
             let unloaded = state.length + state.stroke;
             cable.stroke = Some(if self.is_slack(c, state.tension) {
                 state.stroke - PAID_OUT * unloaded
@@ -464,30 +410,14 @@ impl Search {
     }
 }
 
-impl Goal {
-    /// Places that are looked at beside the tip, m.
-    fn stations(&self) -> impl Iterator<Item = f64> {
-        let targets: &[Target] = match self {
-            Self::Places(targets) => targets,
-            Self::TipAngle(_) => &[],
-        };
-        targets.iter().filter_map(|target| target.s)
-    }
-}
-
 /// What the derivatives times tensions have to be for a share of the way to the targets.
-fn linear(columns: &[Vec<f64>], state: &State, share: f64) -> Vec<f64> {
+fn linear<S>(columns: &[Vec<f64>], state: &State<S>, share: f64) -> Vec<f64> {
     let carried = |r: usize| columns.iter().zip(&state.tensions).map(|(column, t)| column[r] * t).sum::<f64>();
     state.rest.iter().enumerate().map(|(r, rest)| carried(r) - share * rest).collect()
 }
 
 /// Solves at other tensions, if it can.
-fn updated(solver: &mut Solver, tensions: &[f64]) -> Option<()> {
-    solver.set_tensions(tensions).ok()?;
-    solver.update().ok().map(drop)
-}
-
-/// Whether two tips are at the same place.
-fn near(a: &Configuration, b: &Configuration) -> bool {
-    (a.tip().x - b.tip().x).hypot(a.tip().y - b.tip().y) < SAME * a.arm.length
+fn updated<S: Reaching>(solver: &mut S, tensions: &[f64]) -> Option<()> {
+    solver.pull(tensions)?;
+    solver.settle()
 }

@@ -1,10 +1,13 @@
 //! All that reaches targets: the search from several starts, and along lines from what it finds.
 
+use super::in_plane::Goal;
 use super::problem::{Reach, ReachError, ReachOptions, Target};
-use super::search::{Goal, Search, State};
+use super::reaching::Reaching;
+use super::search::{Search, State};
 use crate::rod::arm::Arm;
 use crate::rod::parameter::Parameter;
 use crate::statics::sensitivity::check;
+use crate::statics::solve::Solver;
 
 /// Most steps along lines, and misses that lines are followed from.
 const STEPS: usize = 600;
@@ -53,7 +56,7 @@ impl Arm {
         options: &ReachOptions,
         go_on: impl Fn() -> bool,
     ) -> Result<Reach, ReachError> {
-        Search::new(self, Goal::Places(targets.to_vec()), options)?.run(options, &go_on)
+        Search::<Solver>::new(self, Goal::Places(targets.to_vec()), options)?.run(options, &go_on)
     }
 
     /// [`Arm::reach`] by the lengths of the cables: of what is found the strokes are commanded that its tensions make.
@@ -89,7 +92,7 @@ impl Arm {
         options: &ReachOptions,
         go_on: impl Fn() -> bool,
     ) -> Result<Reach, ReachError> {
-        let mut search = Search::new(self, Goal::Places(targets.to_vec()), options)?;
+        let mut search = Search::<Solver>::new(self, Goal::Places(targets.to_vec()), options)?;
         search.hold_lengths();
         search.run(options, &go_on)
     }
@@ -112,14 +115,19 @@ impl Arm {
     /// ```
     pub fn reach_tip_angle(&self, cable: usize, alpha: f64, options: &ReachOptions) -> Result<Reach, ReachError> {
         check(self, &[Parameter::Tension(cable)], &[])?;
-        let mut search = Search::new(self, Goal::TipAngle(alpha), options)?;
+        let mut search = Search::<Solver>::new(self, Goal::TipAngle(alpha), options)?;
         search.pull_only(cable);
         search.run(options, &|| true)
     }
 }
 
-impl Search {
-    fn run(&self, options: &ReachOptions, go_on: &dyn Fn() -> bool) -> Result<Reach, ReachError> {
+impl<S: Reaching> Search<S> {
+    #[expect(clippy::type_complexity, reason = "what the solver makes of an arm")]
+    pub(super) fn run(
+        &self,
+        options: &ReachOptions,
+        go_on: &dyn Fn() -> bool,
+    ) -> Result<Reach<S::Shape, S::Place>, ReachError<S::Error>> {
         let mut found = Candidates { search: self, solutions: Vec::new(), missed: Vec::new(), failure: None };
         for start in self.starts() {
             if !go_on() || (!options.all && !found.solutions.is_empty()) {
@@ -148,16 +156,16 @@ impl Search {
 }
 
 /// What a search has found so far.
-struct Candidates<'a> {
-    search: &'a Search,
+struct Candidates<'a, S: Reaching> {
+    search: &'a Search<S>,
     /// Different tensions that reach the targets.
-    solutions: Vec<State>,
+    solutions: Vec<State<S>>,
     /// Different ones from which nothing leads nearer, the nearest first.
-    missed: Vec<State>,
-    failure: Option<ReachError>,
+    missed: Vec<State<S>>,
+    failure: Option<ReachError<S::Error>>,
 }
 
-impl Candidates<'_> {
+impl<S: Reaching> Candidates<'_, S> {
     fn look_from(&mut self, start: &[f64], go_on: &dyn Fn() -> bool) {
         let state = match self.search.from(start, go_on) {
             Ok(state) => state,
@@ -201,7 +209,14 @@ impl Candidates<'_> {
         }
     }
 
-    fn look_along(&mut self, from: &State, direction: &[f64], all: bool, steps: &mut usize, go_on: &dyn Fn() -> bool) {
+    fn look_along(
+        &mut self,
+        from: &State<S>,
+        direction: &[f64],
+        all: bool,
+        steps: &mut usize,
+        go_on: &dyn Fn() -> bool,
+    ) {
         if !self.search.has_lines(from) {
             return;
         }

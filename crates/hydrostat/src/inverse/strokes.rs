@@ -13,8 +13,8 @@
 
 use super::conditions::{ByTensions, Conditions, Pulled};
 use super::effort::{dot, nearest};
+use super::reaching::Reaching;
 use super::search::Search;
-use crate::statics::solve::Solver;
 
 /// Most changes of tensions until strokes are within their bounds.
 const CHANGES: usize = 6;
@@ -30,12 +30,10 @@ const HELD: f64 = 1e-6;
 /// Weight of a change over that of what it is for.
 const LITTLE: f64 = 1e-10;
 
-impl Search {
+impl<S: Reaching> Search<S> {
     /// Strokes over L, where they have a bound.
-    pub(super) fn strokes(&self, solver: &Solver) -> Vec<f64> {
-        let engine = &solver.engine;
-        let cables = if self.longest.is_some() { self.scale.len() } else { 0 };
-        engine.strokes(0..cables)
+    pub(super) fn strokes(&self, solver: &S) -> Vec<f64> {
+        solver.strokes(if self.longest.is_some() { self.scale.len() } else { 0 })
     }
 
     /// Whether the cable hangs slack.
@@ -131,10 +129,10 @@ impl Search {
     /// where that is not found.
     pub(super) fn pull(
         &self,
-        solver: &mut Solver,
+        solver: &mut S,
         tensions: &mut Vec<f64>,
         slopes: &ByTensions,
-        mut solve: impl FnMut(&mut Solver, &[f64]) -> Option<()>,
+        mut solve: impl FnMut(&mut S, &[f64]) -> Option<()>,
     ) -> Option<()> {
         for _ in 0..=CHANGES {
             solve(solver, tensions)?;

@@ -208,9 +208,9 @@ fn moves(parameter: Parameter) -> bool {
             | Parameter::FlowDirection
             | Parameter::GravityAcceleration
             | Parameter::GravityDirection
-            | Parameter::TipForce(_)
+            | Parameter::TipForce(0 | 1)
             | Parameter::TipMoment
-            | Parameter::TipFollower(_)
+            | Parameter::TipFollower(0 | 1)
             | Parameter::BaseAngle
     )
 }

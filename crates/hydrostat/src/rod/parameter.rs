@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::rod::arm::{Arm, ArmError, FlowLaw, Gravity, Material};
+use crate::rod::arm::{Arm, ArmError, BaseDirections, FlowLaw, Gravity, Material};
 use crate::rod::profile::{Point, Profile};
 
 /// One number of an arm that can be varied. Its name is the dotted key of the arm file.
@@ -24,6 +24,8 @@ pub enum Parameter {
     Stroke(usize),
     /// Offset of a cable, m: one of the numbers that its profile is given by.
     Offset(usize, Point),
+    /// Angle of a cable in the section from b towards c, rad: the same, of an arm in space.
+    CableAngle(usize, Point),
     /// Radius of the arm, m: the same.
     Radius(Point),
     /// Length of the arm, m, where no profile is a table: its points are at places in m.
@@ -32,20 +34,30 @@ pub enum Parameter {
     FlowSpeed,
     /// Direction of the stream from e1, rad.
     FlowDirection,
+    /// The part of the stream's direction along e1 (0), e2 (1) or e3 (2), of an arm in space.
+    StreamAlong(usize),
     /// Density of the water, kg/m3.
     FlowDensity,
     /// Gravity, m/s2.
     GravityAcceleration,
     /// Direction of gravity from e1, rad.
     GravityDirection,
-    /// Dead force on the tip along e1 (0) or e2 (1), N.
+    /// The part of gravity's direction along e1 (0), e2 (1) or e3 (2), of an arm in space.
+    GravityAlong(usize),
+    /// Dead force on the tip along e1 (0) or e2 (1), in space e3 (2), N.
     TipForce(usize),
-    /// Moment on the tip, N m.
+    /// Moment on the tip, in space that about e3, N m.
     TipMoment,
-    /// Follower force on the tip along a (0) or b (1), N.
+    /// Dead moment on the tip of an arm in space about e1 (0) or e2 (1), N m.
+    TipMomentAbout(usize),
+    /// Follower force on the tip along a (0) or b (1), in space c (2), N.
     TipFollower(usize),
     /// Angle of the base from e1, rad.
     BaseAngle,
+    /// The part of the direction of a at the base along e1 (0), e2 (1) or e3 (2), of an arm in space.
+    BaseAlong(usize),
+    /// The same of the direction that b at the base is projected from.
+    SectionAlong(usize),
     /// Density of the arm, kg/m3.
     Density,
     /// Young's modulus of a homogeneous arm, Pa.
@@ -54,7 +66,8 @@ pub enum Parameter {
     Poisson,
     /// Shear correction of a homogeneous arm.
     ShearFactor,
-    /// C1 (0, Pa), C2 (1, Pa) or C3 (2, N), where the coefficients are given and this one is the same all along.
+    /// C1 (0, Pa), C2 (1, Pa), C3 (2, N) or, in space, C4 (3, N), where the coefficients are given and this one is the
+    /// same all along.
     Coefficient(usize),
     /// C_n of quadratic drag.
     DragNormal,
@@ -106,6 +119,12 @@ pub enum Unfit {
         /// The parameter.
         key: String,
     },
+    /// A coefficient that follows from others.
+    #[error("`{key}` is not given: it follows from c2")]
+    Unset {
+        /// The parameter.
+        key: String,
+    },
     /// A coefficient that is a profile.
     #[error("`{key}` varies along the arm: it is no single number")]
     Profile {
@@ -125,6 +144,26 @@ pub enum Unfit {
         "`arm.length`: by it there are derivatives at fractions of the arm, and the places of measurements are in m"
     )]
     Places,
+    /// A quantity of an arm in the plane that one in space does not vary.
+    #[error("`{key}` is varied of arms in the plane alone, and this one is in space")]
+    OnlyInPlane {
+        /// The parameter.
+        key: String,
+    },
+    /// A quantity of space of an arm in the plane.
+    #[error("`{key}` is of an arm in space, and this one is in the plane: say space = \"spatial\" under [arm]")]
+    InPlane {
+        /// The parameter.
+        key: String,
+    },
+    /// An angle where the direction is given by its parts.
+    #[error("`{key}` does not act: the arm gives this direction by its parts, `{parts}[0]` to `{parts}[2]`")]
+    Parts {
+        /// The parameter.
+        key: String,
+        /// The key of the parts.
+        parts: &'static str,
+    },
     /// A drag coefficient without quadratic drag.
     #[error("`{key}` does not act: flow.law is momentum, not quadratic-drag")]
     Momentum {
@@ -138,10 +177,32 @@ pub fn names() -> Vec<String> {
     let of_cables = [Parameter::Tension(0), Parameter::Stroke(0)].into_iter();
     let ends = [Point::Base, Point::Tip];
     let geometry = ends.map(|end| Parameter::Offset(0, end)).into_iter().chain(ends.map(Parameter::Radius));
-    of_cables.chain(PLAIN).chain(geometry).map(|parameter| parameter.to_string()).collect()
+    let angle = [Parameter::CableAngle(0, Point::Whole)];
+    of_cables.chain(PLAIN).chain(geometry).chain(IN_SPACE).chain(angle).map(|parameter| parameter.to_string()).collect()
 }
 
-/// All but the cables' and the geometry's.
+/// What an arm in space has beside an arm in the plane, but the cables' angles.
+pub(crate) const IN_SPACE: [Parameter; 17] = [
+    Parameter::StreamAlong(0),
+    Parameter::StreamAlong(1),
+    Parameter::StreamAlong(2),
+    Parameter::GravityAlong(0),
+    Parameter::GravityAlong(1),
+    Parameter::GravityAlong(2),
+    Parameter::TipForce(2),
+    Parameter::TipFollower(2),
+    Parameter::TipMomentAbout(0),
+    Parameter::TipMomentAbout(1),
+    Parameter::BaseAlong(0),
+    Parameter::BaseAlong(1),
+    Parameter::BaseAlong(2),
+    Parameter::SectionAlong(0),
+    Parameter::SectionAlong(1),
+    Parameter::SectionAlong(2),
+    Parameter::Coefficient(3),
+];
+
+/// All of an arm in the plane but the cables' and the geometry's.
 pub(crate) const PLAIN: [Parameter; 21] = [
     Parameter::FlowSpeed,
     Parameter::FlowDirection,
@@ -172,22 +233,28 @@ impl fmt::Display for Parameter {
             Self::Tension(c) => write!(f, "cable[{c}].tension"),
             Self::Stroke(c) => write!(f, "cable[{c}].stroke"),
             Self::Offset(c, point) => write!(f, "cable[{c}].offset{point}"),
+            Self::CableAngle(c, point) => write!(f, "cable[{c}].angle{point}"),
             Self::Radius(point) => write!(f, "arm.radius{point}"),
             Self::FlowSpeed => f.write_str("flow.speed"),
             Self::FlowDirection => f.write_str("flow.direction"),
+            Self::StreamAlong(k) => write!(f, "flow.direction[{k}]"),
             Self::FlowDensity => f.write_str("flow.density"),
             Self::GravityAcceleration => f.write_str("gravity.acceleration"),
             Self::GravityDirection => f.write_str("gravity.direction"),
+            Self::GravityAlong(k) => write!(f, "gravity.direction[{k}]"),
             Self::TipForce(k) => write!(f, "tip.force[{k}]"),
             Self::TipMoment => f.write_str("tip.moment"),
+            Self::TipMomentAbout(k) => write!(f, "tip.moment[{k}]"),
             Self::TipFollower(k) => write!(f, "tip.follower[{k}]"),
             Self::BaseAngle => f.write_str("arm.base.angle"),
             Self::Length => f.write_str("arm.length"),
+            Self::BaseAlong(k) => write!(f, "arm.base.direction[{k}]"),
+            Self::SectionAlong(k) => write!(f, "arm.base.section[{k}]"),
             Self::Density => f.write_str("arm.density"),
             Self::Young => f.write_str("material.young"),
             Self::Poisson => f.write_str("material.poisson"),
             Self::ShearFactor => f.write_str("material.shear_factor"),
-            Self::Coefficient(k) => write!(f, "material.c{}", k.min(&2) + 1),
+            Self::Coefficient(k) => write!(f, "material.c{}", k.min(&3) + 1),
             Self::DragNormal => f.write_str("flow.cn"),
             Self::DragTangential => f.write_str("flow.ct"),
         }
@@ -206,6 +273,9 @@ impl FromStr for Parameter {
                     if let Some(point) = other.strip_prefix("offset").and_then(Point::read) {
                         return Ok(Self::Offset(index, point));
                     }
+                    if let Some(point) = other.strip_prefix("angle").and_then(Point::read) {
+                        return Ok(Self::CableAngle(index, point));
+                    }
                 }
                 _ => {}
             }
@@ -213,7 +283,11 @@ impl FromStr for Parameter {
         if let Some(point) = name.strip_prefix("arm.radius").and_then(Point::read) {
             return Ok(Self::Radius(point));
         }
-        PLAIN.into_iter().find(|p| p.to_string() == name).ok_or_else(|| UnknownParameter { name: name.to_owned() })
+        if name == "tip.moment[2]" {
+            return Ok(Self::TipMoment);
+        }
+        let mut all = PLAIN.into_iter().chain(IN_SPACE);
+        all.find(|p| p.to_string() == name).ok_or_else(|| UnknownParameter { name: name.to_owned() })
     }
 }
 
@@ -223,13 +297,20 @@ impl Parameter {
         match self {
             Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) | Self::Coefficient(2..) => "N",
             Self::FlowSpeed => "m/s",
-            Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => "rad",
+            Self::FlowDirection | Self::GravityDirection | Self::BaseAngle | Self::CableAngle(..) => "rad",
             Self::FlowDensity | Self::Density => "kg/m3",
             Self::GravityAcceleration => "m/s2",
             Self::Stroke(_) | Self::Offset(..) | Self::Radius(_) | Self::Length => "m",
-            Self::TipMoment => "N m",
+            Self::TipMoment | Self::TipMomentAbout(_) => "N m",
             Self::Young | Self::Coefficient(_) => "Pa",
-            Self::Poisson | Self::ShearFactor | Self::DragNormal | Self::DragTangential => "",
+            Self::Poisson
+            | Self::ShearFactor
+            | Self::DragNormal
+            | Self::DragTangential
+            | Self::StreamAlong(_)
+            | Self::GravityAlong(_)
+            | Self::BaseAlong(_)
+            | Self::SectionAlong(_) => "",
         }
     }
 
@@ -264,6 +345,7 @@ impl Parameter {
             let moved = profile.with_point(point, value).ok_or_else(|| self.no_point(profile))?;
             match self {
                 Self::Offset(c, _) => arm.cables[c].offset = moved,
+                Self::CableAngle(c, _) => arm.cables[c].angle = moved,
                 _ => arm.radius = moved,
             }
             return Ok(());
@@ -275,8 +357,10 @@ impl Parameter {
     /// The profile that it is a number of.
     pub(crate) fn profile(self, arm: &Arm) -> Result<Option<(&Profile, Point)>, Unfit> {
         match self {
-            Self::Offset(c, point) => match arm.cables.get(c) {
-                Some(cable) => Ok(Some((&cable.offset, point))),
+            Self::CableAngle(..) if arm.space.is_none() => Err(self.in_plane()),
+            Self::Offset(c, point) | Self::CableAngle(c, point) => match arm.cables.get(c) {
+                Some(cable) if matches!(self, Self::Offset(..)) => Ok(Some((&cable.offset, point))),
+                Some(cable) => Ok(Some((&cable.angle, point))),
                 None => Err(Unfit::Cable { key: self.to_string(), cables: arm.cables.len() }),
             },
             Self::Radius(point) => Ok(Some((&arm.radius, point))),
@@ -287,6 +371,7 @@ impl Parameter {
     fn no_point(self, profile: &Profile) -> Unfit {
         let of = |point: Point| match self {
             Self::Offset(c, _) => Self::Offset(c, point).to_string(),
+            Self::CableAngle(c, _) => Self::CableAngle(c, point).to_string(),
             _ => Self::Radius(point).to_string(),
         };
         let names: Vec<String> = profile.points().into_iter().map(of).collect();
@@ -301,7 +386,22 @@ impl Parameter {
     /// Where its number stands, of all but profiles'.
     fn place(self, arm: &mut Arm) -> Result<&mut f64, Unfit> {
         let gravity = Gravity { acceleration: 0.0, ..Gravity::default() };
+        let parts = |parts| Unfit::Parts { key: self.to_string(), parts };
+        let space = arm.space.as_ref();
         Ok(match self {
+            Self::TipForce(2..)
+            | Self::TipFollower(2..)
+            | Self::TipMomentAbout(_)
+            | Self::StreamAlong(_)
+            | Self::GravityAlong(_)
+            | Self::BaseAlong(_)
+            | Self::SectionAlong(_)
+            | Self::Coefficient(3..) => return self.place_in_space(arm),
+            Self::FlowDirection if space.is_some_and(|s| s.stream.is_some()) => return Err(parts("flow.direction")),
+            Self::GravityDirection if space.is_some_and(|s| s.gravity.is_some()) => {
+                return Err(parts("gravity.direction"));
+            }
+            Self::BaseAngle if space.is_some_and(|s| s.base.is_some()) => return Err(parts("arm.base.direction")),
             Self::Tension(c) | Self::Stroke(c) => {
                 let cables = arm.cables.len();
                 let missing = || Unfit::Cable { key: self.to_string(), cables };
@@ -317,7 +417,7 @@ impl Parameter {
                 }
             }
             // Not by itself: the slopes of a table go with it.
-            Self::Offset(..) | Self::Radius(_) => {
+            Self::Offset(..) | Self::CableAngle(..) | Self::Radius(_) => {
                 return Err(Unfit::Point { key: self.to_string(), expected: String::new() });
             }
             Self::FlowSpeed => &mut arm.flow.speed,
@@ -329,6 +429,7 @@ impl Parameter {
             Self::TipMoment => &mut arm.tip.moment,
             Self::TipFollower(k) => &mut arm.tip.follower[k.min(1)],
             Self::BaseAngle => &mut arm.base.angle,
+            Self::Length if arm.space.is_some() => return Err(Unfit::OnlyInPlane { key: self.to_string() }),
             Self::Length => match arm.first_table() {
                 Some(key) => return Err(Unfit::Table { key }),
                 None => &mut arm.length,
@@ -362,6 +463,50 @@ impl Parameter {
         })
     }
 
+    /// [`Parameter::place`] of what an arm in the plane has not. A direction that is given by its angle gets parts.
+    fn place_in_space(self, arm: &mut Arm) -> Result<&mut f64, Unfit> {
+        let in_plane = |angle: f64| [angle.cos(), angle.sin(), 0.0];
+        let directors = arm.base_directors();
+        let (stream, down) = (in_plane(arm.flow.direction), in_plane(arm.gravity.unwrap_or_default().direction));
+        let homogeneous = matches!(arm.material, Material::Homogeneous { .. });
+        let Some(space) = &mut arm.space else { return Err(self.in_plane()) };
+        let base = BaseDirections { direction: directors[0], section: None };
+        Ok(match self {
+            Self::TipForce(_) => &mut space.tip_force,
+            Self::TipFollower(_) => &mut space.tip_follower,
+            Self::TipMomentAbout(k) => &mut space.tip_moment[k.min(1)],
+            Self::StreamAlong(k) => &mut space.stream.get_or_insert(stream)[k.min(2)],
+            Self::GravityAlong(k) => {
+                arm.gravity.get_or_insert(Gravity { acceleration: 0.0, ..Gravity::default() });
+                &mut space.gravity.get_or_insert(down)[k.min(2)]
+            }
+            Self::BaseAlong(k) => &mut space.base.get_or_insert(base).direction[k.min(2)],
+            Self::SectionAlong(k) => &mut space.base.get_or_insert(base).section.get_or_insert(directors[1])[k.min(2)],
+            _ if homogeneous => return Err(Unfit::Homogeneous { key: self.to_string() }),
+            _ => match &mut space.c4 {
+                Some(Profile::Constant(value)) => value,
+                Some(_) => return Err(Unfit::Profile { key: self.to_string() }),
+                None => return Err(Unfit::Unset { key: self.to_string() }),
+            },
+        })
+    }
+
+    fn in_plane(self) -> Unfit {
+        Unfit::InPlane { key: self.to_string() }
+    }
+
+    /// The length of the direction that it is a part of.
+    fn length_of_direction(self, arm: &Arm) -> Option<f64> {
+        let all = match self {
+            Self::StreamAlong(_) => [0, 1, 2].map(Self::StreamAlong),
+            Self::GravityAlong(_) => [0, 1, 2].map(Self::GravityAlong),
+            Self::BaseAlong(_) => [0, 1, 2].map(Self::BaseAlong),
+            Self::SectionAlong(_) => [0, 1, 2].map(Self::SectionAlong),
+            _ => return None,
+        };
+        Some(all.iter().filter_map(|part| part.of(arm).ok()).map(|v| v * v).sum::<f64>().sqrt())
+    }
+
     /// A change of it that counts for the arm, in its unit, given the unit of force of the equations (N).
     pub(crate) fn scale(self, arm: &Arm, force: f64) -> f64 {
         let least = match self {
@@ -371,8 +516,11 @@ impl Parameter {
             Self::FlowSpeed => 0.1,
             Self::FlowDensity | Self::Density => 1000.0,
             Self::GravityAcceleration => 10.0,
-            Self::TipMoment => force * arm.length,
-            Self::FlowDirection | Self::GravityDirection | Self::BaseAngle => return 1.0,
+            Self::TipMoment | Self::TipMomentAbout(_) => force * arm.length,
+            Self::FlowDirection | Self::GravityDirection | Self::BaseAngle | Self::CableAngle(..) => return 1.0,
+            Self::StreamAlong(_) | Self::GravityAlong(_) | Self::BaseAlong(_) | Self::SectionAlong(_) => {
+                self.length_of_direction(arm).unwrap_or(1.0)
+            }
             Self::DragNormal | Self::DragTangential => 1.0,
             Self::Length | Self::Young | Self::Poisson | Self::ShearFactor | Self::Coefficient(_) => 0.0,
         };
@@ -385,11 +533,13 @@ impl Parameter {
         matches!(
             self,
             Self::Offset(..)
+                | Self::CableAngle(..)
                 | Self::Radius(_)
                 | Self::Length
                 | Self::FlowDensity
                 | Self::GravityAcceleration
                 | Self::GravityDirection
+                | Self::GravityAlong(_)
                 | Self::Density
                 | Self::Young
                 | Self::Poisson
@@ -424,7 +574,8 @@ mod tests {
 
     #[test]
     fn every_name_is_read_back() {
-        for parameter in PLAIN.into_iter().chain([
+        for parameter in PLAIN.into_iter().chain(IN_SPACE).chain([
+            Parameter::CableAngle(1, Point::Tip),
             Parameter::Tension(0),
             Parameter::Tension(13),
             Parameter::Stroke(0),
@@ -467,6 +618,19 @@ mod tests {
             }
             parameter.set(arm, k as f64).unwrap();
             assert_eq!(parameter.of(arm), Ok(k as f64));
+        }
+        for parameter in IN_SPACE.into_iter().chain([Parameter::CableAngle(0, Point::Whole)]) {
+            assert!(matches!(parameter.of(&arm), Err(Unfit::InPlane { .. })), "{parameter}");
+        }
+        let mut there = given.clone();
+        there.cables.push(crate::Cable::new("left", 0.001));
+        there.space = Some(crate::Space { c4: Some(2.0.into()), ..crate::Space::default() });
+        for (k, parameter) in IN_SPACE.into_iter().chain([Parameter::CableAngle(0, Point::Whole)]).enumerate() {
+            parameter.set(&mut there, k as f64).unwrap();
+            assert_eq!(parameter.of(&there), Ok(k as f64));
+        }
+        for angle in [Parameter::FlowDirection, Parameter::GravityDirection, Parameter::BaseAngle] {
+            assert!(matches!(angle.of(&there), Err(Unfit::Parts { .. })), "{angle}");
         }
         for missing in [Parameter::Tension(1), Parameter::Offset(1, Point::Whole)] {
             assert!(matches!(missing.of(&arm), Err(Unfit::Cable { cables: 1, .. })));

@@ -13,6 +13,8 @@ use super::equations::{Equations, L, N, Q};
 use super::rotation::{cross, dot, times};
 use super::section::{STRAINS, tangent};
 use crate::rod::area_law::area_law;
+use crate::rod::parameter::Parameter;
+use crate::statics::equations::{PLACES, Way};
 
 /// Strains at the stages of a solution, with what integrates over them.
 #[derive(Clone, Copy)]
@@ -102,9 +104,35 @@ impl Equations {
         -longer / self.elongation(c)[0]
     }
 
+    /// What a change of |tau| changes the stroke of cable `c` by, as it is commanded.
+    pub(super) fn stroke_by_stretch(&self, c: usize) -> f64 {
+        -1.0 / self.elongation(c)[0]
+    }
+
+    /// How the stroke of cable `c` (of its path, or as it is commanded) follows `way` at a fixed solution, over L.
+    pub(super) fn stroke_by(&self, c: usize, commanded: bool, way: Way, at: StageData<'_>) -> f64 {
+        let geometric = matches!(way, Way::Of(Parameter::Offset(..) | Parameter::CableAngle(..)));
+        let pulled = commanded && matches!(way, Way::Of(Parameter::Tension(k)) if k == c);
+        if !geometric && !pulled {
+            return 0.0;
+        }
+        let stroke = |equations: &Self| {
+            if commanded {
+                return equations.stroke(c, at)[0];
+            }
+            let [now, reference] = equations.cable_lengths(c, at);
+            reference - now
+        };
+        let step = way.step(&self.arm, self.units.force, self.varied_over());
+        let one = |(steps, weight): (f64, f64)| {
+            self.moved(way, steps * step).map_or(0.0, |moved| weight / step * stroke(&moved))
+        };
+        PLACES.into_iter().map(one).sum()
+    }
+
     /// Derivatives of |tau| by the strains and by beta': d|tau| = t . dtau with
     /// dtau = dv + du x p + d(beta) (u x p + p')/beta + d(beta') p/beta.
-    fn stretch_gradient(&self, c: usize, block: usize, stage: &Stage<N, L>) -> ([Lanes; STRAINS], Lanes) {
+    pub(super) fn stretch_gradient(&self, c: usize, block: usize, stage: &Stage<N, L>) -> ([Lanes; STRAINS], Lanes) {
         let swelling = area_law(self.volume, stage.inner[0]);
         let path = tangent(&self.cables_in(block)[c], &stage.inner, &swelling, stage.closure_slope);
         let t = times(Lanes::of(1.0) / dot(&path.tau, &path.tau).sqrt(), &path.tau);

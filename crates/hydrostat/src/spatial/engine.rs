@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use hydrostat_bvp::{
-    Collocation, Correction, Determinant, Gauss, Lanes, LinearisationError, Resampling, Solution, each,
+    Collocation, Correction, Determinant, Forcing, Gauss, Lanes, LinearisationError, Resampling, Solution, each,
 };
 
 use super::equations::{Equations, Guess, K, L, M, N, Q};
@@ -14,7 +14,7 @@ use crate::rod::arm::Arm;
 use crate::rod::readings::Support;
 use crate::statics::configuration::Statistics;
 use crate::statics::engine::Trouble;
-use crate::statics::equations::StrokeControl;
+use crate::statics::equations::{StrokeControl, Way};
 
 /// Steps of the section law that the check leaves: its one round has to take up their squares.
 const CHECKED: f64 = 1e-5;
@@ -78,6 +78,8 @@ pub(crate) struct Engine {
     pub(super) meshes: usize,
     /// The last correction, rad.
     pub(super) last: f64,
+    /// Whether a path only has to lead to its end.
+    pub(super) in_a_hurry: bool,
     /// Whether a round since this was last cleared took less than a whole correction.
     pub(super) damped: bool,
     /// What the last round leaves to the next (tip over L), by the way rounds fall.
@@ -93,10 +95,14 @@ pub(crate) struct Engine {
 pub(crate) struct State {
     pub(super) solution: Guess,
     pub(super) fraction: [f64; 2],
+    share: f64,
+    base: [f64; 4],
     tensions: Vec<f64>,
     held: Option<StrokeControl>,
     spans: Vec<[f64; Q]>,
     pub(super) tip: [f64; Q],
+    /// See [`Engine::speeds`]; of a path that did not need them, of an earlier point or none.
+    pub(super) speeds: Vec<(Lanes, Vector<Lanes>)>,
 }
 
 impl Engine {
@@ -121,6 +127,7 @@ impl Engine {
             rounds: 0,
             meshes: 0,
             last: 0.0,
+            in_a_hurry: false,
             damped: false,
             left_over: 0.0,
             tip: [0.0; Q],
@@ -155,10 +162,13 @@ impl Engine {
         State {
             solution: self.solution.clone(),
             fraction: self.equations.fraction,
+            share: self.equations.share(),
+            base: self.equations.base,
             tensions: self.equations.tensions.clone(),
             held: self.held.clone(),
             spans: self.spans.clone(),
             tip: self.tip,
+            speeds: self.speeds.clone(),
         }
     }
 
@@ -166,8 +176,13 @@ impl Engine {
         let same = self.solution.mesh == state.solution.mesh;
         self.solution.clone_from(&state.solution);
         self.spans.clone_from(&state.spans);
+        self.speeds.clone_from(&state.speeds);
         self.tip = state.tip;
         self.equations.fraction = state.fraction;
+        if self.equations.share() != state.share {
+            self.equations.set_share(state.share);
+        }
+        self.equations.base = state.base;
         self.held.clone_from(&state.held);
         for (cable, tension) in state.tensions.iter().enumerate() {
             self.equations.set_tension(cable, *tension);
@@ -308,13 +323,15 @@ impl Engine {
 
     /// The response of the solution, at its last linearisation, to the fraction of the present phase.
     pub(super) fn response(&mut self, out: &mut Correction<N, M, Q, L>) -> Result<(), Trouble> {
-        let tip = self.solution.nodes[self.solution.mesh.elements()];
-        let change = self
-            .equations
-            .change_by_fraction(self.system.stations(), self.system.end_stations(), &tip)
-            .map_err(Trouble::Section)?;
-        respond(&self.system, &change, out);
+        respond(&self.system, &self.change_by(Way::Path)?, out);
         Ok(())
+    }
+
+    /// The change of the equations by `way` at the last linearisation.
+    pub(super) fn change_by(&self, way: Way) -> Result<Forcing<N, Q, L>, Trouble> {
+        let ends = [&self.solution.nodes[0], &self.solution.nodes[self.solution.mesh.elements()]];
+        let change = self.equations.change_by(way, self.system.stations(), self.system.end_stations(), ends);
+        change.map_err(Trouble::Section)
     }
 }
 

@@ -13,23 +13,20 @@
 //! a quadrature. Gauss collocation keeps |q| at the nodes, as it keeps every quadratic invariant. Lengths are in
 //! units of L, forces in a unit of [`Units`], as in the plane.
 
-use hydrostat_bvp::{
-    Condition, EndPlace, Forcing, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution, StageForcing, Station,
-    each,
-};
+use hydrostat_bvp::{Condition, EndPlace, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution, Station, each};
 
-use super::loads::{Load, Water, load};
-use super::place::{Place, loads_of};
+use super::loads::{Load, Water, load, water};
+use super::place::{Place, base_of, loads_of};
 use super::rotation::{Directors, Vector, cross, spin, turn};
 use super::section::{CableAt, STRAINS, Stiffness, apply};
 use super::section_solve::{Solved, solve_section};
 use crate::numerics::dispatch::widest;
 use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Space};
-use crate::rod::flow::Law;
 use crate::rod::readings::{Support, Volume};
+use crate::statics::dimensions::Units;
+use crate::statics::equations::{SectionFailure, Varied};
 use crate::statics::verdict::Phase;
-use crate::statics::{dimensions::Units, equations::SectionFailure};
 
 /// States: q, n_f and m_f in space.
 pub(crate) const N: usize = 10;
@@ -70,8 +67,11 @@ pub(crate) struct Equations {
     pub(super) ends: Vec<f64>,
     /// Fractions of the loads and of the tensions.
     pub(crate) fraction: [f64; 2],
-    /// The phase whose fraction is the parameter.
+    /// The phase whose fraction is the parameter, unless another one is varied.
     pub(crate) phase: Phase,
+    pub(super) varied: Option<Varied>,
+    /// A couple about the directors, at the blocks of stations, that takes the place of the parameter.
+    pub(super) imposed: Option<Vec<Vector<Lanes>>>,
     /// Steps of the section law that are left to the next round.
     pub(crate) inner_tolerance: f64,
     pub(super) groups: Groups,
@@ -85,11 +85,11 @@ pub(crate) struct Equations {
 }
 
 /// A station near its strains, with its loads.
-struct AtStation<R> {
-    directors: Directors<R>,
+pub(super) struct AtStation<R> {
+    pub(super) directors: Directors<R>,
     /// n_f and m_f in the directors.
     contact: [R; STRAINS],
-    solved: Solved<R>,
+    pub(super) solved: Solved<R>,
     load: Load<R>,
     couple: Vector<R>,
 }
@@ -98,33 +98,18 @@ impl Equations {
     /// The equations of `arm` (already checked), with all loads whole.
     pub(crate) fn new(arm: &Arm, stages: usize) -> Self {
         let length = arm.length;
-        let space = arm.space.clone().unwrap_or_default();
-        let mut upright = arm.clone();
-        if let Some(gravity) = &mut upright.gravity {
-            gravity.direction = 0.0;
-        }
-        let pull = arm.gravity_in_space();
-        let size = pull.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let gravity = if size > 0.0 { pull.map(|v| v / size) } else { [0.0; 3] };
-        let [a, b] = arm.base_directors();
-        let r = &arm.readings;
         let mut this = Self {
             units: Units { length, force: 1.0 },
-            water: Water {
-                stream: if arm.flow.density == 0.0 { [0.0; 3] } else { arm.stream_in_space() },
-                law: Law::new(arm.flow.law, r.entering_speed, r.layer_mean.factor()),
-                wetted: r.wetted_length,
-                volume: r.volume,
-                displaced: r.displaced,
-                hydrostatics: r.hydrostatics,
-            },
-            volume: r.volume,
+            water: water(arm),
+            volume: arm.readings.volume,
             tensions: Vec::new(),
             ends: arm.cables.iter().map(|c| c.end).collect(),
             arm: arm.clone(),
-            space,
-            upright,
-            gravity,
+            space: arm.space.clone().unwrap_or_default(),
+            upright: arm.clone(),
+            gravity: [0.0; 3],
+            varied: None,
+            imposed: None,
             fraction: [1.0, 1.0],
             phase: Phase::Tension,
             inner_tolerance: ROUGH,
@@ -134,8 +119,9 @@ impl Equations {
             cables: Vec::new(),
             end_sections: Vec::new(),
             end_cables: Vec::new(),
-            base: Directors { a, b, c: cross(&a, &b) }.quaternion(),
+            base: base_of(arm),
         };
+        this.take_gravity();
         // At unit force the stiffness is C3 A0 / L^2: make it one at the base.
         this.units.force = this.place(0.0).stiffness.value[5];
         this.set_tensions();
@@ -150,6 +136,8 @@ impl Equations {
             upright: self.upright.clone(),
             tensions: self.tensions.clone(),
             ends: self.ends.clone(),
+            varied: self.varied.clone(),
+            imposed: None,
             groups: Groups { elements: 0, stages: self.groups.stages },
             stations: Vec::new(),
             places: Vec::new(),
@@ -165,7 +153,7 @@ impl Equations {
         Self { inner_tolerance, ..self }
     }
 
-    fn set_tensions(&mut self) {
+    pub(super) fn set_tensions(&mut self) {
         self.tensions = self.arm.cables.iter().map(|c| c.tension / self.units.force).collect();
     }
 
@@ -232,7 +220,8 @@ impl Equations {
         self.phase = phase;
         self.fraction = match phase {
             Phase::Loads => [fraction, 0.0],
-            _ => [1.0, fraction],
+            Phase::Tension => [1.0, fraction],
+            Phase::Stroke | Phase::Friction => [1.0, 1.0],
         };
     }
 
@@ -285,7 +274,7 @@ impl Equations {
 
     /// Fills `out` with the cables that pull in a block, given all of them there.
     #[inline(always)]
-    fn pulled_in(&self, cables: &[CableAt<Lanes>], out: &mut Vec<CableAt<Lanes>>) {
+    pub(super) fn pulled_in(&self, cables: &[CableAt<Lanes>], out: &mut Vec<CableAt<Lanes>>) {
         out.clear();
         for (cable, tension) in cables.iter().zip(&self.tensions) {
             let tension = tension * self.fraction[1];
@@ -310,7 +299,7 @@ impl Equations {
     }
 
     #[inline(always)]
-    fn solved(
+    pub(super) fn solved(
         &self,
         stiffness: &Stiffness<Lanes>,
         station: &Station<N, L>,
@@ -325,7 +314,7 @@ impl Equations {
 
     /// A block of stations near their strains.
     #[inline(always)]
-    fn solved_in(
+    pub(super) fn solved_in(
         &self,
         block: usize,
         station: &Station<N, L>,
@@ -444,7 +433,7 @@ impl Equations {
     }
 
     /// n_f(0) and m_f(0) of a base at which the section is unstrained, at these tensions (in the unit of force).
-    fn unstrained_base(&self, tensions: &[f64]) -> [f64; 6] {
+    pub(super) fn unstrained_base(&self, tensions: &[f64]) -> [f64; 6] {
         let directors = Directors::of(&self.base);
         let stiffness = self.place(0.0).stiffness;
         let mut at_base: [f64; STRAINS] =
@@ -464,90 +453,9 @@ impl Equations {
         [force[0], force[1], force[2], moment[0], moment[1], moment[2]]
     }
 
-    fn is_unstrained_base(&self) -> bool {
+    pub(super) fn is_unstrained_base(&self) -> bool {
         self.arm.readings.support == Support::UnstrainedBase
     }
-
-    /// The change of the equations a unit of the phase's fraction, at fixed state, at the last stations.
-    pub(crate) fn change_by_fraction(
-        &self,
-        stations: &[Station<N, L>],
-        end_stations: &[Station<N, L>],
-        tip: &[f64; N],
-    ) -> Result<Forcing<N, Q, L>, SectionFailure> {
-        if self.phase != Phase::Loads {
-            return self.change_by_tensions(stations, end_stations, &self.tensions);
-        }
-        let mut out = Forcing::default();
-        let mut pulled = Vec::new();
-        for (block, station) in stations.iter().enumerate() {
-            let at = self.solved_in(block, station, &mut pulled)?;
-            let place = &self.places[block];
-            let own = load(&self.water, &place.body, &at.directors, &at.solved.strain, &at.solved.balance.swelling);
-            let mut drift = StageForcing::default();
-            for k in 0..3 {
-                drift.slope[FORCE + k] = -own.force[k];
-                drift.slope[MOMENT + k] = -place.body.couple[k];
-            }
-            out.stages.push(drift);
-        }
-        if !self.is_unstrained_base() {
-            let (load, _) = self.tip_load(1.0, &Directors::of(&each(|k| tip[k])));
-            for k in 0..6 {
-                out.right[k] = -load[k];
-            }
-        }
-        Ok(out)
-    }
-
-    /// The change of the equations with `tensions` (in the unit of force) more, at fixed state, at the last stations.
-    pub(crate) fn change_by_tensions(
-        &self,
-        stations: &[Station<N, L>],
-        end_stations: &[Station<N, L>],
-        tensions: &[f64],
-    ) -> Result<Forcing<N, Q, L>, SectionFailure> {
-        let mut out = Forcing::default();
-        let mut pulled = Vec::new();
-        for (block, station) in stations.iter().enumerate() {
-            let at = self.solved_in(block, station, &mut pulled)?;
-            let q: [Lanes; 4] = each(|k| station.z[k]);
-            let inner = pulled_more(self.cables_in(block), tensions, &at.solved, station.closure_slope);
-            out.stages.push(StageForcing {
-                slope: by_strain_change(&at, &q, &inner),
-                rate: at.directors.to_space(&[inner[0], inner[1], inner[2]]),
-                value: at.solved.balance.swelling.slope * inner[0],
-                inner,
-            });
-        }
-        for (block, station) in end_stations.iter().enumerate() {
-            self.pulled_in(self.cables_at_end(block), &mut pulled);
-            let (_, _, solved) = self.solved(&self.end_sections[block].1, station, &pulled);
-            let inner = pulled_more(self.cables_at_end(block), tensions, &solved, station.closure_slope);
-            out.ends.push((inner, solved.balance.swelling.slope * inner[0]));
-        }
-        if self.is_unstrained_base() {
-            let none = vec![0.0; tensions.len()];
-            let [more, without] = [tensions, &none].map(|tensions| self.unstrained_base(tensions));
-            for k in 0..6 {
-                out.left[FORCE + k] = without[k] - more[k];
-            }
-        }
-        Ok(out)
-    }
-}
-
-/// The change of the strains with `tensions` more.
-fn pulled_more(cables: &[CableAt<Lanes>], tensions: &[f64], solved: &Solved<Lanes>, slope: Lanes) -> [Lanes; L] {
-    let mut added = [Lanes::of(0.0); L];
-    for (cable, tension) in cables.iter().zip(tensions).filter(|(_, tension)| **tension != 0.0) {
-        let cable = CableAt { tension: cable.tension * Lanes::of(*tension), ..*cable };
-        let load = super::section::pull(&cable, &solved.strain, &solved.balance.swelling, slope).load;
-        for k in 0..L {
-            added[k] -= load[k];
-        }
-    }
-    apply(&solved.inverse, &added)
 }
 
 /// n_f and m_f in the directors.
@@ -591,7 +499,7 @@ pub(super) fn strain_by_state<R: Real>(
 
 /// Forcing of z' with the strains, at fixed z and beta'.
 #[inline(always)]
-fn by_strain_change<R: Real>(at: &AtStation<R>, q: &[R; 4], change: &[R; STRAINS]) -> [R; N] {
+pub(super) fn by_strain_change<R: Real>(at: &AtStation<R>, q: &[R; 4], change: &[R; STRAINS]) -> [R; N] {
     let v = [change[0], change[1], change[2]];
     let dq = spin(q, &[change[3], change[4], change[5]]);
     let n = [at.contact[0], at.contact[1], at.contact[2]];

@@ -1,11 +1,13 @@
 //! The cables of an arm in space whose strokes are commanded, as the engine holds them.
 
-use hydrostat_bvp::Determinant;
+use hydrostat_bvp::{Correction, Determinant};
 
 use super::cable_paths::StageData;
 use super::engine::Engine;
+use super::equations::{L, M, N, Q};
 use super::lengths::{HeldRound, hold_lengths, pull_taut};
-use crate::statics::border::border;
+use crate::numerics::rounds::correct;
+use crate::statics::border::{NewtonStep, border};
 use crate::statics::engine::Trouble;
 use crate::statics::equations::StrokeControl;
 
@@ -65,11 +67,54 @@ impl Engine {
     /// says which these are; whether any changed.
     pub(super) fn switch_taut(&mut self, size: f64, slack: &[f64]) -> bool {
         let Some(held) = &mut self.held else { return false };
-        let changed = size < SETTLED && held.switch(|cable| self.equations.tension(cable), slack);
+        let changed = held.switching && size < SETTLED && held.switch(|cable| self.equations.tension(cable), slack);
         if changed {
             held.slack_cables().for_each(|cable| self.equations.set_tension(cable, 0.0));
         }
         changed
+    }
+
+    /// Makes held cable `index` slack that was taut, or the other way round: which it is of the arm's, and whether it
+    /// is slack now.
+    pub(super) fn switch_active(&mut self, index: usize) -> (usize, bool) {
+        let Some(held) = &mut self.held else { return (index, false) };
+        held.taut[index] = !held.taut[index];
+        let (cable, slack) = (held.cables[index], !held.taut[index]);
+        if slack {
+            self.equations.set_tension(cable, 0.0);
+        }
+        (cable, slack)
+    }
+
+    /// Factorises at the solution, and finds correction and response, at held strokes where there are any.
+    pub(super) fn linearise_held(
+        &mut self,
+        parameter: bool,
+        round: &mut NewtonStep<Correction<N, M, Q, L>>,
+    ) -> Result<(), Trouble> {
+        self.match_closure();
+        self.linearise()?;
+        if self.choose_sides() {
+            self.linearise()?;
+        }
+        correct(&mut self.system, &self.solution, &mut round.rest);
+        if parameter {
+            self.response(&mut round.response)?;
+        } else {
+            round.response.clone_from(&round.rest);
+            round.response.scale(0.0);
+        }
+        let Some(held) = &self.held else {
+            round.let_go();
+            return Ok(());
+        };
+        let (equations, at) = (&self.equations, StageData::of(&self.system, &self.solution));
+        let pulled = pull_taut(equations, &self.system, &self.solution, held)?;
+        let off = |index: usize| equations.stroke(held.cables[index], at)[0] - equations.command(held, index);
+        let change = |cable: usize, by: &Correction<N, M, Q, L>| equations.stroke_change(cable, at, by);
+        let command = |index: usize| equations.command_derivative(held, index);
+        self.border = Some(round.hold(held, &pulled, off, change, command).ok_or(Trouble::Singular)?);
+        Ok(())
     }
 
     /// Whether cable `c` has a commanded stroke and is taut.

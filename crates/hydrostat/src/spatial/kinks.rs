@@ -32,7 +32,7 @@ const NOTHING: f64 = 1e-6;
 
 impl Engine {
     /// Brings the stations and the speeds there up to date with the solution.
-    fn take_speeds(&mut self) {
+    pub(super) fn take_speeds(&mut self) {
         self.system.take_stations(&self.solution);
         let stations = self.system.stations().iter().enumerate();
         self.speeds.clear();
@@ -120,18 +120,23 @@ impl Engine {
     /// moved.
     pub(super) fn pin_kinks(&mut self, resolution: f64) -> bool {
         let kinks = self.kinks(10.0 * resolution);
+        self.pin(&kinks, resolution)
+    }
+
+    /// Moves nodes onto `kinks` that no pinned node is within `tolerance` of; whether any moved.
+    pub(super) fn pin(&mut self, kinks: &[f64], tolerance: f64) -> bool {
         let mesh = &self.solution.mesh;
         let stray = kinks.iter().any(|s| {
             let i = mesh.element_of(*s);
             let (left, right) = (s - mesh.nodes()[i], mesh.nodes()[i + 1] - s);
             let nearest = if left < right { i } else { i + 1 };
-            !(left.min(right) < resolution && mesh.is_pinned(nearest))
+            !(left.min(right) < tolerance && mesh.is_pinned(nearest))
         });
         if !stray {
             return false;
         }
         let mut pinned = mesh.clone();
-        pinned.pin(&self.breaks, &kinks);
+        pinned.pin(&self.breaks, kinks);
         if pinned == self.solution.mesh {
             return false;
         }

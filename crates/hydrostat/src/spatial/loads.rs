@@ -13,6 +13,7 @@ use hydrostat_bvp::{Real, each};
 use super::rotation::{Directors, Vector, cross, dot, times};
 use super::section::STRAINS;
 use crate::rod::area_law::{SectionStretch, displacement};
+use crate::rod::arm::Arm;
 use crate::rod::flow::{Law, traction};
 use crate::rod::readings::{Displaced, Hydrostatics, Volume, WettedLength};
 
@@ -26,6 +27,19 @@ pub(crate) struct Water {
     pub(crate) volume: Volume,
     pub(crate) displaced: Displaced,
     pub(crate) hydrostatics: Hydrostatics,
+}
+
+/// What the loads need to know of `arm` as a whole.
+pub(super) fn water(arm: &Arm) -> Water {
+    let r = &arm.readings;
+    Water {
+        stream: if arm.flow.density == 0.0 { [0.0; 3] } else { arm.stream_in_space() },
+        law: Law::new(arm.flow.law, r.entering_speed, r.layer_mean.factor()),
+        wetted: r.wetted_length,
+        volume: r.volume,
+        displaced: r.displaced,
+        hydrostatics: r.hydrostatics,
+    }
 }
 
 /// What the loads need to know of a station, in the solver's units.

@@ -89,7 +89,7 @@ impl Refinable for Engine {
         solution.resample(&methods.to_check, finer);
         self.check_equations.fraction = self.equations.fraction;
         self.check_equations.phase = self.equations.phase;
-        self.check_equations.tensions.clone_from(&self.equations.tensions);
+        self.check_equations.take_arm_of(&self.equations);
         self.check_equations.place_on(&methods.check, &self.finer);
         let mut estimate = self.compare()?;
         let unseen = unseen(self.left_over);

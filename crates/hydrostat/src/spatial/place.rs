@@ -1,8 +1,9 @@
 //! One place of an arm in space as data.
 
 use super::loads::Body;
+use super::rotation::{Directors, cross};
 use super::section::Stiffness;
-use crate::rod::arm::Space;
+use crate::rod::arm::{Arm, Space};
 use crate::rod::profile::Profile;
 
 /// One place of the arm as data.
@@ -22,4 +23,10 @@ pub(super) fn loads_of(space: &Space) -> bool {
         || space.tip_follower != 0.0
         || space.tip_moment != [0.0; 2]
         || !(space.force.is_zero() && space.couple.iter().all(Profile::is_zero))
+}
+
+/// The quaternion of the base of `arm`.
+pub(super) fn base_of(arm: &Arm) -> [f64; 4] {
+    let [a, b] = arm.base_directors();
+    Directors { a, b, c: cross(&a, &b) }.quaternion()
 }

@@ -60,6 +60,8 @@ pub struct SpatialSolver {
     pub(super) options: Options,
     /// Whether the engine holds a configuration at whole loads.
     settled: bool,
+    /// Whether it is that of the present tensions and strokes.
+    solved: bool,
     /// Sign of the determinant of the last configuration.
     sign: f64,
 }
@@ -74,7 +76,7 @@ impl SpatialSolver {
         arm.space.get_or_insert_default();
         arm.check()?;
         options.check()?;
-        Ok(Self { engine: Engine::new(&arm), options, settled: false, sign: 1.0 })
+        Ok(Self { engine: Engine::new(&arm), options, settled: false, solved: false, sign: 1.0 })
     }
 
     /// The arm, with the tensions that were set last.
@@ -87,6 +89,13 @@ impl SpatialSolver {
     /// # Errors
     /// [`SpatialError::NoEquilibrium`].
     pub fn solve(&mut self) -> Result<SpatialConfiguration, SpatialError> {
+        self.solved = false;
+        let found = self.solve_anew();
+        self.solved = found.is_ok();
+        found
+    }
+
+    fn solve_anew(&mut self) -> Result<SpatialConfiguration, SpatialError> {
         self.settled = false;
         self.engine.reset_statistics();
         self.engine.allowed = WORK;
@@ -127,6 +136,7 @@ impl SpatialSolver {
         self.engine.equations.arm().check_tensions(tensions)?;
         self.engine.equations.take_tensions(tensions);
         self.engine.check_equations.take_tensions(tensions);
+        self.solved = false;
         Ok(())
     }
 
@@ -136,21 +146,33 @@ impl SpatialSolver {
     /// # Errors
     /// [`SpatialError::NoEquilibrium`].
     pub fn resolve(&mut self) -> Result<SpatialConfiguration, SpatialError> {
-        if self.settled {
-            self.settled = false;
-            self.engine.reset_statistics();
-            self.engine.allowed = WORK;
-            let before = self.engine.tip;
-            if let Ok(estimate) = self.engine.settle(self.options.tol, First::Warm)
-                && self.engine.system.determinant().sign == self.sign
-                && distance(&before, &self.engine.tip) < 0.2
-                && let Ok(configuration) = self.read(estimate, Travelled::default())
-            {
-                self.settled = true;
-                return Ok(configuration);
-            }
+        match self.resolve_warm() {
+            Some(configuration) => Ok(configuration),
+            None => self.solve(),
         }
-        self.solve()
+    }
+
+    /// A few rounds from the last configuration; `None` where that is no way to the answer.
+    pub(crate) fn resolve_warm(&mut self) -> Option<SpatialConfiguration> {
+        if !self.settled {
+            return None;
+        }
+        self.settled = false;
+        self.engine.reset_statistics();
+        self.engine.allowed = WORK;
+        let before = self.engine.tip;
+        let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
+        if self.engine.system.determinant().sign != self.sign || distance(&before, &self.engine.tip) >= 0.2 {
+            return None;
+        }
+        let configuration = self.read(estimate, Travelled::default()).ok()?;
+        (self.settled, self.solved) = (true, true);
+        Some(configuration)
+    }
+
+    /// Solves for the present tensions where that was not done yet.
+    pub(super) fn be_solved(&mut self) -> Result<(), SpatialError> {
+        if self.solved { Ok(()) } else { self.resolve().map(|_| ()) }
     }
 
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.

@@ -24,6 +24,58 @@ pub(crate) struct UnitPull<const N: usize, const S: usize, const Q: usize, const
     pub(crate) strokes: Vec<f64>,
 }
 
+/// One linearisation.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct NewtonStep<C> {
+    /// What is left to correct at the commanded strokes.
+    pub(crate) rest: C,
+    /// Change a unit of the parameter.
+    pub(crate) response: C,
+    /// Of the tensions (in the unit of force), one a commanded cable: by the rest, and by the parameter.
+    pub(crate) tension: [Vec<f64>; 2],
+    /// Strokes less commands: those after the rest, and by the parameter.
+    pub(crate) slack: [Vec<f64>; 2],
+    /// By how much the strokes of taut cables are off.
+    pub(crate) off: f64,
+}
+
+impl<const N: usize, const S: usize, const Q: usize, const L: usize> NewtonStep<Correction<N, S, Q, L>> {
+    /// Nothing held.
+    pub(crate) fn let_go(&mut self) {
+        (self.tension, self.slack, self.off) = Default::default();
+    }
+
+    /// Holds the strokes in both corrections, which are at fixed tensions: given what unit tensions do, and of each
+    /// commanded cable by how much its stroke is off now, how that follows a change of the solution, and the change of
+    /// the command a unit of the parameter. The determinant of B; `None` where no tensions hold the strokes.
+    pub(crate) fn hold(
+        &mut self,
+        held: &StrokeControl,
+        pulled: &[UnitPull<N, S, Q, L>],
+        off: impl Fn(usize) -> f64,
+        change: impl Fn(usize, &Correction<N, S, Q, L>) -> f64,
+        command: impl Fn(usize) -> f64,
+    ) -> Option<Determinant> {
+        let mut slack: [Vec<f64>; 2] = std::array::from_fn(|_| Vec::with_capacity(held.cables.len()));
+        self.off = 0.0;
+        for (index, cable) in held.cables.iter().enumerate() {
+            let off = off(index);
+            if held.taut[index] {
+                self.off = self.off.max(off.abs());
+            }
+            slack[0].push(off + change(*cable, &self.rest));
+            slack[1].push(change(*cable, &self.response) - command(index));
+        }
+        let (tensions, determinant) = meeting(held, pulled, [&slack[0], &slack[1]])?;
+        for (which, shape) in [&mut self.rest, &mut self.response].into_iter().enumerate() {
+            let changes = tensions.iter().map(|both| both[which]);
+            self.tension[which] = add_pulls(held, pulled, changes, shape, &mut slack[which]);
+        }
+        self.slack = slack;
+        Some(determinant)
+    }
+}
+
 /// Changes of the tensions of taut cables that take two lists of slacks away (one a commanded cable, over L), with the
 /// determinant of B; `None` where no tensions do.
 pub(crate) fn meeting<const N: usize, const S: usize, const Q: usize, const L: usize>(

@@ -12,13 +12,14 @@ mod newton;
 mod outputs;
 mod settle;
 mod start;
+mod traced;
 mod trouble;
 mod watch;
 mod wrap_angles;
 
 pub(crate) use self::budget::WORK;
 pub(crate) use self::discrete::{Engine, State, response_change, shift_by_tangential_load};
-pub(crate) use self::held::{NewtonStep, pull_taut};
+pub(crate) use self::held::pull_taut;
 pub(crate) use self::outputs::{asked_in, sharpened};
 pub(crate) use self::start::{turn_sections, wanted_side};
 pub(crate) use self::trouble::{HOP, Trouble, roughly};

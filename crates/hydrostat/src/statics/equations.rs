@@ -28,14 +28,15 @@ mod section_state;
 mod stroke_control;
 mod system;
 mod varied;
+mod way;
 
 pub(crate) use self::buckling::Unloaded;
 pub(crate) use self::cable_paths::StationData;
-pub(crate) use self::change::Way;
 pub(crate) use self::limits::{Margins, SectionFailure};
 pub(crate) use self::places::section_data;
-pub(crate) use self::range::Change;
+pub(crate) use self::range::{Change, Varied};
 pub(crate) use self::section_state::{SectionQuery, SectionState};
 pub(crate) use self::stroke_control::StrokeControl;
 pub(crate) use self::system::{Equations, failure, inner};
+pub(crate) use self::way::{PLACES, Way};
 pub(crate) use super::dimensions::{L, N, Q};

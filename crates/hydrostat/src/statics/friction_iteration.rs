@@ -121,9 +121,9 @@ impl Solver {
         let (residual, spent) = (self.engine.last, self.engine.spent());
         let (mut kind, mut s) = (VerdictKind::NotFound, None);
         if spent.is_none() {
-            let named = name_limit(&mut self.engine, Some(trouble), residual);
+            let named = name_limit(&mut self.engine, Some(trouble));
             let of_rounds = matches!(trouble, Trouble::Section(_));
-            if !of_rounds || name_limit(&mut self.engine, None, residual).0 == named.0 {
+            if !of_rounds || name_limit(&mut self.engine, None).0 == named.0 {
                 (kind, s) = named;
             }
         }

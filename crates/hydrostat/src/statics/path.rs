@@ -6,14 +6,19 @@ mod contact;
 mod events;
 mod limits;
 mod load_stepping;
+mod points;
 mod range;
 #[cfg(test)]
 pub(crate) mod small_steps;
 mod step_control;
 mod stepper;
+mod trace;
+pub(crate) mod traced;
 
 pub use circle::{Equilibria, Equilibrium};
 pub(crate) use limits::name_limit;
 pub(crate) use load_stepping::{Stopped, follow, follow_on, follow_range, follow_strokes};
-pub use range::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
+pub(crate) use points::has_a_path;
+pub use points::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub(crate) use step_control::{LOOSE, PathSummary, StepControl};
+pub(crate) use trace::{ends_of_range, trace};

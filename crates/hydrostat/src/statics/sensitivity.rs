@@ -14,16 +14,17 @@
 //! d out = out_p + out_t dt,    s_t dt = d command - s_p
 //! ```
 
+pub(crate) mod derivatives;
 mod error;
 mod quantities;
 
+pub use self::derivatives::SensitivityMethod;
 pub use self::error::SensitivityError;
-use self::error::unsettled;
+pub(crate) use self::error::unsettled;
 use self::quantities::POSE;
 pub(crate) use self::quantities::Quantity;
-pub use self::quantities::SensitivityMethod;
 use crate::rod::arm::Arm;
-use crate::rod::parameter::Parameter;
+use crate::rod::parameter::{IN_SPACE, PLAIN, Parameter};
 use crate::rod::readings::Support;
 use crate::statics::configuration::Wrench;
 use crate::statics::solve::Solver;
@@ -53,28 +54,29 @@ pub struct PoseChange {
 
 /// A place along the arm with the changes of its pose.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SensitiveStation {
+pub struct SensitiveStation<P = PoseChange> {
     /// m.
     pub s: f64,
     /// One a parameter, in their order.
-    pub changes: Vec<PoseChange>,
+    pub changes: Vec<P>,
 }
 
-/// Derivatives of an equilibrium by parameters, each a unit of [`Parameter::unit`].
+/// Derivatives of an equilibrium by parameters, each a unit of [`Parameter::unit`]: in the plane, or with
+/// [`crate::SpatialPoseChange`] and [`crate::SpatialWrench`] in space.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sensitivities {
+pub struct Sensitivities<P = PoseChange, W = Wrench> {
     /// What they are by.
     pub parameters: Vec<Parameter>,
     /// Of the tip, one a parameter.
-    pub tip: Vec<PoseChange>,
+    pub tip: Vec<P>,
     /// Of the stroke (m) of every cable, row by row, one a parameter.
     pub strokes: Vec<Vec<f64>>,
     /// Of the tension (N) of every cable: zero but where a stroke is commanded, and one by itself.
     pub tensions: Vec<Vec<f64>>,
     /// Of what support and cable anchors exert on the arm at the base, one a parameter.
-    pub base: Vec<Wrench>,
+    pub base: Vec<W>,
     /// Of the places asked for, in their order.
-    pub stations: Vec<SensitiveStation>,
+    pub stations: Vec<SensitiveStation<P>>,
 }
 
 /// Where the tip goes with a unit of effort: the image of the unit circle (or ball) of what it is by.
@@ -104,20 +106,31 @@ impl Parameter {
             Some(_) => Self::Stroke(c),
             None => Self::Tension(c),
         });
-        let plain = crate::rod::parameter::PLAIN.into_iter().filter(|parameter| parameter.of(arm).is_ok());
+        let plain = PLAIN.into_iter().chain(IN_SPACE).filter(|parameter| parameter.of(arm).is_ok());
         let offsets = arm.cables.iter().enumerate();
         let offsets = offsets.flat_map(|(c, cable)| cable.offset.points().into_iter().map(move |p| Self::Offset(c, p)));
+        let angles = arm.cables.iter().enumerate().filter(|_| arm.space.is_some());
+        let angles =
+            angles.flat_map(|(c, cable)| cable.angle.points().into_iter().map(move |p| Self::CableAngle(c, p)));
         let radii = arm.radius.points().into_iter().map(Self::Radius);
-        cables.chain(plain).chain(offsets).chain(radii).collect()
+        cables.chain(plain).chain(offsets).chain(angles).chain(radii).collect()
     }
 }
 
-impl Sensitivities {
+impl<P, W> Sensitivities<P, W> {
     /// Of the parameter, if it was asked for: its place in the lists.
     pub fn index(&self, parameter: Parameter) -> Option<usize> {
         self.parameters.iter().position(|own| *own == parameter)
     }
 
+    /// The tensions and strokes of cables that were asked for.
+    pub(crate) fn cables(&self) -> Vec<Parameter> {
+        let is_cable = |p: &Parameter| matches!(p, Parameter::Tension(_) | Parameter::Stroke(_));
+        self.parameters.iter().copied().filter(is_cable).collect()
+    }
+}
+
+impl Sensitivities {
     /// d (x, y) of the tip by the parameters given that were asked for: one column each, m a unit.
     pub fn tip_jacobian(&self, parameters: &[Parameter]) -> Vec<[f64; 2]> {
         parameters.iter().filter_map(|p| self.index(*p)).map(|k| [self.tip[k].x, self.tip[k].y]).collect()
@@ -140,8 +153,7 @@ impl Sensitivities {
     /// The manipulability ellipse of the tip by the tensions (or strokes) of the cables that were asked for: where the
     /// tip goes when the sum of their squares is one. `None` where none was.
     pub fn manipulability(&self) -> Option<Ellipse> {
-        let is_cable = |p: &Parameter| matches!(p, Parameter::Tension(_) | Parameter::Stroke(_));
-        let cables: Vec<Parameter> = self.parameters.iter().copied().filter(is_cable).collect();
+        let cables = self.cables();
         (!cables.is_empty()).then(|| Ellipse::of(&self.tip_jacobian(&cables)))
     }
 }
@@ -308,7 +320,8 @@ impl Solver {
     }
 }
 
-pub(crate) fn check(arm: &Arm, parameters: &[Parameter], stations: &[f64]) -> Result<(), SensitivityError> {
+/// Whether there are such derivatives.
+pub(crate) fn check<E>(arm: &Arm, parameters: &[Parameter], stations: &[f64]) -> Result<(), SensitivityError<E>> {
     for parameter in parameters {
         parameter.of(arm)?;
         match *parameter {

@@ -7,7 +7,7 @@ use super::discrete::{Engine, response_change};
 use super::newton::add_to_spans;
 use super::trouble::Trouble;
 use crate::numerics::rounds::{correct, respond};
-use crate::statics::border::{UnitPull, add_pulls, meeting};
+use crate::statics::border::{self, UnitPull};
 use crate::statics::dimensions::{Guess, L, M, N, Q};
 use crate::statics::equations::{Equations, SectionFailure, StationData, StrokeControl, Way};
 
@@ -23,20 +23,8 @@ const ROUNDING: f64 = 1e-6;
 /// Rounds added to those of given tensions: the set of taut cables may change.
 const MORE: usize = 12;
 
-/// One linearisation.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct NewtonStep {
-    /// What is left to correct at the commanded strokes.
-    pub(crate) rest: Correction<N, M, Q, L>,
-    /// Change a unit of the parameter.
-    pub(crate) response: Correction<N, M, Q, L>,
-    /// Of the tensions (in the unit of force), one a commanded cable: by the rest, and by the parameter.
-    pub(crate) tension: [Vec<f64>; 2],
-    /// Strokes less commands: those after the rest, and by the parameter.
-    pub(crate) slack: [Vec<f64>; 2],
-    /// By how much the strokes of taut cables are off.
-    off: f64,
-}
+/// One linearisation in the plane.
+type NewtonStep = border::NewtonStep<Correction<N, M, Q, L>>;
 
 impl Engine {
     /// Sign and size of the determinant of shape and unknown tensions together, at the last linearisation.
@@ -63,31 +51,15 @@ impl Engine {
             round.response.scale(0.0);
         }
         let Some(held) = self.equations.held.clone() else {
-            round.tension = [Vec::new(), Vec::new()];
-            round.slack = [Vec::new(), Vec::new()];
+            round.let_go();
             return Ok(());
         };
-        let count = held.cables.len();
         let pulled = pull_taut(&self.equations, &self.system, &self.solution, &held);
-        let mut slack: [Vec<f64>; 2] = std::array::from_fn(|_| Vec::with_capacity(count));
-        round.off = 0.0;
-        let at = StationData::of(&self.system);
-        let change = |cable: usize, by: &Correction<N, M, Q, L>| self.equations.stroke_change(cable, at, by);
-        for (index, cable) in held.cables.iter().enumerate() {
-            let off = self.equations.stroke(*cable, at)[0] - self.equations.command(&held, index);
-            if held.taut[index] {
-                round.off = round.off.max(off.abs());
-            }
-            slack[0].push(off + change(*cable, &round.rest));
-            slack[1].push(change(*cable, &round.response) - self.equations.command_derivative(&held, index));
-        }
-        let (tensions, determinant) = meeting(&held, &pulled, [&slack[0], &slack[1]]).ok_or(Trouble::Singular)?;
-        self.border = determinant;
-        for (which, shape) in [&mut round.rest, &mut round.response].into_iter().enumerate() {
-            let changes = tensions.iter().map(|both| both[which]);
-            round.tension[which] = add_pulls(&held, &pulled, changes, shape, &mut slack[which]);
-        }
-        round.slack = slack;
+        let (equations, at) = (&self.equations, StationData::of(&self.system));
+        let off = |index: usize| equations.stroke(held.cables[index], at)[0] - equations.command(&held, index);
+        let change = |cable: usize, by: &Correction<N, M, Q, L>| equations.stroke_change(cable, at, by);
+        let command = |index: usize| equations.command_derivative(&held, index);
+        self.border = round.hold(&held, &pulled, off, change, command).ok_or(Trouble::Singular)?;
         Ok(())
     }
 

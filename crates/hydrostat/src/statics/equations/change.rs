@@ -5,9 +5,9 @@ use hydrostat_bvp::{Condition, Forcing, Lanes, Local, Problem, Real, StageForcin
 use super::cable_paths::StationData;
 use super::gradients::{by_strain_change, in_directors};
 use super::place::Place;
-use super::range::Change;
 use super::section_state::SectionQuery;
 use super::system::Equations;
+use super::way::{PLACES, Way};
 use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::area_law;
 use crate::rod::cable::pull;
@@ -17,27 +17,6 @@ use crate::rod::parameter::Parameter;
 use crate::rod::section::{CableAt, Stiffness, apply3, balance};
 use crate::statics::dimensions::{L, N, Q};
 use crate::statics::verdict::Phase;
-
-/// What the equations are differentiated by.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Way {
-    /// The parameter of a path: the fraction of a phase, the share of a range, or an imposed couple.
-    Path,
-    /// The tension of a cable, in the unit of force.
-    Tension(usize),
-    /// A number of the arm, in its unit.
-    Of(Parameter),
-}
-
-/// Part of its scale by which a number is moved to either side for a difference; with four places the error is its
-/// fourth power.
-const STEP: f64 = 1e-3;
-
-/// The same for angles of the stream. Rounding leaves some 1e-10 of a load by it.
-const SHORT_STEP: f64 = 1e-6;
-
-/// The places of a difference of the fourth order, in steps, and their weights.
-const PLACES: [(f64, f64); 4] = [(1.0, 8.0 / 12.0), (-1.0, -8.0 / 12.0), (2.0, -1.0 / 12.0), (-2.0, 1.0 / 12.0)];
 
 /// The explicit part of the equations at a station: what the section carries, and the loads along the arm.
 #[derive(Clone, Copy)]
@@ -135,29 +114,10 @@ impl Equations {
 
     /// The tensions (in the unit of force) that grow with `way`, where that is all that does.
     fn pulled_by(&self, way: Way) -> Option<Vec<f64>> {
-        let count = self.tensions.len();
-        let one = |c: usize, tension: f64| (0..count).map(|k| if k == c { tension } else { 0.0 }).collect();
-        match way {
-            Way::Tension(c) => Some(one(c, 1.0)),
-            Way::Of(Parameter::Tension(c)) => Some(one(c, 1.0 / self.units.force)),
-            Way::Path if self.imposed.is_some() => None,
-            Way::Path => match self.varied_over() {
-                Some(ways) => self.pulled_together(ways),
-                None if self.phase == Phase::Tension => Some(self.tensions.clone()),
-                _ => None,
-            },
-            Way::Of(_) => None,
+        if way == Way::Path && self.imposed.is_some() {
+            return None;
         }
-    }
-
-    /// The same where several parameters vary together.
-    fn pulled_together(&self, ways: &[Change]) -> Option<Vec<f64>> {
-        let mut out = vec![0.0; self.tensions.len()];
-        for way in ways {
-            let Parameter::Tension(c) = way.parameter else { return None };
-            out[c] += way.whole() / self.units.force;
-        }
-        Some(out)
+        way.pulls(&self.tensions, self.units.force, self.varied_over(), self.phase)
     }
 
     /// What sections carry of these tensions.
@@ -298,23 +258,8 @@ fn following(gradient: &[[Lanes; N]; 3], [cos, sin]: [Lanes; 2], carried: [Lanes
 }
 
 impl Equations {
-    /// The step of differences by `way`, in its unit.
     fn difference_step(&self, way: Way) -> f64 {
-        // Where an arm lies along the stream its load has kinks within small angles.
-        let step = |parameter| if parameter == Parameter::FlowDirection { SHORT_STEP } else { STEP };
-        match way {
-            Way::Path => match self.varied_over() {
-                Some(ways) => {
-                    let one = |way: &Change| {
-                        step(way.parameter) * way.parameter.scale(&self.arm, self.units.force) / way.whole().abs()
-                    };
-                    ways.iter().map(one).fold(f64::INFINITY, f64::min)
-                }
-                None => STEP,
-            },
-            Way::Tension(_) => STEP,
-            Way::Of(parameter) => step(parameter) * parameter.scale(&self.arm, self.units.force),
-        }
+        way.step(&self.arm, self.units.force, self.varied_over())
     }
 
     /// The equations with what they are differentiated by moved by `change`.

@@ -5,9 +5,9 @@ use crate::rod::parameter::Parameter;
 /// An arm along a range of one parameter, or of several that change together.
 #[derive(Debug, Clone)]
 pub(crate) struct Varied {
-    pub(super) ways: Vec<Change>,
+    pub(crate) ways: Vec<Change>,
     /// Where the equations are.
-    pub(super) share: f64,
+    pub(crate) share: f64,
 }
 
 /// A parameter with its values at the shares 0 and 1 of a range.
@@ -25,7 +25,7 @@ impl Change {
     }
 
     /// The change over the whole range.
-    pub(super) fn whole(self) -> f64 {
+    pub(crate) fn whole(self) -> f64 {
         self.to - self.from
     }
 }

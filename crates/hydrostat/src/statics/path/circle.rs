@@ -9,9 +9,10 @@
 
 use std::f64::consts::TAU;
 
-use super::range::{PathEnd, PathError};
+use super::points::{PathEnd, PathError, has_a_path};
 use super::step_control::StepControl;
-use super::stepper::{Along, Fraction, Point, StepOutcome, Stepper};
+use super::stepper::{self, Fraction, MOVED, StepOutcome};
+use super::traced::{Along, Traced};
 use crate::rod::arm::Arm;
 use crate::rod::parameter::Parameter;
 use crate::statics::configuration::Configuration;
@@ -33,6 +34,10 @@ const HALVINGS: usize = 24;
 
 /// Points by which an extreme of the angle of the base is found.
 const EXTREMES: usize = 40;
+
+/// Points and steps in the plane.
+type Point = stepper::Point<Engine>;
+type Stepper<'e> = stepper::Stepper<'e, Engine>;
 
 /// How finely the curve is followed.
 const PACE: StepControl = StepControl { longest: 0.25, straightness: 0.96, most: usize::MAX, accuracy: 1e-6 };
@@ -112,7 +117,7 @@ impl Arm {
         if !(1e-12..=1e-3).contains(&tol) {
             return Err(PathError::Option { option: "tol", value: tol, expected: "in [1e-12, 1e-3]" });
         }
-        self.has_a_path()?;
+        has_a_path(self)?;
         // With unknown tensions, theta(L) does not settle the arm: what follows is not one curve.
         if let Some(cable) = self.cables.iter().find(|c| c.stroke.is_some()) {
             return Err(PathError::Stroke { cable: cable.name.clone() });
@@ -464,4 +469,35 @@ fn at_whole_turns(
 fn settle(engine: &mut Engine, tol: f64) -> Result<f64, Trouble> {
     engine.newton(1e-6, 14)?;
     engine.settle(tol, First::Warm)
+}
+
+impl Point {
+    /// theta at the tip, rad.
+    fn tip_angle(&self) -> f64 {
+        self.state.solution.nodes.last().map_or(0.0, |z| z[0])
+    }
+
+    /// The change of the fraction by that of the angle of the tip (rad) along the branch.
+    fn slope(&self) -> f64 {
+        self.response.nodes.last().map_or(f64::INFINITY, |z| 1.0 / z[0])
+    }
+}
+
+impl Stepper<'_> {
+    /// The point of the branch at which the tip has a given angle, from one nearby. There is one wherever that angle
+    /// alone decides the shape, round sharp folds, too, of which no tangent at a distance knows.
+    fn at_tip_angle(&mut self, here: &Point, angle: f64, control: StepControl) -> Result<Point, Trouble> {
+        let climb = (angle - here.tip_angle()) * here.slope();
+        let mut fraction = self.predict(here, climb / here.dlambda_ds);
+        let from = self.engine.nodes();
+        self.correct_at_tip(&mut fraction)?;
+        let moved = self.engine.largest_turn_since(&from);
+        if moved > MOVED {
+            return Err(Trouble::Stalled(moved));
+        }
+        let mut fraction = Fraction::AtTip(fraction);
+        self.keep_accuracy(None, &mut fraction, [control.accuracy; 2])?;
+        self.engine.check_ends()?;
+        self.point(fraction.value())
+    }
 }

@@ -5,6 +5,7 @@
 
 use super::step_control::StepControl;
 use super::stepper::{Point, StepOutcome, Stepper};
+use super::traced::Traced;
 use crate::statics::engine::Trouble;
 
 /// Tensions (in the unit of force) and slacks (over L) that count as zero.
@@ -14,34 +15,35 @@ const ZERO: f64 = 1e-11;
 const FOUND: f64 = 1e-10;
 
 /// Where a cable goes slack or taut.
-pub(super) struct Contact {
+pub(super) struct Contact<E: Traced> {
     /// The point, with the tangent that leads to it.
-    pub(super) at: Point,
+    pub(super) at: Point<E>,
     /// The same point with the tangent that leads on.
-    pub(super) after: Point,
+    pub(super) after: Point<E>,
     /// The cable.
     pub(super) cable: usize,
     /// Whether it goes slack, else taut.
     pub(super) slack: bool,
 }
 
-impl Stepper<'_> {
+/// The end of a step, how the path goes on there, and the contact that it ended at.
+type Advanced<E> = (Point<E>, StepOutcome, Option<Contact<E>>);
+
+impl<E: Traced> Stepper<'_, E> {
     /// The margins of the commanded cables after the last linearisation.
     pub(super) fn margins(&self) -> Vec<f64> {
-        let Some(held) = &self.engine.equations.held else { return Vec::new() };
-        let margin = |i: usize| {
-            if held.taut[i] { self.engine.equations.tension(held.cables[i]) } else { self.round.slack[0][i] }
-        };
+        let Some(held) = self.engine.held() else { return Vec::new() };
+        let margin = |i: usize| if held.taut[i] { self.engine.tension(held.cables[i]) } else { self.round.slack[0][i] };
         (0..held.cables.len()).map(margin).collect()
     }
 
     /// A step that ends where the first cable goes slack or taut, if one does on the way.
     pub(super) fn advance_to_contact(
         &mut self,
-        here: &Point,
+        here: &Point<E>,
         step: f64,
         control: StepControl,
-    ) -> Result<(Point, StepOutcome, Option<Contact>), Trouble> {
+    ) -> Result<Advanced<E>, Trouble> {
         let (next, turn) = self.advance(here, step, control)?;
         let past: Vec<usize> = (0..next.margins.len()).filter(|i| next.margins[*i] < -ZERO).collect();
         if past.is_empty() {
@@ -58,14 +60,14 @@ impl Stepper<'_> {
     /// Where between two points, `step` apart, the first of the cables `past` goes slack or taut.
     fn contact_between(
         &mut self,
-        here: &Point,
-        next: Point,
+        here: &Point<E>,
+        next: Point<E>,
         past: &[usize],
         step: f64,
         control: StepControl,
-    ) -> Result<Contact, Trouble> {
+    ) -> Result<Contact<E>, Trouble> {
         // The first of them, over how far each is from it at the start.
-        let least = |point: &Point| {
+        let least = |point: &Point<E>| {
             let share = |i: &usize| point.margins[*i] / here.margins[*i];
             past.iter().map(|i| (share(i), *i)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((1.0, 0))
         };
@@ -97,10 +99,10 @@ impl Stepper<'_> {
     }
 
     /// The change of the commanded cable `i` at a point.
-    fn change(&mut self, at: Point, i: usize) -> Result<Contact, Trouble> {
+    fn change(&mut self, at: Point<E>, i: usize) -> Result<Contact<E>, Trouble> {
         self.engine.restore(&at.state);
         self.set(at.fraction);
-        let (cable, slack) = self.engine.equations.switch_active(i);
+        let (cable, slack) = self.engine.switch_active(i);
         let after = self.leave_contacts(at.fraction, |this, after| {
             let way = this.opening(after, i);
             if way == 0.0 { at.dlambda_ds.signum() * after.dlambda_ds.signum() } else { way }
@@ -109,8 +111,8 @@ impl Stepper<'_> {
     }
 
     /// The first point of a path, from which the parameter rises, with cables taut or slack as that needs.
-    pub(super) fn first_contacts(&mut self, fraction: f64) -> Result<Point, Trouble> {
-        self.engine.equations.let_cables_switch(false);
+    pub(super) fn first_contacts(&mut self, fraction: f64) -> Result<Point<E>, Trouble> {
+        self.engine.let_cables_switch(false);
         self.leave_contacts(fraction, |_, after| after.dlambda_ds)
     }
 
@@ -119,11 +121,10 @@ impl Stepper<'_> {
     pub(super) fn nothing_reels_in(&mut self) -> bool {
         let kept = self.engine.state();
         self.set(0.0);
-        let Some(held) = self.engine.equations.held.clone() else { return false };
-        let short: Vec<usize> =
-            (0..held.cables.len()).filter(|i| self.engine.equations.command_derivative(&held, *i) > 0.0).collect();
+        let Some(held) = self.engine.held().cloned() else { return false };
+        let short: Vec<usize> = (0..held.cables.len()).filter(|i| self.engine.command_derivative(*i) > 0.0).collect();
         for i in short.iter().filter(|i| !held.taut[**i]) {
-            self.engine.equations.switch_active(*i);
+            self.engine.switch_active(*i);
         }
         let pushes = self.linearise().is_ok() && short.iter().any(|i| self.round.tension[1][*i] < 0.0);
         self.engine.restore(&kept);
@@ -133,7 +134,7 @@ impl Stepper<'_> {
 
     /// The point here with its tangent in the direction in which `way` is positive, and with those cables changed over
     /// that are at a contact which that tangent leads past.
-    fn leave_contacts(&mut self, fraction: f64, way: impl Fn(&Self, &Point) -> f64) -> Result<Point, Trouble> {
+    fn leave_contacts(&mut self, fraction: f64, way: impl Fn(&Self, &Point<E>) -> f64) -> Result<Point<E>, Trouble> {
         let mut changes = 0;
         loop {
             let mut after = self.point(fraction)?;
@@ -156,15 +157,15 @@ impl Stepper<'_> {
             // All at first, because cables may hold together what none of them holds alone; then one by one.
             let together = if changes == 0 { past.len() } else { 1 };
             for i in past.into_iter().take(together) {
-                self.engine.equations.switch_active(i);
+                self.engine.switch_active(i);
             }
             changes += 1;
         }
     }
 
     /// How the margin of the commanded cable `i` changes along the tangent of a point, after its linearisation.
-    fn opening(&self, point: &Point, i: usize) -> f64 {
-        let taut = self.engine.equations.held.as_ref().is_some_and(|held| held.taut[i]);
+    fn opening(&self, point: &Point<E>, i: usize) -> f64 {
+        let taut = self.engine.held().is_some_and(|held| held.taut[i]);
         point.dlambda_ds * if taut { self.round.tension[1][i] } else { self.round.slack[1][i] }
     }
 }

@@ -1,30 +1,31 @@
 //! Which physical limit stands where a path cannot go on.
 
-use super::range::PathEnd;
+use super::points::PathEnd;
 use super::stepper::{Point, Stepper};
+use super::traced::Traced;
 use crate::statics::engine::{Engine, Trouble};
 use crate::statics::limit::limit_at;
 use crate::statics::verdict::VerdictKind;
 
-impl Stepper<'_> {
+impl<E: Traced> Stepper<'_, E> {
     /// Names the limit that the last good point is at, with its place, m.
     pub(super) fn name_limit(&mut self, fraction: f64, residual: f64) -> (VerdictKind, Option<f64>) {
         self.set(fraction);
-        name_limit(self.engine, self.last_trouble.as_ref(), residual)
+        *self.engine.last_mut() = residual;
+        self.engine.name_limit(self.last_trouble.as_ref())
     }
 
     /// What ends a path at the last good point.
-    pub(super) fn end_at(&mut self, here: &Point) -> PathEnd {
+    pub(super) fn end_at(&mut self, here: &Point<E>) -> PathEnd {
         self.engine.restore(&here.state);
-        let residual = self.engine.last;
+        let residual = *self.engine.last_mut();
         let (kind, s) = self.name_limit(here.fraction, residual);
         PathEnd::Limit { kind, s }
     }
 }
 
 /// Names the limit that the engine's solution is at, with its place, m; `trouble` is what kept it from going on.
-pub(crate) fn name_limit(engine: &mut Engine, trouble: Option<&Trouble>, residual: f64) -> (VerdictKind, Option<f64>) {
-    engine.last = residual;
+pub(crate) fn name_limit(engine: &mut Engine, trouble: Option<&Trouble>) -> (VerdictKind, Option<f64>) {
     let mut near = engine.margins_to_limits();
     let failed = trouble.and_then(Trouble::failed_section);
     if let Some(failure) = &failed {

@@ -3,7 +3,8 @@
 
 use super::contact::Contact;
 use super::step_control::{LOOSE, MEET, PathSummary, START, StepControl};
-use super::stepper::{Along, Fraction, Point, StepOutcome, Stepper};
+use super::stepper::{self, Fraction, StepOutcome, Stepper};
+use super::traced::Along;
 use crate::statics::configuration::{Configuration, Tip};
 use crate::statics::engine::{Engine, State, Trouble, roughly};
 use crate::statics::refinement::{First, Refinable as _};
@@ -25,6 +26,8 @@ const BEYOND: usize = 400;
 
 /// The first step on that mesh.
 const SHARP_STEP: f64 = 1e-3;
+
+type Point = stepper::Point<Engine>;
 
 /// Where a path ends without an answer. The engine is at the last good point.
 #[derive(Debug, Clone)]
@@ -224,7 +227,7 @@ struct TurnedBack {
 
 /// One phase of the path.
 struct Ramp<'e, 'w> {
-    stepper: Stepper<'e>,
+    stepper: Stepper<'e, Engine>,
     phase: Phase,
     /// The fraction at which the engine has an equilibrium to start from, where it does.
     from: Option<f64>,

@@ -1,19 +1,18 @@
 //! One step along a branch of equilibria: predict along the tangent, correct normal to it, refine, and
 //! refuse what may be another branch or beyond a fold.
 
+use hydrostat_bvp::Mesh;
 use hydrostat_bvp::continuation::location::bordered;
-use hydrostat_bvp::{Correction, Mesh, Solution};
 
 use super::step_control::{CORNER, EVEN, FINEST, LOOSE, MANY, SYMMETRIC, StepControl};
-use crate::statics::engine::{Engine, HOP, M, NewtonStep, State, Trouble, roughly};
-use crate::statics::equations::{L, N, Q};
-use crate::statics::refinement::Refinable as _;
-use crate::statics::verdict::Phase;
+use super::traced::{Along, Traced, Turn};
+use crate::statics::border::NewtonStep;
+use crate::statics::engine::{HOP, Trouble, roughly};
 
 /// The largest correction (rad) of a prediction that leads to the same branch.
-const MOVED: f64 = 0.15;
+pub(super) const MOVED: f64 = 0.15;
 
-/// The least change of theta (rad) that counts as much as the whole load: arms that turn less are straight, as far as
+/// The least turn of sections (rad) that counts as much as the whole load: arms that turn less are straight, as far as
 /// anybody can see.
 const FINE_SCALE: f64 = 0.01;
 
@@ -21,11 +20,13 @@ const FINE_SCALE: f64 = 0.01;
 const CLOSE: f64 = 3e-5;
 
 #[derive(Clone)]
-pub(super) struct Point {
-    pub(super) state: State,
+pub(super) struct Point<E: Traced> {
+    pub(super) state: E::State,
     pub(super) fraction: f64,
     /// Change a unit of load.
-    pub(super) response: Correction<N, M, Q, L>,
+    pub(super) response: E::Change,
+    /// The turns of the nodes by it.
+    pub(super) turns: Vec<Turn>,
     /// That of the tensions that commanded strokes take.
     pub(super) tensions: Vec<f64>,
     /// How far each commanded cable is from what it cannot pass: the tension of a taut one, the slack of a slack one.
@@ -41,40 +42,49 @@ pub(super) struct Point {
     pub(super) error: f64,
 }
 
-impl Point {
+impl<E: Traced> Point<E> {
     pub(super) fn mesh(&self) -> &Mesh {
-        &self.state.solution.mesh
+        E::mesh_of(&self.state)
     }
 
-    /// theta of the tangent at the nodes of another mesh: linear interpolation is enough to orient.
-    pub(super) fn tangent_on<'a>(&'a self, mesh: &'a Mesh) -> impl Iterator<Item = f64> + 'a {
-        let (own, response) = (self.mesh(), &self.response.nodes);
+    /// The turns of the tangent at the nodes of another mesh: linear interpolation is enough to orient.
+    pub(super) fn tangent_on<'a>(&'a self, mesh: &'a Mesh) -> impl Iterator<Item = Turn> + 'a {
+        let (own, turns) = (self.mesh(), &self.turns);
         mesh.nodes().iter().map(move |s| {
             let e = own.element_of(*s);
             let x = (s - own.nodes()[e]) / own.step(e);
-            self.dlambda_ds * (response[e][0] + x * (response[e + 1][0] - response[e][0]))
+            each(|k| self.dlambda_ds * (turns[e][k] + x * (turns[e + 1][k] - turns[e][k])))
         })
     }
 
-    /// theta at the tip, rad.
-    pub(super) fn tip_angle(&self) -> f64 {
-        self.state.solution.nodes.last().map_or(0.0, |z| z[0])
-    }
-
-    /// The change of the fraction by that of the angle of the tip (rad) along the branch.
-    pub(super) fn slope(&self) -> f64 {
-        self.response.nodes.last().map_or(f64::INFINITY, |z| 1.0 / z[0])
-    }
-
     /// The turn (rad, root mean square along the arm) by the whole load at the rate here, in a metric whose scale of
-    /// theta is `scale`.
+    /// turns is `scale`.
     fn turn_by_load(&self, scale: f64) -> f64 {
         scale * (self.dlambda_ds.powi(-2) - 1.0).max(0.0).sqrt()
     }
 
     pub(super) fn is_symmetric(&self) -> bool {
-        (self.dlambda_ds * self.response.largest(0)).abs() < SYMMETRIC
+        let largest = self.turns.iter().fold(0.0, |m, turn| f64::max(m, size(turn)));
+        self.dlambda_ds.abs() * largest < SYMMETRIC
     }
+}
+
+fn each(of: impl Fn(usize) -> f64) -> Turn {
+    [of(0), of(1), of(2)]
+}
+
+fn dot(a: &Turn, b: &Turn) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The angle (rad) of a turn.
+fn size(turn: &Turn) -> f64 {
+    dot(turn, turn).sqrt()
+}
+
+/// `weight` times the product of two turns.
+pub(super) fn weighed(weight: f64, a: &Turn, b: &Turn) -> f64 {
+    dot(&a.map(|a| weight * a), b)
 }
 
 /// How far a branch has gone.
@@ -96,29 +106,20 @@ pub(super) enum Fraction {
 }
 
 impl Fraction {
-    fn value(self) -> f64 {
+    pub(super) fn value(self) -> f64 {
         match self {
             Self::Fixed(fraction) | Self::Free(fraction) | Self::AtTip(fraction) => fraction,
         }
     }
 }
 
-/// What the fraction of a path is a fraction of.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Along {
-    /// The loads of a phase.
-    Phase(Phase),
-    /// The range of a parameter, see [`crate::statics::equations::Equations::vary`].
-    Range,
-}
-
-pub(super) struct Stepper<'e> {
-    pub(super) engine: &'e mut Engine,
+pub(super) struct Stepper<'e, E: Traced> {
+    pub(super) engine: &'e mut E,
     along: Along,
     /// Fractions on which a step lands that would pass them.
     pub(super) bounds: [f64; 2],
     /// The last linearisation.
-    pub(super) round: NewtonStep,
+    pub(super) round: NewtonStep<E::Change>,
     pub(super) last_trouble: Option<Trouble>,
     /// Sign of the climb times that of the determinant.
     pub(super) orientation: f64,
@@ -129,7 +130,7 @@ pub(super) struct Stepper<'e> {
     pub(super) crossings_welcome: bool,
     /// The last estimate of the tip's error over L.
     pub(super) error: f64,
-    /// The change of theta (rad, root mean square along the arm) that counts as much as the whole of the load in the
+    /// The turn (rad, root mean square along the arm) that counts as much as the whole of the load in the
     /// metric of the path.
     scale: f64,
     /// Where the branch began, and how far its shape has turned and its fraction has climbed since.
@@ -149,8 +150,8 @@ pub(super) enum StepOutcome {
     Bifurcation,
 }
 
-impl<'e> Stepper<'e> {
-    pub(super) fn new(engine: &'e mut Engine, along: Along, bounds: [f64; 2]) -> Self {
+impl<'e, E: Traced> Stepper<'e, E> {
+    pub(super) fn new(engine: &'e mut E, along: Along, bounds: [f64; 2]) -> Self {
         Self {
             engine,
             along,
@@ -170,7 +171,7 @@ impl<'e> Stepper<'e> {
 
     /// The length of the next step over that of the last, done or refused.
     pub(super) fn pace_up(&self, done: bool) -> f64 {
-        if !self.engine.in_a_hurry {
+        if !self.engine.is_in_a_hurry() {
             return if done { 1.6 } else { 0.4 };
         }
         let fit = 0.8 / self.stretch.max(1e-3).sqrt();
@@ -192,10 +193,7 @@ impl<'e> Stepper<'e> {
     }
 
     pub(super) fn set(&mut self, fraction: f64) {
-        match self.along {
-            Along::Phase(phase) => self.engine.set_phase(phase, fraction),
-            Along::Range => self.engine.equations.set_share(fraction),
-        }
+        self.engine.set(self.along, fraction);
     }
 
     pub(super) fn linearise(&mut self) -> Result<(), Trouble> {
@@ -203,23 +201,23 @@ impl<'e> Stepper<'e> {
         self.engine.linearise_held(true, &mut self.round)
     }
 
-    /// Weights of the squares of theta's change at the nodes in the metric of the path: its root mean square along the
+    /// Weights of the squares of the nodes' turns in the metric of the path: its root mean square along the
     /// arm over [`Stepper::scale`].
     pub(super) fn weights(&self) -> Vec<f64> {
         let square = self.scale * self.scale;
-        self.engine.solution.mesh.node_weights().map(|weight| weight / square).collect()
+        self.engine.mesh().node_weights().map(|weight| weight / square).collect()
     }
 
-    /// Takes `start` for the start of a branch, and its response for the scale of theta.
-    pub(super) fn begin(&mut self, start: &mut Point) {
+    /// Takes `start` for the start of a branch, and its response for the scale of turns.
+    pub(super) fn begin(&mut self, start: &mut Point<E>) {
         self.progress = Progress::default();
         self.rescale(start, start.turn_by_load(self.scale));
     }
 
-    /// Fits the scale of theta to the way from `here` to `next`, which becomes the next point to start from: the path
+    /// Fits the scale of turns to the way from `here` to `next`, which becomes the next point to start from: the path
     /// must not be long in the load alone, or a shape that changes little, as that of an arm which hardly leans to
     /// either side, would turn back and forth within a step.
-    pub(super) fn went(&mut self, here: &Point, next: &mut Point) {
+    pub(super) fn went(&mut self, here: &Point<E>, next: &mut Point<E>) {
         let way = self.distance(here, next);
         let climb = next.fraction - here.fraction;
         self.progress.turn += self.scale * (way * way - climb * climb).max(0.0).sqrt();
@@ -227,9 +225,9 @@ impl<'e> Stepper<'e> {
         self.rescale(next, self.progress.turn / self.progress.climb);
     }
 
-    /// Widens the scale of theta to `wanted` (rad a whole load), and gives `point` the tangent of the metric that
+    /// Widens the scale of turns to `wanted` (rad a whole load), and gives `point` the tangent of the metric that
     /// follows.
-    fn rescale(&mut self, point: &mut Point, wanted: f64) {
+    fn rescale(&mut self, point: &mut Point<E>, wanted: f64) {
         let first = self.progress.turn == 0.0;
         let least = if first { FINE_SCALE } else { self.scale };
         let scale = if wanted.is_finite() { wanted.clamp(least, 1.0) } else { 1.0 };
@@ -240,16 +238,16 @@ impl<'e> Stepper<'e> {
 
     /// The point here. Its tangent is oriented by the determinant, whose sign times that of the climb is
     /// the same all along a branch, round folds and corners alike, until another branch crosses.
-    pub(super) fn point(&mut self, fraction: f64) -> Result<Point, Trouble> {
+    pub(super) fn point(&mut self, fraction: f64) -> Result<Point<E>, Trouble> {
         self.linearise()?;
         self.point_of_round(fraction)
     }
 
     /// [`Stepper::point`] by the last linearisation.
-    fn point_of_round(&mut self, fraction: f64) -> Result<Point, Trouble> {
-        self.engine.take_switches();
-        let weights = self.weights();
-        let square: f64 = weights.iter().zip(&self.round.response.nodes).map(|(w, z)| w * z[0] * z[0]).sum();
+    fn point_of_round(&mut self, fraction: f64) -> Result<Point<E>, Trouble> {
+        self.engine.note_sides();
+        let turns = self.engine.turns(&self.round.response);
+        let square: f64 = self.weights().iter().zip(&turns).map(|(w, turn)| weighed(*w, turn, turn)).sum();
         let norm = (1.0 + square).sqrt();
         if !norm.is_finite() {
             return Err(Trouble::Singular);
@@ -260,32 +258,31 @@ impl<'e> Stepper<'e> {
         let (state, response) = (self.engine.state(), self.round.response.clone());
         let (tensions, margins) = (self.round.tension[1].clone(), self.margins());
         let (oriented, size) = (known.is_some(), determinant.log);
-        Ok(Point { state, fraction, response, tensions, margins, dlambda_ds, oriented, size, error: self.error })
+        Ok(Point { state, fraction, response, turns, tensions, margins, dlambda_ds, oriented, size, error: self.error })
     }
 
     /// Moves the solution from `here` along its tangent.
-    pub(super) fn predict(&mut self, here: &Point, step: f64) -> f64 {
+    pub(super) fn predict(&mut self, here: &Point<E>, step: f64) -> f64 {
         self.current = false;
         self.stretch = 0.0;
         self.engine.restore(&here.state);
         let climb = step * here.dlambda_ds;
-        self.engine.solution.add(&here.response, climb);
-        self.engine.add_tensions(&here.tensions, climb);
+        self.engine.move_along(&here.response, &here.tensions, climb);
         here.fraction + climb
     }
 
     pub(super) fn advance(
         &mut self,
-        here: &Point,
+        here: &Point<E>,
         step: f64,
         control: StepControl,
-    ) -> Result<(Point, StepOutcome), Trouble> {
+    ) -> Result<(Point<E>, StepOutcome), Trouble> {
         let mut fraction = self.predict(here, step);
         let [low, high] = self.bounds;
         if fraction >= high || fraction <= low {
             return self.land(here, if fraction >= high { high } else { low }, control);
         }
-        let from = self.engine.solution.clone();
+        let from = self.engine.nodes();
         self.correct(here, &mut fraction)?;
         self.arrive(here, &from, Fraction::Free(fraction), step, control)
     }
@@ -293,14 +290,14 @@ impl<'e> Stepper<'e> {
     /// A step that ends at a given fraction; near a fold that is refused, and steps shrink.
     pub(super) fn land(
         &mut self,
-        here: &Point,
+        here: &Point<E>,
         fraction: f64,
         control: StepControl,
-    ) -> Result<(Point, StepOutcome), Trouble> {
+    ) -> Result<(Point<E>, StepOutcome), Trouble> {
         let step = (fraction - here.fraction) / here.dlambda_ds;
         self.predict(here, step);
         self.set(fraction);
-        let from = self.engine.solution.clone();
+        let from = self.engine.nodes();
         roughly(self.engine.newton(1e-6 * self.scale, 9))?;
         let (end, turn) = self.arrive(here, &from, Fraction::Fixed(fraction), step, control)?;
         if turn == StepOutcome::Regular && end.dlambda_ds * here.dlambda_ds < 0.0 {
@@ -309,73 +306,48 @@ impl<'e> Stepper<'e> {
         Ok((end, turn))
     }
 
-    /// The point of the branch at which the tip has a given angle, from one nearby. There is one wherever that angle
-    /// alone decides the shape, round sharp folds, too, of which no tangent at a distance knows.
-    pub(super) fn at_tip_angle(&mut self, here: &Point, angle: f64, control: StepControl) -> Result<Point, Trouble> {
-        let climb = (angle - here.tip_angle()) * here.slope();
-        let mut fraction = self.predict(here, climb / here.dlambda_ds);
-        let from = self.engine.solution.clone();
-        self.correct_at_tip(&mut fraction)?;
-        let moved = largest_turn(&from, &self.engine.solution);
-        if moved > MOVED {
-            return Err(Trouble::Stalled(moved));
-        }
-        let mut fraction = Fraction::AtTip(fraction);
-        self.keep_accuracy(None, &mut fraction, [control.accuracy; 2])?;
-        self.engine.check_ends()?;
-        self.point(fraction.value())
-    }
-
     /// Newton on the plane through the present state that the tangent at `here` is normal to.
-    pub(super) fn correct(&mut self, here: &Point, fraction: &mut f64) -> Result<(), Trouble> {
-        let normal: Vec<f64> =
-            here.tangent_on(&self.engine.solution.mesh).zip(self.weights()).map(|(t, w)| t * w).collect();
+    pub(super) fn correct(&mut self, here: &Point<E>, fraction: &mut f64) -> Result<(), Trouble> {
+        let normal: Vec<Turn> =
+            here.tangent_on(self.engine.mesh()).zip(self.weights()).map(|(t, w)| t.map(|t| t * w)).collect();
         self.correct_on(&normal, here.dlambda_ds, fraction)
     }
 
-    /// Newton with the angle of the tip as it is.
-    fn correct_at_tip(&mut self, fraction: &mut f64) -> Result<(), Trouble> {
-        let mut normal = vec![0.0; self.engine.solution.nodes.len()];
+    /// Newton with the angle of the tip about its c as it is.
+    pub(super) fn correct_at_tip(&mut self, fraction: &mut f64) -> Result<(), Trouble> {
+        let mut normal = vec![[0.0; 3]; self.engine.mesh().nodes().len()];
         if let Some(tip) = normal.last_mut() {
-            *tip = 1.0;
+            tip[2] = 1.0;
         }
         self.correct_on(&normal, 0.0, fraction)
     }
 
-    /// Newton on the plane through the present state with the normal `normal`, over theta at the nodes, and `climb`,
-    /// over the fraction.
-    fn correct_on(&mut self, normal: &[f64], climb: f64, fraction: &mut f64) -> Result<(), Trouble> {
+    /// Newton on the plane through the present state with the normal `normal`, over the turns of the nodes, and
+    /// `climb`, over the fraction.
+    fn correct_on(&mut self, normal: &[Turn], climb: f64, fraction: &mut f64) -> Result<(), Trouble> {
         // In a hurry, when the next one would be none.
-        let close = self.scale * if self.engine.in_a_hurry { CLOSE } else { 1e-6 };
+        let close = self.scale * if self.engine.is_in_a_hurry() { CLOSE } else { 1e-6 };
         let mut before = f64::INFINITY;
         for round in 0..12 {
             self.set(*fraction);
             self.linearise()?;
-            let dot = |c: &Correction<N, M, Q, L>| -> f64 { normal.iter().zip(&c.nodes).map(|(n, z)| n * z[0]).sum() };
-            let slide = bordered(dot(&self.round.rest), dot(&self.round.response), climb);
-            self.engine.system.quadratures(&mut self.engine.spans);
-            self.engine.tip = [0.0; Q];
-            for (i, span) in self.engine.spans.iter_mut().enumerate() {
-                for q in 0..Q {
-                    span[q] += self.round.rest.by_element[i][q] + slide * self.round.response.by_element[i][q];
-                    self.engine.tip[q] += span[q];
-                }
-            }
-            self.engine.add_round(&self.round, 0, 1.0);
-            self.engine.add_round(&self.round, 1, slide);
+            let [rest, response] = [&self.round.rest, &self.round.response].map(|change| self.engine.turns(change));
+            let along = |turns: &[Turn]| -> f64 { normal.iter().zip(turns).map(|(n, turn)| dot(n, turn)).sum() };
+            let slide = bordered(along(&rest), along(&response), climb);
+            self.engine.take_round(&self.round, slide);
             *fraction += slide;
-            let turns = self.round.rest.nodes.iter().zip(&self.round.response.nodes);
-            let size = turns.map(|(rest, response)| (rest[0] + slide * response[0]).abs()).fold(slide.abs(), f64::max);
-            self.engine.last = size;
-            if !size.is_finite() || size > 1.0 || (round > 3 && size > 10.0 * before) {
-                return Err(Trouble::Stalled(size));
+            let turns = rest.iter().zip(&response).map(|(rest, by)| size(&each(|k| rest[k] + slide * by[k])));
+            let largest = turns.fold(slide.abs(), f64::max);
+            *self.engine.last_mut() = largest;
+            if !largest.is_finite() || largest > 1.0 || (round > 3 && largest > 10.0 * before) {
+                return Err(Trouble::Stalled(largest));
             }
-            before = size;
-            if size < close {
+            before = largest;
+            if largest < close {
                 break;
             }
         }
-        self.current = self.engine.in_a_hurry && before < self.scale * CLOSE;
+        self.current = self.engine.is_in_a_hurry() && before < self.scale * CLOSE;
         self.set(*fraction);
         // Across a kink corrections can hop between two points that are nearer than a path needs.
         if before > HOP { Err(Trouble::Stalled(before)) } else { Ok(()) }
@@ -385,13 +357,13 @@ impl<'e> Stepper<'e> {
     /// the same branch and no fold was stepped over.
     fn arrive(
         &mut self,
-        here: &Point,
-        from: &Solution<N, M, L>,
+        here: &Point<E>,
+        from: &E::Nodes,
         mut fraction: Fraction,
         step: f64,
         control: StepControl,
-    ) -> Result<(Point, StepOutcome), Trouble> {
-        let moved = largest_turn(from, &self.engine.solution);
+    ) -> Result<(Point<E>, StepOutcome), Trouble> {
+        let moved = self.engine.largest_turn_since(from);
         self.stretch = moved / MOVED;
         if moved > MOVED {
             return Err(Trouble::Stalled(moved));
@@ -416,9 +388,10 @@ impl<'e> Stepper<'e> {
         if crossing && (self.crossings_welcome || step.abs() < CORNER || (here.is_symmetric() && next.is_symmetric())) {
             return Ok((next, StepOutcome::Bifurcation));
         }
-        let strict = if self.changed_sides(here) > 0.05 { 0.1 } else { 1.0 };
+        // Where much of a slender arm in line with the stream changes sides within a step, it may do so in a snap.
+        let strict = if self.engine.changed_sides(&here.state) > 0.05 { 0.1 } else { 1.0 };
         let bend = (1.0 - cosine) / (strict * (1.0 - control.straightness));
-        let even = if self.engine.in_a_hurry { strict.max(0.3) } else { strict };
+        let even = if self.engine.is_in_a_hurry() { strict.max(0.3) } else { strict };
         let unevenness = self.unevenness(here, &next, step) / (even * EVEN);
         self.stretch = self.stretch.max(bend).max(unevenness);
         if crossing {
@@ -430,37 +403,12 @@ impl<'e> Stepper<'e> {
         Ok((next, StepOutcome::Regular))
     }
 
-    /// The share of the arm that the stream meets from the other side than at `here`. Where much of a
-    /// slender arm in line with the stream changes sides within a step, it may do so in a snap.
-    fn changed_sides(&self, here: &Point) -> f64 {
-        let mesh = &self.engine.solution.mesh;
-        let gauss = &self.engine.system.gauss;
-        let mut share = 0.0;
-        for (k, s) in self.engine.equations.stations().iter().enumerate() {
-            let e = here.mesh().element_of(*s);
-            let w = gauss.cardinals((s - here.mesh().nodes()[e]) / here.mesh().step(e));
-            let length = mesh.step(k / M) * gauss.b[k % M];
-            for side in 0..2 {
-                let then: f64 = (0..M).map(|j| w[j] * here.state.switch(e, j, side)).sum();
-                if then * self.engine.switch(k / M, k % M, side) < 0.0 {
-                    share += length;
-                }
-            }
-        }
-        share
-    }
-
     /// How far the climb from `a` to `b` over the way there is from the mean of the climbs at both,
     /// over the steeper. Unlike an angle it sees a fold that takes little load.
-    fn unevenness(&self, a: &Point, b: &Point, step: f64) -> f64 {
+    fn unevenness(&self, a: &Point<E>, b: &Point<E>, step: f64) -> f64 {
         // A step that ended past a bound is landed backwards.
         let climb = (b.fraction - a.fraction) * step.signum();
-        let mut square = climb * climb;
-        let gauss = &self.engine.system.gauss;
-        for ((s, z), w) in b.mesh().nodes().iter().zip(&b.state.solution.nodes).zip(self.weights()) {
-            let before = a.state.solution.state_in(gauss, a.mesh().element_of(*s), *s);
-            square += w * (z[0] - before[0]).powi(2);
-        }
+        let square = self.square_of_way(climb, a, b);
         let mean = climb / square.sqrt();
         (mean - 0.5 * (a.dlambda_ds + b.dlambda_ds)).abs() / a.dlambda_ds.abs().max(b.dlambda_ds.abs())
     }
@@ -469,7 +417,7 @@ impl<'e> Stepper<'e> {
     /// what is `enough`.
     pub(super) fn keep_accuracy(
         &mut self,
-        here: Option<&Point>,
+        here: Option<&Point<E>>,
         fraction: &mut Fraction,
         [accuracy, enough]: [f64; 2],
     ) -> Result<(), Trouble> {
@@ -486,7 +434,7 @@ impl<'e> Stepper<'e> {
         for _ in 0..4 {
             let estimate = self.engine.estimate(accuracy, Some(accuracy))?;
             self.error = estimate;
-            let many = self.engine.solution.mesh.elements() > MANY;
+            let many = self.engine.mesh().elements() > MANY;
             if estimate <= accuracy || (many && estimate <= enough) {
                 return Ok(());
             }
@@ -499,7 +447,7 @@ impl<'e> Stepper<'e> {
 
     /// Corrections on another mesh: near a fold there may be no solution at the load that the last mesh
     /// had one at, so the load stays free unless the path ends there.
-    fn correct_again(&mut self, here: Option<&Point>, fraction: &mut Fraction) -> Result<(), Trouble> {
+    fn correct_again(&mut self, here: Option<&Point<E>>, fraction: &mut Fraction) -> Result<(), Trouble> {
         self.current = false;
         match (fraction, here) {
             (Fraction::Free(fraction), Some(here)) => self.correct(here, fraction),
@@ -509,32 +457,26 @@ impl<'e> Stepper<'e> {
     }
 
     /// The length of the step between two points in the metric of the path; the engine is left at the second.
-    pub(super) fn distance(&mut self, a: &Point, b: &Point) -> f64 {
+    pub(super) fn distance(&mut self, a: &Point<E>, b: &Point<E>) -> f64 {
         self.engine.restore(&b.state);
-        let mut square = (b.fraction - a.fraction).powi(2);
-        for ((s, z), w) in b.mesh().nodes().iter().zip(&b.state.solution.nodes).zip(self.weights()) {
-            let before = a.state.solution.state_in(&self.engine.system.gauss, a.mesh().element_of(*s), *s);
-            square += w * (z[0] - before[0]).powi(2);
-        }
-        square.sqrt()
+        self.square_of_way(b.fraction - a.fraction, a, b).sqrt()
     }
 
-    fn cosine(&self, a: &Point, b: &Point) -> f64 {
+    /// The square of the way between two points, the engine being at the second, in the metric of the path.
+    fn square_of_way(&self, climb: f64, a: &Point<E>, b: &Point<E>) -> f64 {
+        let turns = self.engine.turns_between(&a.state, &b.state);
+        turns.iter().zip(self.weights()).fold(climb * climb, |sum, (turn, w)| sum + w * dot(turn, turn))
+    }
+
+    fn cosine(&self, a: &Point<E>, b: &Point<E>) -> f64 {
         // Both on the mesh of `b`, lengths included: a coarse mesh measures them coarsely.
         let (mut both, mut first, mut second) =
             (a.dlambda_ds * b.dlambda_ds, a.dlambda_ds * a.dlambda_ds, b.dlambda_ds * b.dlambda_ds);
         for ((carried, own), w) in a.tangent_on(b.mesh()).zip(b.tangent_on(b.mesh())).zip(self.weights()) {
-            both += w * own * carried;
-            first += w * carried * carried;
-            second += w * own * own;
+            both += weighed(w, &own, &carried);
+            first += weighed(w, &carried, &carried);
+            second += weighed(w, &own, &own);
         }
         both / (first * second).sqrt()
     }
-}
-
-fn largest_turn(a: &Solution<N, M, L>, b: &Solution<N, M, L>) -> f64 {
-    if a.nodes.len() != b.nodes.len() {
-        return 0.0;
-    }
-    a.nodes.iter().zip(&b.nodes).fold(0.0, |m, (a, b)| f64::max(m, (a[0] - b[0]).abs()))
 }

@@ -4,12 +4,12 @@ use crate::rod::parameter::Unfit;
 use crate::statics::engine::Trouble;
 use crate::statics::verdict::SolveError;
 
-/// Why there are no derivatives.
+/// Why there are no derivatives: in the plane, or with [`crate::SpatialError`] in space.
 #[derive(Debug, Clone, thiserror::Error)]
-pub enum SensitivityError {
+pub enum SensitivityError<E = SolveError> {
     /// The arm has no equilibrium.
     #[error(transparent)]
-    Solve(#[from] SolveError),
+    Solve(E),
     /// The arm has no such quantity.
     #[error(transparent)]
     Unfit(#[from] Unfit),
@@ -44,7 +44,13 @@ pub enum SensitivityError {
     Unsettled(f64),
 }
 
-pub(super) fn unsettled(trouble: &Trouble) -> SensitivityError {
+impl From<SolveError> for SensitivityError {
+    fn from(error: SolveError) -> Self {
+        Self::Solve(error)
+    }
+}
+
+pub(crate) fn unsettled<E>(trouble: &Trouble) -> SensitivityError<E> {
     match *trouble {
         Trouble::Singular => SensitivityError::Singular,
         Trouble::Stalled(size) => SensitivityError::Unsettled(size),

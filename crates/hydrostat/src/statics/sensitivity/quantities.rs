@@ -1,28 +1,15 @@
 //! What is differentiated, and how each of it follows the solution and what is given.
 
-use hydrostat_bvp::{
-    Collocation, Correction, Cotangent, EndWeights, Forcing, Functional, LANES, Lanes, Real, Side, StageWeights, each,
-};
+use hydrostat_bvp::{Collocation, EndWeights, Forcing, LANES, Lanes, Real, Side, each};
 
+use super::derivatives::{self, Derivatives, SensitivityMethod, hold, unheld};
 use super::error::{SensitivityError, unsettled};
-use crate::numerics::elimination::solved;
 use crate::rod::parameter::Parameter;
-use crate::statics::engine::{Engine, M, Trouble, linearise, respond, response_change};
+use crate::statics::engine::{Engine, M, Trouble, linearise, response_change};
 use crate::statics::equations::{L, N, Q, StationData, Way};
 
-/// Which way derivatives are found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum SensitivityMethod {
-    /// Whichever takes fewer solves.
-    #[default]
-    Best,
-    /// One solve a parameter.
-    Forward,
-    /// One solve an output.
-    Adjoint,
-}
-
 type System = Collocation<N, M, Q, L>;
+type Row = derivatives::Row<N, Q, L>;
 
 /// What Newton's last round moves (rad, and the tip over L) before an exact derivative is taken.
 const CONVERGED: f64 = 1e-12;
@@ -55,24 +42,6 @@ type Sum = Vec<(Quantity, f64)>;
 
 /// Quantities of a pose.
 pub(crate) const POSE: usize = 4;
-
-/// Derivatives of quantities, one row each, and of the tensions of all cables.
-pub(crate) struct Derivatives {
-    pub(crate) rows: Vec<Vec<f64>>,
-    pub(crate) tensions: Vec<Vec<f64>>,
-}
-
-/// A quantity as weights on the change of the solution and on that of the equations.
-#[derive(Default)]
-struct Row {
-    functional: Functional<N>,
-    /// Weights on the drifts of rates and strains at the stages, in blocks; empty where there are none.
-    stages: Vec<([Lanes; Q], [Lanes; L])>,
-    /// Weights on the drifts of strains at ends: block, lane.
-    ends: Vec<(usize, usize, [f64; L])>,
-    /// What follows the sources at a fixed solution, in SI.
-    direct: Vec<f64>,
-}
 
 impl Engine {
     /// The quantities of the pose at a node (over L).
@@ -130,34 +99,11 @@ impl Engine {
         let mut system = System::with(self.system.gauss.clone());
         linearise(&mut system, &self.equations, &self.solution).ok()?;
         let about = About { engine: self, system: &system };
-        let mut rows = about.unheld_derivatives(&sums, &sources, method)?;
-
-        let count = parameters.len();
-        let strokes = rows.split_off(asked);
-        let mut tensions = vec![vec![0.0; count]; cables];
-        for k in 0..count {
-            if let Parameter::Tension(c) = parameters[k] {
-                tensions[c][k] = 1.0;
-            }
-            if taut.is_empty() {
-                continue;
-            }
-            let row = |(stroke, c): (&Vec<f64>, &usize)| {
-                let command = f64::from(u8::from(parameters[k] == Parameter::Stroke(*c)));
-                (stroke[count..].to_vec(), [command - stroke[k], 0.0])
-            };
-            let (changes, _) = solved(strokes.iter().zip(&taut).map(row).collect())?;
-            for (t, (c, [change, _])) in taut.iter().zip(&changes).enumerate() {
-                tensions[*c][k] = *change;
-                for row in &mut rows {
-                    row[k] += row[count + t] * change;
-                }
-            }
-        }
-        for row in &mut rows {
-            row.truncate(count);
-        }
-        Some(Derivatives { rows, tensions })
+        let rows: Vec<Row> = sums.iter().map(|sum| about.sum_row(sum, &sources)).collect::<Option<_>>()?;
+        let change = |source: &Parameter| response_change(&self.equations, &system, &self.solution, Way::Of(*source));
+        let changes: Vec<Forcing<N, Q, L>> = sources.iter().map(change).collect();
+        let rows = unheld(&system, &self.solution, &rows, &changes, method)?;
+        hold(rows, asked, parameters, &taut, cables)
     }
 }
 
@@ -168,77 +114,6 @@ struct About<'e> {
 }
 
 impl About<'_> {
-    /// Derivatives with all tensions given.
-    fn unheld_derivatives(
-        &self,
-        sums: &[Sum],
-        sources: &[Parameter],
-        method: SensitivityMethod,
-    ) -> Option<Vec<Vec<f64>>> {
-        let rows: Vec<Row> = sums.iter().map(|sum| self.sum_row(sum, sources)).collect::<Option<_>>()?;
-        let changes: Vec<Forcing<N, Q, L>> = sources
-            .iter()
-            .map(|source| response_change(&self.engine.equations, self.system, &self.engine.solution, Way::Of(*source)))
-            .collect();
-        let adjoint = match method {
-            SensitivityMethod::Forward => false,
-            SensitivityMethod::Adjoint => true,
-            SensitivityMethod::Best => rows.len() < sources.len(),
-        };
-        let mut out: Vec<Vec<f64>> = rows.iter().map(|row| row.direct.clone()).collect();
-        if adjoint {
-            for (row, out) in rows.iter().zip(&mut out) {
-                let cotangent = self.system.adjoint(&row.functional);
-                for (out, change) in out.iter_mut().zip(&changes) {
-                    *out += along(&cotangent, change) + row.drifts(change);
-                }
-            }
-        } else {
-            let mut response = Correction::default();
-            for (k, change) in changes.iter().enumerate() {
-                respond(self.system, change, &mut response);
-                let states = self.system.moved_states(&response);
-                for (row, out) in rows.iter().zip(&mut out) {
-                    out[k] += self.apply(&row.functional, &response, &states) + row.drifts(change);
-                }
-            }
-        }
-        out.iter().flatten().all(|v| v.is_finite()).then_some(out)
-    }
-
-    /// What a functional makes of a response.
-    fn apply(&self, functional: &Functional<N>, response: &Correction<N, M, Q, L>, states: &[[Lanes; N]]) -> f64 {
-        let mut sum = 0.0;
-        for (i, weights) in &functional.nodes {
-            sum += (0..N).map(|a| weights[a] * response.nodes[*i][a]).sum::<f64>();
-        }
-        let groups = self.engine.solution.groups();
-        for (block, weights) in functional.stages.iter().enumerate() {
-            let mut own = weights.closure_slope * response.stages[block].closure_slope;
-            for a in 0..N {
-                own += weights.state[a] * states[block][a];
-            }
-            sum += own.0[..groups.filled(block / M)].iter().sum::<f64>();
-        }
-        for end in &functional.ends {
-            sum += end.closure_slope * response.ends[end.block].closure_slope.0[end.lane];
-            let place = &self.engine.solution.directions.ends()[end.block];
-            let (i, side) = (place.elements[end.lane], place.sides[end.lane]);
-            let mut z = response.nodes[i];
-            if side == Side::Right {
-                let (g, lane) = (i / LANES, i % LANES);
-                for l in 0..M {
-                    for a in 0..N {
-                        let slope = response.stages[g * M + l].slope[a].0[lane];
-                        z[a] += self.engine.solution.mesh.step(i) * self.system.gauss.b[l] * slope;
-                    }
-                }
-            }
-            sum += (0..N).map(|a| end.state[a] * z[a]).sum::<f64>();
-        }
-        sum
-    }
-
     /// The row of a sum.
     fn sum_row(&self, sum: &Sum, sources: &[Parameter]) -> Option<Row> {
         let mut out = Row { direct: vec![0.0; sources.len()], ..Row::default() };
@@ -261,7 +136,9 @@ impl About<'_> {
             row.functional.nodes.push((i, weights));
         };
         match quantity {
-            Quantity::Position(node, q) => self.add_position(node, q, weight * length, row),
+            Quantity::Position(node, q) => {
+                row.add_position(self.system, self.engine.solution.groups(), [node, q], weight * length);
+            }
             Quantity::Theta(node) => state(node, 0, weight),
             Quantity::Base(k) => state(0, k + 1, -weight * if k < 2 { force } else { force * length }),
             Quantity::Alpha(node) => self.add_alpha(node, weight, sources, row)?,
@@ -294,27 +171,6 @@ impl About<'_> {
             Quantity::Command(c) => equations.stroke(c, StationData::of(self.system))[0],
             Quantity::Base(2) => -solution.nodes[0][3] * equations.units.force,
             Quantity::Theta(_) | Quantity::Alpha(_) | Quantity::Base(_) => 0.0,
-        }
-    }
-
-    /// x (0) or y (1) at a node: the integral of its slope.
-    fn add_position(&self, node: usize, q: usize, factor: f64, row: &mut Row) {
-        let groups = self.engine.solution.groups();
-        row.reserve(groups.count() * M);
-        for (block, local) in self.system.locals().iter().enumerate() {
-            let (g, j) = (block / M, block % M);
-            let mut weight = Lanes::default();
-            for lane in 0..groups.filled(g) {
-                if g * LANES + lane < node {
-                    weight.0[lane] = factor * self.system.steps()[g].0[lane] * self.system.gauss.b[j];
-                }
-            }
-            let own = &mut row.functional.stages[block];
-            for a in 0..N {
-                own.state[a] += weight * local.rate_gradient[q][a];
-            }
-            own.closure_slope += weight * local.rate_by_closure[q];
-            row.stages[block].0[q] += weight;
         }
     }
 
@@ -394,48 +250,4 @@ impl About<'_> {
         let before = node.checked_sub(1).and_then(|element| find(element, Side::Right));
         before.or_else(|| find(node, Side::Left))
     }
-}
-
-impl Row {
-    /// Room for weights at so many blocks of stations.
-    fn reserve(&mut self, blocks: usize) {
-        self.functional.stages.resize(blocks, StageWeights::default());
-        self.stages.resize(blocks, ([Lanes::default(); Q], [Lanes::default(); L]));
-    }
-
-    /// What the drifts of rates and strains add.
-    fn drifts(&self, change: &Forcing<N, Q, L>) -> f64 {
-        let mut sum = Lanes::default();
-        for ((rates, strains), drift) in self.stages.iter().zip(&change.stages) {
-            for q in 0..Q {
-                sum += rates[q] * drift.rate[q];
-            }
-            for k in 0..L {
-                sum += strains[k] * drift.inner[k];
-            }
-        }
-        let mut out: f64 = sum.0.iter().sum();
-        for (block, lane, by) in &self.ends {
-            if let Some((inner, _)) = change.ends.get(*block) {
-                out += (0..L).map(|k| by[k] * inner[k].0[*lane]).sum::<f64>();
-            }
-        }
-        out
-    }
-}
-
-/// What weights on changes of the equations make of one.
-fn along(weights: &Cotangent<N>, change: &Forcing<N, Q, L>) -> f64 {
-    let mut sum = Lanes::default();
-    for ((slopes, values), drift) in weights.slopes.iter().zip(&weights.values).zip(&change.stages) {
-        for a in 0..N {
-            sum += slopes[a] * drift.slope[a];
-        }
-        sum += *values * drift.value;
-    }
-    for (weight, (_, value)) in weights.ends.iter().zip(&change.ends) {
-        sum += *weight * *value;
-    }
-    let conditions = weights.left.iter().zip(&change.left).chain(weights.right.iter().zip(&change.right));
-    sum.0.iter().sum::<f64>() + conditions.map(|(w, v)| w * v).sum::<f64>()
 }

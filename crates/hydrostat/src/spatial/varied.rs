@@ -1,0 +1,139 @@
+//! The equations of an arm in space whose loads, support or material follow one parameter over a range, as in the
+//! plane.
+
+use hydrostat_bvp::{Lanes, each};
+
+use super::equations::Equations;
+use super::loads::water;
+use super::place::base_of;
+use super::section::CableAt;
+use crate::rod::parameter::Parameter;
+use crate::statics::equations::{Change, StrokeControl, Varied};
+use crate::statics::path::traced::Turn;
+use crate::statics::verdict::Phase;
+
+impl Equations {
+    /// Lets `parameter` run from `from` to `to`; the equations are at share 0 of the range.
+    pub(super) fn vary(&mut self, parameter: Parameter, from: f64, to: f64) {
+        self.varied = Some(Varied { ways: vec![Change { parameter, from, to }], share: 0.0 });
+        self.set_share(0.0);
+    }
+
+    /// The parameter's value at a share of its range.
+    pub(super) fn value_at(&self, share: f64) -> f64 {
+        self.varied_over().and_then(|ways| ways.first()).map_or(share, |way| way.value(share))
+    }
+
+    /// Where in the range the equations are.
+    pub(super) fn share(&self) -> f64 {
+        self.varied.as_ref().map_or(0.0, |v| v.share)
+    }
+
+    /// Takes the arm at a share of the range, within it or beyond.
+    pub(super) fn set_share(&mut self, share: f64) {
+        let Some(varied) = &mut self.varied else { return };
+        varied.share = share;
+        for way in varied.ways.clone() {
+            self.set_parameter(way.parameter, way.value(share));
+        }
+    }
+
+    /// Takes the arm with another value of a parameter that it was checked to have.
+    pub(super) fn set_parameter(&mut self, parameter: Parameter, value: f64) {
+        let _ = parameter.set(&mut self.arm, value);
+        self.take_arm(parameter.is_of_sections());
+    }
+
+    /// Takes loads, base and tensions of the arm of other equations, which may be at another share of a range, before
+    /// anything is placed.
+    pub(super) fn take_arm_of(&mut self, other: &Self) {
+        if other.varied.is_some() {
+            self.arm.clone_from(&other.arm);
+            self.take_arm(false);
+            self.base = other.base;
+        }
+        self.tensions.clone_from(&other.tensions);
+    }
+
+    /// Takes all that follows from the arm but the data of sections, and these where they changed.
+    pub(super) fn take_arm(&mut self, sections: bool) {
+        self.space = self.arm.space.clone().unwrap_or_default();
+        self.upright.clone_from(&self.arm);
+        self.take_gravity();
+        self.water = water(&self.arm);
+        self.take_base();
+        self.set_tensions();
+        if sections {
+            self.take_sections();
+        }
+    }
+
+    pub(super) fn take_gravity(&mut self) {
+        if let Some(gravity) = &mut self.upright.gravity {
+            gravity.direction = 0.0;
+        }
+        let pull = self.arm.gravity_in_space();
+        let size = pull.iter().map(|v| v * v).sum::<f64>().sqrt();
+        self.gravity = if size > 0.0 { pull.map(|v| v / size) } else { [0.0; 3] };
+    }
+
+    /// The quaternion of the base; of both that mean it, that nearer to the last one.
+    fn take_base(&mut self) {
+        let base = base_of(&self.arm);
+        let along: f64 = (0..4).map(|k| base[k] * self.base[k]).sum();
+        self.base = if along < 0.0 { base.map(|v| -v) } else { base };
+    }
+
+    /// Takes the data of sections and cables anew at all stations and ends.
+    fn take_sections(&mut self) {
+        let count = self.tensions.len();
+        for block in 0..self.places.len() {
+            let s = self.places[block].s;
+            self.places[block] = self.place_four(s);
+            for c in 0..count {
+                let own = block * count + c;
+                self.cables[own] = CableAt { tension: self.cables[own].tension, ..self.cable_four(c, s) };
+            }
+        }
+        for block in 0..self.end_sections.len() {
+            let s = self.end_sections[block].0;
+            self.end_sections[block].1 = self.place_four(s).stiffness;
+            for c in 0..count {
+                let own = block * count + c;
+                self.end_cables[own] = CableAt { tension: self.end_cables[own].tension, ..self.cable_four(c, s) };
+            }
+        }
+    }
+
+    /// What is varied.
+    pub(super) fn varied_over(&self) -> Option<&[Change]> {
+        self.varied.as_ref().map(|varied| varied.ways.as_slice())
+    }
+
+    /// Makes the derivative by the parameter that by a couple along the arm, about the directors, over s/L.
+    pub(super) fn impose_couple(&mut self, couple: Option<&dyn Fn(f64) -> Turn>) {
+        self.imposed = couple.map(|couple| {
+            let four = |s: Lanes| {
+                let own: [Turn; 4] = each(|lane| couple(s.0[lane]));
+                each(|k| Lanes(each(|lane| own[lane][k])))
+            };
+            self.places.iter().map(|place| four(place.s)).collect()
+        });
+    }
+
+    /// The change of the stroke that is commanded of held cable `index` a unit of the parameter, over L.
+    pub(super) fn command_derivative(&self, held: &StrokeControl, index: usize) -> f64 {
+        let cable = held.cables[index];
+        match self.varied_over() {
+            _ if self.imposed.is_some() => 0.0,
+            Some(ways) => {
+                let own = ways.iter().find(|way| way.parameter == Parameter::Stroke(cable));
+                own.map_or(0.0, |way| way.whole() / self.units.length)
+            }
+            None if self.phase == Phase::Stroke => {
+                self.arm.cables[cable].stroke.unwrap_or(0.0) / self.units.length - held.from[index]
+            }
+            _ => 0.0,
+        }
+    }
+}
