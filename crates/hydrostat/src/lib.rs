@@ -125,8 +125,9 @@
 //!
 //! Equilibria are quasi-static; [`motion`] has the arm in time, in the plane. An arm in space ([`Arm::space`]) has a
 //! solver of its own, [`SpatialSolver`], with derivatives, paths ([`Arm::path_in_space`]) and tensions for a place
-//! ([`Arm::reach_in_space`]); everything else is for arms in the plane. The section law is linear in the strains. Cables act by their tension alone: they do not press into the material. Contact of the arm with itself is
-//! not detected; [`Configuration::fold_margin`] is about the surface of a single section. The outside pressure on the
+//! ([`Arm::reach_in_space`]); everything else is for arms in the plane. The section law is linear in the strains.
+//! Cables act by their tension alone: they do not press into the material. Contact of the arm with itself is not
+//! detected; [`Configuration::fold_margin`] is about the surface of a single section. The outside pressure on the
 //! wall of a sealed cavity is left out. The tangential load of the source's flow law corresponds to C_t = 4/9;
 //! published coefficients of arms are 0.005 to 0.03. An answer that depends strongly on this load carries a
 //! [`Warning::TangentialLoad`]; [`FlowLaw::QuadraticDrag`] is the alternative.
