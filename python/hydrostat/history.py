@@ -39,7 +39,7 @@ class HistorySnap:
     duration : float
         How long it takes until the arm stays within 0.002 L of where it rests, s.
     lands_elsewhere : bool or None
-        Whether it lands elsewhere than where the curve of equilibria leads on to; None where that does not lead on.
+        Whether it ends in another shape than the curve of equilibria; None if the curve does not continue.
     """
 
     row: int

@@ -274,7 +274,7 @@ class Reach(Result, Sequence[Reached]):
 
     def __repr__(self) -> str:
         if self.closest is not None:
-            return f"<Reach: not reached, the closest is off by {self.closest.distance:.2g} of the length>"
+            return f"<Reach: not reached, the closest shape misses by {self.closest.distance:.2g} of the length>"
         return f"<Reach: {len(self)} solution(s)>"
 
     def to_json(self) -> str:

@@ -103,7 +103,7 @@ class Snap:
         Where the motion after the snap was followed (``after_snap=True``): how long it takes until the arm stays within
         0.002 L of where it rests, s.
     lands_elsewhere : bool or None
-        Whether that motion lands elsewhere than where the curve of equilibria leads on to; None where that is not known.
+        Whether that motion ends in another shape than the curve of equilibria; None if this is not known.
     """
 
     phase: str

@@ -20,6 +20,7 @@ pub(crate) mod serve;
 mod shape;
 pub(crate) mod shell;
 pub(crate) mod simulate;
+mod slip;
 pub(crate) mod solve;
 mod solve_spatial;
 mod summary;

@@ -90,17 +90,7 @@ pub(crate) enum WrongRequest {
 impl std::fmt::Display for WrongRequest {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::UnknownArm(name) => {
-                write!(f, "`{name}` is neither a file nor an arm that ships with the program (")?;
-                for (i, shipped) in shipped_names().enumerate() {
-                    write!(f, "{}{shipped}", if i == 0 { "" } else { ", " })?;
-                }
-                f.write_str(")")?;
-                match nearest(name) {
-                    Some(near) => write!(f, "; did you mean `{near}`?"),
-                    None => Ok(()),
-                }
-            }
+            Self::UnknownArm(name) => f.write_str(&unknown_arm(name)),
             Self::Setting(text) => {
                 write!(f, "--set {text}: expected KEY=VALUE, such as flow.speed=0.5 or cable[0].tension=\"20 N\"")
             }
@@ -149,12 +139,7 @@ impl std::fmt::Display for WrongRequest {
             Self::OnlyInSpace(option, instead) => {
                 write!(f, "{option}: it is for arms with `space = \"spatial\"`, and this arm is in the plane; {instead}")
             }
-            Self::Coordinates { in_space: true } => {
-                f.write_str("--target: expected X,Y,Z of an arm with `space = \"spatial\"`, found two coordinates")
-            }
-            Self::Coordinates { in_space: false } => {
-                f.write_str("--target: expected X,Y of an arm in the plane, found three coordinates")
-            }
+            Self::Coordinates { in_space } => f.write_str(coordinates(*in_space)),
             Self::NotOfArm { quantity, in_space: true } => write!(
                 f,
                 "--quantity {quantity}: an arm with `space = \"spatial\"` has tip.x, tip.y, tip.z, tip.alpha and the strokes of its cables"
@@ -178,10 +163,7 @@ impl std::fmt::Display for WrongRequest {
             Self::Exists(path) => write!(f, "{} exists; remove it or choose another name", path.display()),
             Self::NoCommand(name, all) => write!(f, "`{name}` is not a command; the commands are {}", all.join(", ")),
             Self::Declined => f.write_str("nothing was solved"),
-            Self::Interrupted(time, resumable) => {
-                write!(f, "interrupted after {time} s, all until then is written")?;
-                f.write_str(if *resumable { "; go on with the same command and --resume" } else { "" })
-            }
+            Self::Interrupted(time, resumable) => f.write_str(&interrupted(*time, *resumable)),
             Self::OtherRun(path) => write!(
                 f,
                 "--resume: {} is of another arm, other loads or other options; remove it, or choose another output",
@@ -209,6 +191,25 @@ impl std::fmt::Display for WrongRequest {
 }
 
 impl std::error::Error for WrongRequest {}
+
+fn unknown_arm(name: &str) -> String {
+    let shipped: Vec<&str> = shipped_names().collect();
+    let hint = nearest(name).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    format!("`{name}` is neither a file nor an arm that ships with the program ({}){hint}", shipped.join(", "))
+}
+
+fn coordinates(in_space: bool) -> &'static str {
+    if in_space {
+        "--target: expected X,Y,Z of an arm with `space = \"spatial\"`, found two coordinates"
+    } else {
+        "--target: expected X,Y of an arm in the plane, found three coordinates"
+    }
+}
+
+fn interrupted(time: f64, resumable: bool) -> String {
+    let hint = if resumable { "; resume with the same command and --resume" } else { "" };
+    format!("interrupted after {time} s; the rows before are written{hint}")
+}
 
 fn nearest(name: &str) -> Option<&'static str> {
     let score = |candidate: &str| strsim::jaro_winkler(name, candidate);

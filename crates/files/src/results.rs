@@ -170,7 +170,7 @@ pub(crate) struct SnapOut {
 struct SnapMotionOut {
     /// s
     duration: f64,
-    /// Whether the motion lands elsewhere than where the curve of equilibria leads on to; `null` where it does not.
+    /// Whether the motion ends in another shape than the curve of equilibria; `null` if the curve does not continue.
     lands_elsewhere: Option<bool>,
 }
 

@@ -509,7 +509,7 @@ mod tests {
             ),
             ("t_s,t_ms", "column 2: the times are there twice"),
             ("t_s,cable_0_tension_mm", "column 2: `cable_0_tension_mm` cannot change over time; "),
-            ("flow.speed", "column 1: expected a column `t_s` with times in s, found none"),
+            ("flow.speed,tip.moment", "column 1: expected a column `t_s` with times in s, found none"),
         ] {
             let error = read(&format!("{heads}\n0,0\n")).unwrap_err();
             assert!(error.starts_with(&format!("loads.csv:1: {words}")), "{error}");

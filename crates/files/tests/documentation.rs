@@ -9,9 +9,9 @@ use hydrostat::{
     ReachOptions, Stations, Target,
 };
 use hydrostat_files::{
-    ArmFile, BoundaryDocument, Dimension, EquilibriaDocument, FollowedDocument, LoadRows, LoadingRow, OverDocument,
-    PathDocument, ReachDocument, Varied, boundary_csv, followed_csv, loading_csv, motion_columns, over_csv, path_csv,
-    reach_csv, schema, stations_csv,
+    ArmFile, BoundaryDocument, Dimension, EquilibriaDocument, FollowedDocument, LoadRows, LoadingRow,
+    MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, OverDocument, PathDocument, ReachDocument, Varied, boundary_csv,
+    followed_csv, loading_csv, motion_columns, over_csv, path_csv, reach_csv, schema, stations_csv,
 };
 use serde_json::Value;
 
@@ -196,8 +196,9 @@ fn its_names_are_those_of_the_results() {
     let reached = [reach_header(), followed_csv(1, &[]), boundary_csv(1, &Boundary { pieces: Vec::new() })];
     let motion = motion_columns(1).join(",") + "\n";
     let (arm, _) = pulled();
-    assert_eq!(blocks("csv")[..5], [header, path_header(), motion, loading_header(&arm), over_header()]);
-    assert_eq!(blocks("csv")[5..], reached);
+    let beside = format!("{MOTION_SHAPE_HEADS}\n{MOTION_EVENT_HEADS}\n");
+    assert_eq!(blocks("csv")[..6], [header, path_header(), motion, beside, loading_header(&arm), over_header()]);
+    assert_eq!(blocks("csv")[6..], reached);
     let middle = Target { s: Some(0.1), ..Target::tip(0.09, 0.0) };
     let columns = reach_csv(1, &arm.reach(&[middle], &ReachOptions::default()).unwrap());
     for name in columns.lines().next().unwrap().split(',').filter(|name| name.starts_with("place")) {

@@ -2,12 +2,13 @@
 
 use hydrostat::{
     AfterSnapError, Arm, ArmError, Configuration, NoEquilibrium, Options, SnapMotion, SolveError, Solver, Stability,
-    Verdict, VerdictKind,
+    VerdictKind,
 };
 use hydrostat_figures::{arm_figure, last_good_note};
-use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, likeliest_slip, stations_csv, unit_slips};
+use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, stations_csv};
 
 use super::Advised;
+use super::slip::slip;
 use super::summary::summary;
 use crate::args::{Format, SolveArgs};
 use crate::output;
@@ -143,16 +144,6 @@ fn beyond(failure: &NoEquilibrium) -> Option<String> {
         None => "the path does not continue to the full loads".to_owned(),
     };
     Some(format!("{}; {leads}", snap.message()))
-}
-
-/// Advice about the units, which comes first: where no limit of the arm was established, and where a number looks like
-/// a slip, a unit is mostly wrong.
-pub(super) fn slip(arm: &Arm, verdict: &Verdict) -> Option<String> {
-    if verdict.kind == VerdictKind::NotFound {
-        return likeliest_slip(arm).map(|slip| format!("look at the units first: {slip}"));
-    }
-    let slip = unit_slips(arm).into_iter().next()?;
-    Some(format!("look at the units first: {slip} If the unit is right: {}", verdict.advice()))
 }
 
 /// The equilibria that the path does not lead to, where it turns back: looked for with no finer tolerance than a count needs.

@@ -10,7 +10,7 @@ use hydrostat_figures::{last_good_note, spatial_arm_figure};
 use hydrostat_files::{Note, SpatialFailureDocument, SpatialSolutionDocument, number, spatial_stations_csv};
 
 use super::Advised;
-use super::solve::slip;
+use super::slip::slip;
 use super::summary::{cable_rows, signed, stability_in_words, work};
 use crate::args::{Format, SolveArgs};
 use crate::output;

@@ -153,7 +153,7 @@ fn examples_of_the_help_were_not_reached() {
     let help = solved(&["reach", "--help"]).out;
     let examples: Vec<&str> =
         help.lines().filter(|line| line.starts_with("  hydrostat reach") && line.contains("--target")).collect();
-    assert_eq!(examples.len(), 6, "{help}");
+    assert_eq!(examples.len(), 7, "{help}");
     for line in examples {
         let (line, said) = line.trim().split_once("    not reached").map_or((line.trim(), 0), |(line, _)| (line, 3));
         let words = super::guide::words(line);

@@ -53,9 +53,9 @@ impl SnapMotion {
     /// What happens, in a phrase with its numbers, for an arm of this length (m).
     pub fn message(&self, length: f64) -> String {
         let curve = match self.on_curve {
-            _ if self.lands_elsewhere(length) => ", elsewhere than the curve of equilibria leads on to",
-            Some(_) => ", where the curve of equilibria leads on to",
-            None => "; the curve of equilibria does not lead on",
+            _ if self.lands_elsewhere(length) => ", in another shape than the curve of equilibria",
+            Some(_) => ", on the curve of equilibria",
+            None => "; the curve of equilibria does not continue",
         };
         format!("{}; it rests after {:.3} s{curve}", self.snap.message(), self.duration)
     }

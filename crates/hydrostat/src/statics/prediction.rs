@@ -89,14 +89,14 @@ fn weights(chosen: &[usize], ways: &[Vec<f64>], way: &[f64]) -> Option<Vector3<f
 /// The steps that, one after the other, make these weights.
 fn in_turn(weights: &[f64]) -> Option<Vec<f64>> {
     // The last step takes its weight whole, and those before are scaled by what it leaves of them.
-    let mut left = 1.0;
+    let mut left = 1.0_f64;
     let mut steps = vec![0.0; weights.len()];
     for (step, weight) in steps.iter_mut().zip(weights).rev() {
-        *step = -weight / left;
-        left -= weight;
         if left.abs() < 0.1 {
             return None;
         }
+        *step = -weight / left;
+        left -= weight;
     }
     Some(steps)
 }
