@@ -35,8 +35,8 @@ impl Arm {
     }
 
     /// [`Arm::path`] that hands every point to `watch` as it is found, and ends after the first for which that is
-    /// false: with [`crate::PathEnd::Stopped`], unless that point is the last anyway, and without the branches that were
-    /// still to come.
+    /// false: with [`crate::PathEnd::Stopped`], unless that point is the last anyway, and without the branches that
+    /// were still to come.
     ///
     /// ```
     /// use hydrostat::{Arm, Parameter, PathEnd, PathOptions};
