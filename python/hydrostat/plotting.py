@@ -181,8 +181,10 @@ _QUANTITIES = {
 
 def plot_path(path: EquilibriumPath, quantity: str, ax: Axes | None) -> Axes:
     """See `Path.plot`."""
-    if quantity not in _QUANTITIES:
-        raise ValueError(f"quantity: expected one of {', '.join(_QUANTITIES)}, found {quantity!r}")
+    other = "tip_theta" if path._inner.in_space else "tip_z"
+    known = [name for name in _QUANTITIES if name != other]
+    if quantity not in known:
+        raise ValueError(f"quantity: expected one of {', '.join(known)}, found {quantity!r}")
     ax = _new_axes(ax)
     factor, words = _QUANTITIES[quantity]
     for branch in path.branches:

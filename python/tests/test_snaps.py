@@ -48,8 +48,14 @@ def against(silicone: hs.Arm) -> hs.Arm:
 
 def as_document(snaps: tuple[hs.Snap, ...]) -> list[dict[str, Any]]:
     """As the program's documents have them."""
+    of_motion = ("duration", "lands_elsewhere")
     return [
-        {**dataclasses.asdict(snap), "before": snap.before._asdict(), "after": snap.after._asdict()} for snap in snaps
+        {
+            **{name: value for name, value in dataclasses.asdict(snap).items() if name not in of_motion or value is not None},
+            "before": snap.before._asdict(),
+            "after": snap.after._asdict(),
+        }
+        for snap in snaps
     ]
 
 

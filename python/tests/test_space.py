@@ -170,10 +170,10 @@ def test_places_in_space_are_reached(arm: hs.Arm) -> None:
     assert isinstance(found[0].solution, hs.SpatialSolution) and found.targets == (hs.SpatialTarget(*target),)
     assert np.allclose(found[0].tensions, [0.12, 0.03, 0.07], atol=1e-4)
     place = pulled.at(0.15)
-    there = hs.SpatialTarget(float(place.x), float(place.y), float(place.z), s=0.15)
+    there = hs.SpatialTarget(place.x.item(), place.y.item(), place.z.item(), s=0.15)
     along = arm.reach(there, max_tension=0.5, find_all=False)
     places: Any = along[0].places
-    assert places.z[0] == pytest.approx(float(place.z), abs=1e-7)
+    assert places.z[0] == pytest.approx(place.z.item(), abs=1e-7)
     missed = arm.reach((0.4, 0, 0), max_tension=0.5, find_all=False)
     assert len(missed) == 0 and missed.closest is not None and missed.closest.distance > 0.1
     assert pickle.loads(pickle.dumps(found)) == found
