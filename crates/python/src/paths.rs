@@ -184,7 +184,9 @@ impl Path {
 
     fn shapes_figure(&self, title: &str) -> PyResult<Figure> {
         let Found::Plane(path) = &self.found else {
-            return Err(wrong("shapes along a path are drawn of arms in the plane, and this arm has `space = \"spatial\"`"));
+            return Err(wrong(
+                "shapes along a path are drawn of arms in the plane, and this arm has `space = \"spatial\"`",
+            ));
         };
         let page = Page::default();
         Ok(Figure::new(hydrostat_figures::path_shapes_figure(path, &abscissa(self.axis()), title, &page)))
