@@ -229,7 +229,7 @@ def path_state(native: Any, origin: Origin) -> dict[str, Any]:
 class SavedEquilibria(Saved):
     """All equilibria of an arm."""
 
-    _plain = ("complete", "angles", "steps")
+    _plain = ("complete", "misses_some", "in_space", "angles", "steps")
 
     def __len__(self) -> int:
         return len(self._stored["solutions"])
@@ -251,6 +251,8 @@ def equilibria_state(native: Any, origin: Origin) -> dict[str, Any]:
     """What is stored of equilibria."""
     return {
         "complete": native.complete,
+        "misses_some": native.misses_some,
+        "in_space": native.in_space,
         "angles": native.angles,
         "steps": native.steps,
         "states": native.states(),

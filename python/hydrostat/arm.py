@@ -376,7 +376,8 @@ class Arm:
         Returns
         -------
         Equilibria
-            A sequence of solutions in the order of the tip's angle; ``complete`` says whether these are all.
+            A sequence of solutions in the order of the tip's angle, in space of its place; ``complete`` says whether these are
+            known to be all, which they never are in space.
         """
         from hydrostat.paths import Equilibria
 

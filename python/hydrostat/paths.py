@@ -201,14 +201,16 @@ class EquilibriumPath(Result):
 
 
 class Equilibria(Result, Sequence[Solution]):
-    """All equilibria of an arm under its loads, in the order of the tip's angle; see `Arm.equilibria`.
+    """All equilibria of an arm under its loads, in the order of the tip's angle, in space of its place; see `Arm.equilibria`.
 
     Attributes
     ----------
     complete : bool
-        Whether these are all: the closed curve of equilibria was followed completely.
-    tip_angles, base_angles : tuple of float
-        Angles over which the curve was followed, rad.
+        Whether these are known to be all: the closed curve of equilibria was followed completely. Never so in space.
+    misses_some : bool
+        Whether it is known that some are missing, in space.
+    tip_angles, base_angles : tuple of float or None
+        Angles over which the curve was followed, rad; None in space.
     stability : tuple of str or None
         Of each equilibrium.
     unstable_directions : tuple of int or None
@@ -219,9 +221,13 @@ class Equilibria(Result, Sequence[Solution]):
         self._inner = native
         self._origin = origin
         self.complete = native.complete
-        tip, base = native.angles
-        self.tip_angles = (tip[0], tip[1])
-        self.base_angles = (base[0], base[1])
+        self.misses_some = native.misses_some
+        self.tip_angles: tuple[float, float] | None = None
+        self.base_angles: tuple[float, float] | None = None
+        if native.angles is not None:
+            tip, base = native.angles
+            self.tip_angles = (tip[0], tip[1])
+            self.base_angles = (base[0], base[1])
         _, state, directions = native.states()
         self.stability = tuple(state)
         self.unstable_directions = tuple(directions)
@@ -239,7 +245,7 @@ class Equilibria(Result, Sequence[Solution]):
         at = index + len(self) if index < 0 else index
         if not 0 <= at < len(self):
             raise IndexError(f"equilibrium {index} of {len(self)}")
-        return Solution(self._inner.solution(at), Origin("equilibrium", (self._origin, at)))
+        return solution_of(self._inner.solution(at), Origin("equilibrium", (self._origin, at)))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Equilibria):

@@ -208,6 +208,10 @@ def plot_path(path: EquilibriumPath, quantity: str, ax: Axes | None) -> Axes:
 
 def plot_equilibria(equilibria: Equilibria, ax: Axes | None) -> Axes:
     """See `Equilibria.plot`."""
+    if equilibria._inner.in_space:
+        from hydrostat.plotting_3d import plot_equilibria_in_space
+
+        return plot_equilibria_in_space(equilibria, ax)
     ax = _new_axes(ax)
     per_m = UNITS[unit_of(ax, None)]
     for index, (solution, state) in enumerate(zip(equilibria, equilibria.stability, strict=True)):

@@ -9,6 +9,7 @@ import numpy as np
 from hydrostat.plotting import INK, MM, SLACK, TAUT, UNITS, WATER, unit_of
 
 if TYPE_CHECKING:
+    from hydrostat.paths import Equilibria
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.typing import ColorType
@@ -75,6 +76,26 @@ def plot_in_space(
     # From e3, from above and a little from the right; e2 is up, as in drawings of arms in the plane.
     drawn.view_init(elev=25.0, azim=25.0, vertical_axis="y")
     drawn.set_aspect("equal")
+    shown: Axes = drawn
+    return shown
+
+
+def plot_equilibria_in_space(equilibria: Equilibria, ax: Axes | None) -> Axes:
+    """See `Equilibria.plot`: centrelines, stable ones solid."""
+    drawn = _new_axes(ax)
+    name = unit_of(drawn, None)
+    per_m = UNITS[name]
+    for index, (solution, state) in enumerate(zip(equilibria, equilibria.stability, strict=True)):
+        line = solution.at(np.linspace(0.0, solution.arm.length, _POINTS))
+        points = per_m * np.array([line.x, line.y, line.z])
+        style = "-" if state == "stable" else "--"
+        drawn.plot(*points, linestyle=style, color=f"C{index % 10}", linewidth=2.0, label=f"{index + 1}: {state or 'not established'}")
+        drawn.text(*points[:, -1], f" {index + 1}", size=9)
+    for axis in "xyz":
+        getattr(drawn, f"set_{axis}label")(f"{axis} ({name})")
+    drawn.view_init(elev=25.0, azim=25.0, vertical_axis="y")
+    drawn.set_aspect("equal")
+    drawn.legend(frameon=False, fontsize=9)
     shown: Axes = drawn
     return shown
 

@@ -188,9 +188,21 @@ def test_commanded_strokes_take_the_tensions_that_make_them(arm: hs.Arm) -> None
     assert abs(held.tip.x - pulled.tip.x) + abs(held.tip.z - pulled.tip.z) < 1e-7 * arm.length
 
 
+def test_equilibria_in_space_hold_those_of_the_plane() -> None:
+    planar = hs.Arm.load("silicone").replace(flow_speed=0.2, flow_direction=175)
+    found = planar.replace({"arm": {"space": "spatial"}}).equilibria()
+    assert not found.complete and not found.misses_some and found.tip_angles is None
+    tips = np.array([(one.tip.x, one.tip.y) for one in found])
+    for one in planar.equilibria():
+        assert np.hypot(*(tips - (one.tip.x, one.tip.y)).T).min() < 1e-7 * planar.length
+    again = pickle.loads(pickle.dumps(found))
+    assert again == found and isinstance(again[0], hs.SpatialSolution)
+    assert "z (mm)" in found.figure().texts()
+    assert found.plot().name == "3d"
+
+
 def test_what_is_for_arms_in_the_plane_says_so(arm: hs.Arm, solution: hs.SpatialSolution) -> None:
     calls: list[Any] = [
-        lambda: arm.equilibria(),
         lambda: arm.path("flow.speed", 0, 0.1).shapes_figure(),
         lambda: arm.reachable(max_tension=0.2),
         lambda: hs.animate([solution]),

@@ -28,7 +28,7 @@ pub(crate) use equilibria::{EquilibriaArgs, Over};
 pub(crate) use history::HistoryArgs;
 pub(crate) use identify::IdentifyArgs;
 pub(crate) use init::InitArgs;
-pub(crate) use modes::{ModesArgs, ModesFormat};
+pub(crate) use modes::ModesArgs;
 pub(crate) use path::PathArgs;
 pub(crate) use picture::{Form, PageArgs, PictureArgs, form, picture};
 pub(crate) use plot::PlotArgs;

@@ -1,6 +1,6 @@
 //! A quantity of many equilibria over a parameter.
 
-use hydrostat::{Equilibria, Event, Path, PathEnd, PathPoint, SpatialConfiguration, Stability};
+use hydrostat::{Equilibria, Equilibrium, Event, Path, PathEnd, PathPoint, SpatialConfiguration, SpatialEquilibria, Stability};
 
 use crate::arm_figure::place_label;
 use crate::axes::{Axes, BELOW, LEFT};
@@ -231,13 +231,36 @@ pub fn over_figure(
     title: &str,
     page: &Page,
 ) -> Scene {
-    let points: Vec<([f64; 2], Look)> = searches
-        .iter()
-        .flat_map(|(value, all)| {
-            let at = move |one: &hydrostat::Equilibrium| [over.per_si * value, quantity.of(&one.configuration)];
-            all.found.iter().map(move |one| (at(one), Look::of(one.stability)))
-        })
-        .collect();
+    let found: Vec<_> = searches.iter().map(|(value, all)| (*value, all.found.as_slice())).collect();
+    over_chart(&found, over, |shape| quantity.of(shape), quantity, title, page)
+}
+
+/// [`over_figure`] of an arm in space.
+pub fn spatial_over_figure(
+    searches: &[(f64, &SpatialEquilibria)],
+    over: &Abscissa,
+    quantity: Quantity,
+    title: &str,
+    page: &Page,
+) -> Scene {
+    let found: Vec<_> = searches.iter().map(|(value, all)| (*value, all.found.as_slice())).collect();
+    over_chart(&found, over, |shape| quantity.of_spatial(shape), quantity, title, page)
+}
+
+/// The chart of equilibria at several values, given the value of the quantity.
+fn over_chart<C>(
+    searches: &[(f64, &[Equilibrium<C>])],
+    over: &Abscissa,
+    of: impl Fn(&C) -> f64,
+    quantity: Quantity,
+    title: &str,
+    page: &Page,
+) -> Scene {
+    let mut points: Vec<([f64; 2], Look)> = Vec::new();
+    for (value, found) in searches {
+        let at = |one: &Equilibrium<C>| [over.per_si * value, of(&one.configuration)];
+        points.extend(found.iter().map(|one| (at(one), Look::of(one.stability))));
+    }
     let mut legend = Legend::new(page);
     for look in LOOKS.into_iter().filter(|look| points.iter().any(|(_, l)| l == look)) {
         legend.add(Sample::Mark(look.mark()), Label::plain(look.words()));

@@ -90,7 +90,8 @@ pub fn equilibria_figure(all: &Equilibria, title: &str, page: &Page) -> Scene {
     draw(says, title, &members, Look::Unknown.words(), None, page)
 }
 
-fn surface(look: Look, color: Color) -> Stroke {
+/// The line of a shape.
+pub(crate) fn line_of(look: Look, color: Color) -> Stroke {
     match look {
         Look::Stable => Stroke::solid(color, 1.0),
         Look::Unstable => Stroke::dashed(color, 0.9, [4.0, 2.2]),
@@ -121,7 +122,7 @@ fn draw(
         let nothing = Stroke::solid(color.with_opacity(0.0), 0.1);
         let style = Style {
             fill: color.with_opacity(if *look == Look::Stable { 0.16 } else { 0.0 }),
-            surface: surface(*look, *color),
+            surface: line_of(*look, *color),
             sections: nothing,
             centreline: nothing,
             cables: Vec::new(),
@@ -150,7 +151,7 @@ fn legend(members: &[Member<'_>], unknown: &str, page: &Page) -> Legend {
     for look in [Look::Stable, Look::Unstable, Look::Unknown] {
         let words = if look == Look::Unknown { unknown } else { look.words() };
         if members.iter().any(|m| m.look == look) {
-            legend.add(Sample::Line(surface(look, INK)), Label::plain(words));
+            legend.add(Sample::Line(line_of(look, INK)), Label::plain(words));
         }
     }
     legend

@@ -1,24 +1,78 @@
 //! All equilibria of an arm as JSON and CSV, at its loads and over a range of one of them.
 
-use hydrostat::{Arm, Equilibria, Equilibrium, PathEnd};
+use hydrostat::{Arm, Equilibria, Equilibrium, PathEnd, SpatialConfiguration, SpatialEquilibria};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
 use crate::digits::number;
-pub use crate::others::Others;
 use crate::paths::{EndOut, limit_message};
 use crate::results::{SCHEMA, cell, json};
 use crate::state::State;
 use crate::varied::Varied;
 use crate::written::Inputs;
 
+/// What a search found: of an arm in the plane, or in space.
+#[derive(Debug, Clone, Copy)]
+pub enum Search<'a> {
+    /// In the plane.
+    Plane(&'a Equilibria),
+    /// In space.
+    Space(&'a SpatialEquilibria),
+}
+
+impl<'a> From<&'a Equilibria> for Search<'a> {
+    fn from(all: &'a Equilibria) -> Self {
+        Self::Plane(all)
+    }
+}
+
+impl<'a> From<&'a SpatialEquilibria> for Search<'a> {
+    fn from(all: &'a SpatialEquilibria) -> Self {
+        Self::Space(all)
+    }
+}
+
+impl<'a> Search<'a> {
+    /// Whether these are known to be all.
+    pub fn is_complete(self) -> bool {
+        matches!(self, Self::Plane(all) if all.complete)
+    }
+
+    fn states(self) -> Vec<State<'a>> {
+        match self {
+            Self::Plane(all) => all.found.iter().map(state).collect(),
+            Self::Space(all) => all.found.iter().map(state_in_space).collect(),
+        }
+    }
+
+    fn columns(self, cables: usize) -> Vec<String> {
+        match self {
+            Self::Plane(_) => State::columns(cables, &[]),
+            Self::Space(_) => State::columns_in_space(cables, &[]),
+        }
+    }
+}
+
 #[derive(Debug, Clone, Serialize)]
-struct SearchOut<'a> {
-    complete: bool,
-    tip_angles: [f64; 2],
-    base_angles: [f64; 2],
-    ends: [Option<EndOut>; 2],
-    equilibria: Vec<State<'a>>,
+#[serde(untagged)]
+enum SearchOut<'a> {
+    Plane {
+        complete: bool,
+        tip_angles: [f64; 2],
+        base_angles: [f64; 2],
+        ends: [Option<EndOut>; 2],
+        equilibria: Vec<State<'a>>,
+    },
+    Space {
+        complete: bool,
+        /// Whether it is known that some are missing.
+        misses_some: bool,
+        sum_of_signs: Option<i64>,
+        /// Curves that were followed, and those that ended at a limit.
+        curves: usize,
+        ends: Vec<EndOut>,
+        equilibria: Vec<State<'a>>,
+    },
 }
 
 /// The document of a search for all equilibria.
@@ -62,19 +116,42 @@ pub fn side_message(end: PathEnd, base: f64) -> String {
     }
 }
 
-impl<'a> SearchOut<'a> {
-    fn new(all: &'a Equilibria) -> Self {
-        let end = |side: usize| {
-            let message = |end| side_message(end, all.base_angles[side]);
-            all.ends[side].map(|end| EndOut::new(end, message(end)))
-        };
-        Self {
-            complete: all.complete,
-            tip_angles: all.tip_angles,
-            base_angles: all.base_angles,
-            ends: [end(0), end(1)],
-            equilibria: all.found.iter().map(state).collect(),
+impl<'a> From<Search<'a>> for SearchOut<'a> {
+    fn from(search: Search<'a>) -> Self {
+        let equilibria = search.states();
+        match search {
+            Search::Plane(all) => {
+                let end = |side: usize| {
+                    let message = |end| side_message(end, all.base_angles[side]);
+                    all.ends[side].map(|end| EndOut::new(end, message(end)))
+                };
+                Self::Plane {
+                    complete: all.complete,
+                    tip_angles: all.tip_angles,
+                    base_angles: all.base_angles,
+                    ends: [end(0), end(1)],
+                    equilibria,
+                }
+            }
+            Search::Space(all) => Self::Space {
+                complete: false,
+                misses_some: all.misses_some(),
+                sum_of_signs: all.sum_of_signs,
+                curves: all.curves.len(),
+                ends: all.curves.iter().flatten().map(|end| EndOut::new(*end, curve_message(*end))).collect(),
+                equilibria,
+            },
         }
+    }
+}
+
+/// What ended a curve of a search in space, in a phrase.
+pub fn curve_message(end: PathEnd) -> String {
+    match end {
+        PathEnd::Limit { kind, s } => limit_message(kind, s),
+        PathEnd::MostPoints => "the curve reached the largest number of points".to_owned(),
+        PathEnd::Stopped => "the search was stopped".to_owned(),
+        PathEnd::ReachedEnd | PathEnd::ReachedStart => "the curve ended".to_owned(),
     }
 }
 
@@ -82,13 +159,17 @@ fn state(one: &Equilibrium) -> State<'_> {
     State::new(&one.configuration, one.stability)
 }
 
+fn state_in_space(one: &Equilibrium<SpatialConfiguration>) -> State<'_> {
+    State::in_space(&one.configuration, one.stability)
+}
+
 impl<'a> EquilibriaDocument<'a> {
     /// Of the equilibria of `arm`.
-    pub fn new(arm: &Arm, all: &'a Equilibria) -> Self {
+    pub fn new(arm: &Arm, all: impl Into<Search<'a>>) -> Self {
         Self {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
-            search: SearchOut::new(all),
+            search: all.into().into(),
             inputs: Inputs::new(arm),
         }
     }
@@ -101,10 +182,10 @@ impl<'a> EquilibriaDocument<'a> {
 
 impl<'a> OverDocument<'a> {
     /// Of the equilibria of `arm` at each value (SI) of what varies, or why there are none.
-    pub fn new(arm: &Arm, varied: &Varied, searches: &'a [(f64, Result<Equilibria, String>)]) -> Self {
-        let value = |(value, found): &'a (f64, Result<Equilibria, String>)| ValueOut {
+    pub fn new(arm: &Arm, varied: &Varied, searches: &'a [(f64, Result<Search<'a>, String>)]) -> Self {
+        let value = |(value, found): &'a (f64, Result<Search<'a>, String>)| ValueOut {
             value: *value,
-            search: found.as_ref().ok().map(SearchOut::new),
+            search: found.as_ref().ok().map(|all| (*all).into()),
             message: found.as_ref().err().map(String::as_str),
         };
         Self {
@@ -124,29 +205,32 @@ impl<'a> OverDocument<'a> {
     }
 }
 
-/// The equilibria of an arm with `cables` cables, one row each, counted from 1 in the order of the tip's angle.
-pub fn equilibria_csv(cables: usize, all: &Equilibria) -> String {
+/// The equilibria of an arm with `cables` cables, one row each, counted from 1 in the order of the tip's angle, in space
+/// of its place.
+pub fn equilibria_csv<'a>(cables: usize, all: impl Into<Search<'a>>) -> String {
+    let all = all.into();
     let mut names = vec!["number".to_owned()];
-    names.extend(State::columns(cables, &[]));
+    names.extend(all.columns(cables));
     let mut out = Rows::new(&names);
-    for (index, one) in all.found.iter().enumerate() {
+    for (index, one) in all.states().iter().enumerate() {
         let mut cells = vec![(index + 1).to_string()];
-        cells.extend(state(one).cells(&[]));
+        cells.extend(one.cells(&[]));
         out.row(&cells);
     }
     out.text()
 }
 
 /// [`equilibria_csv`] at each value of what varies; `complete` says whether those at a value are all.
-pub fn over_csv(cables: usize, varied: &Varied, searches: &[(f64, Result<Equilibria, String>)]) -> String {
+pub fn over_csv(cables: usize, varied: &Varied, searches: &[(f64, Result<Search<'_>, String>)]) -> String {
+    let found: Vec<(f64, Search<'_>)> =
+        searches.iter().filter_map(|(value, all)| Some((*value, *all.as_ref().ok()?))).collect();
     let mut names = vec![varied.column(), "complete".to_owned(), "number".to_owned()];
-    names.extend(State::columns(cables, &[]));
+    names.extend(found.first().map_or_else(|| State::columns(cables, &[]), |(_, all)| all.columns(cables)));
     let mut out = Rows::new(&names);
-    for (value, found) in searches {
-        let Ok(all) = found else { continue };
-        for (index, one) in all.found.iter().enumerate() {
-            let mut cells = vec![cell(*value), all.complete.to_string(), (index + 1).to_string()];
-            cells.extend(state(one).cells(&[]));
+    for (value, all) in found {
+        for (index, one) in all.states().iter().enumerate() {
+            let mut cells = vec![cell(value), all.is_complete().to_string(), (index + 1).to_string()];
+            cells.extend(one.cells(&[]));
             out.row(&cells);
         }
     }

@@ -24,6 +24,7 @@ mod marker_columns;
 mod measured_columns;
 mod measurements;
 mod measurements_template;
+mod modes;
 mod motion_states;
 pub mod motions;
 mod others;
@@ -54,7 +55,8 @@ pub use commented::commented_arm;
 pub use csv_text::{Dialect, csv_writer, is_missing};
 pub use deviations::Deviations;
 pub use digits::number;
-pub use equilibria::{EquilibriaDocument, Others, OverDocument, equilibria_csv, over_csv};
+pub use equilibria::{EquilibriaDocument, OverDocument, Search, equilibria_csv, over_csv};
+pub use others::Others;
 pub use error::{FileError, Place};
 pub use fitted::{FitKey, FitKeyError, PriorKey, bare_unit, fitted};
 pub use followed::{FollowedDocument, followed_csv};
@@ -64,8 +66,9 @@ pub use loadings::{LoadingDocument, LoadingRow, RowSnap, loading_csv};
 pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
 pub use measurements_template::measurements_template;
 pub use motion_states::{SavedMotion, SavedMotionError, motion_state_beside};
+pub use modes::{ModesDocument, ModesOverDocument, mode_kind, modes_csv, modes_over_csv};
 pub use motions::{
-    EventOut, MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, ModesDocument, MotionDocument, equilibrium_numbers, mode_kind,
+    EventOut, MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, MotionDocument, equilibrium_numbers,
     motion_columns, motion_event_line, motion_heads, motion_line, motion_numbers, motion_row, motion_shape_lines,
     place_numbers,
 };

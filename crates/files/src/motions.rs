@@ -1,7 +1,7 @@
-//! Motions and eigenmodes as JSON and CSV.
+//! Motions as JSON and CSV.
 
 use hydrostat::{
-    Arm, Instant, Mode, Modes, MotionEvent, MotionStation, MotionStatistics, MotionVerdict, MotionWarning, Tip,
+    Arm, Instant, MotionEvent, MotionStation, MotionStatistics, MotionVerdict, MotionWarning, Tip,
 };
 use serde::Serialize;
 
@@ -223,69 +223,6 @@ impl MotionDocument {
     pub fn with_notes(self, events: Vec<EventOut>, warnings: &[MotionWarning], energy_gap: f64) -> Self {
         let note = |warning: &MotionWarning| Note { kind: warning.kind(), message: warning.message() };
         Self { events, warnings: warnings.iter().map(note).collect(), energy_gap: Some(energy_gap), ..self }
-    }
-
-    /// The document, one line.
-    pub fn to_json(&self) -> String {
-        json(self)
-    }
-}
-
-/// The document of eigenmodes.
-#[derive(Debug, Clone, Serialize)]
-pub struct ModesDocument {
-    schema: u32,
-    version: &'static str,
-    /// Whether no motion grows, of those listed.
-    stable: bool,
-    modes: Vec<ModeOut>,
-    tip: ModesTip,
-    inputs: Inputs,
-}
-
-#[derive(Debug, Clone, Copy, Serialize)]
-struct ModesTip {
-    x: f64,
-    y: f64,
-    theta: f64,
-}
-
-#[derive(Debug, Clone, Copy, Serialize)]
-struct ModeOut {
-    rate: [f64; 2],
-    frequency_hz: f64,
-    damping_ratio: f64,
-    kind: &'static str,
-}
-
-/// What a mode does, in a word: `swings`, `decays`, `flutter` or `divergence`.
-pub fn mode_kind(mode: &Mode) -> &'static str {
-    match (mode.grows(), mode.rate[1] == 0.0) {
-        (false, false) => "swings",
-        (false, true) => "decays",
-        (true, false) => "flutter",
-        (true, true) => "divergence",
-    }
-}
-
-impl ModesDocument {
-    /// Of the modes of `arm`.
-    pub fn new(arm: &Arm, modes: &Modes) -> Self {
-        let one = |mode: &Mode| ModeOut {
-            rate: mode.rate,
-            frequency_hz: mode.frequency(),
-            damping_ratio: mode.damping_ratio(),
-            kind: mode_kind(mode),
-        };
-        let [x, y, theta] = modes.tip;
-        Self {
-            schema: SCHEMA,
-            version: env!("CARGO_PKG_VERSION"),
-            stable: modes.is_stable(),
-            modes: modes.modes.iter().map(one).collect(),
-            tip: ModesTip { x, y, theta },
-            inputs: Inputs::new(arm),
-        }
     }
 
     /// The document, one line.

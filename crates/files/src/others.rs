@@ -1,7 +1,9 @@
 //! What a search for equilibria found beside the shape that a solve leads to.
 
-use hydrostat::{Equilibria, Stability};
+use hydrostat::Stability;
 use serde::Serialize;
+
+use crate::equilibria::Search;
 
 /// What a search found beside the path that a solve follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -14,9 +16,15 @@ pub struct Others {
     pub complete: bool,
 }
 
-impl From<&Equilibria> for Others {
-    fn from(all: &Equilibria) -> Self {
-        let stable = all.found.iter().filter(|e| e.stability == Some(Stability::Stable)).count();
-        Self { count: all.found.len(), stable, complete: all.complete }
+impl Others {
+    /// Of what a search found.
+    pub fn of<'a>(all: impl Into<Search<'a>>) -> Self {
+        let all = all.into();
+        let stabilities: Vec<Option<Stability>> = match all {
+            Search::Plane(all) => all.found.iter().map(|one| one.stability).collect(),
+            Search::Space(all) => all.found.iter().map(|one| one.stability).collect(),
+        };
+        let stable = stabilities.iter().filter(|stability| **stability == Some(Stability::Stable)).count();
+        Self { count: stabilities.len(), stable, complete: all.is_complete() }
     }
 }

@@ -79,12 +79,12 @@ fn offset(entry: &mut Entry, length: Option<f64>, radius: Option<&Profile>) {
         Node::Text(text) => {
             let Some(share) = percent(text) else { return };
             entry.node = match radius {
-                Profile::Constant(value) => Node::Number(share * value),
+                Profile::Constant(value) => Node::Number(short_product(share, *value)),
                 Profile::Linear { base, tip } => {
-                    Node::Table(vec![field(ENDS[0], number(share * base)), field(ENDS[1], number(share * tip))])
+                    Node::Table(vec![field(ENDS[0], number(short_product(share, *base))), field(ENDS[1], number(short_product(share, *tip)))])
                 }
                 Profile::Table(table) => {
-                    let point = |[s, value]: [f64; 2]| Node::Array(vec![number(s), number(share * value)]);
+                    let point = |[s, value]: [f64; 2]| Node::Array(vec![number(s), number(short_product(share, value))]);
                     let points = table.points().map(|at| Entry { node: point(at), origin }).collect();
                     joined(Entry { node: Node::Array(points), origin }, table.join(), &field)
                 }
@@ -128,8 +128,15 @@ fn share_at(node: &mut Node, s: f64, length: f64, radius: &Profile) {
     };
     if let Some(share) = share {
         // Not `clamp`, which panics where a length is negative: that is refused later, by its key.
-        *node = Node::Number(share * radius.at(s.max(0.0).min(length), length).value);
+        let radius = radius.at(s.max(0.0).min(length), length).value;
+        *node = Node::Number(short_product(share, radius));
     }
+}
+
+/// `share` of a length with 15 digits: 70 % of 10 mm is 7 mm, not 6.999999999999999 mm.
+fn short_product(share: f64, length: f64) -> f64 {
+    let product = share * length;
+    format!("{product:.14e}").parse().unwrap_or(product)
 }
 
 /// Where a cable ends, as a fraction of the length.
@@ -144,5 +151,18 @@ fn end(entry: &mut Entry, length: Option<f64>) {
     };
     if let Some(fraction) = fraction {
         entry.node = Node::Number(fraction);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short_product;
+
+    #[test]
+    fn shares_of_round_lengths_are_round() {
+        assert!(0.7 * 0.010 != 0.007, "or there is nothing to mend");
+        assert_eq!(short_product(0.7, 0.010), 0.007);
+        assert_eq!(short_product(-0.35, 0.002), -0.0007);
+        assert_eq!(short_product(0.1, 0.3), 0.03);
     }
 }

@@ -175,7 +175,7 @@ pub use sensitivity::{
 pub use snap::{Snap, SnapBounds};
 pub use solve::{Answer, Options, Solver};
 pub use spatial::{
-    Ellipsoid, NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialPoseChange, SpatialSnap, SpatialSolver,
+    Ellipsoid, NoSpatialEquilibrium, SpatialConfiguration, SpatialEquilibria, SpatialError, SpatialPoseChange, SpatialSnap, SpatialSolver,
     SpatialStation, SpatialStations, SpatialTip, SpatialWrench,
 };
 pub use stability::{Growth, Stability};

@@ -10,6 +10,7 @@ mod change;
 mod configuration;
 mod engine;
 mod equations;
+mod equilibria;
 mod held;
 mod kinks;
 mod lengths;
@@ -34,6 +35,7 @@ mod traced;
 mod varied;
 
 pub use self::configuration::{SpatialConfiguration, SpatialStation, SpatialStations, SpatialWrench};
+pub use self::equilibria::SpatialEquilibria;
 pub use self::path::SpatialSnap;
 pub use self::sensitivity::{Ellipsoid, SpatialPoseChange};
 pub(crate) use self::sensitivity::{Quantity, turn_between};

@@ -1,12 +1,12 @@
 //! Paths over a parameter, and all equilibria under the same loads.
 
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use hydrostat::{Configuration, Options, PathOptions, SpatialConfiguration, Stability};
 use hydrostat_figures::Page;
 use hydrostat_files::{
-    EquilibriaDocument, PathDocument, Varied, end_message, equilibria_csv, path_csv, spatial_path_csv,
+    EquilibriaDocument, PathDocument, Search, Varied, end_message, equilibria_csv, path_csv, spatial_path_csv,
 };
 use numpy::PyArray1;
 use pyo3::exceptions::PyIndexError;
@@ -37,9 +37,24 @@ enum Found {
 /// All equilibria of an arm.
 #[pyclass(frozen, module = "hydrostat._native")]
 pub(crate) struct Equilibria {
-    pub(crate) all: hydrostat::Equilibria,
+    all: Searched,
     arm: hydrostat::Arm,
     tol: f64,
+}
+
+/// What a search found in the plane or in space.
+enum Searched {
+    Plane(hydrostat::Equilibria),
+    Space(hydrostat::SpatialEquilibria),
+}
+
+impl Searched {
+    fn search(&self) -> Search<'_> {
+        match self {
+            Self::Plane(all) => all.into(),
+            Self::Space(all) => all.into(),
+        }
+    }
 }
 
 /// A column of numbers.
@@ -59,11 +74,11 @@ fn states<'py>(py: Python<'py>, all: &[(&Configuration, Option<Stability>)]) -> 
     (tip, state, directions)
 }
 
-fn states_in_space<'py>(py: Python<'py>, branch: &hydrostat::Branch<SpatialConfiguration>) -> States<'py> {
-    let tips: Vec<hydrostat::SpatialTip> = branch.points.iter().map(|point| point.configuration.tip()).collect();
+fn states_in_space<'py>(py: Python<'py>, all: &[(&SpatialConfiguration, Option<Stability>)]) -> States<'py> {
+    let tips: Vec<hydrostat::SpatialTip> = all.iter().map(|(configuration, _)| configuration.tip()).collect();
     let column = |of: fn(&hydrostat::SpatialTip) -> f64| given(py, tips.iter().map(of).collect());
     let tip = [column(|t| t.x), column(|t| t.y), column(|t| t.z), column(|t| t.alpha)];
-    let (state, directions) = branch.points.iter().map(|point| words(point.stability)).unzip();
+    let (state, directions) = all.iter().map(|(_, stability)| words(*stability)).unzip();
     (tip, state, directions)
 }
 
@@ -83,7 +98,7 @@ pub(crate) fn path(
     varied.parameter.of(&arm.given).map_err(wrong)?;
     let options = PathOptions { tol, longest, most, branches };
     if arm.given.space.is_some() {
-        let follow = |stop: &std::sync::atomic::AtomicBool| {
+        let follow = |stop: &AtomicBool| {
             let go_on = |_: &_| !stop.load(Ordering::Relaxed);
             arm.given.path_in_space_with(varied.parameter, varied.range, &options, go_on)
         };
@@ -91,7 +106,7 @@ pub(crate) fn path(
             .map_err(|error| spatial_path_error(py, error, Options::with_tol(tol)))?;
         return Ok(Path { found: Found::Space(found), varied, tol });
     }
-    let follow = |stop: &std::sync::atomic::AtomicBool| {
+    let follow = |stop: &AtomicBool| {
         arm.given.path_with(varied.parameter, varied.range, &options, |_| !stop.load(Ordering::Relaxed))
     };
     let found =
@@ -137,13 +152,10 @@ impl Path {
     }
 
     fn states<'py>(&self, py: Python<'py>, branch: usize) -> PyResult<States<'py>> {
-        let path = match &self.found {
-            Found::Plane(path) => path,
-            Found::Space(path) => return Ok(states_in_space(py, one(path, branch)?)),
-        };
-        let points = &one(path, branch)?.points;
-        let all: Vec<_> = points.iter().map(|point| (&point.configuration, point.stability)).collect();
-        Ok(states(py, &all))
+        Ok(match &self.found {
+            Found::Plane(path) => states(py, &with_stability(one(path, branch)?)),
+            Found::Space(path) => states_in_space(py, &with_stability(one(path, branch)?)),
+        })
     }
 
     /// The name of each point's event, and its cable.
@@ -218,6 +230,10 @@ fn one<C>(path: &hydrostat::Path<C>, index: usize) -> PyResult<&hydrostat::Branc
     path.branches.get(index).ok_or_else(|| PyIndexError::new_err("branch: the path has no such branch"))
 }
 
+fn with_stability<C>(branch: &hydrostat::Branch<C>) -> Vec<(&C, Option<Stability>)> {
+    branch.points.iter().map(|point| (&point.configuration, point.stability)).collect()
+}
+
 fn ends<C>(branch: &hydrostat::Branch<C>, varied: &Varied) -> (usize, &'static str, String, Option<f64>) {
     let last = branch.points.last().map_or(f64::NAN, |point| point.value);
     let end = end_message(branch.end, varied, last);
@@ -235,60 +251,105 @@ pub(crate) fn equilibria(py: Python<'_>, arm: &Arm, tol: f64, time_limit: Option
     let limit = time_limit.map(Duration::try_from_secs_f64).transpose();
     let limit = limit.map_err(|_| wrong("time_limit: expected seconds that are not negative"))?;
     let start = Instant::now();
-    let all = interruptible(
-        py,
-        |_| Ok(()),
-        |stop| {
-            let in_time = || limit.is_none_or(|limit| start.elapsed() < limit);
-            arm.given.equilibria_while(tol, |_| in_time() && !stop.load(Ordering::Relaxed))
-        },
-    )?;
-    let all = all.map_err(|error| path_error(py, error, Options::with_tol(tol)))?;
+    let in_time = || limit.is_none_or(|limit| start.elapsed() < limit);
+    let options = Options::with_tol(tol);
+    let all = if arm.given.space.is_some() {
+        let search = |stop: &AtomicBool| {
+            arm.given.equilibria_in_space_while(tol, |_| in_time() && !stop.load(Ordering::Relaxed))
+        };
+        let all = interruptible(py, |_| Ok(()), search)?;
+        Searched::Space(all.map_err(|error| spatial_path_error(py, error, options))?)
+    } else {
+        let search =
+            |stop: &AtomicBool| arm.given.equilibria_while(tol, |_| in_time() && !stop.load(Ordering::Relaxed));
+        let all = interruptible(py, |_| Ok(()), search)?;
+        Searched::Plane(all.map_err(|error| path_error(py, error, options))?)
+    };
     Ok(Equilibria { all, arm: arm.given.clone(), tol })
 }
 
 #[pymethods]
 impl Equilibria {
     fn __len__(&self) -> usize {
-        self.all.found.len()
+        match &self.all {
+            Searched::Plane(all) => all.found.len(),
+            Searched::Space(all) => all.found.len(),
+        }
+    }
+
+    #[getter]
+    fn in_space(&self) -> bool {
+        matches!(self.all, Searched::Space(_))
     }
 
     #[getter]
     fn complete(&self) -> bool {
-        self.all.complete
+        self.all.search().is_complete()
     }
 
-    /// Angles of the tip over which the curve was followed, and of the base that they belong to, rad.
+    /// Whether it is known that some are missing, in space.
     #[getter]
-    fn angles(&self) -> [[f64; 2]; 2] {
-        [self.all.tip_angles, self.all.base_angles]
+    fn misses_some(&self) -> bool {
+        matches!(&self.all, Searched::Space(all) if all.misses_some())
+    }
+
+    /// In the plane: angles of the tip over which the curve was followed, and of the base that they belong to, rad.
+    #[getter]
+    fn angles(&self) -> Option<[[f64; 2]; 2]> {
+        match &self.all {
+            Searched::Plane(all) => Some([all.tip_angles, all.base_angles]),
+            Searched::Space(_) => None,
+        }
     }
 
     #[getter]
     fn steps(&self) -> usize {
-        self.all.steps
+        match &self.all {
+            Searched::Plane(all) => all.steps,
+            Searched::Space(all) => all.steps,
+        }
     }
 
     fn states<'py>(&self, py: Python<'py>) -> States<'py> {
-        let all: Vec<_> = self.all.found.iter().map(|one| (&one.configuration, one.stability)).collect();
-        states(py, &all)
+        match &self.all {
+            Searched::Plane(all) => {
+                states(py, &all.found.iter().map(|one| (&one.configuration, one.stability)).collect::<Vec<_>>())
+            }
+            Searched::Space(all) => {
+                states_in_space(py, &all.found.iter().map(|one| (&one.configuration, one.stability)).collect::<Vec<_>>())
+            }
+        }
     }
 
-    fn solution(&self, index: usize) -> PyResult<Solution> {
-        let one = self.all.found.get(index).ok_or_else(|| PyIndexError::new_err("there is no such equilibrium"))?;
-        Ok(Solution::new(one.configuration.clone(), Options::with_tol(self.tol)))
+    fn solution(&self, py: Python<'_>, index: usize) -> PyResult<Py<PyAny>> {
+        let none = || PyIndexError::new_err("there is no such equilibrium");
+        let options = Options::with_tol(self.tol);
+        match &self.all {
+            Searched::Plane(all) => {
+                let one = all.found.get(index).ok_or_else(none)?;
+                Ok(Py::new(py, Solution::new(one.configuration.clone(), options))?.into_any())
+            }
+            Searched::Space(all) => {
+                let one = all.found.get(index).ok_or_else(none)?;
+                Ok(Py::new(py, SpatialSolution::new(one.configuration.clone(), options))?.into_any())
+            }
+        }
     }
 
     fn figure(&self, title: &str) -> Figure {
-        Figure::new(hydrostat_figures::equilibria_figure(&self.all, title, &Page::default()))
+        let page = Page::default();
+        Figure::new(match &self.all {
+            Searched::Plane(all) => hydrostat_figures::equilibria_figure(all, title, &page),
+            Searched::Space(all) => hydrostat_figures::spatial_equilibria_figure(all, title, &page),
+        })
     }
 
     fn to_json(&self) -> String {
-        EquilibriaDocument::new(&self.arm, &self.all).to_json()
+        EquilibriaDocument::new(&self.arm, self.all.search()).to_json()
     }
 
     fn to_csv(&self) -> String {
-        equilibria_csv(self.arm.cables.len(), &self.all)
+        equilibria_csv(self.arm.cables.len(), self.all.search())
     }
 }
 
@@ -300,8 +361,20 @@ pub(crate) fn over_figure(
     asked: &str,
     title: &str,
 ) -> PyResult<Figure> {
-    let searches: Vec<(f64, &hydrostat::Equilibria)> =
-        searches.iter().map(|(value, all)| (*value, &all.get().all)).collect();
-    let page = Page::default();
-    Ok(Figure::new(hydrostat_figures::over_figure(&searches, &abscissa(axis), quantity(asked)?, title, &page)))
+    let (asked, over, page) = (quantity(asked)?, abscissa(axis), Page::default());
+    let (mut plane, mut space) = (Vec::new(), Vec::new());
+    for (value, all) in &searches {
+        match &all.get().all {
+            Searched::Plane(all) => plane.push((*value, all)),
+            Searched::Space(all) => space.push((*value, all)),
+        }
+    }
+    if !(plane.is_empty() || space.is_empty()) {
+        return Err(wrong("searches: of arms in the plane, or of arms in space, not of both"));
+    }
+    Ok(Figure::new(if space.is_empty() {
+        hydrostat_figures::over_figure(&plane, &over, asked, title, &page)
+    } else {
+        hydrostat_figures::spatial_over_figure(&space, &over, asked, title, &page)
+    }))
 }

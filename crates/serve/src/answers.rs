@@ -168,7 +168,7 @@ fn others(arm: &Arm, kind: VerdictKind, deadline: Deadline) -> Option<Others> {
     if kind != VerdictKind::LimitPoint {
         return None;
     }
-    arm.equilibria_while(COARSE, |_| deadline.is_ahead()).ok().map(|all| Others::from(&all))
+    arm.equilibria_while(COARSE, |_| deadline.is_ahead()).ok().map(|all| Others::of(&all))
 }
 
 /// A path over the range of a parameter.

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args as ClapArgs, ValueEnum};
+use clap::Args as ClapArgs;
 
-use super::ArmArgs;
+use super::{ArmArgs, Format, Over, PictureArgs, picture};
 
 const EXIT: &str = "\
 Exit status:
@@ -21,6 +21,7 @@ Exit status:
 Examples:
   hydrostat modes silicone
   hydrostat modes silicone --flow-speed 0.1 --tension 0.2,0 --format json
+  hydrostat modes silicone --over flow.speed=0:0.3:31 --plot locus.svg
 
 {EXIT}"))]
 pub(crate) struct ModesArgs {
@@ -32,9 +33,17 @@ pub(crate) struct ModesArgs {
     /// Elements of the mesh along the arm, from 1 to 64
     #[arg(long, value_name = "N", default_value = "12")]
     pub(crate) elements: usize,
-    /// text: a table; json: all results
+    /// Find the modes at COUNT equally spaced values of a parameter, such as flow.speed=0:0.5:26 (root locus)
+    #[arg(long, value_name = "KEY=FROM:TO:COUNT", allow_hyphen_values = true)]
+    pub(crate) over: Option<Over>,
+    /// text: a table; json: all results; csv: one row per mode
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
-    pub(crate) format: ModesFormat,
+    pub(crate) format: Format,
+    /// Draw the rates in the complex plane; FILE ends in .svg, .pdf or .png
+    #[arg(long, value_name = "FILE", value_parser = picture)]
+    pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
     /// Write the result to FILE instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
@@ -43,11 +52,4 @@ pub(crate) struct ModesArgs {
 /// A number of modes.
 fn some(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|count| *count > 0).ok_or_else(|| "expected a whole number from 1".to_owned())
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(crate) enum ModesFormat {
-    #[default]
-    Text,
-    Json,
 }

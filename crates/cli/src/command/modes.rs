@@ -1,25 +1,88 @@
-//! `hydrostat modes`: small motions about the equilibrium.
+//! `hydrostat modes`: small motions about the equilibrium, at one load or over several values of one.
 
 use std::fmt::Write as _;
 
-use hydrostat::{Arm, Modes};
-use hydrostat_files::{ModesDocument, mode_kind, number};
+use hydrostat::{Arm, Mode, Modes, MotionError};
+use hydrostat_figures::root_locus_figure;
+use hydrostat_files::{
+    ModesDocument, ModesOverDocument, Varied, mode_kind, modes_csv, modes_over_csv, number,
+};
 
+use super::NoAnswer;
+use super::path::abscissa;
 use super::simulate::refused;
 use super::table::table;
-use crate::args::{ModesArgs, ModesFormat};
+use crate::args::{Format, ModesArgs, Over};
 use crate::output;
-use crate::request;
+use crate::progress::Progress;
+use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let arm = request::arm(&args.arm, "`hydrostat modes`")?;
-    request::check_outputs(&[request::arm_input(&args.arm.file)], &[("-o", args.output.as_deref())])?;
+    if let Some(Over { varied, .. }) = &args.over {
+        varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--over", e))?;
+    }
+    let picture = ("--plot", args.plot.as_deref());
+    request::check_outputs(&[request::arm_input(&args.arm.file)], &[("-o", args.output.as_deref()), picture])?;
+    request::check_picture(&args.picture, &[picture])?;
+    match args.over {
+        Some(over) => over_range(args, &arm, over),
+        None => at_loads(args, &arm),
+    }
+}
+
+fn at_loads(args: &ModesArgs, arm: &Arm) -> anyhow::Result<()> {
     let modes = arm.modes(args.count, args.elements).map_err(refused)?;
+    if let Some(file) = &args.plot {
+        let title = format!("{}: rates of small motions", arm.name);
+        let figure = root_locus_figure(&[(0.0, &modes)], None, &title, &args.picture.page());
+        output::draw(&figure, file, &args.picture.page)?;
+    }
     let text = match args.format {
-        ModesFormat::Text => summary(&arm, &modes),
-        ModesFormat::Json => output::line(ModesDocument::new(&arm, &modes).to_json()),
+        Format::Text => summary(arm, &modes),
+        Format::Json => output::line(ModesDocument::new(arm, &modes).to_json()),
+        Format::Csv => modes_csv(&modes),
     };
     output::put(args.output.as_deref(), &text)
+}
+
+fn over_range(args: &ModesArgs, arm: &Arm, Over { varied, count }: Over) -> anyhow::Result<()> {
+    let mut progress = Progress::new();
+    let mut found = Vec::new();
+    for value in varied.values(count) {
+        let at = || format!("at {} = {}", varied.parameter, varied.with_unit(value));
+        progress.say(|| format!("modes {}", at()));
+        let mut there = arm.clone();
+        varied.parameter.set(&mut there, value).map_err(|e| WrongRequest::Unfit("--over", e))?;
+        there.check().map_err(|e| WrongRequest::Value(at(), e))?;
+        found.push((value, match there.modes(args.count, args.elements) {
+            Ok(modes) => Ok(modes),
+            Err(error @ (MotionError::Option { .. } | MotionError::Unsupported { .. })) => return Err(refused(error)),
+            Err(error) => Err(error.to_string()),
+        }));
+    }
+    if let Some(file) = &args.plot {
+        let all: Vec<(f64, &Modes)> =
+            found.iter().filter_map(|(value, modes)| Some((*value, modes.as_ref().ok()?))).collect();
+        let title = format!("{}: rates of small motions over {}", arm.name, varied.parameter);
+        let figure = root_locus_figure(&all, Some(&abscissa(&varied)), &title, &args.picture.page());
+        output::draw(&figure, file, &args.picture.page)?;
+    }
+    let text = match args.format {
+        Format::Text => over_summary(arm, &varied, &found),
+        Format::Json => output::line(ModesOverDocument::new(arm, &varied, &found).to_json()),
+        Format::Csv => modes_over_csv(&varied, &found),
+    };
+    output::put(args.output.as_deref(), &text)?;
+    for (value, modes) in &found {
+        if let Err(message) = modes {
+            eprintln!("warning: at {}: {message}", varied.with_unit(*value));
+        }
+    }
+    if found.iter().all(|(_, modes)| modes.is_err()) {
+        return Err(NoAnswer(format!("no equilibrium was found at any value of {}", varied.parameter)).into());
+    }
+    Ok(())
 }
 
 fn summary(arm: &Arm, modes: &Modes) -> String {
@@ -37,5 +100,32 @@ fn summary(arm: &Arm, modes: &Modes) -> String {
     let words =
         if modes.is_stable() { "stable: none of these motions grows" } else { "UNSTABLE: a small motion grows" };
     let _ = writeln!(out, "\n{words}");
+    out
+}
+
+/// A line a value: the motion that grows fastest, or decays slowest.
+fn over_summary(arm: &Arm, varied: &Varied, found: &[(f64, Result<Modes, String>)]) -> String {
+    let [from, to] = varied.range.map(|value| varied.with_unit(value));
+    let mut out =
+        format!("modes  {}, {} values of {}, {from} to {to}\n\n", arm.name, found.len(), varied.parameter);
+    let unit = if varied.unit.is_empty() { "value" } else { varied.unit };
+    let heads = [unit, "largest growth rate (1/s)", "frequency (Hz)", "damping ratio", "kind"];
+    let mut rows = vec![heads.map(str::to_owned).to_vec()];
+    for (value, modes) in found {
+        let fastest = modes.as_ref().ok().and_then(|modes| {
+            let growth = |mode: &&Mode| mode.rate[0];
+            modes.modes.iter().max_by(|a, b| growth(a).total_cmp(&growth(b)))
+        });
+        let mut row = vec![number(varied.shown(*value))];
+        match fastest {
+            Some(mode) => {
+                row.extend([mode.rate[0], mode.frequency(), mode.damping_ratio()].map(number));
+                row.push(mode_kind(mode).to_owned());
+            }
+            None => row.extend(["", "", "", "no equilibrium"].map(str::to_owned)),
+        }
+        rows.push(row);
+    }
+    out.push_str(&table(&rows, 1));
     out
 }

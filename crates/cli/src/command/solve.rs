@@ -152,7 +152,7 @@ fn others(arm: &Arm, tol: f64, kind: VerdictKind) -> Option<Others> {
     if kind != VerdictKind::LimitPoint {
         return None;
     }
-    arm.equilibria(tol.clamp(COARSE, 1e-3)).ok().map(|all| Others::from(&all))
+    arm.equilibria(tol.clamp(COARSE, 1e-3)).ok().map(|all| Others::of(&all))
 }
 
 fn others_message(others: Others) -> String {

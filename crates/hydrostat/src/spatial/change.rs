@@ -48,6 +48,9 @@ impl Equations {
         if let Some(couples) = self.imposed.as_ref().filter(|_| way == Way::Path) {
             return Ok(change_by_couples(couples, stations));
         }
+        if let Some(axis) = self.turning.as_ref().filter(|_| way == Way::Path) {
+            return Ok(self.change_by_turn(axis));
+        }
         match (way, self.varied_over()) {
             (Way::Of(Parameter::Stroke(_)), _) => return Ok(Forcing::default()),
             (Way::Path, Some(ways)) if ways.iter().all(|way| matches!(way.parameter, Parameter::Stroke(_))) => {

@@ -70,6 +70,8 @@ pub(crate) struct Equations {
     /// The phase whose fraction is the parameter, unless another one is varied.
     pub(crate) phase: Phase,
     pub(super) varied: Option<Varied>,
+    /// The axis in space that the base turns about, once round over the range of what is varied.
+    pub(super) turning: Option<Vector<f64>>,
     /// A couple about the directors, at the blocks of stations, that takes the place of the parameter.
     pub(super) imposed: Option<Vec<Vector<Lanes>>>,
     /// Steps of the section law that are left to the next round.
@@ -109,6 +111,7 @@ impl Equations {
             upright: arm.clone(),
             gravity: [0.0; 3],
             varied: None,
+            turning: None,
             imposed: None,
             fraction: [1.0, 1.0],
             phase: Phase::Tension,

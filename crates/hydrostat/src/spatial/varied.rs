@@ -1,11 +1,14 @@
 //! The equations of an arm in space whose loads, support or material follow one parameter over a range, as in the
 //! plane.
 
-use hydrostat_bvp::{Lanes, each};
+use std::f64::consts::TAU;
 
-use super::equations::Equations;
+use hydrostat_bvp::{Forcing, Lanes, each};
+
+use super::equations::{Equations, L, N, Q};
 use super::loads::water;
 use super::place::base_of;
+use super::rotation::{Directors, Vector, spin, times, turned};
 use super::section::CableAt;
 use crate::rod::parameter::Parameter;
 use crate::statics::equations::{Change, StrokeControl, Varied};
@@ -17,6 +20,31 @@ impl Equations {
     pub(super) fn vary(&mut self, parameter: Parameter, from: f64, to: f64) {
         self.varied = Some(Varied { ways: vec![Change { parameter, from, to }], share: 0.0 });
         self.set_share(0.0);
+    }
+
+    /// Lets the base turn about `axis`, a unit vector in space, once round; the equations are at share 0.
+    pub(super) fn turn_base(&mut self, axis: Vector<f64>) {
+        self.turning = Some(axis);
+        self.varied = Some(Varied { ways: Vec::new(), share: 0.0 });
+        self.set_share(0.0);
+    }
+
+    /// Lets nothing vary: the base is where the arm has it.
+    pub(super) fn hold(&mut self) {
+        self.turning = None;
+        self.varied = None;
+        self.take_base();
+    }
+
+    /// The change of the equations a turn of the base, at a fixed solution.
+    pub(super) fn change_by_turn(&self, axis: &Vector<f64>) -> Forcing<N, Q, L> {
+        let about = times(TAU, &Directors::of(&self.base).to_body(axis));
+        let moved = spin(&self.base, &about);
+        let mut out = Forcing::default();
+        for k in 0..4 {
+            out.left[k] = -moved[k];
+        }
+        out
     }
 
     /// The parameter's value at a share of its range.
@@ -35,6 +63,9 @@ impl Equations {
         varied.share = share;
         for way in varied.ways.clone() {
             self.set_parameter(way.parameter, way.value(share));
+        }
+        if self.turning.is_some() {
+            self.take_base();
         }
     }
 
@@ -79,7 +110,10 @@ impl Equations {
 
     /// The quaternion of the base; of both that mean it, that nearer to the last one.
     fn take_base(&mut self) {
-        let base = base_of(&self.arm);
+        let mut base = base_of(&self.arm);
+        if let Some(axis) = &self.turning {
+            base = turned(&base, &times(TAU * self.share(), &Directors::of(&base).to_body(axis)));
+        }
         let along: f64 = (0..4).map(|k| base[k] * self.base[k]).sum();
         self.base = if along < 0.0 { base.map(|v| -v) } else { base };
     }

@@ -14,6 +14,7 @@ mod step_control;
 mod stepper;
 mod trace;
 pub(crate) mod traced;
+mod turns;
 
 pub use circle::{Equilibria, Equilibrium};
 pub(crate) use limits::name_limit;
@@ -22,3 +23,4 @@ pub(crate) use points::has_a_path;
 pub use points::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub(crate) use step_control::{LOOSE, PathSummary, StepControl};
 pub(crate) use trace::{ends_of_range, trace};
+pub(crate) use turns::{Further, Watch, follow_turns};

@@ -42,11 +42,11 @@ type Stepper<'e> = stepper::Stepper<'e, Engine>;
 /// How finely the curve is followed.
 const PACE: StepControl = StepControl { longest: 0.25, straightness: 0.96, most: usize::MAX, accuracy: 1e-6 };
 
-/// One of several equilibria.
+/// One of several equilibria: in the plane, or with [`crate::SpatialConfiguration`] in space.
 #[derive(Debug, Clone)]
-pub struct Equilibrium {
+pub struct Equilibrium<C = Configuration> {
     /// The shape.
-    pub configuration: Configuration,
+    pub configuration: C,
     /// `None` where it is not established.
     pub stability: Option<Stability>,
 }

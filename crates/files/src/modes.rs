@@ -1,0 +1,168 @@
+//! Eigenmodes as JSON and CSV, at one load and over several values of one.
+
+use hydrostat::{Arm, Mode, Modes};
+use serde::Serialize;
+
+use crate::csv_text::Rows;
+use crate::results::{SCHEMA, cell, json};
+use crate::varied::Varied;
+use crate::written::Inputs;
+
+#[derive(Debug, Clone, Serialize)]
+struct ModesOut {
+    /// Whether no motion grows, of those listed.
+    stable: bool,
+    modes: Vec<ModeOut>,
+    tip: ModesTip,
+}
+
+/// The document of eigenmodes.
+#[derive(Debug, Clone, Serialize)]
+pub struct ModesDocument {
+    schema: u32,
+    version: &'static str,
+    #[serde(flatten)]
+    found: ModesOut,
+    inputs: Inputs,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct ValueOut<'a> {
+    value: f64,
+    #[serde(flatten)]
+    found: Option<ModesOut>,
+    message: Option<&'a str>,
+}
+
+/// The document of eigenmodes at several values of one quantity.
+#[derive(Debug, Clone, Serialize)]
+pub struct ModesOverDocument<'a> {
+    schema: u32,
+    version: &'static str,
+    parameter: String,
+    unit: &'static str,
+    range: [f64; 2],
+    values: Vec<ValueOut<'a>>,
+    inputs: Inputs,
+}
+
+#[derive(Debug, Clone, Copy, Serialize)]
+struct ModesTip {
+    x: f64,
+    y: f64,
+    theta: f64,
+}
+
+#[derive(Debug, Clone, Copy, Serialize)]
+struct ModeOut {
+    rate: [f64; 2],
+    frequency_hz: f64,
+    damping_ratio: f64,
+    kind: &'static str,
+}
+
+/// What a mode does, in a word: `swings`, `decays`, `flutter` or `divergence`.
+pub fn mode_kind(mode: &Mode) -> &'static str {
+    match (mode.grows(), mode.rate[1] == 0.0) {
+        (false, false) => "swings",
+        (false, true) => "decays",
+        (true, false) => "flutter",
+        (true, true) => "divergence",
+    }
+}
+
+impl From<&Mode> for ModeOut {
+    fn from(mode: &Mode) -> Self {
+        Self {
+            rate: mode.rate,
+            frequency_hz: mode.frequency(),
+            damping_ratio: mode.damping_ratio(),
+            kind: mode_kind(mode),
+        }
+    }
+}
+
+impl From<&Modes> for ModesOut {
+    fn from(modes: &Modes) -> Self {
+        let [x, y, theta] = modes.tip;
+        let stable = modes.is_stable();
+        Self { stable, modes: modes.modes.iter().map(ModeOut::from).collect(), tip: ModesTip { x, y, theta } }
+    }
+}
+
+impl ModesDocument {
+    /// Of the modes of `arm`.
+    pub fn new(arm: &Arm, modes: &Modes) -> Self {
+        Self {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            found: modes.into(),
+            inputs: Inputs::new(arm),
+        }
+    }
+
+    /// The document, one line.
+    pub fn to_json(&self) -> String {
+        json(self)
+    }
+}
+
+impl<'a> ModesOverDocument<'a> {
+    /// Of the modes of `arm` at each value (SI) of what varies, or why there are none.
+    pub fn new(arm: &Arm, varied: &Varied, found: &'a [(f64, Result<Modes, String>)]) -> Self {
+        let value = |(value, modes): &'a (f64, Result<Modes, String>)| ValueOut {
+            value: *value,
+            found: modes.as_ref().ok().map(ModesOut::from),
+            message: modes.as_ref().err().map(String::as_str),
+        };
+        Self {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            parameter: varied.parameter.to_string(),
+            unit: varied.parameter.unit(),
+            range: varied.range,
+            values: found.iter().map(value).collect(),
+            inputs: Inputs::new(arm),
+        }
+    }
+
+    /// The document, one line.
+    pub fn to_json(&self) -> String {
+        json(self)
+    }
+}
+
+const COLUMNS: [&str; 6] =
+    ["number", "growth_rate_1_s", "angular_frequency_rad_s", "frequency_Hz", "damping_ratio", "kind"];
+
+fn cells(number: usize, mode: &Mode) -> Vec<String> {
+    let mut out = vec![number.to_string()];
+    out.extend([mode.rate[0], mode.rate[1], mode.frequency(), mode.damping_ratio()].map(cell));
+    out.push(mode_kind(mode).to_owned());
+    out
+}
+
+/// Modes, one row each, counted from 1.
+pub fn modes_csv(modes: &Modes) -> String {
+    let mut out = Rows::new(&COLUMNS.map(str::to_owned));
+    for (k, mode) in modes.modes.iter().enumerate() {
+        out.row(&cells(k + 1, mode));
+    }
+    out.text()
+}
+
+/// [`modes_csv`] at each value of what varies.
+pub fn modes_over_csv(varied: &Varied, found: &[(f64, Result<Modes, String>)]) -> String {
+    let mut names = vec![varied.column()];
+    names.extend(COLUMNS.map(str::to_owned));
+    let mut out = Rows::new(&names);
+    for (value, modes) in found {
+        let Ok(modes) = modes else { continue };
+        for (k, mode) in modes.modes.iter().enumerate() {
+            let mut row = vec![cell(*value)];
+            row.extend(cells(k + 1, mode));
+            out.row(&row);
+        }
+    }
+    out.text()
+}

@@ -1,0 +1,284 @@
+//! The equilibria of an arm in space that curves over the rotation of its base lead to.
+//!
+//! In the plane one curve meets every equilibrium ([`Arm::equilibria`]). In space the equilibria for all rotations of
+//! the base are a manifold of three dimensions, that of the rotations of the tip, and the map from the rotation of the
+//! tip to that of the base has the degree of the unloaded arm's, one: the signs of its determinant at all equilibria of
+//! one base sum to one, as long as every section has strains on the way. That tells of some lists that one is
+//! missing; no list is known to be complete.
+
+use super::configuration::SpatialConfiguration;
+use super::engine::Engine;
+use super::equations::Equations;
+use super::rotation::{Directors, Vector, cross, dot, times};
+use super::solve::{SpatialError, SpatialSolver};
+use super::tip::SpatialTip;
+use crate::rod::arm::Arm;
+use crate::rod::parameter::Parameter;
+use crate::statics::path::{
+    Equilibrium, Further, PathEnd, PathError, Watch, follow_turns, has_a_path,
+};
+use crate::statics::refinement::{First, Refinable as _};
+use crate::statics::snap::SnapBounds;
+use crate::statics::solve::Options;
+use crate::statics::stability::Stability;
+
+/// Turns of the base, and their axes in its directors, at which a solve may give the first equilibrium.
+const STARTS: [(f64, Vector<f64>); 7] = [
+    (0.0, AXES[0]),
+    (0.25, AXES[0]),
+    (-0.25, AXES[0]),
+    (0.25, AXES[1]),
+    (-0.25, AXES[1]),
+    (0.1, AXES[0]),
+    (-0.1, AXES[0]),
+];
+
+/// Axes of the base's turns, in its directors.
+const AXES: [Vector<f64>; 6] =
+    [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 1.0, -1.0], [1.0, 1.0, 1.0]];
+
+/// Two shapes whose tips are turned by less from each other (sine) are one: the rotation of the tip gives the arm.
+const SAME: f64 = 1e-5;
+
+/// Most equilibria: those of arms that are symmetric about an axis are circles of them.
+const MOST: usize = 60;
+
+/// The equilibria of an arm in space that were found under its loads. There may be others.
+#[derive(Debug, Clone)]
+pub struct SpatialEquilibria {
+    /// In the order of the tip's x, then y and z.
+    pub found: Vec<Equilibrium<SpatialConfiguration>>,
+    /// Curves over the turn of the base about an axis that were followed, and why each ended; `None` where it came to
+    /// what was known.
+    pub curves: Vec<Option<PathEnd>>,
+    /// Points of all curves.
+    pub steps: usize,
+    /// The sum of the signs of the determinants at the equilibria found, where all are known. It is one for all
+    /// equilibria of an arm whose sections have strains at every rotation of the base.
+    pub sum_of_signs: Option<i64>,
+}
+
+impl SpatialEquilibria {
+    /// Whether it is known that equilibria are missing: the signs of the determinants do not sum to one, though no
+    /// curve ended at a limit of a section.
+    pub fn misses_some(&self) -> bool {
+        let limited = self.curves.iter().any(|end| matches!(end, Some(PathEnd::Limit { .. })));
+        !limited && self.sum_of_signs.is_some_and(|sum| sum != 1)
+    }
+}
+
+impl Arm {
+    /// Equilibria of an arm in space under its loads, whether the path from the unloaded arm leads to them or not, each
+    /// with its stability. The tip position is good to `tol` L.
+    ///
+    /// From each equilibrium the base is turned about six axes; wherever it comes to whole turns is an equilibrium of the
+    /// arm. Not all of them need to be on such curves: the list may not be complete, see
+    /// [`SpatialEquilibria::misses_some`].
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Space};
+    ///
+    /// // A soft arm that the stream meets from the tip, and a little from above.
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.flow.speed = 0.2;
+    /// arm.space = Some(Space { stream: Some([-1.0, 0.01, 0.02]), ..Space::default() });
+    /// let all = arm.equilibria_in_space(1e-8).unwrap();
+    /// assert!(all.found.len() >= 3 && !all.misses_some());
+    /// ```
+    ///
+    /// # Errors
+    /// [`PathError::Start`] when no equilibrium was found at any rotation of the base, [`PathError::Support`],
+    /// [`PathError::Friction`], [`PathError::Option`], [`PathError::Stroke`].
+    pub fn equilibria_in_space(&self, tol: f64) -> Result<SpatialEquilibria, PathError<SpatialError>> {
+        self.equilibria_in_space_while(tol, |_| true)
+    }
+
+    /// [`Arm::equilibria_in_space`] that asks `go_on` after every point of a curve, with how many there are, and ends
+    /// the search where that is false.
+    ///
+    /// # Errors
+    /// Those of [`Arm::equilibria_in_space`].
+    pub fn equilibria_in_space_while(
+        &self,
+        tol: f64,
+        mut go_on: impl FnMut(usize) -> bool,
+    ) -> Result<SpatialEquilibria, PathError<SpatialError>> {
+        if !(1e-12..=1e-3).contains(&tol) {
+            return Err(PathError::Option { option: "tol", value: tol, expected: "in [1e-12, 1e-3]" });
+        }
+        has_a_path(self)?;
+        if let Some(cable) = self.cables.iter().find(|c| c.stroke.is_some()) {
+            return Err(PathError::Stroke { cable: cable.name.clone() });
+        }
+        let mut arm = self.clone();
+        arm.space.get_or_insert_default();
+        let mut search = Search { tol, found: Vec::new(), known: Vec::new(), axis: AXES[0], steps: 0, go_on: &mut go_on };
+        let mut curves = Vec::new();
+        search.start(&arm, &mut curves)?;
+        search.follow_all(&mut curves);
+        let signs: Option<Vec<i64>> = search.found.iter().map(|found| found.sign).collect();
+        let sum_of_signs = signs.map(|signs| signs.iter().sum());
+        let mut found: Vec<_> = search.found.into_iter().map(|found| found.shape).collect();
+        let place = |one: &Equilibrium<SpatialConfiguration>| {
+            let tip = one.configuration.tip();
+            [tip.x, tip.y, tip.z].map(|v| (v / (1e-7 * self.length)).round())
+        };
+        found.sort_by(|p, q| {
+            let (p, q) = (place(p), place(q));
+            p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])).then(p[2].total_cmp(&q[2]))
+        });
+        Ok(SpatialEquilibria { found, curves, steps: search.steps, sum_of_signs })
+    }
+}
+
+/// The axis in space with these components along the directors of the base.
+fn axis_of(equations: &Equations, components: Vector<f64>) -> Vector<f64> {
+    let axis = Directors::of(&equations.base).to_space(&components);
+    times(1.0 / dot(&axis, &axis).sqrt(), &axis)
+}
+
+/// An equilibrium with its engine.
+struct Found {
+    engine: Engine,
+    tip: SpatialTip,
+    shape: Equilibrium<SpatialConfiguration>,
+    sign: Option<i64>,
+}
+
+struct Search<'g> {
+    tol: f64,
+    found: Vec<Found>,
+    /// Equilibria, axes and sides whose curve was followed.
+    known: Vec<(usize, Vector<f64>, bool)>,
+    /// The axis of the present curve.
+    axis: Vector<f64>,
+    steps: usize,
+    go_on: &'g mut dyn FnMut(usize) -> bool,
+}
+
+impl Search<'_> {
+    /// Finds the first equilibrium: by a solve at the base of the arm or, where there is none, at one that is turned
+    /// from it, and by the curve from there.
+    fn start(&mut self, arm: &Arm, curves: &mut Vec<Option<PathEnd>>) -> Result<(), PathError<SpatialError>> {
+        let failed = |source| PathError::Start { parameter: Parameter::BaseAngle, value: arm.base.angle, source };
+        let mut first = None;
+        for (turns, axis) in STARTS {
+            let options = Options { snaps: SnapBounds::NONE, ..Options::default() };
+            let mut solver = SpatialSolver::new(arm, options).map_err(failed)?;
+            let equations = &mut solver.engine.equations;
+            equations.turn_base(axis_of(equations, axis));
+            equations.set_share(turns);
+            match solver.solve() {
+                Ok(_) => {}
+                Err(error @ SpatialError::NoEquilibrium(_)) => {
+                    first = first.or(Some(error));
+                    continue;
+                }
+                Err(error) => return Err(failed(error)),
+            }
+            let mut engine = solver.engine;
+            engine.allowed = usize::MAX;
+            if turns == 0.0 {
+                engine.equations.hold();
+                self.keep(&mut engine);
+            } else {
+                self.axis = axis;
+                for side in [1.0, -1.0] {
+                    curves.push(follow_turns(&mut engine.clone(), side, self));
+                }
+            }
+            if !self.found.is_empty() {
+                return Ok(());
+            }
+        }
+        let nothing = || SpatialSolver::new(arm, Options::default()).and_then(|mut solver| solver.solve()).err();
+        match first.or_else(nothing) {
+            Some(source) => Err(failed(source)),
+            None => Ok(()),
+        }
+    }
+
+    /// Follows the curves about all axes from everything that is found, until nothing is new.
+    fn follow_all(&mut self, curves: &mut Vec<Option<PathEnd>>) {
+        let mut next = 0;
+        while next < self.found.len() {
+            for axis in AXES {
+                for forwards in [true, false] {
+                    self.axis = axis;
+                    if !self.mark(next, forwards) {
+                        continue;
+                    }
+                    let mut engine = self.found[next].engine.clone();
+                    let about = axis_of(&engine.equations, axis);
+                    engine.equations.turn_base(about);
+                    let end = follow_turns(&mut engine, if forwards { 1.0 } else { -1.0 }, self);
+                    curves.push(end);
+                    if end == Some(PathEnd::Stopped) {
+                        return;
+                    }
+                }
+            }
+            next += 1;
+        }
+    }
+
+    /// Notes that the curve about the present axis is known from an equilibrium to one side; whether that is new.
+    fn mark(&mut self, index: usize, forwards: bool) -> bool {
+        let here = (index, self.axis, forwards);
+        let new = !self.known.contains(&here);
+        if new {
+            self.known.push(here);
+        }
+        new
+    }
+
+    /// Keeps the equilibrium of an engine whose base is held, if it is new; which one it is.
+    fn keep(&mut self, engine: &mut Engine) -> Option<usize> {
+        let close = engine.iterate(1e-6, 14, None).is_ok();
+        let estimate = if close { engine.settle(self.tol, First::Warm).ok() } else { None };
+        let estimate = estimate?;
+        engine.linearise().ok()?;
+        let sign = engine.determinant().known_sign().map(|sign| if sign > 0.0 { 1 } else { -1 });
+        let tip = engine.read_tip()?;
+        if let Some(index) = self.found.iter().position(|found| is_same(&found.tip, &tip)) {
+            return Some(index);
+        }
+        let statistics = engine.statistics(0);
+        let error = estimate * engine.equations.units.length;
+        let configuration = SpatialConfiguration::read(engine, error, statistics).ok()?;
+        let stability: Option<Stability> = configuration.stability();
+        let shape = Equilibrium { configuration, stability };
+        self.found.push(Found { engine: engine.clone(), tip, shape, sign });
+        Some(self.found.len() - 1)
+    }
+}
+
+impl Watch<Engine> for Search<'_> {
+    fn whole_turn(&mut self, engine: &mut Engine, forwards: bool) -> Further {
+        let mut held = engine.clone();
+        held.equations.hold();
+        let Some(index) = self.keep(&mut held) else { return Further::Yes };
+        if self.found.len() >= MOST {
+            return Further::Stop;
+        }
+        // What comes is followed now; what was before is that of the other side.
+        let new = self.mark(index, forwards);
+        self.mark(index, !forwards);
+        if new { Further::Yes } else { Further::No }
+    }
+
+    fn point(&mut self) -> Further {
+        self.steps += 1;
+        if (self.go_on)(self.steps) { Further::Yes } else { Further::Stop }
+    }
+}
+
+/// Whether two tips have the same rotation.
+fn is_same(p: &SpatialTip, q: &SpatialTip) -> bool {
+    let off = cross(&p.a, &q.a);
+    let along = dot(&p.a, &q.a) > 0.0 && dot(&p.b, &q.b) > 0.0;
+    along && dot(&off, &off).sqrt() < SAME && {
+        let other = cross(&p.b, &q.b);
+        dot(&other, &other).sqrt() < SAME
+    }
+}
