@@ -34,8 +34,7 @@ const STARTS: [(f64, Vector<f64>); 7] = [
 ];
 
 /// Axes of the base's turns, in its directors.
-const AXES: [Vector<f64>; 6] =
-    [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 1.0, -1.0], [1.0, 1.0, 1.0]];
+const AXES: [Vector<f64>; 4] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, 1.0, 1.0], [0.0, 1.0, -1.0]];
 
 /// Two shapes whose tips are turned by less from each other (sine) are one: the rotation of the tip gives the arm.
 const SAME: f64 = 1e-5;
@@ -71,7 +70,7 @@ impl Arm {
     /// Equilibria of an arm in space under its loads, whether the path from the unloaded arm leads to them or not, each
     /// with its stability. The tip position is good to `tol` L.
     ///
-    /// From each equilibrium the base is turned about six axes; wherever it comes to whole turns is an equilibrium of the
+    /// From each equilibrium the base is turned about four axes; wherever it comes to whole turns is an equilibrium of the
     /// arm. Not all of them need to be on such curves: the list may not be complete, see
     /// [`SpatialEquilibria::misses_some`].
     ///

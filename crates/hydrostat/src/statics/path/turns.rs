@@ -15,10 +15,7 @@ use crate::statics::verdict::VerdictKind;
 const CONTROL: StepControl = StepControl { most: usize::MAX, ..StepControl::BRISK };
 
 /// Most points of one curve.
-const MOST: usize = 1500;
-
-/// Most branches that are followed from the bifurcations of one curve.
-const BRANCHES: usize = 8;
+const MOST: usize = 800;
 
 /// Whether a curve is followed further.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,8 +35,9 @@ pub(crate) trait Watch<E: Traced> {
     fn point(&mut self) -> Further;
 }
 
-/// Follows the curve through the engine's equilibrium, whose base turns once round over its range, and what crosses it,
-/// to one side of the angle of the base (1 or -1). What ended the curve, unless what comes was known.
+/// Follows the curve through the engine's equilibrium, whose base turns once round over its range, to one side of the
+/// angle of the base (1 or -1). Where another curve crosses, it goes straight on. What ended it, unless what comes was
+/// known.
 pub(crate) fn follow_turns<E: Traced>(engine: &mut E, side: f64, watch: &mut dyn Watch<E>) -> Option<PathEnd> {
     let start = engine.share();
     let mut stepper = Stepper::new(engine, Along::Range, [f64::NEG_INFINITY, f64::INFINITY]);
@@ -51,30 +49,12 @@ pub(crate) fn follow_turns<E: Traced>(engine: &mut E, side: f64, watch: &mut dyn
         stepper.orientation = -stepper.orientation;
         here.dlambda_ds = -here.dlambda_ds;
     }
-    let mut curve = Curve { stepper, watch, bifurcations: Vec::new() };
-    let end = curve.follow(here);
-    let mut branches = 0;
-    while let Some(at) = curve.bifurcations.pop() {
-        for side in [1.0, -1.0] {
-            if end == Some(PathEnd::Stopped) || branches == BRANCHES {
-                return end;
-            }
-            branches += 1;
-            if let Some(first) = curve.stepper.switch(&at, side, CONTROL)
-                && curve.follow(first) == Some(PathEnd::Stopped)
-            {
-                return Some(PathEnd::Stopped);
-            }
-        }
-    }
-    end
+    Curve { stepper, watch }.follow(here)
 }
 
 struct Curve<'e, 'w, E: Traced> {
     stepper: Stepper<'e, E>,
     watch: &'w mut dyn Watch<E>,
-    /// Where other curves cross.
-    bifurcations: Vec<Point<E>>,
 }
 
 impl<E: Traced> Curve<'_, '_, E> {
@@ -92,7 +72,6 @@ impl<E: Traced> Curve<'_, '_, E> {
             };
             let mut extreme = None;
             if outcome == StepOutcome::Bifurcation {
-                self.bifurcations.push(self.stepper.bifurcation(&here, &next, step, CONTROL));
                 self.stepper.orientation = -self.stepper.orientation;
                 next.dlambda_ds = -next.dlambda_ds;
             } else if next.dlambda_ds * here.dlambda_ds < 0.0 {
