@@ -91,14 +91,15 @@ pub enum FitKeyError {
 /// The names of what can be fitted: by the length there are derivatives at fractions of the arm, and what is measured is
 /// at places in m.
 fn fittable() -> Vec<String> {
-    let factors = [Unknown::TensionFactor, Unknown::CableFactor(0)].map(|factor| factor.to_string());
-    names().into_iter().filter(|name| *name != Parameter::Length.to_string()).chain(factors).collect()
+    let others = [Unknown::Base(0), Unknown::Base(1), Unknown::Base(2), Unknown::TensionFactor, Unknown::CableFactor(0)];
+    let others = others.map(|other| other.to_string());
+    names().into_iter().filter(|name| *name != Parameter::Length.to_string()).chain(others).collect()
 }
 
 /// What is fitted under a key, or under its last part.
 fn unknown(key: &str) -> Result<Unknown, FitKeyError> {
     match bracketed(key).parse() {
-        Ok(factor @ (Unknown::TensionFactor | Unknown::CableFactor(_))) => Ok(factor),
+        Ok(other @ (Unknown::TensionFactor | Unknown::CableFactor(_) | Unknown::Base(_))) => Ok(other),
         _ => parameter(key).map(Unknown::Of),
     }
 }

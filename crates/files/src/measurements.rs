@@ -5,8 +5,8 @@ use std::io::Read;
 use std::path::Path;
 
 use csv::StringRecord;
-use hydrostat::{Arm, Parameter};
-use hydrostat_identify::{Case, Marker, Measurement, Quantity};
+use hydrostat::Arm;
+use hydrostat_identify::{Case, Marker, Measurement, Quantity, Unknown};
 
 use crate::arm_file::ArmFile;
 use crate::csv_text::{Dialect, Lines, is_missing, records, without_mark};
@@ -59,7 +59,7 @@ pub fn read_measurements(
     path: &Path,
     file: &ArmFile,
     deviations: &Deviations,
-    fitted: &[Parameter],
+    fitted: &[Unknown],
 ) -> Result<Vec<Case>, MeasurementsError> {
     let name = path.display().to_string();
     let fault = |why: String| MeasurementsError { path: name.clone(), row: 0, column: None, why };
@@ -102,7 +102,7 @@ pub fn parse_measurements(
     path: &str,
     file: &ArmFile,
     deviations: &Deviations,
-    fitted: &[Parameter],
+    fitted: &[Unknown],
 ) -> Result<Vec<Case>, MeasurementsError> {
     let text = without_mark(text);
     let dialect = Dialect::of(text);
@@ -168,7 +168,7 @@ impl Table<'_> {
         MeasurementsError { path: self.path.to_owned(), row, column: column.map(str::to_owned), why: why.into() }
     }
 
-    fn read_heads(&mut self, row: usize, record: &StringRecord, fitted: &[Parameter]) -> Result<(), MeasurementsError> {
+    fn read_heads(&mut self, row: usize, record: &StringRecord, fitted: &[Unknown]) -> Result<(), MeasurementsError> {
         for text in record {
             let mut head = head(text).map_err(|why| self.fault(row, Some(text), why))?;
             if head.column == Column::Theta {

@@ -1,11 +1,12 @@
 //! Measured shapes as CSV: what is read, and what is said of what cannot be.
 
 use hydrostat::Parameter;
+use hydrostat_identify::Unknown;
 use hydrostat_files::{ArmFile, Deviations, parse_measurements, shipped};
 use hydrostat_identify::{Case, Quantity};
 use proptest::prelude::*;
 
-fn read_with(text: &str, sd: &[&str], fitted: &[Parameter]) -> Result<Vec<Case>, String> {
+fn read_with(text: &str, sd: &[&str], fitted: &[Unknown]) -> Result<Vec<Case>, String> {
     let file = ArmFile::parse(shipped::get("silicone").unwrap(), "silicone").unwrap();
     let mut deviations = Deviations::default();
     for text in sd {

@@ -186,7 +186,11 @@ impl Fitted {
 /// Between which values a parameter makes an arm; the ends themselves may make none.
 pub fn natural_bounds(parameter: impl Into<Unknown>) -> [f64; 2] {
     const POSITIVE: [f64; 2] = [0.0, f64::INFINITY];
-    let Unknown::Of(parameter) = parameter.into() else { return POSITIVE };
+    let parameter = match parameter.into() {
+        Unknown::Of(parameter) => parameter,
+        Unknown::TensionFactor | Unknown::CableFactor(_) => return POSITIVE,
+        Unknown::Base(_) => return [f64::NEG_INFINITY, f64::INFINITY],
+    };
     match parameter {
         Parameter::Young
         | Parameter::ShearFactor

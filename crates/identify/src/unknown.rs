@@ -1,10 +1,12 @@
-//! What can be fitted: a number of the arm, or a factor on the tensions that the load cases give.
+//! What can be fitted: a number of the arm, its place, or a factor on the tensions that the load cases give.
 
 use std::fmt;
 use std::str::FromStr;
 
 use hydrostat::parameter::{Unfit, UnknownParameter};
 use hydrostat::{Arm, Parameter};
+
+use crate::data::Quantity;
 
 /// A number that is fitted. The tensions of a load case are often those at a motor: what reaches the arm is a part of them, by friction in
 /// guides and by the pulley's true radius.
@@ -25,10 +27,14 @@ pub enum Unknown {
     TensionFactor,
     /// A factor on the given tensions of one cable.
     CableFactor(usize),
+    /// x (0), y (1) or, of an arm in space, z (2) of the base, m: shapes are moved as they are.
+    Base(usize),
 }
 
 /// The key of a factor on all tensions.
 const ALL: &str = "tension_factor";
+/// The keys of the place of the base.
+const BASE: [&str; 3] = ["arm.base.x", "arm.base.y", "arm.base.z"];
 
 impl From<Parameter> for Unknown {
     fn from(parameter: Parameter) -> Self {
@@ -48,6 +54,7 @@ impl fmt::Display for Unknown {
             Self::Of(parameter) => parameter.fmt(f),
             Self::TensionFactor => f.write_str(ALL),
             Self::CableFactor(c) => write!(f, "cable[{c}].{ALL}"),
+            Self::Base(k) => f.write_str(BASE[*k.min(&2)]),
         }
     }
 }
@@ -58,6 +65,9 @@ impl FromStr for Unknown {
     fn from_str(name: &str) -> Result<Self, UnknownParameter> {
         if name == ALL {
             return Ok(Self::TensionFactor);
+        }
+        if let Some(k) = BASE.iter().position(|key| *key == name) {
+            return Ok(Self::Base(k));
         }
         let index = name.strip_prefix("cable[").and_then(|rest| rest.strip_suffix(ALL)?.strip_suffix("].")?.parse().ok());
         match index {
@@ -78,7 +88,11 @@ impl Unknown {
 
     /// The unit of its values; empty for a plain number.
     pub fn unit(self) -> &'static str {
-        self.parameter().map_or("", Parameter::unit)
+        match self {
+            Self::Of(parameter) => parameter.unit(),
+            Self::Base(_) => "m",
+            Self::TensionFactor | Self::CableFactor(_) => "",
+        }
     }
 
     /// Its value in `arm`: of a factor 1, as the tensions are those that are given.
@@ -92,6 +106,12 @@ impl Unknown {
                 Err(Unfit::Cable { key: self.to_string(), cables: arm.cables.len() })
             }
             Self::TensionFactor | Self::CableFactor(_) => Ok(1.0),
+            Self::Base(0) => Ok(arm.base.x),
+            Self::Base(1) => Ok(arm.base.y),
+            Self::Base(_) => match &arm.space {
+                Some(space) => Ok(space.z),
+                None => Err(Unfit::InPlane { key: self.to_string() }),
+            },
         }
     }
 
@@ -104,6 +124,12 @@ impl Unknown {
             return parameter.set(arm, value);
         }
         self.of(arm)?;
+        match (self, &mut arm.space) {
+            (Self::Base(0), _) => arm.base.x = value,
+            (Self::Base(1), _) => arm.base.y = value,
+            (Self::Base(_), Some(space)) => space.z = value,
+            _ => {}
+        }
         for cable in self.cables(arm) {
             arm.cables[cable].tension *= value;
         }
@@ -114,7 +140,7 @@ impl Unknown {
     fn cables(self, arm: &Arm) -> Vec<usize> {
         let given = arm.cables.iter().enumerate().filter(|(_, cable)| cable.stroke.is_none()).map(|(c, _)| c);
         given.filter(|c| match self {
-            Self::Of(_) => false,
+            Self::Of(_) | Self::Base(_) => false,
             Self::TensionFactor => true,
             Self::CableFactor(own) => own == *c,
         }).collect()
@@ -140,6 +166,8 @@ pub(crate) struct Chain {
     pub(crate) parameters: Vec<Parameter>,
     /// Of each unknown: indices in these, with weights.
     pub(crate) sums: Vec<Vec<(usize, f64)>>,
+    /// Which unknowns move places along which axis.
+    moves: Vec<Option<usize>>,
 }
 
 impl Chain {
@@ -153,7 +181,7 @@ impl Chain {
             let own = unknowns.iter().zip(x).filter(|(one, _)| Some(**one) != but && one.cables(given).contains(&c));
             own.map(|(_, x)| *x).product()
         };
-        let mut out = Self { parameters: Vec::new(), sums: Vec::new() };
+        let mut out = Self { parameters: Vec::new(), sums: Vec::new(), moves: Vec::new() };
         for unknown in unknowns {
             let sum = match unknown {
                 Unknown::Of(Parameter::Tension(c)) => vec![(out.index(Parameter::Tension(*c)), others(*c, None))],
@@ -166,13 +194,19 @@ impl Chain {
                 }
             };
             out.sums.push(sum);
+            out.moves.push(if let Unknown::Base(k) = unknown { Some(*k) } else { None });
         }
         out
     }
 
-    /// A row of derivatives by the unknowns, of those by the numbers of the arm.
-    pub(crate) fn row(&self, by: impl Fn(usize) -> f64) -> Vec<f64> {
-        self.sums.iter().map(|sum| sum.iter().map(|(k, weight)| weight * by(*k)).sum()).collect()
+    /// The derivatives of a quantity by the unknowns, of those by the numbers of the arm.
+    pub(crate) fn row(&self, quantity: Quantity, by: impl Fn(usize) -> f64) -> Vec<f64> {
+        let along = quantity.marker().map(|(_, axis)| axis);
+        let one = |(sum, moves): (&Vec<(usize, f64)>, &Option<usize>)| {
+            let moved = if moves.is_some() && *moves == along { 1.0 } else { 0.0 };
+            moved + sum.iter().map(|(k, weight)| weight * by(*k)).sum::<f64>()
+        };
+        self.sums.iter().zip(&self.moves).map(one).collect()
     }
 
     fn index(&mut self, parameter: Parameter) -> usize {

@@ -58,7 +58,7 @@ pub(crate) fn identify(
         sd.add(text).map_err(|error| wrong(format!("sd: {error}")))?;
     }
     let wanted = wanted(arm, &fit, &priors)?;
-    let parameters: Vec<_> = wanted.iter().filter_map(|one| one.parameter.parameter()).collect();
+    let parameters: Vec<_> = wanted.iter().map(|one| one.parameter).collect();
     let cases = match path {
         Some(path) => read_measurements(Path::new(path), &arm.file, &sd, &parameters),
         None => parse_measurements(text, "data", &arm.file, &sd, &parameters),

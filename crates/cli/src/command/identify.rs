@@ -50,7 +50,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         deviations.add(text).map_err(anyhow::Error::msg)?;
     }
     let wanted = fitted(&arm, &args.fit, &args.prior)?;
-    let parameters: Vec<_> = wanted.iter().filter_map(|one| one.parameter.parameter()).collect();
+    let parameters: Vec<_> = wanted.iter().map(|one| one.parameter).collect();
     let cases = if input::is_standard(data) {
         parse_measurements(&input::text()?, input::NAME, &file, &deviations, &parameters)?
     } else {
