@@ -108,7 +108,7 @@ fn shipped_arms_are_listed_printed_and_valid() {
     let list = solved(&["arms"]).out;
     let names: Vec<&str> = list.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
     let all =
-        ["paper", "paper-statements", "silicone", "multi-bending", "octopus", "octopus-spatial", "silicone-spatial"];
+        ["paper", "paper-statements", "silicone", "multi-bending", "octopus", "octopus-spatial", "silicone-spatial", "tentacle"];
     assert_eq!(names, all);
     let directory = directory();
     for name in names {

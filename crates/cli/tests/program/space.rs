@@ -84,7 +84,6 @@ fn what_is_for_arms_in_the_plane_says_so() {
     for args in [
         &["equilibria", "silicone-spatial"][..],
         &["modes", "silicone-spatial"],
-        &["identify", "silicone-spatial", "--template"],
         &["figures", "silicone-spatial"],
     ] {
         let words = refused(args);
@@ -112,7 +111,7 @@ fn what_is_for_arms_in_the_plane_says_so() {
     assert!(words.contains("cable[0].friction"), "{words}");
     assert!(solved(&["check", "silicone-spatial"]).out.contains("space = \"spatial\""));
     let unknown = refused(&["solve", "silicon-spatial"]);
-    assert!(unknown.contains("octopus-spatial, silicone-spatial); did you mean `silicone-spatial`?"), "{unknown}");
+    assert!(unknown.contains("octopus-spatial, silicone-spatial, tentacle); did you mean `silicone-spatial`?"), "{unknown}");
     let far = hydrostat(&["solve", "silicone-spatial", "--set", "arm.length=300"]);
     assert!(far.err.ends_with("try: look at the units first: arm.length = 300 m: is it mm?\n"), "{}", far.err);
 }
