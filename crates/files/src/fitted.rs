@@ -91,7 +91,8 @@ pub enum FitKeyError {
 /// The names of what can be fitted: by the length there are derivatives at fractions of the arm, and what is measured is
 /// at places in m.
 fn fittable() -> Vec<String> {
-    let others = [Unknown::Base(0), Unknown::Base(1), Unknown::Base(2), Unknown::TensionFactor, Unknown::CableFactor(0)];
+    let others =
+        [Unknown::Base(0), Unknown::Base(1), Unknown::Base(2), Unknown::TensionFactor, Unknown::CableFactor(0)];
     let others = others.map(|other| other.to_string());
     names().into_iter().filter(|name| *name != Parameter::Length.to_string()).chain(others).collect()
 }

@@ -7,7 +7,8 @@ use crate::measurements::rounded_mm;
 
 const IN_PLANE: &str = "x and y: the centreline, in the coordinates of the arm file; angle: the section, from e1";
 const IN_SPACE: &str = "x, y and z: a marker, in the coordinates of the arm file; offsets: where it is beside the centreline, along the section's b and c";
-const OTHERS_IN_PLANE: &str = "tangent_deg, offset_a_mm, offset_b_mm, stroke_0_mm, tension_0_N, base_force_x_N, base_force_y_N, base_moment_Nmm";
+const OTHERS_IN_PLANE: &str =
+    "tangent_deg, offset_a_mm, offset_b_mm, stroke_0_mm, tension_0_N, base_force_x_N, base_force_y_N, base_moment_Nmm";
 const OTHERS_IN_SPACE: &str =
     "offset_a_mm, stroke_0_mm, tension_0_N, base_force_x_N to base_force_z_N, base_moment_x_Nmm to base_moment_z_Nmm";
 

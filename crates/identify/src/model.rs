@@ -108,7 +108,8 @@ impl Observed {
         self.solver = self.kept.then_some(solver);
         let all = self.case.measurements.iter().map(|one| one.quantity);
         let values = all.clone().map(|quantity| value_of(&shape, quantity)).collect();
-        let rows = all.map(|quantity| chain.row(quantity, |k| self.change_in_plane(&found, &shape, quantity, k))).collect();
+        let rows =
+            all.map(|quantity| chain.row(quantity, |k| self.change_in_plane(&found, &shape, quantity, k))).collect();
         Ok(Answer { values, rows, shape: self.kept.then(|| Shape::Plane(Box::new(shape))) })
     }
 
@@ -119,7 +120,8 @@ impl Observed {
         let found = solver.sensitivities_with(&chain.parameters, &self.wanted())?;
         let all = self.case.measurements.iter().map(|one| one.quantity);
         let values = all.clone().map(|quantity| value_in_space(&shape, quantity)).collect();
-        let rows = all.map(|quantity| chain.row(quantity, |k| self.change_in_space(&found, &shape, quantity, k))).collect();
+        let rows =
+            all.map(|quantity| chain.row(quantity, |k| self.change_in_space(&found, &shape, quantity, k))).collect();
         Ok(Answer { values, rows, shape: self.kept.then(|| Shape::Space(Box::new(shape))) })
     }
 

@@ -44,8 +44,7 @@ pub struct Prediction {
 /// # Errors
 /// [`IdentifyError`] for measurements or parameters that a case does not have.
 pub fn predict(fit: &Fit, cases: &[Case], options: &FitOptions) -> Result<Vec<Prediction>, IdentifyError> {
-    let fitted: Vec<Fitted> =
-        fit.estimates.iter().map(|one| Fitted { start: one.value, ..one.fitted }).collect();
+    let fitted: Vec<Fitted> = fit.estimates.iter().map(|one| Fitted { start: one.value, ..one.fitted }).collect();
     let unknowns: Vec<Unknown> = fitted.iter().map(|one| one.parameter).collect();
     let values: Vec<f64> = fitted.iter().map(|one| one.start).collect();
     let measured = (0..cases.len()).filter(|i| !cases[*i].measurements.is_empty());
@@ -53,7 +52,8 @@ pub fn predict(fit: &Fit, cases: &[Case], options: &FitOptions) -> Result<Vec<Pr
     let observed: Vec<(usize, Observed)> = observed.collect::<Result<_, IdentifyError>>()?;
     let one = |(case, mut own): (usize, Observed)| {
         let found = own.answer(&unknowns, &values);
-        let found = found.map(|Answer { values, shape, .. }| (residuals_of(&own.case, case, &values, options.loss), shape));
+        let found =
+            found.map(|Answer { values, shape, .. }| (residuals_of(&own.case, case, &values, options.loss), shape));
         let found = found.map(|(residuals, shape)| shape.map(|shape| (residuals, shape)));
         Some(Prediction { case, found: found.transpose()? })
     };

@@ -69,7 +69,8 @@ impl FromStr for Unknown {
         if let Some(k) = BASE.iter().position(|key| *key == name) {
             return Ok(Self::Base(k));
         }
-        let index = name.strip_prefix("cable[").and_then(|rest| rest.strip_suffix(ALL)?.strip_suffix("].")?.parse().ok());
+        let index =
+            name.strip_prefix("cable[").and_then(|rest| rest.strip_suffix(ALL)?.strip_suffix("].")?.parse().ok());
         match index {
             Some(index) => Ok(Self::CableFactor(index)),
             None => name.parse().map(Self::Of),
@@ -139,11 +140,13 @@ impl Unknown {
     /// The cables whose given tensions it multiplies.
     fn cables(self, arm: &Arm) -> Vec<usize> {
         let given = arm.cables.iter().enumerate().filter(|(_, cable)| cable.stroke.is_none()).map(|(c, _)| c);
-        given.filter(|c| match self {
-            Self::Of(_) | Self::Base(_) => false,
-            Self::TensionFactor => true,
-            Self::CableFactor(own) => own == *c,
-        }).collect()
+        given
+            .filter(|c| match self {
+                Self::Of(_) | Self::Base(_) => false,
+                Self::TensionFactor => true,
+                Self::CableFactor(own) => own == *c,
+            })
+            .collect()
     }
 }
 
@@ -174,7 +177,8 @@ impl Chain {
     /// At the values `x` of the unknowns; `given` is the arm without factors.
     pub(crate) fn new(given: &Arm, unknowns: &[Unknown], x: &[f64]) -> Self {
         let numbers: Vec<Unknown> = unknowns.iter().copied().filter(|one| one.parameter().is_some()).collect();
-        let values: Vec<f64> = unknowns.iter().zip(x).filter(|(one, _)| one.parameter().is_some()).map(|(_, x)| *x).collect();
+        let values: Vec<f64> =
+            unknowns.iter().zip(x).filter(|(one, _)| one.parameter().is_some()).map(|(_, x)| *x).collect();
         let tensions = set_all(given, &numbers, &values);
         // What multiplies the tension of a cable, but for one factor.
         let others = |c: usize, but: Option<Unknown>| -> f64 {
@@ -190,7 +194,10 @@ impl Chain {
                     let pulled = unknown.cables(given).into_iter();
                     // With the tensions t = f T, d/df = sum T d/dt.
                     let weights = pulled.map(|c| (c, tensions.cables[c].tension * others(c, Some(*unknown))));
-                    weights.filter(|(_, weight)| *weight != 0.0).map(|(c, weight)| (out.index(Parameter::Tension(c)), weight)).collect()
+                    weights
+                        .filter(|(_, weight)| *weight != 0.0)
+                        .map(|(c, weight)| (out.index(Parameter::Tension(c)), weight))
+                        .collect()
                 }
             };
             out.sums.push(sum);

@@ -2,9 +2,12 @@
 //! cover, and an arm in a plane of space has the fit of the arm in the plane.
 
 use hydrostat::parameter::Curvature;
-use hydrostat::{Arm, BaseDirections, Cable, Gravity, Options, Parameter, Point, Profile, Solver, Space, SpatialSolver};
+use hydrostat::{
+    Arm, BaseDirections, Cable, Gravity, Options, Parameter, Point, Profile, Solver, Space, SpatialSolver,
+};
 use hydrostat_identify::{
-    Case, Fit, FitOptions, Fitted, Marker, Measurement, Quantity, Shape, Unknown, fit, misses, predict, value_in_space, value_of,
+    Case, Fit, FitOptions, Fitted, Marker, Measurement, Quantity, Shape, Unknown, fit, misses, predict, value_in_space,
+    value_of,
 };
 
 mod common;
@@ -42,7 +45,8 @@ fn loads() -> Vec<(String, Arm)> {
 
 /// Markers beside the centreline, as those of `tentacle`.
 fn markers() -> Vec<Quantity> {
-    let places = [(0.129, [0.0, 0.0, 0.025]), (0.22, [0.0, 0.002, -0.021]), (0.28, [0.0, 0.0, 0.0]), (0.36, [0.008, 0.0, 0.0])];
+    let places =
+        [(0.129, [0.0, 0.0, 0.025]), (0.22, [0.0, 0.002, -0.021]), (0.28, [0.0, 0.0, 0.0]), (0.36, [0.008, 0.0, 0.0])];
     let all = places.into_iter().map(|(s, offset)| Marker { s, offset });
     all.flat_map(|marker| (0..3).map(move |axis| Quantity::of_marker(marker, axis))).collect()
 }
@@ -137,7 +141,9 @@ fn difference(case: &Case, quantity: Quantity, unknown: Unknown, at: f64, step: 
 /// One number a fit: the singular value is the derivative in the parameter's scale.
 fn derivative(case: &Case, quantity: Quantity, unknown: Unknown) -> f64 {
     let value = match case.arm.space {
-        Some(_) => value_in_space(&SpatialSolver::new(&case.arm, Options::default()).unwrap().solve().unwrap(), quantity),
+        Some(_) => {
+            value_in_space(&SpatialSolver::new(&case.arm, Options::default()).unwrap().solve().unwrap(), quantity)
+        }
         None => value_of(&case.arm.solve().unwrap(), quantity),
     };
     let one = Case { measurements: vec![Measurement::new(quantity, value, 1.0)], ..case.clone() };
@@ -159,7 +165,10 @@ fn markers_beside_the_centreline_have_the_derivatives_of_solves() {
         (curved(Curvature::Mu), 0.4, 5e-3),
     ];
     for (unknown, at, step) in unknowns {
-        for quantity in (0..3).map(|axis| Quantity::of_marker(marker, axis)).chain([Quantity::BaseMomentAbout(1), Quantity::Stroke(0)]) {
+        for quantity in (0..3)
+            .map(|axis| Quantity::of_marker(marker, axis))
+            .chain([Quantity::BaseMomentAbout(1), Quantity::Stroke(0)])
+        {
             let want = difference(&case, quantity, unknown, at, step).abs();
             let found = derivative(&case, quantity, unknown);
             let noise = 2e-10 / step;
@@ -176,13 +185,19 @@ fn in_the_plane_too() {
     (arm.flow.speed, arm.flow.direction) = (0.1, 1.0);
     let case = Case { name: "a".to_owned(), arm, measurements: Vec::new() };
     let marker = Marker { s: 0.17, offset: [0.003, -0.012, 0.0] };
-    let unknowns: [(Unknown, f64, f64); 3] =
-        [(Parameter::Young.into(), 110e3, 300.0), (Unknown::TensionFactor, 1.0, 3e-3), (curved(Curvature::Mu), 1.5, 5e-3)];
+    let unknowns: [(Unknown, f64, f64); 3] = [
+        (Parameter::Young.into(), 110e3, 300.0),
+        (Unknown::TensionFactor, 1.0, 3e-3),
+        (curved(Curvature::Mu), 1.5, 5e-3),
+    ];
     for (unknown, at, step) in unknowns {
         for quantity in [Quantity::Off(marker, 0), Quantity::Off(marker, 1), Quantity::Stroke(0)] {
             let want = difference(&case, quantity, unknown, at, step).abs();
             let found = derivative(&case, quantity, unknown);
-            assert!((found - want).abs() < 1e-6 * want + 2e-10 / step, "{quantity} by {unknown}: {found:e} for {want:e}");
+            assert!(
+                (found - want).abs() < 1e-6 * want + 2e-10 / step,
+                "{quantity} by {unknown}: {found:e} for {want:e}"
+            );
         }
     }
 }
@@ -237,7 +252,8 @@ fn an_arm_in_a_plane_of_space_has_the_planar_fit() {
 fn what_an_arm_does_not_have_is_refused_with_its_name() {
     let young = |arm: &Arm| [Fitted::new(Parameter::Young, arm).unwrap()];
     let said = |arm: &Arm, quantity: Quantity| {
-        let case = Case { name: "a".to_owned(), arm: arm.clone(), measurements: vec![Measurement::new(quantity, 0.0, 1.0)] };
+        let case =
+            Case { name: "a".to_owned(), arm: arm.clone(), measurements: vec![Measurement::new(quantity, 0.0, 1.0)] };
         fit(&[case], &young(arm), &options(), |_| true).unwrap_err().to_string()
     };
     let there = hanging();

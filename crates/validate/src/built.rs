@@ -122,7 +122,8 @@ pub(crate) fn section() -> Section {
 
 fn estimates(fit: &Fit) -> Table {
     let source = "The fit itself; intervals with standard deviations that the residuals give";
-    let mut table = Table::new(format!("Estimates of {REPORTED}"), source, &["key", "unit", "estimate", "95 % from", "to"]);
+    let mut table =
+        Table::new(format!("Estimates of {REPORTED}"), source, &["key", "unit", "estimate", "95 % from", "to"]);
     for one in &fit.estimates {
         let [from, to] = one.interval.unwrap_or([f64::NAN; 2]);
         let cell = |value: f64| if value.abs() < 10.0 { fixed(value, 4) } else { fixed(value, 0) };

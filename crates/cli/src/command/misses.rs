@@ -28,7 +28,8 @@ pub(super) fn predicted_cases(cases: &[Case], predicted: &[Prediction]) -> Strin
 /// Distances of fitted and of predicted places from the measured ones, by marker.
 pub(super) fn misses_table(found: &Fit, predicted: &[Prediction]) -> String {
     let fitted = misses(&found.residuals);
-    let others = misses(predicted.iter().filter_map(|one| one.found.as_ref().ok()).flat_map(|(residuals, _)| residuals));
+    let others =
+        misses(predicted.iter().filter_map(|one| one.found.as_ref().ok()).flat_map(|(residuals, _)| residuals));
     if fitted.is_empty() && others.is_empty() {
         return String::new();
     }
