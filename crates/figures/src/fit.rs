@@ -121,7 +121,7 @@ fn drawn(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &
     let picture = if spatial.is_empty() {
         Picture::Plane(InPlane::new(cases, top, page))
     } else {
-        Picture::Space(InSpace::new(&spatial, top, page))
+        Picture::Space(Box::new(InSpace::new(&spatial, top, page)))
     };
     let second = picture.bottom() + BELOW + GAP;
     let third = second + RESIDUALS + BELOW + GAP;
@@ -146,7 +146,7 @@ fn drawn(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &
 /// The shapes with what was measured.
 enum Picture {
     Plane(InPlane),
-    Space(InSpace),
+    Space(Box<InSpace>),
 }
 
 impl Picture {
