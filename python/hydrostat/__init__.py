@@ -59,7 +59,7 @@ from hydrostat.figures import (
     workspace_figure,
 )
 from hydrostat.history import History, HistorySnap, history
-from hydrostat.identification import Estimate, Fit, LeftOut
+from hydrostat.identification import Estimate, Fit, LeftOut, Miss
 from hydrostat.many import Many, solve_many
 from hydrostat.motion import Moment, MovingShape, Simulation, motion_figures, simulate
 from hydrostat.paths import Branch, Equilibria, EquilibriumPath, Event, Path
@@ -119,6 +119,7 @@ __all__ = [
     "LoadJumpError",
     "Many",
     "MeasurementsError",
+    "Miss",
     "ModelWarning",
     "Moment",
     "MotionError",

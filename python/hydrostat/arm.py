@@ -119,7 +119,7 @@ class Arm:
         ----------
         arm : str or path
             ``"paper"``, ``"paper-statements"``, ``"silicone"``, ``"multi-bending"``, ``"octopus"``, ``"octopus-spatial"``,
-            ``"silicone-spatial"``, or a TOML file. A file
+            ``"silicone-spatial"``, ``"tentacle"``, or a TOML file. A file
             with the name of a shipped arm takes precedence.
 
         Raises
@@ -526,10 +526,11 @@ class Arm:
         ----------
         data : path, mapping or DataFrame
             A CSV file, or its columns by their heads, such as ``{"case": ..., "s [mm]": ..., "x [mm]": ...}``; NaN and None mean not
-            measured. `measurements_template` has the columns.
+            measured. `measurements_template` has the columns; of an arm in space there is ``z``, and a marker beside the centreline has
+            ``offset_a``, ``offset_b`` and ``offset_c``.
         fit : str, sequence of str, or mapping
             Keys of the arm file, or their last parts (``"young"``), with or without a start and bounds: ``"young=80 kPa:50 kPa:200 kPa"``, or
-            ``{"young": ("80 kPa", "50 kPa", "200 kPa")}``.
+            ``{"young": ("80 kPa", "50 kPa", "200 kPa")}``. ``"tension_factor"`` is a factor on all tensions of the data.
         prior : sequence of str, or mapping
             Prior knowledge: ``["flow.cn=2.5±0.5"]`` or ``{"flow.cn": (2.5, 0.5)}``.
         sd : str or sequence of str

@@ -19,7 +19,7 @@ from hydrostat._progress import Line
 from hydrostat._saved import Origin
 from hydrostat.arm import Arm
 from hydrostat.figures import Figure
-from hydrostat.solution import Result, Solution
+from hydrostat.solution import Result, Solution, solution_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -96,6 +96,30 @@ class LeftOut(NamedTuple):
     message: str | None
 
 
+class Miss(NamedTuple):
+    """How far the fitted places of a marker are from the measured ones.
+
+    Attributes
+    ----------
+    s : float
+        Where along the arm it is, m.
+    offset : tuple of float
+        From the centreline there along a, b and c of the section, m.
+    cases : int
+        Load cases in which it was measured.
+    rms : float
+        Root of the mean square of its distances, m.
+    largest : float
+        The largest of them, m.
+    """
+
+    s: float
+    offset: tuple[float, ...]
+    cases: int
+    rms: float
+    largest: float
+
+
 class Fit(Result):
     """The result of a fit of p parameters; see `Arm.identify`.
 
@@ -157,9 +181,14 @@ class Fit(Result):
 
     @cached_property
     def solutions(self) -> dict[str, Solution]:
-        """The fitted arm in the load cases, by the names of these; of many cases in the first 200."""
+        """The fitted arm in the load cases, by the names of these; of many cases in the first 200. Of an arm in space `SpatialSolution`."""
         shapes = enumerate(self._inner.shapes())
-        return {name: Solution(shape, Origin("fitted", (self._origin, k))) for k, (name, shape) in shapes}
+        return {name: solution_of(shape, Origin("fitted", (self._origin, k))) for k, (name, shape) in shapes}
+
+    @property
+    def misses(self) -> tuple[Miss, ...]:
+        """How far the fitted places of the markers are from the measured ones."""
+        return tuple(Miss(one["s"], tuple(one["offset"]), one["cases"], one["rms"], one["largest"]) for one in self._found["misses"])
 
     def __eq__(self, other: object) -> bool:
         return self.to_json() == other.to_json() if isinstance(other, Fit) else NotImplemented
@@ -172,13 +201,16 @@ class Fit(Result):
 
     @cached_property
     def residuals(self) -> dict[str, NDArray[Any]]:
-        """Every measured value beside the fit, columns by name: ``case``, ``quantity``, ``s`` (m, NaN for what has no place), ``unit``,
+        """Every measured value beside the fit, columns by name: ``case``, ``quantity``, ``s`` (m, NaN for what has no place), ``offset_a``,
+        ``offset_b``, ``offset_c`` (m, of a marker beside the centreline), ``unit``,
         ``measured``, ``sd``, ``fitted``, ``residual`` (fitted minus measured, over sd), ``weight`` (its weight under the loss) and
         ``row`` (of the file)."""
         types: dict[str, Any] = {"case": object, "quantity": object, "unit": object, "row": np.int64}
         rows = self._found["residuals"]
         names = ("case", "quantity", "s", "unit", "measured", "sd", "fitted", "residual", "weight", "row")
-        return {name: np.array([row[name] for row in rows], dtype=types.get(name, np.float64)) for name in names}
+        out = {name: np.array([row[name] for row in rows], dtype=types.get(name, np.float64)) for name in names}
+        offsets = np.array([row["offset"] or (math.nan,) * 3 for row in rows], dtype=np.float64).reshape(-1, 3)
+        return out | {f"offset_{director}": offsets[:, k] for k, director in enumerate("abc")}
 
     def to_pandas(self) -> pd.DataFrame:
         """`residuals` as a table. Needs pandas."""
@@ -199,7 +231,7 @@ class Fit(Result):
         return Figure(self._inner.figure())
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the fitted shapes with the measured places on one axis. Needs matplotlib."""
+        """Draw the fitted shapes with the measured places on one axis, of an arm in the plane. Needs matplotlib."""
         from hydrostat.plotting import plot_fit
 
         return plot_fit(self, ax)

@@ -260,6 +260,8 @@ def plot_fit(fit: Fit, ax: Axes | None) -> Axes:
     """See `Fit.plot`."""
     import matplotlib.pyplot as plt
 
+    if fit.arm.is_spatial:
+        raise ValueError("plot: draws fits in the plane; figure() has three views of a fit in space")
     ax = _new_axes(ax)
     per_m = UNITS[unit_of(ax, None)]
     cases = fit.residuals["case"]

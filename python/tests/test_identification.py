@@ -179,3 +179,39 @@ def test_wrong_requests_name_the_argument(silicone: hs.Arm, tmp_path: Path) -> N
     with pytest.raises(hs.CableFold) as fold:
         silicone.identify({**good, "cable[0].tension [N]": [0.1, 0.2, 1.5]}, "young", sd="1 mm")
     assert fold.value.__notes__ == ["load case 0.3 N has no answer where the search starts"]
+
+
+def test_an_arm_in_space_with_markers_beside_it() -> None:
+    arm = hs.Arm.load("tentacle").replace({"reference.kappa": 0.3})
+    rows: dict[str, list[object]] = {
+        head: []
+        for head in (
+            "case",
+            "cable_0_tension_N",
+            "cable_1_tension_N",
+            "s_m",
+            "offset_a_m",
+            "offset_b_m",
+            "offset_c_m",
+            "x_m",
+            "y_m",
+            "z_m",
+        )
+    }
+    for tensions in ([3.0, 0.0], [0.0, 2.0], [2.0, 2.0]):
+        shape = arm.solve(tensions=[0.9 * tension for tension in tensions])
+        for s, offset in ((0.18, (0.0, 0.01, -0.02)), (0.36, (0.008, 0.0, 0.0))):
+            at = shape.at([s])
+            place = np.array([at.x[0], at.y[0], at.z[0]]) + offset[0] * at.a[0] + offset[1] * at.b[0] + offset[2] * at.c[0]
+            for head, value in zip(rows, (str(tensions), *tensions, s, *offset, *place), strict=True):
+                rows[head].append(value)
+    fit = hs.Arm.load("tentacle").identify(rows, {"young": "400 kPa", "tension_factor": 1.0, "reference.kappa": None}, sd="1 mm")
+    np.testing.assert_allclose(fit.values, [505e3, 0.9, 0.3], rtol=1e-5)
+    assert [estimate.key for estimate in fit.estimates] == ["material.young", "tension_factor", "reference.kappa"]
+    assert len(fit.misses) == 2 and all(miss.cases == 3 and miss.rms < 1e-6 for miss in fit.misses)
+    assert fit.misses[0].offset == (0.0, 0.01, -0.02)
+    assert set(fit.residuals["quantity"]) == {"x", "y", "z"} and fit.residuals["offset_c"].min() == -0.02
+    assert all(isinstance(shape, hs.SpatialSolution) for shape in fit.solutions.values())
+    assert fit.arm.is_spatial and fit.figure().svg().startswith("<svg")
+    with pytest.raises(ValueError, match="plane"):
+        fit.plot()

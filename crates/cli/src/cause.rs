@@ -262,6 +262,7 @@ fn identify(error: &IdentifyError) -> Blame {
     match error {
         IdentifyError::Start { source, .. } => match source.as_ref() {
             Trial::Sensitivity(source) => sensitivity(source, solve),
+            Trial::InSpace(source) => sensitivity(source, solve_in_space),
             Trial::Arm(_) => Blame::Request,
         },
         IdentifyError::NoParameter

@@ -11,6 +11,7 @@ pub(crate) mod identify;
 pub(crate) mod init;
 mod limits;
 pub(crate) mod main_job;
+mod misses;
 pub(crate) mod modes;
 mod motion_output;
 pub(crate) mod path;

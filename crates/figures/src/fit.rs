@@ -1,10 +1,11 @@
 //! A fit beside what was measured: shapes with markers, residuals, and how estimates hang together.
 
 use hydrostat::Configuration;
-use hydrostat_identify::{Case, Fit, Quantity, Residual};
+use hydrostat_identify::{Case, Fit, Marker, Residual, Shape};
 
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE, TICK_SIZE};
 use crate::chart::padded;
+use crate::fit_in_space::{InSpace, SpatialCase};
 use crate::font::{CAP_HEIGHT, Label};
 use crate::legend::{Legend, Mark, Sample, clipped};
 use crate::outline::{Outline, Style, bounds};
@@ -26,28 +27,48 @@ const MOST_NAMES: usize = 12;
 struct FittedCase<'a> {
     name: &'a str,
     /// The fitted arm under the loads of the case, if it was kept.
-    shape: Option<&'a Configuration>,
-    /// Measured places, m.
-    markers: Vec<[f64; 2]>,
+    shape: Option<&'a Shape>,
+    /// Markers with their measured places, m; in the plane z is 0.
+    markers: Vec<(Marker, [f64; 3])>,
     /// Residuals in standard deviations, in the order of the data.
     residuals: Vec<f64>,
 }
 
 impl<'a> FittedCase<'a> {
-    fn new(name: &'a str, shape: Option<&'a Configuration>, residuals: &[Residual]) -> Self {
-        let measured = |of: fn(f64) -> Quantity, s: f64| {
-            residuals.iter().find(|one| one.measurement.quantity == of(s)).map(|one| one.measurement.value)
-        };
-        // A marker with one coordinate only has no place on the page.
-        let markers = residuals.iter().filter_map(|one| match one.measurement.quantity {
-            Quantity::X(s) => Some([one.measurement.value, measured(Quantity::Y, s)?]),
-            _ => None,
-        });
+    fn new(name: &'a str, shape: Option<&'a Shape>, residuals: &[Residual]) -> Self {
+        let in_space = matches!(shape, Some(Shape::Space(_)));
+        let mut found: Vec<(Marker, [Option<f64>; 3])> = Vec::new();
+        for one in residuals {
+            let Some((marker, axis)) = one.measurement.quantity.marker() else { continue };
+            let at = found.iter().position(|(own, _)| *own == marker).unwrap_or_else(|| {
+                found.push((marker, [None, None, (!in_space).then_some(0.0)]));
+                found.len() - 1
+            });
+            found[at].1[axis] = Some(one.measurement.value);
+        }
+        // A marker without one of its coordinates has no place on the page.
+        let place = |(marker, at): &(Marker, [Option<f64>; 3])| Some((*marker, [at[0]?, at[1]?, at[2]?]));
         Self {
             name,
             shape,
-            markers: markers.collect(),
+            markers: found.iter().filter_map(place).collect(),
             residuals: residuals.iter().map(|one| one.standardised).collect(),
+        }
+    }
+
+    /// The shape in the plane.
+    fn plane(&self) -> Option<&'a Configuration> {
+        match self.shape? {
+            Shape::Plane(shape) => Some(shape),
+            Shape::Space(_) => None,
+        }
+    }
+
+    /// The shape in space with its markers.
+    fn space(&self, color: Color) -> Option<SpatialCase<'_>> {
+        match self.shape? {
+            Shape::Plane(_) => None,
+            Shape::Space(shape) => Some(SpatialCase { shape, markers: &self.markers, color }),
         }
     }
 }
@@ -86,23 +107,23 @@ pub fn fit_figure(name: &str, cases: &[Case], fit: &Fit, page: &Page) -> Scene {
 }
 
 fn drawn(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &[Vec<f64>], page: &Page) -> Scene {
-    let outlines: Vec<Outline> = cases.iter().filter_map(|case| Some(Outline::new(case.shape?, 0))).collect();
-    let markers = || cases.iter().flat_map(|case| &case.markers).map(|[x, y]| [1e3 * x, 1e3 * y]);
-    let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).chain(markers()).collect();
     let mut legend = Legend::new(page);
     for (index, case) in cases.iter().enumerate().take(MOST_NAMES) {
         legend.add(Sample::Mark(Mark::Filled(series(index))), Label::plain(clipped(case.name)));
     }
-    if markers().next().is_some() {
+    if cases.iter().any(|case| !case.markers.is_empty()) {
         legend.add(Sample::Mark(Mark::Cross(INK)), Label::plain("measured"));
     }
     let heading = page.heading(title, None);
-    let [x, y] = bounds(&all);
-    let pad = 0.05 * (x[1] - x[0]).max(y[1] - y[0]);
-    let grown = |range: [f64; 2]| [range[0] - pad, range[1] + pad];
     let top = heading.bottom + legend.height() + 6.0;
-    let shapes = Axes::equal(LEFT, top, page.across(), [120.0, MAX_HEIGHT], grown(x), grown(y));
-    let second = shapes.frame.bottom + BELOW + GAP;
+    let spatial: Vec<SpatialCase<'_>> =
+        cases.iter().enumerate().filter_map(|(index, case)| case.space(series(index))).collect();
+    let picture = if spatial.is_empty() {
+        Picture::Plane(InPlane::new(cases, top, page))
+    } else {
+        Picture::Space(Box::new(InSpace::new(&spatial, top, page)))
+    };
+    let second = picture.bottom() + BELOW + GAP;
     let third = second + RESIDUALS + BELOW + GAP;
     let cell = correlation_cell(names.len(), page);
     let height = if names.len() < 2 { third - GAP } else { third + cell * names.len() as f64 + TEXT_SIZE + 8.0 };
@@ -111,7 +132,10 @@ fn drawn(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &
     let mut scene = Scene::new(page.width(), height + MARGIN, says);
     heading.draw(&mut scene);
     legend.draw(&mut scene, heading.bottom);
-    draw_shapes(&mut scene, &shapes, cases, &outlines);
+    match &picture {
+        Picture::Plane(own) => own.draw(&mut scene, cases),
+        Picture::Space(own) => own.draw(&mut scene, &spatial),
+    }
     draw_residuals(&mut scene, second, cases, page);
     if names.len() > 1 {
         draw_correlation(&mut scene, third, cell, names, correlation);
@@ -119,30 +143,65 @@ fn drawn(title: &str, cases: &[FittedCase<'_>], names: &[String], correlation: &
     scene
 }
 
-fn draw_shapes(scene: &mut Scene, axes: &Axes, cases: &[FittedCase<'_>], outlines: &[Outline]) {
-    axes.draw(scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
-    for (index, outline) in outlines.iter().enumerate() {
-        let color = series(index);
-        let style = Style {
-            fill: color.with_opacity(0.12),
-            surface: Stroke::solid(color.with_opacity(0.5), 0.6),
-            sections: Stroke::solid(color.with_opacity(0.0), 0.1),
-            centreline: Stroke::solid(color, 1.0),
-            cables: Vec::new(),
-        };
-        outline.draw(scene, axes, &style);
-    }
-    for (index, case) in cases.iter().enumerate() {
-        for [x, y] in &case.markers {
-            Mark::Cross(series(index).towards(INK, 0.4)).draw(scene, axes.at([1e3 * x, 1e3 * y]));
+/// The shapes with what was measured.
+enum Picture {
+    Plane(InPlane),
+    Space(Box<InSpace>),
+}
+
+impl Picture {
+    fn bottom(&self) -> f64 {
+        match self {
+            Self::Plane(own) => own.axes.frame.bottom,
+            Self::Space(own) => own.bottom(),
         }
     }
-    let mut taken = Occupied::new(axes.frame.grown(-3.0));
-    for outline in outlines {
-        outline.occupy(&mut taken, axes);
+}
+
+/// Shapes in the plane.
+struct InPlane {
+    axes: Axes,
+    outlines: Vec<Outline>,
+}
+
+impl InPlane {
+    fn new(cases: &[FittedCase<'_>], top: f64, page: &Page) -> Self {
+        let outlines: Vec<Outline> = cases.iter().filter_map(|case| Some(Outline::new(case.plane()?, 0))).collect();
+        let markers = cases.iter().flat_map(|case| &case.markers).map(|(_, [x, y, _])| [1e3 * x, 1e3 * y]);
+        let all: Vec<[f64; 2]> = outlines.iter().flat_map(|o| o.surface.iter().copied()).chain(markers).collect();
+        let [x, y] = bounds(&all);
+        let pad = 0.05 * (x[1] - x[0]).max(y[1] - y[0]);
+        let grown = |range: [f64; 2]| [range[0] - pad, range[1] + pad];
+        let axes = Axes::equal(LEFT, top, page.across(), [120.0, MAX_HEIGHT], grown(x), grown(y));
+        Self { axes, outlines }
     }
-    let arms = cases.iter().filter_map(|case| Some(&case.shape?.arm));
-    Surroundings::shared(arms).draw(scene, &mut taken, axes.frame);
+
+    fn draw(&self, scene: &mut Scene, cases: &[FittedCase<'_>]) {
+        let Self { axes, outlines } = self;
+        axes.draw(scene, &Label::math("$x$ (mm)"), &Label::math("$y$ (mm)"));
+        for (index, outline) in outlines.iter().enumerate() {
+            let color = series(index);
+            let style = Style {
+                fill: color.with_opacity(0.12),
+                surface: Stroke::solid(color.with_opacity(0.5), 0.6),
+                sections: Stroke::solid(color.with_opacity(0.0), 0.1),
+                centreline: Stroke::solid(color, 1.0),
+                cables: Vec::new(),
+            };
+            outline.draw(scene, axes, &style);
+        }
+        for (index, case) in cases.iter().enumerate() {
+            for (_, [x, y, _]) in &case.markers {
+                Mark::Cross(series(index).towards(INK, 0.4)).draw(scene, axes.at([1e3 * x, 1e3 * y]));
+            }
+        }
+        let mut taken = Occupied::new(axes.frame.grown(-3.0));
+        for outline in outlines {
+            outline.occupy(&mut taken, axes);
+        }
+        let arms = cases.iter().filter_map(|case| Some(&case.plane()?.arm));
+        Surroundings::shared(arms).draw(scene, &mut taken, axes.frame);
+    }
 }
 
 /// Every residual in a row, case by case, with lines at two standard deviations.
@@ -207,6 +266,7 @@ mod tests {
     #[test]
     fn unknown_correlations_and_many_cases_can_be_drawn() {
         let shape = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve().unwrap();
+        let shape = Shape::Plane(Box::new(shape));
         let named: Vec<String> = (0..30).map(|k| format!("case {k}")).collect();
         let case = |name| FittedCase { name, shape: Some(&shape), markers: Vec::new(), residuals: vec![9.0] };
         let cases: Vec<_> = named.iter().map(|name| case(name)).collect();

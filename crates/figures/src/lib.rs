@@ -17,6 +17,7 @@ mod axes;
 mod boundary;
 mod chart;
 mod fit;
+mod fit_in_space;
 mod font;
 mod geometry;
 mod hull;

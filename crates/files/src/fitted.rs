@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use hydrostat::parameter::{Unfit, names};
 use hydrostat::{Arm, Parameter};
-use hydrostat_identify::{Fitted, Prior};
+use hydrostat_identify::{Fitted, Prior, Unknown};
 
 use crate::error::shortened;
 use crate::format::{bracketed, dimension_at, is_key, nearest, synonym};
@@ -19,14 +19,14 @@ use crate::varied::hint;
 /// use hydrostat_files::FitKey;
 ///
 /// let key: FitKey = "young=100 kPa:50 kPa:200 kPa".parse().unwrap();
-/// assert_eq!((key.parameter, key.start), (Parameter::Young, Some(100e3)));
+/// assert_eq!((key.parameter, key.start), (Parameter::Young.into(), Some(100e3)));
 /// assert_eq!(key.bounds, [Some(50e3), Some(200e3)]);
 /// assert!("arm.length".parse::<FitKey>().unwrap_err().to_string().contains("no derivative"));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitKey {
     /// Which.
-    pub parameter: Parameter,
+    pub parameter: Unknown,
     /// Where to start, in place of the arm's value.
     pub start: Option<f64>,
     /// The bounds that are given.
@@ -44,7 +44,7 @@ pub struct FitKey {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PriorKey {
     /// Of which.
-    pub parameter: Parameter,
+    pub parameter: Unknown,
     /// Its distribution.
     pub prior: Prior,
 }
@@ -85,13 +85,24 @@ pub enum FitKeyError {
     Unfit(#[from] Unfit),
     /// A prior of something that is not fitted.
     #[error("{0} has a prior and is not fitted; add it to --fit")]
-    NotFitted(Parameter),
+    NotFitted(Unknown),
 }
 
 /// The names of what can be fitted: by the length there are derivatives at fractions of the arm, and what is measured is
 /// at places in m.
 fn fittable() -> Vec<String> {
-    names().into_iter().filter(|name| *name != Parameter::Length.to_string()).collect()
+    let others =
+        [Unknown::Base(0), Unknown::Base(1), Unknown::Base(2), Unknown::TensionFactor, Unknown::CableFactor(0)];
+    let others = others.map(|other| other.to_string());
+    names().into_iter().filter(|name| *name != Parameter::Length.to_string()).chain(others).collect()
+}
+
+/// What is fitted under a key, or under its last part.
+fn unknown(key: &str) -> Result<Unknown, FitKeyError> {
+    match bracketed(key).parse() {
+        Ok(other @ (Unknown::TensionFactor | Unknown::CableFactor(_) | Unknown::Base(_))) => Ok(other),
+        _ => parameter(key).map(Unknown::Of),
+    }
 }
 
 /// With a suggestion the list of all keys is left out: it is long.
@@ -128,7 +139,7 @@ pub(crate) fn parameter(key: &str) -> Result<Parameter, FitKeyError> {
 }
 
 /// Numbers that stand together, `None` for an empty text. A unit behind the last holds for all without one.
-fn values(parameter: Parameter, texts: &[&str], join: &str) -> Result<Vec<Option<f64>>, FitKeyError> {
+fn values(parameter: Unknown, texts: &[&str], join: &str) -> Result<Vec<Option<f64>>, FitKeyError> {
     let key = parameter.to_string();
     let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
     let read = |text: &String| -> Result<Option<f64>, FitKeyError> {
@@ -151,7 +162,7 @@ impl FromStr for FitKey {
             Some((key, start)) => (key, Some(start)),
             None => (head, None),
         };
-        let parameter = parameter(key.trim())?;
+        let parameter = unknown(key.trim())?;
         if start.is_some_and(|start| start.trim().is_empty()) {
             return Err(form());
         }
@@ -175,7 +186,7 @@ impl FromStr for PriorKey {
         let expected = "KEY=MEAN±SD, such as young=\"110±5 kPa\"; +- may stand for ±";
         let form = || FitKeyError::Form { text: text.to_owned(), expected };
         let (key, rest) = text.split_once('=').ok_or_else(form)?;
-        let parameter = parameter(key.trim())?;
+        let parameter = unknown(key.trim())?;
         let ends = ["±", "+/-", "+-"].iter().find_map(|sign| rest.split_once(sign));
         let (mean, sd) = ends.ok_or_else(form)?;
         match values(parameter, &[mean, sd], "±")?[..] {
@@ -220,6 +231,9 @@ pub fn bare_unit(key: &str) -> Option<&'static str> {
 
 #[cfg(test)]
 mod tests {
+    use hydrostat::Point;
+    use hydrostat::parameter::Curvature;
+
     use super::*;
 
     fn error(text: &str) -> String {
@@ -229,7 +243,7 @@ mod tests {
     #[test]
     fn keys_take_starts_and_bounds() {
         let read = |text: &str| text.parse::<FitKey>().unwrap();
-        let key = |parameter, start, bounds| FitKey { parameter, start, bounds };
+        let key = |parameter: Parameter, start, bounds| FitKey { parameter: parameter.into(), start, bounds };
         for (text, want) in [
             ("flow.cn", key(Parameter::DragNormal, None, [None, None])),
             ("cn=2", key(Parameter::DragNormal, Some(2.0), [None, None])),
@@ -238,9 +252,13 @@ mod tests {
             ("arm.density:900:1200", key(Parameter::Density, None, [Some(900.0), Some(1200.0)])),
             ("cable[1].tension=20 mN", key(Parameter::Tension(1), Some(0.02), [None, None])),
             ("flow.direction=180", key(Parameter::FlowDirection, Some(std::f64::consts::PI), [None, None])),
+            ("reference.kappa=0.5", key(Parameter::Reference(Curvature::Kappa, Point::Whole), Some(0.5), [None, None])),
         ] {
             assert_eq!(read(text), want, "{text}");
         }
+        let factor = |parameter| FitKey { parameter, start: Some(0.9), bounds: [Some(0.5), Some(1.0)] };
+        assert_eq!(read("tension_factor=0.9:0.5:1"), factor(Unknown::TensionFactor));
+        assert_eq!(read("cable[1].tension_factor=0.9:0.5:1"), factor(Unknown::CableFactor(1)));
     }
 
     #[test]

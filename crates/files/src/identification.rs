@@ -1,7 +1,7 @@
 //! What an identification found, as JSON and CSV.
 
 use hydrostat::Arm;
-use hydrostat_identify::{Case, Fit, Loss};
+use hydrostat_identify::{Case, Fit, Loss, Miss, Prediction, Residual, misses};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
@@ -38,6 +38,7 @@ struct ResidualOut {
     case: String,
     quantity: String,
     s: Option<f64>,
+    offset: Option<[f64; 3]>,
     unit: &'static str,
     measured: f64,
     sd: f64,
@@ -64,6 +65,41 @@ struct NoAnswerOut {
     message: String,
 }
 
+#[derive(Debug, Clone, Serialize)]
+struct MissOut {
+    s: f64,
+    offset: [f64; 3],
+    cases: usize,
+    rms: f64,
+    largest: f64,
+}
+
+impl MissOut {
+    fn all(misses: Vec<Miss>) -> Vec<Self> {
+        let out = |one: Miss| Self {
+            s: one.marker.s,
+            offset: one.marker.offset,
+            cases: one.count,
+            rms: one.rms,
+            largest: one.most,
+        };
+        misses.into_iter().map(out).collect()
+    }
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct PredictionsOut {
+    residuals: Vec<ResidualOut>,
+    misses: Vec<MissOut>,
+    no_answer: Vec<UnansweredOut>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct UnansweredOut {
+    case: String,
+    message: String,
+}
+
 /// The document of a fit. Lengths in m, angles in rad; what is not known is null.
 #[derive(Debug, Clone, Serialize)]
 pub struct IdentificationDocument {
@@ -82,6 +118,8 @@ pub struct IdentificationDocument {
     spread: f64,
     misfit: Option<String>,
     residuals: Vec<ResidualOut>,
+    misses: Vec<MissOut>,
+    predictions: Option<PredictionsOut>,
     cross_validation: Vec<LeftOutOut>,
     no_answer: Vec<NoAnswerOut>,
     rounds: usize,
@@ -93,10 +131,30 @@ fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
+fn name(cases: &[Case], case: usize) -> String {
+    cases.get(case).map(|case| case.name.clone()).unwrap_or_default()
+}
+
+fn residual(cases: &[Case], one: &Residual) -> ResidualOut {
+    ResidualOut {
+        case: name(cases, one.case),
+        quantity: one.measurement.quantity.name(),
+        s: one.measurement.quantity.place(),
+        offset: one.measurement.quantity.marker().map(|(marker, _)| marker.offset),
+        unit: one.measurement.quantity.unit(),
+        measured: one.measurement.value,
+        sd: one.measurement.sd,
+        fitted: one.fitted,
+        residual: one.standardised,
+        weight: one.weight,
+        row: (one.measurement.row > 0).then_some(one.measurement.row),
+    }
+}
+
 impl IdentificationDocument {
     /// Of a fit to `cases`; `arm` is the fitted one, with the loads of its file.
     pub fn new(arm: &Arm, cases: &[Case], fit: &Fit, loss: Loss) -> Self {
-        let name = |case: usize| cases.get(case).map(|case| case.name.clone()).unwrap_or_default();
+        let name = |case: usize| name(cases, case);
         let parameters = fit.estimates.iter().map(|one| EstimateOut {
             key: one.fitted.parameter.to_string(),
             unit: one.fitted.parameter.unit(),
@@ -111,18 +169,6 @@ impl IdentificationDocument {
         let directions = fit.directions.iter().map(|direction| DirectionOut {
             singular_value: direction.singular_value,
             weights: direction.weights.clone(),
-        });
-        let residuals = fit.residuals.iter().map(|one| ResidualOut {
-            case: name(one.case),
-            quantity: one.measurement.quantity.name(),
-            s: one.measurement.quantity.place(),
-            unit: one.measurement.quantity.unit(),
-            measured: one.measurement.value,
-            sd: one.measurement.sd,
-            fitted: one.fitted,
-            residual: one.standardised,
-            weight: one.weight,
-            row: (one.measurement.row > 0).then_some(one.measurement.row),
         });
         let left_out = fit.left_out.iter().map(|one| LeftOutOut {
             case: name(one.case),
@@ -152,13 +198,34 @@ impl IdentificationDocument {
             freedom: fit.freedom,
             spread: fit.spread,
             misfit: fit.misfit(),
-            residuals: residuals.collect(),
+            residuals: fit.residuals.iter().map(|one| residual(cases, one)).collect(),
+            misses: MissOut::all(misses(&fit.residuals)),
+            predictions: None,
             cross_validation: left_out.collect(),
             no_answer: no_answer.collect(),
             rounds: fit.rounds,
             evaluations: fit.evaluations,
             inputs: Inputs::new(arm),
         }
+    }
+
+    /// With load cases that were not fitted.
+    #[must_use]
+    pub fn with_predictions(mut self, cases: &[Case], predicted: &[Prediction]) -> Self {
+        if predicted.is_empty() {
+            return self;
+        }
+        let found = || predicted.iter().filter_map(|one| one.found.as_ref().ok()).flat_map(|(residuals, _)| residuals);
+        let unanswered = |one: &Prediction| {
+            let message = one.found.as_ref().err()?.to_string();
+            Some(UnansweredOut { case: name(cases, one.case), message })
+        };
+        self.predictions = Some(PredictionsOut {
+            residuals: found().map(|one| residual(cases, one)).collect(),
+            misses: MissOut::all(misses(found())),
+            no_answer: predicted.iter().filter_map(unanswered).collect(),
+        });
+        self
     }
 
     /// The document, one line.

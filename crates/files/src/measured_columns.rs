@@ -1,24 +1,27 @@
 //! The columns of measured shapes: what their heads say.
 
-use hydrostat_identify::Quantity;
+use hydrostat_identify::{Marker, Quantity};
 
 use crate::error::shortened;
 use crate::format::{dimension_at, nearest};
 use crate::heads::{identifier, key_named, readings, unit_of};
 use crate::quantity::Dimension;
 use crate::results::{INNER, THETA};
+use crate::spatial_results::INNER_IN_SPACE;
 
 /// What a measured column is of; places are in another column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Measured {
     X,
     Y,
+    Z,
     Angle,
     Tangent,
     Stroke(usize),
     Tension(usize),
     BaseForce(usize),
     BaseMoment,
+    BaseMomentAbout(usize),
 }
 
 impl Measured {
@@ -28,11 +31,15 @@ impl Measured {
         Some(match name {
             "x" => Self::X,
             "y" => Self::Y,
+            "z" => Self::Z,
             "angle" => Self::Angle,
             "tangent" => Self::Tangent,
             "base_force_x" => Self::BaseForce(0),
             "base_force_y" => Self::BaseForce(1),
-            "base_moment" => Self::BaseMoment,
+            "base_force_z" => Self::BaseForce(2),
+            "base_moment" | "base_moment_z" => Self::BaseMoment,
+            "base_moment_x" => Self::BaseMomentAbout(0),
+            "base_moment_y" => Self::BaseMomentAbout(1),
             _ => match (index("stroke_"), index("tension_")) {
                 (Some(c), _) => Self::Stroke(c),
                 (_, Some(c)) => Self::Tension(c),
@@ -43,23 +50,31 @@ impl Measured {
 
     pub(crate) fn dimension(self) -> Dimension {
         match self {
-            Self::X | Self::Y | Self::Stroke(_) => Dimension::Length,
+            Self::X | Self::Y | Self::Z | Self::Stroke(_) => Dimension::Length,
             Self::Angle | Self::Tangent => Dimension::Angle,
             Self::Tension(_) | Self::BaseForce(_) => Dimension::Force,
-            Self::BaseMoment => Dimension::Moment,
+            Self::BaseMoment | Self::BaseMomentAbout(_) => Dimension::Moment,
         }
     }
 
-    pub(crate) fn at(self, s: f64) -> Quantity {
+    /// Whether it is a coordinate of a marker.
+    pub(crate) fn is_position(self) -> bool {
+        matches!(self, Self::X | Self::Y | Self::Z)
+    }
+
+    pub(crate) fn at(self, Marker { s, offset }: Marker) -> Quantity {
+        let coordinate = |axis| Quantity::of_marker(Marker { s, offset }, axis);
         match self {
-            Self::X => Quantity::X(s),
-            Self::Y => Quantity::Y(s),
+            Self::X => coordinate(0),
+            Self::Y => coordinate(1),
+            Self::Z => coordinate(2),
             Self::Angle => Quantity::Angle(s),
             Self::Tangent => Quantity::Tangent(s),
             Self::Stroke(c) => Quantity::Stroke(c),
             Self::Tension(c) => Quantity::Tension(c),
             Self::BaseForce(k) => Quantity::BaseForce(k),
             Self::BaseMoment => Quantity::BaseMoment,
+            Self::BaseMomentAbout(k) => Quantity::BaseMomentAbout(k),
         }
     }
 }
@@ -69,8 +84,10 @@ impl Measured {
 pub(crate) enum Column {
     Case,
     Place,
+    /// Of a marker from the centreline along a (0), b (1) or c (2).
+    Offset(usize),
     Value(Measured),
-    /// Of one quantity, or of x and y.
+    /// Of one quantity, or of x, y and z.
     Deviation(Option<Measured>),
     /// A key of the arm file, with what it measures; `None` for words.
     Setting(String, Option<Dimension>),
@@ -90,7 +107,7 @@ pub(crate) struct Head {
 
 /// What a column head means: a name with its unit, as `x [mm]` or as `x_mm`.
 pub(crate) fn head(text: &str) -> Result<Head, String> {
-    let inner = if text == THETA { Some(Column::Theta) } else { INNER.contains(&text).then_some(Column::Inner) };
+    let inner = if text == THETA { Some(Column::Theta) } else { is_inner(text).then_some(Column::Inner) };
     if let Some(column) = inner {
         return Ok(Head { column, text: text.to_owned(), unit: "rad".to_owned() });
     }
@@ -107,12 +124,20 @@ pub(crate) fn head(text: &str) -> Result<Head, String> {
     Err(refused.unwrap_or_else(|| unknown(&readings)))
 }
 
+/// Whether a table of stations has this head and nobody measures it.
+fn is_inner(text: &str) -> bool {
+    INNER.contains(&text) || INNER_IN_SPACE.contains(&text)
+}
+
 /// The column of a name, with what it measures.
 fn named(name: &str) -> Option<(Column, Option<Dimension>)> {
     let plain = identifier(&name.to_lowercase());
     Some(match plain.as_str() {
         "case" => (Column::Case, None),
         "s" => (Column::Place, Some(Dimension::Length)),
+        "offset_a" => (Column::Offset(0), Some(Dimension::Length)),
+        "offset_b" => (Column::Offset(1), Some(Dimension::Length)),
+        "offset_c" => (Column::Offset(2), Some(Dimension::Length)),
         "sd_position" => (Column::Deviation(None), Some(Dimension::Length)),
         _ => {
             if let Some(measured) = Measured::named(&plain) {
@@ -143,11 +168,13 @@ fn unit_in_head(name: &str, unit: &str, dimension: Option<Dimension>) -> Result<
 }
 
 fn unknown(readings: &[(&str, &str)]) -> String {
-    const KNOWN: [&str; 12] = [
+    const KNOWN: [&str; 14] = [
         "case",
         "s",
+        "offset_b",
         "x",
         "y",
+        "z",
         "angle",
         "tangent",
         "stroke[0]",

@@ -5,8 +5,8 @@ use std::io::Read;
 use std::path::Path;
 
 use csv::StringRecord;
-use hydrostat::{Arm, Parameter};
-use hydrostat_identify::{Case, Measurement, Quantity};
+use hydrostat::Arm;
+use hydrostat_identify::{Case, Marker, Measurement, Quantity, Unknown};
 
 use crate::arm_file::ArmFile;
 use crate::csv_text::{Dialect, Lines, is_missing, records, without_mark};
@@ -59,7 +59,7 @@ pub fn read_measurements(
     path: &Path,
     file: &ArmFile,
     deviations: &Deviations,
-    fitted: &[Parameter],
+    fitted: &[Unknown],
 ) -> Result<Vec<Case>, MeasurementsError> {
     let name = path.display().to_string();
     let fault = |why: String| MeasurementsError { path: name.clone(), row: 0, column: None, why };
@@ -102,7 +102,7 @@ pub fn parse_measurements(
     path: &str,
     file: &ArmFile,
     deviations: &Deviations,
-    fitted: &[Parameter],
+    fitted: &[Unknown],
 ) -> Result<Vec<Case>, MeasurementsError> {
     let text = without_mark(text);
     let dialect = Dialect::of(text);
@@ -168,7 +168,7 @@ impl Table<'_> {
         MeasurementsError { path: self.path.to_owned(), row, column: column.map(str::to_owned), why: why.into() }
     }
 
-    fn read_heads(&mut self, row: usize, record: &StringRecord, fitted: &[Parameter]) -> Result<(), MeasurementsError> {
+    fn read_heads(&mut self, row: usize, record: &StringRecord, fitted: &[Unknown]) -> Result<(), MeasurementsError> {
         for text in record {
             let mut head = head(text).map_err(|why| self.fault(row, Some(text), why))?;
             if head.column == Column::Theta {
@@ -229,8 +229,8 @@ impl Table<'_> {
             Some((_, name)) => name.to_owned(),
             None => "1".to_owned(),
         };
-        let s = self.place(row, record)?;
-        let found = self.measured(row, record, s)?;
+        let marker = Marker { s: self.place(row, record)?, offset: self.offset(row, record)? };
+        let found = self.measured(row, record, marker)?;
         let index = self.case_of(name, row)?;
         self.keep(row, index, found)?;
         self.take_settings(row, record, index)
@@ -259,12 +259,26 @@ impl Table<'_> {
         Err(self.fault(row, Some(&head.text), why))
     }
 
-    /// What a row measures at `s`, each with the head of its column.
+    /// Where a row's marker is beside the centreline (m): nowhere where it does not say.
+    fn offset(&self, row: usize, record: &StringRecord) -> Result<[f64; 3], MeasurementsError> {
+        let mut out = [0.0; 3];
+        for (k, out) in out.iter_mut().enumerate() {
+            let Some((head, cell)) = self.cell(record, &Column::Offset(k)) else { continue };
+            *out = self.number(row, head, cell, Dimension::Length)?.unwrap_or(0.0);
+            if out.abs() > self.length {
+                let why = format!("{} mm is more than the length of the arm", rounded_mm(*out));
+                return Err(self.fault(row, Some(&head.text), why));
+            }
+        }
+        Ok(out)
+    }
+
+    /// What a row measures of a marker and elsewhere, each with the head of its column.
     fn measured(
         &self,
         row: usize,
         record: &StringRecord,
-        s: f64,
+        marker: Marker,
     ) -> Result<Vec<(Measurement, String)>, MeasurementsError> {
         let mut out = Vec::new();
         for (head, cell) in self.heads.iter().zip(record) {
@@ -272,7 +286,7 @@ impl Table<'_> {
             let Some(value) = self.number(row, head, cell, measured.dimension())? else { continue };
             let given = self.deviation(row, record, measured)?;
             let Some(sd) = given.or(self.deviations.of(measured.dimension())) else {
-                let name = measured.at(s).name();
+                let name = measured.at(marker).name();
                 let why = format!(
                     "has no standard deviation: add a column \"sd {name} [{}]\", or --sd with {}",
                     head.unit,
@@ -280,12 +294,12 @@ impl Table<'_> {
                 );
                 return Err(self.fault(row, Some(&head.text), why));
             };
-            out.push((Measurement { quantity: measured.at(s), value, sd, row }, head.text.clone()));
+            out.push((Measurement { quantity: measured.at(marker), value, sd, row }, head.text.clone()));
         }
         Ok(out)
     }
 
-    /// The standard deviation that a row gives, in a column for the quantity or, of positions, in one for both.
+    /// The standard deviation that a row gives, in a column for the quantity or, of positions, in one for all.
     fn deviation(
         &self,
         row: usize,
@@ -294,7 +308,7 @@ impl Table<'_> {
     ) -> Result<Option<f64>, MeasurementsError> {
         let own = self.cell(record, &Column::Deviation(Some(measured)));
         let both = || {
-            let position = matches!(measured, Measured::X | Measured::Y);
+            let position = measured.is_position();
             position.then(|| self.cell(record, &Column::Deviation(None))).flatten()
         };
         let Some((head, cell)) = own.or_else(both) else { return Ok(None) };
@@ -397,13 +411,11 @@ impl Table<'_> {
     fn check_positions(&self, case: &Building, arm: &Arm) -> Result<(), MeasurementsError> {
         let longest = arm.length * arm.reference.nu.range(arm.length, arm.length).1.max(1.0);
         for measurement in &case.measurements {
-            let (measured, base) = match measurement.quantity {
-                Quantity::X(_) => (Measured::X, arm.base.x),
-                Quantity::Y(_) => (Measured::Y, arm.base.y),
-                _ => continue,
-            };
+            let Some((marker, axis)) = measurement.quantity.marker() else { continue };
+            let base = [arm.base.x, arm.base.y, arm.space.as_ref().map_or(0.0, |space| space.z)][axis];
+            let measured = [Measured::X, Measured::Y, Measured::Z][axis];
             let off = (measurement.value - base).abs();
-            if off <= FURTHEST * longest {
+            if off <= FURTHEST * longest + marker.offset.iter().map(|v| v * v).sum::<f64>().sqrt() {
                 continue;
             }
             let head = self.heads.iter().find(|head| head.column == Column::Value(measured));
@@ -428,8 +440,9 @@ pub(crate) fn rounded_mm(s: f64) -> f64 {
 }
 
 fn same(a: Quantity, b: Quantity, slack: f64) -> bool {
+    let offset = |of: Quantity| of.marker().map(|(marker, _)| marker.offset);
     match (a.place(), b.place()) {
-        (Some(s), Some(t)) => a.name() == b.name() && (s - t).abs() <= slack,
+        (Some(s), Some(t)) => a.name() == b.name() && (s - t).abs() <= slack && offset(a) == offset(b),
         _ => a == b,
     }
 }

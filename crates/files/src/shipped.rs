@@ -35,7 +35,7 @@ const ARMS: [Shipped; 5] = [
 ];
 
 /// Arms in space.
-const SPATIAL: [Shipped; 2] = [
+const SPATIAL: [Shipped; 3] = [
     Shipped {
         name: "octopus-spatial",
         description: "the octopus arm in space, four cables at 90 degrees",
@@ -45,6 +45,11 @@ const SPATIAL: [Shipped; 2] = [
         name: "silicone-spatial",
         description: "the silicone cone in space, three cables at 120 degrees",
         text: include_str!("../arms/silicone-spatial.toml"),
+    },
+    Shipped {
+        name: "tentacle",
+        description: "a built arm of 360 mm in air, two tendons, with 22 measured poses (SoRoMoX)",
+        text: include_str!("../arms/tentacle.toml"),
     },
 ];
 

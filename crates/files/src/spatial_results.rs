@@ -276,3 +276,30 @@ pub fn spatial_stations_csv(st: &SpatialStations) -> String {
     }
     out.text()
 }
+
+/// Columns of [`spatial_stations_csv`] that nobody measures.
+pub(crate) const INNER_IN_SPACE: [&str; 23] = [
+    "a_x",
+    "a_y",
+    "a_z",
+    "b_x",
+    "b_y",
+    "b_z",
+    "c_x",
+    "c_y",
+    "c_z",
+    "nu",
+    "eta",
+    "zeta",
+    "tau_per_m",
+    "kappa_per_m",
+    "mu_per_m",
+    "beta",
+    "alpha_rad",
+    "n_a_N",
+    "n_b_N",
+    "n_c_N",
+    "m_a_Nm",
+    "m_b_Nm",
+    "m_c_Nm",
+];

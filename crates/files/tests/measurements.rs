@@ -2,10 +2,10 @@
 
 use hydrostat::Parameter;
 use hydrostat_files::{ArmFile, Deviations, parse_measurements, shipped};
-use hydrostat_identify::{Case, Quantity};
+use hydrostat_identify::{Case, Quantity, Unknown};
 use proptest::prelude::*;
 
-fn read_with(text: &str, sd: &[&str], fitted: &[Parameter]) -> Result<Vec<Case>, String> {
+fn read_with(text: &str, sd: &[&str], fitted: &[Unknown]) -> Result<Vec<Case>, String> {
     let file = ArmFile::parse(shipped::get("silicone").unwrap(), "silicone").unwrap();
     let mut deviations = Deviations::default();
     for text in sd {
@@ -151,7 +151,7 @@ fn columns_that_cannot_be_meant_are_named() {
         refused("x [mm],y [mm],x [cm]\n1,1,1\n")
             .contains("row 1, column \"x [cm]\": the column \"x [mm]\" has the same")
     );
-    let given = read_with("flow.speed [m/s],x [mm]\n0.1,1\n", &["1 mm"], &[Parameter::FlowSpeed]).unwrap_err();
+    let given = read_with("flow.speed [m/s],x [mm]\n0.1,1\n", &["1 mm"], &[Parameter::FlowSpeed.into()]).unwrap_err();
     assert_eq!(given, "data.csv, row 1, column \"flow.speed [m/s]\": is fitted, so that no load case can give it");
 }
 

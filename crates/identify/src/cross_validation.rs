@@ -31,7 +31,7 @@ pub(crate) fn leave_out(
     for (one, x) in from.fitted.iter_mut().zip(x) {
         one.start = *x;
     }
-    let parameters = model.parameters();
+    let unknowns = model.unknowns();
     let count = model.observed.len();
     let mut out = Vec::with_capacity(count);
     for left in 0..count {
@@ -54,7 +54,7 @@ pub(crate) fn leave_out(
             for ((shift, (new, old)), sd) in shifts.iter_mut().zip(found.x.iter().zip(x)).zip(sds) {
                 *shift = (new - old) / sd;
             }
-            one.clone().answer(&parameters, &found.x).map(|answer| size(&answer.values))
+            one.clone().answer(&unknowns, &found.x).map(|answer| size(&answer.values))
         });
         out.push(LeftOut { case: index[left], within, predicted, shifts });
     }

@@ -1,9 +1,10 @@
 //! Why there is no fit.
 
 use hydrostat::parameter::Unfit;
-use hydrostat::{ArmError, Parameter, SensitivityError, SolveError};
+use hydrostat::{ArmError, SensitivityError, SolveError, SpatialError};
 
 use crate::data::Quantity;
+use crate::unknown::Unknown;
 
 /// Why parameters cannot be fitted.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -16,12 +17,12 @@ pub enum IdentifyError {
     NoData,
     /// A parameter twice.
     #[error("`{0}` is given twice")]
-    Twice(Parameter),
+    Twice(Unknown),
     /// Bounds, start or prior that make no sense.
     #[error("`{parameter}`: expected {expected}, found {found}")]
     Range {
         /// Which.
-        parameter: Parameter,
+        parameter: Unknown,
         /// What it may be, in words.
         expected: &'static str,
         /// What it is, in the parameter's unit.
@@ -86,6 +87,9 @@ pub enum Trial {
     /// No equilibrium, or no derivative.
     #[error(transparent)]
     Sensitivity(#[from] SensitivityError),
+    /// The same of an arm in space.
+    #[error(transparent)]
+    InSpace(#[from] SensitivityError<SpatialError>),
 }
 
 impl From<SolveError> for Trial {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use hydrostat::{Configuration, Parameter};
+use hydrostat::Arm;
 use nalgebra::DMatrix;
 
 use crate::certainty::{Direction, correlation, covariance, directions};
@@ -14,7 +14,9 @@ use crate::least_squares::{Minimum, Settings};
 use crate::loss::Loss;
 use crate::model::{Cases, KEPT, Observed, Refusal, residuals};
 use crate::search::search;
+use crate::shape::Shape;
 use crate::student::{NORMAL_95, student_95};
+use crate::unknown::{Unknown, set_all};
 use crate::verdict::{Finding, Scale, findings, verdict};
 
 /// Sums of squares that are this rare, on both sides together, are none that standard deviations say.
@@ -130,7 +132,7 @@ pub struct Fit {
     /// Load cases with measured numbers.
     pub load_cases: usize,
     /// The fitted arm in the first 200 of them: the index of the case, and the shape.
-    pub shapes: Vec<(usize, Configuration)>,
+    pub shapes: Vec<(usize, Shape)>,
     /// What each load case is predicted to be by the others; empty if not asked for, for one load case and for more than 200.
     pub left_out: Vec<LeftOut>,
     /// Load cases without an answer on the way.
@@ -144,8 +146,15 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// `arm` with the estimates; factors multiply its tensions.
+    pub fn applied_to(&self, arm: &Arm) -> Arm {
+        let unknowns: Vec<Unknown> = self.estimates.iter().map(|one| one.fitted.parameter).collect();
+        let values: Vec<f64> = self.estimates.iter().map(|one| one.value).collect();
+        set_all(arm, &unknowns, &values)
+    }
+
     /// How a parameter is compared with others.
-    fn scale(&self, parameter: Parameter) -> Scale {
+    fn scale(&self, parameter: Unknown) -> Scale {
         let own = self.estimates.iter().find(|one| one.fitted.parameter == parameter);
         own.map_or(Scale { size: 1.0, own: false }, |one| one.scale)
     }
@@ -241,10 +250,10 @@ pub fn fit(
     let covariance = covariance(&rows, options.loss, &free, spread);
     let estimates = estimates(&model.fitted, &found, &covariance, quantile);
     let sizes: Vec<f64> = estimates.iter().map(|one| one.scale.size).collect();
-    let parameters = model.parameters();
+    let unknowns = model.unknowns();
     let directions = directions(&rows, &sizes);
     let correlation = correlation(&covariance);
-    let findings = findings(&parameters, &directions, &correlation);
+    let findings = findings(&unknowns, &directions, &correlation);
     let left_out = if options.cross_validate && (2..=KEPT).contains(&model.observed.len()) && go_on {
         let sds: Vec<f64> = estimates.iter().map(|one| one.sd.unwrap_or(f64::INFINITY)).collect();
         leave_out(&model, &index, (&found.x, &sds), &settings, |done, all| say(Progress::LeftOut(done, all)))
@@ -292,7 +301,7 @@ fn estimates(fitted: &[Fitted], found: &Minimum<Refusal>, covariance: &DMatrix<f
 }
 
 /// The shapes of the last evaluation that were kept, with the indices of their cases.
-fn shapes(model: &mut Cases, index: &[usize]) -> Vec<(usize, Configuration)> {
+fn shapes(model: &mut Cases, index: &[usize]) -> Vec<(usize, Shape)> {
     let kept = index.iter().zip(&mut model.answers).filter_map(|(i, one)| Some((*i, one.shape.take()?)));
     kept.collect()
 }
@@ -340,16 +349,18 @@ fn checked(fitted: &[Fitted]) -> Result<Vec<Fitted>, IdentifyError> {
 }
 
 fn all_residuals(model: &Cases, index: &[usize], loss: Loss) -> Vec<Residual> {
-    let mut out = Vec::new();
-    for ((one, answer), case) in model.observed.iter().zip(&model.answers).zip(index) {
-        let standardised = residuals(&one.case, &answer.values);
-        for ((measurement, fitted), standardised) in one.case.measurements.iter().zip(&answer.values).zip(standardised)
-        {
-            let weight = loss.weight(standardised);
-            out.push(Residual { case: *case, measurement: *measurement, fitted: *fitted, standardised, weight });
-        }
-    }
-    out
+    let all = model.observed.iter().zip(&model.answers).zip(index);
+    all.flat_map(|((one, answer), case)| residuals_of(&one.case, *case, &answer.values, loss)).collect()
+}
+
+/// The measured numbers of load case `index` beside `values`.
+pub(crate) fn residuals_of(case: &Case, index: usize, values: &[f64], loss: Loss) -> Vec<Residual> {
+    let all = case.measurements.iter().zip(values).zip(residuals(case, values));
+    let one = |((measurement, fitted), standardised): ((&Measurement, &f64), f64)| {
+        let weight = loss.weight(standardised);
+        Residual { case: index, measurement: *measurement, fitted: *fitted, standardised, weight }
+    };
+    all.map(one).collect()
 }
 
 fn no_answer(found: &Minimum<Refusal>, index: &[usize]) -> Vec<NoAnswer> {

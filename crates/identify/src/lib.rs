@@ -5,7 +5,8 @@
 //! [`Fit`] has estimates with 95 % intervals, the combinations of parameters that the data know least ([`Fit::verdict`] says so in
 //! words), every residual, and what each load case is predicted to be by the others.
 //!
-//! Derivatives are the exact ones of `hydrostat::Solver::sensitivities`; every solve starts from the last. [`least_squares`] is the search
+//! Derivatives are the exact ones of `hydrostat::Solver::sensitivities` and, of arms in space, of `hydrostat::SpatialSolver::sensitivities`; in
+//! the plane every solve starts from the last. [`least_squares`] is the search
 //! by itself, for any model.
 
 mod certainty;
@@ -16,16 +17,23 @@ mod error;
 mod fit;
 pub mod least_squares;
 mod loss;
+mod misses;
 mod model;
+mod predict;
 mod search;
+mod shape;
 mod student;
+mod unknown;
 mod verdict;
 
 pub use certainty::Direction;
 pub use cross_validation::LeftOut;
-pub use data::{Case, Fitted, Measurement, Prior, Quantity, natural_bounds};
+pub use data::{Case, Fitted, Marker, Measurement, Prior, Quantity, natural_bounds};
 pub use error::{IdentifyError, Trial};
 pub use fit::{Estimate, Fit, FitOptions, NoAnswer, Progress, Residual, fit};
 pub use loss::Loss;
-pub use model::value_of;
+pub use misses::{Miss, misses};
+pub use predict::{Prediction, predict};
+pub use shape::{Shape, value_in_space, value_of};
+pub use unknown::Unknown;
 pub use verdict::{Finding, Scale};

@@ -3,7 +3,7 @@
 use hydrostat::parameter::Unfit;
 use hydrostat::{
     Arm, Configuration, Options, Parameter, PoseChange, Sensitivities, SensitivityError, SensitivityOptions, Solver,
-    Support,
+    SpatialConfiguration, SpatialPoseChange, SpatialSolver, SpatialWrench, Support,
 };
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -11,6 +11,8 @@ use rayon::prelude::*;
 use crate::data::{Case, Fitted, Quantity};
 use crate::error::{IdentifyError, Trial};
 use crate::least_squares::{Model, Rows};
+use crate::shape::{Shape, off_in_plane, off_in_space, value_in_space, value_of};
+use crate::unknown::{Chain, Unknown, set_all};
 
 /// Places (over L) that are this near are the same, and one this far beyond an end is at it.
 const SAME: f64 = 1e-9;
@@ -37,7 +39,7 @@ pub(crate) struct Answer {
     /// By the parameters, one row a measurement.
     pub(crate) rows: Vec<Vec<f64>>,
     /// Of cases that keep it.
-    pub(crate) shape: Option<Configuration>,
+    pub(crate) shape: Option<Shape>,
 }
 
 impl Observed {
@@ -46,9 +48,9 @@ impl Observed {
         let mut arm = case.arm.clone();
         for one in fitted {
             let commanded = |c: usize| arm.cables.get(c).map(|cable| cable.stroke.is_some());
-            let wrong = match one.parameter {
-                Parameter::Tension(c) if commanded(c) == Some(true) => Some(SensitivityError::Commanded(c)),
-                Parameter::Stroke(c) if commanded(c) == Some(false) => Some(SensitivityError::NotCommanded(c)),
+            let wrong: Option<SensitivityError> = match one.parameter.parameter() {
+                Some(Parameter::Tension(c)) if commanded(c) == Some(true) => Some(SensitivityError::Commanded(c)),
+                Some(Parameter::Stroke(c)) if commanded(c) == Some(false) => Some(SensitivityError::NotCommanded(c)),
                 _ => None,
             };
             if let Some(wrong) = wrong {
@@ -57,8 +59,11 @@ impl Observed {
             if one.parameter == Parameter::Length {
                 return Err(IdentifyError::Unfit { case: name(), source: Unfit::Places });
             }
-            let source = one.parameter.set(&mut arm, one.start);
-            source.map_err(|source| IdentifyError::Unfit { case: name(), source })?;
+            let unfit = |source| IdentifyError::Unfit { case: name(), source };
+            match one.parameter.parameter() {
+                Some(parameter) => parameter.set(&mut arm, one.start).map_err(unfit)?,
+                None => one.parameter.of(&arm).map(|_| ()).map_err(unfit)?,
+            }
         }
         let mut stations: Vec<f64> = Vec::new();
         for one in &case.measurements {
@@ -79,54 +84,97 @@ impl Observed {
         Ok(Self { case, kept, stations, options: Options::with_tol(tol), solver: None })
     }
 
-    /// The arm at these values of the parameters.
-    fn arm_at(&self, parameters: &[Parameter], x: &[f64]) -> Arm {
-        let mut arm = self.case.arm.clone();
-        for (parameter, x) in parameters.iter().zip(x) {
-            // That the arm has it was checked.
-            let _ = parameter.set(&mut arm, *x);
-        }
-        arm
+    pub(crate) fn answer(&mut self, unknowns: &[Unknown], x: &[f64]) -> Result<Answer, Trial> {
+        let arm = set_all(&self.case.arm, unknowns, x);
+        let chain = Chain::new(&self.case.arm, unknowns, x);
+        if arm.space.is_some() { self.in_space(&arm, &chain) } else { self.in_plane(&arm, &chain) }
     }
 
-    pub(crate) fn answer(&mut self, parameters: &[Parameter], x: &[f64]) -> Result<Answer, Trial> {
-        let arm = self.arm_at(parameters, x);
+    fn wanted(&self) -> SensitivityOptions {
+        SensitivityOptions { stations: self.stations.clone(), ..SensitivityOptions::default() }
+    }
+
+    fn in_plane(&mut self, arm: &Arm, chain: &Chain) -> Result<Answer, Trial> {
         let mut solver = match self.solver.take() {
             Some(mut solver) => {
-                solver.set_arm(&arm)?;
+                solver.set_arm(arm)?;
                 solver
             }
-            None => Box::new(Solver::new(&arm, self.options)?),
+            None => Box::new(Solver::new(arm, self.options)?),
         };
-        let wanted = SensitivityOptions { stations: self.stations.clone(), ..SensitivityOptions::default() };
         // What a trial without an answer leaves behind is no start for the next one.
-        let found = solver.sensitivities_with(parameters, &wanted)?;
+        let found = solver.sensitivities_with(&chain.parameters, &self.wanted())?;
         let shape = solver.configuration()?;
         self.solver = self.kept.then_some(solver);
-        let (mut values, mut rows) = (Vec::new(), Vec::new());
-        for one in &self.case.measurements {
-            values.push(value_of(&shape, one.quantity));
-            rows.push((0..parameters.len()).map(|k| self.change(&found, one.quantity, k)).collect());
-        }
-        Ok(Answer { values, rows, shape: self.kept.then_some(shape) })
+        let all = self.case.measurements.iter().map(|one| one.quantity);
+        let values = all.clone().map(|quantity| value_of(&shape, quantity)).collect();
+        let rows =
+            all.map(|quantity| chain.row(quantity, |k| self.change_in_plane(&found, &shape, quantity, k))).collect();
+        Ok(Answer { values, rows, shape: self.kept.then(|| Shape::Plane(Box::new(shape))) })
+    }
+
+    /// Solved anew: what an arm in space is given can only change by its tensions.
+    fn in_space(&self, arm: &Arm, chain: &Chain) -> Result<Answer, Trial> {
+        let mut solver = SpatialSolver::new(arm, self.options).map_err(SensitivityError::Solve)?;
+        let shape = solver.solve().map_err(SensitivityError::Solve)?;
+        let found = solver.sensitivities_with(&chain.parameters, &self.wanted())?;
+        let all = self.case.measurements.iter().map(|one| one.quantity);
+        let values = all.clone().map(|quantity| value_in_space(&shape, quantity)).collect();
+        let rows =
+            all.map(|quantity| chain.row(quantity, |k| self.change_in_space(&found, &shape, quantity, k))).collect();
+        Ok(Answer { values, rows, shape: self.kept.then(|| Shape::Space(Box::new(shape))) })
+    }
+
+    /// The change of the pose at a place that was measured.
+    fn pose<P: Copy + Default, W>(&self, found: &Sensitivities<P, W>, s: f64, k: usize) -> P {
+        let off = |own: f64| (own - s).abs();
+        let at = (0..self.stations.len()).min_by(|a, b| off(self.stations[*a]).total_cmp(&off(self.stations[*b])));
+        at.map_or(P::default(), |at| found.stations[at].changes[k])
     }
 
     /// d quantity / d parameter `k`.
-    fn change(&self, found: &Sensitivities, quantity: Quantity, k: usize) -> f64 {
-        let pose = |s: f64| {
-            let off = |own: f64| (own - s).abs();
-            let at = (0..self.stations.len()).min_by(|a, b| off(self.stations[*a]).total_cmp(&off(self.stations[*b])));
-            at.map_or(PoseChange::default(), |at| found.stations[at].changes[k])
-        };
+    fn change_in_plane(&self, found: &Sensitivities, shape: &Configuration, quantity: Quantity, k: usize) -> f64 {
+        let pose = |s: f64| -> PoseChange { self.pose(found, s, k) };
         match quantity {
             Quantity::X(s) => pose(s).x,
             Quantity::Y(s) => pose(s).y,
+            // An arrow that turns by d theta goes by d theta k x arrow.
+            Quantity::Off(marker, axis) => {
+                let (change, [x, y]) = (pose(marker.s), off_in_plane(&shape.at(marker.s), marker.offset));
+                if axis == 0 { change.x - change.theta * y } else { change.y + change.theta * x }
+            }
             Quantity::Angle(s) => pose(s).theta,
             Quantity::Tangent(s) => pose(s).theta + pose(s).alpha,
             Quantity::Stroke(c) => found.strokes[c][k],
             Quantity::Tension(c) => found.tensions[c][k],
             Quantity::BaseForce(axis) => found.base[k].force[axis.min(1)],
             Quantity::BaseMoment => found.base[k].moment,
+            // An arm in the plane has none of these, which was checked.
+            Quantity::Z(_) | Quantity::BaseMomentAbout(_) => 0.0,
+        }
+    }
+
+    /// d quantity / d parameter `k`.
+    fn change_in_space(
+        &self,
+        found: &Sensitivities<SpatialPoseChange, SpatialWrench>,
+        shape: &SpatialConfiguration,
+        quantity: Quantity,
+        k: usize,
+    ) -> f64 {
+        if let Some((marker, axis)) = quantity.marker() {
+            let change = self.pose(found, marker.s, k);
+            let off = off_in_space(&shape.at(marker.s), marker.offset);
+            return change.place[axis] + change.of_director(off)[axis];
+        }
+        match quantity {
+            Quantity::Stroke(c) => found.strokes[c][k],
+            Quantity::Tension(c) => found.tensions[c][k],
+            Quantity::BaseForce(axis) => found.base[k].force[axis.min(2)],
+            Quantity::BaseMoment => found.base[k].moment[2],
+            Quantity::BaseMomentAbout(axis) => found.base[k].moment[axis.min(1)],
+            // Angles in the plane, which was checked.
+            _ => 0.0,
         }
     }
 }
@@ -137,6 +185,7 @@ fn missing(arm: &Arm, quantity: Quantity) -> Option<String> {
         None => Err(format!("was measured of an arm with {} cables, counted from 0", arm.cables.len())),
         Some(cable) => Ok(cable.stroke.is_some()),
     };
+    let of_base = matches!(quantity, Quantity::BaseForce(_) | Quantity::BaseMoment | Quantity::BaseMomentAbout(_));
     match quantity {
         Quantity::Stroke(c) => match cable(c) {
             Ok(false) => None,
@@ -150,7 +199,18 @@ fn missing(arm: &Arm, quantity: Quantity) -> Option<String> {
             }
             Err(why) => Some(why),
         },
-        Quantity::BaseForce(_) | Quantity::BaseMoment if arm.readings.support != Support::Clamped => {
+        Quantity::Angle(_) | Quantity::Tangent(_) if arm.space.is_some() => {
+            Some("is of arms in the plane alone, and this one is in space: give places of markers".to_owned())
+        }
+        Quantity::Z(_) | Quantity::Off(_, 2..) | Quantity::BaseForce(2..) | Quantity::BaseMomentAbout(_)
+            if arm.space.is_none() =>
+        {
+            Some(IN_PLANE.to_owned())
+        }
+        Quantity::Off(marker, _) if arm.space.is_none() && marker.offset[2] != 0.0 => {
+            Some(format!("has an offset along c, which {IN_PLANE}"))
+        }
+        _ if of_base && arm.readings.support != Support::Clamped => {
             Some("follows no equilibrium with support = \"unstrained-base\"".to_owned())
         }
         _ => {
@@ -161,22 +221,8 @@ fn missing(arm: &Arm, quantity: Quantity) -> Option<String> {
     }
 }
 
-/// What a configuration has of a quantity.
-pub fn value_of(shape: &Configuration, quantity: Quantity) -> f64 {
-    match quantity {
-        Quantity::X(s) => shape.at(s).x,
-        Quantity::Y(s) => shape.at(s).y,
-        Quantity::Angle(s) => shape.at(s).theta,
-        Quantity::Tangent(s) => {
-            let place = shape.at(s);
-            place.theta + place.alpha
-        }
-        Quantity::Stroke(c) => shape.cables.get(c).map_or(f64::NAN, |cable| cable.stroke),
-        Quantity::Tension(c) => shape.cables.get(c).map_or(f64::NAN, |cable| cable.tension),
-        Quantity::BaseForce(axis) => shape.base_reaction.force[axis.min(1)],
-        Quantity::BaseMoment => shape.base_reaction.moment,
-    }
-}
+/// What is said of quantities of space in the plane.
+const IN_PLANE: &str = "is of an arm in space, and this one is in the plane: say space = \"spatial\" under [arm]";
 
 /// All load cases together.
 #[derive(Debug, Clone)]
@@ -195,7 +241,7 @@ pub(crate) struct Refusal {
 }
 
 impl Cases {
-    pub(crate) fn parameters(&self) -> Vec<Parameter> {
+    pub(crate) fn unknowns(&self) -> Vec<Unknown> {
         self.fitted.iter().map(|one| one.parameter).collect()
     }
 
@@ -221,9 +267,9 @@ impl Model for Cases {
     type Refusal = Refusal;
 
     fn evaluate(&mut self, x: &[f64]) -> Result<Rows, Refusal> {
-        let parameters = self.parameters();
+        let unknowns = self.unknowns();
         let all: Vec<Result<Answer, Trial>> =
-            self.observed.par_iter_mut().map(|one| one.answer(&parameters, x)).collect();
+            self.observed.par_iter_mut().map(|one| one.answer(&unknowns, x)).collect();
         let mut answers = Vec::with_capacity(all.len());
         for (case, answer) in all.into_iter().enumerate() {
             answers.push(answer.map_err(|why| Refusal { case, why })?);

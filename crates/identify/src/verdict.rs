@@ -1,8 +1,7 @@
 //! What the data can tell, in words.
 
-use hydrostat::Parameter;
-
 use crate::certainty::Direction;
+use crate::unknown::Unknown;
 
 /// Below this many standard deviations a unit of scale, 95 % of a direction span more than the scale itself.
 const UNSEEN: f64 = 2.0;
@@ -17,21 +16,21 @@ pub enum Finding {
     /// One parameter that the data hardly depend on.
     Silent {
         /// Which.
-        parameter: Parameter,
+        parameter: Unknown,
         /// How many standard deviations the measured numbers move when it moves by its scale.
         moves: f64,
     },
     /// Parameters of which the data know a combination only.
     Inseparable {
         /// Each with its share of the direction that is not known, the largest one.
-        parameters: Vec<(Parameter, f64)>,
+        parameters: Vec<(Unknown, f64)>,
         /// How many standard deviations the measured numbers move along it when the largest moves by its scale.
         moves: f64,
     },
     /// Two parameters that are known, and their combination much better.
     Close {
         /// The two.
-        parameters: [Parameter; 2],
+        parameters: [Unknown; 2],
         /// Between their estimates.
         correlation: f64,
     },
@@ -57,12 +56,12 @@ impl Scale {
 }
 
 /// What the directions of the data and the correlations of the estimates say.
-pub(crate) fn findings(parameters: &[Parameter], directions: &[Direction], correlation: &[Vec<f64>]) -> Vec<Finding> {
+pub(crate) fn findings(parameters: &[Unknown], directions: &[Direction], correlation: &[Vec<f64>]) -> Vec<Finding> {
     let mut out = Vec::new();
-    let mut told: Vec<Parameter> = Vec::new();
+    let mut told: Vec<Unknown> = Vec::new();
     for direction in directions.iter().filter(|direction| direction.singular_value < UNSEEN) {
         let largest = direction.weights.iter().fold(0.0, |m: f64, w| m.max(w.abs()));
-        let parts: Vec<(Parameter, f64)> = parameters
+        let parts: Vec<(Unknown, f64)> = parameters
             .iter()
             .zip(&direction.weights)
             .filter(|(_, w)| w.abs() >= PART * largest)
@@ -94,7 +93,7 @@ fn short(value: f64) -> String {
 }
 
 /// By how much a parameter is moved, in words: a tenth of its scale times `share`.
-fn step(parameter: Parameter, scale: Scale, share: f64) -> String {
+fn step(parameter: Unknown, scale: Scale, share: f64) -> String {
     let way = if share < 0.0 { "down" } else { "up" };
     if scale.own {
         format!("{parameter} {way} by {} %", short(10.0 * share.abs()))
@@ -113,7 +112,7 @@ fn joined(words: &[String], last: &str) -> String {
 
 impl Finding {
     /// In a sentence or two. `scale` has those of the parameters that were fitted.
-    pub fn words(&self, scale: impl Fn(Parameter) -> Scale) -> String {
+    pub fn words(&self, scale: impl Fn(Unknown) -> Scale) -> String {
         const HELP: &str = "Fix one of them, add a prior, or measure a case in which their effects differ";
         let sds = |moves: f64| match short(0.1 * moves).as_str() {
             _ if moves < 1e-6 => "the measured values by no more than rounding".to_owned(),
@@ -146,7 +145,7 @@ impl Finding {
 }
 
 /// The whole verdict: its sentences, or that there is nothing to say.
-pub(crate) fn verdict(findings: &[Finding], scale: impl Fn(Parameter) -> Scale) -> Vec<String> {
+pub(crate) fn verdict(findings: &[Finding], scale: impl Fn(Unknown) -> Scale) -> Vec<String> {
     if findings.is_empty() {
         return vec!["the data determine all parameters".to_owned()];
     }

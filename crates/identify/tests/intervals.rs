@@ -1,7 +1,7 @@
 //! Estimates and intervals on synthetic data with known truth.
 
 use hydrostat::Parameter;
-use hydrostat_identify::{Case, Finding, Fit, FitOptions, Fitted, Loss, Prior, Progress, Quantity, fit};
+use hydrostat_identify::{Case, Finding, Fit, FitOptions, Fitted, Loss, Prior, Progress, Quantity, Unknown, fit};
 
 mod common;
 use common::{Random, exact, loads, markers, noisy, silicone};
@@ -75,7 +75,7 @@ fn a_pair_that_cannot_be_told_apart_is_called_so() {
     let fit = found(&cases, &wanted, &QUICK);
     let pair = |finding: &Finding| match finding {
         Finding::Inseparable { parameters, .. } => {
-            let names: Vec<Parameter> = parameters.iter().map(|(parameter, _)| *parameter).collect();
+            let names: Vec<Unknown> = parameters.iter().map(|(parameter, _)| *parameter).collect();
             names == [Parameter::FlowDensity, Parameter::DragNormal] && (parameters[0].1 + parameters[1].1).abs() < 0.01
         }
         _ => false,
@@ -105,7 +105,7 @@ fn a_parameter_that_does_not_act_is_called_so() {
     let cases = exact(&arms, &markers(4), |_| 1e-3);
     let fit = found(&cases, &wanted(&[Parameter::Young, Parameter::DragNormal]), &QUICK);
     assert!(
-        matches!(fit.findings.as_slice(), [Finding::Silent { parameter: Parameter::DragNormal, .. }]),
+        matches!(fit.findings.as_slice(), [Finding::Silent { parameter: Unknown::Of(Parameter::DragNormal), .. }]),
         "{:?}",
         fit.findings
     );

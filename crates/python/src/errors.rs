@@ -130,8 +130,11 @@ pub(crate) fn motion_error(py: Python<'_>, error: MotionError) -> PyErr {
 pub(crate) fn identify_error(py: Python<'_>, error: IdentifyError, options: Options) -> PyErr {
     let words = error.to_string();
     let IdentifyError::Start { case, source } = error else { return wrong(words) };
-    let Trial::Sensitivity(source) = *source else { return wrong(words) };
-    let found = sensitivity_error(py, source, options);
+    let found = match *source {
+        Trial::Sensitivity(source) => sensitivity_error(py, source, options),
+        Trial::InSpace(source) => spatial_sensitivity_error(py, source, options),
+        Trial::Arm(_) => return wrong(words),
+    };
     let note = format!("load case {case} has no answer where the search starts");
     match found.value(py).call_method1("add_note", (note,)) {
         Ok(_) => found,

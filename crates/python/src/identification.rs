@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 
-use hydrostat::{Options, Parameter};
+use hydrostat::Options;
 use hydrostat_figures::{Page, fit_figure};
 use hydrostat_files::{
     Deviations, FitKey, FitKeyError, IdentificationDocument, PriorKey, arm_to_toml, fitted, parse_measurements,
     read_measurements, residuals_csv,
 };
-use hydrostat_identify::{Case, FitOptions, Fitted, Loss, Progress};
+use hydrostat_identify::{Case, FitOptions, Fitted, Loss, Progress, Shape};
 use pyo3::prelude::*;
 
 use crate::arm::Arm;
@@ -18,6 +18,7 @@ use crate::errors::{identify_error, measurements_error, wrong};
 use crate::figure::Figure;
 use crate::interrupt::interruptible;
 use crate::solution::Solution;
+use crate::spatial_solution::SpatialSolution;
 
 /// A fit with what it was made to.
 #[pyclass(frozen, module = "hydrostat._native")]
@@ -57,7 +58,7 @@ pub(crate) fn identify(
         sd.add(text).map_err(|error| wrong(format!("sd: {error}")))?;
     }
     let wanted = wanted(arm, &fit, &priors)?;
-    let parameters: Vec<Parameter> = wanted.iter().map(|one| one.parameter).collect();
+    let parameters: Vec<_> = wanted.iter().map(|one| one.parameter).collect();
     let cases = match path {
         Some(path) => read_measurements(Path::new(path), &arm.file, &sd, &parameters),
         None => parse_measurements(text, "data", &arm.file, &sd, &parameters),
@@ -82,10 +83,7 @@ pub(crate) fn identify(
         },
     )?;
     let found = found.map_err(|error| identify_error(py, error, Options::with_tol(tol)))?;
-    let mut best = arm.given.clone();
-    for one in &found.estimates {
-        one.fitted.parameter.set(&mut best, one.value).map_err(wrong)?;
-    }
+    let best = found.applied_to(&arm.given);
     Ok(Fit { found, cases, best, options })
 }
 
@@ -119,12 +117,17 @@ impl Fit {
     }
 
     /// Names of the load cases with measured numbers, and the fitted arm in them.
-    fn shapes(&self) -> Vec<(String, Solution)> {
-        let shapes = self.found.shapes.iter();
+    fn shapes(&self, py: Python<'_>) -> PyResult<Vec<(String, Py<PyAny>)>> {
         let name = |case: usize| self.cases.get(case).map(|case| case.name.clone()).unwrap_or_default();
-        shapes
-            .map(|(case, shape)| (name(*case), Solution::new(shape.clone(), Options::with_tol(self.options.tol))))
-            .collect()
+        let options = Options::with_tol(self.options.tol);
+        let one = |(case, shape): &(usize, Shape)| {
+            let shape = match shape {
+                Shape::Plane(shape) => Py::new(py, Solution::new((**shape).clone(), options))?.into_any(),
+                Shape::Space(shape) => Py::new(py, SpatialSolution::new((**shape).clone(), options))?.into_any(),
+            };
+            Ok((name(*case), shape))
+        };
+        self.found.shapes.iter().map(one).collect()
     }
 
     /// Shapes with markers, residuals and correlations.

@@ -2,7 +2,7 @@
 //!
 //! [`run`] solves the problems whose answers are known, measures orders of convergence, holds error estimates against true
 //! errors, adds up the loads of whole arms and of their parts, solves a grid of arms, remakes what the source says about
-//! its figure, compares the readings of the source, follows a flexible blade into fast streams, and puts the numbers of other
+//! its figure, compares the readings of the source, follows a flexible blade into fast streams, fits a built arm to measured poses, and puts the numbers of other
 //! programs beside its own. What comes out is a [`Report`]: sections of tables, each of which says where its reference
 //! numbers come from, and figures. A row of a table may be a check ([`Check`]); a report holds if all of them do.
 //!
@@ -19,6 +19,7 @@
 //! ```
 
 pub mod balance;
+mod built;
 mod claims;
 pub mod convergence;
 pub mod estimate;
@@ -57,6 +58,7 @@ pub fn run(scope: Scope, peers: &PeersFile, listener: &dyn Listener) -> Report {
         ("the source's claims", Box::new(claims::section)),
         ("readings of the source", Box::new(move || readings::section(scope))),
         ("a blade in fast streams", Box::new(move || reconfiguration::section(scope))),
+        ("a built arm", Box::new(built::section)),
         ("other programs", Box::new(|| peers::section(peers))),
     ];
     let of = parts.len();

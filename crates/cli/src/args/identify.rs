@@ -57,6 +57,9 @@ pub(crate) struct IdentifyArgs {
     /// Scale all standard deviations by a common factor, estimated from the residuals
     #[arg(long)]
     pub(crate) rescale: bool,
+    /// Measurements that are not fitted: the report says how far the fitted arm is from them. A CSV file as DATA
+    #[arg(long, value_name = "FILE")]
+    pub(crate) predict: Option<PathBuf>,
     /// Skip cross-validation, which fits again without each load case
     #[arg(long)]
     pub(crate) no_cross_validation: bool,
@@ -64,7 +67,7 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "TOL", default_value = "1e-8", allow_hyphen_values = true)]
     pub(crate) tol: f64,
     /// Only print an empty table to fill in
-    #[arg(long, conflicts_with_all = ["data", "fit", "prior", "plot", "fitted", "format", "json"])]
+    #[arg(long, conflicts_with_all = ["data", "fit", "prior", "predict", "plot", "fitted", "format", "json"])]
     pub(crate) template: bool,
     /// text: a report; json: all results; csv: one row per measured value
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]

@@ -1,15 +1,16 @@
 //! `hydrostat identify`: parameters from measured shapes.
 
-use hydrostat::{Arm, Parameter, SensitivityError};
+use hydrostat::{Arm, SensitivityError};
 use hydrostat_figures::fit_figure;
 use hydrostat_files::{
     Deviations, IdentificationDocument, arm_to_toml, fitted, measurements_template, number, parse_measurements,
     read_measurements, residuals_csv,
 };
-use hydrostat_identify::{Case, Fit, FitOptions, fit};
+use hydrostat_identify::{Case, Fit, FitOptions, Prediction, Unknown, fit, predict};
 use std::fmt::Write as _;
 
 use super::NoAnswer;
+use super::misses::{misses_table, predicted_cases};
 use super::table::{counted, table};
 use crate::args::{Format, IdentifyArgs};
 use crate::input;
@@ -27,14 +28,18 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         return Err(WrongRequest::InputTwice(["ARM", "DATA"]).into());
     }
     let file = request::overridden(&args.arm)?;
-    let arm = request::arm_of(&file, "`hydrostat identify`")?;
+    let arm = request::arm_anywhere(&file)?;
     // Told before anything is measured.
     if let Some(cable) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
         return Err(SensitivityError::<hydrostat::SolveError>::Friction(cable).into());
     }
     let outputs =
         [("-o", args.output.as_deref()), ("--fitted", args.fitted.as_deref()), ("--plot", args.plot.as_deref())];
-    let inputs = [request::arm_input(&args.arm.file), args.data.as_deref().map(|data| ("DATA", data))];
+    let inputs = [
+        request::arm_input(&args.arm.file),
+        args.data.as_deref().map(|data| ("DATA", data)),
+        args.predict.as_deref().map(|data| ("--predict", data)),
+    ];
     request::check_outputs(&inputs, &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
     let Some(data) = args.data.as_ref().filter(|_| !args.template) else {
@@ -45,11 +50,15 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         deviations.add(text).map_err(anyhow::Error::msg)?;
     }
     let wanted = fitted(&arm, &args.fit, &args.prior)?;
-    let parameters: Vec<Parameter> = wanted.iter().map(|one| one.parameter).collect();
+    let parameters: Vec<_> = wanted.iter().map(|one| one.parameter).collect();
     let cases = if input::is_standard(data) {
         parse_measurements(&input::text()?, input::NAME, &file, &deviations, &parameters)?
     } else {
         read_measurements(data, &file, &deviations, &parameters)?
+    };
+    let others = match &args.predict {
+        Some(path) => read_measurements(path, &file, &deviations, &parameters)?,
+        None => Vec::new(),
     };
     if cases.iter().all(|case| case.measurements.is_empty()) {
         return Err(WrongRequest::NothingMeasured(data.clone()).into());
@@ -68,10 +77,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     })?;
     drop(progress);
 
-    let mut best = arm.clone();
-    for one in &found.estimates {
-        one.fitted.parameter.set(&mut best, one.value)?;
-    }
+    let predicted = predict(&found, &others, &options)?;
+    let best = found.applied_to(&arm);
     if let Some(path) = &args.fitted {
         output::put(Some(path), &arm_to_toml(&best))?;
     }
@@ -81,8 +88,11 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     }
     let format = if args.json { Format::Json } else { args.format };
     let text = match format {
-        Format::Text => report(&arm, &cases, &found),
-        Format::Json => output::line(IdentificationDocument::new(&best, &cases, &found, options.loss).to_json()),
+        Format::Text => report(&arm, &cases, &found, (&others, &predicted)),
+        Format::Json => {
+            let document = IdentificationDocument::new(&best, &cases, &found, options.loss);
+            output::line(document.with_predictions(&others, &predicted).to_json())
+        }
         Format::Csv => residuals_csv(&cases, &found),
     };
     output::put(args.output.as_deref(), &text)?;
@@ -101,11 +111,11 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
 }
 
 /// A parameter's value as a user reads it: angles in degrees.
-fn shown(parameter: Parameter, value: f64) -> String {
+fn shown(parameter: Unknown, value: f64) -> String {
     number(if parameter.unit() == "rad" { value.to_degrees() } else { value })
 }
 
-fn named(parameter: Parameter) -> String {
+fn named(parameter: Unknown) -> String {
     match parameter.unit() {
         "" => parameter.to_string(),
         "rad" => format!("{parameter} (deg)"),
@@ -113,7 +123,7 @@ fn named(parameter: Parameter) -> String {
     }
 }
 
-fn report(arm: &Arm, cases: &[Case], found: &Fit) -> String {
+fn report(arm: &Arm, cases: &[Case], found: &Fit, (others, predicted): (&[Case], &[Prediction])) -> String {
     let count = found.residuals.len();
     let mut out = format!(
         "{}: {}, {}, {}\n\n",
@@ -140,6 +150,10 @@ fn report(arm: &Arm, cases: &[Case], found: &Fit) -> String {
     }
     out.push_str(&together(found));
     out.push_str(&predictions(cases, found));
+    out.push_str(&predicted_cases(others, predicted));
+    if arm.space.is_some() || !predicted.is_empty() {
+        out.push_str(&misses_table(found, predicted));
+    }
     out.push_str(&far_out(cases, found));
     for one in &found.no_answer {
         let at: Vec<String> = found

@@ -107,8 +107,16 @@ fn an_arm_that_does_not_turn_its_tip_so_far_left_an_empty_directory() {
 fn shipped_arms_are_listed_printed_and_valid() {
     let list = solved(&["arms"]).out;
     let names: Vec<&str> = list.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
-    let all =
-        ["paper", "paper-statements", "silicone", "multi-bending", "octopus", "octopus-spatial", "silicone-spatial"];
+    let all = [
+        "paper",
+        "paper-statements",
+        "silicone",
+        "multi-bending",
+        "octopus",
+        "octopus-spatial",
+        "silicone-spatial",
+        "tentacle",
+    ];
     assert_eq!(names, all);
     let directory = directory();
     for name in names {

@@ -155,15 +155,20 @@ fn words(command: &str) -> Vec<&str> {
 fn the_example_of_the_documentation_prints_what_stands_there() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let page = std::fs::read_to_string(root.join("docs/identification.md")).unwrap();
-    let example = page.split_once("## An example").unwrap().1.split_once("\n## ").unwrap().0;
-    let commands = example.lines().filter_map(|line| line.strip_prefix("    hydrostat "));
-    let blocks = example.split("```text\n").skip(1).map(|rest| rest.split_once("```").unwrap().0);
+    let section = |head: &str| page.split_once(head).unwrap().1.split_once("\n## ").unwrap().0;
     let mut compared = 0;
-    for (command, block) in commands.zip(blocks) {
-        let run = hydrostat_in(&root, &words(command));
-        assert_eq!(run.code, 0, "{command}: {}", run.err);
-        assert!(run.out.contains(block), "{command}:\n{}\nfor\n{block}", run.out);
-        compared += 1;
+    for (head, blocks_a_command) in [("## An example", 1), ("## A built arm in space", 2)] {
+        let example = section(head);
+        let commands = example.lines().filter_map(|line| line.strip_prefix("    hydrostat "));
+        let mut blocks = example.split("```text\n").skip(1).map(|rest| rest.split_once("```").unwrap().0);
+        for command in commands {
+            let run = hydrostat_in(&root, &words(command));
+            assert_eq!(run.code, 0, "{command}: {}", run.err);
+            for block in blocks.by_ref().take(blocks_a_command) {
+                assert!(run.out.contains(block), "{command}:\n{}\nfor\n{block}", run.out);
+                compared += 1;
+            }
+        }
     }
-    assert_eq!(compared, 2);
+    assert_eq!(compared, 4);
 }

@@ -28,6 +28,8 @@ pub enum Parameter {
     CableAngle(usize, Point),
     /// Radius of the arm, m: the same.
     Radius(Point),
+    /// Twist or bending of the unloaded arm, 1/m: the same.
+    Reference(Curvature, Point),
     /// Length of the arm, m, where no profile is a table: its points are at places in m.
     Length,
     /// Speed of the stream, m/s.
@@ -73,6 +75,48 @@ pub enum Parameter {
     DragNormal,
     /// C_t of quadratic drag.
     DragTangential,
+}
+
+/// A curvature of the unloaded arm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Curvature {
+    /// Twist tau_o about a, of an arm in space.
+    Tau,
+    /// Bending kappa_o about b, of an arm in space.
+    Kappa,
+    /// Bending mu_o about c: in the plane of an arm that has one.
+    Mu,
+}
+
+impl Curvature {
+    pub(crate) const ALL: [Self; 3] = [Self::Tau, Self::Kappa, Self::Mu];
+
+    fn key(self) -> &'static str {
+        match self {
+            Self::Tau => "reference.tau",
+            Self::Kappa => "reference.kappa",
+            Self::Mu => "reference.mu",
+        }
+    }
+
+    /// Its profile; none of an arm in the plane that is not bent in it.
+    pub(crate) fn of(self, arm: &Arm) -> Option<&Profile> {
+        match self {
+            Self::Mu => Some(&arm.reference.mu),
+            Self::Tau => arm.space.as_ref().map(|space| &space.tau),
+            Self::Kappa => arm.space.as_ref().map(|space| &space.kappa),
+        }
+    }
+
+    fn set(self, arm: &mut Arm, profile: Profile) {
+        match (self, &mut arm.space) {
+            (Self::Mu, _) => arm.reference.mu = profile,
+            (Self::Tau, Some(space)) => space.tau = profile,
+            (Self::Kappa, Some(space)) => space.kappa = profile,
+            // That the arm has it was checked.
+            (_, None) => {}
+        }
+    }
 }
 
 /// A name that no parameter has.
@@ -178,7 +222,10 @@ pub fn names() -> Vec<String> {
     let ends = [Point::Base, Point::Tip];
     let geometry = ends.map(|end| Parameter::Offset(0, end)).into_iter().chain(ends.map(Parameter::Radius));
     let angle = [Parameter::CableAngle(0, Point::Whole)];
-    of_cables.chain(PLAIN).chain(geometry).chain(IN_SPACE).chain(angle).map(|parameter| parameter.to_string()).collect()
+    let curvatures = Curvature::ALL.map(|curvature| Parameter::Reference(curvature, Point::Whole));
+    let in_space = IN_SPACE.into_iter().chain(angle);
+    let all = of_cables.chain(PLAIN).chain(geometry).chain(curvatures).chain(in_space);
+    all.map(|parameter| parameter.to_string()).collect()
 }
 
 /// What an arm in space has beside an arm in the plane, but the cables' angles.
@@ -235,6 +282,7 @@ impl fmt::Display for Parameter {
             Self::Offset(c, point) => write!(f, "cable[{c}].offset{point}"),
             Self::CableAngle(c, point) => write!(f, "cable[{c}].angle{point}"),
             Self::Radius(point) => write!(f, "arm.radius{point}"),
+            Self::Reference(curvature, point) => write!(f, "{}{point}", curvature.key()),
             Self::FlowSpeed => f.write_str("flow.speed"),
             Self::FlowDirection => f.write_str("flow.direction"),
             Self::StreamAlong(k) => write!(f, "flow.direction[{k}]"),
@@ -283,6 +331,13 @@ impl FromStr for Parameter {
         if let Some(point) = name.strip_prefix("arm.radius").and_then(Point::read) {
             return Ok(Self::Radius(point));
         }
+        let read = |curvature: Curvature| {
+            let point = name.strip_prefix(curvature.key()).and_then(Point::read)?;
+            Some(Self::Reference(curvature, point))
+        };
+        if let Some(found) = Curvature::ALL.into_iter().find_map(read) {
+            return Ok(found);
+        }
         if name == "tip.moment[2]" {
             return Ok(Self::TipMoment);
         }
@@ -303,6 +358,7 @@ impl Parameter {
             Self::Stroke(_) | Self::Offset(..) | Self::Radius(_) | Self::Length => "m",
             Self::TipMoment | Self::TipMomentAbout(_) => "N m",
             Self::Young | Self::Coefficient(_) => "Pa",
+            Self::Reference(..) => "1/m",
             Self::Poisson
             | Self::ShearFactor
             | Self::DragNormal
@@ -346,6 +402,7 @@ impl Parameter {
             match self {
                 Self::Offset(c, _) => arm.cables[c].offset = moved,
                 Self::CableAngle(c, _) => arm.cables[c].angle = moved,
+                Self::Reference(curvature, _) => curvature.set(arm, moved),
                 _ => arm.radius = moved,
             }
             return Ok(());
@@ -364,6 +421,10 @@ impl Parameter {
                 None => Err(Unfit::Cable { key: self.to_string(), cables: arm.cables.len() }),
             },
             Self::Radius(point) => Ok(Some((&arm.radius, point))),
+            Self::Reference(curvature, point) => match curvature.of(arm) {
+                Some(profile) => Ok(Some((profile, point))),
+                None => Err(self.in_plane()),
+            },
             _ => Ok(None),
         }
     }
@@ -372,6 +433,7 @@ impl Parameter {
         let of = |point: Point| match self {
             Self::Offset(c, _) => Self::Offset(c, point).to_string(),
             Self::CableAngle(c, _) => Self::CableAngle(c, point).to_string(),
+            Self::Reference(curvature, _) => Self::Reference(curvature, point).to_string(),
             _ => Self::Radius(point).to_string(),
         };
         let names: Vec<String> = profile.points().into_iter().map(of).collect();
@@ -417,7 +479,7 @@ impl Parameter {
                 }
             }
             // Not by itself: the slopes of a table go with it.
-            Self::Offset(..) | Self::CableAngle(..) | Self::Radius(_) => {
+            Self::Offset(..) | Self::CableAngle(..) | Self::Radius(_) | Self::Reference(..) => {
                 return Err(Unfit::Point { key: self.to_string(), expected: String::new() });
             }
             Self::FlowSpeed => &mut arm.flow.speed,
@@ -513,6 +575,7 @@ impl Parameter {
             Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) => force,
             Self::Stroke(_) => arm.length,
             Self::Offset(..) | Self::Radius(_) => 1e-3 * arm.length,
+            Self::Reference(..) => 1.0 / arm.length,
             Self::FlowSpeed => 0.1,
             Self::FlowDensity | Self::Density => 1000.0,
             Self::GravityAcceleration => 10.0,
@@ -535,6 +598,7 @@ impl Parameter {
             Self::Offset(..)
                 | Self::CableAngle(..)
                 | Self::Radius(_)
+                | Self::Reference(..)
                 | Self::Length
                 | Self::FlowDensity
                 | Self::GravityAcceleration
@@ -584,6 +648,9 @@ mod tests {
             Parameter::Offset(0, Point::Tip),
             Parameter::Radius(Point::Base),
             Parameter::Radius(Point::Knot(12)),
+            Parameter::Reference(Curvature::Mu, Point::Whole),
+            Parameter::Reference(Curvature::Kappa, Point::Tip),
+            Parameter::Reference(Curvature::Tau, Point::Knot(2)),
         ]) {
             assert_eq!(parameter.to_string().parse(), Ok(parameter));
         }
@@ -610,7 +677,8 @@ mod tests {
         given.material = Material::Coefficients { c1: 1e5.into(), c2: 3e4.into(), c3: Profile::linear(2.0, 0.1) };
         let others = [Parameter::Tension(0), Parameter::Stroke(0), Parameter::Offset(0, Point::Whole)];
         let radii = [Point::Base, Point::Tip].map(Parameter::Radius);
-        for (k, parameter) in PLAIN.into_iter().chain(others).chain(radii).enumerate() {
+        let bent = [Parameter::Reference(Curvature::Mu, Point::Whole)];
+        for (k, parameter) in PLAIN.into_iter().chain(others).chain(radii).chain(bent).enumerate() {
             let arm = if matches!(parameter, Parameter::Coefficient(_)) { &mut given } else { &mut arm };
             if parameter == Parameter::Coefficient(2) {
                 assert!(matches!(parameter.of(arm), Err(Unfit::Profile { .. })));
@@ -619,13 +687,15 @@ mod tests {
             parameter.set(arm, k as f64).unwrap();
             assert_eq!(parameter.of(arm), Ok(k as f64));
         }
-        for parameter in IN_SPACE.into_iter().chain([Parameter::CableAngle(0, Point::Whole)]) {
+        let curvatures = [Curvature::Tau, Curvature::Kappa].map(|own| Parameter::Reference(own, Point::Whole));
+        let in_space = || IN_SPACE.into_iter().chain(curvatures).chain([Parameter::CableAngle(0, Point::Whole)]);
+        for parameter in in_space() {
             assert!(matches!(parameter.of(&arm), Err(Unfit::InPlane { .. })), "{parameter}");
         }
         let mut there = given.clone();
         there.cables.push(crate::Cable::new("left", 0.001));
         there.space = Some(crate::Space { c4: Some(2.0.into()), ..crate::Space::default() });
-        for (k, parameter) in IN_SPACE.into_iter().chain([Parameter::CableAngle(0, Point::Whole)]).enumerate() {
+        for (k, parameter) in in_space().enumerate() {
             parameter.set(&mut there, k as f64).unwrap();
             assert_eq!(parameter.of(&there), Ok(k as f64));
         }

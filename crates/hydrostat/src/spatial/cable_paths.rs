@@ -111,7 +111,8 @@ impl Equations {
 
     /// How the stroke of cable `c` (of its path, or as it is commanded) follows `way` at a fixed solution, over L.
     pub(super) fn stroke_by(&self, c: usize, commanded: bool, way: Way, at: StageData<'_>) -> f64 {
-        let geometric = matches!(way, Way::Of(Parameter::Offset(..) | Parameter::CableAngle(..)));
+        let geometric =
+            matches!(way, Way::Of(Parameter::Offset(..) | Parameter::CableAngle(..) | Parameter::Reference(..)));
         let pulled = commanded && matches!(way, Way::Of(Parameter::Tension(k)) if k == c);
         if !geometric && !pulled {
             return 0.0;

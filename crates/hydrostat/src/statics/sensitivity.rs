@@ -24,7 +24,7 @@ pub(crate) use self::error::unsettled;
 use self::quantities::POSE;
 pub(crate) use self::quantities::Quantity;
 use crate::rod::arm::Arm;
-use crate::rod::parameter::{IN_SPACE, PLAIN, Parameter};
+use crate::rod::parameter::{Curvature, IN_SPACE, PLAIN, Parameter};
 use crate::rod::readings::Support;
 use crate::statics::configuration::Wrench;
 use crate::statics::solve::Solver;
@@ -113,7 +113,10 @@ impl Parameter {
         let angles =
             angles.flat_map(|(c, cable)| cable.angle.points().into_iter().map(move |p| Self::CableAngle(c, p)));
         let radii = arm.radius.points().into_iter().map(Self::Radius);
-        cables.chain(plain).chain(offsets).chain(angles).chain(radii).collect()
+        let curvatures = Curvature::ALL.into_iter().filter_map(|own| Some((own, own.of(arm)?)));
+        let curvatures =
+            curvatures.flat_map(|(own, profile)| profile.points().into_iter().map(move |p| Self::Reference(own, p)));
+        cables.chain(plain).chain(offsets).chain(angles).chain(radii).chain(curvatures).collect()
     }
 }
 

@@ -301,7 +301,7 @@ impl Equations {
 
     /// How the stroke of cable `c` (of its path, or as it is commanded) follows `way` at a fixed solution, over L.
     pub(crate) fn stroke_by(&self, c: usize, commanded: bool, way: Way, at: StationData<'_>) -> f64 {
-        let geometric = matches!(way, Way::Of(Parameter::Offset(..) | Parameter::Length));
+        let geometric = matches!(way, Way::Of(Parameter::Offset(..) | Parameter::Length | Parameter::Reference(..)));
         let stretched = commanded && self.arm.cables[c].stiffness.is_some();
         let pulled = stretched && matches!(way, Way::Of(Parameter::Tension(k)) if k == c);
         if !geometric && !pulled {
