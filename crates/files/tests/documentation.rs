@@ -151,7 +151,7 @@ fn its_keys_are_those_of_the_documents() {
     let (arm, varied) = pulled();
     let path = arm.path(varied.parameter, varied.range, &PathOptions::default()).unwrap();
     let all = arm.equilibria(1e-6).unwrap();
-    let searches = [(0.0, Ok(all.clone())), (0.01, Err("none".to_owned()))];
+    let searches = [(0.0, Ok((&all).into())), (0.01, Err("none".to_owned()))];
     let far = Target::tip(0.3, 0.0);
     let middle = Target { s: Some(0.1), ..far };
     let found = arm.reach(&[middle], &ReachOptions { max_tension: Some(0.1), ..ReachOptions::default() }).unwrap();

@@ -184,3 +184,26 @@ fn an_interrupted_run_keeps_its_rows() {
     let after = read(here, "out.csv");
     assert!(after.starts_with(&before) && numbers(&after).len() == rows + 5, "{rows}");
 }
+
+/// A follower load makes a rod flutter at 20.05 E I/L^2: the rates over the load show it.
+#[test]
+fn modes_over_a_load_say_where_an_arm_flutters() {
+    let directory = tempfile::tempdir().unwrap();
+    let rod = "[arm]\nlength = 1\nradius = 0.001\n[material]\nyoung = 1e9\n[model]\nvolume = \"none\"\n[flow]\ndensity = 0\n";
+    std::fs::write(directory.path().join("rod.toml"), rod).unwrap();
+    // E I = pi/4 1e-3 N m2.
+    let stiffness = std::f64::consts::PI / 4.0 * 1e-3;
+    let range = format!("tip.follower[0]={}:{}:2", -19.9 * stiffness, -20.2 * stiffness);
+    let args = ["modes", "rod.toml", "--over", &range, "--plot", "locus.svg", "--svg-text"];
+    let document = json(&hydrostat_in(directory.path(), &[&args[..], &["--format", "json"]].concat()).out);
+    let values = document["values"].as_array().unwrap();
+    assert_eq!((values[0]["stable"].as_bool(), values[1]["stable"].as_bool()), (Some(true), Some(false)));
+    assert!(values[1]["modes"].as_array().unwrap().iter().any(|mode| mode["kind"] == "flutter"));
+    let svg = std::fs::read_to_string(directory.path().join("locus.svg")).unwrap();
+    assert!(svg.contains("angular frequency (rad/s)"));
+    let text = hydrostat_in(directory.path(), &args).out;
+    assert!(text.contains("flutter") && text.contains("2 values of tip.follower[0]"), "{text}");
+    let table = hydrostat_in(directory.path(), &[&args[..], &["--format", "csv", "--count", "3"]].concat()).out;
+    assert!(table.starts_with("tip_follower_0_N,number,growth_rate_1_s,"), "{table}");
+    assert_eq!(table.lines().count(), 7);
+}

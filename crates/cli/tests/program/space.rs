@@ -81,9 +81,7 @@ fn a_fold_in_space_is_a_verdict_with_the_last_good_shape() {
 
 #[test]
 fn what_is_for_arms_in_the_plane_says_so() {
-    for args in
-        [&["equilibria", "silicone-spatial"][..], &["modes", "silicone-spatial"], &["figures", "silicone-spatial"]]
-    {
+    for args in [&["modes", "silicone-spatial"][..], &["figures", "silicone-spatial"]] {
         let words = refused(args);
         let start = format!("error: `hydrostat {}` is for arms in the plane", args[0]);
         assert!(words.starts_with(&start) && words.contains("spatial"), "{args:?}: {words}");
@@ -168,4 +166,26 @@ fn columns_of(table: &str) -> (Vec<String>, usize) {
     let mut lines = table.lines();
     let names = lines.next().unwrap().split(',').map(str::to_owned).collect();
     (names, lines.count())
+}
+
+#[test]
+fn equilibria_in_space_are_listed_and_drawn() {
+    let directory = tempfile::tempdir().unwrap();
+    let arm = ["equilibria", "silicone", "--set", "arm.space=spatial", "--set", "flow.direction=175", "--flow-speed"];
+    let json_of = |more: &[&str]| {
+        json(&hydrostat_in(directory.path(), &[&arm[..], more, &["--format", "json", "--plot", "all.svg", "--svg-text"]].concat()).out)
+    };
+    let all = json_of(&["0.2"]);
+    assert_eq!((all["complete"].as_bool(), all["misses_some"].as_bool()), (Some(false), Some(false)));
+    assert_eq!(all["sum_of_signs"], 1);
+    assert_eq!(all["equilibria"].as_array().unwrap().len(), 5);
+    assert!(all["equilibria"][0]["tip"]["z"].is_number());
+    let svg = std::fs::read_to_string(directory.path().join("all.svg")).unwrap();
+    assert!(svg.contains("unstable"));
+    let text = solved(&[&arm[..], &["0.05"]].concat()).out;
+    assert!(text.contains("there may be others"), "{text}");
+    let over = [&arm[..], &["0.05", "--over", "cable[0].tension=0:0.01:2", "--format", "csv"]].concat();
+    let table = solved(&over).out;
+    assert!(table.starts_with("cable_0_tension_N,complete,number,tip_x_m,tip_y_m,tip_z_m,"), "{table}");
+    assert!(table.lines().count() >= 3);
 }
