@@ -1,10 +1,11 @@
 //! The arm in motion in space against closed forms, the motion in the plane, the statics and its own energy.
 
-mod common;
+#[path = "common/space.rs"]
+mod space;
 
 use std::f64::consts::PI;
 
-use common::space::{apart, rotation, silicone, solved, three_cables, tip, turned, turned_arm};
+use space::{apart, rotation, silicone, solved, three_cables, tip, turned, turned_arm};
 use hydrostat::{
     Arm, Course, FlowLaw, Gravity, Inputs, Instant, MotionError, MotionOptions, Simulation, Space, SpatialInstant,
     SpatialSimulation, Volume, Works,
