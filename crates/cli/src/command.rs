@@ -13,6 +13,8 @@ mod limits;
 pub(crate) mod main_job;
 pub(crate) mod modes;
 mod motion_output;
+mod motion_text;
+mod moving;
 pub(crate) mod path;
 pub(crate) mod plot;
 pub(crate) mod reach;

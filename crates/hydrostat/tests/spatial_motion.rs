@@ -5,11 +5,11 @@ mod space;
 
 use std::f64::consts::PI;
 
-use space::{apart, rotation, silicone, solved, three_cables, tip, turned, turned_arm};
 use hydrostat::{
-    Arm, Course, FlowLaw, Gravity, Inputs, Instant, MotionError, MotionOptions, Simulation, Space, SpatialInstant,
+    Arm, Course, FlowLaw, Gravity, Inputs, Instant, MotionEventKind, MotionOptions, Simulation, Space, SpatialInstant,
     SpatialSimulation, Volume, Works,
 };
+use space::{apart, rotation, silicone, solved, three_cables, tip, turned, turned_arm};
 
 /// First root of cos b cosh b = -1.
 const B: f64 = 1.875_104_068_711_961;
@@ -227,6 +227,11 @@ fn motion_ends_in_the_equilibrium() {
     let still = solved(&arm, 1e-9);
     let loads = inputs(&[("cable[0].tension", Course::step(0.2, arm.cables[0].tension, 0.0))]);
     let rows = motion(&arm, loads, options(1e-5), 8.0, 1.0);
+    for at in &rows {
+        let [a, b, c] =
+            [(still.tip().a, at.tip.a), (still.tip().b, at.tip.b), (still.tip().c, at.tip.c)].map(|(x, y)| apart(x, y));
+        println!("{} {:.2e} {a:.2e} {b:.2e} {c:.2e}", at.time, apart(tip(&still), place(at)));
+    }
     let off = apart(tip(&still), place(&rows[8])) / arm.length;
     assert!(off < 2e-5, "{off:.1e}");
     assert!(apart(still.tip().b, rows[8].tip.b) < 1e-4);
@@ -239,13 +244,35 @@ fn motion_ends_in_the_equilibrium() {
     assert!(apart(tip(&still), place(&rows[2])) < 1e-6 * arm.length);
 }
 
+/// Reeled in out of the plane in 0.2 s and held, then let out until the cable hangs slack.
 #[test]
-fn what_space_does_not_do_is_refused_by_name() {
+fn commanded_strokes_are_met_and_end_in_their_equilibrium() {
     let mut arm = three_cables();
-    arm.cables[1].stroke = Some(0.001);
-    let refused = SpatialSimulation::new(&arm, Inputs::default(), MotionOptions::default());
-    assert!(matches!(refused, Err(MotionError::Unsupported { key, .. }) if key == "cable[1].stroke"));
-    arm.cables[1].stroke = None;
-    let refused = Simulation::new(&arm, Inputs::default(), MotionOptions::default());
+    arm.dynamics.relaxation_time = 2.7e-3;
+    arm.cables.iter_mut().for_each(|cable| cable.tension = 0.0);
+    arm.cables[1].stroke = Some(0.0);
+    let reel = Course::Table(vec![(0.0, 0.0), (0.2, 0.011), (4.0, 0.011), (4.2, -0.02)]);
+    let loads = inputs(&[("cable[1].stroke", reel.clone())]);
+    let mut simulation = SpatialSimulation::new(&arm, loads, options(1e-4)).unwrap();
+    for k in 1..=8 {
+        let at = simulation.advance_to(0.5 * f64::from(k)).unwrap();
+        let (command, _) = reel.before(at.time);
+        assert!((at.cables[1].stroke - command).abs() < 2e-4 * arm.length, "{at:?}");
+        assert!(at.cables[1].tension >= 0.0);
+    }
+    let end = simulation.now();
+    arm.cables[1].stroke = Some(0.011);
+    let still = solved(&arm, 1e-8);
+    let off = apart(tip(&still), place(&end)) / arm.length;
+    assert!(off < 2e-4, "{off:.1e}");
+    assert!((end.cables[1].tension / still.cables[1].tension - 1.0).abs() < 1e-2, "{end:?}");
+    let slack = simulation.advance_to(4.4).unwrap();
+    assert_eq!(slack.cables[1].tension, 0.0);
+    assert!(simulation.events().iter().any(|event| event.kind == MotionEventKind::Slack(1)));
+}
+
+#[test]
+fn arms_in_space_are_refused_in_the_plane_by_name() {
+    let refused = Simulation::new(&three_cables(), Inputs::default(), MotionOptions::default());
     assert!(refused.is_err_and(|error| error.to_string().contains("SpatialSimulation")));
 }

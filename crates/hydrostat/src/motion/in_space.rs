@@ -5,5 +5,6 @@ mod moves;
 mod powers;
 mod simulation;
 mod start;
+mod strokes;
 
 pub use self::simulation::{SpatialInstant, SpatialMotionStation, SpatialSimulation};

@@ -503,11 +503,22 @@ pub(crate) fn strain_by_state<R: Real>(
 /// Forcing of z' with the strains, at fixed z and beta'.
 #[inline(always)]
 pub(crate) fn by_strain_change<R: Real>(at: &AtStation<R>, q: &[R; 4], change: &[R; STRAINS]) -> [R; N] {
+    strained(&at.directors, &at.contact, &at.load.by_stretch, q, change)
+}
+
+/// The same, given the section's directors, n_f and m_f in them, and how the load follows nu, eta, zeta.
+#[inline(always)]
+pub(crate) fn strained<R: Real>(
+    directors: &Directors<R>,
+    contact: &[R; STRAINS],
+    by: &[Vector<R>; 3],
+    q: &[R; 4],
+    change: &[R; STRAINS],
+) -> [R; N] {
     let v = [change[0], change[1], change[2]];
     let dq = spin(q, &[change[3], change[4], change[5]]);
-    let n = [at.contact[0], at.contact[1], at.contact[2]];
-    let dm = at.directors.to_space(&cross(&v, &n));
-    let by = &at.load.by_stretch;
+    let n = [contact[0], contact[1], contact[2]];
+    let dm = directors.to_space(&cross(&v, &n));
     let dn: Vector<R> = each(|k| by[0][k] * v[0] + by[1][k] * v[1] + by[2][k] * v[2]);
     [dq[0], dq[1], dq[2], dq[3], -dn[0], -dn[1], -dn[2], -dm[0], -dm[1], -dm[2]]
 }

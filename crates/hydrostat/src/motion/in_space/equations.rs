@@ -15,6 +15,7 @@ use hydrostat_bvp::{
 
 use crate::motion::history::{History, Layout};
 use crate::numerics::dispatch::widest;
+use crate::rod::area_law::SectionStretch;
 use crate::rod::arm::Arm;
 use crate::rod::inertia::Masses;
 use crate::rod::profile::Profile;
@@ -26,8 +27,7 @@ use crate::spatial::inertia::{Turn, Turning, inertia, turning};
 use crate::spatial::loads::{Load, load};
 use crate::spatial::rotation::{Directors, Vector, cross, relative, turn};
 use crate::spatial::section::{CableAt, Stiffness};
-use crate::spatial::section_solve::Solved;
-use crate::statics::equations::SectionFailure;
+use crate::statics::equations::{SectionFailure, StrokeControl};
 
 /// States: those of the statics, and x, y, z.
 pub(super) const S: usize = N + 3;
@@ -58,6 +58,8 @@ pub(in crate::motion) struct SpatialMoving {
     end_rates: Vec<[Lanes; L]>,
     end_places: Vec<EndPlace>,
     closed: bool,
+    /// The cables whose stroke is commanded.
+    pub(super) held: Option<StrokeControl>,
     pub(super) nodes: usize,
     /// Sizes of the states.
     pub(super) scales: [f64; S],
@@ -77,6 +79,7 @@ impl SpatialMoving {
             from: Vec::new(),
             end_rates: Vec::new(),
             end_places: Vec::new(),
+            held: None,
             nodes: 0,
             scales: [1.0; S],
             closed: arm.readings.volume != Volume::None && !arm.cables.is_empty(),
@@ -155,12 +158,13 @@ impl SpatialMoving {
 
     /// What acts along the arm at a station, inertia among it, as a load whose force is -n_f', and its derivative by r.
     #[inline(always)]
-    fn loads(
+    pub(super) fn loads(
         &self,
         block: usize,
         place: &Vector<Lanes>,
         directors: &Directors<Lanes>,
-        solved: &Solved<Lanes>,
+        strain: &[Lanes; L],
+        swelling: &SectionStretch<Lanes>,
     ) -> (Load<Lanes>, [Vector<Lanes>; 3]) {
         let statics = &self.statics;
         let cv = Lanes::of(self.cv);
@@ -168,7 +172,6 @@ impl SpatialMoving {
         let length = Lanes::of(statics.units.length);
         let wet = statics.arm().flow.density != 0.0;
         let stream = wet.then(|| each(|k| Lanes::of(statics.water.stream[k]) - length * moving[k][0]));
-        let (strain, swelling) = (&solved.strain, &solved.balance.swelling);
         let mut out = load(&statics.water, &statics.places[block].body, stream, directors, strain, swelling);
         let acceleration: Vector<Lanes> = each(|k| moving[k][1]);
         let inert = inertia(
@@ -193,7 +196,7 @@ impl SpatialMoving {
 
     /// d/dt (J omega) at a station.
     #[inline(always)]
-    fn turning(&self, block: usize, q: &[Lanes; 4], nu: Lanes) -> Turning<Lanes> {
+    pub(super) fn turning(&self, block: usize, q: &[Lanes; 4], nu: Lanes) -> Turning<Lanes> {
         let cv = Lanes::of(self.cv);
         let c = relative(&self.from[block], q);
         let rates: [[Lanes; 2]; 3] = each(|k| self.rates_of(block, k, c[k]));
@@ -204,7 +207,7 @@ impl SpatialMoving {
 
     /// A station with the states themselves: those of the statics, and r.
     #[inline(always)]
-    fn unscaled(&self, station: &Station<S, L>) -> (Station<N, L>, Vector<Lanes>) {
+    pub(super) fn unscaled(&self, station: &Station<S, L>) -> (Station<N, L>, Vector<Lanes>) {
         let at = |a: usize| Lanes::of(self.scales[a]) * station.z[a];
         let own = Station { z: each(at), inner: station.inner, closure_slope: station.closure_slope };
         (own, each(|k| at(X + k)))
@@ -228,7 +231,7 @@ impl SpatialMoving {
         if !solved.is_fine(statics.inner_tolerance) {
             return Err(failure(place.s, &solved, statics.inner_tolerance));
         }
-        let (load, by_place) = self.loads(block, &r, &directors, &solved);
+        let (load, by_place) = self.loads(block, &r, &directors, &solved.strain, &solved.balance.swelling);
         let at = AtStation { directors, contact, solved, load, couple: place.body.couple };
         let q: [Lanes; 4] = each(|k| station.z[k]);
         let turns = turn(&q);

@@ -4,10 +4,11 @@ use hydrostat_bvp::{Collocation, Correction, Gauss, LANES, Lanes, Real, each};
 
 use super::equations::{COORDINATES, S, Shape, SpatialMoving, X};
 use super::start::at_rest;
+use super::strokes::SpatialBorder;
 use crate::motion::error::MotionError;
 use crate::motion::history::{History, Layout, Snapshot};
 use crate::motion::inputs::Inputs;
-use crate::motion::settling::{Moves, Settling};
+use crate::motion::settling::{Moves, Settling, Unsolved};
 use crate::motion::works::{Carried, WORKS};
 use crate::rod::arm::Arm;
 use crate::spatial::equations::{FORCE, L, M};
@@ -19,7 +20,7 @@ use crate::statics::dimensions::Units;
 pub(super) type Spatial = Settling<SpatialMoving, S, L>;
 
 impl Moves<S, L> for SpatialMoving {
-    type Border = ();
+    type Border = SpatialBorder;
 
     fn start(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -> Result<Spatial, MotionError> {
         at_rest(arm, elements, tol, time)
@@ -97,7 +98,12 @@ impl Moves<S, L> for SpatialMoving {
         let length = self.statics.units.length;
         let acceleration = inputs.stream_acceleration(arm, time).map(|v| v / length);
         self.stream_acceleration = if arm.dynamics.inertia { acceleration } else { [0.0; 3] };
+        // Tensions of held cables follow from their strokes.
+        let tensions = self.statics.tensions.clone();
         self.statics.set_loads(arm);
+        for cable in self.held() {
+            self.statics.set_tension(cable, tensions[cable]);
+        }
     }
 
     fn start_step(&mut self, now: &Snapshot) {
@@ -167,8 +173,33 @@ impl Moves<S, L> for SpatialMoving {
         Self::fold_margin(self, at)
     }
 
+    fn held(&self) -> Vec<usize> {
+        self.held.as_ref().map_or_else(Vec::new, |held| held.cables.clone())
+    }
+
     fn tensions(&self) -> (Vec<f64>, Vec<bool>) {
-        (self.statics.arm().cables.iter().map(|cable| cable.tension).collect(), Vec::new())
+        let taut = self.held.as_ref().map_or_else(Vec::new, |held| held.taut.clone());
+        (self.statics.arm().cables.iter().map(|cable| cable.tension).collect(), taut)
+    }
+
+    fn take_tensions(&mut self, (tensions, taut): &(Vec<f64>, Vec<bool>)) {
+        let Some(held) = &mut self.held else { return };
+        held.taut.clone_from(taut);
+        for cable in &held.cables {
+            self.statics.set_tension(*cable, tensions[*cable] / self.statics.units.force);
+        }
+    }
+
+    fn hold_strokes(settling: &mut Spatial) -> Result<f64, Unsolved> {
+        settling.meet_strokes()
+    }
+
+    fn add_tensions(settling: &mut Spatial, factor: f64) {
+        settling.change_tensions(factor);
+    }
+
+    fn switch_taut(settling: &mut Spatial, size: f64) -> bool {
+        settling.switch_cables(size)
     }
 }
 

@@ -90,8 +90,7 @@ impl SpatialSimulation {
     /// The arm at rest in the equilibrium of its loads just before the start.
     ///
     /// # Errors
-    /// [`MotionError`] where an option, the arm or an input is refused, or where there is no equilibrium; commanded
-    /// strokes are [`MotionError::Unsupported`] in space.
+    /// [`MotionError`] where an option, the arm or an input is refused, or where there is no equilibrium.
     pub fn new(arm: &Arm, inputs: Inputs, options: MotionOptions) -> Result<Self, MotionError> {
         let mut arm = arm.clone();
         arm.space.get_or_insert_default();
@@ -248,7 +247,8 @@ impl SpatialSimulation {
         let energy = units.force * units.length;
         let cables = arm.cables.iter().enumerate().map(|(c, cable)| {
             let [now, reference] = statics.cable_lengths(c, at);
-            CableMotion { tension: cable.tension, stroke: (reference - now) * units.length }
+            let tension = if cable.stroke.is_some() { stepper.tension_at(c, run.time) } else { cable.tension };
+            CableMotion { tension, stroke: (reference - now) * units.length }
         });
         let cables = cables.collect();
         let carried = stepper.ledger.base_at(run.time);

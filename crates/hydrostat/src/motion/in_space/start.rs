@@ -17,10 +17,6 @@ use crate::statics::solve::Options;
 /// Refuses what cannot move; else at rest in the equilibrium of `arm`.
 pub(super) fn at_rest(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -> Result<Spatial, MotionError> {
     check(arm)?;
-    if let Some(i) = arm.cables.iter().position(|cable| cable.stroke.is_some()) {
-        let reason = "in space cables move by their tension alone; commanded strokes are not done there yet";
-        return Err(MotionError::Unsupported { key: format!("cable[{i}].stroke"), reason });
-    }
     let elements = elements.unwrap_or_else(|| fair_elements(arm, tol));
     let options = Options::with_tol((0.01 * tol).clamp(1e-10, 1e-6));
     let of_start = |error| MotionError::SpatialStart(Box::new(error));
@@ -29,6 +25,11 @@ pub(super) fn at_rest(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -
     let engine = solver.engine_mut();
     let mut settling = Settling::of(SpatialMoving::new(arm, force_unit(arm)));
     let mesh = mesh_at(engine, arm, elements);
+    let statics = &mut settling.moving.statics;
+    for (c, cable) in engine.equations.arm().cables.iter().enumerate().filter(|(_, cable)| cable.stroke.is_some()) {
+        statics.set_tension(c, cable.tension / statics.units.force);
+    }
+    settling.moving.command_strokes();
     let statics = &settling.moving.statics;
     let force = engine.equations.units.force / statics.units.force;
     let whole = with_places(&engine.solution, force, statics.base_place(), &settling.system);
