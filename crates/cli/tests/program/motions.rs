@@ -184,3 +184,41 @@ fn an_interrupted_run_keeps_its_rows() {
     let after = read(here, "out.csv");
     assert!(after.starts_with(&before) && numbers(&after).len() == rows + 5, "{rows}");
 }
+
+#[test]
+fn arms_in_space_move_too() {
+    let directory = directory();
+    let here = directory.path();
+    let own = ["simulate", "silicone-spatial", "--vary", "cable[1].tension=ramp:0:0.1:0:0.1", "--every", "50ms"];
+    let motion = |more: &[&str]| {
+        let rest = ["--set", "dynamics.relaxation_time=2.7ms", "--tol", "1e-3", "--until", "0.1"];
+        hydrostat_in(here, &[&own[..], &rest, more].concat())
+    };
+    let more = ["--station", "0.5", "--shapes", "0.1", "--shape-stations", "5"];
+    let done = motion(&[&more[..], &["--shapes-output", "shapes.csv", "-o", "out.csv"]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(!here.join("out.csv.state.json").exists(), "runs in space do not go on");
+    let text = read(here, "out.csv");
+    let (names, _) = columns(&text);
+    let rows = numbers(&text);
+    let of = |name: &str| names.iter().position(|own| *own == name).unwrap_or_else(|| panic!("{name} in {names:?}"));
+    assert_eq!(rows.len(), 3);
+    assert!(rows.iter().all(|row| row.len() == names.len()));
+    let end = &rows[2];
+    assert!(end[of("tip_z_m")].abs() > 1e-3 && end[of("place_0_z_m")].abs() > 1e-4, "{end:?}");
+    let a: f64 = ["tip_a_x", "tip_a_y", "tip_a_z"].iter().map(|name| end[of(name)].powi(2)).sum();
+    assert!((a - 1.0).abs() < 1e-12);
+    let shapes = read(here, "shapes.csv");
+    assert_eq!(numbers(&shapes).len(), 5);
+    assert!((numbers(&shapes)[4][4] - end[of("tip_z_m")]).abs() < 1e-12);
+    assert_eq!(motion(&[&more[..], &["-o", "out.json"]].concat()).code, 0);
+    let document = json(&read(here, "out.json"));
+    assert_eq!(document["shapes"][0]["z"].as_array().unwrap().len(), 5);
+    assert_eq!(document["columns"].as_array().unwrap().len(), names.len());
+    assert!(motion(&[]).out.contains("its normal along"));
+    for (option, value) in [("--quasi-static", None), ("--plot", Some("a.svg")), ("--from", Some("out.csv"))] {
+        let refused = motion(&[option].into_iter().chain(value).collect::<Vec<_>>());
+        assert_eq!(refused.code, 2);
+        assert!(refused.err.contains(option) && refused.err.contains("plane"), "{}", refused.err);
+    }
+}
