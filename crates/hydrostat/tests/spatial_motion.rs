@@ -233,12 +233,17 @@ fn motion_ends_in_the_equilibrium() {
     // The mesh has its nodes where the load had its kinks at the start.
     assert!(apart(still.tip().b, rows[8].tip.b) < 1e-3);
     for (cable, own) in still.cables.iter().zip(&rows[8].cables) {
-        assert!((cable.stroke - own.stroke).abs() < 1e-5 * arm.length, "{own:?}");
+        assert!((cable.stroke - own.stroke).abs() < 5e-5 * arm.length, "{own:?}");
     }
     assert!(apart(still.base_reaction.force, rows[8].base_reaction.force) < 1e-5);
     // At rest from the start, it stays.
     let rows = motion(&arm, Inputs::default(), options(1e-5), 1.0, 0.5);
     assert!(apart(tip(&still), place(&rows[2])) < 1e-6 * arm.length);
+    let turned = apart(still.tip().b, rows[2].tip.b);
+    assert!(turned < 1e-5, "{turned:.1e}");
+    for (cable, own) in still.cables.iter().zip(&rows[2].cables) {
+        assert!((cable.stroke - own.stroke).abs() < 2e-6 * arm.length, "{} {own:?}", cable.stroke);
+    }
 }
 
 /// Reeled in out of the plane in 0.2 s and held, then let out until the cable hangs slack.

@@ -14,6 +14,7 @@ use hydrostat_bvp::{
 };
 
 use crate::motion::history::{History, Layout};
+use crate::motion::settling::Settling;
 use crate::numerics::dispatch::widest;
 use crate::rod::area_law::SectionStretch;
 use crate::rod::arm::Arm;
@@ -39,6 +40,9 @@ pub(super) const COORDINATES: usize = 6;
 
 /// A solution on the mesh of the motion.
 pub(super) type Shape = Solution<S, M, L>;
+
+/// The solver of stages in space.
+pub(super) type Spatial = Settling<SpatialMoving, S, L>;
 
 /// Equations of a moving arm in space at one time.
 #[derive(Debug, Clone)]

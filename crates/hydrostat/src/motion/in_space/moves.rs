@@ -2,22 +2,19 @@
 
 use hydrostat_bvp::{Collocation, Correction, Gauss, LANES, Lanes, Real, each};
 
-use super::equations::{COORDINATES, S, Shape, SpatialMoving, X};
+use super::equations::{COORDINATES, S, Shape, Spatial, SpatialMoving, X};
 use super::start::at_rest;
 use super::strokes::SpatialBorder;
 use crate::motion::error::MotionError;
 use crate::motion::history::{History, Layout, Snapshot};
 use crate::motion::inputs::Inputs;
-use crate::motion::settling::{Moves, Settling, Unsolved};
+use crate::motion::settling::{Moves, Unsolved};
 use crate::motion::works::{Carried, WORKS};
 use crate::rod::arm::Arm;
 use crate::spatial::equations::{FORCE, L, M};
 use crate::spatial::inertia::Turn;
 use crate::spatial::rotation::{Directors, Vector, relative, turned_by};
 use crate::statics::dimensions::Units;
-
-/// The solver of stages in space.
-pub(super) type Spatial = Settling<SpatialMoving, S, L>;
 
 impl Moves<S, L> for SpatialMoving {
     type Border = SpatialBorder;

@@ -2,8 +2,7 @@
 
 use hydrostat_bvp::{Collocation, Lanes, Mesh, Real, Solution, Stage};
 
-use super::equations::{S, Shape, SpatialMoving, X};
-use super::moves::Spatial;
+use super::equations::{S, Shape, Spatial, SpatialMoving, X};
 use crate::motion::error::MotionError;
 use crate::motion::settling::Settling;
 use crate::motion::start::{check, fair_elements, force_unit, mesh, not_found};

@@ -3,8 +3,7 @@
 
 use hydrostat_bvp::{Collocation, Correction, Forcing, Inner, Lanes, Real, Stage, StageForcing, Station, each};
 
-use super::equations::{S, SpatialMoving, X};
-use super::moves::Spatial;
+use super::equations::{S, Spatial, SpatialMoving, X};
 use crate::motion::settling::Unsolved;
 use crate::rod::area_law::area_law;
 use crate::spatial::cable_paths::StageData;
