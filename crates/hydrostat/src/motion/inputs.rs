@@ -197,10 +197,12 @@ impl Driven {
     }
 
     fn is_of_base(self) -> bool {
-        let turns = Parameter::BaseAngle;
-        let place = matches!(self, Self::BaseX | Self::BaseY | Self::BaseZ);
-        place
-            || matches!(self, Self::Of(own) if own == turns || matches!(own, Parameter::BaseAlong(_) | Parameter::SectionAlong(_)))
+        match self {
+            Self::BaseX | Self::BaseY | Self::BaseZ => true,
+            Self::Of(own) => {
+                matches!(own, Parameter::BaseAngle | Parameter::BaseAlong(_) | Parameter::SectionAlong(_))
+            }
+        }
     }
 
     fn is_of_stream(self) -> bool {

@@ -73,7 +73,7 @@ impl Simulation {
     /// [`MotionError`] where an option, the arm or an input is refused, or where there is no equilibrium.
     pub fn new(arm: &Arm, inputs: Inputs, options: MotionOptions) -> Result<Self, MotionError> {
         if arm.space.is_some() {
-            let what = "`Simulation`; arms in space have `SpatialSimulation`";
+            let what = "`Simulation` (in space there is `SpatialSimulation`)";
             return Err(ArmError::OnlyInPlane { what }.into());
         }
         Ok(Self { run: Run::new(arm, inputs, options)?, stations: Vec::new() })

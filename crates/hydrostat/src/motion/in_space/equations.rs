@@ -46,7 +46,7 @@ pub(super) type Spatial = Settling<SpatialMoving, S, L>;
 
 /// Equations of a moving arm in space at one time.
 #[derive(Debug, Clone)]
-pub(in crate::motion) struct SpatialMoving {
+pub(super) struct SpatialMoving {
     /// Data along the arm, loads at this time.
     pub(super) statics: Equations,
     /// Acceleration of the stream, L/s2.

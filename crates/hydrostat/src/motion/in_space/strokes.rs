@@ -18,7 +18,7 @@ const SETTLED: f64 = 0.3;
 
 /// The tensions' part of a round, and memory for it.
 #[derive(Debug, Clone, Default)]
-pub(in crate::motion) struct SpatialBorder {
+pub(super) struct SpatialBorder {
     /// Changes of the tensions (in the unit of force), one a held cable.
     tensions: Vec<f64>,
     /// Strokes less commands after the round, over L.
