@@ -154,7 +154,8 @@ fn motion_in_any_plane_is_that_in_the_plane() {
         };
         let every = until / 10.0;
         let flat = in_plane(&arm, loads(None), options(tol), until, every);
-        for (a, b, c) in [(0.0, 0.0, 0.0), (0.7, -0.4, 1.9), (2.5, 1.1, -0.3), (-1.2, 0.2, 2.8), (0.3, -1.4, 0.6)] {
+        let planes = [(0.7, -0.4, 1.9), (2.5, 1.1, -0.3), (-1.2, 0.2, 2.8), (0.3, -1.4, 0.6), (0.0, 0.0, 0.0)];
+        for (a, b, c) in planes.into_iter().take(if released { 5 } else { 3 }) {
             let m = rotation(a, b, c);
             let rows = motion(&turned_arm(&arm, &m), loads(Some(&m)), options(tol), until, every);
             for (flat, at) in flat.iter().zip(&rows) {
@@ -230,19 +231,18 @@ fn motion_ends_in_the_equilibrium() {
     let rows = motion(&arm, loads, options(1e-5), 8.0, 1.0);
     let off = apart(tip(&still), place(&rows[8])) / arm.length;
     assert!(off < 2e-5, "{off:.1e}");
-    // The mesh has its nodes where the load had its kinks at the start.
-    assert!(apart(still.tip().b, rows[8].tip.b) < 1e-3);
+    assert!(apart(still.tip().b, rows[8].tip.b) < 1e-4);
     for (cable, own) in still.cables.iter().zip(&rows[8].cables) {
-        assert!((cable.stroke - own.stroke).abs() < 5e-5 * arm.length, "{own:?}");
+        assert!((cable.stroke - own.stroke).abs() < 1e-5 * arm.length, "{} {own:?}", cable.stroke);
     }
     assert!(apart(still.base_reaction.force, rows[8].base_reaction.force) < 1e-5);
     // At rest from the start, it stays.
     let rows = motion(&arm, Inputs::default(), options(1e-5), 1.0, 0.5);
     assert!(apart(tip(&still), place(&rows[2])) < 1e-6 * arm.length);
     let turned = apart(still.tip().b, rows[2].tip.b);
-    assert!(turned < 1e-5, "{turned:.1e}");
+    assert!(turned < 1e-7, "{turned:.1e}");
     for (cable, own) in still.cables.iter().zip(&rows[2].cables) {
-        assert!((cable.stroke - own.stroke).abs() < 2e-6 * arm.length, "{} {own:?}", cable.stroke);
+        assert!((cable.stroke - own.stroke).abs() < 1e-8 * arm.length, "{} {own:?}", cable.stroke);
     }
 }
 

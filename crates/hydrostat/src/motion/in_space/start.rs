@@ -39,10 +39,16 @@ pub(super) fn at_rest(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -
     }
 }
 
+/// Kinks nearer to each other than this share of a mean element have one node: the mesh stays while kinks move, and an
+/// element much shorter than its neighbours leaves beta' there to rounding.
+const APART: f64 = 0.2;
+
 /// A mesh with nodes on the kinks that the stream's load has at the shape of the engine.
 fn mesh_at(engine: &mut Engine, arm: &Arm, elements: usize) -> Mesh {
     let mut mesh = mesh(arm, elements);
-    let kinks = engine.kinks(1e-6);
+    let mut kinks = engine.kinks(1e-6);
+    kinks.sort_by(f64::total_cmp);
+    kinks.dedup_by(|next, before| *next - *before < APART / mesh.elements() as f64);
     let fixed: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
     if kinks.len() <= mesh.elements() {
         mesh.pin(&fixed, &kinks);
