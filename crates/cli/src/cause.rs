@@ -167,6 +167,7 @@ fn motion(error: &MotionError) -> Blame {
     match error {
         MotionError::Ended(_) => Blame::Arm,
         MotionError::Start(source) => solve(source),
+        MotionError::SpatialStart(source) => solve_in_space(source),
         MotionError::Arm(_)
         | MotionError::Unfit(_)
         | MotionError::Unsupported { .. }

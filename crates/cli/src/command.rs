@@ -14,6 +14,8 @@ pub(crate) mod main_job;
 mod misses;
 pub(crate) mod modes;
 mod motion_output;
+mod motion_text;
+mod moving;
 pub(crate) mod path;
 pub(crate) mod plot;
 pub(crate) mod reach;

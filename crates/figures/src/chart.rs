@@ -1,6 +1,8 @@
 //! A quantity of many equilibria over a parameter.
 
-use hydrostat::{Equilibria, Equilibrium, Event, Path, PathEnd, PathPoint, SpatialConfiguration, SpatialEquilibria, Stability};
+use hydrostat::{
+    Equilibria, Equilibrium, Event, Path, PathEnd, PathPoint, SpatialConfiguration, SpatialEquilibria, Stability,
+};
 
 use crate::arm_figure::place_label;
 use crate::axes::{Axes, BELOW, LEFT};

@@ -55,7 +55,11 @@ pub fn root_locus_figure(found: &[(f64, &Modes)], over: Option<&Abscissa>, title
     let mut scene = Scene::new(page.width(), frame.bottom + BELOW + MARGIN, says);
     heading.draw(&mut scene);
     legend.draw(&mut scene, heading.bottom);
-    axes.draw(&mut scene, &Label::plain("growth rate (1/s)".to_owned()), &Label::plain("angular frequency (rad/s)".to_owned()));
+    axes.draw(
+        &mut scene,
+        &Label::plain("growth rate (1/s)".to_owned()),
+        &Label::plain("angular frequency (rad/s)".to_owned()),
+    );
     let zero = axes.at([0.0, 0.0])[0];
     scene.line(&[[zero, frame.top], [zero, frame.bottom]], Stroke::dashed(GREY, 0.6, [3.0, 2.0]));
     for (k, rate) in places {

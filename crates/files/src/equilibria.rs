@@ -166,12 +166,7 @@ fn state_in_space(one: &Equilibrium<SpatialConfiguration>) -> State<'_> {
 impl<'a> EquilibriaDocument<'a> {
     /// Of the equilibria of `arm`.
     pub fn new(arm: &Arm, all: impl Into<Search<'a>>) -> Self {
-        Self {
-            schema: SCHEMA,
-            version: env!("CARGO_PKG_VERSION"),
-            search: all.into().into(),
-            inputs: Inputs::new(arm),
-        }
+        Self { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), search: all.into().into(), inputs: Inputs::new(arm) }
     }
 
     /// The document, one line.

@@ -40,7 +40,8 @@ mod setting;
 mod shared_unit;
 pub mod shipped;
 mod slips;
-pub mod spatial_results;
+pub mod spatial_motions;
+mod spatial_results;
 mod state;
 mod syntax_hint;
 mod targets;
@@ -56,7 +57,6 @@ pub use csv_text::{Dialect, csv_writer, is_missing};
 pub use deviations::Deviations;
 pub use digits::number;
 pub use equilibria::{EquilibriaDocument, OverDocument, Search, equilibria_csv, over_csv};
-pub use others::Others;
 pub use error::{FileError, Place};
 pub use fitted::{FitKey, FitKeyError, PriorKey, bare_unit, fitted};
 pub use followed::{FollowedDocument, followed_csv};
@@ -65,13 +65,13 @@ pub use identification::{IdentificationDocument, residuals_csv};
 pub use loadings::{LoadingDocument, LoadingRow, RowSnap, loading_csv};
 pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
 pub use measurements_template::measurements_template;
-pub use motion_states::{SavedMotion, SavedMotionError, motion_state_beside};
 pub use modes::{ModesDocument, ModesOverDocument, mode_kind, modes_csv, modes_over_csv};
+pub use motion_states::{SavedMotion, SavedMotionError, motion_state_beside};
 pub use motions::{
-    EventOut, MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, MotionDocument, equilibrium_numbers,
-    motion_columns, motion_event_line, motion_heads, motion_line, motion_numbers, motion_row, motion_shape_lines,
-    place_numbers,
+    EventOut, MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, MotionDocument, MotionShape, equilibrium_numbers, motion_columns,
+    motion_event_line, motion_heads, motion_line, motion_numbers, motion_row, motion_shape_lines, place_numbers,
 };
+pub use others::Others;
 pub use output::{WriteError, is_same_file, remove_leftovers, write_whole, write_whole_with};
 pub use paths::{Landing, PathDocument, end_message, path_csv, path_csv_with_landings, spatial_path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
@@ -79,6 +79,10 @@ pub use reach::{ReachDocument, reach_csv, spatial_reach_csv};
 pub use results::{FailureDocument, Note, SolutionDocument, TOLERANCE_MISSED, json, stations_csv};
 pub use shared_unit::{PartialUnit, shared_unit};
 pub use slips::{Slip, likeliest_slip, unit_slips};
+pub use spatial_motions::{
+    SPATIAL_MOTION_SHAPE_HEADS, spatial_motion_heads, spatial_motion_numbers, spatial_motion_shape_lines,
+    spatial_place_numbers,
+};
 pub use spatial_results::{SpatialFailureDocument, SpatialSolutionDocument, spatial_stations_csv};
 pub use targets::{TargetsError, parse_targets, read_targets};
 pub use time_loads::{

@@ -93,12 +93,7 @@ impl From<&Modes> for ModesOut {
 impl ModesDocument {
     /// Of the modes of `arm`.
     pub fn new(arm: &Arm, modes: &Modes) -> Self {
-        Self {
-            schema: SCHEMA,
-            version: env!("CARGO_PKG_VERSION"),
-            found: modes.into(),
-            inputs: Inputs::new(arm),
-        }
+        Self { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), found: modes.into(), inputs: Inputs::new(arm) }
     }
 
     /// The document, one line.

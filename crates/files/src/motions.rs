@@ -1,7 +1,8 @@
 //! Motions as JSON and CSV.
 
 use hydrostat::{
-    Arm, Instant, MotionEvent, MotionStation, MotionStatistics, MotionVerdict, MotionWarning, Tip,
+    Arm, Instant, MotionEvent, MotionStation, MotionStatistics, MotionVerdict, MotionWarning, SpatialMotionStation,
+    Tip, Works,
 };
 use serde::Serialize;
 
@@ -26,15 +27,8 @@ pub fn motion_heads(cables: usize, stations: usize, equilibrium: bool) -> Vec<St
         "base_force_x_N",
         "base_force_y_N",
         "base_moment_Nm",
-        "cable_work_J",
-        "water_work_J",
-        "gravity_work_J",
-        "load_work_J",
-        "base_work_J",
-        "volume_work_J",
-        "dissipated_J",
     ];
-    out.extend(others.map(str::to_owned));
+    out.extend(others.into_iter().chain(WORK_HEADS).map(str::to_owned));
     for k in 0..stations {
         out.extend(["s_m", "x_m", "y_m", "theta_rad", "vx_m_s", "vy_m_s"].map(|head| format!("place_{k}_{head}")));
     }
@@ -45,6 +39,15 @@ pub fn motion_heads(cables: usize, stations: usize, equilibrium: bool) -> Vec<St
     out
 }
 
+/// The heads of [`work_numbers`].
+pub(crate) const WORK_HEADS: [&str; 7] =
+    ["cable_work_J", "water_work_J", "gravity_work_J", "load_work_J", "base_work_J", "volume_work_J", "dissipated_J"];
+
+/// Works in the order of rows.
+pub(crate) fn work_numbers(works: &Works) -> [f64; 7] {
+    [works.cables, works.water, works.gravity, works.loads, works.base, works.volume, works.dissipated]
+}
+
 /// One time of a motion as the numbers of a row, in the order of [`motion_columns`].
 pub fn motion_numbers(at: &Instant) -> Vec<f64> {
     let mut out = vec![at.time, at.tip[0], at.tip[1], at.tip_theta];
@@ -52,8 +55,7 @@ pub fn motion_numbers(at: &Instant) -> Vec<f64> {
     out.extend([at.kinetic_energy, at.strain_energy, at.tip_velocity[0], at.tip_velocity[1]]);
     let base = at.base_reaction;
     out.extend([base.force[0], base.force[1], base.moment]);
-    let works = at.works;
-    out.extend([works.cables, works.water, works.gravity, works.loads, works.base, works.volume, works.dissipated]);
+    out.extend(work_numbers(&at.works));
     out
 }
 
@@ -126,17 +128,80 @@ impl EventOut {
     }
 }
 
-/// A whole shape at one time.
+/// A whole shape at one time, as documents have it.
 #[derive(Debug, Clone, Serialize)]
-struct ShapeOut {
+pub struct MotionShape {
     time: f64,
-    s: Vec<f64>,
-    x: Vec<f64>,
-    y: Vec<f64>,
-    theta: Vec<f64>,
-    nu: Vec<f64>,
-    eta: Vec<f64>,
-    mu: Vec<f64>,
+    #[serde(flatten)]
+    lists: ShapeLists,
+}
+
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+enum ShapeLists {
+    Plane {
+        s: Vec<f64>,
+        x: Vec<f64>,
+        y: Vec<f64>,
+        theta: Vec<f64>,
+        nu: Vec<f64>,
+        eta: Vec<f64>,
+        mu: Vec<f64>,
+    },
+    Space {
+        s: Vec<f64>,
+        x: Vec<f64>,
+        y: Vec<f64>,
+        z: Vec<f64>,
+        a: Vec<[f64; 3]>,
+        b: Vec<[f64; 3]>,
+        c: Vec<[f64; 3]>,
+        nu: Vec<f64>,
+        eta: Vec<f64>,
+        zeta: Vec<f64>,
+        tau: Vec<f64>,
+        kappa: Vec<f64>,
+        mu: Vec<f64>,
+    },
+}
+
+impl MotionShape {
+    /// Of an arm in the plane at `time` (s).
+    pub fn in_plane(time: f64, stations: &[MotionStation]) -> Self {
+        let list = |of: fn(&MotionStation) -> f64| stations.iter().map(of).collect();
+        let lists = ShapeLists::Plane {
+            s: list(|at| at.s),
+            x: list(|at| at.x),
+            y: list(|at| at.y),
+            theta: list(|at| at.theta),
+            nu: list(|at| at.nu),
+            eta: list(|at| at.eta),
+            mu: list(|at| at.mu),
+        };
+        Self { time, lists }
+    }
+
+    /// Of an arm in space at `time` (s).
+    pub fn in_space(time: f64, stations: &[SpatialMotionStation]) -> Self {
+        let list = |of: fn(&SpatialMotionStation) -> f64| stations.iter().map(of).collect();
+        let vectors = |of: fn(&SpatialMotionStation) -> [f64; 3]| stations.iter().map(of).collect();
+        let lists = ShapeLists::Space {
+            s: list(|at| at.s),
+            x: list(|at| at.place[0]),
+            y: list(|at| at.place[1]),
+            z: list(|at| at.place[2]),
+            a: vectors(|at| at.a),
+            b: vectors(|at| at.b),
+            c: vectors(|at| at.c),
+            nu: list(|at| at.strains[0]),
+            eta: list(|at| at.strains[1]),
+            zeta: list(|at| at.strains[2]),
+            tau: list(|at| at.strains[3]),
+            kappa: list(|at| at.strains[4]),
+            mu: list(|at| at.strains[5]),
+        };
+        Self { time, lists }
+    }
 }
 
 /// The document of a motion.
@@ -156,7 +221,7 @@ pub struct MotionDocument {
     events: Vec<EventOut>,
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
-    shapes: Vec<ShapeOut>,
+    shapes: Vec<MotionShape>,
     inputs: Inputs,
 }
 
@@ -201,22 +266,9 @@ impl MotionDocument {
         Self { columns, rows, ..self }
     }
 
-    /// The same with whole shapes at some times (s).
-    pub fn with_shapes(self, shapes: &[(f64, Vec<MotionStation>)]) -> Self {
-        let one = |(time, stations): &(f64, Vec<MotionStation>)| {
-            let list = |of: fn(&MotionStation) -> f64| stations.iter().map(of).collect();
-            ShapeOut {
-                time: *time,
-                s: list(|at| at.s),
-                x: list(|at| at.x),
-                y: list(|at| at.y),
-                theta: list(|at| at.theta),
-                nu: list(|at| at.nu),
-                eta: list(|at| at.eta),
-                mu: list(|at| at.mu),
-            }
-        };
-        Self { shapes: shapes.iter().map(one).collect(), ..self }
+    /// The same with whole shapes.
+    pub fn with_shapes(self, shapes: Vec<MotionShape>) -> Self {
+        Self { shapes, ..self }
     }
 
     /// The same with what happened on the way, what should be known, and what the steps gained of energy (J).

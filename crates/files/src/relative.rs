@@ -80,11 +80,13 @@ fn offset(entry: &mut Entry, length: Option<f64>, radius: Option<&Profile>) {
             let Some(share) = percent(text) else { return };
             entry.node = match radius {
                 Profile::Constant(value) => Node::Number(short_product(share, *value)),
-                Profile::Linear { base, tip } => {
-                    Node::Table(vec![field(ENDS[0], number(short_product(share, *base))), field(ENDS[1], number(short_product(share, *tip)))])
-                }
+                Profile::Linear { base, tip } => Node::Table(vec![
+                    field(ENDS[0], number(short_product(share, *base))),
+                    field(ENDS[1], number(short_product(share, *tip))),
+                ]),
                 Profile::Table(table) => {
-                    let point = |[s, value]: [f64; 2]| Node::Array(vec![number(s), number(short_product(share, value))]);
+                    let point =
+                        |[s, value]: [f64; 2]| Node::Array(vec![number(s), number(short_product(share, value))]);
                     let points = table.points().map(|at| Entry { node: point(at), origin }).collect();
                     joined(Entry { node: Node::Array(points), origin }, table.join(), &field)
                 }

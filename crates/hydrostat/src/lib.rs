@@ -156,7 +156,7 @@ pub use motion::{
     AfterSnap, AfterSnapError, CableMotion, Course, Inputs, Instant, Loading, LoadingError, LoadingSnap, LoadingStep,
     Mode, Modes, MotionError, MotionEvent, MotionEventKind, MotionOptions, MotionState, MotionStation,
     MotionStatistics, MotionVerdict, MotionVerdictKind, MotionWarning, QuasiStatic, Rest, Restless, Simulation,
-    SnapMotion, Works,
+    SnapMotion, SpatialInstant, SpatialMotionStation, SpatialSimulation, Works,
 };
 pub use numerics::dispatch::has_wide_vectors;
 pub use parameter::Parameter;
@@ -175,8 +175,8 @@ pub use sensitivity::{
 pub use snap::{Snap, SnapBounds};
 pub use solve::{Answer, Options, Solver};
 pub use spatial::{
-    Ellipsoid, NoSpatialEquilibrium, SpatialConfiguration, SpatialEquilibria, SpatialError, SpatialPoseChange, SpatialSnap, SpatialSolver,
-    SpatialStation, SpatialStations, SpatialTip, SpatialWrench,
+    Ellipsoid, NoSpatialEquilibrium, SpatialConfiguration, SpatialEquilibria, SpatialError, SpatialPoseChange,
+    SpatialSnap, SpatialSolver, SpatialStation, SpatialStations, SpatialTip, SpatialWrench,
 };
 pub use stability::{Growth, Stability};
 pub use verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};

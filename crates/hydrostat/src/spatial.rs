@@ -5,24 +5,25 @@
 //! scalar flow laws, meshes and their errors, verdicts.
 
 mod adversity;
-mod cable_paths;
+pub(crate) mod cable_paths;
 mod change;
-mod configuration;
-mod engine;
-mod equations;
+pub(crate) mod configuration;
+pub(crate) mod engine;
+pub(crate) mod equations;
 mod equilibria;
 mod held;
+pub(crate) mod inertia;
 mod kinks;
 mod lengths;
-mod loads;
+pub(crate) mod loads;
 mod mesh;
 mod path;
 mod paths;
 mod place;
 mod places;
-mod rotation;
-mod section;
-mod section_solve;
+pub(crate) mod rotation;
+pub(crate) mod section;
+pub(crate) mod section_solve;
 mod sensitivity;
 mod solve;
 mod stability;

@@ -315,9 +315,10 @@ impl Equilibria {
             Searched::Plane(all) => {
                 states(py, &all.found.iter().map(|one| (&one.configuration, one.stability)).collect::<Vec<_>>())
             }
-            Searched::Space(all) => {
-                states_in_space(py, &all.found.iter().map(|one| (&one.configuration, one.stability)).collect::<Vec<_>>())
-            }
+            Searched::Space(all) => states_in_space(
+                py,
+                &all.found.iter().map(|one| (&one.configuration, one.stability)).collect::<Vec<_>>(),
+            ),
         }
     }
 

@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use anyhow::Context as _;
 use hydrostat::{
-    Arm, Configuration, Equilibria, PathError, SolveError, SpatialConfiguration, SpatialEquilibria, SpatialError, Stability,
+    Arm, Configuration, Equilibria, PathError, SolveError, SpatialConfiguration, SpatialEquilibria, SpatialError,
+    Stability,
 };
 use hydrostat_figures::{
     Abscissa, Page, Quantity, Scene, equilibria_figure, over_figure, spatial_equilibria_figure, spatial_over_figure,

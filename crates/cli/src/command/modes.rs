@@ -4,9 +4,7 @@ use std::fmt::Write as _;
 
 use hydrostat::{Arm, Mode, Modes, MotionError};
 use hydrostat_figures::root_locus_figure;
-use hydrostat_files::{
-    ModesDocument, ModesOverDocument, Varied, mode_kind, modes_csv, modes_over_csv, number,
-};
+use hydrostat_files::{ModesDocument, ModesOverDocument, Varied, mode_kind, modes_csv, modes_over_csv, number};
 
 use super::NoAnswer;
 use super::path::abscissa;
@@ -55,11 +53,16 @@ fn over_range(args: &ModesArgs, arm: &Arm, Over { varied, count }: Over) -> anyh
         let mut there = arm.clone();
         varied.parameter.set(&mut there, value).map_err(|e| WrongRequest::Unfit("--over", e))?;
         there.check().map_err(|e| WrongRequest::Value(at(), e))?;
-        found.push((value, match there.modes(args.count, args.elements) {
-            Ok(modes) => Ok(modes),
-            Err(error @ (MotionError::Option { .. } | MotionError::Unsupported { .. })) => return Err(refused(error)),
-            Err(error) => Err(error.to_string()),
-        }));
+        found.push((
+            value,
+            match there.modes(args.count, args.elements) {
+                Ok(modes) => Ok(modes),
+                Err(error @ (MotionError::Option { .. } | MotionError::Unsupported { .. })) => {
+                    return Err(refused(error));
+                }
+                Err(error) => Err(error.to_string()),
+            },
+        ));
     }
     if let Some(file) = &args.plot {
         let all: Vec<(f64, &Modes)> =
@@ -106,8 +109,7 @@ fn summary(arm: &Arm, modes: &Modes) -> String {
 /// A line a value: the motion that grows fastest, or decays slowest.
 fn over_summary(arm: &Arm, varied: &Varied, found: &[(f64, Result<Modes, String>)]) -> String {
     let [from, to] = varied.range.map(|value| varied.with_unit(value));
-    let mut out =
-        format!("modes  {}, {} values of {}, {from} to {to}\n\n", arm.name, found.len(), varied.parameter);
+    let mut out = format!("modes  {}, {} values of {}, {from} to {to}\n\n", arm.name, found.len(), varied.parameter);
     let unit = if varied.unit.is_empty() { "value" } else { varied.unit };
     let heads = [unit, "largest growth rate (1/s)", "frequency (Hz)", "damping ratio", "kind"];
     let mut rows = vec![heads.map(str::to_owned).to_vec()];

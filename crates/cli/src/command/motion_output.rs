@@ -1,19 +1,31 @@
 //! Where the rows, shapes and events of a motion go.
 
-use std::fmt::Write as _;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
-use hydrostat::{Arm, Instant, MotionEvent, MotionStation, MotionVerdict, Simulation};
+use hydrostat::{Arm, MotionEvent, MotionState, MotionStatistics, MotionVerdict, MotionWarning};
 use hydrostat_files::{
-    EventOut, MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, MotionDocument, SavedMotion, WriteError, motion_event_line,
-    motion_heads, motion_line, motion_shape_lines, motion_state_beside, number, write_whole,
+    EventOut, MOTION_EVENT_HEADS, MotionDocument, MotionShape, SavedMotion, WriteError, motion_event_line, motion_line,
+    motion_state_beside, write_whole,
 };
 use hydrostat_sweep::{Column, Data, parquet_bytes};
 
 use crate::args::{MotionFormat, SimulateArgs};
 use crate::output;
+
+/// What a run took, and what should be known about it.
+pub(super) struct Told {
+    pub(super) statistics: MotionStatistics,
+    /// Estimated error of the tip, m.
+    pub(super) estimate: f64,
+    /// What the steps gained of energy, J.
+    pub(super) energy_gap: f64,
+    pub(super) warnings: Vec<MotionWarning>,
+    pub(super) events: Vec<MotionEvent>,
+    /// What another run goes on from.
+    pub(super) state: Option<MotionState>,
+}
 
 /// How a run ended.
 pub(super) struct Ending {
@@ -21,8 +33,6 @@ pub(super) struct Ending {
     pub(super) verdict: Option<String>,
     /// The limit of the arm that it met.
     pub(super) limit: Option<MotionVerdict>,
-    /// What it took, s.
-    pub(super) wall: f64,
 }
 
 /// A table that grows line by line.
@@ -64,12 +74,9 @@ pub(super) struct MotionOutput {
     table: Option<Growing>,
     shape_table: Option<Growing>,
     event_table: Option<Growing>,
-    /// What is written at the end: all rows and shapes of a document, of a text the last row.
+    /// What is written at the end: all rows and shapes of a document.
     rows: Vec<Vec<f64>>,
-    shapes: Vec<(f64, Vec<MotionStation>)>,
-    last: Option<Instant>,
-    /// Tip of the last equilibrium, and the last and the largest distance from one over the length.
-    equilibrium: Option<([f64; 2], [f64; 2])>,
+    shapes: Vec<MotionShape>,
     count: u64,
     noted: usize,
     request: u64,
@@ -91,12 +98,11 @@ impl MotionOutput {
     /// Opens the files, which `resumed` says what to keep of.
     pub(super) fn new(
         args: &SimulateArgs,
-        arm: &Arm,
-        stations: usize,
+        heads: Vec<String>,
+        shape_heads: &str,
         resumed: Option<&SavedMotion>,
         request: u64,
     ) -> anyhow::Result<Self> {
-        let heads = motion_heads(arm.cables.len(), stations, args.quasi_static);
         let [rows, shapes, events] = resumed.map_or([0; 3], |saved| saved.written);
         let format = Self::format(args);
         let table = match (&args.output, format) {
@@ -107,7 +113,7 @@ impl MotionOutput {
             }
             _ => None,
         };
-        let shape_table = args.shapes_output.as_ref().map(|path| Growing::open(path, shapes, MOTION_SHAPE_HEADS));
+        let shape_table = args.shapes_output.as_ref().map(|path| Growing::open(path, shapes, shape_heads));
         let event_table = args.events.as_ref().map(|path| Growing::open(path, events, MOTION_EVENT_HEADS));
         Ok(Self {
             format,
@@ -118,8 +124,6 @@ impl MotionOutput {
             event_table: event_table.transpose()?,
             rows: Vec::new(),
             shapes: Vec::new(),
-            last: None,
-            equilibrium: None,
             count: resumed.map_or(0, |saved| saved.rows),
             noted: 0,
             request,
@@ -136,15 +140,7 @@ impl MotionOutput {
         self.table.is_some()
     }
 
-    /// Takes the equilibrium of a row, which has the tip at x, y (m), and how far from it the tip is over the length.
-    pub(super) fn take_equilibrium(&mut self, [x, y, _, distance]: [f64; 4]) {
-        if distance.is_finite() {
-            let most = self.equilibrium.map_or(0.0, |(_, [_, most])| most);
-            self.equilibrium = Some(([x, y], [distance, most.max(distance)]));
-        }
-    }
-
-    pub(super) fn take_row(&mut self, at: &Instant, numbers: Vec<f64>) -> anyhow::Result<()> {
+    pub(super) fn take_row(&mut self, numbers: Vec<f64>) -> anyhow::Result<()> {
         self.count += 1;
         match (self.format, &mut self.table) {
             (MotionFormat::Csv, Some(table)) => table.add(&motion_line(&numbers))?,
@@ -152,16 +148,16 @@ impl MotionOutput {
             (MotionFormat::Json | MotionFormat::Parquet, _) => self.rows.push(numbers),
             (MotionFormat::Text, _) => {}
         }
-        self.last = Some(at.clone());
         Ok(())
     }
 
-    pub(super) fn take_shape(&mut self, time: f64, stations: Vec<MotionStation>) -> Result<(), WriteError> {
+    /// Takes a whole shape, as lines of the table of shapes and as documents have it.
+    pub(super) fn take_shape(&mut self, lines: &str, shape: MotionShape) -> Result<(), WriteError> {
         if let Some(table) = &mut self.shape_table {
-            table.add(&motion_shape_lines(time, &stations))?;
+            table.add(lines)?;
         }
         if self.format == MotionFormat::Json {
-            self.shapes.push((time, stations));
+            self.shapes.push(shape);
         }
         Ok(())
     }
@@ -178,31 +174,38 @@ impl MotionOutput {
     }
 
     /// Keeps the state beside the output, so that another run can go on from here.
-    pub(super) fn keep(&mut self, simulation: &Simulation) -> Result<(), WriteError> {
+    pub(super) fn keep(&mut self, state: MotionState) -> Result<(), WriteError> {
         let Some(path) = &self.path else { return Ok(()) };
         let bytes = |table: &Option<Growing>| table.as_ref().map_or(0, |table| table.bytes);
         let written = [&self.table, &self.shape_table, &self.event_table].map(bytes);
-        let saved = SavedMotion { state: simulation.state(), request: self.request, rows: self.count, written };
+        let saved = SavedMotion { state, request: self.request, rows: self.count, written };
         write_whole(motion_state_beside(path), output::line(saved.to_json()).as_bytes())
     }
 
-    /// Writes what is written at the end.
-    pub(super) fn end(&mut self, arm: &Arm, simulation: &Simulation, ending: &Ending) -> anyhow::Result<()> {
-        self.note_events(simulation.events())?;
-        let events = EventOut::all(simulation.events(), ending.limit.as_ref());
+    /// Writes what is written at the end: a document, a table of columns, or the text that `text` makes of the events.
+    pub(super) fn end(
+        &mut self,
+        arm: &Arm,
+        told: &Told,
+        ending: &Ending,
+        text: impl FnOnce(&[EventOut]) -> Option<String>,
+    ) -> anyhow::Result<()> {
+        self.note_events(&told.events)?;
+        let events = EventOut::all(&told.events, ending.limit.as_ref());
         if let (Some(table), Some(_), Some(last)) = (&mut self.event_table, ending.limit, events.last()) {
             table.add(&motion_event_line(last))?;
         }
-        self.keep(simulation)?;
+        if let Some(state) = &told.state {
+            self.keep(state.clone())?;
+        }
         let path = self.path.as_deref();
         match self.format {
             MotionFormat::Csv => Ok(()),
             MotionFormat::Json => {
-                let (statistics, estimate) = (simulation.statistics(), simulation.error_estimate());
-                let document = MotionDocument::new(arm, &[], statistics, estimate, ending.verdict.clone())
+                let document = MotionDocument::new(arm, &[], told.statistics, told.estimate, ending.verdict.clone())
                     .with_table(std::mem::take(&mut self.heads), std::mem::take(&mut self.rows))
-                    .with_shapes(&self.shapes)
-                    .with_notes(events, &simulation.warnings(), simulation.energy_gap());
+                    .with_shapes(std::mem::take(&mut self.shapes))
+                    .with_notes(events, &told.warnings, told.energy_gap);
                 output::put(path, &output::line(document.to_json()))
             }
             MotionFormat::Parquet => {
@@ -219,81 +222,10 @@ impl MotionOutput {
                 }
                 Ok(())
             }
-            MotionFormat::Text => match &self.last {
-                Some(at) => {
-                    let mut text = text(arm, at, &events, simulation, ending.wall);
-                    if let Some(([x, y], [distance, most])) = self.equilibrium {
-                        let _ = writeln!(
-                            text,
-                            "statics in equilibrium the tip would be at ({}, {}) m, {} of the length away; at most {} on the way",
-                            number(x),
-                            number(y),
-                            number(distance),
-                            number(most)
-                        );
-                    }
-                    output::put(path, &text)
-                }
+            MotionFormat::Text => match text(&events) {
+                Some(text) => output::put(path, &text),
                 None => Ok(()),
             },
         }
     }
-}
-
-/// The end and what it took, for people.
-fn text(arm: &Arm, at: &Instant, events: &[EventOut], simulation: &Simulation, wall: f64) -> String {
-    let (statistics, estimate) = (simulation.statistics(), simulation.error_estimate());
-    let mut text = format!(
-        "motion {}\n\nafter  {} s the tip is at ({}, {}) m, turned by {} deg, and moves at {} m/s\n",
-        arm.name,
-        number(at.time),
-        number(at.tip[0]),
-        number(at.tip[1]),
-        number(at.tip_theta.to_degrees()),
-        number(at.tip_velocity[0].hypot(at.tip_velocity[1]))
-    );
-    for (cable, own) in arm.cables.iter().zip(&at.cables) {
-        let _ = writeln!(
-            text,
-            "cable  {}: {} N, {} mm reeled in",
-            cable.name,
-            number(own.tension),
-            number(1e3 * own.stroke)
-        );
-    }
-    let (base, works) = (at.base_reaction, at.works);
-    let all = [works.cables, works.water, works.gravity, works.loads, works.base, works.volume, works.dissipated];
-    let largest = all.iter().fold(at.strain_energy, |largest, work| largest.max(work.abs()));
-    // What rounding leaves of nothing is nothing.
-    let all = all.map(|work| number(if work.abs() < 1e-12 * largest { 0.0 } else { work }));
-    let [cables, water, gravity, loads, own_base, volume, dissipated] = all;
-    let _ = writeln!(
-        text,
-        "base   ({}, {}) N and {} N m hold it\n\
-         energy {} J kinetic, {} J of strain\n\
-         work   {cables} J by cables, {water} by water, {gravity} by gravity, {loads} by loads, {own_base} by the base, \
-         {volume} by sections that swell; {dissipated} dissipated",
-        number(base.force[0]),
-        number(base.force[1]),
-        number(base.moment),
-        number(at.kinetic_energy),
-        number(at.strain_energy),
-    );
-    for event in events {
-        let of = event.cable.map_or_else(String::new, |cable| format!(", cable {cable}"));
-        let place = event.s.map_or_else(String::new, |s| format!(", s = {} m", number(s)));
-        let _ = writeln!(text, "event  {} s: {}{of}{place}", number(event.time), event.kind);
-    }
-    let _ = writeln!(
-        text,
-        "steps  {} in time, {} taken back, on {} elements, in {} s: {} times as fast as the clock\n\
-         error  about {} m at the tip by the steps",
-        statistics.steps,
-        statistics.rejected,
-        statistics.elements,
-        number(wall),
-        number(at.time / wall),
-        number(estimate)
-    );
-    text
 }

@@ -4,14 +4,18 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant as Clock};
 
-use hydrostat::{Arm, Inputs, Instant, MotionError, MotionOptions, QuasiStatic, Simulation};
+use hydrostat::{
+    Arm, ArmError, Inputs, Instant, MotionError, MotionOptions, QuasiStatic, Simulation, SolveError, SpatialSimulation,
+};
 use hydrostat_figures::{MotionFrame, motion_figure, strobe_figure};
 use hydrostat_files::{
-    SavedMotion, equilibrium_numbers, motion_numbers, motion_state_beside, number, place_numbers, read_time_loads,
-    set_shaped,
+    EventOut, MOTION_SHAPE_HEADS, SPATIAL_MOTION_SHAPE_HEADS, SavedMotion, equilibrium_numbers, motion_heads,
+    motion_state_beside, number, read_time_loads, set_shaped, spatial_motion_heads,
 };
 
-use super::motion_output::{Ending, MotionOutput};
+use super::motion_output::{Ending, MotionOutput, Told};
+use super::motion_text;
+use super::moving::Moving;
 use crate::args::{MotionFormat, ShapeTimes, SimulateArgs, StationAt};
 use crate::progress::Progress;
 use crate::request::WrongRequest;
@@ -24,7 +28,8 @@ const MOST_ROWS: f64 = 1e7;
 const KEPT_EVERY: Duration = Duration::from_secs(5);
 
 pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm, "`hydrostat simulate`")?;
+    let arm = request::arm_in_space(&args.arm)?;
+    check_in_space(args, &arm)?;
     let pictures = [("--plot", args.plot.as_deref()), ("--plot-time", args.plot_time.as_deref())];
     let state_file = args.output.as_deref().map(motion_state_beside);
     let from_file = args.from.as_deref().map(|file| {
@@ -59,18 +64,98 @@ pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         hasher.finish()
     };
     let resumed = resumed(args, request)?;
-    let clock = Clock::now();
-    let mut simulation = match (&resumed, earlier) {
+    let asked = Asked { args, arm: &arm, plan: &plan, request, resumed: resumed.as_ref() };
+    if arm.space.is_some() {
+        return in_space(&asked, SpatialSimulation::new(&arm, loads, options).map_err(refused)?);
+    }
+    let simulation = match (&resumed, earlier) {
         (Some(saved), _) => Simulation::resume(&arm, loads, options, &saved.state),
         (None, Some(earlier)) => Simulation::resume(&arm, loads, options, &earlier.state.under_other_loads()),
         (None, None) => Simulation::new(&arm, loads, options),
+    };
+    in_plane(&asked, simulation.map_err(refused)?)
+}
+
+/// Refuses what is asked of an arm in space and done in the plane alone.
+fn check_in_space(args: &SimulateArgs, arm: &Arm) -> anyhow::Result<()> {
+    let asked = [
+        (args.from.is_some(), "`--from`"),
+        (args.resume, "`--resume`"),
+        (args.quasi_static, "`--quasi-static`"),
+        (args.plot.is_some(), "`--plot`"),
+        (args.plot_time.is_some(), "`--plot-time`"),
+    ];
+    match asked.into_iter().find(|(asked, _)| *asked && arm.space.is_some()) {
+        Some((_, what)) => Err(SolveError::Arm(ArmError::OnlyInPlane { what }).into()),
+        None => Ok(()),
     }
-    .map_err(refused)?;
+}
+
+/// What is asked for.
+struct Asked<'a> {
+    args: &'a SimulateArgs,
+    arm: &'a Arm,
+    plan: &'a Plan,
+    request: u64,
+    resumed: Option<&'a SavedMotion>,
+}
+
+fn in_plane(asked: &Asked, mut simulation: Simulation) -> anyhow::Result<()> {
+    let Asked { args, arm, plan, request, resumed } = *asked;
+    let clock = Clock::now();
     let mut equilibria = args.quasi_static.then(|| simulation.quasi_static()).transpose().map_err(refused)?;
-    let mut output = MotionOutput::new(args, &arm, plan.stations.len(), resumed.as_ref(), request)?;
+    let heads = motion_heads(arm.cables.len(), plan.stations.len(), args.quasi_static);
+    let mut output = MotionOutput::new(args, heads, MOTION_SHAPE_HEADS, resumed, request)?;
     let mut frames = (args.plot.is_some() || args.plot_time.is_some()).then(Frames::default);
-    let outcome = follow(&plan, &arm, &mut simulation, equilibria.as_mut(), &mut output, frames.as_mut());
-    let ending = match &outcome {
+    let mut statics = Statics::default();
+    let mut last = None;
+    let outcome = follow(plan, &mut simulation, &mut output, |simulation, at, numbers| {
+        if let Some(frames) = &mut frames {
+            frames.take(at, simulation);
+        }
+        if let Some(equilibria) = &mut equilibria {
+            numbers.extend(statics.take(at, equilibria, arm.length));
+        }
+        last = Some(at.clone());
+    });
+    let text = |events: &[_], told: &Told, wall: f64| {
+        let mut text = motion_text::in_plane(arm, last.as_ref()?, events, told, wall);
+        if let Some(equilibrium) = statics.last {
+            motion_text::add_equilibrium(equilibrium, &mut text);
+        }
+        Some(text)
+    };
+    let outcome = ended(asked, &simulation, &mut output, outcome, clock, text)?;
+    if let Some(frames) = &frames {
+        draw(args, arm, &frames.kept)?;
+    }
+    finish(&simulation, outcome, output.is_resumable())
+}
+
+fn in_space(asked: &Asked, mut simulation: SpatialSimulation) -> anyhow::Result<()> {
+    let Asked { args, arm, plan, request, .. } = *asked;
+    let clock = Clock::now();
+    let heads = spatial_motion_heads(arm.cables.len(), plan.stations.len());
+    let mut output = MotionOutput::new(args, heads, SPATIAL_MOTION_SHAPE_HEADS, None, request)?;
+    let mut last = None;
+    let outcome = follow(plan, &mut simulation, &mut output, |_, at, _| last = Some(at.clone()));
+    let text = |events: &[_], told: &Told, wall: f64| {
+        last.as_ref().map(|last| motion_text::in_space(arm, last, events, told, wall))
+    };
+    let outcome = ended(asked, &simulation, &mut output, outcome, clock, text)?;
+    finish(&simulation, outcome, false)
+}
+
+/// Writes what is written at the end of a run that has this outcome.
+fn ended<M: Moving>(
+    asked: &Asked,
+    simulation: &M,
+    output: &mut MotionOutput,
+    outcome: Result<(), Stop>,
+    clock: Clock,
+    text: impl FnOnce(&[EventOut], &Told, f64) -> Option<String>,
+) -> anyhow::Result<Result<(), Stop>> {
+    let verdict = match &outcome {
         Ok(()) => None,
         Err(Stop::Motion(error)) => Some(error.to_string()),
         Err(Stop::User) => Some(format!("interrupted after {} s", number(simulation.time()))),
@@ -83,18 +168,42 @@ pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         Err(Stop::Motion(MotionError::Ended(verdict))) => Some(*verdict),
         _ => None,
     };
-    output.end(&arm, &simulation, &Ending { verdict: ending, limit, wall: clock.elapsed().as_secs_f64() })?;
-    if let Some(frames) = &frames {
-        draw(args, &arm, &frames.kept)?;
-    }
-    for warning in simulation.warnings() {
+    let told = simulation.told();
+    let ending = Ending { verdict, limit };
+    output.end(asked.arm, &told, &ending, |events| text(events, &told, clock.elapsed().as_secs_f64()))?;
+    Ok(outcome)
+}
+
+/// Warns, and says how the run ended.
+fn finish<M: Moving>(simulation: &M, outcome: Result<(), Stop>, is_resumable: bool) -> anyhow::Result<()> {
+    for warning in simulation.told().warnings {
         eprintln!("warning: {}", warning.message());
     }
     match outcome {
         Ok(()) => Ok(()),
         Err(Stop::Motion(error)) => Err(refused(error)),
-        Err(Stop::User) => Err(WrongRequest::Interrupted(simulation.time(), output.is_resumable()).into()),
+        Err(Stop::User) => Err(WrongRequest::Interrupted(simulation.time(), is_resumable).into()),
         Err(Stop::Output(error)) => Err(error),
+    }
+}
+
+/// The equilibria beside a motion in the plane.
+#[derive(Default)]
+struct Statics {
+    /// Tip of the last one (m), and the last and the largest distance from one over the length.
+    last: Option<([f64; 2], [f64; 2])>,
+}
+
+impl Statics {
+    /// The numbers of a row.
+    fn take(&mut self, at: &Instant, equilibria: &mut QuasiStatic, length: f64) -> [f64; 4] {
+        let own = equilibrium_numbers(at, equilibria.tip(at.time).ok(), length);
+        let [x, y, _, distance] = own;
+        if distance.is_finite() {
+            let most = self.last.map_or(0.0, |(_, [_, most])| most);
+            self.last = Some(([x, y], [distance, most.max(distance)]));
+        }
+        own
     }
 }
 
@@ -275,14 +384,12 @@ enum Stop {
     Output(anyhow::Error),
 }
 
-/// Moves on from row to row and from shape to shape.
-fn follow(
+/// Moves on from row to row and from shape to shape; `row_taken` sees every row and may lengthen its numbers.
+fn follow<M: Moving>(
     plan: &Plan,
-    arm: &Arm,
-    simulation: &mut Simulation,
-    mut equilibria: Option<&mut QuasiStatic>,
+    simulation: &mut M,
     output: &mut MotionOutput,
-    mut frames: Option<&mut Frames>,
+    mut row_taken: impl FnMut(&M, &M::At, &mut Vec<f64>),
 ) -> Result<(), Stop> {
     let clock = Clock::now();
     let begin = simulation.time();
@@ -298,29 +405,23 @@ fn follow(
         output.note_events(simulation.events()).map_err(Stop::Output)?;
         if next[1] == Some(time) {
             shape += 1;
-            let stations = plan.shape.iter().map(|s| simulation.station(*s)).collect();
-            output.take_shape(time, stations).map_err(|error| Stop::Output(error.into()))?;
+            let (lines, own) = simulation.shape(&plan.shape);
+            output.take_shape(&lines, own).map_err(|error| Stop::Output(error.into()))?;
         }
         if next[0] != Some(time) {
             continue;
         }
         row += 1;
-        if let Some(frames) = &mut frames {
-            frames.take(&at, simulation);
-        }
-        let mut numbers = motion_numbers(&at);
-        numbers.extend(plan.stations.iter().flat_map(|s| place_numbers(&simulation.station(*s))));
-        if let Some(equilibria) = &mut equilibria {
-            let own = equilibrium_numbers(&at, equilibria.tip(time).ok(), arm.length);
-            output.take_equilibrium(own);
-            numbers.extend(own);
-        }
-        output.take_row(&at, numbers).map_err(Stop::Output)?;
+        let mut numbers = simulation.numbers(&at, &plan.stations);
+        row_taken(simulation, &at, &mut numbers);
+        output.take_row(numbers).map_err(Stop::Output)?;
         if interrupted.load(Ordering::Relaxed) && plan.row(row).is_some() {
             return Err(Stop::User);
         }
         if kept.elapsed() > KEPT_EVERY {
-            output.keep(simulation).map_err(|error| Stop::Output(error.into()))?;
+            if let Some(state) = simulation.state() {
+                output.keep(state).map_err(|error| Stop::Output(error.into()))?;
+            }
             kept = Clock::now();
         }
         progress.say(|| {

@@ -189,7 +189,8 @@ fn an_interrupted_run_keeps_its_rows() {
 #[test]
 fn modes_over_a_load_say_where_an_arm_flutters() {
     let directory = tempfile::tempdir().unwrap();
-    let rod = "[arm]\nlength = 1\nradius = 0.001\n[material]\nyoung = 1e9\n[model]\nvolume = \"none\"\n[flow]\ndensity = 0\n";
+    let rod =
+        "[arm]\nlength = 1\nradius = 0.001\n[material]\nyoung = 1e9\n[model]\nvolume = \"none\"\n[flow]\ndensity = 0\n";
     std::fs::write(directory.path().join("rod.toml"), rod).unwrap();
     // E I = pi/4 1e-3 N m2.
     let stiffness = std::f64::consts::PI / 4.0 * 1e-3;
@@ -206,4 +207,42 @@ fn modes_over_a_load_say_where_an_arm_flutters() {
     let table = hydrostat_in(directory.path(), &[&args[..], &["--format", "csv", "--count", "3"]].concat()).out;
     assert!(table.starts_with("tip_follower_0_N,number,growth_rate_1_s,"), "{table}");
     assert_eq!(table.lines().count(), 7);
+}
+
+#[test]
+fn arms_in_space_move_too() {
+    let directory = directory();
+    let here = directory.path();
+    let own = ["simulate", "silicone-spatial", "--vary", "cable[1].tension=ramp:0:0.1:0:0.1", "--every", "50ms"];
+    let motion = |more: &[&str]| {
+        let rest = ["--set", "dynamics.relaxation_time=2.7ms", "--tol", "1e-3", "--until", "0.1"];
+        hydrostat_in(here, &[&own[..], &rest, more].concat())
+    };
+    let more = ["--station", "0.5", "--shapes", "0.1", "--shape-stations", "5"];
+    let done = motion(&[&more[..], &["--shapes-output", "shapes.csv", "-o", "out.csv"]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(!here.join("out.csv.state.json").exists(), "runs in space do not go on");
+    let text = read(here, "out.csv");
+    let (names, _) = columns(&text);
+    let rows = numbers(&text);
+    let of = |name: &str| names.iter().position(|own| *own == name).unwrap_or_else(|| panic!("{name} in {names:?}"));
+    assert_eq!(rows.len(), 3);
+    assert!(rows.iter().all(|row| row.len() == names.len()));
+    let end = &rows[2];
+    assert!(end[of("tip_z_m")].abs() > 1e-3 && end[of("place_0_z_m")].abs() > 1e-4, "{end:?}");
+    let a: f64 = ["tip_a_x", "tip_a_y", "tip_a_z"].iter().map(|name| end[of(name)].powi(2)).sum();
+    assert!((a - 1.0).abs() < 1e-12);
+    let shapes = read(here, "shapes.csv");
+    assert_eq!(numbers(&shapes).len(), 5);
+    assert!((numbers(&shapes)[4][4] - end[of("tip_z_m")]).abs() < 1e-12);
+    assert_eq!(motion(&[&more[..], &["-o", "out.json"]].concat()).code, 0);
+    let document = json(&read(here, "out.json"));
+    assert_eq!(document["shapes"][0]["z"].as_array().unwrap().len(), 5);
+    assert_eq!(document["columns"].as_array().unwrap().len(), names.len());
+    assert!(motion(&[]).out.contains("its normal along"));
+    for (option, value) in [("--quasi-static", None), ("--plot", Some("a.svg")), ("--from", Some("out.csv"))] {
+        let refused = motion(&[option].into_iter().chain(value).collect::<Vec<_>>());
+        assert_eq!(refused.code, 2);
+        assert!(refused.err.contains(option) && refused.err.contains("plane"), "{}", refused.err);
+    }
 }

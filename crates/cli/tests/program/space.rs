@@ -173,7 +173,13 @@ fn equilibria_in_space_are_listed_and_drawn() {
     let directory = tempfile::tempdir().unwrap();
     let arm = ["equilibria", "silicone", "--set", "arm.space=spatial", "--set", "flow.direction=175", "--flow-speed"];
     let json_of = |more: &[&str]| {
-        json(&hydrostat_in(directory.path(), &[&arm[..], more, &["--format", "json", "--plot", "all.svg", "--svg-text"]].concat()).out)
+        json(
+            &hydrostat_in(
+                directory.path(),
+                &[&arm[..], more, &["--format", "json", "--plot", "all.svg", "--svg-text"]].concat(),
+            )
+            .out,
+        )
     };
     let all = json_of(&["0.2"]);
     assert_eq!((all["complete"].as_bool(), all["misses_some"].as_bool()), (Some(false), Some(false)));

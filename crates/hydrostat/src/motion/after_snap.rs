@@ -3,7 +3,7 @@
 
 use super::error::MotionError;
 use super::rest::{Rest, Restless, can_rest, come_to_rest};
-use super::stepper::not_found;
+use super::start::not_found;
 use crate::rod::arm::Arm;
 use crate::statics::configuration::{Configuration, Tip};
 use crate::statics::engine::Engine;

@@ -15,6 +15,7 @@ use hydrostat_bvp::{
 
 use super::dimensions::{S, Shape, X};
 use super::history::{History, Layout};
+use super::start::force_unit;
 use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::arm::Arm;
@@ -47,9 +48,7 @@ pub(super) struct Moving {
     end_rates: Vec<[Lanes; L]>,
     closed: bool,
     nodes: usize,
-    /// Sizes of the states: what a solution holds, times these, is the state. With k^4 = mass cv^2 and the sizes 1,
-    /// k^2, k^2, k, 1/k, 1/k all states of a bending wave that a step resolves are of one size, and elimination in
-    /// order is stable.
+    /// Sizes of the states: what a solution holds, times these, is the state.
     pub(super) scales: [f64; S],
 }
 
@@ -89,7 +88,7 @@ impl Moving {
     }
 
     pub(super) fn layout(&self) -> Layout {
-        Layout { blocks: self.masses.len(), nodes: self.nodes }
+        Layout { blocks: self.masses.len(), nodes: self.nodes, turns: 1, places: 2, strains: L }
     }
 
     /// Takes the loads of `arm`, which has the same sections, and the acceleration of its stream.
@@ -304,8 +303,7 @@ impl Moving {
         }
     }
 
-    /// How much of the velocity of the water against the tip a change of place (over L) is, by the last history; zero
-    /// in a vacuum.
+    /// See [`super::settling::Moves::drag_change`].
     pub(super) fn drag_change(&self) -> f64 {
         let water = &self.statics.water;
         if self.statics.arm().flow.density == 0.0 {
@@ -315,12 +313,6 @@ impl Moving {
         let [_, vx, vy] = self.history.last_rate();
         let speed = (water.stream[0] - length * vx).hypot(water.stream[1] - length * vy);
         self.cv * length / speed.max(1e-6 * length)
-    }
-
-    /// The time in which the arm swings, about, s.
-    pub(super) fn time_unit(&self) -> f64 {
-        let mass = self.masses.first().map_or(0.0, |own| (own.wall + own.added).0[0]);
-        if mass > 0.0 { mass.sqrt() } else { 1.0 }
     }
 
     /// A station with the states themselves.
@@ -440,24 +432,6 @@ impl Moving {
         given.inner = solved.strain;
         Ok(())
     }
-}
-
-/// The force that bends the arm as a whole, N: the mean of EI over L^2, soft pieces (a hinge) foremost.
-fn force_unit(arm: &Arm) -> f64 {
-    let mut at = vec![0.0];
-    at.extend(arm.breaks());
-    at.push(arm.length);
-    // By Simpson's rule on eight parts between breaks.
-    let soft = |s: f64| arm.stiffness_at(s)[2].recip();
-    let sum = |ends: &[f64]| -> f64 {
-        let h = (ends[1] - ends[0]) / 8.0;
-        (0..8)
-            .map(|k| ends[0] + f64::from(k) * h)
-            .map(|s| h / 6.0 * (soft(s) + 4.0 * soft(s + 0.5 * h) + soft(s + h)))
-            .sum()
-    };
-    let compliance: f64 = at.windows(2).map(sum).sum();
-    (compliance * arm.length).recip()
 }
 
 /// A gradient by the statics' states as one by all.

@@ -2,6 +2,7 @@
 
 use crate::rod::arm::ArmError;
 use crate::rod::parameter::Unfit;
+use crate::spatial::SpatialError;
 use crate::statics::verdict::SolveError;
 
 /// What ended a motion.
@@ -116,6 +117,9 @@ pub enum MotionError {
     /// There is no equilibrium to start from.
     #[error("no equilibrium to start from: {0}")]
     Start(#[from] Box<SolveError>),
+    /// The same in space.
+    #[error("no equilibrium to start from: {0}")]
+    SpatialStart(Box<SpatialError>),
     /// The motion ended before its time.
     #[error("{}", .0.message())]
     Ended(MotionVerdict),

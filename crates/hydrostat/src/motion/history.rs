@@ -1,29 +1,52 @@
 //! What the time methods know of an arm: values, rates and second rates at the stations, flat in memory.
 //!
-//! In blocks of four elements side by side: theta, x, y at the stages; the same at the nodes (one block each, its
-//! last lane empty); these have second rates. Then nu, eta, mu and beta' at the stages, which have rates alone.
+//! In blocks of four elements side by side: the coordinates (theta, x, y in the plane) at the stages; the same at the
+//! nodes (one block each or more, the last lanes empty); these have second rates. Then the strains and beta' at the
+//! stages, which have rates alone.
 
-use hydrostat_bvp::{Collocation, LANES, Lanes, Real};
-
-use super::dimensions::{S, Shape, X};
-use crate::statics::dimensions::{L, M};
+use hydrostat_bvp::{LANES, Lanes, Real};
 
 /// Where what stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Layout {
     pub(super) blocks: usize,
     pub(super) nodes: usize,
+    /// Coordinates of a station that turn it (one in the plane, three in space), and those of its place after them.
+    pub(super) turns: usize,
+    pub(super) places: usize,
+    /// Strains of a station.
+    pub(super) strains: usize,
 }
 
 impl Layout {
+    /// Coordinates of a station.
+    pub(super) fn coordinates(self) -> usize {
+        self.turns + self.places
+    }
+
+    /// Blocks of one node.
+    fn node_blocks(self) -> usize {
+        self.coordinates().div_ceil(LANES)
+    }
+
+    /// Block and lane of a coordinate of node `i`.
+    pub(super) fn at_node(self, i: usize, k: usize) -> (usize, usize) {
+        (self.coordinates() * self.blocks + self.node_blocks() * i + k / LANES, k % LANES)
+    }
+
     /// Blocks that have second rates.
     pub(super) fn second(self) -> usize {
-        3 * self.blocks + self.nodes
+        self.coordinates() * self.blocks + self.node_blocks() * self.nodes
+    }
+
+    /// Where the strains of a block of stages stand, beta' after them.
+    pub(super) fn first_strain(self, block: usize) -> usize {
+        self.second() + (self.strains + 1) * block
     }
 
     /// All blocks.
     pub(super) fn all(self) -> usize {
-        self.second() + 4 * self.blocks
+        self.first_strain(self.blocks)
     }
 }
 
@@ -42,26 +65,26 @@ impl History {
         self.rates = vec![Lanes::of(0.0); layout.second()];
     }
 
-    /// Of theta, x, y (k = 0, 1, 2) in a block of stages.
+    /// Of coordinate `k` (theta, x, y in the plane) in a block of stages.
     #[inline(always)]
     pub(super) fn value(&self, block: usize, k: usize) -> Lanes {
-        self.values[3 * block + k]
+        self.values[self.layout.coordinates() * block + k]
     }
 
     #[inline(always)]
     pub(super) fn rate(&self, block: usize, k: usize) -> Lanes {
-        self.rates[3 * block + k]
+        self.rates[self.layout.coordinates() * block + k]
     }
 
-    /// Rates of theta, x, y at the tip that a stage starts from.
-    pub(super) fn last_rate(&self) -> [f64; 3] {
-        if self.layout.nodes == 0 { [0.0; 3] } else { node_of(self.layout, &self.rates, self.layout.nodes - 1) }
+    /// Rates of the coordinates of the tip that a stage starts from.
+    pub(super) fn last_rate<const C: usize>(&self) -> [f64; C] {
+        if self.layout.nodes == 0 { [0.0; C] } else { node_of(self.layout, &self.rates, self.layout.nodes - 1) }
     }
 
-    /// Of nu, eta, mu in a block of stages.
+    /// Of a strain (nu, eta, mu in the plane) in a block of stages.
     #[inline(always)]
     pub(super) fn strain(&self, block: usize, k: usize) -> Lanes {
-        self.values[self.layout.second() + 4 * block + k]
+        self.values[self.layout.first_strain(block) + k]
     }
 }
 
@@ -72,10 +95,12 @@ pub(super) struct Snapshot {
     pub(super) values: Vec<Lanes>,
     pub(super) rates: Vec<Lanes>,
     pub(super) second: Vec<Lanes>,
+    /// In space, the rotations that the coordinates turn from; none in the plane.
+    pub(super) from: Vec<[Lanes; 4]>,
 }
 
 impl Snapshot {
-    /// At rest, with these values.
+    /// At rest, with all coordinates zero.
     pub(super) fn at_rest(layout: Layout) -> Self {
         let zero = Lanes::of(0.0);
         Self {
@@ -83,25 +108,29 @@ impl Snapshot {
             values: vec![zero; layout.all()],
             rates: vec![zero; layout.all()],
             second: vec![zero; layout.second()],
+            from: Vec::new(),
         }
     }
 
-    /// Takes the values of a solution whose states have the sizes `scales`, that of theta one; `system` is for its
-    /// memory.
-    pub(super) fn take(&mut self, system: &mut Collocation<S, M, 0, L>, solution: &Shape, scales: &[f64; S]) {
-        system.take_stations(solution);
-        let layout = self.layout;
-        let size = scales[X];
-        for (block, station) in system.stations().iter().enumerate() {
-            let own = &mut self.values[3 * block..3 * block + 3];
-            let per = Lanes::of(size);
-            own.copy_from_slice(&[station.z[0], per * station.z[X], per * station.z[X + 1]]);
-            let [nu, eta, mu] = solution.stages[block].inner;
-            let first = layout.second() + 4 * block;
-            self.values[first..first + 4].copy_from_slice(&[nu, eta, mu, solution.stages[block].closure_slope]);
-        }
-        for (i, z) in solution.nodes.iter().enumerate() {
-            self.values[3 * layout.blocks + i] = Lanes([z[0], size * z[X], size * z[X + 1], 0.0]);
+    /// Takes the coordinates of a block of stages, its strains and beta'.
+    pub(super) fn take_stage<const C: usize, const K: usize>(
+        &mut self,
+        block: usize,
+        coordinates: [Lanes; C],
+        strains: [Lanes; K],
+        beta_slope: Lanes,
+    ) {
+        self.values[C * block..C * (block + 1)].copy_from_slice(&coordinates);
+        let first = self.layout.first_strain(block);
+        self.values[first..first + K].copy_from_slice(&strains);
+        self.values[first + K] = beta_slope;
+    }
+
+    /// Takes the coordinates of node `i`.
+    pub(super) fn take_node<const C: usize>(&mut self, i: usize, coordinates: [f64; C]) {
+        for (k, value) in coordinates.into_iter().enumerate() {
+            let (block, lane) = self.layout.at_node(i, k);
+            self.values[block].0[lane] = value;
         }
     }
 
@@ -116,38 +145,56 @@ impl Snapshot {
         }
     }
 
-    /// theta, x, y of node `i`.
-    pub(super) fn node(&self, i: usize) -> [f64; 3] {
+    /// The coordinates of node `i`: theta, x, y in the plane.
+    pub(super) fn node<const C: usize>(&self, i: usize) -> [f64; C] {
         node_of(self.layout, &self.values, i)
     }
 
     /// Their rates.
-    pub(super) fn node_rate(&self, i: usize) -> [f64; 3] {
+    pub(super) fn node_rate<const C: usize>(&self, i: usize) -> [f64; C] {
         node_of(self.layout, &self.rates, i)
     }
 
-    /// theta, x, y in a block of stages, and their rates.
-    pub(super) fn stage(&self, block: usize) -> [[Lanes; 3]; 2] {
-        let of = |list: &[Lanes]| std::array::from_fn(|k| list[3 * block + k]);
+    /// The coordinates in a block of stages, and their rates.
+    pub(super) fn stage<const C: usize>(&self, block: usize) -> [[Lanes; C]; 2] {
+        let of = |list: &[Lanes]| std::array::from_fn(|k| list[C * block + k]);
         [of(&self.values), of(&self.rates)]
     }
 
-    /// Accelerations of x, y in a block of stages.
-    pub(super) fn acceleration(&self, block: usize) -> [Lanes; 2] {
-        [self.second[3 * block + 1], self.second[3 * block + 2]]
+    /// Second rates of the coordinates in a block of stages.
+    pub(super) fn second<const C: usize>(&self, block: usize) -> [Lanes; C] {
+        std::array::from_fn(|k| self.second[C * block + k])
     }
 
-    /// nu, eta, mu, beta' in a block of stages, and their rates.
-    pub(super) fn strains(&self, block: usize) -> [[Lanes; 4]; 2] {
-        let first = self.layout.second() + 4 * block;
+    /// Strains and beta' in a block of stages (nu, eta, mu, beta' in the plane), and their rates.
+    pub(super) fn strains<const K: usize>(&self, block: usize) -> [[Lanes; K]; 2] {
+        let first = self.layout.first_strain(block);
         let of = |list: &[Lanes]| std::array::from_fn(|k| list[first + k]);
         [of(&self.values), of(&self.rates)]
     }
+
+    /// x, y (and z) of the centreline at node `i`, and their rates; z is 0 in the plane.
+    pub(super) fn node_place(&self, i: usize) -> [[f64; 3]; 2] {
+        [&self.values, &self.rates].map(|list| self.place_in(list, i))
+    }
+
+    /// The place part of node `i` in a list like [`Snapshot::values`].
+    pub(super) fn place_in(&self, list: &[Lanes], i: usize) -> [f64; 3] {
+        std::array::from_fn(|k| {
+            if k >= self.layout.places {
+                return 0.0;
+            }
+            let (block, lane) = self.layout.at_node(i, self.layout.turns + k);
+            list[block].0[lane]
+        })
+    }
 }
 
-fn node_of(layout: Layout, list: &[Lanes], i: usize) -> [f64; 3] {
-    let [theta, x, y, _] = list[3 * layout.blocks + i].0;
-    [theta, x, y]
+fn node_of<const C: usize>(layout: Layout, list: &[Lanes], i: usize) -> [f64; C] {
+    std::array::from_fn(|k| {
+        let (block, lane) = layout.at_node(i, k);
+        list[block].0[lane]
+    })
 }
 
 /// The motion at the share `x` of a step of length `h`: quintic where there are second rates, else cubic (Hermite).
@@ -224,15 +271,13 @@ fn cubic_rate(x: f64) -> [f64; 4] {
     [6.0 * (x2 - x), 1.0 - 4.0 * x + 3.0 * x2, 6.0 * (x - x2), 3.0 * x2 - 2.0 * x]
 }
 
-const _: () = assert!(LANES == 4, "a node's three numbers stand in one block");
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn interpolation_is_exact_for_polynomials_of_its_degree() {
-        let layout = Layout { blocks: 1, nodes: 0 };
+        let layout = Layout { blocks: 1, nodes: 0, turns: 1, places: 2, strains: 3 };
         let at = |t: f64| {
             let mut s = Snapshot::at_rest(layout);
             for i in 0..layout.all() {

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use super::error::MotionError;
 use crate::rod::arm::Arm;
-use crate::rod::parameter::Parameter;
+use crate::rod::parameter::{Parameter, Unfit};
 use crate::rod::profile::Table;
 
 /// A quantity over time, in its unit.
@@ -158,6 +158,7 @@ enum Driven {
     Of(Parameter),
     BaseX,
     BaseY,
+    BaseZ,
 }
 
 impl fmt::Display for Driven {
@@ -166,17 +167,22 @@ impl fmt::Display for Driven {
             Self::Of(parameter) => parameter.fmt(f),
             Self::BaseX => f.write_str("arm.base.x"),
             Self::BaseY => f.write_str("arm.base.y"),
+            Self::BaseZ => f.write_str("arm.base.z"),
         }
     }
 }
 
 impl Driven {
     /// Its place in the arm.
-    fn set(self, arm: &mut Arm, value: f64) -> Result<(), crate::rod::parameter::Unfit> {
+    fn set(self, arm: &mut Arm, value: f64) -> Result<(), Unfit> {
         match self {
             Self::Of(parameter) => parameter.set(arm, value)?,
             Self::BaseX => arm.base.x = value,
             Self::BaseY => arm.base.y = value,
+            Self::BaseZ => match &mut arm.space {
+                Some(space) => space.z = value,
+                None => return Err(Unfit::InPlane { key: self.to_string() }),
+            },
         }
         Ok(())
     }
@@ -185,16 +191,22 @@ impl Driven {
         match key {
             "arm.base.x" => Some(Self::BaseX),
             "arm.base.y" => Some(Self::BaseY),
+            "arm.base.z" => Some(Self::BaseZ),
             _ => Parameter::from_str(key).ok().filter(|p| moves(*p)).map(Self::Of),
         }
     }
 
     fn is_of_base(self) -> bool {
-        matches!(self, Self::BaseX | Self::BaseY | Self::Of(Parameter::BaseAngle))
+        match self {
+            Self::BaseX | Self::BaseY | Self::BaseZ => true,
+            Self::Of(own) => {
+                matches!(own, Parameter::BaseAngle | Parameter::BaseAlong(_) | Parameter::SectionAlong(_))
+            }
+        }
     }
 
     fn is_of_stream(self) -> bool {
-        matches!(self, Self::Of(Parameter::FlowSpeed | Parameter::FlowDirection))
+        matches!(self, Self::Of(Parameter::FlowSpeed | Parameter::FlowDirection | Parameter::StreamAlong(_)))
     }
 }
 
@@ -208,10 +220,15 @@ fn moves(parameter: Parameter) -> bool {
             | Parameter::FlowDirection
             | Parameter::GravityAcceleration
             | Parameter::GravityDirection
-            | Parameter::TipForce(0 | 1)
+            | Parameter::StreamAlong(_)
+            | Parameter::GravityAlong(_)
+            | Parameter::TipForce(_)
             | Parameter::TipMoment
-            | Parameter::TipFollower(0 | 1)
+            | Parameter::TipMomentAbout(_)
+            | Parameter::TipFollower(_)
             | Parameter::BaseAngle
+            | Parameter::BaseAlong(_)
+            | Parameter::SectionAlong(_)
     )
 }
 
@@ -235,12 +252,12 @@ impl Inputs {
     /// The names of what may change in time, those of the cables with the index 0.
     pub fn names() -> Vec<String> {
         let of = crate::rod::parameter::names();
-        let base = ["arm.base.x", "arm.base.y"].map(str::to_owned);
+        let base = ["arm.base.x", "arm.base.y", "arm.base.z"].map(str::to_owned);
         of.into_iter().filter(|name| Driven::read(name).is_some()).chain(base).collect()
     }
 
     /// Sets the course of the quantity `key`, which has the name and the unit that [`Parameter`] gives it; also
-    /// `arm.base.x` and `arm.base.y`, m.
+    /// `arm.base.x`, `arm.base.y` and, in space, `arm.base.z`, m.
     ///
     /// # Errors
     /// [`MotionError::Course`] when no such quantity may change in time, or the course is none.
@@ -303,6 +320,7 @@ impl Inputs {
             Some(Driven::Of(parameter)) => parameter.of(arm)?,
             Some(Driven::BaseX) => arm.base.x,
             Some(Driven::BaseY) => arm.base.y,
+            Some(Driven::BaseZ) => arm.space.as_ref().map_or(0.0, |space| space.z),
             // Which has no such name.
             None => 0.0,
         };
@@ -320,14 +338,39 @@ impl Inputs {
         }
     }
 
-    /// The acceleration of the stream just before `time`, m/s2: the rate of speed (cos direction, sin direction).
-    pub(super) fn stream_acceleration(&self, arm: &Arm, time: f64) -> [f64; 2] {
+    /// The acceleration of the stream just before `time`, m/s2: in the plane the rate of speed (cos direction, sin
+    /// direction).
+    pub(super) fn stream_acceleration(&self, arm: &Arm, time: f64) -> [f64; 3] {
         let rate = |of: Parameter| {
             self.courses.iter().find(|(driven, _)| *driven == Driven::Of(of)).map_or(0.0, |(_, c)| c.before(time).1)
         };
+        if arm.space.is_some() {
+            return self.stream_acceleration_in_space(arm, time);
+        }
         let (sin, cos) = arm.flow.direction.sin_cos();
         let (along, across) = (rate(Parameter::FlowSpeed), arm.flow.speed * rate(Parameter::FlowDirection));
-        [along * cos - across * sin, along * sin + across * cos]
+        [along * cos - across * sin, along * sin + across * cos, 0.0]
+    }
+
+    /// The same by differences, exact where the speed alone changes.
+    fn stream_acceleration_in_space(&self, arm: &Arm, time: f64) -> [f64; 3] {
+        /// s.
+        const APART: f64 = 1e-6;
+        let moving =
+            || self.courses.iter().filter(|(driven, course)| driven.is_of_stream() && course.before(time).1 != 0.0);
+        if moving().next().is_none() {
+            return [0.0; 3];
+        }
+        let at = |dt: f64| {
+            let mut arm = arm.clone();
+            for (driven, course) in moving() {
+                let (value, rate) = course.before(time);
+                let _ = driven.set(&mut arm, value + rate * dt);
+            }
+            arm.stream_in_space()
+        };
+        let (after, before) = (at(APART), at(-APART));
+        std::array::from_fn(|k| (after[k] - before[k]) / (2.0 * APART))
     }
 
     /// The first corner or jump of a course after `time`.

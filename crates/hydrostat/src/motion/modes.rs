@@ -25,8 +25,9 @@ use nalgebra::{Complex, DMatrix, DVector};
 use super::dimensions::X;
 use super::equations::Linear;
 use super::error::MotionError;
-use super::settling::Settling;
-use super::stepper::{not_found, start_at_rest};
+use super::in_plane::{Planar, start_at_rest};
+use super::settling::Moves;
+use super::start::not_found;
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{L, M};
 
@@ -118,7 +119,7 @@ impl Arm {
             let reason = "modes are those at given tensions: give the tension that `solve` finds";
             return Err(MotionError::Unsupported { key: format!("cable[{i}].stroke"), reason });
         }
-        let mut settling = Settling::new(self);
+        let mut settling = Planar::new(self);
         start_at_rest(&mut settling, self, Some(elements), 1e-8, 0.0)?;
         let rates = rates(&mut settling)?;
         let time = self.dynamics.relaxation_time;
@@ -142,7 +143,7 @@ impl Arm {
 }
 
 /// All rates that the mesh has, real and imaginary part, 1/s.
-fn rates(settling: &mut Settling) -> Result<Vec<[f64; 2]>, MotionError> {
+fn rates(settling: &mut Planar) -> Result<Vec<[f64; 2]>, MotionError> {
     let arm = settling.moving.statics.arm().clone();
     let failed = |failure| not_found(0.0, 0.0, failure, &arm);
     settling.linearise().map_err(|error| match error {

@@ -45,7 +45,7 @@ pub(super) fn station(
     let groups = Groups { elements: mesh.elements(), stages: M };
     let (mut value, mut rate, mut strain) = ([0.0; 3], [0.0; 3], [0.0; 3]);
     for (i, weight) in [(element, ends[0]), (element + 1, ends[1])] {
-        let (own, own_rate) = (at.node(i), at.node_rate(i));
+        let (own, own_rate) = (at.node::<3>(i), at.node_rate::<3>(i));
         for k in 0..3 {
             value[k] += weight * own[k];
             rate[k] += weight * own_rate[k];
@@ -53,7 +53,7 @@ pub(super) fn station(
     }
     for (j, weight) in stages.iter().enumerate() {
         let (block, lane) = groups.at(element, j);
-        let ([own, own_rate], [strains, _]) = (at.stage(block), at.strains(block));
+        let ([own, own_rate], [strains, _]) = (at.stage::<3>(block), at.strains::<4>(block));
         for k in 0..3 {
             value[k] += weight * own[k].0[lane];
             rate[k] += weight * own_rate[k].0[lane];

@@ -16,7 +16,7 @@ use hydrostat_bvp::{Collocation, Lanes, Real, Station, each};
 use super::dimensions::S;
 use super::equations::Moving;
 use super::history::Snapshot;
-use super::works::WORKS;
+use super::works::{Carried, WORKS};
 use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::{area_derivatives, area_law};
 use crate::rod::inertia::inertia;
@@ -26,7 +26,7 @@ use crate::statics::dimensions::{L, M, N};
 impl Moving {
     /// The powers (in the unit of force times L/s) in the motion `at`, which `system` was linearised at and whose base
     /// carries `base`.
-    pub(super) fn powers(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot, base: [f64; 3]) -> [f64; WORKS] {
+    pub(super) fn powers(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot, base: Carried) -> [f64; WORKS] {
         let groups = self.statics.groups;
         let mut out = [0.0; WORKS];
         for block in 0..at.layout.blocks {
@@ -40,11 +40,11 @@ impl Moving {
             }
         }
         let tip = at.layout.nodes - 1;
-        let ([theta, ..], [omega, vx, vy]) = (at.node(tip), at.node_rate(tip));
+        let ([theta, _, _], [omega, vx, vy]) = (at.node(tip), at.node_rate(tip));
         let ([x, y, moment], _) = self.statics.tip_load(theta);
         out[3] += x * vx + y * vy + moment * omega;
         let [omega, vx, vy] = at.node_rate(0);
-        out[4] -= base[0] * vx + base[1] * vy + base[2] * omega;
+        out[4] -= base[0] * vx + base[1] * vy + base[5] * omega;
         out
     }
 
@@ -93,8 +93,9 @@ impl Moving {
         let (place, masses, water) = (&self.statics.places[block], &self.masses[block], &self.statics.water);
         let arm = self.statics.arm();
         let (zero, half) = (Lanes::of(0.0), Lanes::of(0.5));
-        let [[theta, ..], [omega, vx, vy]] = at.stage(block);
-        let acceleration = at.acceleration(block);
+        let [[theta, _, _], [omega, vx, vy]] = at.stage(block);
+        let [_, x_rate, y_rate] = at.second(block);
+        let acceleration = [x_rate, y_rate];
         let [[nu, eta, mu, beta_slope], [nu_rate, eta_rate, mu_rate, beta_slope_rate]] = at.strains(block);
         let (strain, strain_rate) = ([nu, eta, mu], [nu_rate, eta_rate, mu_rate]);
         let (velocity, length) = ([vx, vy], Lanes::of(self.statics.units.length));

@@ -6,15 +6,17 @@
 
 use hydrostat_bvp::{Lanes, Real, Solution, Stage};
 
-use super::dimensions::{Shape, X};
+use super::dimensions::{S, Shape, X};
+use super::equations::Moving;
 use super::error::MotionError;
 use super::history::{Snapshot, between};
+use super::in_plane::{Planar, mesh_at};
 use super::inputs::Inputs;
-use super::settling::Settling;
-use super::stepper::{Stepper, check, mesh_at};
+use super::start::check;
+use super::stepper::Stepper;
 use crate::rod::arm::Arm;
 use crate::statics::configuration::Configuration;
-use crate::statics::dimensions::Guess;
+use crate::statics::dimensions::{Guess, L};
 use crate::statics::engine::Engine;
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::stability::Stability;
@@ -176,13 +178,13 @@ pub(super) fn come_to_rest(engine: &mut Engine, tol: f64) -> Result<Rest, Restle
 }
 
 /// The motion of the engine's shape from rest.
-fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper {
-    let mut settling = Settling::new(arm);
+fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper<Moving, S, L> {
+    let mut settling = Planar::new(arm);
     let mesh = mesh_at(engine, arm, ELEMENTS);
     if engine.equations.held.is_some() {
         settling.moving.statics.hold_strokes();
     }
-    settling.start_from(&engine.solution, engine.equations.units.force, mesh);
+    settling.start_from_statics(&engine.solution, engine.equations.units.force, mesh);
     Stepper::at_rest(settling, arm.clone(), Inputs::default(), 0.0, TOLERANCE, None).let_go()
 }
 
@@ -206,7 +208,7 @@ impl Found {
     }
 
     /// When in the last step the arm came within [`NEAR`].
-    fn entry(&self, stepper: &Stepper) -> f64 {
+    fn entry(&self, stepper: &Stepper<Moving, S, L>) -> f64 {
         let mut at = stepper.before.clone();
         if self.distance(&at) <= NEAR {
             return stepper.time - stepper.step;
@@ -222,7 +224,7 @@ impl Found {
 }
 
 /// The stable equilibrium at the shape of the moving arm, where there is one, with the engine left there.
-fn look(engine: &mut Engine, stepper: &Stepper, tol: f64) -> Option<Found> {
+fn look(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Found> {
     let kept = engine.state();
     let found = look_from(engine, stepper, tol);
     if found.is_none() {
@@ -231,7 +233,7 @@ fn look(engine: &mut Engine, stepper: &Stepper, tol: f64) -> Option<Found> {
     found
 }
 
-fn look_from(engine: &mut Engine, stepper: &Stepper, tol: f64) -> Option<Found> {
+fn look_from(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Found> {
     let settling = &stepper.settling;
     let force = settling.moving.statics.units.force / engine.equations.units.force;
     engine.solution = without_places(&settling.solution, &settling.moving.scales, force);

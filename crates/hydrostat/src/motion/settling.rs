@@ -1,14 +1,19 @@
 //! Newton's method on the boundary-value problem of one stage.
 
-use hydrostat_bvp::{Collocation, Correction, Forcing, Lanes, LinearisationError, Mesh, Real, Side, Solution};
+use std::fmt::Debug;
 
-use super::border::Border;
-use super::dimensions::{S, Shape, X};
-use super::equations::Moving;
+use hydrostat_bvp::{
+    Collocation, Correction, Forcing, Gauss, Lanes, LinearisationError, Mesh, Problem, Real, Side, Solution,
+};
+
+use super::error::MotionError;
+use super::history::{History, Layout, Snapshot};
+use super::inputs::Inputs;
+use super::works::{Carried, WORKS};
 use crate::numerics::rounds::{correct, linearise, respond};
 use crate::rod::arm::Arm;
-use crate::statics::dimensions::{Guess, L, M, N, Q};
-use crate::statics::engine::{turn_sections, wanted_side};
+use crate::statics::dimensions::{M, Units};
+use crate::statics::engine::wanted_side;
 use crate::statics::equations::SectionFailure;
 
 /// Rounds of one solve.
@@ -37,30 +42,139 @@ pub(super) enum Unsolved {
     Stalled,
 }
 
+/// The boundary-value problem of one stage in time with `S` states and `L` strains, in the plane or in space, and what
+/// is read of its solutions.
+pub(super) trait Moves<const S: usize, const L: usize>:
+    Problem<S, 0, L, Failure = SectionFailure> + Clone
+{
+    /// What a round does to tensions, with memory for it.
+    type Border: Clone + Debug + Default;
+
+    /// Refuses what cannot move; else at rest in the equilibrium of `arm`.
+    fn start(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -> Result<Settling<Self, S, L>, MotionError>;
+
+    /// The sizes of the states where those of place are 1/k, see `scales`.
+    fn sizes(k: f64) -> [f64; S];
+
+    /// What a solution holds, times these, is the state. With k^4 = mass cv^2 and the sizes 1 of angles, k^2 of forces,
+    /// k of moments, 1/k of places all states of a bending wave that a step resolves are of one size, and elimination
+    /// in order is stable.
+    fn scales(&self) -> &[f64; S];
+
+    /// Takes d rate / d value (1/s) and the sizes of the states.
+    fn set_rate(&mut self, cv: f64, scales: [f64; S]);
+
+    fn units(&self) -> Units;
+
+    /// Mass per length at the base with the water there, in the unit of force s2/L.
+    fn mass(&self) -> f64;
+
+    fn place_on(&mut self, gauss: &Gauss<M>, solution: &Solution<S, M, L>);
+    fn place_ends(&mut self, solution: &Solution<S, M, L>);
+    fn jumps_at(&self, s: f64) -> bool;
+    fn set_end_rates(&mut self, gauss: &Gauss<M>);
+    fn layout(&self) -> Layout;
+    fn history_mut(&mut self) -> &mut History;
+
+    /// The largest angle (rad) and change of place (over L) of a correction.
+    fn largest(&self, correction: &Correction<S, M, 0, L>) -> [f64; 2];
+
+    /// How much of the velocity of the water against the tip a change of place (over L) is, by the last history; zero
+    /// in a vacuum.
+    fn drag_change(&self) -> f64;
+
+    /// Takes the loads of `arm`, which has the same sections, just before `time`.
+    fn take_loads(&mut self, arm: &Arm, inputs: &Inputs, time: f64);
+
+    /// The time in which the arm swings, about, s.
+    fn time_unit(&self) -> f64 {
+        let mass = self.mass();
+        if mass > 0.0 { mass.sqrt() } else { 1.0 }
+    }
+
+    /// At rest in a solution; `system` is for its memory.
+    fn at_rest(&self, system: &mut Collocation<S, M, 0, L>, solution: &Solution<S, M, L>) -> Snapshot {
+        let mut out = Snapshot::at_rest(self.layout());
+        self.read(system, solution, &mut out);
+        out
+    }
+
+    /// Takes where a step starts from.
+    fn start_step(&mut self, _now: &Snapshot) {}
+
+    /// The motion that ends a step as the start of the next one.
+    fn restarted(&self, now: &Snapshot, out: &mut Snapshot) {
+        out.clone_from(now);
+    }
+
+    /// Takes the values of a solution; `system` is for its memory.
+    fn read(&self, system: &mut Collocation<S, M, 0, L>, solution: &Solution<S, M, L>, out: &mut Snapshot);
+
+    /// n_f(0) and m_f(0) of a solution, in the unit of force.
+    fn at_base(&self, solution: &Solution<S, M, L>) -> Carried;
+
+    /// The powers (in the unit of force times L/s) in the motion `at`, which `system` was linearised at and whose base
+    /// carries `base`.
+    fn powers(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot, base: Carried) -> [f64; WORKS];
+
+    /// Kinetic energy and that of strain (in the unit of force times L) in the motion `at`.
+    fn energies(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot) -> [f64; 2];
+
+    /// The smallest margin against folds of the surface in the motion `at`, and where over L: at or below zero the
+    /// surface folds.
+    fn fold_margin(&self, at: &Snapshot) -> [f64; 2];
+
+    /// The cables whose stroke is commanded.
+    fn held(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
+    /// Tensions (N) of all cables at the last solve, and which held ones are taut.
+    fn tensions(&self) -> (Vec<f64>, Vec<bool>);
+
+    /// Takes the tensions of held cables back.
+    fn take_tensions(&mut self, _tensions: &(Vec<f64>, Vec<bool>)) {}
+
+    /// Adds to the correction of the last linearisation what the tensions of held cables do, so that their strokes are
+    /// met; by how much those of taut ones were off.
+    fn hold_strokes(_settling: &mut Settling<Self, S, L>) -> Result<f64, Unsolved> {
+        Ok(0.0)
+    }
+
+    /// Adds `factor` times the last round to the tensions.
+    fn add_tensions(_settling: &mut Settling<Self, S, L>, _factor: f64) {}
+
+    /// Lets cables go slack that push, and takes slack ones up that are too short, given the size of the last
+    /// correction; whether any changed.
+    fn switch_taut(_settling: &mut Settling<Self, S, L>, _size: f64) -> bool {
+        false
+    }
+}
+
 /// The solver of stages: the last solution, and those before it.
 #[derive(Debug, Clone)]
-pub(super) struct Settling {
-    pub(super) moving: Moving,
+pub(super) struct Settling<P: Moves<S, L>, const S: usize, const L: usize> {
+    pub(super) moving: P,
     pub(super) system: Collocation<S, M, 0, L>,
-    pub(super) solution: Shape,
+    pub(super) solution: Solution<S, M, L>,
     pub(super) correction: Correction<S, M, 0, L>,
-    pub(super) border: Border,
+    pub(super) border: P::Border,
     /// The last solves, the latest last, with their times.
-    past: Vec<(f64, Shape)>,
-    spare: Shape,
+    past: Vec<(f64, Solution<S, M, L>)>,
+    spare: Solution<S, M, L>,
     /// Linearisations so far, and solves.
     pub(super) rounds: usize,
     pub(super) solves: usize,
 }
 
-impl Settling {
-    pub(super) fn new(arm: &Arm) -> Self {
+impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
+    pub(super) fn of(moving: P) -> Self {
         Self {
-            moving: Moving::new(arm),
+            moving,
             system: Collocation::new().balanced(),
             solution: Solution::default(),
             correction: Correction::default(),
-            border: Border::default(),
+            border: P::Border::default(),
             past: Vec::new(),
             spare: Solution::default(),
             rounds: 0,
@@ -78,39 +192,11 @@ impl Settling {
         respond(&self.system, change, out);
     }
 
-    /// n_f(0) and m_f(0) of the solution, in the unit of force.
-    pub(super) fn at_base(&self) -> [f64; 3] {
-        self.contact().next().unwrap_or_default()
-    }
-
-    /// n_f and m_f of the solution at the nodes, in the unit of force.
-    pub(super) fn contact(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        let scales = self.moving.scales;
-        self.solution.nodes.iter().map(move |z| std::array::from_fn(|k| scales[k + 1] * z[k + 1]))
-    }
-
-    /// Takes the unloaded arm, on a mesh for the motion.
-    pub(super) fn start_unloaded(&mut self, mesh: Mesh) {
-        let statics = &mut self.moving.statics;
-        let base = statics.arm().base;
-        let mut shape = Guess::constant(mesh, [base.angle, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
-        statics.place_on(&self.system.gauss, &shape);
-        for (block, stage) in shape.stages.iter_mut().enumerate() {
-            stage.inner = statics.reference_in(block);
-        }
-        turn_sections(&self.system.gauss, &mut shape);
-        let force = statics.units.force;
-        let mesh = shape.mesh.clone();
-        self.start_from(&shape, force, mesh);
-    }
-
-    /// Takes the solution of the statics, whose unit of force is `force` (N), on a mesh for the motion.
-    pub(super) fn start_from(&mut self, given: &Guess, force: f64, mesh: Mesh) {
-        let statics = &self.moving.statics;
-        let whole = with_places(given, force / statics.units.force, statics.arm(), &self.system);
-        let statics = &self.moving.statics;
+    /// Takes a shape on a mesh for the motion.
+    pub(super) fn start_from(&mut self, whole: &Solution<S, M, L>, mesh: Mesh) {
         self.solution = Solution { mesh, ..Solution::default() };
-        whole.remap(&self.system.gauss, |s| statics.jumps_at(s), &mut self.solution);
+        let moving = &self.moving;
+        whole.remap(&self.system.gauss, |s| moving.jumps_at(s), &mut self.solution);
         self.match_closure();
         self.moving.place_on(&self.system.gauss, &self.solution);
         self.past.clear();
@@ -120,8 +206,8 @@ impl Settling {
     fn match_closure(&mut self) {
         let closed = hydrostat_bvp::Problem::is_closed(&self.moving);
         if closed && !self.solution.directions.is_closed() {
-            let (whole, statics) = (self.solution.clone(), &self.moving.statics);
-            whole.with_sides(&self.system.gauss, |_| Side::Left, |s| statics.jumps_at(s), &mut self.solution);
+            let (whole, moving) = (self.solution.clone(), &self.moving);
+            whole.with_sides(&self.system.gauss, |_| Side::Left, |s| moving.jumps_at(s), &mut self.solution);
         }
         if !closed {
             self.solution.directions.clear();
@@ -132,12 +218,10 @@ impl Settling {
     /// Takes the rate cv (1/s) of the next solves, and the sizes of the states that go with it: powers of two, so
     /// that they seldom change.
     pub(super) fn set_rate(&mut self, cv: f64) {
-        self.moving.cv = cv;
-        let mass = self.moving.masses.first().map_or(0.0, |own| (own.wall + own.added).0[0]);
-        let wanted = (mass.sqrt() * cv).sqrt().clamp(1.0, 1e9);
-        let k = wanted.log2().round().exp2();
-        let scales = [1.0, k * k, k * k, k, 1.0 / k, 1.0 / k];
-        let before = std::mem::replace(&mut self.moving.scales, scales);
+        let wanted = (self.moving.mass().sqrt() * cv).sqrt().clamp(1.0, 1e9);
+        let scales = P::sizes(wanted.log2().round().exp2());
+        let before = *self.moving.scales();
+        self.moving.set_rate(cv, scales);
         if before != scales {
             let factors = std::array::from_fn(|a| before[a] / scales[a]);
             rescale(&mut self.solution, &factors);
@@ -151,11 +235,11 @@ impl Settling {
     }
 
     /// Goes back to a solution at `time`, and forgets all that came after it.
-    pub(super) fn restore(&mut self, solution: &Shape, scales: &[f64; S], time: f64) {
+    pub(super) fn restore(&mut self, solution: &Solution<S, M, L>, scales: &[f64; S], time: f64) {
         self.solution.clone_from(solution);
-        rescale(&mut self.solution, &std::array::from_fn(|a| scales[a] / self.moving.scales[a]));
+        rescale(&mut self.solution, &std::array::from_fn(|a| scales[a] / self.moving.scales()[a]));
         self.past.retain(|(t, _)| *t <= time);
-        self.moving.statics.place_ends(&self.solution);
+        self.moving.place_ends(&self.solution);
     }
 
     /// Solves at `time` until the centreline's change left to do is below `tolerance` (over L).
@@ -169,7 +253,7 @@ impl Settling {
                 // From where it was last.
                 if let Some((_, last)) = self.past.last() {
                     self.solution.clone_from(last);
-                    self.moving.statics.place_ends(&self.solution);
+                    self.moving.place_ends(&self.solution);
                     self.moving.set_end_rates(&self.system.gauss);
                 }
                 self.iterate(tolerance)?;
@@ -194,7 +278,7 @@ impl Settling {
                     applied *= 0.5;
                     halvings += 1;
                     self.solution.add(&self.correction, -applied);
-                    self.add_tensions(-applied);
+                    P::add_tensions(self, -applied);
                     continue;
                 }
                 Err(_) => return Err(Unsolved::Singular),
@@ -207,9 +291,8 @@ impl Settling {
             }
             round += 1;
             correct(&mut self.system, &self.solution, &mut self.correction);
-            self.border()?;
-            let angle = self.correction.largest(0);
-            let moved = self.correction.largest(X).max(self.correction.largest(X + 1)) * self.moving.scales[X];
+            let off = P::hold_strokes(self)?;
+            let [angle, moved] = self.moving.largest(&self.correction);
             let strained = self.correction.largest_inner();
             let size = angle.max(strained).max(moved);
             if !size.is_finite() {
@@ -218,8 +301,8 @@ impl Settling {
             applied = if angle > 1.0 { 1.0 / angle } else { 1.0 };
             halvings = 0;
             self.solution.add(&self.correction, applied);
-            self.add_tensions(applied);
-            if switches < SWITCHES && self.switch_taut(size) {
+            P::add_tensions(self, applied);
+            if switches < SWITCHES && P::switch_taut(self, size) {
                 switches += 1;
                 round -= 1;
                 continue;
@@ -229,7 +312,7 @@ impl Settling {
             let of_drag = if before == f64::INFINITY { (0.5_f64).min(moved * self.moving.drag_change()) } else { 0.0 };
             let rate = if applied < 1.0 { 1.0 } else { (size / before).min(1.0).max(size).max(of_drag) };
             before = size;
-            if moved.max(0.1 * angle) * rate <= tolerance && applied == 1.0 && self.border.off * rate <= STROKES {
+            if moved.max(0.1 * angle) * rate <= tolerance && applied == 1.0 && off * rate <= STROKES {
                 return Ok(());
             }
         }
@@ -247,16 +330,16 @@ impl Settling {
             return false;
         }
         std::mem::swap(&mut self.solution, &mut self.spare);
-        let (spare, statics) = (&self.spare, &self.moving.statics);
+        let (spare, moving) = (&self.spare, &self.moving);
         let side = |i: usize| wanted_side(&self.system, spare, i);
-        spare.with_sides(&self.system.gauss, side, |s| statics.jumps_at(s), &mut self.solution);
-        self.moving.statics.place_ends(&self.solution);
+        spare.with_sides(&self.system.gauss, side, |s| moving.jumps_at(s), &mut self.solution);
+        self.moving.place_ends(&self.solution);
         self.moving.set_end_rates(&self.system.gauss);
         true
     }
 
     fn keep(&mut self, time: f64) {
-        let mut shape = if self.past.len() == KEPT { self.past.remove(0).1 } else { Shape::default() };
+        let mut shape = if self.past.len() == KEPT { self.past.remove(0).1 } else { Solution::default() };
         shape.clone_from(&self.solution);
         self.past.push((time, shape));
     }
@@ -266,7 +349,8 @@ impl Settling {
         let last = self.past.len();
         let directions = &self.solution.directions;
         let first = self.past.iter().rposition(|(_, shape)| shape.directions != *directions).map_or(0, |k| k + 1);
-        let mut used: Vec<&(f64, Shape)> = self.past[first.max(last.saturating_sub(THROUGH))..].iter().collect();
+        let mut used: Vec<&(f64, Solution<S, M, L>)> =
+            self.past[first.max(last.saturating_sub(THROUGH))..].iter().collect();
         // Stages of equal times would divide by nothing.
         let span = used.iter().fold(1e-300, |span, (t, _)| f64::max(span, (t - time).abs()));
         for k in (1..used.len()).rev() {
@@ -289,7 +373,7 @@ impl Settling {
 }
 
 /// Multiplies the states.
-fn rescale(shape: &mut Shape, factors: &[f64; S]) {
+fn rescale<const S: usize, const L: usize>(shape: &mut Solution<S, M, L>, factors: &[f64; S]) {
     for node in &mut shape.nodes {
         node.iter_mut().zip(factors).for_each(|(z, factor)| *z *= factor);
     }
@@ -299,14 +383,20 @@ fn rescale(shape: &mut Shape, factors: &[f64; S]) {
 }
 
 /// The sum of `weights` times the shapes, which have one mesh and the same own ends.
-fn combine(out: &mut Shape, shapes: &[&(f64, Shape)], weights: &[f64]) {
+fn combine<const S: usize, const L: usize>(
+    out: &mut Solution<S, M, L>,
+    shapes: &[&(f64, Solution<S, M, L>)],
+    weights: &[f64],
+) {
     let terms = || shapes.iter().map(|(_, shape)| shape).zip(weights.iter().copied());
     for (i, node) in out.nodes.iter_mut().enumerate() {
         for a in 0..S {
             node[a] = terms().map(|(shape, w)| w * shape.nodes[i][a]).sum();
         }
     }
-    let sum = |of: &dyn Fn(&Shape) -> Lanes| terms().fold(Lanes::of(0.0), |sum, (s, w)| sum + Lanes::of(w) * of(s));
+    let sum = |of: &dyn Fn(&Solution<S, M, L>) -> Lanes| {
+        terms().fold(Lanes::of(0.0), |sum, (s, w)| sum + Lanes::of(w) * of(s))
+    };
     for (b, stage) in out.stages.iter_mut().enumerate() {
         for a in 0..S {
             stage.slope[a] = sum(&|s| s.stages[b].slope[a]);
@@ -322,41 +412,4 @@ fn combine(out: &mut Shape, shapes: &[&(f64, Shape)], weights: &[f64]) {
         }
         end.closure_slope = sum(&|s| s.ends[b].closure_slope);
     }
-}
-
-/// The solution of the statics with x and y, from the base, as states, and what it carries times `force`.
-fn with_places(given: &Guess, force: f64, arm: &Arm, system: &Collocation<S, M, 0, L>) -> Shape {
-    let mut statics = Collocation::<N, M, Q, L>::with(system.gauss.clone());
-    statics.take_stations(given);
-    let mut out = Solution {
-        mesh: given.mesh.clone(),
-        directions: given.directions.clone(),
-        nodes: Vec::with_capacity(given.nodes.len()),
-        stages: Vec::with_capacity(given.stages.len()),
-        ends: given.ends.clone(),
-    };
-    for (station, stage) in statics.stations().iter().zip(&given.stages) {
-        let by = Lanes::of(force);
-        let (sin, cos) = (station.z[0].map(f64::sin), station.z[0].map(f64::cos));
-        let [nu, eta, _] = stage.inner;
-        let [theta, n_x, n_y, m] = stage.slope;
-        out.stages.push(hydrostat_bvp::Stage {
-            slope: [theta, by * n_x, by * n_y, by * m, nu * cos - eta * sin, nu * sin + eta * cos],
-            inner: stage.inner,
-            closure_slope: stage.closure_slope,
-        });
-    }
-    let (mut x, mut y) = (arm.base.x / arm.length, arm.base.y / arm.length);
-    for (i, [theta, n_x, n_y, m]) in given.nodes.iter().copied().enumerate() {
-        out.nodes.push([theta, force * n_x, force * n_y, force * m, x, y]);
-        if i < given.mesh.elements() {
-            let h = given.mesh.step(i);
-            for (j, b) in system.gauss.b.iter().enumerate() {
-                let slope = out.slope(i, j);
-                x += h * b * slope[X];
-                y += h * b * slope[X + 1];
-            }
-        }
-    }
-    out
 }

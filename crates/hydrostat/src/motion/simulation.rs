@@ -2,68 +2,23 @@
 
 use hydrostat_bvp::{Lanes, Real, Station};
 
+use super::dimensions::S;
+use super::equations::Moving;
 use super::error::MotionError;
 use super::event::MotionEvent;
-use super::history::{Snapshot, between};
 use super::inputs::Inputs;
+use super::options::{CableMotion, MotionOptions, MotionStatistics};
 use super::places::{MotionStation, station};
 use super::quasi_static::QuasiStatic;
+use super::resumed::resumed;
+use super::run::Run;
 use super::state::{MotionState, flat};
-use super::stepper::Stepper;
 use super::warning::MotionWarning;
 use super::works::Works;
-use crate::rod::arm::Arm;
-use crate::statics::dimensions::N;
+use crate::rod::arm::{Arm, ArmError};
+use crate::statics::dimensions::{L, N};
 use crate::statics::equations::StationData;
 use crate::statics::shape::Wrench;
-
-/// How a run is done.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MotionOptions {
-    /// Error of the tip's position over L that is asked for, in [1e-9, 1e-2].
-    pub tol: f64,
-    /// When the run starts, s.
-    pub start: f64,
-    /// Elements of the mesh along the arm; by the tolerance unless given.
-    pub elements: Option<usize>,
-    /// Length of all steps, s, in place of steps by the tolerance; corners of the inputs still end a step.
-    pub step: Option<f64>,
-}
-
-impl Default for MotionOptions {
-    fn default() -> Self {
-        Self { tol: 1e-4, start: 0.0, elements: None, step: None }
-    }
-}
-
-impl MotionOptions {
-    /// Refuses what is out of range.
-    fn check(&self) -> Result<(), MotionError> {
-        let refuse = |option, value, expected| Err(MotionError::Option { option, value, expected });
-        if !(1e-9..=1e-2).contains(&self.tol) {
-            return refuse("tol", self.tol, "in [1e-9, 1e-2]");
-        }
-        if !self.start.is_finite() {
-            return refuse("start", self.start, "finite");
-        }
-        if let Some(elements) = self.elements.filter(|n| !(1..=1000).contains(n)) {
-            return refuse("elements", elements as f64, "in [1, 1000]");
-        }
-        if let Some(step) = self.step.filter(|h| !(*h >= 1e-9 && h.is_finite())) {
-            return refuse("step", step, "at least 1e-9 s");
-        }
-        Ok(())
-    }
-}
-
-/// A cable at one time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CableMotion {
-    /// Tension, N.
-    pub tension: f64,
-    /// Length reeled in since the reference strains, m.
-    pub stroke: f64,
-}
 
 /// The motion at one time.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,21 +43,6 @@ pub struct Instant {
     pub works: Works,
 }
 
-/// What a run took.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct MotionStatistics {
-    /// Steps in time.
-    pub steps: usize,
-    /// Steps that were tried and taken back.
-    pub rejected: usize,
-    /// Boundary-value problems solved.
-    pub solves: usize,
-    /// Linearisations of one.
-    pub rounds: usize,
-    /// Elements of the mesh.
-    pub elements: usize,
-}
-
 /// An arm in motion.
 ///
 /// ```
@@ -122,11 +62,8 @@ pub struct MotionStatistics {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Simulation {
-    stepper: Stepper,
-    /// The motion at the time asked for.
-    asked: Snapshot,
-    time: f64,
-    stations: Vec<Station<N, 3>>,
+    run: Run<Moving, S, L>,
+    stations: Vec<Station<N, L>>,
 }
 
 impl Simulation {
@@ -135,9 +72,11 @@ impl Simulation {
     /// # Errors
     /// [`MotionError`] where an option, the arm or an input is refused, or where there is no equilibrium.
     pub fn new(arm: &Arm, inputs: Inputs, options: MotionOptions) -> Result<Self, MotionError> {
-        options.check()?;
-        let stepper = Stepper::new(arm, inputs, options.start, options.tol, options.elements, options.step)?;
-        Ok(Self::of(stepper))
+        if arm.space.is_some() {
+            let what = "`Simulation` (in space there is `SpatialSimulation`)";
+            return Err(ArmError::OnlyInPlane { what }.into());
+        }
+        Ok(Self { run: Run::new(arm, inputs, options)?, stations: Vec::new() })
     }
 
     /// Goes on from the end of another run of `arm`, or of one with the same length and mesh, at the state's time in
@@ -147,60 +86,48 @@ impl Simulation {
     /// [`MotionError`] where an option, the arm, an input or the state is refused.
     pub fn resume(arm: &Arm, inputs: Inputs, options: MotionOptions, state: &MotionState) -> Result<Self, MotionError> {
         options.check()?;
-        Ok(Self::of(Stepper::resumed(arm, inputs, state, options.tol, options.step)?))
-    }
-
-    fn of(stepper: Stepper) -> Self {
-        Self { asked: stepper.now.clone(), time: stepper.time, stepper, stations: Vec::new() }
+        let stepper = resumed(arm, inputs, state, options.tol, options.step)?;
+        Ok(Self { run: Run::of(stepper), stations: Vec::new() })
     }
 
     /// The time of the last answer, s.
     pub fn time(&self) -> f64 {
-        self.time
+        self.run.time
     }
 
     /// What the run took until now.
     pub fn statistics(&self) -> MotionStatistics {
-        let settling = &self.stepper.settling;
-        MotionStatistics {
-            steps: self.stepper.steps,
-            rejected: self.stepper.rejected,
-            solves: settling.solves,
-            rounds: settling.rounds,
-            elements: settling.solution.mesh.elements(),
-        }
+        self.run.statistics()
     }
 
     /// The error of the tip, m: the sum of the embedded errors of all steps, of the method of order 3 inside that of
     /// order 4, so that it says too much where the motion is smooth; after a jump that is not resolved (see
     /// [`Simulation::warnings`]) two hundredths of the way of the tip besides. The mesh's error is not in it.
     pub fn error_estimate(&self) -> f64 {
-        self.stepper.estimate() * self.stepper.arm().length
+        self.run.error_estimate()
     }
 
     /// By how much the steps changed the energy of the arm beside all works, J: negative where they damp what they do
     /// not resolve. Zero but for the error of the steps.
     pub fn energy_gap(&self) -> f64 {
-        let units = self.stepper.settling.moving.statics.units;
-        self.stepper.ledger.gap()[0] * units.force * units.length
+        self.run.energy_gap()
     }
 
     /// What should be known about the motion until now.
     pub fn warnings(&self) -> Vec<MotionWarning> {
-        let warning = |time| MotionWarning::UnresolvedJump { time };
-        self.stepper.unresolved_jump().map(warning).into_iter().collect()
+        self.run.warnings()
     }
 
     /// What happened until the end of the last step, in order: the first 10000 events.
     pub fn events(&self) -> &[MotionEvent] {
-        &self.stepper.events
+        &self.run.stepper.events
     }
 
     /// The arm at the place `s` (m, kept within the arm) at the present time.
     pub fn station(&self, s: f64) -> MotionStation {
-        let settling = &self.stepper.settling;
+        let settling = &self.run.stepper.settling;
         let length = settling.moving.statics.units.length;
-        station(&self.asked, &settling.solution.mesh, &settling.system, length, s.clamp(0.0, length))
+        station(&self.run.asked, &settling.solution.mesh, &settling.system, length, s.clamp(0.0, length))
     }
 
     /// What the equilibria of the same loads are asked with.
@@ -208,28 +135,28 @@ impl Simulation {
     /// # Errors
     /// [`MotionError::Start`] where the statics refuse the arm.
     pub fn quasi_static(&self) -> Result<QuasiStatic, MotionError> {
-        QuasiStatic::new(self.stepper.arm(), self.stepper.inputs.clone())
+        QuasiStatic::new(self.run.stepper.arm(), self.run.stepper.inputs.clone())
     }
 
     /// What it takes to go on from the present time in another run, see [`Simulation::resume`].
     pub fn state(&self) -> MotionState {
-        let (stepper, settling) = (&self.stepper, &self.stepper.settling);
+        let (stepper, settling) = (&self.run.stepper, &self.run.stepper.settling);
         let units = settling.moving.statics.units;
         let energy = units.force * units.length;
         let (next, running) = stepper.next_step();
-        let at_end = self.time == stepper.time;
-        let [works, powers] = stepper.ledger.at(stepper.share_at(self.time), stepper.step);
+        let at_end = self.run.time == stepper.time;
+        let [works, powers] = stepper.ledger.at(stepper.share_at(self.run.time), stepper.step);
         let mut tensions = vec![0.0; stepper.arm().cables.len()];
         for cable in settling.moving.held() {
-            tensions[cable] = stepper.tension_at(cable, self.time);
+            tensions[cable] = stepper.tension_at(cable, self.run.time);
         }
         MotionState {
-            time: self.time,
+            time: self.run.time,
             length: units.length,
             nodes: settling.solution.mesh.nodes().to_vec(),
-            values: flat(&self.asked.values),
-            rates: flat(&self.asked.rates),
-            second: flat(&self.asked.second),
+            values: flat(&self.run.asked.values),
+            rates: flat(&self.run.asked.rates),
+            second: flat(&self.run.asked.second),
             contact: settling.contact().map(|[x, y, m]| [x * units.force, y * units.force, m * energy]).collect(),
             tensions,
             works: works.map(|work| work * energy).to_vec(),
@@ -251,7 +178,7 @@ impl Simulation {
     /// # Errors
     /// [`MotionError::Ended`] where the motion ends before; the last answer stands.
     pub fn step(&mut self, dt: f64) -> Result<Instant, MotionError> {
-        self.advance_to(self.time + dt)
+        self.advance_to(self.run.time + dt)
     }
 
     /// Moves on by `dt` (s) while the quantities `loads`, named as in [`Inputs::set`], change to these values along
@@ -279,25 +206,7 @@ impl Simulation {
     /// # Ok::<(), hydrostat::MotionError>(())
     /// ```
     pub fn step_to(&mut self, dt: f64, loads: &[(&str, f64)]) -> Result<Instant, MotionError> {
-        if !(dt > 0.0 && dt.is_finite()) {
-            return Err(MotionError::Option { option: "dt", value: dt, expected: "above 0" });
-        }
-        if self.stepper.time > self.time {
-            let (option, value) = ("time", self.stepper.time);
-            let expected = "the end of a step: loads can be led on only in a run of which every step does so";
-            return Err(MotionError::Option { option, value, expected });
-        }
-        let end = self.time + dt;
-        let mut arm = self.stepper.arm().clone();
-        self.stepper.inputs.apply(&mut arm, self.time);
-        for (key, value) in loads {
-            self.stepper.inputs.lead(key, *value, &arm, [self.time, end])?;
-        }
-        while self.stepper.time < end {
-            self.stepper.advance(end)?;
-        }
-        self.asked.clone_from(&self.stepper.now);
-        self.time = end;
+        self.run.step_to(dt, loads)?;
         Ok(self.read())
     }
 
@@ -306,22 +215,7 @@ impl Simulation {
     /// # Errors
     /// [`MotionError::Ended`] where the motion ends before.
     pub fn advance_to(&mut self, time: f64) -> Result<Instant, MotionError> {
-        if !(time >= self.time && time.is_finite()) {
-            return Err(MotionError::Option { option: "time", value: time, expected: "not before the present one" });
-        }
-        // Steps may pass the time asked for, but not the corners of inputs.
-        let far = time + 1e6;
-        while self.stepper.time < time {
-            self.stepper.advance(far)?;
-        }
-        let stepper = &self.stepper;
-        if stepper.time == time || stepper.step == 0.0 {
-            self.asked.clone_from(&stepper.now);
-        } else {
-            let x = stepper.share_at(time);
-            between(&stepper.before, &stepper.now, stepper.step, x, &mut self.asked);
-        }
-        self.time = time;
+        self.run.advance_to(time)?;
         Ok(self.read())
     }
 
@@ -336,20 +230,9 @@ impl Simulation {
         every: f64,
         mut sink: impl FnMut(&Instant, &Self) -> bool,
     ) -> Result<(), MotionError> {
-        if !(every > 0.0 && every.is_finite()) {
-            return Err(MotionError::Option { option: "every", value: every, expected: "above 0" });
-        }
-        let start = self.time;
-        let first = self.read();
-        if !sink(&first, self) {
-            return Ok(());
-        }
-        for k in 1_u64.. {
-            let time = start + k as f64 * every;
-            if time > until + 1e-9 * every {
-                break;
-            }
-            let instant = self.advance_to(time)?;
+        let times = self.run.times(until, every)?;
+        for (k, time) in times.enumerate() {
+            let instant = if k == 0 { self.read() } else { self.advance_to(time)? };
             if !sink(&instant, self) {
                 break;
             }
@@ -359,29 +242,29 @@ impl Simulation {
 
     /// x, y (m) and theta (rad) at the nodes of the mesh at the present time, with their places s (m).
     pub fn shape(&self) -> Vec<[f64; 4]> {
-        let length = self.stepper.arm().length;
-        let nodes = self.stepper.settling.solution.mesh.nodes();
+        let length = self.run.stepper.arm().length;
+        let nodes = self.run.stepper.settling.solution.mesh.nodes();
         let of = |(i, s): (usize, &f64)| {
-            let [theta, x, y] = self.asked.node(i);
+            let [theta, x, y] = self.run.asked.node(i);
             [s * length, x * length, y * length, theta]
         };
         nodes.iter().enumerate().map(of).collect()
     }
 
     fn read(&mut self) -> Instant {
-        let mut arm = self.stepper.arm().clone();
-        self.stepper.inputs.apply(&mut arm, self.time);
-        let settling = &self.stepper.settling;
+        let arm = self.run.arm();
+        let stepper = &self.run.stepper;
+        let settling = &stepper.settling;
         let statics = &settling.moving.statics;
         let units = statics.units;
-        let last = self.asked.layout.nodes - 1;
-        let ([theta, x, y], [_, u, v]) = (self.asked.node(last), self.asked.node_rate(last));
+        let last = self.run.asked.layout.nodes - 1;
+        let ([theta, x, y], [_, u, v]) = (self.run.asked.node(last), self.run.asked.node_rate(last));
         self.stations.clear();
-        for block in 0..self.asked.layout.blocks {
-            let [[nu, eta, mu, slope], _] = self.asked.strains(block);
+        for block in 0..self.run.asked.layout.blocks {
+            let [[nu, eta, mu, slope], _] = self.run.asked.strains(block);
             self.stations.push(Station { z: [Lanes::of(0.0); N], inner: [nu, eta, mu], closure_slope: slope });
         }
-        let [kinetic, strained] = settling.moving.energies(&settling.system, &self.asked);
+        let [kinetic, strained] = settling.moving.energies(&settling.system, &self.run.asked);
         let at =
             StationData { weights: &settling.system.gauss.b, steps: settling.system.steps(), stations: &self.stations };
         let energy = units.force * units.length;
@@ -389,16 +272,16 @@ impl Simulation {
             .map(|c| {
                 let [now, reference] = statics.cable_lengths(c, at);
                 let tension = match arm.cables[c].stroke {
-                    Some(_) => self.stepper.tension_at(c, self.time),
+                    Some(_) => stepper.tension_at(c, self.run.time),
                     None => arm.cables[c].tension,
                 };
                 CableMotion { tension, stroke: (reference - now) * units.length }
             })
             .collect();
         let length = units.length;
-        let [n_x, n_y, moment] = self.stepper.ledger.base_at(self.time);
+        let [n_x, n_y, _, _, _, moment] = stepper.ledger.base_at(self.run.time);
         Instant {
-            time: self.time,
+            time: self.run.time,
             tip: [x * length, y * length],
             tip_theta: theta,
             tip_velocity: [u * length, v * length],
@@ -406,11 +289,7 @@ impl Simulation {
             kinetic_energy: kinetic * energy,
             strain_energy: strained * energy,
             base_reaction: Wrench::of_base([0.0, n_x, n_y, moment], &units),
-            works: self
-                .stepper
-                .ledger
-                .works_at(self.stepper.share_at(self.time), self.stepper.step)
-                .in_units_of(energy),
+            works: self.run.works(),
         }
     }
 }

@@ -4,7 +4,7 @@ use hydrostat_bvp::{LANES, Lanes, Mesh, Real, Stage};
 
 use super::error::MotionError;
 use super::history::Snapshot;
-use super::settling::Settling;
+use super::in_plane::Planar;
 use super::works::WORKS;
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, M};
@@ -91,7 +91,7 @@ impl MotionState {
     }
 
     /// Puts the state into `settling`, which is new; the motion.
-    pub(super) fn restore(&self, settling: &mut Settling, mesh: Mesh) -> Snapshot {
+    pub(super) fn restore(&self, settling: &mut Planar, mesh: Mesh) -> Snapshot {
         let blocks = mesh.elements().div_ceil(LANES) * M;
         let lanes = |list: &[f64]| -> Vec<Lanes> {
             list.chunks_exact(LANES).map(|chunk| Lanes(std::array::from_fn(|lane| chunk[lane]))).collect()
@@ -124,10 +124,10 @@ impl MotionState {
             })
             .collect();
         let guess = Guess { mesh: mesh.clone(), nodes, stages, ..Guess::default() };
-        settling.start_from(&guess, 1.0, mesh);
+        settling.start_from_statics(&guess, 1.0, mesh);
         settling.system.take_stations(&settling.solution);
         let layout = settling.moving.layout();
-        Snapshot { layout, values, rates: lanes(&self.rates), second: lanes(&self.second) }
+        Snapshot { layout, values, rates: lanes(&self.rates), second: lanes(&self.second), from: Vec::new() }
     }
 }
 

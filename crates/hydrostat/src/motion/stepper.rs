@@ -9,25 +9,20 @@
 //!
 //! so that v_i = cv (q_i - Q) and a_i = cv (v_i - V) with cv = 1/(h gamma). Strains do the same with their rates.
 
-use hydrostat_bvp::{Lanes, Mesh, Real};
+use hydrostat_bvp::{Lanes, Real, Solution};
 
-use super::dimensions::{S, Shape};
 use super::error::{MotionError, MotionVerdict, MotionVerdictKind};
 use super::event::{MotionEvent, MotionEventKind};
 use super::history::{Snapshot, between};
 use super::inputs::Inputs;
-use super::settling::{Settling, Unsolved};
+use super::settling::{Moves, Settling, Unsolved};
+use super::start::not_found;
 use super::state::MotionState;
 use super::tableau::{RUNNING, STARTING, Tableau};
 use super::works::{Ledger, Reading, WORKS};
 use crate::rod::arm::Arm;
-use crate::rod::readings::Support;
-use crate::statics::engine::Engine;
-use crate::statics::equations::{Margins, SectionFailure};
-use crate::statics::limit::limit_at;
-use crate::statics::refinement::graded;
-use crate::statics::solve::{Options, Solver};
-use crate::statics::verdict::{SolveError, VerdictKind};
+use crate::statics::dimensions::M;
+use crate::statics::equations::SectionFailure;
 
 /// The most steps that one run may take, those taken back included.
 const MOST_STEPS: usize = 1_000_000;
@@ -51,15 +46,17 @@ const LEFT: f64 = 0.01;
 
 /// The motion from step to step.
 #[derive(Debug, Clone)]
-pub(super) struct Stepper {
-    pub(super) settling: Settling,
+pub(super) struct Stepper<P: Moves<S, L>, const S: usize, const L: usize> {
+    pub(super) settling: Settling<P, S, L>,
     /// The arm with the loads of the start.
     arm: Arm,
     pub(super) inputs: Inputs,
     pub(super) time: f64,
-    /// The motion at `time`, and at the start of the last step.
+    /// The motion at the end and at the start of the last step, in the coordinates of that step.
     pub(super) now: Snapshot,
     pub(super) before: Snapshot,
+    /// The motion at `time` in the coordinates of the next step.
+    start: Snapshot,
     /// The last step.
     pub(super) step: f64,
     /// The next one.
@@ -67,7 +64,7 @@ pub(super) struct Stepper {
     /// Whether accelerations at `time` are those after it.
     running: bool,
     stages: Vec<Snapshot>,
-    kept: Shape,
+    kept: Solution<S, M, L>,
     kept_scales: [f64; S],
     kept_tensions: (Vec<f64>, Vec<bool>),
     /// Tensions (N) through the last step, with their times.
@@ -80,8 +77,8 @@ pub(super) struct Stepper {
     folded: bool,
     /// The first jump of a load that the motion passed.
     pub(super) jumped: Option<f64>,
-    /// Smallest and largest x and y of the tip, over L.
-    pub(super) reached: [[f64; 2]; 2],
+    /// Smallest and largest x, y and z of the tip, over L.
+    pub(super) reached: [[f64; 3]; 2],
     /// Error of a step over L that is asked for.
     tolerance: f64,
     /// Whether steps keep the length they are given.
@@ -92,7 +89,7 @@ pub(super) struct Stepper {
     pub(super) rejected: usize,
 }
 
-impl Stepper {
+impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
     /// At rest in the equilibrium of the inputs just before `time`.
     pub(super) fn new(
         arm: &Arm,
@@ -106,60 +103,44 @@ impl Stepper {
         inputs.check(arm)?;
         let mut start = arm.clone();
         inputs.apply(&mut start, time);
-        let mut settling = Settling::new(&start);
-        start_at_rest(&mut settling, &start, elements, tol, time)?;
+        let settling = P::start(&start, elements, tol, time)?;
         Ok(Self::at_rest(settling, start, inputs, time, tol, fixed))
     }
 
     /// At rest in the shape that `settling` has, in equilibrium or not.
     pub(super) fn at_rest(
-        mut settling: Settling,
+        mut settling: Settling<P, S, L>,
         start: Arm,
         inputs: Inputs,
         time: f64,
         tol: f64,
         fixed: Option<f64>,
     ) -> Self {
-        let layout = settling.moving.layout();
-        let mut now = Snapshot::at_rest(layout);
-        now.take(&mut settling.system, &settling.solution, &settling.moving.scales);
+        let now = settling.moving.at_rest(&mut settling.system, &settling.solution);
         let (running, jumped) = (!inputs.jumps_from_rest(time), inputs.jumps_at(time).then_some(time));
         let nothing = [[0.0; WORKS]; 2];
         let this = Self::starting(settling, start, inputs, time, now, nothing);
         Self { running, jumped, tolerance: SHARE * tol, fixed, next: fixed.unwrap_or(0.0), ..this }
     }
 
-    /// From a state that another run was in.
-    pub(super) fn resumed(
-        arm: &Arm,
+    /// From a state that another run was in, which `settling` and `now` have taken.
+    pub(super) fn going_on(
+        settling: Settling<P, S, L>,
+        start: Arm,
         inputs: Inputs,
+        now: Snapshot,
         state: &MotionState,
-        tol: f64,
-        fixed: Option<f64>,
-    ) -> Result<Self, MotionError> {
-        arm.check()?;
-        inputs.check(arm)?;
-        let mut start = arm.clone();
-        inputs.apply(&mut start, state.time);
-        check(&start)?;
-        let mesh = state.check(&start)?;
-        let mut settling = Settling::new(&start);
-        let statics = &mut settling.moving.statics;
-        for (c, tension) in state.tensions.iter().enumerate().filter(|(c, _)| start.cables[*c].stroke.is_some()) {
-            statics.set_tension(c, *tension);
-        }
-        statics.hold_strokes();
-        let now = state.restore(&mut settling, mesh);
-        let energy = settling.moving.statics.units.force * start.length;
-        let works = [&state.works, &state.powers].map(|list| std::array::from_fn(|k| list[k] / energy));
+        works: [[f64; WORKS]; 2],
+        (tol, fixed): (f64, Option<f64>),
+    ) -> Self {
         let running = state.smooth && !inputs.jumps_at(state.time);
         let this = Self::starting(settling, start, inputs, state.time, now, works);
         let next = fixed.unwrap_or(if running { state.next } else { 0.0 });
-        Ok(Self { running, tolerance: SHARE * tol, fixed, next, error: state.error, jumped: state.jumped, ..this })
+        Self { running, tolerance: SHARE * tol, fixed, next, error: state.error, jumped: state.jumped, ..this }
     }
 
     fn starting(
-        mut settling: Settling,
+        mut settling: Settling<P, S, L>,
         start: Arm,
         inputs: Inputs,
         time: f64,
@@ -169,22 +150,24 @@ impl Stepper {
         settling.forget();
         let most = RUNNING.c.len();
         let energy = settling.moving.energies(&settling.system, &now).iter().sum();
-        let [_, x, y] = now.node(now.layout.nodes - 1);
+        let [tip, _] = now.node_place(now.layout.nodes - 1);
+        let tensions = settling.moving.tensions();
         Self {
             kept: settling.solution.clone(),
             kept_scales: [1.0; S],
-            kept_tensions: settling.tensions(),
-            tensions: vec![(time, settling.tensions().0)],
-            ledger: Ledger::new(time, settling.at_base(), energy, works),
+            tensions: vec![(time, tensions.0.clone())],
+            kept_tensions: tensions,
+            ledger: Ledger::new(time, settling.moving.at_base(&settling.solution), energy, works),
             events: Vec::new(),
             folded: settling.moving.fold_margin(&now)[0] <= 0.0,
             jumped: None,
-            reached: [[x, y]; 2],
+            reached: [tip; 2],
             settling,
             arm: start,
             inputs,
             time,
             before: now.clone(),
+            start: now.clone(),
             stages: vec![now.clone(); most],
             now,
             step: 0.0,
@@ -272,25 +255,28 @@ impl Stepper {
         self.rejected += 1;
         self.next = next;
         self.settling.restore(&self.kept, &self.kept_scales, self.time);
-        self.settling.take_tensions(&self.kept_tensions);
+        self.settling.moving.take_tensions(&self.kept_tensions);
     }
 
     fn accept(&mut self, h: f64, corner: f64, to_corner: bool, tip_error: f64) {
-        std::mem::swap(&mut self.before, &mut self.now);
+        std::mem::swap(&mut self.before, &mut self.start);
         let tableau = self.tableau();
         std::mem::swap(&mut self.now, &mut self.stages[tableau.c.len() - 1]);
+        self.settling.moving.restarted(&self.now, &mut self.start);
         let energy = self.settling.moving.energies(&self.settling.system, &self.now).iter().sum();
         self.ledger.accept(tableau, h, energy);
         self.time = if to_corner { corner } else { self.time + h };
         self.step = h;
         self.steps += 1;
         self.error += tip_error;
-        let [_, x, y] = self.now.node(self.now.layout.nodes - 1);
-        let [least, most] = self.reached;
-        self.reached = [[least[0].min(x), least[1].min(y)], [most[0].max(x), most[1].max(y)]];
+        let [tip, _] = self.now.node_place(self.now.layout.nodes - 1);
+        for (k, place) in tip.into_iter().enumerate() {
+            self.reached[0][k] = self.reached[0][k].min(place);
+            self.reached[1][k] = self.reached[1][k].max(place);
+        }
         self.kept.clone_from(&self.settling.solution);
-        let tensions = std::mem::replace(&mut self.kept_tensions, self.settling.tensions());
-        self.kept_scales = self.settling.moving.scales;
+        let tensions = std::mem::replace(&mut self.kept_tensions, self.settling.moving.tensions());
+        self.kept_scales = *self.settling.moving.scales();
         self.note_events(&tensions.1);
         self.running = true;
         if to_corner && self.inputs.jumps_at(self.time) {
@@ -305,14 +291,14 @@ impl Stepper {
 
     /// A shorter step, where cables became slack or taut in the one of length `h` and it is not known well when.
     fn before_event(&self, h: f64) -> Option<f64> {
-        let changed = self.settling.tensions().1 != self.kept_tensions.1;
+        let changed = self.settling.moving.tensions().1 != self.kept_tensions.1;
         let known = h <= EVENT * self.settling.moving.time_unit() || self.events.len() >= LOCATED;
         (changed && !known && self.fixed.is_none()).then_some(0.5 * h)
     }
 
     /// Notes what happened in the last step, before which the cables were taut as `taut` says.
     fn note_events(&mut self, taut: &[bool]) {
-        let held: Vec<usize> = self.settling.moving.held().collect();
+        let held = self.settling.moving.held();
         for ((cable, before), now) in held.into_iter().zip(taut).zip(self.kept_tensions.1.clone()) {
             if *before != now {
                 let kind = if now { MotionEventKind::Taut(cable) } else { MotionEventKind::Slack(cable) };
@@ -354,11 +340,12 @@ impl Stepper {
         let cv = 1.0 / (h * tableau.gamma);
         self.settling.set_rate(cv);
         let first = usize::from(tableau.explicit_first);
+        self.settling.moving.start_step(&self.start);
         if tableau.explicit_first {
-            self.stages[0].clone_from(&self.now);
+            self.stages[0].clone_from(&self.start);
         }
         self.ledger.start(self.time, tableau.explicit_first);
-        let holds = self.settling.moving.statics.held.is_some();
+        let holds = !self.settling.moving.held().is_empty();
         if holds {
             self.tensions = vec![(self.time, self.kept_tensions.0.clone())];
         }
@@ -366,9 +353,9 @@ impl Stepper {
             let time = self.time + tableau.c[i] * h;
             self.take_loads(time);
             let (done, rest) = self.stages.split_at_mut(i);
-            let history = &mut self.settling.moving.history;
-            history.values.clone_from(&self.now.values);
-            history.rates.copy_from_slice(&self.now.rates[..self.now.layout.second()]);
+            let history = self.settling.moving.history_mut();
+            history.values.clone_from(&self.start.values);
+            history.rates.copy_from_slice(&self.start.rates[..self.start.layout.second()]);
             for (j, stage) in done.iter().enumerate() {
                 let weight = h * tableau.a[i][j];
                 if weight != 0.0 {
@@ -379,36 +366,38 @@ impl Stepper {
             self.settling.solve(time, LEFT * self.tolerance)?;
             let own = &mut rest[0];
             let settling = &mut self.settling;
-            own.take(&mut settling.system, &settling.solution, &settling.moving.scales);
-            own.rates_from(cv, &settling.moving.history);
-            let base = settling.at_base();
+            settling.moving.read(&mut settling.system, &settling.solution, own);
+            own.rates_from(cv, settling.moving.history_mut());
+            let base = settling.moving.at_base(&settling.solution);
             let powers = settling.moving.powers(&settling.system, own, base);
             self.ledger.take(Reading { time, powers, base });
             if holds {
-                self.tensions.push((time, self.settling.tensions().0));
+                self.tensions.push((time, self.settling.moving.tensions().0));
             }
         }
         Ok(self.errors(tableau, h))
     }
 
-    /// The embedded error of x and y: the largest, and the tip's.
+    /// The embedded error of the centreline: the largest, and the tip's.
     fn errors(&self, tableau: &Tableau, h: f64) -> [f64; 2] {
-        let layout = self.now.layout;
+        let layout = self.start.layout;
         let zero = Lanes::of(0.0);
-        let at = |k: usize| {
-            let terms = self.stages.iter().zip(tableau.error).take(tableau.c.len());
-            terms.fold(zero, |sum, (stage, weight)| sum + Lanes::of(h * weight) * stage.rates[k])
-        };
+        let terms = || self.stages.iter().zip(tableau.error).take(tableau.c.len());
+        let at = |k: usize| terms().fold(zero, |sum, (stage, weight)| sum + Lanes::of(h * weight) * stage.rates[k]);
         let mut largest = 0.0_f64;
         for block in 0..layout.blocks {
-            let (x, y) = (at(3 * block + 1), at(3 * block + 2));
-            let square = x * x + y * y;
+            let first = layout.coordinates() * block + layout.turns;
+            let square = (first..first + layout.places).map(at).fold(zero, |sum, error| sum + error * error);
             for v in square.0 {
                 largest = if v.is_nan() { f64::NAN } else { largest.max(v) };
             }
         }
-        let tip = at(3 * layout.blocks + layout.nodes - 1);
-        let tip = tip.0[1].hypot(tip.0[2]);
+        let mut off = [0.0; 3];
+        for (stage, weight) in terms() {
+            let rate = stage.place_in(&stage.rates, layout.nodes - 1);
+            off.iter_mut().zip(rate).for_each(|(sum, rate)| *sum += h * weight * rate);
+        }
+        let tip = norm(&off);
         let whole = largest.sqrt().max(tip);
         [if whole.is_nan() { f64::INFINITY } else { whole }, tip]
     }
@@ -416,8 +405,7 @@ impl Stepper {
     /// The loads just before `time`.
     fn take_loads(&mut self, time: f64) {
         self.inputs.apply(&mut self.arm, time);
-        let acceleration = self.inputs.stream_acceleration(&self.arm, time);
-        self.settling.moving.set_loads(&self.arm, acceleration);
+        self.settling.moving.take_loads(&self.arm, &self.inputs, time);
     }
 
     /// A step after which control finds its own: a small part of the time that the arm takes to swing.
@@ -464,7 +452,7 @@ impl Stepper {
     /// What the tip is off by, over L, as far as that is known.
     pub(super) fn estimate(&self) -> f64 {
         let [least, most] = self.reached;
-        let way = (most[0] - least[0]).hypot(most[1] - least[1]);
+        let way = norm(&std::array::from_fn(|k| most[k] - least[k]));
         self.error + self.unresolved_jump().map_or(0.0, |_| UNRESOLVED * way)
     }
 
@@ -479,61 +467,6 @@ impl Stepper {
     }
 }
 
-/// Settles on the equilibrium of `arm`: that of the statics, or, where these find none and name no limit, the one that
-/// Newton's method finds from the unloaded arm (a hinge is too soft for the statics' evidence).
-pub(super) fn start_at_rest(
-    settling: &mut Settling,
-    arm: &Arm,
-    elements: Option<usize>,
-    tol: f64,
-    time: f64,
-) -> Result<(), MotionError> {
-    check(arm)?;
-    let elements = elements.unwrap_or_else(|| fair_elements(arm, tol));
-    let of_start = |error: SolveError| MotionError::Start(Box::new(error));
-    let mut solver = Solver::new(arm, Options::with_tol((0.01 * tol).clamp(1e-10, 1e-6))).map_err(of_start)?;
-    let missing = match solver.solve() {
-        Ok(_) => {
-            let engine = solver.engine_mut();
-            let statics = &mut settling.moving.statics;
-            for (c, cable) in
-                engine.equations.arm().cables.iter().enumerate().filter(|(_, cable)| cable.stroke.is_some())
-            {
-                statics.set_tension(c, cable.tension);
-            }
-            statics.hold_strokes();
-            let mesh = mesh_at(engine, arm, elements);
-            settling.start_from(&engine.solution, engine.equations.units.force, mesh);
-            None
-        }
-        Err(SolveError::NoEquilibrium(no)) if no.verdict.kind == VerdictKind::NotFound => {
-            settling.start_unloaded(mesh(arm, elements));
-            Some(SolveError::NoEquilibrium(no))
-        }
-        Err(error) => return Err(of_start(error)),
-    };
-    match settling.solve(time, 1e-10).and_then(|()| settling.solve(time, 1e-12)) {
-        Ok(()) => Ok(()),
-        Err(_) => Err(missing.map_or_else(|| not_found(time, 0.0, None, arm), of_start)),
-    }
-}
-
-/// The verdict on a step that cannot be done.
-pub(super) fn not_found(time: f64, step: f64, failure: Option<SectionFailure>, arm: &Arm) -> MotionError {
-    let near = failure.map(|SectionFailure { s, openness, nu, regularity }| Margins {
-        openness: (openness, s),
-        nu: (nu, s),
-        regularity: (regularity, s),
-    });
-    let kind = match near.and_then(|near| limit_at(near, arm.readings.volume)) {
-        Some((VerdictKind::CableFold, _)) => MotionVerdictKind::CableFold,
-        Some((VerdictKind::SectionCrushed, _)) => MotionVerdictKind::SectionCrushed,
-        Some((VerdictKind::NoSectionSolution, _)) => MotionVerdictKind::NoSectionSolution,
-        _ => MotionVerdictKind::NotFound,
-    };
-    MotionError::Ended(MotionVerdict { kind, time, s: failure.map(|f| f.s * arm.length), step })
-}
-
 /// `list += weight other`, as far as both go.
 fn add(list: &mut [Lanes], other: &[Lanes], weight: f64) {
     let weight = Lanes::of(weight);
@@ -542,55 +475,6 @@ fn add(list: &mut [Lanes], other: &[Lanes], weight: f64) {
     }
 }
 
-/// Elements for a tolerance. In water, kinks of the drag bound what a mesh can do, not modes.
-fn fair_elements(arm: &Arm, tol: f64) -> usize {
-    let count = if tol >= 5e-4 {
-        8
-    } else if tol >= 5e-5 {
-        12
-    } else {
-        20
-    };
-    if arm.flow.density == 0.0 { 8.min(count) } else { count }
-}
-
-/// A mesh with nodes on the kinks that the stream's load has at the shape of the engine.
-pub(super) fn mesh_at(engine: &mut Engine, arm: &Arm, elements: usize) -> Mesh {
-    let mut mesh = mesh(arm, elements);
-    let kinks = engine.kinks(1e-6);
-    let fixed: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
-    if kinks.len() <= mesh.elements() {
-        mesh.pin(&fixed, &kinks);
-    }
-    mesh
-}
-
-fn mesh(arm: &Arm, elements: usize) -> Mesh {
-    let breaks: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
-    graded(arm, &breaks, elements)
-}
-
-/// Refuses what cannot move.
-pub(super) fn check(arm: &Arm) -> Result<(), MotionError> {
-    arm.check()?;
-    let refuse = |key: String, reason| Err(MotionError::Unsupported { key, reason });
-    if arm.readings.support == Support::UnstrainedBase {
-        return refuse("model.support".to_owned(), "only a clamped arm can move");
-    }
-    if let Some(i) = arm.cables.iter().position(|c| c.friction > 0.0) {
-        return refuse(
-            format!("cable[{i}].friction"),
-            "cables with friction stick as they turn back, which motion leaves out",
-        );
-    }
-    if !arm.dynamics.inertia && arm.flow.density == 0.0 && arm.dynamics.relaxation_time == 0.0 {
-        return refuse(
-            "dynamics.inertia".to_owned(),
-            "without inertia, water and relaxation time nothing resists the motion",
-        );
-    }
-    if arm.dynamics.inertia && arm.density == 0.0 {
-        return refuse("arm.density".to_owned(), "an arm without mass has no motion; set `dynamics.inertia = false`");
-    }
-    Ok(())
+fn norm(v: &[f64; 3]) -> f64 {
+    v[0].hypot(v[1]).hypot(v[2])
 }

@@ -4,14 +4,15 @@
 use hydrostat_bvp::Correction;
 
 use super::equations::Moving;
-use super::settling::{Settling, Unsolved};
+use super::in_plane::Planar;
+use super::settling::Unsolved;
 use crate::statics::border::{UnitPull, add_pulls, meeting};
 use crate::statics::equations::StationData;
 
 /// Corrections above which tensions do not yet say which cables are taut.
 const SETTLED: f64 = 0.3;
 
-impl Settling {
+impl Planar {
     /// Adds to the correction of the last linearisation what the tensions of held cables do, so that their strokes
     /// are met.
     pub(super) fn border(&mut self) -> Result<(), Unsolved> {
@@ -74,22 +75,5 @@ impl Settling {
         }
         statics.held = Some(held);
         changed
-    }
-
-    /// Tensions (N) of all cables at the last solve, and which held ones are taut.
-    pub(super) fn tensions(&self) -> (Vec<f64>, Vec<bool>) {
-        let statics = &self.moving.statics;
-        let taut = statics.held.as_ref().map_or_else(Vec::new, |held| held.taut.clone());
-        (statics.arm().cables.iter().map(|cable| cable.tension).collect(), taut)
-    }
-
-    /// Takes the tensions of held cables back.
-    pub(super) fn take_tensions(&mut self, (tensions, taut): &(Vec<f64>, Vec<bool>)) {
-        let Some(mut held) = self.moving.statics.held.take() else { return };
-        held.taut.clone_from(taut);
-        for cable in &held.cables {
-            self.moving.statics.set_tension(*cable, tensions[*cable]);
-        }
-        self.moving.statics.held = Some(held);
     }
 }

@@ -48,13 +48,16 @@ impl Works {
     }
 }
 
+/// n_f and m_f at the base, three components each; in the plane those that leave it are zero.
+pub(super) type Carried = [f64; 6];
+
 /// What one stage in time tells besides the motion: powers, and what the base carries.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Reading {
     pub(super) time: f64,
     pub(super) powers: [f64; WORKS],
     /// n_f(0) and m_f(0).
-    pub(super) base: [f64; 3],
+    pub(super) base: Carried,
 }
 
 /// The works until now, and the readings of the last step.
@@ -65,7 +68,7 @@ pub(super) struct Ledger {
     /// Powers there.
     powers: [[f64; WORKS]; 2],
     /// What the base carried through the last step.
-    base: Vec<(f64, [f64; 3])>,
+    base: Vec<(f64, Carried)>,
     /// Of the step that is tried.
     stages: Vec<Reading>,
     /// Kinetic energy and that of strain at the start of the run, and their largest sum above it.
@@ -77,7 +80,7 @@ pub(super) struct Ledger {
 
 impl Ledger {
     /// At the start of a run, with what the base carries, the energy of the arm, and works and powers until then.
-    pub(super) fn new(time: f64, base: [f64; 3], energy: f64, [works, powers]: [[f64; WORKS]; 2]) -> Self {
+    pub(super) fn new(time: f64, base: Carried, energy: f64, [works, powers]: [[f64; WORKS]; 2]) -> Self {
         let start = energy - Works::of(works).sum();
         Self { works: [works; 2], powers: [powers; 2], base: vec![(time, base)], start, ..Self::default() }
     }
@@ -86,7 +89,7 @@ impl Ledger {
     pub(super) fn start(&mut self, time: f64, explicit_first: bool) {
         self.stages.clear();
         if explicit_first {
-            let base = self.base.last().map_or([0.0; 3], |(_, base)| *base);
+            let base = self.base.last().map_or([0.0; 6], |(_, base)| *base);
             self.stages.push(Reading { time, powers: self.powers[1], base });
         }
     }
@@ -147,14 +150,14 @@ impl Ledger {
     }
 
     /// n_f(0) and m_f(0) at `time` in the last step: the cubic through the four stages nearest to it.
-    pub(super) fn base_at(&self, time: f64) -> [f64; 3] {
+    pub(super) fn base_at(&self, time: f64) -> Carried {
         let count = self.base.len();
         let past = self.base.partition_point(|(t, _)| *t < time);
         let first = past.saturating_sub(2).min(count.saturating_sub(4));
         let near = &self.base[first..(first + 4).min(count)];
         // No stage is before the first one after a jump.
         let time = near.first().map_or(time, |(t, _)| time.max(*t));
-        let mut out = [0.0; 3];
+        let mut out = [0.0; 6];
         for (i, (t, own)) in near.iter().enumerate() {
             let others = near.iter().enumerate().filter(|(j, _)| *j != i);
             let weight: f64 = others.map(|(_, (u, _))| (time - u) / (t - u)).product();
@@ -178,12 +181,12 @@ mod tests {
         let power = |t: f64| 1.0 + 2.0 * t - 3.0 * t * t;
         let work = |t: f64| t + t * t - t * t * t;
         for tableau in [&RUNNING, &STARTING] {
-            let mut ledger = Ledger::new(0.0, [power(0.0); 3], 0.0, [[0.0; WORKS], [power(0.0); WORKS]]);
+            let mut ledger = Ledger::new(0.0, [power(0.0); 6], 0.0, [[0.0; WORKS], [power(0.0); WORKS]]);
             ledger.start(0.0, tableau.explicit_first);
             let h = 0.4;
             for c in tableau.c.iter().skip(usize::from(tableau.explicit_first)) {
                 let own = power(c * h);
-                ledger.take(Reading { time: c * h, powers: [own; WORKS], base: [own; 3] });
+                ledger.take(Reading { time: c * h, powers: [own; WORKS], base: [own; 6] });
             }
             ledger.accept(tableau, h, 0.0);
             let end = ledger.works_at(1.0, h);

@@ -18,12 +18,12 @@ use crate::statics::equations::{PLACES, Way};
 
 /// Strains at the stages of a solution, with what integrates over them.
 #[derive(Clone, Copy)]
-pub(super) struct StageData<'a> {
+pub(crate) struct StageData<'a> {
     /// Of the stages.
-    weights: &'a [f64],
+    pub(crate) weights: &'a [f64],
     /// Lengths of elements, a group.
-    steps: &'a [Lanes],
-    stages: &'a [Stage<N, L>],
+    pub(crate) steps: &'a [Lanes],
+    pub(crate) stages: &'a [Stage<N, L>],
 }
 
 impl<'a> StageData<'a> {
@@ -65,7 +65,7 @@ impl Equations {
     }
 
     /// Lengths of the path of cable `c`, now and at the reference strains, over L.
-    pub(super) fn cable_lengths(&self, c: usize, at: StageData<'_>) -> [f64; 2] {
+    pub(crate) fn cable_lengths(&self, c: usize, at: StageData<'_>) -> [f64; 2] {
         [
             self.along_cable(c, at, |block| self.stretch(c, block, &at.stages[block])),
             self.along_cable(c, at, |block| self.reference_stretch(c, block)),
@@ -79,18 +79,18 @@ impl Equations {
     }
 
     /// Unstretched stroke of cable `c`, over L, and its derivative by the tension (in the unit of force).
-    pub(super) fn stroke(&self, c: usize, at: StageData<'_>) -> [f64; 2] {
+    pub(crate) fn stroke(&self, c: usize, at: StageData<'_>) -> [f64; 2] {
         let [now, unloaded] = self.cable_lengths(c, at);
         let [longer, by_tension] = self.elongation(c);
         [unloaded - now / longer, now * by_tension / (longer * longer)]
     }
 
     /// Change of the stroke of cable `c` (over L) with a change of the solution, at fixed tension.
-    pub(super) fn stroke_change<const S: usize>(
+    pub(crate) fn stroke_change<const A: usize, const S: usize, const P: usize>(
         &self,
         c: usize,
         at: StageData<'_>,
-        change: &Correction<N, S, Q, L>,
+        change: &Correction<A, S, P, L>,
     ) -> f64 {
         let longer = self.along_cable(c, at, |block| {
             let (by_strain, by_beta_slope) = self.stretch_gradient(c, block, &at.stages[block]);

@@ -4,7 +4,7 @@
 use hydrostat_bvp::{Forcing, Lanes, Real, StageForcing, Station, each};
 
 use super::equations::{AtStation, Equations, FORCE, L, MOMENT, N, Q, by_strain_change};
-use super::loads::load;
+use super::loads::{load, uniform};
 use super::rotation::{Directors, Vector};
 use super::section::{CableAt, STRAINS, apply, balance, pull};
 use super::section_solve::Solved;
@@ -135,7 +135,8 @@ impl Equations {
         let own = balance(self.volume, &place.stiffness, pulled, &station.inner, station.closure_slope);
         let directors = Directors::of(&each(|k| station.z[k]));
         let fraction = Lanes::of(self.fraction[0]);
-        let force = load(&self.water, &place.body, &directors, &station.inner, &own.swelling).force;
+        let force =
+            load(&self.water, &place.body, uniform(&self.water), &directors, &station.inner, &own.swelling).force;
         Explicit {
             carried: own.carried,
             force: force.map(|v| v * fraction),
@@ -178,7 +179,8 @@ impl Equations {
         for (block, station) in stations.iter().enumerate() {
             let at = self.solved_in(block, station, &mut pulled)?;
             let place = &self.places[block];
-            let own = load(&self.water, &place.body, &at.directors, &at.solved.strain, &at.solved.balance.swelling);
+            let (stream, swelling) = (uniform(&self.water), &at.solved.balance.swelling);
+            let own = load(&self.water, &place.body, stream, &at.directors, &at.solved.strain, swelling);
             let mut drift = StageForcing::default();
             for k in 0..3 {
                 drift.slope[FORCE + k] = -own.force[k];

@@ -280,7 +280,7 @@ impl Engine {
 }
 
 /// The angle between a and r'.
-fn angle_to_tangent(strain: &[f64; L]) -> f64 {
+pub(crate) fn angle_to_tangent(strain: &[f64; L]) -> f64 {
     strain[1].hypot(strain[2]).atan2(strain[0])
 }
 
@@ -337,7 +337,7 @@ impl SpatialConfiguration {
         let mut energy = 0.0;
         for block in 0..engine.system.stations().len() {
             let station = &engine.system.stations()[block];
-            let strained = engine.equations.strain_energy(block, station);
+            let strained = engine.equations.strain_energy_of(block, &station.inner);
             let groups = engine.solution.groups();
             for lane in 0..groups.filled(block / M) {
                 let i = groups.element(block / M, lane);

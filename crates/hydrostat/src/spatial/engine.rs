@@ -61,7 +61,7 @@ pub(crate) struct Engine {
     pub(super) system: Collocation<N, M, Q, L>,
     pub(super) check_equations: Equations,
     pub(super) check: Collocation<N, K, Q, L>,
-    pub(super) solution: Guess,
+    pub(crate) solution: Guess,
     pub(super) correction: Correction<N, M, Q, L>,
     pub(super) check_correction: Correction<N, K, Q, L>,
     /// The solution with one more stage, for the check.

@@ -15,7 +15,7 @@
 
 use hydrostat_bvp::{Condition, EndPlace, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution, Station, each};
 
-use super::loads::{Load, Water, load, water};
+use super::loads::{Load, Water, load, uniform, water};
 use super::place::{Place, base_of, loads_of};
 use super::rotation::{Directors, Vector, cross, spin, turn};
 use super::section::{CableAt, STRAINS, Stiffness, apply};
@@ -55,14 +55,14 @@ const ROUGH: f64 = 1e-3;
 pub(crate) struct Equations {
     pub(crate) units: Units,
     pub(super) arm: Arm,
-    pub(super) space: Space,
+    pub(crate) space: Space,
     /// The arm with gravity along e1, see [`Equations::place`].
     pub(super) upright: Arm,
     /// Direction of gravity.
     pub(super) gravity: Vector<f64>,
-    pub(super) water: Water,
+    pub(crate) water: Water,
     pub(crate) volume: Volume,
-    pub(super) tensions: Vec<f64>,
+    pub(crate) tensions: Vec<f64>,
     /// Arc length of each cable's anchor, over L.
     pub(super) ends: Vec<f64>,
     /// Fractions of the loads and of the tensions.
@@ -76,24 +76,24 @@ pub(crate) struct Equations {
     pub(super) imposed: Option<Vec<Vector<Lanes>>>,
     /// Steps of the section law that are left to the next round.
     pub(crate) inner_tolerance: f64,
-    pub(super) groups: Groups,
+    pub(crate) groups: Groups,
     pub(super) stations: Vec<f64>,
-    pub(super) places: Vec<Place<Lanes>>,
+    pub(crate) places: Vec<Place<Lanes>>,
     pub(super) cables: Vec<CableAt<Lanes>>,
-    pub(super) end_sections: Vec<(Lanes, Stiffness<Lanes>)>,
+    pub(crate) end_sections: Vec<(Lanes, Stiffness<Lanes>)>,
     pub(super) end_cables: Vec<CableAt<Lanes>>,
     /// The quaternion of the base.
     pub(crate) base: [f64; 4],
 }
 
 /// A station near its strains, with its loads.
-pub(super) struct AtStation<R> {
-    pub(super) directors: Directors<R>,
+pub(crate) struct AtStation<R> {
+    pub(crate) directors: Directors<R>,
     /// n_f and m_f in the directors.
-    contact: [R; STRAINS],
-    pub(super) solved: Solved<R>,
-    load: Load<R>,
-    couple: Vector<R>,
+    pub(crate) contact: [R; STRAINS],
+    pub(crate) solved: Solved<R>,
+    pub(crate) load: Load<R>,
+    pub(crate) couple: Vector<R>,
 }
 
 impl Equations {
@@ -255,12 +255,12 @@ impl Equations {
 
     /// Strain measure 1/2 sum C (strain - reference)^2 A per length in a block of stations.
     #[inline(always)]
-    pub(crate) fn strain_energy(&self, block: usize, station: &Station<N, L>) -> Lanes {
+    pub(crate) fn strain_energy_of(&self, block: usize, strain: &[Lanes; L]) -> Lanes {
         let stiffness = &self.places[block].stiffness;
-        let beta = area_law(self.volume, station.inner[0]).beta;
+        let beta = area_law(self.volume, strain[0]).beta;
         let mut sum = Lanes::of(0.0);
         for a in 0..L {
-            let strained = station.inner[a] - stiffness.reference[a];
+            let strained = strain[a] - stiffness.reference[a];
             sum += Lanes::of(0.5) * stiffness.value[a] * beta * beta * strained * strained;
         }
         sum
@@ -271,13 +271,14 @@ impl Equations {
     pub(crate) fn speeds(&self, block: usize, station: &Station<N, L>) -> (Lanes, Vector<Lanes>) {
         let directors = Directors::of(&each(|k| station.z[k]));
         let swelling = area_law(self.volume, station.inner[0]);
-        let load = load(&self.water, &self.places[block].body, &directors, &station.inner, &swelling);
+        let body = &self.places[block].body;
+        let load = load(&self.water, body, uniform(&self.water), &directors, &station.inner, &swelling);
         (load.along, load.across)
     }
 
     /// Fills `out` with the cables that pull in a block, given all of them there.
     #[inline(always)]
-    pub(super) fn pulled_in(&self, cables: &[CableAt<Lanes>], out: &mut Vec<CableAt<Lanes>>) {
+    pub(crate) fn pulled_in(&self, cables: &[CableAt<Lanes>], out: &mut Vec<CableAt<Lanes>>) {
         out.clear();
         for (cable, tension) in cables.iter().zip(&self.tensions) {
             let tension = tension * self.fraction[1];
@@ -289,20 +290,20 @@ impl Equations {
 
     /// The cables of a block of stations.
     #[inline(always)]
-    pub(super) fn cables_in(&self, block: usize) -> &[CableAt<Lanes>] {
+    pub(crate) fn cables_in(&self, block: usize) -> &[CableAt<Lanes>] {
         let count = self.tensions.len();
         &self.cables[block * count..(block + 1) * count]
     }
 
     /// The cables of a block of ends.
     #[inline(always)]
-    pub(super) fn cables_at_end(&self, block: usize) -> &[CableAt<Lanes>] {
+    pub(crate) fn cables_at_end(&self, block: usize) -> &[CableAt<Lanes>] {
         let count = self.tensions.len();
         &self.end_cables[block * count..(block + 1) * count]
     }
 
     #[inline(always)]
-    pub(super) fn solved(
+    pub(crate) fn solved(
         &self,
         stiffness: &Stiffness<Lanes>,
         station: &Station<N, L>,
@@ -329,7 +330,9 @@ impl Equations {
         if !solved.is_fine(self.inner_tolerance) {
             return Err(failure(place.s, &solved, self.inner_tolerance));
         }
-        let mut load = load(&self.water, &place.body, &directors, &solved.strain, &solved.balance.swelling);
+        let stream = uniform(&self.water);
+        let swelling = &solved.balance.swelling;
+        let mut load = load(&self.water, &place.body, stream, &directors, &solved.strain, swelling);
         let fraction = Lanes::of(self.fraction[0]);
         for k in 0..3 {
             load.force[k] = load.force[k] * fraction;
@@ -463,7 +466,7 @@ impl Equations {
 
 /// n_f and m_f in the directors.
 #[inline(always)]
-pub(super) fn in_directors<R: Real>(directors: &Directors<R>, z: &[R; N]) -> [R; STRAINS] {
+pub(crate) fn in_directors<R: Real>(directors: &Directors<R>, z: &[R; N]) -> [R; STRAINS] {
     let n = directors.to_body(&[z[4], z[5], z[6]]);
     let m = directors.to_body(&[z[7], z[8], z[9]]);
     [n[0], n[1], n[2], m[0], m[1], m[2]]
@@ -471,7 +474,7 @@ pub(super) fn in_directors<R: Real>(directors: &Directors<R>, z: &[R; N]) -> [R;
 
 /// d strain / d z: the law depends on z through n_f and m_f in the directors alone.
 #[inline(always)]
-pub(super) fn strain_by_state<R: Real>(
+pub(crate) fn strain_by_state<R: Real>(
     inverse: &[[R; STRAINS]; STRAINS],
     directors: &Directors<R>,
     contact: &[R; STRAINS],
@@ -502,19 +505,30 @@ pub(super) fn strain_by_state<R: Real>(
 
 /// Forcing of z' with the strains, at fixed z and beta'.
 #[inline(always)]
-pub(super) fn by_strain_change<R: Real>(at: &AtStation<R>, q: &[R; 4], change: &[R; STRAINS]) -> [R; N] {
+pub(crate) fn by_strain_change<R: Real>(at: &AtStation<R>, q: &[R; 4], change: &[R; STRAINS]) -> [R; N] {
+    strained(&at.directors, &at.contact, &at.load.by_stretch, q, change)
+}
+
+/// The same, given the section's directors, n_f and m_f in them, and how the load follows nu, eta, zeta.
+#[inline(always)]
+pub(crate) fn strained<R: Real>(
+    directors: &Directors<R>,
+    contact: &[R; STRAINS],
+    by: &[Vector<R>; 3],
+    q: &[R; 4],
+    change: &[R; STRAINS],
+) -> [R; N] {
     let v = [change[0], change[1], change[2]];
     let dq = spin(q, &[change[3], change[4], change[5]]);
-    let n = [at.contact[0], at.contact[1], at.contact[2]];
-    let dm = at.directors.to_space(&cross(&v, &n));
-    let by = &at.load.by_stretch;
+    let n = [contact[0], contact[1], contact[2]];
+    let dm = directors.to_space(&cross(&v, &n));
     let dn: Vector<R> = each(|k| by[0][k] * v[0] + by[1][k] * v[1] + by[2][k] * v[2]);
     [dq[0], dq[1], dq[2], dq[3], -dn[0], -dn[1], -dn[2], -dm[0], -dm[1], -dm[2]]
 }
 
 /// Slopes of the state and of the centreline, with their gradients, at the strains without their step.
 #[inline(always)]
-fn slopes(
+pub(crate) fn slopes(
     at: &AtStation<Lanes>,
     q: &[Lanes; 4],
     turns: &[[Lanes; 4]; 3],
@@ -577,7 +591,7 @@ fn slopes(
 
 /// The section law linearised and solved for the strains.
 #[inline(always)]
-fn inner(solved: &Solved<Lanes>, by_state: [[Lanes; N]; STRAINS]) -> Inner<N, L, Lanes> {
+pub(crate) fn inner(solved: &Solved<Lanes>, by_state: [[Lanes; N]; STRAINS]) -> Inner<N, L, Lanes> {
     let swelling = &solved.balance.swelling;
     let less = apply(&solved.inverse, &solved.balance.by_beta_slope);
     Inner {
@@ -594,7 +608,7 @@ fn inner(solved: &Solved<Lanes>, by_state: [[Lanes; N]; STRAINS]) -> Inner<N, L,
 /// The first station of a block, along the arm, that could not be solved.
 #[cold]
 #[inline(never)]
-fn failure(s: Lanes, solved: &Solved<Lanes>, tolerance: f64) -> SectionFailure {
+pub(crate) fn failure(s: Lanes, solved: &Solved<Lanes>, tolerance: f64) -> SectionFailure {
     let lane = (0..LANES).find(|lane| !solved.is_fine_in(*lane, tolerance)).unwrap_or(0);
     SectionFailure {
         s: s.0[lane],

@@ -14,9 +14,7 @@ use super::solve::{SpatialError, SpatialSolver};
 use super::tip::SpatialTip;
 use crate::rod::arm::Arm;
 use crate::rod::parameter::Parameter;
-use crate::statics::path::{
-    Equilibrium, Further, PathEnd, PathError, Watch, follow_turns, has_a_path,
-};
+use crate::statics::path::{Equilibrium, Further, PathEnd, PathError, Watch, follow_turns, has_a_path};
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::snap::SnapBounds;
 use crate::statics::solve::Options;
@@ -111,7 +109,8 @@ impl Arm {
         }
         let mut arm = self.clone();
         arm.space.get_or_insert_default();
-        let mut search = Search { tol, found: Vec::new(), known: Vec::new(), axis: AXES[0], steps: 0, go_on: &mut go_on };
+        let mut search =
+            Search { tol, found: Vec::new(), known: Vec::new(), axis: AXES[0], steps: 0, go_on: &mut go_on };
         let mut curves = Vec::new();
         search.start(&arm, &mut curves)?;
         search.follow_all(&mut curves);

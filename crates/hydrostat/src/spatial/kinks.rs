@@ -52,7 +52,7 @@ impl Engine {
     }
 
     /// Places inside (0, 1) where the load of the stream has a kink. Those closer than `resolution` count as one.
-    pub(super) fn kinks(&mut self, resolution: f64) -> Vec<f64> {
+    pub(crate) fn kinks(&mut self, resolution: f64) -> Vec<f64> {
         let mut out = Vec::new();
         let stream = self.equations.arm().flow.speed != 0.0 && self.equations.arm().flow.density != 0.0;
         if !stream {

@@ -82,12 +82,12 @@ pub(super) fn hold_lengths<const S: usize>(
 
 impl Equations {
     /// Stroke that is commanded of held cable `index` now, over L.
-    pub(super) fn command(&self, held: &StrokeControl, index: usize) -> f64 {
+    pub(crate) fn command(&self, held: &StrokeControl, index: usize) -> f64 {
         held.command(index, self.arm.cables[held.cables[index]].stroke.unwrap_or(0.0) / self.units.length)
     }
 
     /// Changes the tension of one cable, in the unit of force.
-    pub(super) fn set_tension(&mut self, cable: usize, tension: f64) {
+    pub(crate) fn set_tension(&mut self, cable: usize, tension: f64) {
         self.tensions[cable] = tension;
         self.arm.cables[cable].tension = tension * self.units.force;
     }

@@ -66,6 +66,8 @@ pub(crate) struct Load<R> {
     pub(crate) by_turn: [Vector<R>; 3],
     /// By nu, eta, zeta.
     pub(crate) by_stretch: [Vector<R>; 3],
+    /// By the stream: `by_stream[k][c]` is the change of component k with that of component c, in space.
+    pub(crate) by_stream: [Vector<R>; 3],
     /// U_t and U_p (in space) over the stream's speed.
     pub(crate) along: R,
     pub(crate) across: Vector<R>,
@@ -74,58 +76,79 @@ pub(crate) struct Load<R> {
 /// Less than any speed across the arm that matters.
 const STILL: f64 = 1e-300;
 
-/// The load of everything but cables, tip and support at a station.
+/// The stream of an arm at rest: the same everywhere, `None` in still water.
+#[inline(always)]
+pub(crate) fn uniform<R: Real>(water: &Water) -> Option<Vector<R>> {
+    (water.stream != [0.0; 3]).then(|| water.stream.map(R::of))
+}
+
+/// The load of everything but cables, tip and support at a station. `stream` is the velocity of the water against the
+/// section in space (m/s), U - r. where the arm moves; `None` where none acts.
 #[inline(always)]
 pub(crate) fn load<R: Real>(
     water: &Water,
     body: &Body<R>,
+    stream: Option<Vector<R>>,
     directors: &Directors<R>,
     strain: &[R; STRAINS],
     swelling: &SectionStretch<R>,
 ) -> Load<R> {
     let (zero, one) = (R::of(0.0), R::of(1.0));
-    let v = [strain[0], strain[1], strain[2]];
-    let stretch = dot(&v, &v).sqrt();
-    let inverse = one / stretch;
-    let t = times(inverse, &v);
-    // All in the directors, turned into space at the end. `by_tangent` is d f / d t, row by row, for changes normal to
-    // t in space.
-    let mut force = [zero; 3];
-    let mut by_tangent = [[zero; 3]; 3];
-    let mut by_size = [[zero; 3]; 3];
-    let mut out =
-        Load { force: body.force, by_turn: [[zero; 3]; 3], by_stretch: [[zero; 3]; 3], along: zero, across: [zero; 3] };
-    if water.stream != [0.0; 3] {
-        let stream = directors.to_body(&water.stream.map(R::of));
+    let along = Tangent::of(strain);
+    let Tangent { t, stretch, .. } = along;
+    // All in the directors, turned into space at the end.
+    let mut own = Turned::default();
+    let mut out = Load {
+        force: body.force,
+        by_turn: [[zero; 3]; 3],
+        by_stretch: [[zero; 3]; 3],
+        by_stream: [[zero; 3]; 3],
+        along: zero,
+        across: [zero; 3],
+    };
+    if let Some(stream) = stream {
+        let stream = directors.to_body(&stream);
         let u_t = dot(&stream, &t);
         let across: Vector<R> = each(|k| stream[k] - u_t * t[k]);
         let u_p = dot(&across, &across).sqrt();
         let over = one / u_p.max(R::of(STILL));
         let w = times(over, &across);
-        let own = traction(water.law, u_t, u_p, one);
+        let pressed = traction(water.law, u_t, u_p, one);
         let (mut s, mut s_by) = (body.wetted * swelling.beta, [body.wetted * swelling.slope, zero, zero]);
         if water.wetted == WettedLength::Deformed {
             s_by = each(|k| s_by[k] * stretch + s * t[k]);
             s = s * stretch;
         }
-        let per_s: Vector<R> = each(|k| own.tangential * t[k] + own.normal * w[k]);
+        let per_s: Vector<R> = each(|k| pressed.tangential * t[k] + pressed.normal * w[k]);
         // Turning t towards w turns w towards -t; turning it sideways turns w by -U_t/|U_p| of that.
-        let sideways = own.tangential - own.normal * over * u_t;
-        let towards: Vector<R> =
-            each(|k| (own.tangential_turn - own.normal) * t[k] + (own.tangential + own.normal_turn - sideways) * w[k]);
+        let sideways = pressed.tangential - pressed.normal * over * u_t;
+        let towards: Vector<R> = each(|k| {
+            (pressed.tangential_turn - pressed.normal) * t[k]
+                + (pressed.tangential + pressed.normal_turn - sideways) * w[k]
+        });
+        // More stream along t, along w, and sideways, which turns w.
+        let [t_by_t, t_by_p] = pressed.tangential_by;
+        let [n_by_t, n_by_p] = pressed.normal_by;
+        let beside = pressed.normal * over;
+        let mut by_stream = [[zero; 3]; 3];
         for k in 0..3 {
-            force[k] = s * per_s[k];
+            own.force[k] = s * per_s[k];
             for c in 0..3 {
-                by_tangent[k][c] = s * towards[k] * w[c];
-                by_size[k][c] = s_by[c] * per_s[k];
+                own.by_tangent[k][c] = s * towards[k] * w[c];
+                own.by_size[k][c] = s_by[c] * per_s[k];
+                let of_t = t[k] * (t_by_t * t[c] + t_by_p * w[c]);
+                let of_w = w[k] * (n_by_t * t[c] + (n_by_p - beside) * w[c]);
+                by_stream[k][c] = s * (of_t + of_w - beside * t[k] * t[c]);
             }
-            by_tangent[k][k] += s * sideways;
+            own.by_tangent[k][k] += s * sideways;
+            by_stream[k][k] += s * beside;
         }
+        out.by_stream = directors.matrix_to_space(&by_stream);
         let speed = R::of(1.0 / dot(&water.stream, &water.stream).sqrt());
         out.along = u_t * speed;
         out.across = times(speed, &directors.to_space(&across));
     }
-    let [d, d_nu] = displacement(water.displaced, water.volume, v[0], swelling);
+    let [d, d_nu] = displacement(water.displaced, water.volume, strain[0], swelling);
     let h: Vector<R> = each(|k| body.weight[k] - body.displaced[k] * d);
     let h_nu: Vector<R> = each(|k| -(body.displaced[k] * d_nu));
     match water.hydrostatics {
@@ -135,36 +158,83 @@ pub(crate) fn load<R: Real>(
                 out.by_stretch[0][k] += h_nu[k];
             }
         }
-        Hydrostatics::NormalOnly => {
-            let (h, h_nu) = (directors.to_body(&h), directors.to_body(&h_nu));
-            let (h_t, h_nu_t) = (dot(&h, &t), dot(&h_nu, &t));
-            for k in 0..3 {
-                force[k] += h[k] - h_t * t[k];
-                by_size[k][0] += h_nu[k] - h_nu_t * t[k];
-                for c in 0..3 {
-                    by_tangent[k][c] -= t[k] * h[c];
-                }
-                by_tangent[k][k] -= h_t;
-            }
-        }
+        Hydrostatics::NormalOnly => own.add_across(&along, &directors.to_body(&h), &directors.to_body(&h_nu), one),
     }
-    let apply = |d: &Vector<R>| each(|k| dot(&by_tangent[k], d));
-    for k in 0..3 {
-        let own: Vector<R> = each(|j| if j == k { one } else { zero });
-        let by_turn = directors.to_space(&apply(&cross(&own, &t)));
-        let across: Vector<R> = each(|j| (own[j] - t[k] * t[j]) * inverse);
-        let moved = apply(&across);
-        let by_stretch = directors.to_space(&each(|j| moved[j] + by_size[j][k]));
-        for j in 0..3 {
-            out.by_turn[k][j] += by_turn[j];
-            out.by_stretch[k][j] += by_stretch[j];
-        }
-    }
-    let force = directors.to_space(&force);
+    let (by_turn, by_stretch) = own.gradients(directors, &along);
+    let force = directors.to_space(&own.force);
     for k in 0..3 {
         out.force[k] += force[k];
+        for j in 0..3 {
+            out.by_turn[k][j] += by_turn[k][j];
+            out.by_stretch[k][j] += by_stretch[k][j];
+        }
     }
     out
+}
+
+/// The direction of the centreline in the directors.
+#[derive(Clone, Copy)]
+pub(crate) struct Tangent<R> {
+    pub(crate) t: Vector<R>,
+    /// |r'| and its inverse.
+    stretch: R,
+    inverse: R,
+}
+
+impl<R: Real> Tangent<R> {
+    #[inline(always)]
+    pub(crate) fn of(strain: &[R; STRAINS]) -> Self {
+        let v = [strain[0], strain[1], strain[2]];
+        let stretch = dot(&v, &v).sqrt();
+        let inverse = R::of(1.0) / stretch;
+        Self { t: times(inverse, &v), stretch, inverse }
+    }
+}
+
+/// A force in the directors that is fixed in space but for the centreline's direction t, and the strains.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Turned<R> {
+    pub(crate) force: Vector<R>,
+    /// Row by row, for changes of t normal to it, in space.
+    by_tangent: [Vector<R>; 3],
+    /// By nu, eta, zeta at fixed t.
+    by_size: [Vector<R>; 3],
+}
+
+impl<R: Real> Turned<R> {
+    /// Adds the part across the centreline of `factor` times a vector that is `h` in the directors, and changes by
+    /// `h_nu` with nu, the factor in it.
+    #[inline(always)]
+    pub(crate) fn add_across(&mut self, along: &Tangent<R>, h: &Vector<R>, h_nu: &Vector<R>, factor: R) {
+        let t = &along.t;
+        let (h_t, h_nu_t) = (dot(h, t), dot(h_nu, t));
+        for k in 0..3 {
+            self.force[k] += factor * (h[k] - h_t * t[k]);
+            self.by_size[k][0] += h_nu[k] - h_nu_t * t[k];
+            for c in 0..3 {
+                self.by_tangent[k][c] -= factor * t[k] * h[c];
+            }
+            self.by_tangent[k][k] -= factor * h_t;
+        }
+    }
+
+    /// Derivatives in space: by a turn about each director, and by nu, eta, zeta.
+    #[inline(always)]
+    pub(crate) fn gradients(&self, directors: &Directors<R>, along: &Tangent<R>) -> ([Vector<R>; 3], [Vector<R>; 3]) {
+        let (zero, one) = (R::of(0.0), R::of(1.0));
+        let t = &along.t;
+        let apply = |d: &Vector<R>| each(|k| dot(&self.by_tangent[k], d));
+        let by_turn = each(|k| {
+            let own: Vector<R> = each(|j| if j == k { one } else { zero });
+            directors.to_space(&apply(&cross(&own, t)))
+        });
+        let by_stretch = each(|k| {
+            let across: Vector<R> = each(|j| (if j == k { one } else { zero } - t[k] * t[j]) * along.inverse);
+            let moved = apply(&across);
+            directors.to_space(&each(|j| moved[j] + self.by_size[j][k]))
+        });
+        (by_turn, by_stretch)
+    }
 }
 
 #[cfg(test)]
@@ -211,7 +281,7 @@ mod tests {
         let strain = [0.9, 0.05, -0.08, 0.2, 0.3, 0.4];
         for water in waters() {
             let at = |q: &[f64; 4], strain: &[f64; 6]| {
-                load(&water, &body(), &Directors::of(q), strain, &area_law(water.volume, strain[0]))
+                load(&water, &body(), Some(water.stream), &Directors::of(q), strain, &area_law(water.volume, strain[0]))
             };
             let here = at(&q, &strain);
             for k in 0..3 {
@@ -225,7 +295,15 @@ mod tests {
                     strain[k] += h;
                     at(&q, &strain).force
                 });
+                let [with, against] = [STEP, -STEP].map(|h| {
+                    let mut stream = water.stream;
+                    stream[k] += h;
+                    let own = area_law(water.volume, strain[0]);
+                    load(&water, &body(), Some(stream), &Directors::of(&q), &strain, &own).force
+                });
                 for j in 0..3 {
+                    let by = (with[j] - against[j]) / (2.0 * STEP);
+                    assert!((by - here.by_stream[j][k]).abs() < 1e-8, "{water:?} stream {k} {j}");
                     assert!(
                         ((hi[j] - lo[j]) / (2.0 * STEP) - here.by_turn[k][j]).abs() < 1e-8,
                         "{water:?} turn {k} {j}"
@@ -247,7 +325,7 @@ mod tests {
             let (theta, strain) = (0.7_f64, [0.9, 0.05, 0.0, 0.0, 0.0, 0.4]);
             let own = area_law(water.volume, strain[0]);
             let q = [(0.5 * theta).cos(), 0.0, 0.0, (0.5 * theta).sin()];
-            let here = load(&water, &body, &Directors::of(&q), &strain, &own);
+            let here = load(&water, &body, uniform(&water), &Directors::of(&q), &strain, &own);
             let planar = crate::rod::loads::Water {
                 stream: [0.3, -0.2],
                 law: water.law,

@@ -2,7 +2,7 @@
 
 use hydrostat_bvp::{Gauss, LANES, Lanes, Real, Side, Solution, each};
 
-use super::equations::{Equations, L, N};
+use super::equations::{Equations, L};
 use super::loads::Body;
 use super::place::Place;
 use super::section::{CableAt, Stiffness};
@@ -93,7 +93,7 @@ impl Equations {
     }
 
     /// Takes the stations and ends of a solution's mesh.
-    pub(crate) fn place_on<const M: usize>(&mut self, gauss: &Gauss<M>, solution: &Solution<N, M, L>) {
+    pub(crate) fn place_on<const S: usize, const M: usize>(&mut self, gauss: &Gauss<M>, solution: &Solution<S, M, L>) {
         let mesh = &solution.mesh;
         let groups = solution.groups();
         let count = self.tensions.len();
@@ -122,7 +122,7 @@ impl Equations {
     }
 
     /// Takes the ends at which elements meet the section law.
-    pub(crate) fn place_ends<const M: usize>(&mut self, solution: &Solution<N, M, L>) {
+    pub(crate) fn place_ends<const S: usize, const M: usize>(&mut self, solution: &Solution<S, M, L>) {
         self.end_sections.clear();
         self.end_cables.clear();
         for place in solution.directions.ends() {

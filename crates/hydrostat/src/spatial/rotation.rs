@@ -60,6 +60,14 @@ impl<R: Real> Directors<R> {
     pub(crate) fn to_space(self, v: &Vector<R>) -> Vector<R> {
         each(|k| self.a[k] * v[0] + self.b[k] * v[1] + self.c[k] * v[2])
     }
+
+    /// The linear map in space that is `m` in the directors.
+    #[inline(always)]
+    pub(crate) fn matrix_to_space(self, m: &[Vector<R>; 3]) -> [Vector<R>; 3] {
+        // Rows and columns one after the other.
+        let rows: [Vector<R>; 3] = each(|k| self.to_space(&m[k]));
+        each(|k| each(|c| self.a[k] * rows[0][c] + self.b[k] * rows[1][c] + self.c[k] * rows[2][c]))
+    }
 }
 
 impl Directors<f64> {
@@ -100,6 +108,28 @@ pub(crate) fn spin<R: Real>(q: &[R; 4], u: &Vector<R>) -> [R; 4] {
     let half = R::of(0.5);
     let [u1, u2, u3] = times(half, u);
     [-(x * u1 + y * u2 + z * u3), w * u1 + y * u3 - z * u2, w * u2 + z * u1 - x * u3, w * u3 + x * u2 - y * u1]
+}
+
+/// The rotation from the quaternion `from` to `q` as 2 tan(angle/2) times its axis, in the directors of either; their
+/// lengths do not matter.
+#[inline(always)]
+pub(crate) fn relative<R: Real>(from: &[R; 4], q: &[R; 4]) -> Vector<R> {
+    let [w, x, y, z] = *from;
+    let [a, b, c, d] = *q;
+    let share = R::of(2.0) / (w * a + x * b + y * c + z * d);
+    [
+        share * (w * b - x * a - y * d + z * c),
+        share * (w * c - y * a - z * b + x * d),
+        share * (w * d - z * a - x * c + y * b),
+    ]
+}
+
+/// The quaternion that is turned from `from` as [`relative`] says, of length one if `from` is.
+#[inline(always)]
+pub(crate) fn turned_by<R: Real>(from: &[R; 4], c: &Vector<R>) -> [R; 4] {
+    let own = spin(from, c);
+    let share = R::of(1.0) / (R::of(1.0) + R::of(0.25) * dot(c, c)).sqrt();
+    each(|k| share * (from[k] + own[k]))
 }
 
 /// The quaternion q turned by the rotation vector `phi` in its directors.
@@ -151,6 +181,16 @@ mod tests {
         }
         let along: [f64; 3] = each(|a| (0..4).map(|k| turn(&Q)[a][k] * Q[k]).sum());
         assert!(along.iter().all(|v| v.abs() < 1e-15));
+    }
+
+    #[test]
+    fn relative_rotations_lead_back() {
+        let far = turned(&Q, &[0.5, 0.2, -0.9]);
+        let c = relative(&Q, &far);
+        let angle = dot(&[0.5, 0.2, -0.9], &[0.5, 0.2, -0.9]).sqrt();
+        assert!((dot(&c, &c).sqrt() - 2.0 * (0.5 * angle).tan()).abs() < 1e-14);
+        let back = turned_by(&Q, &c);
+        assert!((0..4).all(|k| (far[k] - back[k]).abs() < 1e-14));
     }
 
     #[test]

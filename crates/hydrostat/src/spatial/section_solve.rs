@@ -28,7 +28,7 @@ pub(crate) const SINGULAR: f64 = 3e-5;
 impl Solved<Lanes> {
     /// Whether every lane is within `tolerance` of strains within the limits.
     #[inline(always)]
-    pub(super) fn is_fine(&self, tolerance: f64) -> bool {
+    pub(crate) fn is_fine(&self, tolerance: f64) -> bool {
         let regular = self.regularity - Lanes::of(SINGULAR);
         let positive = regular.min(self.balance.openness - Lanes::of(FOLDED)).min(self.strain[0]);
         // A number that is none is below nothing.

@@ -84,6 +84,11 @@ impl SpatialSolver {
         self.engine.equations.arm()
     }
 
+    /// What holds the last configuration.
+    pub(crate) fn engine_mut(&mut self) -> &mut Engine {
+        &mut self.engine
+    }
+
     /// Solves from the unloaded arm.
     ///
     /// # Errors

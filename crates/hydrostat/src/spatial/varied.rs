@@ -10,6 +10,7 @@ use super::loads::water;
 use super::place::base_of;
 use super::rotation::{Directors, Vector, spin, times, turned};
 use super::section::CableAt;
+use crate::rod::arm::Arm;
 use crate::rod::parameter::Parameter;
 use crate::statics::equations::{Change, StrokeControl, Varied};
 use crate::statics::path::traced::Turn;
@@ -97,6 +98,28 @@ impl Equations {
         if sections {
             self.take_sections();
         }
+    }
+
+    /// Takes loads, stream, base and tensions of an arm of the same geometry and material.
+    pub(crate) fn set_loads(&mut self, arm: &Arm) {
+        let own = &self.arm;
+        let forces =
+            |arm: &Arm| arm.space.as_ref().map(|space| (space.force.clone(), space.couple.clone(), space.gravity));
+        let same_sections =
+            own.gravity == arm.gravity && own.distributed == arm.distributed && forces(own) == forces(arm);
+        self.arm.clone_from(arm);
+        self.take_arm(!same_sections);
+    }
+
+    /// Takes another unit of force, N, before anything is placed.
+    pub(crate) fn set_force_unit(&mut self, force: f64) {
+        self.units.force = force;
+        self.set_tensions();
+    }
+
+    /// Where the base is, over L.
+    pub(crate) fn base_place(&self) -> [f64; 3] {
+        [self.arm.base.x, self.arm.base.y, self.space.z].map(|v| v / self.units.length)
     }
 
     pub(super) fn take_gravity(&mut self) {

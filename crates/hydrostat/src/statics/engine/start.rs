@@ -5,7 +5,7 @@ use hydrostat_bvp::{Collocation, Gauss, Lanes, Mesh, Side, Solution};
 use super::discrete::Engine;
 use super::trouble::Trouble;
 use crate::numerics::rounds::evaluate;
-use crate::statics::dimensions::{Guess, L, M};
+use crate::statics::dimensions::{Guess, M};
 
 impl Engine {
     /// Strains from the cables alone (no stream, weight or tip load): a start that is exact when
@@ -97,9 +97,9 @@ pub(crate) fn turn_sections(gauss: &Gauss<M>, solution: &mut Guess) {
 }
 
 /// The end of element `i` towards which disturbances of beta fade, by its largest reach.
-pub(crate) fn wanted_side<const S: usize, const P: usize>(
-    system: &Collocation<S, M, P, L>,
-    solution: &Solution<S, M, L>,
+pub(crate) fn wanted_side<const S: usize, const P: usize, const I: usize>(
+    system: &Collocation<S, M, P, I>,
+    solution: &Solution<S, M, I>,
     i: usize,
 ) -> Side {
     let mut largest = 0.0_f64;

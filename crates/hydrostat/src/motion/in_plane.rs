@@ -1,0 +1,270 @@
+//! The boundary-value problem of one stage in the plane, as the stepper sees it, and how a motion there starts.
+
+use hydrostat_bvp::{Collocation, Correction, Gauss, Lanes, Mesh, Real, Solution};
+
+use super::border::Border;
+use super::dimensions::{S, Shape, X};
+use super::equations::Moving;
+use super::error::MotionError;
+use super::history::{History, Layout, Snapshot};
+use super::inputs::Inputs;
+use super::settling::{Moves, Settling, Unsolved};
+use super::start::{check, fair_elements, mesh, not_found};
+use super::works::{Carried, WORKS};
+use crate::rod::arm::Arm;
+use crate::statics::dimensions::{Guess, L, M, N, Q, Units};
+use crate::statics::engine::{Engine, turn_sections};
+use crate::statics::solve::{Options, Solver};
+use crate::statics::verdict::{SolveError, VerdictKind};
+
+/// The solver of stages in the plane.
+pub(super) type Planar = Settling<Moving, S, L>;
+
+impl Moves<S, L> for Moving {
+    type Border = Border;
+
+    fn start(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -> Result<Planar, MotionError> {
+        let mut settling = Planar::new(arm);
+        start_at_rest(&mut settling, arm, elements, tol, time)?;
+        Ok(settling)
+    }
+
+    fn sizes(k: f64) -> [f64; S] {
+        [1.0, k * k, k * k, k, 1.0 / k, 1.0 / k]
+    }
+
+    fn scales(&self) -> &[f64; S] {
+        &self.scales
+    }
+
+    fn set_rate(&mut self, cv: f64, scales: [f64; S]) {
+        (self.cv, self.scales) = (cv, scales);
+    }
+
+    fn units(&self) -> Units {
+        self.statics.units
+    }
+
+    fn mass(&self) -> f64 {
+        self.masses.first().map_or(0.0, |own| (own.wall + own.added).0[0])
+    }
+
+    fn place_on(&mut self, gauss: &Gauss<M>, solution: &Shape) {
+        Self::place_on(self, gauss, solution);
+    }
+
+    fn place_ends(&mut self, solution: &Shape) {
+        self.statics.place_ends(solution);
+    }
+
+    fn jumps_at(&self, s: f64) -> bool {
+        self.statics.jumps_at(s)
+    }
+
+    fn set_end_rates(&mut self, gauss: &Gauss<M>) {
+        Self::set_end_rates(self, gauss);
+    }
+
+    fn layout(&self) -> Layout {
+        Self::layout(self)
+    }
+
+    fn history_mut(&mut self) -> &mut History {
+        &mut self.history
+    }
+
+    fn largest(&self, correction: &Correction<S, M, 0, L>) -> [f64; 2] {
+        [correction.largest(0), correction.largest(X).max(correction.largest(X + 1)) * self.scales[X]]
+    }
+
+    fn drag_change(&self) -> f64 {
+        Self::drag_change(self)
+    }
+
+    fn take_loads(&mut self, arm: &Arm, inputs: &Inputs, time: f64) {
+        let [x, y, _] = inputs.stream_acceleration(arm, time);
+        self.set_loads(arm, [x, y]);
+    }
+
+    fn read(&self, system: &mut Collocation<S, M, 0, L>, solution: &Shape, out: &mut Snapshot) {
+        system.take_stations(solution);
+        let size = self.scales[X];
+        let per = Lanes::of(size);
+        for (block, (station, stage)) in system.stations().iter().zip(&solution.stages).enumerate() {
+            let own = [station.z[0], per * station.z[X], per * station.z[X + 1]];
+            out.take_stage(block, own, stage.inner, stage.closure_slope);
+        }
+        for (i, z) in solution.nodes.iter().enumerate() {
+            out.take_node(i, [z[0], size * z[X], size * z[X + 1]]);
+        }
+    }
+
+    fn at_base(&self, solution: &Shape) -> Carried {
+        let [n_x, n_y, m] = std::array::from_fn(|k| self.scales[k + 1] * solution.nodes[0][k + 1]);
+        [n_x, n_y, 0.0, 0.0, 0.0, m]
+    }
+
+    fn powers(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot, base: Carried) -> [f64; WORKS] {
+        Self::powers(self, system, at, base)
+    }
+
+    fn energies(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot) -> [f64; 2] {
+        Self::energies(self, system, at)
+    }
+
+    fn fold_margin(&self, at: &Snapshot) -> [f64; 2] {
+        Self::fold_margin(self, at)
+    }
+
+    fn held(&self) -> Vec<usize> {
+        Self::held(self).collect()
+    }
+
+    fn tensions(&self) -> (Vec<f64>, Vec<bool>) {
+        let taut = self.statics.held.as_ref().map_or_else(Vec::new, |held| held.taut.clone());
+        (self.statics.arm().cables.iter().map(|cable| cable.tension).collect(), taut)
+    }
+
+    fn take_tensions(&mut self, (tensions, taut): &(Vec<f64>, Vec<bool>)) {
+        let Some(mut held) = self.statics.held.take() else { return };
+        held.taut.clone_from(taut);
+        for cable in &held.cables {
+            self.statics.set_tension(*cable, tensions[*cable]);
+        }
+        self.statics.held = Some(held);
+    }
+
+    fn hold_strokes(settling: &mut Planar) -> Result<f64, Unsolved> {
+        settling.border()?;
+        Ok(settling.border.off)
+    }
+
+    fn add_tensions(settling: &mut Planar, factor: f64) {
+        settling.add_tensions(factor);
+    }
+
+    fn switch_taut(settling: &mut Planar, size: f64) -> bool {
+        settling.switch_taut(size)
+    }
+}
+
+impl Planar {
+    pub(super) fn new(arm: &Arm) -> Self {
+        Self::of(Moving::new(arm))
+    }
+
+    /// n_f and m_f of the solution at the nodes, in the unit of force.
+    pub(super) fn contact(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let scales = self.moving.scales;
+        self.solution.nodes.iter().map(move |z| std::array::from_fn(|k| scales[k + 1] * z[k + 1]))
+    }
+
+    /// Takes the unloaded arm, on a mesh for the motion.
+    fn start_unloaded(&mut self, mesh: Mesh) {
+        let statics = &mut self.moving.statics;
+        let base = statics.arm().base;
+        let mut shape = Guess::constant(mesh, [base.angle, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+        statics.place_on(&self.system.gauss, &shape);
+        for (block, stage) in shape.stages.iter_mut().enumerate() {
+            stage.inner = statics.reference_in(block);
+        }
+        turn_sections(&self.system.gauss, &mut shape);
+        let force = statics.units.force;
+        let mesh = shape.mesh.clone();
+        self.start_from_statics(&shape, force, mesh);
+    }
+
+    /// Takes the solution of the statics, whose unit of force is `force` (N), on a mesh for the motion.
+    pub(super) fn start_from_statics(&mut self, given: &Guess, force: f64, mesh: Mesh) {
+        let statics = &self.moving.statics;
+        let whole = with_places(given, force / statics.units.force, statics.arm(), &self.system);
+        self.start_from(&whole, mesh);
+    }
+}
+
+/// Settles on the equilibrium of `arm`: that of the statics, or, where these find none and name no limit, the one that
+/// Newton's method finds from the unloaded arm (a hinge is too soft for the statics' evidence).
+pub(super) fn start_at_rest(
+    settling: &mut Planar,
+    arm: &Arm,
+    elements: Option<usize>,
+    tol: f64,
+    time: f64,
+) -> Result<(), MotionError> {
+    check(arm)?;
+    let elements = elements.unwrap_or_else(|| fair_elements(arm, tol));
+    let of_start = |error: SolveError| MotionError::Start(Box::new(error));
+    let mut solver = Solver::new(arm, Options::with_tol((0.01 * tol).clamp(1e-10, 1e-6))).map_err(of_start)?;
+    let missing = match solver.solve() {
+        Ok(_) => {
+            let engine = solver.engine_mut();
+            let statics = &mut settling.moving.statics;
+            for (c, cable) in
+                engine.equations.arm().cables.iter().enumerate().filter(|(_, cable)| cable.stroke.is_some())
+            {
+                statics.set_tension(c, cable.tension);
+            }
+            statics.hold_strokes();
+            let mesh = mesh_at(engine, arm, elements);
+            settling.start_from_statics(&engine.solution, engine.equations.units.force, mesh);
+            None
+        }
+        Err(SolveError::NoEquilibrium(no)) if no.verdict.kind == VerdictKind::NotFound => {
+            settling.start_unloaded(mesh(arm, elements));
+            Some(SolveError::NoEquilibrium(no))
+        }
+        Err(error) => return Err(of_start(error)),
+    };
+    match settling.solve(time, 1e-10).and_then(|()| settling.solve(time, 1e-12)) {
+        Ok(()) => Ok(()),
+        Err(_) => Err(missing.map_or_else(|| not_found(time, 0.0, None, arm), of_start)),
+    }
+}
+
+/// A mesh with nodes on the kinks that the stream's load has at the shape of the engine.
+pub(super) fn mesh_at(engine: &mut Engine, arm: &Arm, elements: usize) -> Mesh {
+    let mut mesh = mesh(arm, elements);
+    let kinks = engine.kinks(1e-6);
+    let fixed: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
+    if kinks.len() <= mesh.elements() {
+        mesh.pin(&fixed, &kinks);
+    }
+    mesh
+}
+
+/// The solution of the statics with x and y, from the base, as states, and what it carries times `force`.
+fn with_places(given: &Guess, force: f64, arm: &Arm, system: &Collocation<S, M, 0, L>) -> Shape {
+    let mut statics = Collocation::<N, M, Q, L>::with(system.gauss.clone());
+    statics.take_stations(given);
+    let mut out = Solution {
+        mesh: given.mesh.clone(),
+        directions: given.directions.clone(),
+        nodes: Vec::with_capacity(given.nodes.len()),
+        stages: Vec::with_capacity(given.stages.len()),
+        ends: given.ends.clone(),
+    };
+    for (station, stage) in statics.stations().iter().zip(&given.stages) {
+        let by = Lanes::of(force);
+        let (sin, cos) = (station.z[0].map(f64::sin), station.z[0].map(f64::cos));
+        let [nu, eta, _] = stage.inner;
+        let [theta, n_x, n_y, m] = stage.slope;
+        out.stages.push(hydrostat_bvp::Stage {
+            slope: [theta, by * n_x, by * n_y, by * m, nu * cos - eta * sin, nu * sin + eta * cos],
+            inner: stage.inner,
+            closure_slope: stage.closure_slope,
+        });
+    }
+    let (mut x, mut y) = (arm.base.x / arm.length, arm.base.y / arm.length);
+    for (i, [theta, n_x, n_y, m]) in given.nodes.iter().copied().enumerate() {
+        out.nodes.push([theta, force * n_x, force * n_y, force * m, x, y]);
+        if i < given.mesh.elements() {
+            let h = given.mesh.step(i);
+            for (j, b) in system.gauss.b.iter().enumerate() {
+                let slope = out.slope(i, j);
+                x += h * b * slope[X];
+                y += h * b * slope[X + 1];
+            }
+        }
+    }
+    out
+}

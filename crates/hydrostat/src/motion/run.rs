@@ -1,0 +1,139 @@
+//! A run from time to time, in the plane or in space.
+
+use super::error::MotionError;
+use super::history::{Snapshot, between};
+use super::inputs::Inputs;
+use super::options::{MotionOptions, MotionStatistics};
+use super::settling::Moves;
+use super::stepper::Stepper;
+use super::warning::MotionWarning;
+use super::works::Works;
+use crate::rod::arm::Arm;
+
+/// A motion at the time that was asked for last.
+#[derive(Debug, Clone)]
+pub(super) struct Run<P: Moves<S, L>, const S: usize, const L: usize> {
+    pub(super) stepper: Stepper<P, S, L>,
+    /// The motion at the time asked for.
+    pub(super) asked: Snapshot,
+    pub(super) time: f64,
+}
+
+impl<P: Moves<S, L>, const S: usize, const L: usize> Run<P, S, L> {
+    /// The arm at rest in the equilibrium of its loads just before the start.
+    pub(super) fn new(arm: &Arm, inputs: Inputs, options: MotionOptions) -> Result<Self, MotionError> {
+        options.check()?;
+        let MotionOptions { start, tol, elements, step } = options;
+        Ok(Self::of(Stepper::new(arm, inputs, start, tol, elements, step)?))
+    }
+
+    pub(super) fn of(stepper: Stepper<P, S, L>) -> Self {
+        Self { asked: stepper.now.clone(), time: stepper.time, stepper }
+    }
+
+    /// What the run took until now.
+    pub(super) fn statistics(&self) -> MotionStatistics {
+        let settling = &self.stepper.settling;
+        MotionStatistics {
+            steps: self.stepper.steps,
+            rejected: self.stepper.rejected,
+            solves: settling.solves,
+            rounds: settling.rounds,
+            elements: settling.solution.mesh.elements(),
+        }
+    }
+
+    /// The error of the tip, m.
+    pub(super) fn error_estimate(&self) -> f64 {
+        self.stepper.estimate() * self.stepper.arm().length
+    }
+
+    /// The unit of energy, J.
+    fn energy(&self) -> f64 {
+        let units = self.stepper.settling.moving.units();
+        units.force * units.length
+    }
+
+    /// By how much the steps changed the energy of the arm beside all works, J.
+    pub(super) fn energy_gap(&self) -> f64 {
+        self.stepper.ledger.gap()[0] * self.energy()
+    }
+
+    /// What was done on the arm since the start.
+    pub(super) fn works(&self) -> Works {
+        let stepper = &self.stepper;
+        stepper.ledger.works_at(stepper.share_at(self.time), stepper.step).in_units_of(self.energy())
+    }
+
+    /// What should be known about the motion until now.
+    pub(super) fn warnings(&self) -> Vec<MotionWarning> {
+        let warning = |time| MotionWarning::UnresolvedJump { time };
+        self.stepper.unresolved_jump().map(warning).into_iter().collect()
+    }
+
+    /// The arm with the loads of the present time.
+    pub(super) fn arm(&self) -> Arm {
+        let mut arm = self.stepper.arm().clone();
+        self.stepper.inputs.apply(&mut arm, self.time);
+        arm
+    }
+
+    /// Moves on by `dt` (s) while `loads` change to these values along straight lines.
+    pub(super) fn step_to(&mut self, dt: f64, loads: &[(&str, f64)]) -> Result<(), MotionError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(MotionError::Option { option: "dt", value: dt, expected: "above 0" });
+        }
+        if self.stepper.time > self.time {
+            let (option, value) = ("time", self.stepper.time);
+            let expected = "the end of a step: loads can be led on only in a run of which every step does so";
+            return Err(MotionError::Option { option, value, expected });
+        }
+        let end = self.time + dt;
+        let arm = self.arm();
+        for (key, value) in loads {
+            self.stepper.inputs.lead(key, *value, &arm, [self.time, end])?;
+        }
+        while self.stepper.time < end {
+            self.stepper.advance(end)?;
+        }
+        self.asked.clone_from(&self.stepper.now);
+        self.time = end;
+        Ok(())
+    }
+
+    /// Moves on to `time` (s), which is not before the present one.
+    pub(super) fn advance_to(&mut self, time: f64) -> Result<(), MotionError> {
+        if !(time >= self.time && time.is_finite()) {
+            return Err(MotionError::Option { option: "time", value: time, expected: "not before the present one" });
+        }
+        // Steps may pass the time asked for, but not the corners of inputs.
+        let far = time + 1e6;
+        while self.stepper.time < time {
+            self.stepper.advance(far)?;
+        }
+        let stepper = &self.stepper;
+        if stepper.time == time || stepper.step == 0.0 {
+            self.asked.clone_from(&stepper.now);
+        } else {
+            let x = stepper.share_at(time);
+            between(&stepper.before, &stepper.now, stepper.step, x, &mut self.asked);
+        }
+        self.time = time;
+        Ok(())
+    }
+
+    /// The present time, that and `every`, and so on up to `until` (s).
+    pub(super) fn times(
+        &self,
+        until: f64,
+        every: f64,
+    ) -> Result<impl Iterator<Item = f64> + use<P, S, L>, MotionError> {
+        if !(every > 0.0 && every.is_finite()) {
+            return Err(MotionError::Option { option: "every", value: every, expected: "above 0" });
+        }
+        let start = self.time;
+        let times =
+            (1_u64..).map(move |k| start + k as f64 * every).take_while(move |time| *time <= until + 1e-9 * every);
+        Ok(std::iter::once(start).chain(times))
+    }
+}
