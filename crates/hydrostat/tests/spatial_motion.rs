@@ -1,5 +1,8 @@
 //! The arm in motion in space against closed forms, the motion in the plane, the statics and its own energy.
 
+/// A number of an instant.
+type Of = fn(&SpatialInstant) -> f64;
+
 #[allow(dead_code, reason = "other tests need more of it")]
 #[path = "common/space.rs"]
 mod space;
@@ -108,7 +111,6 @@ fn torsion_and_stretch_waves_run_at_their_speeds() {
     let hydrostat::Material::Homogeneous { young, .. } = arm.material else { panic!("a homogeneous arm") };
     let rho = arm.density;
     let shear = young / 3.0;
-    type Of = fn(&SpatialInstant) -> f64;
     let twist: Of = |at| at.tip.b[2].atan2(at.tip.b[1]);
     let stretch: Of = |at| at.tip.x - 1.0;
     let size = 1e-3 * PI * 0.25e-12 * shear;

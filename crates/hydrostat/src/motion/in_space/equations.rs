@@ -244,7 +244,7 @@ impl SpatialMoving {
         slopes(&at, &q, &turns, &by_state, &mut still);
         let own = inner(&at.solved, by_state);
         let spinning = self.turning(block, &q, at.solved.strain[0]);
-        self.widen(&at, &still, &own, &q, out);
+        widen(&at, &still, &own, &q, out);
         add_turning(&spinning, &at, &turns, &own, out);
         for k in 0..3 {
             for c in 0..3 {
@@ -254,34 +254,6 @@ impl SpatialMoving {
         self.scale(out);
         given.inner = at.solved.strain;
         Ok(())
-    }
-
-    /// The slopes of the statics with those of r, r' among them, as slopes of all states.
-    #[inline(always)]
-    fn widen(
-        &self,
-        at: &AtStation<Lanes>,
-        still: &Local<N, Q, L, Lanes>,
-        own: &Inner<N, L, Lanes>,
-        q: &[Lanes; 4],
-        out: &mut Local<S, 0, L, Lanes>,
-    ) {
-        let strains = |strain: &[Lanes; L]| at.directors.to_space(&[strain[0], strain[1], strain[2]]);
-        let (by_change, by_closure) =
-            (by_strain_change(at, q, &at.solved.change), by_strain_change(at, q, &own.by_closure));
-        let (change, rate_by_closure) = (strains(&at.solved.change), strains(&own.by_closure));
-        out.jacobian = [[Lanes::of(0.0); S]; S];
-        for a in 0..N {
-            out.slope[a] = still.slope[a] + by_change[a];
-            out.by_closure[a] = by_closure[a];
-            out.jacobian[a][..N].copy_from_slice(&still.jacobian[a]);
-        }
-        for k in 0..3 {
-            out.slope[X + k] = still.rate[k] + change[k];
-            out.by_closure[X + k] = rate_by_closure[k];
-            out.jacobian[X + k][..N].copy_from_slice(&still.rate_gradient[k]);
-        }
-        out.inner = wide(own);
     }
 
     /// Brings slopes and gradients to the states' sizes.
@@ -466,4 +438,31 @@ impl Problem<S, 0, L> for SpatialMoving {
             }
         }
     }
+}
+
+/// The slopes of the statics with those of r, r' among them, as slopes of all states.
+#[inline(always)]
+fn widen(
+    at: &AtStation<Lanes>,
+    still: &Local<N, Q, L, Lanes>,
+    own: &Inner<N, L, Lanes>,
+    q: &[Lanes; 4],
+    out: &mut Local<S, 0, L, Lanes>,
+) {
+    let strains = |strain: &[Lanes; L]| at.directors.to_space(&[strain[0], strain[1], strain[2]]);
+    let (by_change, by_closure) =
+        (by_strain_change(at, q, &at.solved.change), by_strain_change(at, q, &own.by_closure));
+    let (change, rate_by_closure) = (strains(&at.solved.change), strains(&own.by_closure));
+    out.jacobian = [[Lanes::of(0.0); S]; S];
+    for a in 0..N {
+        out.slope[a] = still.slope[a] + by_change[a];
+        out.by_closure[a] = by_closure[a];
+        out.jacobian[a][..N].copy_from_slice(&still.jacobian[a]);
+    }
+    for k in 0..3 {
+        out.slope[X + k] = still.rate[k] + change[k];
+        out.by_closure[X + k] = rate_by_closure[k];
+        out.jacobian[X + k][..N].copy_from_slice(&still.rate_gradient[k]);
+    }
+    out.inner = wide(own);
 }
