@@ -1,55 +1,28 @@
 //! All equilibria of an arm as JSON and CSV, at its loads and over a range of one of them.
 
-use hydrostat::{Arm, Equilibria, Equilibrium, PathEnd, SpatialConfiguration, SpatialEquilibria};
+use hydrostat::{Arm, Equilibrium, PathEnd, SpatialConfiguration};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
 use crate::digits::number;
+use crate::others::Search;
 use crate::paths::{EndOut, limit_message};
 use crate::results::{SCHEMA, cell, json};
 use crate::state::State;
 use crate::varied::Varied;
 use crate::written::Inputs;
 
-/// What a search found: of an arm in the plane, or in space.
-#[derive(Debug, Clone, Copy)]
-pub enum Search<'a> {
-    /// In the plane.
-    Plane(&'a Equilibria),
-    /// In space.
-    Space(&'a SpatialEquilibria),
-}
-
-impl<'a> From<&'a Equilibria> for Search<'a> {
-    fn from(all: &'a Equilibria) -> Self {
-        Self::Plane(all)
+fn states(all: Search<'_>) -> Vec<State<'_>> {
+    match all {
+        Search::Plane(all) => all.found.iter().map(state).collect(),
+        Search::Space(all) => all.found.iter().map(state_in_space).collect(),
     }
 }
 
-impl<'a> From<&'a SpatialEquilibria> for Search<'a> {
-    fn from(all: &'a SpatialEquilibria) -> Self {
-        Self::Space(all)
-    }
-}
-
-impl<'a> Search<'a> {
-    /// Whether these are known to be all.
-    pub fn is_complete(self) -> bool {
-        matches!(self, Self::Plane(all) if all.complete)
-    }
-
-    fn states(self) -> Vec<State<'a>> {
-        match self {
-            Self::Plane(all) => all.found.iter().map(state).collect(),
-            Self::Space(all) => all.found.iter().map(state_in_space).collect(),
-        }
-    }
-
-    fn columns(self, cables: usize) -> Vec<String> {
-        match self {
-            Self::Plane(_) => State::columns(cables, &[]),
-            Self::Space(_) => State::columns_in_space(cables, &[]),
-        }
+fn columns(all: Search<'_>, cables: usize) -> Vec<String> {
+    match all {
+        Search::Plane(_) => State::columns(cables, &[]),
+        Search::Space(_) => State::columns_in_space(cables, &[]),
     }
 }
 
@@ -118,7 +91,7 @@ pub fn side_message(end: PathEnd, base: f64) -> String {
 
 impl<'a> From<Search<'a>> for SearchOut<'a> {
     fn from(search: Search<'a>) -> Self {
-        let equilibria = search.states();
+        let equilibria = states(search);
         match search {
             Search::Plane(all) => {
                 let end = |side: usize| {
@@ -205,9 +178,9 @@ impl<'a> OverDocument<'a> {
 pub fn equilibria_csv<'a>(cables: usize, all: impl Into<Search<'a>>) -> String {
     let all = all.into();
     let mut names = vec!["number".to_owned()];
-    names.extend(all.columns(cables));
+    names.extend(columns(all, cables));
     let mut out = Rows::new(&names);
-    for (index, one) in all.states().iter().enumerate() {
+    for (index, one) in states(all).iter().enumerate() {
         let mut cells = vec![(index + 1).to_string()];
         cells.extend(one.cells(&[]));
         out.row(&cells);
@@ -220,10 +193,10 @@ pub fn over_csv(cables: usize, varied: &Varied, searches: &[(f64, Result<Search<
     let found: Vec<(f64, Search<'_>)> =
         searches.iter().filter_map(|(value, all)| Some((*value, *all.as_ref().ok()?))).collect();
     let mut names = vec![varied.column(), "complete".to_owned(), "number".to_owned()];
-    names.extend(found.first().map_or_else(|| State::columns(cables, &[]), |(_, all)| all.columns(cables)));
+    names.extend(found.first().map_or_else(|| State::columns(cables, &[]), |(_, all)| columns(*all, cables)));
     let mut out = Rows::new(&names);
     for (value, all) in found {
-        for (index, one) in all.states().iter().enumerate() {
+        for (index, one) in states(all).iter().enumerate() {
             let mut cells = vec![cell(value), all.is_complete().to_string(), (index + 1).to_string()];
             cells.extend(one.cells(&[]));
             out.row(&cells);

@@ -56,7 +56,7 @@ pub use commented::commented_arm;
 pub use csv_text::{Dialect, csv_writer, is_missing};
 pub use deviations::Deviations;
 pub use digits::number;
-pub use equilibria::{EquilibriaDocument, OverDocument, Search, equilibria_csv, over_csv};
+pub use equilibria::{EquilibriaDocument, OverDocument, equilibria_csv, over_csv};
 pub use error::{FileError, Place};
 pub use fitted::{FitKey, FitKeyError, PriorKey, bare_unit, fitted};
 pub use followed::{FollowedDocument, followed_csv};
@@ -71,7 +71,7 @@ pub use motions::{
     EventOut, MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, MotionDocument, MotionShape, equilibrium_numbers, motion_columns,
     motion_event_line, motion_heads, motion_line, motion_numbers, motion_row, motion_shape_lines, place_numbers,
 };
-pub use others::Others;
+pub use others::{Others, Search};
 pub use output::{WriteError, is_same_file, remove_leftovers, write_whole, write_whole_with};
 pub use paths::{Landing, PathDocument, end_message, path_csv, path_csv_with_landings, spatial_path_csv};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};

@@ -11,7 +11,8 @@ use hydrostat::{
 use hydrostat_files::{
     ArmFile, BoundaryDocument, Dimension, EquilibriaDocument, FollowedDocument, LoadRows, LoadingRow,
     MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, OverDocument, PathDocument, ReachDocument, Varied, boundary_csv,
-    followed_csv, loading_csv, motion_columns, over_csv, path_csv, reach_csv, schema, stations_csv,
+    followed_csv, loading_csv, modes_over_csv, motion_columns, over_csv, path_csv, reach_csv, schema,
+    spatial_motion_heads, stations_csv,
 };
 use serde_json::Value;
 
@@ -197,8 +198,13 @@ fn its_names_are_those_of_the_results() {
     let motion = motion_columns(1).join(",") + "\n";
     let (arm, _) = pulled();
     let beside = format!("{MOTION_SHAPE_HEADS}\n{MOTION_EVENT_HEADS}\n");
-    assert_eq!(blocks("csv")[..6], [header, path_header(), motion, beside, loading_header(&arm), over_header()]);
-    assert_eq!(blocks("csv")[6..], reached);
+    assert_eq!(blocks("csv")[..4], [header, path_header(), motion, beside]);
+    let motion = spatial_motion_heads(1, 0).join(",") + "\n";
+    assert!(blocks("csv")[4].starts_with(&motion), "{}", blocks("csv")[4]);
+    assert_eq!(blocks("csv")[5..7], [loading_header(&arm), over_header()]);
+    let varied: Varied = "flow.speed=0:1".parse().unwrap();
+    assert_eq!(blocks("csv")[7], modes_over_csv(&varied, &[]));
+    assert_eq!(blocks("csv")[8..], reached);
     let middle = Target { s: Some(0.1), ..Target::tip(0.09, 0.0) };
     let columns = reach_csv(1, &arm.reach(&[middle], &ReachOptions::default()).unwrap());
     for name in columns.lines().next().unwrap().split(',').filter(|name| name.starts_with("place")) {

@@ -134,7 +134,7 @@ fn columns_that_cannot_be_meant_are_named() {
         ("x [N]", "expected a length in m, cm, mm, um, in, ft; `N` is the unit of a force"),
         ("x", "write the unit behind the name, as in \"x [m]\""),
         ("x [parsec]", "`parsec` is not a known unit here"),
-        ("z [mm]", "is not a column of measurements"),
+        ("w [mm]", "is not a column of measurements"),
         ("angel [deg]", "did you mean `angle`?"),
         ("case [m]", "expected no unit, found [m]"),
         ("flow.speed", "write the unit behind the name, as in \"flow.speed [m/s]\""),

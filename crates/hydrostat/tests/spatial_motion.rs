@@ -1,8 +1,5 @@
 //! The arm in motion in space against closed forms, the motion in the plane, the statics and its own energy.
 
-/// A number of an instant.
-type Of = fn(&SpatialInstant) -> f64;
-
 #[allow(dead_code, reason = "other tests need more of it")]
 #[path = "common/space.rs"]
 mod space;
@@ -14,6 +11,9 @@ use hydrostat::{
     SpatialSimulation, Volume, Works,
 };
 use space::{apart, rotation, silicone, solved, three_cables, tip, turned, turned_arm};
+
+/// A number of an instant.
+type Of = fn(&SpatialInstant) -> f64;
 
 /// First root of cos b cosh b = -1.
 const B: f64 = 1.875_104_068_711_961;

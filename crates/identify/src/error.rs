@@ -3,7 +3,7 @@
 use hydrostat::parameter::Unfit;
 use hydrostat::{ArmError, SensitivityError, SolveError, SpatialError};
 
-use crate::data::Quantity;
+use crate::quantity::Quantity;
 use crate::unknown::Unknown;
 
 /// Why parameters cannot be fitted.

@@ -1,7 +1,7 @@
 //! How far fitted places are from the measured ones.
 
-use crate::data::Marker;
 use crate::fit::Residual;
+use crate::quantity::Marker;
 
 /// Of one marker over several load cases.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,9 +8,10 @@ use hydrostat::{
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::data::{Case, Fitted, Quantity};
+use crate::data::{Case, Fitted};
 use crate::error::{IdentifyError, Trial};
 use crate::least_squares::{Model, Rows};
+use crate::quantity::Quantity;
 use crate::shape::{Shape, off_in_plane, off_in_space, value_in_space, value_of};
 use crate::unknown::{Chain, Unknown, set_all};
 

@@ -2,7 +2,7 @@
 
 use hydrostat::{Arm, Configuration, SpatialConfiguration, SpatialStation, Station};
 
-use crate::data::{Marker, Quantity};
+use crate::quantity::{Marker, Quantity};
 
 /// An equilibrium.
 #[derive(Debug, Clone)]

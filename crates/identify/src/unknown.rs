@@ -6,7 +6,7 @@ use std::str::FromStr;
 use hydrostat::parameter::{Unfit, UnknownParameter};
 use hydrostat::{Arm, Parameter};
 
-use crate::data::Quantity;
+use crate::quantity::Quantity;
 
 /// A number that is fitted. The tensions of a load case are often those at a motor: what reaches the arm is a part of them, by friction in
 /// guides and by the pulley's true radius.

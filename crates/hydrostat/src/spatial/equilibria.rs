@@ -68,8 +68,8 @@ impl Arm {
     /// Equilibria of an arm in space under its loads, whether the path from the unloaded arm leads to them or not, each
     /// with its stability. The tip position is good to `tol` L.
     ///
-    /// From each equilibrium the base is turned about four axes; wherever it comes to whole turns is an equilibrium of the
-    /// arm. Not all of them need to be on such curves: the list may not be complete, see
+    /// From each equilibrium the base is turned about four axes; wherever it comes to whole turns, the arm has an
+    /// equilibrium. Not all of them need to be on such curves: the list may not be complete, see
     /// [`SpatialEquilibria::misses_some`].
     ///
     /// ```
