@@ -23,7 +23,7 @@ Exit status:
 /// The equilibria for all base angles form one curve that closes after a full turn of the tip. The search follows this
 /// curve. If the result says "complete", the curve was closed and there are no other equilibria.
 ///
-/// For an arm in space the search turns the base about four axes from each equilibrium that it finds. There may be
+/// For an arm in space the search turns the base about axes across it from each equilibrium that it finds. There may be
 /// others; the result says so, and says where it is known that one is missing.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = format!("\

@@ -6,10 +6,11 @@
 //! one base sum to one, as long as every section has strains on the way. That tells of some lists that one is
 //! missing; no list is known to be complete.
 
+use std::f64::consts::PI;
+
 use super::configuration::SpatialConfiguration;
 use super::engine::Engine;
-use super::equations::Equations;
-use super::rotation::{Directors, Vector, cross, dot, times};
+use super::rotation::{Vector, cross, dot, sum, times};
 use super::solve::{SpatialError, SpatialSolver};
 use super::tip::SpatialTip;
 use crate::rod::arm::Arm;
@@ -20,19 +21,20 @@ use crate::statics::snap::SnapBounds;
 use crate::statics::solve::Options;
 use crate::statics::stability::Stability;
 
-/// Turns of the base, and their axes in its directors, at which a solve may give the first equilibrium.
-const STARTS: [(f64, Vector<f64>); 7] = [
-    (0.0, AXES[0]),
-    (0.25, AXES[0]),
-    (-0.25, AXES[0]),
-    (0.25, AXES[1]),
-    (-0.25, AXES[1]),
-    (0.1, AXES[0]),
-    (-0.1, AXES[0]),
+/// Turns of the base, and the place of their axes among those of the search, at which a solve may give the first
+/// equilibrium.
+const STARTS: [(f64, usize); 7] = [(0.0, 0), (0.25, 0), (-0.25, 0), (0.25, 1), (-0.25, 1), (0.1, 0), (-0.1, 0)];
+
+/// Angles of axes across the base, from its c towards its b, in parts of half a turn: the first lot is always followed,
+/// the others while an equilibrium is known to be missing.
+const ANGLES: [&[f64]; 3] = [
+    &[0.0, 0.5, 0.25, 0.75],
+    &[0.125, 0.375, 0.625, 0.875],
+    &[0.0625, 0.1875, 0.3125, 0.4375, 0.5625, 0.6875, 0.8125, 0.9375],
 ];
 
-/// Axes of the base's turns, in its directors.
-const AXES: [Vector<f64>; 4] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, 1.0, 1.0], [0.0, 1.0, -1.0]];
+/// Axes (sine of the angle between them) that are one.
+const ALIKE: f64 = 1e-3;
 
 /// Two shapes whose tips are turned by less from each other (sine) are one: the rotation of the tip gives the arm.
 const SAME: f64 = 1e-5;
@@ -68,8 +70,8 @@ impl Arm {
     /// Equilibria of an arm in space under its loads, whether the path from the unloaded arm leads to them or not, each
     /// with its stability. The tip position is good to `tol` L.
     ///
-    /// From each equilibrium the base is turned about four axes; wherever it comes to whole turns, the arm has an
-    /// equilibrium. Not all of them need to be on such curves: the list may not be complete, see
+    /// From each equilibrium the base is turned about axes across it, those across a load among them; wherever it comes
+    /// to whole turns, the arm has an equilibrium. Not all of them need to be on such curves: the list may not be complete, see
     /// [`SpatialEquilibria::misses_some`].
     ///
     /// ```
@@ -109,13 +111,13 @@ impl Arm {
         }
         let mut arm = self.clone();
         arm.space.get_or_insert_default();
-        let mut search =
-            Search { tol, found: Vec::new(), known: Vec::new(), axis: AXES[0], steps: 0, go_on: &mut go_on };
+        let axes = first_axes(&arm);
+        let known = Vec::new();
+        let mut search = Search { tol, found: Vec::new(), axes, known, axis: 0, steps: 0, go_on: &mut go_on };
         let mut curves = Vec::new();
         search.start(&arm, &mut curves)?;
-        search.follow_all(&mut curves);
-        let signs: Option<Vec<i64>> = search.found.iter().map(|found| found.sign).collect();
-        let sum_of_signs = signs.map(|signs| signs.iter().sum());
+        search.follow_all(&arm, &mut curves);
+        let sum_of_signs = search.sum_of_signs();
         let mut found: Vec<_> = search.found.into_iter().map(|found| found.shape).collect();
         let place = |one: &Equilibrium<SpatialConfiguration>| {
             let tip = one.configuration.tip();
@@ -129,10 +131,42 @@ impl Arm {
     }
 }
 
-/// The axis in space with these components along the directors of the base.
-fn axis_of(equations: &Equations, components: Vector<f64>) -> Vector<f64> {
-    let axis = Directors::of(&equations.base).to_space(&components);
-    times(1.0 / dot(&axis, &axis).sqrt(), &axis)
+/// Axes in space for the turns of the base: across its a and each load, then those of the first lot of angles.
+fn first_axes(arm: &Arm) -> Vec<Vector<f64>> {
+    let [a, _] = arm.base_directors();
+    let space = arm.space.clone().unwrap_or_default();
+    let force = [arm.tip.force[0], arm.tip.force[1], space.tip_force];
+    let mut axes = Vec::new();
+    for load in [arm.stream_in_space(), arm.gravity_in_space(), force] {
+        add_axis(&mut axes, cross(&a, &load), dot(&load, &load).sqrt());
+    }
+    add_angles(&mut axes, arm, ANGLES[0]);
+    axes
+}
+
+fn add_angles(axes: &mut Vec<Vector<f64>>, arm: &Arm, angles: &[f64]) {
+    let [a, b] = arm.base_directors();
+    let c = cross(&a, &b);
+    for angle in angles {
+        let (sin, cos) = (PI * angle).sin_cos();
+        add_axis(axes, sum(&times(cos, &c), &times(sin, &b)), 1.0);
+    }
+}
+
+/// Adds an axis, of any length against `unit`, that is none of those there.
+fn add_axis(axes: &mut Vec<Vector<f64>>, axis: Vector<f64>, unit: f64) {
+    let length = dot(&axis, &axis).sqrt();
+    if length <= ALIKE * unit || !length.is_finite() {
+        return;
+    }
+    let axis = times(1.0 / length, &axis);
+    let is_alike = |other: &Vector<f64>| {
+        let off = cross(other, &axis);
+        dot(&off, &off).sqrt() < ALIKE
+    };
+    if !axes.iter().any(is_alike) {
+        axes.push(axis);
+    }
 }
 
 /// An equilibrium with its engine.
@@ -146,10 +180,12 @@ struct Found {
 struct Search<'g> {
     tol: f64,
     found: Vec<Found>,
+    /// Axes in space.
+    axes: Vec<Vector<f64>>,
     /// Equilibria, axes and sides whose curve was followed.
-    known: Vec<(usize, Vector<f64>, bool)>,
+    known: Vec<(usize, usize, bool)>,
     /// The axis of the present curve.
-    axis: Vector<f64>,
+    axis: usize,
     steps: usize,
     go_on: &'g mut dyn FnMut(usize) -> bool,
 }
@@ -164,7 +200,7 @@ impl Search<'_> {
             let options = Options { snaps: SnapBounds::NONE, ..Options::default() };
             let mut solver = SpatialSolver::new(arm, options).map_err(failed)?;
             let equations = &mut solver.engine.equations;
-            equations.turn_base(axis_of(equations, axis));
+            equations.turn_base(self.axes[axis]);
             equations.set_share(turns);
             match solver.solve() {
                 Ok(_) => {}
@@ -196,28 +232,40 @@ impl Search<'_> {
         }
     }
 
-    /// Follows the curves about all axes from everything that is found, until nothing is new.
-    fn follow_all(&mut self, curves: &mut Vec<Option<PathEnd>>) {
-        let mut next = 0;
-        while next < self.found.len() {
-            for axis in AXES {
-                for forwards in [true, false] {
-                    self.axis = axis;
-                    if !self.mark(next, forwards) {
-                        continue;
-                    }
-                    let mut engine = self.found[next].engine.clone();
-                    let about = axis_of(&engine.equations, axis);
-                    engine.equations.turn_base(about);
-                    let end = follow_turns(&mut engine, if forwards { 1.0 } else { -1.0 }, self);
-                    curves.push(end);
-                    if end == Some(PathEnd::Stopped) {
-                        return;
+    /// Follows the curves about all axes from everything that is found, until nothing is new, and about more axes while
+    /// something is known to be missing.
+    fn follow_all(&mut self, arm: &Arm, curves: &mut Vec<Option<PathEnd>>) {
+        for more in [&[][..], ANGLES[1], ANGLES[2]] {
+            let limited = curves.iter().any(|end| matches!(end, Some(PathEnd::Limit { .. })));
+            if !more.is_empty() && (limited || self.sum_of_signs().is_none_or(|sum| sum == 1)) {
+                return;
+            }
+            add_angles(&mut self.axes, arm, more);
+            let mut next = 0;
+            while next < self.found.len() {
+                for axis in 0..self.axes.len() {
+                    for forwards in [true, false] {
+                        self.axis = axis;
+                        if !self.mark(next, forwards) {
+                            continue;
+                        }
+                        let mut engine = self.found[next].engine.clone();
+                        engine.equations.turn_base(self.axes[axis]);
+                        let end = follow_turns(&mut engine, if forwards { 1.0 } else { -1.0 }, self);
+                        curves.push(end);
+                        if end == Some(PathEnd::Stopped) {
+                            return;
+                        }
                     }
                 }
+                next += 1;
             }
-            next += 1;
         }
+    }
+
+    /// The sum of the signs of the determinants, where all are known.
+    fn sum_of_signs(&self) -> Option<i64> {
+        self.found.iter().map(|found| found.sign).sum()
     }
 
     /// Notes that the curve about the present axis is known from an equilibrium to one side; whether that is new.
