@@ -78,7 +78,7 @@ pub struct OverDocument<'a> {
     inputs: Inputs,
 }
 
-/// What stopped a search on one side, in a phrase: `end` is one of [`Equilibria::ends`], with the base's angle there (rad).
+/// What stopped a search on one side, in a phrase: `end` is one of [`hydrostat::Equilibria::ends`], with the base's angle there (rad).
 pub fn side_message(end: PathEnd, base: f64) -> String {
     let at = format!("with the base at {} deg", number(base.to_degrees()));
     match end {
