@@ -86,7 +86,7 @@ def plot_equilibria_in_space(equilibria: Equilibria, ax: Axes | None) -> Axes:
     name = unit_of(drawn, None)
     per_m = UNITS[name]
     for index, (solution, state) in enumerate(zip(equilibria, equilibria.stability, strict=True)):
-        line = solution.at(np.linspace(0.0, solution.arm.length, _POINTS))
+        line: Any = solution.at(np.linspace(0.0, solution.arm.length, _POINTS))
         points = per_m * np.array([line.x, line.y, line.z])
         style = "-" if state == "stable" else "--"
         drawn.plot(*points, linestyle=style, color=f"C{index % 10}", linewidth=2.0, label=f"{index + 1}: {state or 'not established'}")

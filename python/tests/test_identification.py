@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -201,7 +202,7 @@ def test_an_arm_in_space_with_markers_beside_it() -> None:
     for tensions in ([3.0, 0.0], [0.0, 2.0], [2.0, 2.0]):
         shape = arm.solve(tensions=[0.9 * tension for tension in tensions])
         for s, offset in ((0.18, (0.0, 0.01, -0.02)), (0.36, (0.008, 0.0, 0.0))):
-            at = shape.at([s])
+            at: Any = shape.at([s])
             place = np.array([at.x[0], at.y[0], at.z[0]]) + offset[0] * at.a[0] + offset[1] * at.b[0] + offset[2] * at.c[0]
             for head, value in zip(rows, (str(tensions), *tensions, s, *offset, *place), strict=True):
                 rows[head].append(value)
