@@ -71,8 +71,8 @@ impl Arm {
     /// with its stability. The tip position is good to `tol` L.
     ///
     /// From each equilibrium the base is turned about axes across it, those across a load among them; wherever it comes
-    /// to whole turns, the arm has an equilibrium. Not all of them need to be on such curves: the list may not be complete, see
-    /// [`SpatialEquilibria::misses_some`].
+    /// to whole turns, the arm has an equilibrium. An equilibrium need not be on such a curve, so that the list may not
+    /// be complete: see [`SpatialEquilibria::misses_some`].
     ///
     /// ```
     /// use hydrostat::{Arm, Space};
