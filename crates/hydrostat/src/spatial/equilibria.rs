@@ -15,7 +15,7 @@ use super::solve::{SpatialError, SpatialSolver};
 use super::tip::SpatialTip;
 use crate::rod::arm::Arm;
 use crate::rod::parameter::Parameter;
-use crate::statics::path::{Equilibrium, Further, PathEnd, PathError, Watch, follow_turns, has_a_path};
+use crate::statics::path::{Equilibrium, Further, Met, PathEnd, PathError, follow_turns, has_a_path};
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::snap::SnapBounds;
 use crate::statics::solve::Options;
@@ -61,9 +61,14 @@ impl SpatialEquilibria {
     /// Whether it is known that equilibria are missing: the signs of the determinants do not sum to one, though no
     /// curve ended at a limit of a section.
     pub fn misses_some(&self) -> bool {
-        let limited = self.curves.iter().any(|end| matches!(end, Some(PathEnd::Limit { .. })));
-        !limited && self.sum_of_signs.is_some_and(|sum| sum != 1)
+        tells_that_some_are_missing(&self.curves, self.sum_of_signs)
     }
+}
+
+/// Whether the signs of the determinants do not sum to one, though no curve ended at a limit of a section.
+fn tells_that_some_are_missing(curves: &[Option<PathEnd>], sum_of_signs: Option<i64>) -> bool {
+    let is_limited = curves.iter().any(|end| matches!(end, Some(PathEnd::Limit { .. })));
+    !is_limited && sum_of_signs.is_some_and(|sum| sum != 1)
 }
 
 impl Arm {
@@ -195,20 +200,19 @@ impl Search<'_> {
     /// from it, and by the curve from there.
     fn start(&mut self, arm: &Arm, curves: &mut Vec<Option<PathEnd>>) -> Result<(), PathError<SpatialError>> {
         let failed = |source| PathError::Start { parameter: Parameter::BaseAngle, value: arm.base.angle, source };
-        let mut first = None;
+        let mut refused = None;
         for (turns, axis) in STARTS {
             let options = Options { snaps: SnapBounds::NONE, ..Options::default() };
             let mut solver = SpatialSolver::new(arm, options).map_err(failed)?;
             let equations = &mut solver.engine.equations;
             equations.turn_base(self.axes[axis]);
             equations.set_share(turns);
-            match solver.solve() {
-                Ok(_) => {}
-                Err(error @ SpatialError::NoEquilibrium(_)) => {
-                    first = first.or(Some(error));
-                    continue;
+            if let Err(error) = solver.solve() {
+                if !matches!(error, SpatialError::NoEquilibrium(_)) {
+                    return Err(failed(error));
                 }
-                Err(error) => return Err(failed(error)),
+                refused.get_or_insert(error);
+                continue;
             }
             let mut engine = solver.engine;
             engine.allowed = usize::MAX;
@@ -218,26 +222,21 @@ impl Search<'_> {
             } else {
                 self.axis = axis;
                 for side in [1.0, -1.0] {
-                    curves.push(follow_turns(&mut engine.clone(), side, self));
+                    curves.push(follow_turns(&mut engine.clone(), side, &mut |met| self.meet(met)));
                 }
             }
             if !self.found.is_empty() {
                 return Ok(());
             }
         }
-        let nothing = || SpatialSolver::new(arm, Options::default()).and_then(|mut solver| solver.solve()).err();
-        match first.or_else(nothing) {
-            Some(source) => Err(failed(source)),
-            None => Ok(()),
-        }
+        refused.map_or(Ok(()), |error| Err(failed(error)))
     }
 
     /// Follows the curves about all axes from everything that is found, until nothing is new, and about more axes while
     /// something is known to be missing.
     fn follow_all(&mut self, arm: &Arm, curves: &mut Vec<Option<PathEnd>>) {
         for more in [&[][..], ANGLES[1], ANGLES[2]] {
-            let limited = curves.iter().any(|end| matches!(end, Some(PathEnd::Limit { .. })));
-            if !more.is_empty() && (limited || self.sum_of_signs().is_none_or(|sum| sum == 1)) {
+            if !more.is_empty() && !tells_that_some_are_missing(curves, self.sum_of_signs()) {
                 return;
             }
             add_angles(&mut self.axes, arm, more);
@@ -251,7 +250,8 @@ impl Search<'_> {
                         }
                         let mut engine = self.found[next].engine.clone();
                         engine.equations.turn_base(self.axes[axis]);
-                        let end = follow_turns(&mut engine, if forwards { 1.0 } else { -1.0 }, self);
+                        let side = if forwards { 1.0 } else { -1.0 };
+                        let end = follow_turns(&mut engine, side, &mut |met| self.meet(met));
                         curves.push(end);
                         if end == Some(PathEnd::Stopped) {
                             return;
@@ -297,10 +297,13 @@ impl Search<'_> {
         self.found.push(Found { engine: engine.clone(), tip, shape, sign });
         Some(self.found.len() - 1)
     }
-}
 
-impl Watch<Engine> for Search<'_> {
-    fn whole_turn(&mut self, engine: &mut Engine, forwards: bool) -> Further {
+    /// Takes what the present curve has come to; whether it is followed further.
+    fn meet(&mut self, met: Met<'_, Engine>) -> Further {
+        let Met::WholeTurns { engine, rises } = met else {
+            self.steps += 1;
+            return if (self.go_on)(self.steps) { Further::Yes } else { Further::Stop };
+        };
         let mut held = engine.clone();
         held.equations.hold();
         let Some(index) = self.keep(&mut held) else { return Further::Yes };
@@ -308,14 +311,9 @@ impl Watch<Engine> for Search<'_> {
             return Further::Stop;
         }
         // What comes is followed now; what was before is that of the other side.
-        let new = self.mark(index, forwards);
-        self.mark(index, !forwards);
+        let new = self.mark(index, rises);
+        self.mark(index, !rises);
         if new { Further::Yes } else { Further::No }
-    }
-
-    fn point(&mut self) -> Further {
-        self.steps += 1;
-        if (self.go_on)(self.steps) { Further::Yes } else { Further::Stop }
     }
 }
 

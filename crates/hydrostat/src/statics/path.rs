@@ -23,4 +23,4 @@ pub(crate) use points::has_a_path;
 pub use points::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub(crate) use step_control::{LOOSE, PathSummary, StepControl};
 pub(crate) use trace::{ends_of_range, trace};
-pub(crate) use turns::{Further, Watch, follow_turns};
+pub(crate) use turns::{Further, Met, follow_turns};

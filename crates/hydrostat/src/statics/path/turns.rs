@@ -27,18 +27,22 @@ pub(crate) enum Further {
     Stop,
 }
 
-/// What a search wants to hear.
-pub(crate) trait Watch<E: Traced> {
-    /// The base has turned by whole turns; `forwards` says whether its angle rises along the curve.
-    fn whole_turn(&mut self, engine: &mut E, forwards: bool) -> Further;
-    /// One more point of a curve.
-    fn point(&mut self) -> Further;
+/// What a curve has come to.
+pub(crate) enum Met<'e, E> {
+    /// One more point.
+    Point,
+    /// The base has turned by whole turns: the engine with that solution, and whether the angle rises along the curve.
+    WholeTurns { engine: &'e mut E, rises: bool },
 }
 
 /// Follows the curve through the engine's equilibrium, whose base turns once round over its range, to one side of the
-/// angle of the base (1 or -1). Where another curve crosses, it goes straight on. What ended it, unless what comes was
-/// known.
-pub(crate) fn follow_turns<E: Traced>(engine: &mut E, side: f64, watch: &mut dyn Watch<E>) -> Option<PathEnd> {
+/// angle of the base (1 or -1). Where another curve crosses, it goes straight on. `further` is asked at every point and
+/// at whole turns. What ended the curve, unless what comes was known.
+pub(crate) fn follow_turns<E: Traced>(
+    engine: &mut E,
+    side: f64,
+    further: &mut dyn FnMut(Met<'_, E>) -> Further,
+) -> Option<PathEnd> {
     let start = engine.share();
     let mut stepper = Stepper::new(engine, Along::Range, [f64::NEG_INFINITY, f64::INFINITY]);
     let begun = stepper
@@ -49,12 +53,12 @@ pub(crate) fn follow_turns<E: Traced>(engine: &mut E, side: f64, watch: &mut dyn
         stepper.orientation = -stepper.orientation;
         here.dlambda_ds = -here.dlambda_ds;
     }
-    Curve { stepper, watch }.follow(here)
+    Curve { stepper, further }.follow(here)
 }
 
-struct Curve<'e, 'w, E: Traced> {
+struct Curve<'e, 'f, E: Traced> {
     stepper: Stepper<'e, E>,
-    watch: &'w mut dyn Watch<E>,
+    further: &'f mut dyn FnMut(Met<'_, E>) -> Further,
 }
 
 impl<E: Traced> Curve<'_, '_, E> {
@@ -78,7 +82,7 @@ impl<E: Traced> Curve<'_, '_, E> {
                 extreme = Some(self.stepper.limit_point(&here, &next, step, CONTROL).0);
             }
             let points_of_step: Vec<&Point<E>> = [&here].into_iter().chain(&extreme).chain([&next]).collect();
-            let mut further = self.watch.point();
+            let mut further = (self.further)(Met::Point);
             for leg in points_of_step.windows(2) {
                 if further == Further::Yes {
                     further = self.whole_turns_between(leg[0], leg[1]);
@@ -105,7 +109,7 @@ impl<E: Traced> Curve<'_, '_, E> {
         let mut turns = if rises { from.fraction.floor() + 1.0 } else { from.fraction.ceil() - 1.0 };
         while if rises { turns <= to.fraction } else { turns >= to.fraction } {
             if self.land_between(from, to, turns) {
-                let further = self.watch.whole_turn(self.stepper.engine, rises);
+                let further = (self.further)(Met::WholeTurns { engine: self.stepper.engine, rises });
                 if further != Further::Yes {
                     return further;
                 }
