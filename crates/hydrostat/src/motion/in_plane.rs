@@ -9,11 +9,11 @@ use super::error::MotionError;
 use super::history::{History, Layout, Snapshot};
 use super::inputs::Inputs;
 use super::settling::{Moves, Settling, Unsolved};
-use super::start::{check, fair_elements, mesh, not_found};
+use super::start::{check, fair_elements, mesh, mesh_at, not_found};
 use super::works::{Carried, WORKS};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, L, M, N, Q, Units};
-use crate::statics::engine::{Engine, turn_sections};
+use crate::statics::engine::turn_sections;
 use crate::statics::solve::{Options, Solver};
 use crate::statics::verdict::{SolveError, VerdictKind};
 
@@ -205,7 +205,7 @@ pub(super) fn start_at_rest(
                 statics.set_tension(c, cable.tension);
             }
             statics.hold_strokes();
-            let mesh = mesh_at(engine, arm, elements);
+            let mesh = mesh_at(engine, elements);
             settling.start_from_statics(&engine.solution, engine.equations.units.force, mesh);
             None
         }
@@ -219,17 +219,6 @@ pub(super) fn start_at_rest(
         Ok(()) => Ok(()),
         Err(_) => Err(missing.map_or_else(|| not_found(time, 0.0, None, arm), of_start)),
     }
-}
-
-/// A mesh with nodes on the kinks that the stream's load has at the shape of the engine.
-pub(super) fn mesh_at(engine: &mut Engine, arm: &Arm, elements: usize) -> Mesh {
-    let mut mesh = mesh(arm, elements);
-    let kinks = engine.kinks(1e-6);
-    let fixed: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
-    if kinks.len() <= mesh.elements() {
-        mesh.pin(&fixed, &kinks);
-    }
-    mesh
 }
 
 /// The solution of the statics with x and y, from the base, as states, and what it carries times `force`.

@@ -1,14 +1,13 @@
 //! How a motion in space starts: at rest in the equilibrium of the statics.
 
-use hydrostat_bvp::{Collocation, Lanes, Mesh, Real, Solution, Stage};
+use hydrostat_bvp::{Collocation, Lanes, Real, Solution, Stage};
 
 use super::equations::{S, Shape, Spatial, SpatialMoving, X};
 use crate::motion::error::MotionError;
 use crate::motion::settling::Settling;
-use crate::motion::start::{check, fair_elements, force_unit, mesh, not_found};
+use crate::motion::start::{check, fair_elements, force_unit, mesh_at, not_found};
 use crate::rod::arm::Arm;
 use crate::spatial::SpatialSolver;
-use crate::spatial::engine::Engine;
 use crate::spatial::equations::{FORCE, Guess, L, M, N, Q};
 use crate::spatial::rotation::Directors;
 use crate::statics::solve::Options;
@@ -23,7 +22,7 @@ pub(super) fn at_rest(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -
     solver.solve().map_err(of_start)?;
     let engine = solver.engine_mut();
     let mut settling = Settling::of(SpatialMoving::new(arm, force_unit(arm)));
-    let mesh = mesh_at(engine, arm, elements);
+    let mesh = mesh_at(engine, elements);
     let statics = &mut settling.moving.statics;
     for (c, cable) in engine.equations.arm().cables.iter().enumerate().filter(|(_, cable)| cable.stroke.is_some()) {
         statics.set_tension(c, cable.tension / statics.units.force);
@@ -37,23 +36,6 @@ pub(super) fn at_rest(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -
         Ok(()) => Ok(settling),
         Err(_) => Err(not_found(time, 0.0, None, arm)),
     }
-}
-
-/// Kinks nearer to each other than this share of a mean element have one node: the mesh stays while kinks move, and an
-/// element much shorter than its neighbours leaves beta' there to rounding.
-const APART: f64 = 0.2;
-
-/// A mesh with nodes on the kinks that the stream's load has at the shape of the engine.
-fn mesh_at(engine: &mut Engine, arm: &Arm, elements: usize) -> Mesh {
-    let mut mesh = mesh(arm, elements);
-    let mut kinks = engine.kinks(1e-6);
-    kinks.sort_by(f64::total_cmp);
-    kinks.dedup_by(|next, before| *next - *before < APART / mesh.elements() as f64);
-    let fixed: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
-    if kinks.len() <= mesh.elements() {
-        mesh.pin(&fixed, &kinks);
-    }
-    mesh
 }
 
 /// The solution of the statics with x, y, z, from the base, as states, and what it carries times `force`.
