@@ -50,6 +50,7 @@ mod options;
 mod places;
 mod powers;
 mod quasi_static;
+mod relaxation;
 mod rest;
 mod resumed;
 mod run;

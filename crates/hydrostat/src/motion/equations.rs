@@ -9,12 +9,13 @@
 //! those of the statics; lengths are in L, forces in the static unit, times in s.
 
 use hydrostat_bvp::{
-    Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, StageForcing,
+    Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, Lanes, Local, Problem, Real, StageForcing,
     Station, each,
 };
 
 use super::dimensions::{S, Shape, X};
 use super::history::{History, Layout};
+use super::relaxation::stiffened;
 use super::start::force_unit;
 use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::{SectionStretch, area_law};
@@ -117,44 +118,21 @@ impl Moving {
         }));
     }
 
-    /// Takes what strain rates at the ends start from, by the polynomial through the stages of their elements.
+    /// Takes what strain rates at the ends start from.
     pub(super) fn set_end_rates(&mut self, gauss: &Gauss<M>) {
         self.end_rates.clear();
-        if self.statics.arm().dynamics.relaxation_time == 0.0 {
-            return;
-        }
-        let at_ends = [gauss.cardinals(0.0), gauss.cardinals(1.0)];
-        for place in &self.statics.end_places {
-            let mut rates = [Lanes::of(0.0); L];
-            for lane in 0..LANES {
-                let (block, from) = self.statics.groups.at(place.elements[lane], 0);
-                let weights = &at_ends[place.sides[lane].index()];
-                for (j, weight) in weights.iter().enumerate() {
-                    for (k, rate) in rates.iter_mut().enumerate() {
-                        rate.0[lane] -= self.cv * weight * self.history.strain(block + j, k).0[from];
-                    }
-                }
-            }
-            self.end_rates.push(rates);
+        if self.statics.arm().dynamics.relaxation_time > 0.0 {
+            let ends = &self.statics.end_places;
+            self.end_rates.extend(self.history.end_rates(self.cv, gauss, self.statics.groups, ends));
         }
     }
 
     /// The section law of a material with memory of rate, given what strain rates are beside cv times the strains.
     #[inline(always)]
-    fn stiffened(&self, stiffness: &Stiffness<Lanes>, rates: [Lanes; L]) -> Stiffness<Lanes> {
+    fn stiffened(&self, stiffness: &Stiffness<Lanes>, rates: &[Lanes; L]) -> Stiffness<Lanes> {
         let time = self.statics.arm().dynamics.relaxation_time;
-        let factor = 1.0 + time * self.cv;
-        Stiffness {
-            value: each(|k| stiffness.value[k] * Lanes::of(factor)),
-            reference: each(|k| (stiffness.reference[k] - Lanes::of(time) * rates[k]) * Lanes::of(1.0 / factor)),
-            reference_slope: stiffness.reference_slope,
-        }
-    }
-
-    /// Strain rates at a station are cv times the strains, and these.
-    #[inline(always)]
-    fn strain_rates(&self, block: usize) -> [Lanes; L] {
-        each(|k| Lanes::of(-self.cv) * self.history.strain(block, k))
+        let [value, reference] = stiffened([&stiffness.value, &stiffness.reference], rates, time, self.cv);
+        Stiffness { value, reference, reference_slope: stiffness.reference_slope }
     }
 
     /// What acts along the arm at a station, inertia among it, as a load whose force is -n_f'; its derivative by (x,
@@ -171,10 +149,7 @@ impl Moving {
         let (place, masses) = (&self.places()[block], &self.masses[block]);
         let (arm, water) = (self.statics.arm(), &self.statics.water);
         let cv = Lanes::of(self.cv);
-        let of = |k: usize, z: Lanes| {
-            let velocity = cv * (z - self.history.value(block, k));
-            [velocity, cv * (velocity - self.history.rate(block, k))]
-        };
+        let of = |k: usize, z: Lanes| self.history.rates_of(self.cv, block, k, z);
         let [omega, omega_rate] = of(0, station.z[0]);
         let [x, y] = [of(1, station.z[X]), of(2, station.z[X + 1])];
         let length = Lanes::of(self.statics.units.length);
@@ -356,7 +331,7 @@ impl Moving {
         let z: [Lanes; N] = each(|a| station.z[a]);
         let contact = in_directors(direction, &z);
         let tolerance = statics.inner_tolerance;
-        let stiffness = self.stiffened(&place.stiffness, self.strain_rates(block));
+        let stiffness = self.stiffened(&place.stiffness, &self.history.strain_rates(self.cv, block));
         let solved = solve_section(
             statics.volume,
             &stiffness,
@@ -482,7 +457,7 @@ impl Problem<S, 0, L> for Moving {
             let rates = self.end_rates.get(block).copied().unwrap_or_default();
             let solved = solve_section(
                 statics.volume,
-                &self.stiffened(&section.stiffness, rates),
+                &self.stiffened(&section.stiffness, &rates),
                 pulled.as_slice(),
                 contact,
                 station.inner,
