@@ -35,7 +35,6 @@
 //! **Eigenmodes** (`modes`) are those of the same equations, linearised about an equilibrium.
 
 mod after_snap;
-mod border;
 mod dimensions;
 mod equations;
 mod error;

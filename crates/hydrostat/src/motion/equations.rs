@@ -96,26 +96,12 @@ impl Moving {
     pub(super) fn set_loads(&mut self, arm: &Arm, stream_acceleration: [f64; 2]) {
         self.stream_acceleration = if arm.dynamics.inertia { stream_acceleration } else { [0.0; 2] };
         // Tensions of held cables follow from their strokes.
-        let held: Vec<(usize, f64)> = self.held().map(|c| (c, self.statics.arm().cables[c].tension)).collect();
+        let held = self.statics.held.iter().flat_map(|held| held.cables.iter());
+        let held: Vec<(usize, f64)> = held.map(|c| (*c, self.statics.arm().cables[*c].tension)).collect();
         self.statics.set_loads(arm);
         for (cable, tension) in held {
             self.statics.set_tension(cable, tension);
         }
-    }
-
-    /// The cables whose stroke is commanded.
-    pub(super) fn held(&self) -> impl Iterator<Item = usize> + '_ {
-        self.statics.held.iter().flat_map(|held| held.cables.iter().copied())
-    }
-
-    /// Strokes of cables need no more of a station than this.
-    pub(super) fn for_strokes(stations: &[Station<S, L>], out: &mut Vec<Station<N, L>>) {
-        out.clear();
-        out.extend(stations.iter().map(|station| Station {
-            z: [Lanes::of(0.0); N],
-            inner: station.inner,
-            closure_slope: station.closure_slope,
-        }));
     }
 
     /// Takes what strain rates at the ends start from.

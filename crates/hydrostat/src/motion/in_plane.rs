@@ -1,19 +1,19 @@
 //! The boundary-value problem of one stage in the plane, as the stepper sees it, and how a motion there starts.
 
-use hydrostat_bvp::{Collocation, Correction, Gauss, Lanes, Mesh, Real, Solution};
+use hydrostat_bvp::{Collocation, Correction, Forcing, Gauss, Lanes, Mesh, Real, Solution, Station};
 
-use super::border::Border;
 use super::dimensions::{S, Shape, X};
 use super::equations::Moving;
 use super::error::MotionError;
 use super::history::{History, Layout, Snapshot};
 use super::inputs::Inputs;
-use super::settling::{Moves, Settling, Unsolved};
+use super::settling::{Moves, Settling};
 use super::start::{check, fair_elements, mesh, mesh_at, not_found};
 use super::works::{Carried, WORKS};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, L, M, N, Q, Units};
 use crate::statics::engine::turn_sections;
+use crate::statics::equations::{StationData, StrokeControl};
 use crate::statics::solve::{Options, Solver};
 use crate::statics::verdict::{SolveError, VerdictKind};
 
@@ -21,7 +21,7 @@ use crate::statics::verdict::{SolveError, VerdictKind};
 pub(super) type Planar = Settling<Moving, S, L>;
 
 impl Moves<S, L> for Moving {
-    type Border = Border;
+    type Strained = Station<N, L>;
 
     fn start(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -> Result<Planar, MotionError> {
         let mut settling = Planar::new(arm);
@@ -39,6 +39,10 @@ impl Moves<S, L> for Moving {
 
     fn set_rate(&mut self, cv: f64, scales: [f64; S]) {
         (self.cv, self.scales) = (cv, scales);
+    }
+
+    fn arm(&self) -> &Arm {
+        self.statics.arm()
     }
 
     fn units(&self) -> Units {
@@ -116,36 +120,52 @@ impl Moves<S, L> for Moving {
         Self::fold_margin(self, at)
     }
 
-    fn held(&self) -> Vec<usize> {
-        Self::held(self).collect()
+    fn held(&self) -> Option<&StrokeControl> {
+        self.statics.held.as_ref()
     }
 
-    fn tensions(&self) -> (Vec<f64>, Vec<bool>) {
-        let taut = self.statics.held.as_ref().map_or_else(Vec::new, |held| held.taut.clone());
-        (self.statics.arm().cables.iter().map(|cable| cable.tension).collect(), taut)
+    fn held_mut(&mut self) -> Option<&mut StrokeControl> {
+        self.statics.held.as_mut()
     }
 
-    fn take_tensions(&mut self, (tensions, taut): &(Vec<f64>, Vec<bool>)) {
-        let Some(mut held) = self.statics.held.take() else { return };
-        held.taut.clone_from(taut);
-        for cable in &held.cables {
-            self.statics.set_tension(*cable, tensions[*cable]);
-        }
-        self.statics.held = Some(held);
+    fn set_tension(&mut self, cable: usize, tension: f64) {
+        self.statics.set_tension(cable, tension);
     }
 
-    fn hold_strokes(settling: &mut Planar) -> Result<f64, Unsolved> {
-        settling.border()?;
-        Ok(settling.border.off)
+    fn command(&self, held: &StrokeControl, index: usize) -> f64 {
+        self.statics.command(held, index)
     }
 
-    fn add_tensions(settling: &mut Planar, factor: f64) {
-        settling.add_tensions(factor);
+    fn strained(&self, system: &Collocation<S, M, 0, L>, out: &mut Vec<Station<N, L>>) {
+        out.clear();
+        out.extend(system.stations().iter().map(|station| Station {
+            z: [Lanes::of(0.0); N],
+            inner: station.inner,
+            closure_slope: station.closure_slope,
+        }));
     }
 
-    fn switch_taut(settling: &mut Planar, size: f64) -> bool {
-        settling.switch_taut(size)
+    fn stroke(&self, cable: usize, system: &Collocation<S, M, 0, L>, strained: &[Station<N, L>]) -> [f64; 2] {
+        self.statics.stroke(cable, station_data(system, strained))
     }
+
+    fn stroke_change(
+        &self,
+        cable: usize,
+        system: &Collocation<S, M, 0, L>,
+        strained: &[Station<N, L>],
+        correction: &Correction<S, M, 0, L>,
+    ) -> f64 {
+        self.statics.stroke_change(cable, station_data(system, strained), correction)
+    }
+
+    fn pull_by(&self, cable: usize, system: &Collocation<S, M, 0, L>, out: &mut Forcing<S, 0, L>) {
+        Self::pull_by(self, cable, system, out);
+    }
+}
+
+fn station_data<'a>(system: &'a Collocation<S, M, 0, L>, stations: &'a [Station<N, L>]) -> StationData<'a> {
+    StationData { weights: &system.gauss.b, steps: system.steps(), stations }
 }
 
 impl Planar {

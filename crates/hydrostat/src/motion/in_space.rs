@@ -3,8 +3,8 @@
 mod equations;
 mod moves;
 mod powers;
+mod pulls;
 mod simulation;
 mod start;
-mod strokes;
 
 pub use self::simulation::{SpatialInstant, SpatialMotionStation, SpatialSimulation};

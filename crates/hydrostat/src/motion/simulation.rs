@@ -147,7 +147,7 @@ impl Simulation {
         let at_end = self.run.time == stepper.time;
         let [works, powers] = stepper.ledger.at(stepper.share_at(self.run.time), stepper.step);
         let mut tensions = vec![0.0; stepper.arm().cables.len()];
-        for cable in settling.moving.held() {
+        for &cable in settling.held_cables() {
             tensions[cable] = stepper.tension_at(cable, self.run.time);
         }
         MotionState {

@@ -151,7 +151,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         let most = RUNNING.c.len();
         let energy = settling.moving.energies(&settling.system, &now).iter().sum();
         let [tip, _] = now.node_place(now.layout.nodes - 1);
-        let tensions = settling.moving.tensions();
+        let tensions = settling.tensions();
         Self {
             kept: settling.solution.clone(),
             kept_scales: [1.0; S],
@@ -255,7 +255,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         self.rejected += 1;
         self.next = next;
         self.settling.restore(&self.kept, &self.kept_scales, self.time);
-        self.settling.moving.take_tensions(&self.kept_tensions);
+        self.settling.take_tensions(&self.kept_tensions);
     }
 
     fn accept(&mut self, h: f64, corner: f64, to_corner: bool, tip_error: f64) {
@@ -275,7 +275,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
             self.reached[1][k] = self.reached[1][k].max(place);
         }
         self.kept.clone_from(&self.settling.solution);
-        let tensions = std::mem::replace(&mut self.kept_tensions, self.settling.moving.tensions());
+        let tensions = std::mem::replace(&mut self.kept_tensions, self.settling.tensions());
         self.kept_scales = *self.settling.moving.scales();
         self.note_events(&tensions.1);
         self.running = true;
@@ -291,14 +291,14 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
 
     /// A shorter step, where cables became slack or taut in the one of length `h` and it is not known well when.
     fn before_event(&self, h: f64) -> Option<f64> {
-        let changed = self.settling.moving.tensions().1 != self.kept_tensions.1;
+        let changed = self.settling.tensions().1 != self.kept_tensions.1;
         let known = h <= EVENT * self.settling.moving.time_unit() || self.events.len() >= LOCATED;
         (changed && !known && self.fixed.is_none()).then_some(0.5 * h)
     }
 
     /// Notes what happened in the last step, before which the cables were taut as `taut` says.
     fn note_events(&mut self, taut: &[bool]) {
-        let held = self.settling.moving.held();
+        let held = self.settling.held_cables().to_vec();
         for ((cable, before), now) in held.into_iter().zip(taut).zip(self.kept_tensions.1.clone()) {
             if *before != now {
                 let kind = if now { MotionEventKind::Taut(cable) } else { MotionEventKind::Slack(cable) };
@@ -345,7 +345,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
             self.stages[0].clone_from(&self.start);
         }
         self.ledger.start(self.time, tableau.explicit_first);
-        let holds = !self.settling.moving.held().is_empty();
+        let holds = !self.settling.held_cables().is_empty();
         if holds {
             self.tensions = vec![(self.time, self.kept_tensions.0.clone())];
         }
@@ -372,7 +372,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
             let powers = settling.moving.powers(&settling.system, own, base);
             self.ledger.take(Reading { time, powers, base });
             if holds {
-                self.tensions.push((time, self.settling.moving.tensions().0));
+                self.tensions.push((time, self.settling.tensions().0));
             }
         }
         Ok(self.errors(tableau, h))
