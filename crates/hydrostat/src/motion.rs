@@ -35,6 +35,7 @@
 //! **Eigenmodes** (`modes`) are those of the same equations, linearised about an equilibrium.
 
 mod after_snap;
+mod along;
 mod dimensions;
 mod equations;
 mod error;
