@@ -32,11 +32,12 @@
 //! given one by one: memory does not grow with the run. A step that fails is halved; if it cannot be done the run
 //! ends with a [`MotionVerdict`] that names time and limit, after all before it was given.
 //!
-//! **Eigenmodes** (`modes`) are those of the same equations, linearised about an equilibrium.
+//! **Eigenmodes** (`modes`, `small_motions`) are those of the same equations, linearised about an equilibrium.
 
 mod after_snap;
 mod along;
 mod dimensions;
+mod eigenvalues;
 mod equations;
 mod error;
 mod event;
@@ -46,6 +47,7 @@ mod in_space;
 mod inputs;
 mod loading;
 mod modes;
+mod modes_in_plane;
 mod options;
 mod places;
 mod powers;
@@ -56,6 +58,7 @@ mod resumed;
 mod run;
 mod settling;
 mod simulation;
+mod small_motions;
 mod start;
 mod state;
 mod stepper;

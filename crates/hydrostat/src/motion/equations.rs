@@ -162,39 +162,6 @@ impl Moving {
         (out, by_place, [turn.couple, cv * (cv * by_omega_rate + by_omega), by_nu + cv * by_nu_rate])
     }
 
-    /// What a small motion about rest adds in a block of stations.
-    pub(super) fn linear(&self, block: usize, station: &Station<S, L>) -> Linear {
-        let (place, masses, water) = (&self.places()[block], &self.masses[block], &self.statics.water);
-        let arm = self.statics.arm();
-        let (sin, cos) = sin_cos(station.z[0]);
-        let [nu, eta, _] = station.inner;
-        let section_stretch = area_law(self.statics.volume, nu);
-        let zero = Lanes::of(0.0);
-        let load = self.load_at_rest(block, station);
-        let along = centreline([cos, sin], [nu, eta]);
-        let inert = inertia(water, masses, &along, nu, &section_stretch, [zero; 2], [0.0; 2]);
-        let turn = turning(self.statics.volume, masses, [nu, zero], [zero; 2]);
-        let length = Lanes::of(self.statics.units.length);
-        let area = section_stretch.beta * section_stretch.beta;
-        let time = Lanes::of(arm.dynamics.relaxation_time);
-        Linear {
-            damping: each(|k| each(|c| length * load.by_stream[k][c])),
-            mass: inert.by_acceleration,
-            rotary: turn.by[0],
-            viscous: each(|k| time * place.stiffness.value[k] * area),
-        }
-    }
-
-    fn load_at_rest(&self, block: usize, station: &Station<S, L>) -> Load<Lanes> {
-        let (sin, cos) = sin_cos(station.z[0]);
-        let section_stretch = area_law(self.statics.volume, station.inner[0]);
-        let water = &self.statics.water;
-        let wet = self.statics.arm().flow.density != 0.0;
-        let stream = wet.then(|| each(|k| Lanes::of(water.stream[k])));
-        let body = &self.places()[block].body;
-        load(water, body, stream, [cos, sin], station.inner, &section_stretch, station.closure_slope)
-    }
-
     /// What a change of what sections carry, in a block of stations, changes at fixed states: the strains follow, and
     /// with them the slopes.
     pub(super) fn drift(
@@ -486,17 +453,4 @@ impl Problem<S, 0, L> for Moving {
             out[k].gradient[0] = -inverse * turn[k];
         }
     }
-}
-
-/// What moves in a block of stations with a small motion.
-#[derive(Clone, Copy)]
-pub(super) struct Linear {
-    /// Derivative of -force by the velocity (L/s), in space.
-    pub(super) damping: [[Lanes; 2]; 2],
-    /// By the acceleration (L/s2).
-    pub(super) mass: [[Lanes; 2]; 2],
-    /// Couple by the angular acceleration.
-    pub(super) rotary: Lanes,
-    /// What the section carries by the strains' rates.
-    pub(super) viscous: [Lanes; L],
 }

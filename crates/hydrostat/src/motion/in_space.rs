@@ -1,6 +1,7 @@
 //! The arm in motion in space: `docs/motion.md`, section 5.
 
 mod equations;
+mod modes;
 mod moves;
 mod powers;
 mod pulls;

@@ -59,7 +59,7 @@ pub(super) struct SpatialMoving {
     pub(super) from: Vec<[Lanes; 4]>,
     /// Strain rates at ends of elements, less cv times the strains.
     end_rates: Vec<[Lanes; L]>,
-    end_places: Vec<EndPlace>,
+    pub(super) end_places: Vec<EndPlace>,
     closed: bool,
     /// The cables whose stroke is commanded.
     pub(super) held: Option<StrokeControl>,

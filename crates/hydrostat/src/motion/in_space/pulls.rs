@@ -31,10 +31,7 @@ impl SpatialMoving {
         out.ends.clear();
         for (block, (station, inner)) in system.end_stations().iter().zip(system.ends()).enumerate() {
             let carried = self.carried(&statics.cables_at_end(block)[c], station);
-            let (own, _) = self.unscaled(station);
-            let directors = Directors::of(&each(|k| own.z[k]));
-            let strain = self.follow(inner, &directors, &carried);
-            out.ends.push((strain, area_law(statics.volume, station.inner[0]).slope * strain[0]));
+            out.ends.push(self.end_drift(station, inner, &carried));
         }
     }
 
@@ -46,7 +43,7 @@ impl SpatialMoving {
 
     /// What a change of what sections carry, in a block of stations, changes at fixed states: the strains follow, and
     /// with them the slopes.
-    fn drift(
+    pub(super) fn drift(
         &self,
         block: usize,
         given: &Station<S, L>,
@@ -74,6 +71,18 @@ impl SpatialMoving {
             inner: strain,
             value: swelling.slope * strain[0],
         }
+    }
+
+    /// The same at a block of ends: strains, and the section stretch.
+    pub(super) fn end_drift(
+        &self,
+        given: &Station<S, L>,
+        inner: &Inner<S, L, Lanes>,
+        carried: &[Lanes; STRAINS],
+    ) -> ([Lanes; L], Lanes) {
+        let (station, _) = self.unscaled(given);
+        let strain = self.follow(inner, &Directors::of(&each(|k| station.z[k])), carried);
+        (strain, area_law(self.statics.volume, given.inner[0]).slope * strain[0])
     }
 
     /// The strains that follow so much more of what a section carries, at a fixed state: those of that much less of
