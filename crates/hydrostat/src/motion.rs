@@ -36,6 +36,7 @@
 
 mod after_snap;
 mod along;
+mod border;
 mod dimensions;
 mod eigenvalues;
 mod equations;
@@ -70,7 +71,7 @@ mod works;
 pub use self::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
 pub use self::error::{MotionError, MotionVerdict, MotionVerdictKind};
 pub use self::event::{MotionEvent, MotionEventKind};
-pub use self::in_space::{SpatialInstant, SpatialMotionStation, SpatialSimulation};
+pub use self::in_space::{SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation};
 pub use self::inputs::{Course, Inputs};
 pub use self::loading::{Loading, LoadingError, LoadingSnap, LoadingStep};
 pub use self::modes::{Mode, Modes};

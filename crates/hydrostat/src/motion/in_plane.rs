@@ -1,6 +1,6 @@
 //! The boundary-value problem of one stage in the plane, as the stepper sees it, and how a motion there starts.
 
-use hydrostat_bvp::{Collocation, Correction, Forcing, Gauss, Lanes, Mesh, Real, Solution, Station};
+use hydrostat_bvp::{Collocation, Correction, Forcing, Gauss, Lanes, Mesh, Real, Solution, Stage, Station};
 
 use super::dimensions::{S, Shape, X};
 use super::equations::Moving;
@@ -9,6 +9,7 @@ use super::history::{History, Layout, Snapshot};
 use super::inputs::Inputs;
 use super::settling::{Moves, Settling};
 use super::start::{check, fair_elements, mesh, mesh_at, not_found};
+use super::state::carried_slopes;
 use super::works::{Carried, WORKS};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, L, M, N, Q, Units};
@@ -22,6 +23,9 @@ pub(super) type Planar = Settling<Moving, S, L>;
 
 impl Moves<S, L> for Moving {
     type Strained = Station<N, L>;
+
+    const COORDINATES: [usize; 2] = [1, 2];
+    const CARRIED: &'static [usize] = &[0, 1, 5];
 
     fn start(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -> Result<Planar, MotionError> {
         let mut settling = Planar::new(arm);
@@ -103,9 +107,39 @@ impl Moves<S, L> for Moving {
         }
     }
 
-    fn at_base(&self, solution: &Shape) -> Carried {
-        let [n_x, n_y, m] = std::array::from_fn(|k| self.scales[k + 1] * solution.nodes[0][k + 1]);
+    fn carried_at(&self, solution: &Shape, node: usize) -> Carried {
+        let [n_x, n_y, m] = std::array::from_fn(|k| self.scales[k + 1] * solution.nodes[node][k + 1]);
         [n_x, n_y, 0.0, 0.0, 0.0, m]
+    }
+
+    /// What sections carry is a start for Newton's method alone: straight between the nodes.
+    fn in_shape(arm: &Arm, at: &Snapshot, carried: &[Carried], mesh: Mesh) -> Planar {
+        let stage = |block: usize| {
+            let [[nu, eta, mu, closure_slope], _] = at.strains(block);
+            let [n_x, n_y, _, _, _, m] = carried_slopes(&mesh, carried, block);
+            Stage { slope: [mu, n_x, n_y, m], inner: [nu, eta, mu], closure_slope }
+        };
+        let node = |(i, [n_x, n_y, _, _, _, m]): (usize, &Carried)| {
+            let [theta, _, _] = at.node(i);
+            [theta, *n_x, *n_y, *m]
+        };
+        let stages = (0..at.layout.blocks).map(stage).collect();
+        let nodes = carried.iter().enumerate().map(node).collect();
+        let guess = Guess { mesh: mesh.clone(), nodes, stages, ..Guess::default() };
+        let mut settling = Planar::new(arm);
+        settling.moving.statics.hold_strokes();
+        let force = settling.moving.statics.units.force;
+        settling.start_from_statics(&guess, force, mesh);
+        settling
+    }
+
+    fn is_based(arm: &Arm, at: &Snapshot) -> bool {
+        let base = [arm.base.angle, arm.base.x / arm.length, arm.base.y / arm.length];
+        at.node::<3>(0).iter().zip(base).all(|(at, base)| (at - base).abs() <= 1e-9)
+    }
+
+    fn radius(&self, _: usize) -> Option<Lanes> {
+        None
     }
 
     fn powers(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot, base: Carried) -> [f64; WORKS] {
@@ -171,12 +205,6 @@ fn station_data<'a>(system: &'a Collocation<S, M, 0, L>, stations: &'a [Station<
 impl Planar {
     pub(super) fn new(arm: &Arm) -> Self {
         Self::of(Moving::new(arm))
-    }
-
-    /// n_f and m_f of the solution at the nodes, in the unit of force.
-    pub(super) fn contact(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        let scales = self.moving.scales;
-        self.solution.nodes.iter().map(move |z| std::array::from_fn(|k| scales[k + 1] * z[k + 1]))
     }
 
     /// Takes the unloaded arm, on a mesh for the motion.

@@ -5,7 +5,9 @@ mod modes;
 mod moves;
 mod powers;
 mod pulls;
+mod quasi_static;
 mod simulation;
 mod start;
 
+pub use self::quasi_static::SpatialQuasiStatic;
 pub use self::simulation::{SpatialInstant, SpatialMotionStation, SpatialSimulation};

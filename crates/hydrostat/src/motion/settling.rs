@@ -6,10 +6,10 @@ use hydrostat_bvp::{
     Collocation, Correction, Forcing, Gauss, Lanes, LinearisationError, Mesh, Problem, Real, Side, Solution,
 };
 
+use super::border::Border;
 use super::error::MotionError;
 use super::history::{History, Layout, Snapshot};
 use super::inputs::Inputs;
-use super::strokes::Border;
 use super::works::{Carried, WORKS};
 use crate::numerics::rounds::{correct, linearise, respond};
 use crate::rod::arm::Arm;
@@ -48,6 +48,12 @@ pub(super) enum Unsolved {
 pub(super) trait Moves<const S: usize, const L: usize>:
     Problem<S, 0, L, Failure = SectionFailure> + Clone
 {
+    /// Coordinates of a station that turn it, and those of its place.
+    const COORDINATES: [usize; 2];
+
+    /// Which components of n_f and m_f, three each, there are.
+    const CARRIED: &'static [usize];
+
     /// The strains in a block of stations, which strokes follow from.
     type Strained: Clone + Debug;
 
@@ -113,8 +119,19 @@ pub(super) trait Moves<const S: usize, const L: usize>:
     /// Takes the values of a solution; `system` is for its memory.
     fn read(&self, system: &mut Collocation<S, M, 0, L>, solution: &Solution<S, M, L>, out: &mut Snapshot);
 
-    /// n_f(0) and m_f(0) of a solution, in the unit of force.
-    fn at_base(&self, solution: &Solution<S, M, L>) -> Carried;
+    /// n_f and m_f at a node of a solution, in the unit of force.
+    fn carried_at(&self, solution: &Solution<S, M, L>, node: usize) -> Carried;
+
+    /// In the shape that a motion of `arm` has on this mesh, where the nodes carry about this much (in the unit of
+    /// force). The cables have the tensions of `arm`.
+    fn in_shape(arm: &Arm, at: &Snapshot, carried: &[Carried], mesh: Mesh) -> Settling<Self, S, L>;
+
+    /// Whether the base of `arm` is where a motion has it.
+    fn is_based(arm: &Arm, at: &Snapshot) -> bool;
+
+    /// Where an error of a section's turn counts by itself, the radius (over L) in a block of stages by which it does:
+    /// in space the surface is to be known as well as the centreline, which stays where it is as the arm twists.
+    fn radius(&self, block: usize) -> Option<Lanes>;
 
     /// The powers (in the unit of force times L/s) in the motion `at`, which `system` was linearised at and whose base
     /// carries `base`.

@@ -9,6 +9,8 @@
 //!
 //! so that v_i = cv (q_i - Q) and a_i = cv (v_i - V) with cv = 1/(h gamma). Strains do the same with their rates.
 
+use std::ops::Range;
+
 use hydrostat_bvp::{Lanes, Real, Solution};
 
 use super::error::{MotionError, MotionVerdict, MotionVerdictKind};
@@ -136,7 +138,9 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         let running = state.smooth && !inputs.jumps_at(state.time);
         let this = Self::starting(settling, start, inputs, state.time, now, works);
         let next = fixed.unwrap_or(if running { state.next } else { 0.0 });
-        Self { running, tolerance: SHARE * tol, fixed, next, error: state.error, jumped: state.jumped, ..this }
+        let mut start = Snapshot::default();
+        this.settling.moving.restarted(&this.now, &mut start);
+        Self { start, running, tolerance: SHARE * tol, fixed, next, error: state.error, jumped: state.jumped, ..this }
     }
 
     fn starting(
@@ -157,7 +161,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
             kept_scales: [1.0; S],
             tensions: vec![(time, tensions.0.clone())],
             kept_tensions: tensions,
-            ledger: Ledger::new(time, settling.moving.at_base(&settling.solution), energy, works),
+            ledger: Ledger::new(time, settling.moving.carried_at(&settling.solution, 0), energy, works),
             events: Vec::new(),
             folded: settling.moving.fold_margin(&now)[0] <= 0.0,
             jumped: None,
@@ -368,7 +372,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
             let settling = &mut self.settling;
             settling.moving.read(&mut settling.system, &settling.solution, own);
             own.rates_from(cv, settling.moving.history_mut());
-            let base = settling.moving.at_base(&settling.solution);
+            let base = settling.moving.carried_at(&settling.solution, 0);
             let powers = settling.moving.powers(&settling.system, own, base);
             self.ledger.take(Reading { time, powers, base });
             if holds {
@@ -378,7 +382,8 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         Ok(self.errors(tableau, h))
     }
 
-    /// The embedded error of the centreline: the largest, and the tip's.
+    /// The embedded error: the largest of the centreline and, where it counts ([`Moves::radius`]), of the surface as
+    /// sections turn; and that of the tip.
     fn errors(&self, tableau: &Tableau, h: f64) -> [f64; 2] {
         let layout = self.start.layout;
         let zero = Lanes::of(0.0);
@@ -387,9 +392,15 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         let mut largest = 0.0_f64;
         for block in 0..layout.blocks {
             let first = layout.coordinates() * block + layout.turns;
-            let square = (first..first + layout.places).map(at).fold(zero, |sum, error| sum + error * error);
-            for v in square.0 {
-                largest = if v.is_nan() { f64::NAN } else { largest.max(v) };
+            let square = |of: Range<usize>| of.map(at).fold(zero, |sum, error| sum + error * error);
+            let mut take = |square: Lanes| {
+                for v in square.0 {
+                    largest = if v.is_nan() { f64::NAN } else { largest.max(v) };
+                }
+            };
+            take(square(first..first + layout.places));
+            if let Some(radius) = self.settling.moving.radius(block) {
+                take(radius * radius * square(first - layout.turns..first));
             }
         }
         let mut off = [0.0; 3];

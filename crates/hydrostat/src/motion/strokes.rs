@@ -1,31 +1,15 @@
 //! Cables whose stroke is commanded in motion, in the plane or in space: shape and tensions in one bordered system
 //! ([`crate::statics::border`]), with taut and slack cables by an active set.
 
-use hydrostat_bvp::{Correction, Forcing};
+use hydrostat_bvp::Correction;
 
+use super::border::Border;
 use super::settling::{Moves, Settling, Unsolved};
 use crate::numerics::rounds::respond;
 use crate::statics::border::{UnitPull, add_pulls, meeting};
 
 /// Corrections above which tensions do not yet say which cables are taut.
 const SETTLED: f64 = 0.3;
-
-/// The tensions' part of a round, and memory for it.
-#[derive(Debug, Clone)]
-pub(super) struct Border<T, const S: usize, const L: usize> {
-    /// Changes of the tensions (in the unit of force), one a held cable.
-    tensions: Vec<f64>,
-    /// Strokes less commands after the round, over L.
-    slack: Vec<f64>,
-    strained: Vec<T>,
-    forcing: Forcing<S, 0, L>,
-}
-
-impl<T, const S: usize, const L: usize> Default for Border<T, S, L> {
-    fn default() -> Self {
-        Self { tensions: Vec::new(), slack: Vec::new(), strained: Vec::new(), forcing: Forcing::default() }
-    }
-}
 
 impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
     /// The cables whose stroke is commanded.

@@ -1,13 +1,14 @@
 //! The boundary-value problem of one stage in space, as the stepper sees it.
 
-use hydrostat_bvp::{Collocation, Correction, Forcing, Gauss, LANES, Lanes, Real, Stage, each};
+use hydrostat_bvp::{Collocation, Correction, Forcing, Gauss, LANES, Lanes, Mesh, Real, Stage, each};
 
 use super::equations::{COORDINATES, S, Shape, Spatial, SpatialMoving, X};
-use super::start::at_rest;
+use super::start::{at_rest, in_shape};
 use crate::motion::error::MotionError;
 use crate::motion::history::{History, Layout, Snapshot};
 use crate::motion::inputs::Inputs;
 use crate::motion::settling::Moves;
+use crate::motion::start::force_unit;
 use crate::motion::works::{Carried, WORKS};
 use crate::rod::arm::Arm;
 use crate::spatial::cable_paths::StageData;
@@ -19,6 +20,9 @@ use crate::statics::equations::StrokeControl;
 
 impl Moves<S, L> for SpatialMoving {
     type Strained = Stage<N, L>;
+
+    const COORDINATES: [usize; 2] = [3, 3];
+    const CARRIED: &'static [usize] = &[0, 1, 2, 3, 4, 5];
 
     fn start(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -> Result<Spatial, MotionError> {
         at_rest(arm, elements, tol, time)
@@ -159,8 +163,24 @@ impl Moves<S, L> for SpatialMoving {
         }
     }
 
-    fn at_base(&self, solution: &Shape) -> Carried {
-        each(|k| self.scales[FORCE + k] * solution.nodes[0][FORCE + k])
+    fn carried_at(&self, solution: &Shape, node: usize) -> Carried {
+        each(|k| self.scales[FORCE + k] * solution.nodes[node][FORCE + k])
+    }
+
+    fn in_shape(arm: &Arm, at: &Snapshot, carried: &[Carried], mesh: Mesh) -> Spatial {
+        in_shape(arm, at, carried, mesh)
+    }
+
+    fn is_based(arm: &Arm, at: &Snapshot) -> bool {
+        let base = SpatialMoving::new(arm, force_unit(arm)).statics;
+        let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9);
+        let [place, _] = at.node_place(0);
+        let (own, wanted) = (at.directors(0), Directors::of(&base.base));
+        close(&place, &base.base_place()) && close(&own.a, &wanted.a) && close(&own.b, &wanted.b)
+    }
+
+    fn radius(&self, block: usize) -> Option<Lanes> {
+        Some(self.statics.places[block].body.radius)
     }
 
     fn powers(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot, base: Carried) -> [f64; WORKS] {
