@@ -1,6 +1,6 @@
 //! Rates of small motions in the complex plane, at one load or over several values of one.
 
-use hydrostat::Modes;
+use hydrostat::Mode;
 
 use crate::axes::{Axes, BELOW, LEFT};
 use crate::chart::{Abscissa, padded};
@@ -25,11 +25,11 @@ const NAMED: usize = 6;
 /// let mut rod = hydrostat::Arm::cone(1.0, 0.001, 0.001, 1e9, 0.5);
 /// rod.flow.density = 0.0;
 /// let modes = rod.modes(3, 8)?;
-/// let figure = root_locus_figure(&[(0.0, &modes)], None, "a rod", &Page::default());
+/// let figure = root_locus_figure(&[(0.0, &modes.modes)], None, "a rod", &Page::default());
 /// assert!(figure.texts().any(|text| text == "growth rate (1/s)"));
 /// # Ok::<(), hydrostat::MotionError>(())
 /// ```
-pub fn root_locus_figure(found: &[(f64, &Modes)], over: Option<&Abscissa>, title: &str, page: &Page) -> Scene {
+pub fn root_locus_figure(found: &[(f64, &[Mode])], over: Option<&Abscissa>, title: &str, page: &Page) -> Scene {
     let count = found.len();
     let mut legend = Legend::new(page);
     if let Some(over) = over {
@@ -38,11 +38,8 @@ pub fn root_locus_figure(found: &[(f64, &Modes)], over: Option<&Abscissa>, title
             legend.add(Sample::Mark(Mark::Filled(ordered(k, count))), Label::plain(over.text(*value)));
         }
     }
-    let places: Vec<(usize, [f64; 2])> = found
-        .iter()
-        .enumerate()
-        .flat_map(|(k, (_, modes))| modes.modes.iter().map(move |mode| (k, mode.rate)))
-        .collect();
+    let places: Vec<(usize, [f64; 2])> =
+        found.iter().enumerate().flat_map(|(k, (_, modes))| modes.iter().map(move |mode| (k, mode.rate))).collect();
     let reach = |axis: usize| {
         let values = places.iter().map(|(_, rate)| rate[axis]).chain([0.0]);
         values.fold([0.0_f64; 2], |[low, high], v| [low.min(v), high.max(v)])

@@ -65,7 +65,7 @@ pub use identification::{IdentificationDocument, residuals_csv};
 pub use loadings::{LoadingDocument, LoadingRow, RowSnap, loading_csv};
 pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
 pub use measurements_template::measurements_template;
-pub use modes::{ModesDocument, ModesOverDocument, mode_kind, modes_csv, modes_over_csv};
+pub use modes::{ModesDocument, ModesOverDocument, ModesTip, mode_kind, modes_csv, modes_over_csv};
 pub use motion_states::{SavedMotion, SavedMotionError, motion_state_beside};
 pub use motions::{
     EventOut, MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, MotionDocument, MotionShape, equilibrium_numbers, motion_columns,

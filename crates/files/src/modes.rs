@@ -1,10 +1,11 @@
 //! Eigenmodes as JSON and CSV, at one load and over several values of one.
 
-use hydrostat::{Arm, Mode, Modes};
+use hydrostat::{Arm, Mode, Modes, SpatialTip};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
 use crate::results::{SCHEMA, cell, json};
+use crate::spatial_results::TipOut;
 use crate::varied::Varied;
 use crate::written::Inputs;
 
@@ -46,11 +47,28 @@ pub struct ModesOverDocument<'a> {
     inputs: Inputs,
 }
 
-#[derive(Debug, Clone, Copy, Serialize)]
-struct ModesTip {
-    x: f64,
-    y: f64,
-    theta: f64,
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+enum TipAs {
+    InPlane { x: f64, y: f64, theta: f64 },
+    InSpace(TipOut),
+}
+
+/// The tip in the equilibrium of modes, in the plane or in space, as documents have it.
+#[derive(Debug, Clone, Serialize)]
+pub struct ModesTip(TipAs);
+
+/// x, y (m) and theta (rad).
+impl From<[f64; 3]> for ModesTip {
+    fn from([x, y, theta]: [f64; 3]) -> Self {
+        Self(TipAs::InPlane { x, y, theta })
+    }
+}
+
+impl From<SpatialTip> for ModesTip {
+    fn from(tip: SpatialTip) -> Self {
+        Self(TipAs::InSpace(tip.into()))
+    }
 }
 
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -82,17 +100,16 @@ impl From<&Mode> for ModeOut {
     }
 }
 
-impl From<&Modes> for ModesOut {
-    fn from(modes: &Modes) -> Self {
-        let [x, y, theta] = modes.tip;
-        let stable = modes.is_stable();
-        Self { stable, modes: modes.modes.iter().map(ModeOut::from).collect(), tip: ModesTip { x, y, theta } }
+impl<T: Copy + Into<ModesTip>> From<&Modes<T>> for ModesOut {
+    fn from(modes: &Modes<T>) -> Self {
+        let modes_out = modes.modes.iter().map(ModeOut::from).collect();
+        Self { stable: modes.is_stable(), modes: modes_out, tip: modes.tip.into() }
     }
 }
 
 impl ModesDocument {
     /// Of the modes of `arm`.
-    pub fn new(arm: &Arm, modes: &Modes) -> Self {
+    pub fn new(arm: &Arm, modes: &Modes<impl Copy + Into<ModesTip>>) -> Self {
         Self { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), found: modes.into(), inputs: Inputs::new(arm) }
     }
 
@@ -104,8 +121,12 @@ impl ModesDocument {
 
 impl<'a> ModesOverDocument<'a> {
     /// Of the modes of `arm` at each value (SI) of what varies, or why there are none.
-    pub fn new(arm: &Arm, varied: &Varied, found: &'a [(f64, Result<Modes, String>)]) -> Self {
-        let value = |(value, modes): &'a (f64, Result<Modes, String>)| ValueOut {
+    pub fn new<T: Copy + Into<ModesTip>>(
+        arm: &Arm,
+        varied: &Varied,
+        found: &'a [(f64, Result<Modes<T>, String>)],
+    ) -> Self {
+        let value = |(value, modes): &'a (f64, Result<Modes<T>, String>)| ValueOut {
             value: *value,
             found: modes.as_ref().ok().map(ModesOut::from),
             message: modes.as_ref().err().map(String::as_str),
@@ -138,7 +159,7 @@ fn cells(number: usize, mode: &Mode) -> Vec<String> {
 }
 
 /// Modes, one row each, counted from 1.
-pub fn modes_csv(modes: &Modes) -> String {
+pub fn modes_csv<T>(modes: &Modes<T>) -> String {
     let mut out = Rows::new(&COLUMNS.map(str::to_owned));
     for (k, mode) in modes.modes.iter().enumerate() {
         out.row(&cells(k + 1, mode));
@@ -147,7 +168,7 @@ pub fn modes_csv(modes: &Modes) -> String {
 }
 
 /// [`modes_csv`] at each value of what varies.
-pub fn modes_over_csv(varied: &Varied, found: &[(f64, Result<Modes, String>)]) -> String {
+pub fn modes_over_csv<T>(varied: &Varied, found: &[(f64, Result<Modes<T>, String>)]) -> String {
     let mut names = vec![varied.column()];
     names.extend(COLUMNS.map(str::to_owned));
     let mut out = Rows::new(&names);

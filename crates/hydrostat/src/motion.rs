@@ -32,11 +32,13 @@
 //! given one by one: memory does not grow with the run. A step that fails is halved; if it cannot be done the run
 //! ends with a [`MotionVerdict`] that names time and limit, after all before it was given.
 //!
-//! **Eigenmodes** (`modes`) are those of the same equations, linearised about an equilibrium.
+//! **Eigenmodes** (`modes`, `small_motions`) are those of the same equations, linearised about an equilibrium.
 
 mod after_snap;
+mod along;
 mod border;
 mod dimensions;
+mod eigenvalues;
 mod equations;
 mod error;
 mod event;
@@ -46,15 +48,18 @@ mod in_space;
 mod inputs;
 mod loading;
 mod modes;
+mod modes_in_plane;
 mod options;
 mod places;
 mod powers;
 mod quasi_static;
+mod relaxation;
 mod rest;
 mod resumed;
 mod run;
 mod settling;
 mod simulation;
+mod small_motions;
 mod start;
 mod state;
 mod stepper;
@@ -66,7 +71,7 @@ mod works;
 pub use self::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
 pub use self::error::{MotionError, MotionVerdict, MotionVerdictKind};
 pub use self::event::{MotionEvent, MotionEventKind};
-pub use self::in_space::{SpatialInstant, SpatialMotionStation, SpatialSimulation};
+pub use self::in_space::{SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation};
 pub use self::inputs::{Course, Inputs};
 pub use self::loading::{Loading, LoadingError, LoadingSnap, LoadingStep};
 pub use self::modes::{Mode, Modes};

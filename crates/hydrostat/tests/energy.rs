@@ -1,10 +1,15 @@
 //! The balance of energy of the arm in motion: kinetic + strain + dissipated - worked = constant, whatever acts.
 
+#[allow(dead_code, reason = "other tests need more of it")]
+#[path = "common/motion.rs"]
+mod moving;
+
 use std::f64::consts::PI;
 
 use hydrostat::{
     Arm, Cable, Course, Gravity, Inputs, Instant, Join, Material, MotionOptions, Profile, Simulation, Volume, Works,
 };
+use moving::{in_plane, inputs, options, pull};
 
 /// A slender uniform rod of 1 m in a vacuum whose first mode has a period of 4.25 s.
 fn rod() -> Arm {
@@ -31,18 +36,7 @@ fn silicone(volume: Volume) -> Arm {
 }
 
 fn motion(arm: &Arm, courses: &[(&str, Course)], tol: f64, until: f64) -> Vec<Instant> {
-    let mut inputs = Inputs::default();
-    for (key, course) in courses {
-        inputs.set(key, course.clone()).unwrap();
-    }
-    let mut simulation = Simulation::new(arm, inputs, MotionOptions { tol, ..MotionOptions::default() }).unwrap();
-    let mut out = Vec::new();
-    let sink = |at: &Instant, _: &Simulation| {
-        out.push(at.clone());
-        true
-    };
-    simulation.run(until, 0.013 * until, sink).unwrap();
-    out
+    in_plane(arm, inputs(courses), options(tol), until, 0.013 * until)
 }
 
 /// What the balance gains and loses at most, over the largest of its terms.
@@ -62,11 +56,6 @@ fn balance(rows: &[Instant]) -> [f64; 2] {
 fn push(arm: &Arm) -> (&'static str, Course) {
     let [_, _, ei] = arm.stiffness_at(0.0);
     ("tip.force[1]", Course::Sine { mean: ei, amplitude: ei, frequency: 0.25, phase: -PI / 2.0 })
-}
-
-/// A cable is pulled in 0.2 s, and let go at 0.4 s.
-fn pull() -> (&'static str, Course) {
-    ("cable[0].tension", Course::Table(vec![(0.0, 0.0), (0.2, 0.2), (0.4, 0.2), (0.4, 0.0)]))
 }
 
 fn assert_balanced(rows: &[Instant], bound: f64) {

@@ -1,8 +1,13 @@
 //! Motions that go on from the state of another one, what happens on the way, and the equilibria beside them.
 
+#[allow(dead_code, reason = "other tests need more of it")]
+#[path = "common/motion.rs"]
+mod moving;
+
 use hydrostat::{
     Arm, Cable, Course, Inputs, MotionError, MotionEventKind, MotionOptions, MotionWarning, Profile, Simulation,
 };
+use moving::inputs;
 
 /// The silicone arm with a cable on either side, in a stream.
 fn silicone() -> Arm {
@@ -16,14 +21,8 @@ fn silicone() -> Arm {
     arm
 }
 
-fn inputs(key: &str, course: Course) -> Inputs {
-    let mut out = Inputs::default();
-    out.set(key, course).unwrap();
-    out
-}
-
 fn pull() -> Inputs {
-    inputs("cable[0].tension", Course::Table(vec![(0.0, 0.0), (0.2, 0.2), (0.4, 0.2), (0.4, 0.0)]))
+    inputs(&[moving::pull()])
 }
 
 fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -33,7 +32,7 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[test]
 fn a_motion_goes_on_from_its_state_as_if_it_had_not_stopped() {
     let arm = silicone();
-    let cases = [pull(), inputs("cable[0].stroke", Course::ramp(0.0, 0.011, 0.0, 0.3))];
+    let cases = [pull(), inputs(&[("cable[0].stroke", Course::ramp(0.0, 0.011, 0.0, 0.3))])];
     for (loads, stop) in cases.into_iter().flat_map(|loads| [0.13, 0.4, 0.45].map(|stop| (loads.clone(), stop))) {
         let mut whole = Simulation::new(&arm, loads.clone(), MotionOptions::default()).unwrap();
         let at_stop = whole.advance_to(stop).unwrap();
@@ -61,7 +60,7 @@ fn a_motion_goes_on_under_other_loads() {
     first.advance_to(0.4).unwrap();
     let mut want = Simulation::new(
         &arm,
-        inputs("cable[0].tension", Course::Table(vec![(0.0, 0.0), (0.2, 0.2), (0.3, 0.2), (0.3, 0.0)])),
+        inputs(&[("cable[0].tension", Course::Table(vec![(0.0, 0.0), (0.2, 0.2), (0.3, 0.2), (0.3, 0.0)]))]),
         MotionOptions::default(),
     )
     .unwrap();
@@ -103,7 +102,7 @@ fn a_cable_that_is_paid_out_fast_goes_slack_and_becomes_taut_again_at_known_time
     let stroke = Course::Table(vec![(0.0, 0.0), (0.5, 0.012), (0.52, 0.002)]);
     let run = |every: f64| {
         let mut simulation =
-            Simulation::new(&arm, inputs("cable[0].stroke", stroke.clone()), MotionOptions::default()).unwrap();
+            Simulation::new(&arm, inputs(&[("cable[0].stroke", stroke.clone())]), MotionOptions::default()).unwrap();
         let mut rows = Vec::new();
         simulation
             .run(1.5, every, |at, _| {
@@ -138,7 +137,7 @@ fn a_cable_that_is_paid_out_fast_goes_slack_and_becomes_taut_again_at_known_time
 #[test]
 fn a_surface_that_folds_is_an_event_before_the_cable_folds_the_arm() {
     let arm = silicone();
-    let loads = inputs("cable[0].tension", Course::ramp(0.0, 3.0, 0.0, 1.0));
+    let loads = inputs(&[("cable[0].tension", Course::ramp(0.0, 3.0, 0.0, 1.0))]);
     let mut simulation = Simulation::new(&arm, loads, MotionOptions { tol: 1e-3, ..MotionOptions::default() }).unwrap();
     let MotionError::Ended(verdict) = simulation.advance_to(1.0).unwrap_err() else { panic!("it folds") };
     let [event] = simulation.events() else { panic!("{:?}", simulation.events()) };
@@ -180,7 +179,7 @@ fn stations_are_on_the_arm_and_move_with_it() {
 fn equilibria_beside_a_slow_motion_are_near_and_beside_a_fast_one_are_not() {
     let arm = silicone();
     let off = |time: f64| {
-        let loads = inputs("cable[0].tension", Course::ramp(0.0, 0.2, 0.0, time));
+        let loads = inputs(&[("cable[0].tension", Course::ramp(0.0, 0.2, 0.0, time))]);
         let mut simulation = Simulation::new(&arm, loads, MotionOptions::default()).unwrap();
         let mut equilibria = simulation.quasi_static().unwrap();
         let at = simulation.advance_to(0.5 * time).unwrap();

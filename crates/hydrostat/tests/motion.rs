@@ -1,11 +1,16 @@
 //! The arm in motion against closed forms and against the statics.
 
+#[allow(dead_code, reason = "other tests need more of it")]
+#[path = "common/motion.rs"]
+mod moving;
+
 use std::f64::consts::PI;
 
 use hydrostat::{
     Arm, Cable, Course, FlowLaw, Gravity, Inputs, Instant, Join, Material, MotionError, MotionOptions,
     MotionVerdictKind, Profile, Simulation, Volume,
 };
+use moving::{in_plane as motion, inputs, options};
 
 /// First roots of cos b cosh b = -1.
 const B: [f64; 3] = [1.875_104_068_711_961, 4.694_091_132_974_175, 7.854_757_438_237_613];
@@ -34,31 +39,6 @@ fn silicone() -> Arm {
     arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
     arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)));
     arm
-}
-
-fn options(tol: f64) -> MotionOptions {
-    MotionOptions { tol, ..MotionOptions::default() }
-}
-
-fn inputs(courses: &[(&str, Course)]) -> Inputs {
-    let mut out = Inputs::default();
-    for (key, course) in courses {
-        out.set(key, course.clone()).unwrap();
-    }
-    out
-}
-
-/// The motion at equal times.
-fn motion(arm: &Arm, inputs: Inputs, options: MotionOptions, until: f64, every: f64) -> Vec<Instant> {
-    let mut simulation = Simulation::new(arm, inputs, options).unwrap();
-    let mut out = Vec::new();
-    simulation
-        .run(until, every, |at, _| {
-            out.push(at.clone());
-            true
-        })
-        .unwrap();
-    out
 }
 
 /// Largest distance of two motions' tips, m.

@@ -1,15 +1,20 @@
 //! The arm in motion in space against closed forms, the motion in the plane, the statics and its own energy.
 
 #[allow(dead_code, reason = "other tests need more of it")]
+#[path = "common/motion.rs"]
+mod moving;
+
+#[allow(dead_code, reason = "other tests need more of it")]
 #[path = "common/space.rs"]
 mod space;
 
 use std::f64::consts::PI;
 
 use hydrostat::{
-    Arm, Course, FlowLaw, Gravity, Inputs, Instant, MotionEventKind, MotionOptions, Simulation, Space, SpatialInstant,
+    Arm, Course, FlowLaw, Gravity, Inputs, MotionEventKind, MotionOptions, Simulation, Space, SpatialInstant,
     SpatialSimulation, Volume, Works,
 };
+use moving::{in_plane, in_space as motion, inputs, options};
 use space::{apart, rotation, silicone, solved, three_cables, tip, turned, turned_arm};
 
 /// A number of an instant.
@@ -32,40 +37,6 @@ fn rod(r: f64) -> Arm {
     arm.readings.volume = Volume::None;
     arm.space = Some(Space::default());
     arm
-}
-
-fn options(tol: f64) -> MotionOptions {
-    MotionOptions { tol, ..MotionOptions::default() }
-}
-
-fn inputs(courses: &[(&str, Course)]) -> Inputs {
-    let mut out = Inputs::default();
-    for (key, course) in courses {
-        out.set(key, course.clone()).unwrap();
-    }
-    out
-}
-
-fn motion(arm: &Arm, inputs: Inputs, options: MotionOptions, until: f64, every: f64) -> Vec<SpatialInstant> {
-    let mut simulation = SpatialSimulation::new(arm, inputs, options).unwrap();
-    let mut out = Vec::new();
-    let sink = |at: &SpatialInstant, _: &SpatialSimulation| {
-        out.push(at.clone());
-        true
-    };
-    simulation.run(until, every, sink).unwrap();
-    out
-}
-
-fn in_plane(arm: &Arm, inputs: Inputs, options: MotionOptions, until: f64, every: f64) -> Vec<Instant> {
-    let mut simulation = Simulation::new(arm, inputs, options).unwrap();
-    let mut out = Vec::new();
-    let sink = |at: &Instant, _: &Simulation| {
-        out.push(at.clone());
-        true
-    };
-    simulation.run(until, every, sink).unwrap();
-    out
 }
 
 fn place(at: &SpatialInstant) -> [f64; 3] {

@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 
 use hydrostat::{Arm, Mode, Modes, MotionError};
 use hydrostat_figures::root_locus_figure;
-use hydrostat_files::{ModesDocument, ModesOverDocument, Varied, mode_kind, modes_csv, modes_over_csv, number};
+use hydrostat_files::{
+    ModesDocument, ModesOverDocument, ModesTip, Varied, mode_kind, modes_csv, modes_over_csv, number,
+};
 
 use super::NoAnswer;
 use super::path::abscissa;
@@ -16,35 +18,42 @@ use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &ModesArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm, "`hydrostat modes`")?;
+    let arm = request::arm_in_space(&args.arm)?;
     if let Some(Over { varied, .. }) = &args.over {
         varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--over", e))?;
     }
     let picture = ("--plot", args.plot.as_deref());
     request::check_outputs(&[request::arm_input(&args.arm.file)], &[("-o", args.output.as_deref()), picture])?;
     request::check_picture(&args.picture, &[picture])?;
-    match args.over {
-        Some(over) => over_range(args, &arm, over),
-        None => at_loads(args, &arm),
+    let (count, elements) = (args.count, args.elements);
+    match (args.over, arm.space.is_some()) {
+        (Some(over), false) => over_range(args, &arm, over, |arm| arm.modes(count, elements)),
+        (Some(over), true) => over_range(args, &arm, over, |arm| arm.modes_in_space(count, elements)),
+        (None, false) => at_loads(args, &arm, &arm.modes(count, elements).map_err(refused)?),
+        (None, true) => at_loads(args, &arm, &arm.modes_in_space(count, elements).map_err(refused)?),
     }
 }
 
-fn at_loads(args: &ModesArgs, arm: &Arm) -> anyhow::Result<()> {
-    let modes = arm.modes(args.count, args.elements).map_err(refused)?;
+fn at_loads(args: &ModesArgs, arm: &Arm, modes: &Modes<impl Copy + Into<ModesTip>>) -> anyhow::Result<()> {
     if let Some(file) = &args.plot {
         let title = format!("{}: rates of small motions", arm.name);
-        let figure = root_locus_figure(&[(0.0, &modes)], None, &title, &args.picture.page());
+        let figure = root_locus_figure(&[(0.0, &modes.modes)], None, &title, &args.picture.page());
         output::draw(&figure, file, &args.picture.page)?;
     }
     let text = match args.format {
-        Format::Text => summary(arm, &modes),
-        Format::Json => output::line(ModesDocument::new(arm, &modes).to_json()),
-        Format::Csv => modes_csv(&modes),
+        Format::Text => summary(arm, modes),
+        Format::Json => output::line(ModesDocument::new(arm, modes).to_json()),
+        Format::Csv => modes_csv(modes),
     };
     output::put(args.output.as_deref(), &text)
 }
 
-fn over_range(args: &ModesArgs, arm: &Arm, Over { varied, count }: Over) -> anyhow::Result<()> {
+fn over_range<T: Copy + Into<ModesTip>>(
+    args: &ModesArgs,
+    arm: &Arm,
+    Over { varied, count }: Over,
+    modes_of: impl Fn(&Arm) -> Result<Modes<T>, MotionError>,
+) -> anyhow::Result<()> {
     let mut progress = Progress::new();
     let mut found = Vec::new();
     for value in varied.values(count) {
@@ -55,7 +64,7 @@ fn over_range(args: &ModesArgs, arm: &Arm, Over { varied, count }: Over) -> anyh
         there.check().map_err(|e| WrongRequest::Value(at(), e))?;
         found.push((
             value,
-            match there.modes(args.count, args.elements) {
+            match modes_of(&there) {
                 Ok(modes) => Ok(modes),
                 Err(error @ (MotionError::Option { .. } | MotionError::Unsupported { .. })) => {
                     return Err(refused(error));
@@ -65,8 +74,8 @@ fn over_range(args: &ModesArgs, arm: &Arm, Over { varied, count }: Over) -> anyh
         ));
     }
     if let Some(file) = &args.plot {
-        let all: Vec<(f64, &Modes)> =
-            found.iter().filter_map(|(value, modes)| Some((*value, modes.as_ref().ok()?))).collect();
+        let all: Vec<(f64, &[Mode])> =
+            found.iter().filter_map(|(value, modes)| Some((*value, &*modes.as_ref().ok()?.modes))).collect();
         let title = format!("{}: rates of small motions over {}", arm.name, varied.parameter);
         let figure = root_locus_figure(&all, Some(&abscissa(&varied)), &title, &args.picture.page());
         output::draw(&figure, file, &args.picture.page)?;
@@ -88,7 +97,7 @@ fn over_range(args: &ModesArgs, arm: &Arm, Over { varied, count }: Over) -> anyh
     Ok(())
 }
 
-fn summary(arm: &Arm, modes: &Modes) -> String {
+fn summary<T>(arm: &Arm, modes: &Modes<T>) -> String {
     let mut out = format!("modes  {}\n\n", arm.name);
     let heads = ["mode", "growth rate (1/s)", "angular frequency (rad/s)", "frequency (Hz)", "damping ratio", "kind"];
     let mut rows = vec![heads.map(str::to_owned).to_vec()];
@@ -107,7 +116,7 @@ fn summary(arm: &Arm, modes: &Modes) -> String {
 }
 
 /// A line a value: the motion that grows fastest, or decays slowest.
-fn over_summary(arm: &Arm, varied: &Varied, found: &[(f64, Result<Modes, String>)]) -> String {
+fn over_summary<T>(arm: &Arm, varied: &Varied, found: &[(f64, Result<Modes<T>, String>)]) -> String {
     let [from, to] = varied.range.map(|value| varied.with_unit(value));
     let mut out = format!("modes  {}, {} values of {}, {from} to {to}\n\n", arm.name, found.len(), varied.parameter);
     let unit = if varied.unit.is_empty() { "value" } else { varied.unit };

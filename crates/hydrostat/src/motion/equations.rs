@@ -9,12 +9,13 @@
 //! those of the statics; lengths are in L, forces in the static unit, times in s.
 
 use hydrostat_bvp::{
-    Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, StageForcing,
+    Collocation, Condition, EndPlace, Forcing, Gauss, Groups, Inner, Lanes, Local, Problem, Real, StageForcing,
     Station, each,
 };
 
 use super::dimensions::{S, Shape, X};
 use super::history::{History, Layout};
+use super::relaxation::stiffened;
 use super::start::force_unit;
 use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::{SectionStretch, area_law};
@@ -95,66 +96,29 @@ impl Moving {
     pub(super) fn set_loads(&mut self, arm: &Arm, stream_acceleration: [f64; 2]) {
         self.stream_acceleration = if arm.dynamics.inertia { stream_acceleration } else { [0.0; 2] };
         // Tensions of held cables follow from their strokes.
-        let held: Vec<(usize, f64)> = self.held().map(|c| (c, self.statics.arm().cables[c].tension)).collect();
+        let held = self.statics.held.iter().flat_map(|held| held.cables.iter());
+        let held: Vec<(usize, f64)> = held.map(|c| (*c, self.statics.arm().cables[*c].tension)).collect();
         self.statics.set_loads(arm);
         for (cable, tension) in held {
             self.statics.set_tension(cable, tension);
         }
     }
 
-    /// The cables whose stroke is commanded.
-    pub(super) fn held(&self) -> impl Iterator<Item = usize> + '_ {
-        self.statics.held.iter().flat_map(|held| held.cables.iter().copied())
-    }
-
-    /// Strokes of cables need no more of a station than this.
-    pub(super) fn for_strokes(stations: &[Station<S, L>], out: &mut Vec<Station<N, L>>) {
-        out.clear();
-        out.extend(stations.iter().map(|station| Station {
-            z: [Lanes::of(0.0); N],
-            inner: station.inner,
-            closure_slope: station.closure_slope,
-        }));
-    }
-
-    /// Takes what strain rates at the ends start from, by the polynomial through the stages of their elements.
+    /// Takes what strain rates at the ends start from.
     pub(super) fn set_end_rates(&mut self, gauss: &Gauss<M>) {
         self.end_rates.clear();
-        if self.statics.arm().dynamics.relaxation_time == 0.0 {
-            return;
-        }
-        let at_ends = [gauss.cardinals(0.0), gauss.cardinals(1.0)];
-        for place in &self.statics.end_places {
-            let mut rates = [Lanes::of(0.0); L];
-            for lane in 0..LANES {
-                let (block, from) = self.statics.groups.at(place.elements[lane], 0);
-                let weights = &at_ends[place.sides[lane].index()];
-                for (j, weight) in weights.iter().enumerate() {
-                    for (k, rate) in rates.iter_mut().enumerate() {
-                        rate.0[lane] -= self.cv * weight * self.history.strain(block + j, k).0[from];
-                    }
-                }
-            }
-            self.end_rates.push(rates);
+        if self.statics.arm().dynamics.relaxation_time > 0.0 {
+            let ends = &self.statics.end_places;
+            self.end_rates.extend(self.history.end_rates(self.cv, gauss, self.statics.groups, ends));
         }
     }
 
     /// The section law of a material with memory of rate, given what strain rates are beside cv times the strains.
     #[inline(always)]
-    fn stiffened(&self, stiffness: &Stiffness<Lanes>, rates: [Lanes; L]) -> Stiffness<Lanes> {
+    fn stiffened(&self, stiffness: &Stiffness<Lanes>, rates: &[Lanes; L]) -> Stiffness<Lanes> {
         let time = self.statics.arm().dynamics.relaxation_time;
-        let factor = 1.0 + time * self.cv;
-        Stiffness {
-            value: each(|k| stiffness.value[k] * Lanes::of(factor)),
-            reference: each(|k| (stiffness.reference[k] - Lanes::of(time) * rates[k]) * Lanes::of(1.0 / factor)),
-            reference_slope: stiffness.reference_slope,
-        }
-    }
-
-    /// Strain rates at a station are cv times the strains, and these.
-    #[inline(always)]
-    fn strain_rates(&self, block: usize) -> [Lanes; L] {
-        each(|k| Lanes::of(-self.cv) * self.history.strain(block, k))
+        let [value, reference] = stiffened([&stiffness.value, &stiffness.reference], rates, time, self.cv);
+        Stiffness { value, reference, reference_slope: stiffness.reference_slope }
     }
 
     /// What acts along the arm at a station, inertia among it, as a load whose force is -n_f'; its derivative by (x,
@@ -171,10 +135,7 @@ impl Moving {
         let (place, masses) = (&self.places()[block], &self.masses[block]);
         let (arm, water) = (self.statics.arm(), &self.statics.water);
         let cv = Lanes::of(self.cv);
-        let of = |k: usize, z: Lanes| {
-            let velocity = cv * (z - self.history.value(block, k));
-            [velocity, cv * (velocity - self.history.rate(block, k))]
-        };
+        let of = |k: usize, z: Lanes| self.history.rates_of(self.cv, block, k, z);
         let [omega, omega_rate] = of(0, station.z[0]);
         let [x, y] = [of(1, station.z[X]), of(2, station.z[X + 1])];
         let length = Lanes::of(self.statics.units.length);
@@ -199,39 +160,6 @@ impl Moving {
         }
         let [by_omega_rate, by_omega, by_nu, by_nu_rate] = turn.by;
         (out, by_place, [turn.couple, cv * (cv * by_omega_rate + by_omega), by_nu + cv * by_nu_rate])
-    }
-
-    /// What a small motion about rest adds in a block of stations.
-    pub(super) fn linear(&self, block: usize, station: &Station<S, L>) -> Linear {
-        let (place, masses, water) = (&self.places()[block], &self.masses[block], &self.statics.water);
-        let arm = self.statics.arm();
-        let (sin, cos) = sin_cos(station.z[0]);
-        let [nu, eta, _] = station.inner;
-        let section_stretch = area_law(self.statics.volume, nu);
-        let zero = Lanes::of(0.0);
-        let load = self.load_at_rest(block, station);
-        let along = centreline([cos, sin], [nu, eta]);
-        let inert = inertia(water, masses, &along, nu, &section_stretch, [zero; 2], [0.0; 2]);
-        let turn = turning(self.statics.volume, masses, [nu, zero], [zero; 2]);
-        let length = Lanes::of(self.statics.units.length);
-        let area = section_stretch.beta * section_stretch.beta;
-        let time = Lanes::of(arm.dynamics.relaxation_time);
-        Linear {
-            damping: each(|k| each(|c| length * load.by_stream[k][c])),
-            mass: inert.by_acceleration,
-            rotary: turn.by[0],
-            viscous: each(|k| time * place.stiffness.value[k] * area),
-        }
-    }
-
-    fn load_at_rest(&self, block: usize, station: &Station<S, L>) -> Load<Lanes> {
-        let (sin, cos) = sin_cos(station.z[0]);
-        let section_stretch = area_law(self.statics.volume, station.inner[0]);
-        let water = &self.statics.water;
-        let wet = self.statics.arm().flow.density != 0.0;
-        let stream = wet.then(|| each(|k| Lanes::of(water.stream[k])));
-        let body = &self.places()[block].body;
-        load(water, body, stream, [cos, sin], station.inner, &section_stretch, station.closure_slope)
     }
 
     /// What a change of what sections carry, in a block of stations, changes at fixed states: the strains follow, and
@@ -356,7 +284,7 @@ impl Moving {
         let z: [Lanes; N] = each(|a| station.z[a]);
         let contact = in_directors(direction, &z);
         let tolerance = statics.inner_tolerance;
-        let stiffness = self.stiffened(&place.stiffness, self.strain_rates(block));
+        let stiffness = self.stiffened(&place.stiffness, &self.history.strain_rates(self.cv, block));
         let solved = solve_section(
             statics.volume,
             &stiffness,
@@ -482,7 +410,7 @@ impl Problem<S, 0, L> for Moving {
             let rates = self.end_rates.get(block).copied().unwrap_or_default();
             let solved = solve_section(
                 statics.volume,
-                &self.stiffened(&section.stiffness, rates),
+                &self.stiffened(&section.stiffness, &rates),
                 pulled.as_slice(),
                 contact,
                 station.inner,
@@ -525,17 +453,4 @@ impl Problem<S, 0, L> for Moving {
             out[k].gradient[0] = -inverse * turn[k];
         }
     }
-}
-
-/// What moves in a block of stations with a small motion.
-#[derive(Clone, Copy)]
-pub(super) struct Linear {
-    /// Derivative of -force by the velocity (L/s), in space.
-    pub(super) damping: [[Lanes; 2]; 2],
-    /// By the acceleration (L/s2).
-    pub(super) mass: [[Lanes; 2]; 2],
-    /// Couple by the angular acceleration.
-    pub(super) rotary: Lanes,
-    /// What the section carries by the strains' rates.
-    pub(super) viscous: [Lanes; L],
 }

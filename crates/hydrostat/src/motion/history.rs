@@ -4,7 +4,9 @@
 //! nodes (one block each or more, the last lanes empty); these have second rates. Then the strains and beta' at the
 //! stages, which have rates alone.
 
-use hydrostat_bvp::{LANES, Lanes, Real};
+use hydrostat_bvp::{EndPlace, Gauss, Groups, LANES, Lanes, Real, each};
+
+use crate::statics::dimensions::M;
 
 /// Where what stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -85,6 +87,46 @@ impl History {
     #[inline(always)]
     pub(super) fn strain(&self, block: usize, k: usize) -> Lanes {
         self.values[self.layout.first_strain(block) + k]
+    }
+
+    /// Velocity and acceleration of coordinate `k` in a block of stages where it is `z`.
+    #[inline(always)]
+    pub(super) fn rates_of(&self, cv: f64, block: usize, k: usize, z: Lanes) -> [Lanes; 2] {
+        let cv = Lanes::of(cv);
+        let velocity = cv * (z - self.value(block, k));
+        [velocity, cv * (velocity - self.rate(block, k))]
+    }
+
+    /// Strain rates in a block of stages are cv times the strains, and these.
+    #[inline(always)]
+    pub(super) fn strain_rates<const K: usize>(&self, cv: f64, block: usize) -> [Lanes; K]
+    where
+        [Lanes; K]: Default,
+    {
+        each(|k| Lanes::of(-cv) * self.strain(block, k))
+    }
+
+    /// The same at ends of elements, by the polynomials through the stages of these.
+    pub(super) fn end_rates<'a, const K: usize>(
+        &'a self,
+        cv: f64,
+        gauss: &Gauss<M>,
+        groups: Groups,
+        ends: &'a [EndPlace],
+    ) -> impl Iterator<Item = [Lanes; K]> + 'a {
+        let at_ends = [gauss.cardinals(0.0), gauss.cardinals(1.0)];
+        ends.iter().map(move |place| {
+            let mut rates = [Lanes::of(0.0); K];
+            for lane in 0..LANES {
+                let (block, from) = groups.at(place.elements[lane], 0);
+                for (j, weight) in at_ends[place.sides[lane].index()].iter().enumerate() {
+                    for (k, rate) in rates.iter_mut().enumerate() {
+                        rate.0[lane] -= cv * weight * self.strain(block + j, k).0[from];
+                    }
+                }
+            }
+            rates
+        })
     }
 }
 

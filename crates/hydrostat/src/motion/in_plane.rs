@@ -1,19 +1,20 @@
 //! The boundary-value problem of one stage in the plane, as the stepper sees it, and how a motion there starts.
 
-use hydrostat_bvp::{Collocation, Correction, Gauss, Lanes, Mesh, Real, Solution};
+use hydrostat_bvp::{Collocation, Correction, Forcing, Gauss, Lanes, Mesh, Real, Solution, Stage, Station};
 
-use super::border::Border;
 use super::dimensions::{S, Shape, X};
 use super::equations::Moving;
 use super::error::MotionError;
 use super::history::{History, Layout, Snapshot};
 use super::inputs::Inputs;
-use super::settling::{Moves, Settling, Unsolved};
-use super::start::{check, fair_elements, mesh, not_found};
+use super::settling::{Moves, Settling};
+use super::start::{check, fair_elements, mesh, mesh_at, not_found};
+use super::state::carried_slopes;
 use super::works::{Carried, WORKS};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, L, M, N, Q, Units};
-use crate::statics::engine::{Engine, turn_sections};
+use crate::statics::engine::turn_sections;
+use crate::statics::equations::{StationData, StrokeControl};
 use crate::statics::solve::{Options, Solver};
 use crate::statics::verdict::{SolveError, VerdictKind};
 
@@ -21,7 +22,10 @@ use crate::statics::verdict::{SolveError, VerdictKind};
 pub(super) type Planar = Settling<Moving, S, L>;
 
 impl Moves<S, L> for Moving {
-    type Border = Border;
+    type Strained = Station<N, L>;
+
+    const COORDINATES: [usize; 2] = [1, 2];
+    const CARRIED: &'static [usize] = &[0, 1, 5];
 
     fn start(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -> Result<Planar, MotionError> {
         let mut settling = Planar::new(arm);
@@ -39,6 +43,10 @@ impl Moves<S, L> for Moving {
 
     fn set_rate(&mut self, cv: f64, scales: [f64; S]) {
         (self.cv, self.scales) = (cv, scales);
+    }
+
+    fn arm(&self) -> &Arm {
+        self.statics.arm()
     }
 
     fn units(&self) -> Units {
@@ -99,9 +107,39 @@ impl Moves<S, L> for Moving {
         }
     }
 
-    fn at_base(&self, solution: &Shape) -> Carried {
-        let [n_x, n_y, m] = std::array::from_fn(|k| self.scales[k + 1] * solution.nodes[0][k + 1]);
+    fn carried_at(&self, solution: &Shape, node: usize) -> Carried {
+        let [n_x, n_y, m] = std::array::from_fn(|k| self.scales[k + 1] * solution.nodes[node][k + 1]);
         [n_x, n_y, 0.0, 0.0, 0.0, m]
+    }
+
+    /// What sections carry is a start for Newton's method alone: straight between the nodes.
+    fn in_shape(arm: &Arm, at: &Snapshot, carried: &[Carried], mesh: Mesh) -> Planar {
+        let stage = |block: usize| {
+            let [[nu, eta, mu, closure_slope], _] = at.strains(block);
+            let [n_x, n_y, _, _, _, m] = carried_slopes(&mesh, carried, block);
+            Stage { slope: [mu, n_x, n_y, m], inner: [nu, eta, mu], closure_slope }
+        };
+        let node = |(i, [n_x, n_y, _, _, _, m]): (usize, &Carried)| {
+            let [theta, _, _] = at.node(i);
+            [theta, *n_x, *n_y, *m]
+        };
+        let stages = (0..at.layout.blocks).map(stage).collect();
+        let nodes = carried.iter().enumerate().map(node).collect();
+        let guess = Guess { mesh: mesh.clone(), nodes, stages, ..Guess::default() };
+        let mut settling = Planar::new(arm);
+        settling.moving.statics.hold_strokes();
+        let force = settling.moving.statics.units.force;
+        settling.start_from_statics(&guess, force, mesh);
+        settling
+    }
+
+    fn is_based(arm: &Arm, at: &Snapshot) -> bool {
+        let base = [arm.base.angle, arm.base.x / arm.length, arm.base.y / arm.length];
+        at.node::<3>(0).iter().zip(base).all(|(at, base)| (at - base).abs() <= 1e-9)
+    }
+
+    fn radius(&self, _: usize) -> Option<Lanes> {
+        None
     }
 
     fn powers(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot, base: Carried) -> [f64; WORKS] {
@@ -116,47 +154,57 @@ impl Moves<S, L> for Moving {
         Self::fold_margin(self, at)
     }
 
-    fn held(&self) -> Vec<usize> {
-        Self::held(self).collect()
+    fn held(&self) -> Option<&StrokeControl> {
+        self.statics.held.as_ref()
     }
 
-    fn tensions(&self) -> (Vec<f64>, Vec<bool>) {
-        let taut = self.statics.held.as_ref().map_or_else(Vec::new, |held| held.taut.clone());
-        (self.statics.arm().cables.iter().map(|cable| cable.tension).collect(), taut)
+    fn held_mut(&mut self) -> Option<&mut StrokeControl> {
+        self.statics.held.as_mut()
     }
 
-    fn take_tensions(&mut self, (tensions, taut): &(Vec<f64>, Vec<bool>)) {
-        let Some(mut held) = self.statics.held.take() else { return };
-        held.taut.clone_from(taut);
-        for cable in &held.cables {
-            self.statics.set_tension(*cable, tensions[*cable]);
-        }
-        self.statics.held = Some(held);
+    fn set_tension(&mut self, cable: usize, tension: f64) {
+        self.statics.set_tension(cable, tension);
     }
 
-    fn hold_strokes(settling: &mut Planar) -> Result<f64, Unsolved> {
-        settling.border()?;
-        Ok(settling.border.off)
+    fn command(&self, held: &StrokeControl, index: usize) -> f64 {
+        self.statics.command(held, index)
     }
 
-    fn add_tensions(settling: &mut Planar, factor: f64) {
-        settling.add_tensions(factor);
+    fn strained(&self, system: &Collocation<S, M, 0, L>, out: &mut Vec<Station<N, L>>) {
+        out.clear();
+        out.extend(system.stations().iter().map(|station| Station {
+            z: [Lanes::of(0.0); N],
+            inner: station.inner,
+            closure_slope: station.closure_slope,
+        }));
     }
 
-    fn switch_taut(settling: &mut Planar, size: f64) -> bool {
-        settling.switch_taut(size)
+    fn stroke(&self, cable: usize, system: &Collocation<S, M, 0, L>, strained: &[Station<N, L>]) -> [f64; 2] {
+        self.statics.stroke(cable, station_data(system, strained))
     }
+
+    fn stroke_change(
+        &self,
+        cable: usize,
+        system: &Collocation<S, M, 0, L>,
+        strained: &[Station<N, L>],
+        correction: &Correction<S, M, 0, L>,
+    ) -> f64 {
+        self.statics.stroke_change(cable, station_data(system, strained), correction)
+    }
+
+    fn pull_by(&self, cable: usize, system: &Collocation<S, M, 0, L>, out: &mut Forcing<S, 0, L>) {
+        Self::pull_by(self, cable, system, out);
+    }
+}
+
+fn station_data<'a>(system: &'a Collocation<S, M, 0, L>, stations: &'a [Station<N, L>]) -> StationData<'a> {
+    StationData { weights: &system.gauss.b, steps: system.steps(), stations }
 }
 
 impl Planar {
     pub(super) fn new(arm: &Arm) -> Self {
         Self::of(Moving::new(arm))
-    }
-
-    /// n_f and m_f of the solution at the nodes, in the unit of force.
-    pub(super) fn contact(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        let scales = self.moving.scales;
-        self.solution.nodes.iter().map(move |z| std::array::from_fn(|k| scales[k + 1] * z[k + 1]))
     }
 
     /// Takes the unloaded arm, on a mesh for the motion.
@@ -205,7 +253,7 @@ pub(super) fn start_at_rest(
                 statics.set_tension(c, cable.tension);
             }
             statics.hold_strokes();
-            let mesh = mesh_at(engine, arm, elements);
+            let mesh = mesh_at(engine, elements);
             settling.start_from_statics(&engine.solution, engine.equations.units.force, mesh);
             None
         }
@@ -219,17 +267,6 @@ pub(super) fn start_at_rest(
         Ok(()) => Ok(()),
         Err(_) => Err(missing.map_or_else(|| not_found(time, 0.0, None, arm), of_start)),
     }
-}
-
-/// A mesh with nodes on the kinks that the stream's load has at the shape of the engine.
-pub(super) fn mesh_at(engine: &mut Engine, arm: &Arm, elements: usize) -> Mesh {
-    let mut mesh = mesh(arm, elements);
-    let kinks = engine.kinks(1e-6);
-    let fixed: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
-    if kinks.len() <= mesh.elements() {
-        mesh.pin(&fixed, &kinks);
-    }
-    mesh
 }
 
 /// The solution of the statics with x and y, from the base, as states, and what it carries times `force`.

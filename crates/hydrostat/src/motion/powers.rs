@@ -13,6 +13,7 @@
 
 use hydrostat_bvp::{Collocation, Lanes, Real, Station, each};
 
+use super::along::{integral, least};
 use super::dimensions::S;
 use super::equations::Moving;
 use super::history::Snapshot;
@@ -27,18 +28,7 @@ impl Moving {
     /// The powers (in the unit of force times L/s) in the motion `at`, which `system` was linearised at and whose base
     /// carries `base`.
     pub(super) fn powers(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot, base: Carried) -> [f64; WORKS] {
-        let groups = self.statics.groups;
-        let mut out = [0.0; WORKS];
-        for block in 0..at.layout.blocks {
-            let density = self.density(block, at);
-            let weight = system.gauss.b[block % M];
-            let steps = system.steps()[block / M];
-            for (sum, density) in out.iter_mut().zip(density) {
-                for lane in 0..groups.filled(block / M) {
-                    *sum += weight * steps.0[lane] * density.0[lane];
-                }
-            }
-        }
+        let mut out = integral(system, self.statics.groups, |block| self.density(block, at));
         let tip = at.layout.nodes - 1;
         let ([theta, _, _], [omega, vx, vy]) = (at.node(tip), at.node_rate(tip));
         let ([x, y, moment], _) = self.statics.tip_load(theta);
@@ -50,42 +40,25 @@ impl Moving {
 
     /// Kinetic energy and that of strain (in the unit of force times L) in the motion `at`.
     pub(super) fn energies(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot) -> [f64; 2] {
-        let groups = self.statics.groups;
-        let mut out = [0.0; 2];
-        for block in 0..at.layout.blocks {
+        integral(system, self.statics.groups, |block| {
             let ([_, [omega, vx, vy]], [[nu, eta, mu, slope], _]) = (at.stage(block), at.strains(block));
             let station = Station { z: [Lanes::of(0.0); N], inner: [nu, eta, mu], closure_slope: slope };
             let masses = &self.masses[block];
             let [area, ..] = area_derivatives(self.statics.volume, nu);
             let moving = masses.wall * (vx * vx + vy * vy) + masses.rotary * area * omega * omega;
-            let density = [Lanes::of(0.5) * moving, self.statics.strain_energy(block, &station)];
-            let (weight, steps) = (system.gauss.b[block % M], system.steps()[block / M]);
-            for (sum, density) in out.iter_mut().zip(density) {
-                for lane in 0..groups.filled(block / M) {
-                    *sum += weight * steps.0[lane] * density.0[lane];
-                }
-            }
-        }
-        out
+            [Lanes::of(0.5) * moving, self.statics.strain_energy(block, &station)]
+        })
     }
 
     /// The smallest (nu - beta R |mu|)/nu at the stages in the motion `at`, and where over L: at or below zero the
     /// surface folds.
     pub(super) fn fold_margin(&self, at: &Snapshot) -> [f64; 2] {
-        let groups = self.statics.groups;
-        let mut least = [f64::INFINITY, 0.0];
-        for block in 0..at.layout.blocks {
+        least(self.statics.groups, |block| {
             let [[nu, _, mu, _], _] = at.strains(block);
             let place = &self.statics.places[block];
             let half_width = area_law(self.statics.volume, nu).beta * place.body.radius;
-            for lane in 0..groups.filled(block / M) {
-                let margin = 1.0 - half_width.0[lane] * mu.0[lane].abs() / nu.0[lane];
-                if margin < least[0] {
-                    least = [margin, place.s.0[lane]];
-                }
-            }
-        }
-        least
+            [Lanes::of(1.0) - half_width * mu.abs() / nu, place.s]
+        })
     }
 
     /// Powers per length in a block of stations.

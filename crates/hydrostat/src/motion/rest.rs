@@ -10,9 +10,9 @@ use super::dimensions::{S, Shape, X};
 use super::equations::Moving;
 use super::error::MotionError;
 use super::history::{Snapshot, between};
-use super::in_plane::{Planar, mesh_at};
+use super::in_plane::Planar;
 use super::inputs::Inputs;
-use super::start::check;
+use super::start::{check, mesh_at};
 use super::stepper::Stepper;
 use crate::rod::arm::Arm;
 use crate::statics::configuration::Configuration;
@@ -180,7 +180,7 @@ pub(super) fn come_to_rest(engine: &mut Engine, tol: f64) -> Result<Rest, Restle
 /// The motion of the engine's shape from rest.
 fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper<Moving, S, L> {
     let mut settling = Planar::new(arm);
-    let mesh = mesh_at(engine, arm, ELEMENTS);
+    let mesh = mesh_at(engine, ELEMENTS);
     if engine.equations.held.is_some() {
         settling.moving.statics.hold_strokes();
     }

@@ -4,7 +4,9 @@ use super::error::MotionError;
 use super::history::{Snapshot, between};
 use super::inputs::Inputs;
 use super::options::{MotionOptions, MotionStatistics};
+use super::resumed::resumed;
 use super::settling::Moves;
+use super::state::{MotionState, flat};
 use super::stepper::Stepper;
 use super::warning::MotionWarning;
 use super::works::Works;
@@ -25,6 +27,17 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Run<P, S, L> {
         options.check()?;
         let MotionOptions { start, tol, elements, step } = options;
         Ok(Self::of(Stepper::new(arm, inputs, start, tol, elements, step)?))
+    }
+
+    /// From the state that another run was in.
+    pub(super) fn resume(
+        arm: &Arm,
+        inputs: Inputs,
+        options: MotionOptions,
+        state: &MotionState,
+    ) -> Result<Self, MotionError> {
+        options.check()?;
+        Ok(Self::of(resumed(arm, inputs, state, options.tol, options.step)?))
     }
 
     pub(super) fn of(stepper: Stepper<P, S, L>) -> Self {
@@ -69,6 +82,41 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Run<P, S, L> {
     pub(super) fn warnings(&self) -> Vec<MotionWarning> {
         let warning = |time| MotionWarning::UnresolvedJump { time };
         self.stepper.unresolved_jump().map(warning).into_iter().collect()
+    }
+
+    /// What it takes to go on from the present time in another run.
+    pub(super) fn state(&self) -> MotionState {
+        let (stepper, settling) = (&self.stepper, &self.stepper.settling);
+        let (units, solution) = (settling.moving.units(), &settling.solution);
+        let energy = units.force * units.length;
+        let (next, running) = stepper.next_step();
+        let at_end = self.time == stepper.time;
+        let [works, powers] = stepper.ledger.at(stepper.share_at(self.time), stepper.step);
+        let mut tensions = vec![0.0; stepper.arm().cables.len()];
+        for &cable in settling.held_cables() {
+            tensions[cable] = stepper.tension_at(cable, self.time);
+        }
+        let contact = |node: usize| {
+            let carried = settling.moving.carried_at(solution, node);
+            P::CARRIED.iter().map(|k| carried[*k] * if *k < 3 { units.force } else { energy }).collect()
+        };
+        MotionState {
+            time: self.time,
+            length: units.length,
+            nodes: solution.mesh.nodes().to_vec(),
+            values: flat(&self.asked.values),
+            rates: flat(&self.asked.rates),
+            second: flat(&self.asked.second),
+            rotations: flat(self.asked.from.as_flattened()),
+            contact: (0..solution.nodes.len()).map(contact).collect(),
+            tensions,
+            works: works.map(|work| work * energy).to_vec(),
+            powers: powers.map(|power| power * energy).to_vec(),
+            error: stepper.error,
+            next,
+            jumped: stepper.jumped,
+            smooth: running || !at_end,
+        }
     }
 
     /// The arm with the loads of the present time.

@@ -6,6 +6,7 @@ use hydrostat_bvp::{
     Collocation, Correction, Forcing, Gauss, Lanes, LinearisationError, Mesh, Problem, Real, Side, Solution,
 };
 
+use super::border::Border;
 use super::error::MotionError;
 use super::history::{History, Layout, Snapshot};
 use super::inputs::Inputs;
@@ -14,7 +15,7 @@ use crate::numerics::rounds::{correct, linearise, respond};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{M, Units};
 use crate::statics::engine::wanted_side;
-use crate::statics::equations::SectionFailure;
+use crate::statics::equations::{SectionFailure, StrokeControl};
 
 /// Rounds of one solve.
 const MOST: usize = 20;
@@ -47,8 +48,14 @@ pub(super) enum Unsolved {
 pub(super) trait Moves<const S: usize, const L: usize>:
     Problem<S, 0, L, Failure = SectionFailure> + Clone
 {
-    /// What a round does to tensions, with memory for it.
-    type Border: Clone + Debug + Default;
+    /// Coordinates of a station that turn it, and those of its place.
+    const COORDINATES: [usize; 2];
+
+    /// Which components of n_f and m_f, three each, there are.
+    const CARRIED: &'static [usize];
+
+    /// The strains in a block of stations, which strokes follow from.
+    type Strained: Clone + Debug;
 
     /// Refuses what cannot move; else at rest in the equilibrium of `arm`.
     fn start(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -> Result<Settling<Self, S, L>, MotionError>;
@@ -64,6 +71,8 @@ pub(super) trait Moves<const S: usize, const L: usize>:
     /// Takes d rate / d value (1/s) and the sizes of the states.
     fn set_rate(&mut self, cv: f64, scales: [f64; S]);
 
+    /// The arm with the loads and tensions of the last solve.
+    fn arm(&self) -> &Arm;
     fn units(&self) -> Units;
 
     /// Mass per length at the base with the water there, in the unit of force s2/L.
@@ -110,8 +119,19 @@ pub(super) trait Moves<const S: usize, const L: usize>:
     /// Takes the values of a solution; `system` is for its memory.
     fn read(&self, system: &mut Collocation<S, M, 0, L>, solution: &Solution<S, M, L>, out: &mut Snapshot);
 
-    /// n_f(0) and m_f(0) of a solution, in the unit of force.
-    fn at_base(&self, solution: &Solution<S, M, L>) -> Carried;
+    /// n_f and m_f at a node of a solution, in the unit of force.
+    fn carried_at(&self, solution: &Solution<S, M, L>, node: usize) -> Carried;
+
+    /// In the shape that a motion of `arm` has on this mesh, where the nodes carry about this much (in the unit of
+    /// force). The cables have the tensions of `arm`.
+    fn in_shape(arm: &Arm, at: &Snapshot, carried: &[Carried], mesh: Mesh) -> Settling<Self, S, L>;
+
+    /// Whether the base of `arm` is where a motion has it.
+    fn is_based(arm: &Arm, at: &Snapshot) -> bool;
+
+    /// Where an error of a section's turn counts by itself, the radius (over L) in a block of stages by which it does:
+    /// in space the surface is to be known as well as the centreline, which stays where it is as the arm twists.
+    fn radius(&self, block: usize) -> Option<Lanes>;
 
     /// The powers (in the unit of force times L/s) in the motion `at`, which `system` was linearised at and whose base
     /// carries `base`.
@@ -125,30 +145,32 @@ pub(super) trait Moves<const S: usize, const L: usize>:
     fn fold_margin(&self, at: &Snapshot) -> [f64; 2];
 
     /// The cables whose stroke is commanded.
-    fn held(&self) -> Vec<usize> {
-        Vec::new()
-    }
+    fn held(&self) -> Option<&StrokeControl>;
+    fn held_mut(&mut self) -> Option<&mut StrokeControl>;
 
-    /// Tensions (N) of all cables at the last solve, and which held ones are taut.
-    fn tensions(&self) -> (Vec<f64>, Vec<bool>);
+    /// Changes the tension (N) of a cable.
+    fn set_tension(&mut self, cable: usize, tension: f64);
 
-    /// Takes the tensions of held cables back.
-    fn take_tensions(&mut self, _tensions: &(Vec<f64>, Vec<bool>)) {}
+    /// Stroke that is commanded of held cable `index` now, over L.
+    fn command(&self, held: &StrokeControl, index: usize) -> f64;
 
-    /// Adds to the correction of the last linearisation what the tensions of held cables do, so that their strokes are
-    /// met; by how much those of taut ones were off.
-    fn hold_strokes(_settling: &mut Settling<Self, S, L>) -> Result<f64, Unsolved> {
-        Ok(0.0)
-    }
+    /// The strains that `system` was linearised at.
+    fn strained(&self, system: &Collocation<S, M, 0, L>, out: &mut Vec<Self::Strained>);
 
-    /// Adds `factor` times the last round to the tensions.
-    fn add_tensions(_settling: &mut Settling<Self, S, L>, _factor: f64) {}
+    /// Unstretched stroke of a cable, over L, and its derivative by the tension (in the unit of force).
+    fn stroke(&self, cable: usize, system: &Collocation<S, M, 0, L>, strained: &[Self::Strained]) -> [f64; 2];
 
-    /// Lets cables go slack that push, and takes slack ones up that are too short, given the size of the last
-    /// correction; whether any changed.
-    fn switch_taut(_settling: &mut Settling<Self, S, L>, _size: f64) -> bool {
-        false
-    }
+    /// Change of that stroke with a correction, at fixed tension.
+    fn stroke_change(
+        &self,
+        cable: usize,
+        system: &Collocation<S, M, 0, L>,
+        strained: &[Self::Strained],
+        correction: &Correction<S, M, 0, L>,
+    ) -> f64;
+
+    /// What changes with a unit of the tension of a cable (in the unit of force), into `out`.
+    fn pull_by(&self, cable: usize, system: &Collocation<S, M, 0, L>, out: &mut Forcing<S, 0, L>);
 }
 
 /// The solver of stages: the last solution, and those before it.
@@ -158,7 +180,7 @@ pub(super) struct Settling<P: Moves<S, L>, const S: usize, const L: usize> {
     pub(super) system: Collocation<S, M, 0, L>,
     pub(super) solution: Solution<S, M, L>,
     pub(super) correction: Correction<S, M, 0, L>,
-    pub(super) border: P::Border,
+    pub(super) border: Border<P::Strained, S, L>,
     /// The last solves, the latest last, with their times.
     past: Vec<(f64, Solution<S, M, L>)>,
     spare: Solution<S, M, L>,
@@ -174,7 +196,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             system: Collocation::new().balanced(),
             solution: Solution::default(),
             correction: Correction::default(),
-            border: P::Border::default(),
+            border: Border::default(),
             past: Vec::new(),
             spare: Solution::default(),
             rounds: 0,
@@ -278,7 +300,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
                     applied *= 0.5;
                     halvings += 1;
                     self.solution.add(&self.correction, -applied);
-                    P::add_tensions(self, -applied);
+                    self.add_tensions(-applied);
                     continue;
                 }
                 Err(_) => return Err(Unsolved::Singular),
@@ -291,7 +313,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             }
             round += 1;
             correct(&mut self.system, &self.solution, &mut self.correction);
-            let off = P::hold_strokes(self)?;
+            let off = self.hold_strokes()?;
             let [angle, moved] = self.moving.largest(&self.correction);
             let strained = self.correction.largest_inner();
             let size = angle.max(strained).max(moved);
@@ -301,8 +323,8 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             applied = if angle > 1.0 { 1.0 / angle } else { 1.0 };
             halvings = 0;
             self.solution.add(&self.correction, applied);
-            P::add_tensions(self, applied);
-            if switches < SWITCHES && P::switch_taut(self, size) {
+            self.add_tensions(applied);
+            if switches < SWITCHES && self.switch_taut(size) {
                 switches += 1;
                 round -= 1;
                 continue;

@@ -10,9 +10,8 @@ use super::inputs::Inputs;
 use super::options::{CableMotion, MotionOptions, MotionStatistics};
 use super::places::{MotionStation, station};
 use super::quasi_static::QuasiStatic;
-use super::resumed::resumed;
 use super::run::Run;
-use super::state::{MotionState, flat};
+use super::state::MotionState;
 use super::warning::MotionWarning;
 use super::works::Works;
 use crate::rod::arm::{Arm, ArmError};
@@ -85,9 +84,7 @@ impl Simulation {
     /// # Errors
     /// [`MotionError`] where an option, the arm, an input or the state is refused.
     pub fn resume(arm: &Arm, inputs: Inputs, options: MotionOptions, state: &MotionState) -> Result<Self, MotionError> {
-        options.check()?;
-        let stepper = resumed(arm, inputs, state, options.tol, options.step)?;
-        Ok(Self { run: Run::of(stepper), stations: Vec::new() })
+        Ok(Self { run: Run::resume(arm, inputs, options, state)?, stations: Vec::new() })
     }
 
     /// The time of the last answer, s.
@@ -140,32 +137,7 @@ impl Simulation {
 
     /// What it takes to go on from the present time in another run, see [`Simulation::resume`].
     pub fn state(&self) -> MotionState {
-        let (stepper, settling) = (&self.run.stepper, &self.run.stepper.settling);
-        let units = settling.moving.statics.units;
-        let energy = units.force * units.length;
-        let (next, running) = stepper.next_step();
-        let at_end = self.run.time == stepper.time;
-        let [works, powers] = stepper.ledger.at(stepper.share_at(self.run.time), stepper.step);
-        let mut tensions = vec![0.0; stepper.arm().cables.len()];
-        for cable in settling.moving.held() {
-            tensions[cable] = stepper.tension_at(cable, self.run.time);
-        }
-        MotionState {
-            time: self.run.time,
-            length: units.length,
-            nodes: settling.solution.mesh.nodes().to_vec(),
-            values: flat(&self.run.asked.values),
-            rates: flat(&self.run.asked.rates),
-            second: flat(&self.run.asked.second),
-            contact: settling.contact().map(|[x, y, m]| [x * units.force, y * units.force, m * energy]).collect(),
-            tensions,
-            works: works.map(|work| work * energy).to_vec(),
-            powers: powers.map(|power| power * energy).to_vec(),
-            error: stepper.error,
-            next,
-            jumped: stepper.jumped,
-            smooth: running || !at_end,
-        }
+        self.run.state()
     }
 
     /// The motion at the present time.

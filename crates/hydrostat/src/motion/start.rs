@@ -7,7 +7,7 @@ use crate::rod::arm::Arm;
 use crate::rod::readings::Support;
 use crate::statics::equations::{Margins, SectionFailure};
 use crate::statics::limit::limit_at;
-use crate::statics::refinement::graded;
+use crate::statics::refinement::{Refinable, graded};
 use crate::statics::verdict::VerdictKind;
 
 /// The verdict on a step that cannot be done.
@@ -42,6 +42,22 @@ pub(super) fn fair_elements(arm: &Arm, tol: f64) -> usize {
 pub(super) fn mesh(arm: &Arm, elements: usize) -> Mesh {
     let breaks: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
     graded(arm, &breaks, elements)
+}
+
+/// Kinks nearer to each other than this share of a mean element have one node: the mesh stays while kinks move, and an
+/// element much shorter than its neighbours leaves beta' there to rounding.
+const APART: f64 = 0.2;
+
+/// A mesh with nodes on the kinks that the stream's load has at the shape of the engine.
+pub(super) fn mesh_at(engine: &mut impl Refinable, elements: usize) -> Mesh {
+    let mut mesh = mesh(engine.arm(), elements);
+    let mut kinks = engine.kinks(1e-6);
+    kinks.sort_by(f64::total_cmp);
+    kinks.dedup_by(|next, before| *next - *before < APART / mesh.elements() as f64);
+    if kinks.len() <= mesh.elements() {
+        mesh.pin(engine.breaks(), &kinks);
+    }
+    mesh
 }
 
 /// Refuses what cannot move.

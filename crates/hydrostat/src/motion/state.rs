@@ -1,13 +1,13 @@
 //! The state of a motion, from which another run goes on.
 
-use hydrostat_bvp::{LANES, Lanes, Mesh, Real, Stage};
+use hydrostat_bvp::{LANES, Lanes, Mesh, Real};
 
 use super::error::MotionError;
-use super::history::Snapshot;
-use super::in_plane::Planar;
-use super::works::WORKS;
+use super::history::{Layout, Snapshot};
+use super::settling::Moves;
+use super::works::{Carried, WORKS};
 use crate::rod::arm::Arm;
-use crate::statics::dimensions::{Guess, M};
+use crate::statics::dimensions::M;
 
 /// What a motion needs to go on, as plain numbers for a file. Places are over L, times in s, forces in N, moments in
 /// N m, energies in J.
@@ -19,14 +19,17 @@ pub struct MotionState {
     pub length: f64,
     /// Nodes of the mesh.
     pub nodes: Vec<f64>,
-    /// theta, x, y at the stages and nodes, then strains and beta' at the stages, as the solver has them in memory.
+    /// theta, x, y at the stages and nodes, then strains and beta' at the stages, as the solver has them in memory. In
+    /// space three coordinates of the turn from [`MotionState::rotations`] stand for theta.
     pub values: Vec<f64>,
     /// Their rates.
     pub rates: Vec<f64>,
     /// Second rates of theta, x, y.
     pub second: Vec<f64>,
-    /// n_f and m_f at the nodes.
-    pub contact: Vec<[f64; 3]>,
+    /// In space, the quaternions that stages and nodes turn from; empty in the plane.
+    pub rotations: Vec<f64>,
+    /// n_f and m_f at the nodes: three numbers each in the plane, six in space.
+    pub contact: Vec<Vec<f64>>,
     /// Tensions of the cables.
     pub tensions: Vec<f64>,
     /// Works since the start: by cables, water, gravity, loads, base, then dissipated, then of the volume.
@@ -49,8 +52,11 @@ impl MotionState {
         Self { smooth: false, next: 0.0, ..self }
     }
 
-    /// Refuses what is no state of `arm`.
-    pub(super) fn check(&self, arm: &Arm) -> Result<Mesh, MotionError> {
+    /// The mesh and the motion; refuses what is no state of `arm`.
+    pub(super) fn check<P: Moves<S, L>, const S: usize, const L: usize>(
+        &self,
+        arm: &Arm,
+    ) -> Result<(Mesh, Snapshot), MotionError> {
         let refuse = |reason: String| Err(MotionError::State { reason });
         if (self.length / arm.length - 1.0).abs() > 1e-12 {
             return refuse(format!("it is of an arm of {} m, this one has {} m", self.length, arm.length));
@@ -62,14 +68,16 @@ impl MotionState {
         let Some(mesh) = Mesh::with_nodes(&nodes, &breaks) else {
             return refuse("its mesh is none, or not one of this arm".to_owned());
         };
-        let blocks = mesh.elements().div_ceil(LANES) * M;
-        let second = LANES * (3 * blocks + mesh.elements() + 1);
-        let all = second + LANES * 4 * blocks;
+        let [turns, places] = P::COORDINATES;
+        let (blocks, nodes) = (mesh.elements().div_ceil(LANES) * M, mesh.elements() + 1);
+        let layout = Layout { blocks, nodes, turns, places, strains: L };
+        let rotations = if turns == 3 { 4 * LANES * (blocks + nodes) } else { 0 };
         let lists = [
-            ("values", self.values.len(), all),
-            ("rates", self.rates.len(), all),
-            ("second", self.second.len(), second),
-            ("contact", self.contact.len(), mesh.elements() + 1),
+            ("values", self.values.len(), LANES * layout.all()),
+            ("rates", self.rates.len(), LANES * layout.all()),
+            ("second", self.second.len(), LANES * layout.second()),
+            ("rotations", self.rotations.len(), rotations),
+            ("contact", self.contact.iter().map(Vec::len).sum(), nodes * P::CARRIED.len()),
             ("tensions", self.tensions.len(), arm.cables.len()),
             ("works", self.works.len(), WORKS),
             ("powers", self.powers.len(), WORKS),
@@ -77,58 +85,52 @@ impl MotionState {
         if let Some((name, found, expected)) = lists.into_iter().find(|(_, found, expected)| found != expected) {
             return refuse(format!("`{name}` has {found} numbers, {expected} are expected"));
         }
-        let numbers = self.values.iter().chain(&self.rates).chain(&self.second).chain(self.contact.iter().flatten());
-        let others = self.tensions.iter().chain(&self.works).chain(&self.powers);
+        if self.contact.iter().any(|own| own.len() != P::CARRIED.len()) {
+            return refuse(format!("`contact` has {} numbers at every node", P::CARRIED.len()));
+        }
+        let numbers = [&self.values, &self.rates, &self.second, &self.rotations].into_iter().flatten();
+        let others = self.tensions.iter().chain(&self.works).chain(&self.powers).chain(self.contact.iter().flatten());
         if !numbers.chain(others).chain([&self.time, &self.error, &self.next]).all(|v| v.is_finite()) {
             return refuse("it has numbers that are not finite".to_owned());
         }
-        let base = [arm.base.angle, arm.base.x / arm.length, arm.base.y / arm.length];
-        let first = LANES * 3 * blocks;
-        if (0..3).any(|k| (self.values[first + k] - base[k]).abs() > 1e-9) {
+        let [values, rates, second, rotations] =
+            [&self.values, &self.rates, &self.second, &self.rotations].map(|list| lanes(list));
+        let from = rotations.chunks_exact(4).map(|q| [q[0], q[1], q[2], q[3]]).collect();
+        let motion = Snapshot { layout, values, rates, second, from };
+        if !P::is_based(arm, &motion) {
             return refuse("the base is not where it was at its end, and cannot jump".to_owned());
         }
-        Ok(mesh)
+        Ok((mesh, motion))
     }
 
-    /// Puts the state into `settling`, which is new; the motion.
-    pub(super) fn restore(&self, settling: &mut Planar, mesh: Mesh) -> Snapshot {
-        let blocks = mesh.elements().div_ceil(LANES) * M;
-        let lanes = |list: &[f64]| -> Vec<Lanes> {
-            list.chunks_exact(LANES).map(|chunk| Lanes(std::array::from_fn(|lane| chunk[lane]))).collect()
+    /// What nodes carry, with `force` (N) as the unit of force.
+    pub(super) fn carried(&self, components: &[usize], force: f64) -> Vec<Carried> {
+        let at = |own: &Vec<f64>| {
+            let mut out = [0.0; 6];
+            for (k, value) in components.iter().zip(own) {
+                out[*k] = value / if *k < 3 { force } else { force * self.length };
+            }
+            out
         };
-        let values = lanes(&self.values);
-        let first_strain = 3 * blocks + mesh.elements() + 1;
-        // What sections carry is a start for Newton's method alone: straight between the nodes.
-        let contact = |i: usize| {
-            let [n_x, n_y, m] = self.contact[i.min(mesh.elements())];
-            [n_x, n_y, m / self.length]
-        };
-        let stages = (0..blocks)
-            .map(|block| {
-                let strain = &values[first_strain + 4 * block..first_strain + 4 * block + 4];
-                let mut slope = [strain[2], Lanes::of(0.0), Lanes::of(0.0), Lanes::of(0.0)];
-                for lane in 0..LANES {
-                    let i = (block / M * LANES + lane).min(mesh.elements() - 1);
-                    let (from, to, h) = (contact(i), contact(i + 1), mesh.step(i));
-                    for k in 0..3 {
-                        slope[k + 1].0[lane] = (to[k] - from[k]) / h;
-                    }
-                }
-                Stage { slope, inner: [strain[0], strain[1], strain[2]], closure_slope: strain[3] }
-            })
-            .collect();
-        let nodes = (0..=mesh.elements())
-            .map(|i| {
-                let [n_x, n_y, m] = contact(i);
-                [values[3 * blocks + i].0[0], n_x, n_y, m]
-            })
-            .collect();
-        let guess = Guess { mesh: mesh.clone(), nodes, stages, ..Guess::default() };
-        settling.start_from_statics(&guess, 1.0, mesh);
-        settling.system.take_stations(&settling.solution);
-        let layout = settling.moving.layout();
-        Snapshot { layout, values, rates: lanes(&self.rates), second: lanes(&self.second), from: Vec::new() }
+        self.contact.iter().map(at).collect()
     }
+}
+
+/// Slopes in a block of stages of what nodes carry, straight between them.
+pub(super) fn carried_slopes(mesh: &Mesh, carried: &[Carried], block: usize) -> [Lanes; 6] {
+    let mut out = [Lanes::of(0.0); 6];
+    for lane in 0..LANES {
+        let i = (block / M * LANES + lane).min(mesh.elements() - 1);
+        for (k, slope) in out.iter_mut().enumerate() {
+            slope.0[lane] = (carried[i + 1][k] - carried[i][k]) / mesh.step(i);
+        }
+    }
+    out
+}
+
+/// A list of numbers as blocks of four.
+fn lanes(list: &[f64]) -> Vec<Lanes> {
+    list.chunks_exact(LANES).map(|chunk| Lanes(std::array::from_fn(|lane| chunk[lane]))).collect()
 }
 
 /// Blocks of four as a list of numbers.

@@ -9,6 +9,8 @@
 //!
 //! so that v_i = cv (q_i - Q) and a_i = cv (v_i - V) with cv = 1/(h gamma). Strains do the same with their rates.
 
+use std::ops::Range;
+
 use hydrostat_bvp::{Lanes, Real, Solution};
 
 use super::error::{MotionError, MotionVerdict, MotionVerdictKind};
@@ -136,7 +138,9 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         let running = state.smooth && !inputs.jumps_at(state.time);
         let this = Self::starting(settling, start, inputs, state.time, now, works);
         let next = fixed.unwrap_or(if running { state.next } else { 0.0 });
-        Self { running, tolerance: SHARE * tol, fixed, next, error: state.error, jumped: state.jumped, ..this }
+        let mut start = Snapshot::default();
+        this.settling.moving.restarted(&this.now, &mut start);
+        Self { start, running, tolerance: SHARE * tol, fixed, next, error: state.error, jumped: state.jumped, ..this }
     }
 
     fn starting(
@@ -151,13 +155,13 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         let most = RUNNING.c.len();
         let energy = settling.moving.energies(&settling.system, &now).iter().sum();
         let [tip, _] = now.node_place(now.layout.nodes - 1);
-        let tensions = settling.moving.tensions();
+        let tensions = settling.tensions();
         Self {
             kept: settling.solution.clone(),
             kept_scales: [1.0; S],
             tensions: vec![(time, tensions.0.clone())],
             kept_tensions: tensions,
-            ledger: Ledger::new(time, settling.moving.at_base(&settling.solution), energy, works),
+            ledger: Ledger::new(time, settling.moving.carried_at(&settling.solution, 0), energy, works),
             events: Vec::new(),
             folded: settling.moving.fold_margin(&now)[0] <= 0.0,
             jumped: None,
@@ -255,7 +259,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         self.rejected += 1;
         self.next = next;
         self.settling.restore(&self.kept, &self.kept_scales, self.time);
-        self.settling.moving.take_tensions(&self.kept_tensions);
+        self.settling.take_tensions(&self.kept_tensions);
     }
 
     fn accept(&mut self, h: f64, corner: f64, to_corner: bool, tip_error: f64) {
@@ -275,7 +279,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
             self.reached[1][k] = self.reached[1][k].max(place);
         }
         self.kept.clone_from(&self.settling.solution);
-        let tensions = std::mem::replace(&mut self.kept_tensions, self.settling.moving.tensions());
+        let tensions = std::mem::replace(&mut self.kept_tensions, self.settling.tensions());
         self.kept_scales = *self.settling.moving.scales();
         self.note_events(&tensions.1);
         self.running = true;
@@ -291,14 +295,14 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
 
     /// A shorter step, where cables became slack or taut in the one of length `h` and it is not known well when.
     fn before_event(&self, h: f64) -> Option<f64> {
-        let changed = self.settling.moving.tensions().1 != self.kept_tensions.1;
+        let changed = self.settling.tensions().1 != self.kept_tensions.1;
         let known = h <= EVENT * self.settling.moving.time_unit() || self.events.len() >= LOCATED;
         (changed && !known && self.fixed.is_none()).then_some(0.5 * h)
     }
 
     /// Notes what happened in the last step, before which the cables were taut as `taut` says.
     fn note_events(&mut self, taut: &[bool]) {
-        let held = self.settling.moving.held();
+        let held = self.settling.held_cables().to_vec();
         for ((cable, before), now) in held.into_iter().zip(taut).zip(self.kept_tensions.1.clone()) {
             if *before != now {
                 let kind = if now { MotionEventKind::Taut(cable) } else { MotionEventKind::Slack(cable) };
@@ -345,7 +349,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
             self.stages[0].clone_from(&self.start);
         }
         self.ledger.start(self.time, tableau.explicit_first);
-        let holds = !self.settling.moving.held().is_empty();
+        let holds = !self.settling.held_cables().is_empty();
         if holds {
             self.tensions = vec![(self.time, self.kept_tensions.0.clone())];
         }
@@ -368,17 +372,18 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
             let settling = &mut self.settling;
             settling.moving.read(&mut settling.system, &settling.solution, own);
             own.rates_from(cv, settling.moving.history_mut());
-            let base = settling.moving.at_base(&settling.solution);
+            let base = settling.moving.carried_at(&settling.solution, 0);
             let powers = settling.moving.powers(&settling.system, own, base);
             self.ledger.take(Reading { time, powers, base });
             if holds {
-                self.tensions.push((time, self.settling.moving.tensions().0));
+                self.tensions.push((time, self.settling.tensions().0));
             }
         }
         Ok(self.errors(tableau, h))
     }
 
-    /// The embedded error of the centreline: the largest, and the tip's.
+    /// The embedded error: the largest of the centreline and, where it counts ([`Moves::radius`]), of the surface as
+    /// sections turn; and that of the tip.
     fn errors(&self, tableau: &Tableau, h: f64) -> [f64; 2] {
         let layout = self.start.layout;
         let zero = Lanes::of(0.0);
@@ -387,9 +392,15 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         let mut largest = 0.0_f64;
         for block in 0..layout.blocks {
             let first = layout.coordinates() * block + layout.turns;
-            let square = (first..first + layout.places).map(at).fold(zero, |sum, error| sum + error * error);
-            for v in square.0 {
-                largest = if v.is_nan() { f64::NAN } else { largest.max(v) };
+            let square = |of: Range<usize>| of.map(at).fold(zero, |sum, error| sum + error * error);
+            let mut take = |square: Lanes| {
+                for v in square.0 {
+                    largest = if v.is_nan() { f64::NAN } else { largest.max(v) };
+                }
+            };
+            take(square(first..first + layout.places));
+            if let Some(radius) = self.settling.moving.radius(block) {
+                take(radius * radius * square(first - layout.turns..first));
             }
         }
         let mut off = [0.0; 3];

@@ -1,64 +1,80 @@
-//! Cables whose stroke is commanded in motion: shape and tensions in one bordered system
+//! Cables whose stroke is commanded in motion, in the plane or in space: shape and tensions in one bordered system
 //! ([`crate::statics::border`]), with taut and slack cables by an active set.
 
 use hydrostat_bvp::Correction;
 
-use super::equations::Moving;
-use super::in_plane::Planar;
-use super::settling::Unsolved;
+use super::border::Border;
+use super::settling::{Moves, Settling, Unsolved};
+use crate::numerics::rounds::respond;
 use crate::statics::border::{UnitPull, add_pulls, meeting};
-use crate::statics::equations::StationData;
 
 /// Corrections above which tensions do not yet say which cables are taut.
 const SETTLED: f64 = 0.3;
 
-impl Planar {
+impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
+    /// The cables whose stroke is commanded.
+    pub(super) fn held_cables(&self) -> &[usize] {
+        self.moving.held().map_or(&[], |held| &held.cables)
+    }
+
+    /// Tensions (N) of all cables at the last solve, and which held ones are taut.
+    pub(super) fn tensions(&self) -> (Vec<f64>, Vec<bool>) {
+        let taut = self.moving.held().map_or_else(Vec::new, |held| held.taut.clone());
+        (self.moving.arm().cables.iter().map(|cable| cable.tension).collect(), taut)
+    }
+
+    /// Takes the tensions of held cables back.
+    pub(super) fn take_tensions(&mut self, (tensions, taut): &(Vec<f64>, Vec<bool>)) {
+        let Some(held) = self.moving.held_mut() else { return };
+        held.taut.clone_from(taut);
+        for cable in held.cables.clone() {
+            self.moving.set_tension(cable, tensions[cable]);
+        }
+    }
+
     /// Adds to the correction of the last linearisation what the tensions of held cables do, so that their strokes
-    /// are met.
-    pub(super) fn border(&mut self) -> Result<(), Unsolved> {
-        let Some(held) = self.moving.statics.held.clone() else { return Ok(()) };
-        let mut border = std::mem::take(&mut self.border);
-        Moving::for_strokes(self.system.stations(), &mut border.stations);
-        let statics = &self.moving.statics;
-        let at = StationData { weights: &self.system.gauss.b, steps: self.system.steps(), stations: &border.stations };
+    /// are met; by how much those of taut ones were off.
+    pub(super) fn hold_strokes(&mut self) -> Result<f64, Unsolved> {
+        let Some(held) = self.moving.held().cloned() else { return Ok(0.0) };
+        let (moving, system) = (&self.moving, &self.system);
+        let Border { slack, strained, forcing, .. } = &mut self.border;
+        moving.strained(system, strained);
         let taut = held.taut_cables();
         let mut pulled = Vec::with_capacity(taut.len());
         for index in taut {
-            self.moving.pull_by(held.cables[index], &self.system, &mut border.forcing);
+            moving.pull_by(held.cables[index], system, forcing);
             let mut response = Correction::default();
-            self.respond(&border.forcing, &mut response);
-            let mut strokes: Vec<f64> =
-                held.cables.iter().map(|cable| statics.stroke_change(*cable, at, &response)).collect();
-            strokes[index] += statics.stroke(held.cables[index], at)[1];
+            respond(system, forcing, &mut response);
+            let change = |cable: &usize| moving.stroke_change(*cable, system, strained, &response);
+            let mut strokes: Vec<f64> = held.cables.iter().map(change).collect();
+            strokes[index] += moving.stroke(held.cables[index], system, strained)[1];
             pulled.push(UnitPull { response, strokes });
         }
-        border.off = 0.0;
-        border.slack.clear();
+        let mut most = 0.0_f64;
+        slack.clear();
         for (index, cable) in held.cables.iter().enumerate() {
-            let off = statics.stroke(*cable, at)[0] - statics.command(&held, index);
+            let off = moving.stroke(*cable, system, strained)[0] - moving.command(&held, index);
             if held.taut[index] {
-                border.off = border.off.max(off.abs());
+                most = most.max(off.abs());
             }
-            border.slack.push(off + statics.stroke_change(*cable, at, &self.correction));
+            slack.push(off + moving.stroke_change(*cable, system, strained, &self.correction));
         }
-        let found = meeting(&held, &pulled, [&border.slack, &border.slack]);
+        let found = meeting(&held, &pulled, [slack, slack]);
         let changes = found.iter().flat_map(|(tensions, _)| tensions.iter().map(|both| both[0]));
-        border.tensions = add_pulls(&held, &pulled, changes, &mut self.correction, &mut border.slack);
-        self.border = border;
-        found.map(|_| ()).ok_or(Unsolved::Singular)
+        self.border.tensions = add_pulls(&held, &pulled, changes, &mut self.correction, slack);
+        found.map(|_| most).ok_or(Unsolved::Singular)
     }
 
     /// Adds `factor` times the last round to the tensions.
     pub(super) fn add_tensions(&mut self, factor: f64) {
-        let Some(held) = self.moving.statics.held.take() else { return };
-        let statics = &mut self.moving.statics;
+        let Some(held) = self.moving.held().cloned() else { return };
+        let force = self.moving.units().force;
         for ((cable, taut), change) in held.cables.iter().zip(&held.taut).zip(&self.border.tensions) {
             if *taut {
-                let tension = statics.arm().cables[*cable].tension + factor * change * statics.units.force;
-                statics.set_tension(*cable, tension);
+                let tension = self.moving.arm().cables[*cable].tension + factor * change * force;
+                self.moving.set_tension(*cable, tension);
             }
         }
-        statics.held = Some(held);
     }
 
     /// Lets cables go slack that push, and takes slack ones up that are too short, given the size of the last
@@ -67,13 +83,15 @@ impl Planar {
         if size > SETTLED {
             return false;
         }
-        let Some(mut held) = self.moving.statics.held.take() else { return false };
-        let statics = &mut self.moving.statics;
-        let changed = held.switch(|cable| statics.arm().cables[cable].tension, &self.border.slack);
+        let Some(mut held) = self.moving.held().cloned() else { return false };
+        let cables = &self.moving.arm().cables;
+        let changed = held.switch(|cable| cables[cable].tension, &self.border.slack);
         if changed {
-            held.slack_cables().for_each(|cable| statics.set_tension(cable, 0.0));
+            held.slack_cables().for_each(|cable| self.moving.set_tension(cable, 0.0));
+            if let Some(own) = self.moving.held_mut() {
+                *own = held;
+            }
         }
-        statics.held = Some(held);
         changed
     }
 }

@@ -145,6 +145,19 @@ impl SpatialSolver {
         Ok(())
     }
 
+    /// Takes the loads of an arm with the same sections and cables; tensions of cables whose stroke is commanded stay.
+    pub(crate) fn set_loads(&mut self, arm: &Arm) -> Result<(), SpatialError> {
+        arm.check()?;
+        let mut arm = arm.clone();
+        for (new, own) in arm.cables.iter_mut().zip(&self.arm().cables).filter(|(new, _)| new.stroke.is_some()) {
+            new.tension = own.tension;
+        }
+        self.engine.equations.set_loads(&arm);
+        self.engine.check_equations.set_loads(&arm);
+        self.solved = false;
+        Ok(())
+    }
+
     /// Solves again from the last configuration, after a small change of tensions; falls back to
     /// [`SpatialSolver::solve`].
     ///

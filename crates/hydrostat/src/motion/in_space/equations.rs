@@ -9,11 +9,10 @@
 //! statics. What turns a station is known to the time method as c, the rotation from where the step started
 //! ([`Turn`]): c. = cv c + hv and so on, and omega follows from c and c. .
 
-use hydrostat_bvp::{
-    Condition, EndPlace, Gauss, Groups, Inner, LANES, Lanes, Local, Problem, Real, Solution, Station, each,
-};
+use hydrostat_bvp::{Condition, EndPlace, Gauss, Groups, Inner, Lanes, Local, Problem, Real, Solution, Station, each};
 
 use crate::motion::history::{History, Layout};
+use crate::motion::relaxation::stiffened;
 use crate::motion::settling::Settling;
 use crate::numerics::dispatch::widest;
 use crate::rod::area_law::SectionStretch;
@@ -60,7 +59,7 @@ pub(super) struct SpatialMoving {
     pub(super) from: Vec<[Lanes; 4]>,
     /// Strain rates at ends of elements, less cv times the strains.
     end_rates: Vec<[Lanes; L]>,
-    end_places: Vec<EndPlace>,
+    pub(super) end_places: Vec<EndPlace>,
     closed: bool,
     /// The cables whose stroke is commanded.
     pub(super) held: Option<StrokeControl>,
@@ -113,51 +112,21 @@ impl SpatialMoving {
         Layout { blocks: self.masses.len(), nodes: self.nodes, turns: 3, places: 3, strains: L }
     }
 
-    /// Takes what strain rates at the ends start from, by the polynomial through the stages of their elements.
+    /// Takes what strain rates at the ends start from.
     pub(super) fn set_end_rates(&mut self, gauss: &Gauss<M>) {
         self.end_rates.clear();
-        if self.statics.arm().dynamics.relaxation_time == 0.0 {
-            return;
-        }
-        let at_ends = [gauss.cardinals(0.0), gauss.cardinals(1.0)];
-        for place in &self.end_places {
-            let mut rates = [Lanes::of(0.0); L];
-            for lane in 0..LANES {
-                let (block, from) = self.statics.groups.at(place.elements[lane], 0);
-                let weights = &at_ends[place.sides[lane].index()];
-                for (j, weight) in weights.iter().enumerate() {
-                    for (k, rate) in rates.iter_mut().enumerate() {
-                        rate.0[lane] -= self.cv * weight * self.history.strain(block + j, k).0[from];
-                    }
-                }
-            }
-            self.end_rates.push(rates);
+        if self.statics.arm().dynamics.relaxation_time > 0.0 {
+            let ends = &self.end_places;
+            self.end_rates.extend(self.history.end_rates(self.cv, gauss, self.statics.groups, ends));
         }
     }
 
     /// The section law of a material with memory of rate, given what strain rates are beside cv times the strains.
     #[inline(always)]
-    fn stiffened(&self, stiffness: &Stiffness<Lanes>, rates: [Lanes; L]) -> Stiffness<Lanes> {
+    fn stiffened(&self, stiffness: &Stiffness<Lanes>, rates: &[Lanes; L]) -> Stiffness<Lanes> {
         let time = self.statics.arm().dynamics.relaxation_time;
-        let factor = 1.0 + time * self.cv;
-        Stiffness {
-            value: each(|k| stiffness.value[k] * Lanes::of(factor)),
-            reference: each(|k| (stiffness.reference[k] - Lanes::of(time) * rates[k]) * Lanes::of(1.0 / factor)),
-        }
-    }
-
-    /// Strain rates at a station are cv times the strains, and these.
-    #[inline(always)]
-    fn strain_rates(&self, block: usize) -> [Lanes; L] {
-        each(|k| Lanes::of(-self.cv) * self.history.strain(block, k))
-    }
-
-    /// Velocity and acceleration of coordinate `k` at a station where it is `z`.
-    #[inline(always)]
-    fn rates_of(&self, block: usize, k: usize, z: Lanes) -> [Lanes; 2] {
-        let cv = Lanes::of(self.cv);
-        let velocity = cv * (z - self.history.value(block, k));
-        [velocity, cv * (velocity - self.history.rate(block, k))]
+        let [value, reference] = stiffened([&stiffness.value, &stiffness.reference], rates, time, self.cv);
+        Stiffness { value, reference }
     }
 
     /// What acts along the arm at a station, inertia among it, as a load whose force is -n_f', and its derivative by r.
@@ -172,7 +141,7 @@ impl SpatialMoving {
     ) -> (Load<Lanes>, [Vector<Lanes>; 3]) {
         let statics = &self.statics;
         let cv = Lanes::of(self.cv);
-        let moving: [[Lanes; 2]; 3] = each(|k| self.rates_of(block, 3 + k, place[k]));
+        let moving: [[Lanes; 2]; 3] = each(|k| self.history.rates_of(self.cv, block, 3 + k, place[k]));
         let length = Lanes::of(statics.units.length);
         let wet = statics.arm().flow.density != 0.0;
         let stream = wet.then(|| each(|k| Lanes::of(statics.water.stream[k]) - length * moving[k][0]));
@@ -203,7 +172,7 @@ impl SpatialMoving {
     pub(super) fn turning(&self, block: usize, q: &[Lanes; 4], nu: Lanes) -> Turning<Lanes> {
         let cv = Lanes::of(self.cv);
         let c = relative(&self.from[block], q);
-        let rates: [[Lanes; 2]; 3] = each(|k| self.rates_of(block, k, c[k]));
+        let rates: [[Lanes; 2]; 3] = each(|k| self.history.rates_of(self.cv, block, k, c[k]));
         let turn = Turn { c, v: each(|k| rates[k][0]), a: each(|k| rates[k][1]) };
         let nu_rate = cv * (nu - self.history.strain(block, 0));
         turning(self.statics.volume, &self.masses[block], [nu, nu_rate], &turn, cv)
@@ -230,7 +199,7 @@ impl SpatialMoving {
         let place = &statics.places[block];
         let (station, r) = self.unscaled(given);
         statics.pulled_in(statics.cables_in(block), pulled);
-        let stiffness = self.stiffened(&place.stiffness, self.strain_rates(block));
+        let stiffness = self.stiffened(&place.stiffness, &self.history.strain_rates(self.cv, block));
         let (directors, contact, solved) = statics.solved(&stiffness, &station, pulled);
         if !solved.is_fine(statics.inner_tolerance) {
             return Err(failure(place.s, &solved, statics.inner_tolerance));
@@ -314,7 +283,7 @@ impl SpatialMoving {
                     let (s, stiffness) = &statics.end_sections[block];
                     statics.pulled_in(statics.cables_at_end(block), &mut pulled);
                     let rates = self.end_rates.get(block).copied().unwrap_or_default();
-                    let stiffness = self.stiffened(stiffness, rates);
+                    let stiffness = self.stiffened(stiffness, &rates);
                     let (directors, contact, solved) = statics.solved(&stiffness, &station, &pulled);
                     if !solved.is_fine(statics.inner_tolerance) {
                         return Err(failure(*s, &solved, statics.inner_tolerance));

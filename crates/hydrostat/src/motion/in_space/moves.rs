@@ -1,23 +1,28 @@
 //! The boundary-value problem of one stage in space, as the stepper sees it.
 
-use hydrostat_bvp::{Collocation, Correction, Gauss, LANES, Lanes, Real, each};
+use hydrostat_bvp::{Collocation, Correction, Forcing, Gauss, LANES, Lanes, Mesh, Real, Stage, each};
 
 use super::equations::{COORDINATES, S, Shape, Spatial, SpatialMoving, X};
-use super::start::at_rest;
-use super::strokes::SpatialBorder;
+use super::start::{at_rest, in_shape};
 use crate::motion::error::MotionError;
 use crate::motion::history::{History, Layout, Snapshot};
 use crate::motion::inputs::Inputs;
-use crate::motion::settling::{Moves, Unsolved};
+use crate::motion::settling::Moves;
+use crate::motion::start::force_unit;
 use crate::motion::works::{Carried, WORKS};
 use crate::rod::arm::Arm;
-use crate::spatial::equations::{FORCE, L, M};
+use crate::spatial::cable_paths::StageData;
+use crate::spatial::equations::{FORCE, L, M, N};
 use crate::spatial::inertia::Turn;
 use crate::spatial::rotation::{Directors, Vector, relative, turned_by};
 use crate::statics::dimensions::Units;
+use crate::statics::equations::StrokeControl;
 
 impl Moves<S, L> for SpatialMoving {
-    type Border = SpatialBorder;
+    type Strained = Stage<N, L>;
+
+    const COORDINATES: [usize; 2] = [3, 3];
+    const CARRIED: &'static [usize] = &[0, 1, 2, 3, 4, 5];
 
     fn start(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -> Result<Spatial, MotionError> {
         at_rest(arm, elements, tol, time)
@@ -37,6 +42,10 @@ impl Moves<S, L> for SpatialMoving {
 
     fn set_rate(&mut self, cv: f64, scales: [f64; S]) {
         (self.cv, self.scales) = (cv, scales);
+    }
+
+    fn arm(&self) -> &Arm {
+        self.statics.arm()
     }
 
     fn units(&self) -> Units {
@@ -98,8 +107,8 @@ impl Moves<S, L> for SpatialMoving {
         // Tensions of held cables follow from their strokes.
         let tensions = self.statics.tensions.clone();
         self.statics.set_loads(arm);
-        for cable in self.held() {
-            self.statics.set_tension(cable, tensions[cable]);
+        for cable in self.held.iter().flat_map(|held| &held.cables) {
+            self.statics.set_tension(*cable, tensions[*cable]);
         }
     }
 
@@ -154,8 +163,24 @@ impl Moves<S, L> for SpatialMoving {
         }
     }
 
-    fn at_base(&self, solution: &Shape) -> Carried {
-        each(|k| self.scales[FORCE + k] * solution.nodes[0][FORCE + k])
+    fn carried_at(&self, solution: &Shape, node: usize) -> Carried {
+        each(|k| self.scales[FORCE + k] * solution.nodes[node][FORCE + k])
+    }
+
+    fn in_shape(arm: &Arm, at: &Snapshot, carried: &[Carried], mesh: Mesh) -> Spatial {
+        in_shape(arm, at, carried, mesh)
+    }
+
+    fn is_based(arm: &Arm, at: &Snapshot) -> bool {
+        let base = SpatialMoving::new(arm, force_unit(arm)).statics;
+        let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9);
+        let [place, _] = at.node_place(0);
+        let (own, wanted) = (at.directors(0), Directors::of(&base.base));
+        close(&place, &base.base_place()) && close(&own.a, &wanted.a) && close(&own.b, &wanted.b)
+    }
+
+    fn radius(&self, block: usize) -> Option<Lanes> {
+        Some(self.statics.places[block].body.radius)
     }
 
     fn powers(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot, base: Carried) -> [f64; WORKS] {
@@ -170,34 +195,52 @@ impl Moves<S, L> for SpatialMoving {
         Self::fold_margin(self, at)
     }
 
-    fn held(&self) -> Vec<usize> {
-        self.held.as_ref().map_or_else(Vec::new, |held| held.cables.clone())
+    fn held(&self) -> Option<&StrokeControl> {
+        self.held.as_ref()
     }
 
-    fn tensions(&self) -> (Vec<f64>, Vec<bool>) {
-        let taut = self.held.as_ref().map_or_else(Vec::new, |held| held.taut.clone());
-        (self.statics.arm().cables.iter().map(|cable| cable.tension).collect(), taut)
+    fn held_mut(&mut self) -> Option<&mut StrokeControl> {
+        self.held.as_mut()
     }
 
-    fn take_tensions(&mut self, (tensions, taut): &(Vec<f64>, Vec<bool>)) {
-        let Some(held) = &mut self.held else { return };
-        held.taut.clone_from(taut);
-        for cable in &held.cables {
-            self.statics.set_tension(*cable, tensions[*cable] / self.statics.units.force);
-        }
+    fn set_tension(&mut self, cable: usize, tension: f64) {
+        self.statics.set_tension(cable, tension / self.statics.units.force);
     }
 
-    fn hold_strokes(settling: &mut Spatial) -> Result<f64, Unsolved> {
-        settling.meet_strokes()
+    fn command(&self, held: &StrokeControl, index: usize) -> f64 {
+        self.statics.command(held, index)
     }
 
-    fn add_tensions(settling: &mut Spatial, factor: f64) {
-        settling.change_tensions(factor);
+    fn strained(&self, system: &Collocation<S, M, 0, L>, out: &mut Vec<Stage<N, L>>) {
+        out.clear();
+        out.extend(system.stations().iter().map(|station| Stage {
+            inner: station.inner,
+            closure_slope: station.closure_slope,
+            ..Stage::default()
+        }));
     }
 
-    fn switch_taut(settling: &mut Spatial, size: f64) -> bool {
-        settling.switch_cables(size)
+    fn stroke(&self, cable: usize, system: &Collocation<S, M, 0, L>, strained: &[Stage<N, L>]) -> [f64; 2] {
+        self.statics.stroke(cable, stage_data(system, strained))
     }
+
+    fn stroke_change(
+        &self,
+        cable: usize,
+        system: &Collocation<S, M, 0, L>,
+        strained: &[Stage<N, L>],
+        correction: &Correction<S, M, 0, L>,
+    ) -> f64 {
+        self.statics.stroke_change(cable, stage_data(system, strained), correction)
+    }
+
+    fn pull_by(&self, cable: usize, system: &Collocation<S, M, 0, L>, out: &mut Forcing<S, 0, L>) {
+        Self::pull_by(self, cable, system, out);
+    }
+}
+
+fn stage_data<'a>(system: &'a Collocation<S, M, 0, L>, stages: &'a [Stage<N, L>]) -> StageData<'a> {
+    StageData { weights: &system.gauss.b, steps: system.steps(), stages }
 }
 
 /// The rotations of a solution's stages in blocks, then of its nodes, as quaternions of length one.

@@ -4,6 +4,7 @@
 use hydrostat_bvp::{Collocation, Lanes, Real, Stage, each};
 
 use super::equations::{COORDINATES, S, SpatialMoving};
+use crate::motion::along::{integral, least};
 use crate::motion::history::Snapshot;
 use crate::motion::works::{Carried, WORKS};
 use crate::rod::area_law::{area_derivatives, area_law};
@@ -52,7 +53,7 @@ impl SpatialMoving {
     /// The powers (in the unit of force times L/s) in the motion `at`, which `system` was linearised at and whose base
     /// carries `base`.
     pub(super) fn powers(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot, base: Carried) -> [f64; WORKS] {
-        let mut out = self.along(system, at, |block| self.density(block, &Moving::of(at, block)));
+        let mut out = integral(system, self.statics.groups, |block| self.density(block, &Moving::of(at, block)));
         let power = |i: usize, carried: &[f64; 6]| {
             let [_, velocity] = at.node_place(i);
             let omega = at.directors(i).to_space(&at.omega(i));
@@ -68,7 +69,7 @@ impl SpatialMoving {
 
     /// Kinetic energy and that of strain (in the unit of force times L) in the motion `at`.
     pub(super) fn energies(&self, system: &Collocation<S, M, 0, L>, at: &Snapshot) -> [f64; 2] {
-        self.along(system, at, |block| {
+        integral(system, self.statics.groups, |block| {
             let own = Moving::of(at, block);
             let masses = &self.masses[block];
             let [area, ..] = area_derivatives(self.statics.volume, own.stage.inner[0]);
@@ -77,42 +78,15 @@ impl SpatialMoving {
         })
     }
 
-    /// The integral along the arm of what `density` gives in a block of stages.
-    fn along<const K: usize>(
-        &self,
-        system: &Collocation<S, M, 0, L>,
-        at: &Snapshot,
-        density: impl Fn(usize) -> [Lanes; K],
-    ) -> [f64; K] {
-        let groups = self.statics.groups;
-        let mut out = [0.0; K];
-        for block in 0..at.layout.blocks {
-            let (weight, steps) = (system.gauss.b[block % M], system.steps()[block / M]);
-            for (sum, density) in out.iter_mut().zip(density(block)) {
-                for lane in 0..groups.filled(block / M) {
-                    *sum += weight * steps.0[lane] * density.0[lane];
-                }
-            }
-        }
-        out
-    }
-
     /// The smallest (nu - beta R sqrt(kappa^2 + mu^2))/nu at the stages in the motion `at`, and where over L.
     pub(super) fn fold_margin(&self, at: &Snapshot) -> [f64; 2] {
-        let groups = self.statics.groups;
-        let mut least = [f64::INFINITY, 0.0];
-        for block in 0..at.layout.blocks {
+        least(self.statics.groups, |block| {
             let [[nu, _, _, _, kappa, mu, _], _] = at.strains(block);
             let place = &self.statics.places[block];
             let half_width = area_law(self.statics.volume, nu).beta * place.body.radius;
-            for lane in 0..groups.filled(block / M) {
-                let margin = 1.0 - half_width.0[lane] * kappa.0[lane].hypot(mu.0[lane]) / nu.0[lane];
-                if margin < least[0] {
-                    least = [margin, place.s.0[lane]];
-                }
-            }
-        }
-        least
+            let bending = (kappa * kappa + mu * mu).sqrt();
+            [Lanes::of(1.0) - half_width * bending / nu, place.s]
+        })
     }
 
     /// Powers per length in a block of stations.

@@ -3,11 +3,13 @@
 use hydrostat_bvp::{Groups, Lanes, Stage, each};
 
 use super::equations::{COORDINATES, S, SpatialMoving};
+use super::quasi_static::SpatialQuasiStatic;
 use crate::motion::error::MotionError;
 use crate::motion::event::MotionEvent;
 use crate::motion::inputs::Inputs;
 use crate::motion::options::{CableMotion, MotionOptions, MotionStatistics};
 use crate::motion::run::Run;
+use crate::motion::state::MotionState;
 use crate::motion::warning::MotionWarning;
 use crate::motion::works::Works;
 use crate::rod::arm::Arm;
@@ -95,6 +97,29 @@ impl SpatialSimulation {
         let mut arm = arm.clone();
         arm.space.get_or_insert_default();
         Ok(Self { run: Run::new(&arm, inputs, options)?, stages: Vec::new() })
+    }
+
+    /// Goes on from the end of another run in space, see [`Simulation::resume`](crate::Simulation::resume).
+    ///
+    /// # Errors
+    /// [`MotionError`] where an option, the arm, an input or the state is refused.
+    pub fn resume(arm: &Arm, inputs: Inputs, options: MotionOptions, state: &MotionState) -> Result<Self, MotionError> {
+        let mut arm = arm.clone();
+        arm.space.get_or_insert_default();
+        Ok(Self { run: Run::resume(&arm, inputs, options, state)?, stages: Vec::new() })
+    }
+
+    /// What it takes to go on from the present time in another run, see [`SpatialSimulation::resume`].
+    pub fn state(&self) -> MotionState {
+        self.run.state()
+    }
+
+    /// What the equilibria of the same loads are asked with.
+    ///
+    /// # Errors
+    /// [`MotionError::SpatialStart`] where the statics refuse the arm.
+    pub fn quasi_static(&self) -> Result<SpatialQuasiStatic, MotionError> {
+        SpatialQuasiStatic::new(self.run.stepper.arm(), self.run.stepper.inputs.clone())
     }
 
     /// The time of the last answer, s.

@@ -1,16 +1,18 @@
 //! How a motion in space starts: at rest in the equilibrium of the statics.
 
-use hydrostat_bvp::{Collocation, Lanes, Mesh, Real, Solution, Stage};
+use hydrostat_bvp::{Collocation, Lanes, Mesh, Real, Solution, Stage, each};
 
-use super::equations::{S, Shape, Spatial, SpatialMoving, X};
+use super::equations::{COORDINATES, S, Shape, Spatial, SpatialMoving, X};
 use crate::motion::error::MotionError;
+use crate::motion::history::Snapshot;
 use crate::motion::settling::Settling;
-use crate::motion::start::{check, fair_elements, force_unit, mesh, not_found};
+use crate::motion::start::{check, fair_elements, force_unit, mesh_at, not_found};
+use crate::motion::state::carried_slopes;
+use crate::motion::works::Carried;
 use crate::rod::arm::Arm;
 use crate::spatial::SpatialSolver;
-use crate::spatial::engine::Engine;
 use crate::spatial::equations::{FORCE, Guess, L, M, N, Q};
-use crate::spatial::rotation::Directors;
+use crate::spatial::rotation::{Directors, spin, turned_by};
 use crate::statics::solve::Options;
 
 /// Refuses what cannot move; else at rest in the equilibrium of `arm`.
@@ -23,7 +25,7 @@ pub(super) fn at_rest(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -
     solver.solve().map_err(of_start)?;
     let engine = solver.engine_mut();
     let mut settling = Settling::of(SpatialMoving::new(arm, force_unit(arm)));
-    let mesh = mesh_at(engine, arm, elements);
+    let mesh = mesh_at(engine, elements);
     let statics = &mut settling.moving.statics;
     for (c, cable) in engine.equations.arm().cables.iter().enumerate().filter(|(_, cable)| cable.stroke.is_some()) {
         statics.set_tension(c, cable.tension / statics.units.force);
@@ -39,21 +41,28 @@ pub(super) fn at_rest(arm: &Arm, elements: Option<usize>, tol: f64, time: f64) -
     }
 }
 
-/// Kinks nearer to each other than this share of a mean element have one node: the mesh stays while kinks move, and an
-/// element much shorter than its neighbours leaves beta' there to rounding.
-const APART: f64 = 0.2;
-
-/// A mesh with nodes on the kinks that the stream's load has at the shape of the engine.
-fn mesh_at(engine: &mut Engine, arm: &Arm, elements: usize) -> Mesh {
-    let mut mesh = mesh(arm, elements);
-    let mut kinks = engine.kinks(1e-6);
-    kinks.sort_by(f64::total_cmp);
-    kinks.dedup_by(|next, before| *next - *before < APART / mesh.elements() as f64);
-    let fixed: Vec<f64> = arm.breaks().iter().map(|s| s / arm.length).collect();
-    if kinks.len() <= mesh.elements() {
-        mesh.pin(&fixed, &kinks);
-    }
-    mesh
+/// In the shape of a motion, see [`crate::motion::settling::Moves::in_shape`].
+pub(super) fn in_shape(arm: &Arm, at: &Snapshot, carried: &[Carried], mesh: Mesh) -> Spatial {
+    let mut settling = Settling::of(SpatialMoving::new(arm, force_unit(arm)));
+    settling.moving.command_strokes();
+    let stage = |block: usize| {
+        let ([coordinates, _], [[inner @ .., closure_slope], _]) =
+            (at.stage::<COORDINATES>(block), at.strains::<{ L + 1 }>(block));
+        let q = turned_by(&at.from[block], &each(|k| coordinates[k]));
+        let turned = spin(&q, &[inner[3], inner[4], inner[5]]);
+        let carried = carried_slopes(&mesh, carried, block);
+        Stage { slope: each(|a| if a < FORCE { turned[a] } else { carried[a - FORCE] }), inner, closure_slope }
+    };
+    let node = |(i, carried): (usize, &Carried)| {
+        let q = at.rotation(i);
+        each(|a| if a < FORCE { q[a] } else { carried[a - FORCE] })
+    };
+    let stages = (0..at.layout.blocks).map(stage).collect();
+    let nodes = carried.iter().enumerate().map(node).collect();
+    let guess = Guess { mesh: mesh.clone(), nodes, stages, ..Guess::default() };
+    let whole = with_places(&guess, 1.0, settling.moving.statics.base_place(), &settling.system);
+    settling.start_from(&whole, mesh);
+    settling
 }
 
 /// The solution of the statics with x, y, z, from the base, as states, and what it carries times `force`.
