@@ -5,9 +5,30 @@ use crate::real::Real;
 /// An `N` by `N` matrix, row by row.
 pub(crate) type Block<const N: usize, R = f64> = [[R; N]; N];
 
-/// `out -= f m`, column by column, so that four blocks side by side stay in registers.
+/// `out -= f m`.
 #[inline(always)]
 pub(crate) fn subtract_product<const FUSED: bool, const N: usize, R: Real>(
+    out: &mut Block<N, R>,
+    f: &Block<N, R>,
+    m: &Block<N, R>,
+) {
+    if FUSED {
+        subtract_product_inline::<true, N, R>(out, f, m);
+    } else {
+        subtract_product_called(out, f, m);
+    }
+}
+
+/// [`subtract_product`] without fused multiply-add, compiled once: what no recent processor runs is not worth the time
+/// that copies in every elimination take to compile.
+#[inline(never)]
+fn subtract_product_called<const N: usize, R: Real>(out: &mut Block<N, R>, f: &Block<N, R>, m: &Block<N, R>) {
+    subtract_product_inline::<false, N, R>(out, f, m);
+}
+
+/// [`subtract_product`], column by column, so that four blocks side by side stay in registers.
+#[inline(always)]
+fn subtract_product_inline<const FUSED: bool, const N: usize, R: Real>(
     out: &mut Block<N, R>,
     f: &Block<N, R>,
     m: &Block<N, R>,
@@ -30,6 +51,21 @@ pub(crate) fn subtract_product<const FUSED: bool, const N: usize, R: Real>(
 /// `out = f out`.
 #[inline(always)]
 pub(crate) fn multiply<const FUSED: bool, const N: usize, R: Real>(out: &mut Block<N, R>, f: &Block<N, R>) {
+    if FUSED {
+        multiply_inline::<true, N, R>(out, f);
+    } else {
+        multiply_called(out, f);
+    }
+}
+
+/// [`multiply`] as [`subtract_product_called`].
+#[inline(never)]
+fn multiply_called<const N: usize, R: Real>(out: &mut Block<N, R>, f: &Block<N, R>) {
+    multiply_inline::<false, N, R>(out, f);
+}
+
+#[inline(always)]
+fn multiply_inline<const FUSED: bool, const N: usize, R: Real>(out: &mut Block<N, R>, f: &Block<N, R>) {
     for c in 0..N {
         let mut column = [R::of(0.0); N];
         for b in 0..N {

@@ -167,17 +167,14 @@ pub(crate) struct Column<const N: usize, const M: usize> {
     pub(crate) change: [Lanes; POINTS],
 }
 
-/// Condenses a group without a closure variable; else the lane whose stages cannot be eliminated. `product` is multiplied by the
-/// determinants.
+/// The stage equations of a group without a closure variable.
 #[inline(always)]
-#[allow(clippy::needless_pass_by_value, reason = "the parts are borrowed one by one")]
-pub(crate) fn condense<const FUSED: bool, const N: usize, const M: usize, const Q: usize, const L: usize>(
+pub(crate) fn assemble<const N: usize, const M: usize, const Q: usize, const L: usize>(
     h: Lanes,
     gauss: &Gauss<M>,
     locals: &[Local<N, Q, L, Lanes>],
-    out: GroupMut<'_, N, M>,
-    product: &mut Lanes,
-) -> Result<(), usize> {
+    out: &mut GroupMut<'_, N, M>,
+) {
     let locals = &locals[..M];
     for j in 0..M {
         let jacobian = &locals[j].jacobian;
@@ -195,18 +192,30 @@ pub(crate) fn condense<const FUSED: bool, const N: usize, const M: usize, const 
         }
         out.by_state[j] = *jacobian;
     }
-    factorise::<FUSED, N, M>(out.lu, out.balances, product)?;
-    solve_blocks::<FUSED, N, M>(out.lu, out.by_state);
+}
+
+/// Eliminates the stages of a group from its stage equations; else the lane where that cannot be done. `product` is multiplied
+/// by the determinants. For both kinds of equations, so that it is compiled once.
+#[inline(always)]
+pub(crate) fn eliminate<const FUSED: bool, const N: usize, const M: usize>(
+    group: &mut GroupMut<'_, N, M>,
+    is_closed: bool,
+    product: &mut Lanes,
+) -> Result<(), usize> {
+    factorise::<FUSED, N, M>(group.lu, group.balances, product)?;
+    solve_blocks::<FUSED, N, M>(group.lu, group.by_state);
+    if is_closed {
+        solve_column::<FUSED, N, M>(group.lu, group.by_taken);
+    }
     Ok(())
 }
 
-/// [`condense`] with a closure variable: `own` is the own end, `value` w at the points including the one taken over, `slopes` w'
-/// at stages and own end.
+/// [`assemble`] with a closure variable: `own` is the own end, `values` w at the points including the one taken over, `slopes` w'
+/// at stages and own end. `product` is multiplied by the determinant of the points; else the lane where these have no closure.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "the parts of an element")]
-#[allow(clippy::needless_pass_by_value, reason = "the parts are borrowed one by one")]
 #[allow(clippy::too_many_lines, reason = "one elimination, whose steps share what they have at hand")]
-pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize, const Q: usize, const L: usize>(
+pub(crate) fn assemble_closed<const FUSED: bool, const N: usize, const M: usize, const Q: usize, const L: usize>(
     h: Lanes,
     gauss: &Gauss<M>,
     sides: [Side; LANES],
@@ -214,7 +223,7 @@ pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize,
     own: &Inner<N, L, Lanes>,
     values: &[Lanes; POINTS],
     slopes: &[Lanes; POINTS],
-    out: GroupMut<'_, N, M>,
+    out: &mut GroupMut<'_, N, M>,
     closure: &mut Closure<N, M>,
     product: &mut Lanes,
 ) -> Result<(), usize> {
@@ -355,9 +364,6 @@ pub(crate) fn condense_closed<const FUSED: bool, const N: usize, const M: usize,
             out.lu[j][j][a][a] += Lanes::of(1.0);
         }
     }
-    factorise::<FUSED, N, M>(out.lu, out.balances, product)?;
-    solve_blocks::<FUSED, N, M>(out.lu, out.by_state);
-    solve_column::<FUSED, N, M>(out.lu, out.by_taken);
     Ok(())
 }
 

@@ -46,17 +46,20 @@ pub struct Lanes(
 /// Elements in one [`Lanes`].
 pub const LANES: usize = 4;
 
+/// `f` of every lane. Written out: a loop here is one for every operation of the equations, and the compiler takes as long
+/// to unroll them all as for everything else.
+#[inline(always)]
+fn each_lane(f: impl Fn(usize) -> f64) -> Lanes {
+    Lanes([f(0), f(1), f(2), f(3)])
+}
+
 macro_rules! lanewise {
     ($trait:ident, $method:ident, $op:tt) => {
         impl $trait for Lanes {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                let mut out = self;
-                for i in 0..LANES {
-                    out.0[i] = self.0[i] $op other.0[i];
-                }
-                out
+                each_lane(|i| self.0[i] $op other.0[i])
             }
         }
     };
@@ -92,22 +95,14 @@ impl Lanes {
     /// `f` of every number.
     #[inline(always)]
     pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        let mut out = self;
-        for v in &mut out.0 {
-            *v = f(*v);
-        }
-        out
+        each_lane(|i| f(self.0[i]))
     }
 }
 
 impl Real for Lanes {
     #[inline(always)]
     fn plus<const FUSED: bool>(self, f: Self, m: Self) -> Self {
-        let mut out = self;
-        for i in 0..LANES {
-            out.0[i] = out.0[i].plus::<FUSED>(f.0[i], m.0[i]);
-        }
-        out
+        each_lane(|i| self.0[i].plus::<FUSED>(f.0[i], m.0[i]))
     }
     #[inline(always)]
     fn of(value: f64) -> Self {
@@ -131,11 +126,8 @@ impl Real for Lanes {
     }
     #[inline(always)]
     fn all_below(self, bound: f64) -> bool {
-        let mut all = true;
-        for v in self.0 {
-            all &= v < bound;
-        }
-        all
+        let [a, b, c, d] = self.0;
+        (a < bound) & (b < bound) & (c < bound) & (d < bound)
     }
     #[inline(always)]
     fn sign(self) -> Self {
@@ -143,11 +135,7 @@ impl Real for Lanes {
     }
     #[inline(always)]
     fn if_less(self, other: Self, yes: Self, no: Self) -> Self {
-        let mut out = no;
-        for i in 0..LANES {
-            out.0[i] = if self.0[i] < other.0[i] { yes.0[i] } else { no.0[i] };
-        }
-        out
+        each_lane(|i| if self.0[i] < other.0[i] { yes.0[i] } else { no.0[i] })
     }
 }
 

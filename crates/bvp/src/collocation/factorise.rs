@@ -3,7 +3,7 @@
 use super::closing::Closing;
 use super::{Collocation, LinearisationError, Singular};
 use crate::block::add_scaled;
-use crate::condense::{Map, condense, condense_closed};
+use crate::condense::{Map, assemble, assemble_closed, eliminate};
 use crate::determinant::Product;
 use crate::directions::Side;
 use crate::gauss::POINTS;
@@ -44,14 +44,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         resize(&mut self.maps, groups.elements, blank);
         for g in 0..groups.count() {
             let mut own_product = Lanes::of(1.0);
-            let condensed = if const { L > 0 } && self.directions.is_closed() {
-                self.condense_closed::<FUSED>(g, &mut own_product)
-            } else {
-                let locals = &self.locals[g * M..(g + 1) * M];
-                let (group, _) = self.condensed.group_mut(g);
-                condense::<FUSED, N, M, Q, L>(self.steps[g], &self.gauss, locals, group, &mut own_product)
-            };
-            condensed.map_err(|lane| Singular::Element(groups.element(g, lane)))?;
+            self.condense::<FUSED>(g, &mut own_product).map_err(|lane| Singular::Element(groups.element(g, lane)))?;
             for lane in 0..groups.filled(g) {
                 if own_product.0[lane] < 0.0 {
                     product.turn();
@@ -88,8 +81,23 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         (left, right)
     }
 
+    /// Condenses a group; else the lane whose stages cannot be eliminated.
     #[inline(always)]
-    fn condense_closed<const FUSED: bool>(&mut self, g: usize, product: &mut Lanes) -> Result<(), usize> {
+    fn condense<const FUSED: bool>(&mut self, g: usize, product: &mut Lanes) -> Result<(), usize> {
+        let is_closed = const { L > 0 } && self.directions.is_closed();
+        if is_closed {
+            self.assemble_closed::<FUSED>(g, product)?;
+        } else {
+            let locals = &self.locals[g * M..(g + 1) * M];
+            let (mut group, _) = self.condensed.group_mut(g);
+            assemble::<N, M, Q, L>(self.steps[g], &self.gauss, locals, &mut group);
+        }
+        let (mut group, _) = self.condensed.group_mut(g);
+        eliminate::<FUSED, N, M>(&mut group, is_closed, product)
+    }
+
+    #[inline(always)]
+    fn assemble_closed<const FUSED: bool>(&mut self, g: usize, product: &mut Lanes) -> Result<(), usize> {
         let groups = self.groups;
         let zero = Lanes::of(0.0);
         let (mut values, mut slopes) = ([zero; POINTS], [zero; POINTS]);
@@ -104,8 +112,8 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             values[M + 1].0[lane] = self.ends[block].value.0[from];
         }
         let locals = &self.locals[g * M..(g + 1) * M];
-        let (group, Some(closure)) = self.condensed.group_mut(g) else { return Err(0) };
-        condense_closed::<FUSED, N, M, Q, L>(
+        let (mut group, Some(closure)) = self.condensed.group_mut(g) else { return Err(0) };
+        assemble_closed::<FUSED, N, M, Q, L>(
             self.steps[g],
             &self.gauss,
             self.directions.ends[g].sides,
@@ -113,7 +121,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
             &self.ends[g],
             &values,
             &slopes,
-            group,
+            &mut group,
             closure,
             product,
         )

@@ -17,6 +17,7 @@ use super::dimensions::{S, Shape, X};
 use super::history::{History, Layout};
 use super::relaxation::stiffened;
 use super::start::force_unit;
+use crate::numerics::dispatch::widest;
 use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::arm::Arm;
@@ -360,6 +361,64 @@ impl Moving {
         given.inner = solved.strain;
         Ok(())
     }
+
+    /// All stages.
+    #[inline(never)]
+    fn all_stages(
+        &self,
+        stations: &mut [Station<S, L>],
+        out: &mut [Local<S, 0, L, Lanes>],
+    ) -> Result<(), SectionFailure> {
+        let mut pulled = CableList::new();
+        widest(
+            #[inline(always)]
+            || {
+                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+                    self.block(block, station, &mut pulled, out)?;
+                }
+                Ok(())
+            },
+        )
+    }
+
+    /// All ends at which elements meet the section law.
+    #[inline(never)]
+    fn all_ends(&self, stations: &mut [Station<S, L>], out: &mut [Inner<S, L, Lanes>]) -> Result<(), SectionFailure> {
+        let statics = &self.statics;
+        let mut pulled = CableList::new();
+        let count = statics.tensions.len();
+        widest(
+            #[inline(always)]
+            || {
+                for (block, (given, out)) in stations.iter_mut().zip(out).enumerate() {
+                    let station = &self.unscaled(given);
+                    let section = &statics.end_sections[block];
+                    statics.pulled_in(&statics.end_cables[block * count..(block + 1) * count], &mut pulled);
+                    let (sin, cos) = sin_cos(station.z[0]);
+                    let z: [Lanes; N] = each(|a| station.z[a]);
+                    let contact = in_directors([cos, sin], &z);
+                    let rates = self.end_rates.get(block).copied().unwrap_or_default();
+                    let solved = solve_section(
+                        statics.volume,
+                        &self.stiffened(&section.stiffness, &rates),
+                        pulled.as_slice(),
+                        contact,
+                        station.inner,
+                        station.closure_slope,
+                        statics.inner_tolerance,
+                    );
+                    if !solved.is_solved(statics.inner_tolerance) {
+                        return Err(failure(section.s, &solved, statics.inner_tolerance));
+                    }
+                    let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
+                    *out = inner(&solved, each(|k| wide(by_state[k])));
+                    self.scale_inner(out);
+                    given.inner = solved.strain;
+                }
+                Ok(())
+            },
+        )
+    }
 }
 
 /// A gradient by the statics' states as one by all.
@@ -376,56 +435,22 @@ impl Problem<S, 0, L> for Moving {
         self.closed
     }
 
-    #[inline(always)]
     fn stages<const FUSED: bool>(
         &self,
         _: Groups,
         stations: &mut [Station<S, L>],
         out: &mut [Local<S, 0, L, Lanes>],
     ) -> Result<(), SectionFailure> {
-        let mut pulled = CableList::new();
-        for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-            self.block(block, station, &mut pulled, out)?;
-        }
-        Ok(())
+        self.all_stages(stations, out)
     }
 
-    #[inline(always)]
     fn ends<const FUSED: bool>(
         &self,
         _: &[EndPlace],
         stations: &mut [Station<S, L>],
         out: &mut [Inner<S, L, Lanes>],
     ) -> Result<(), SectionFailure> {
-        let statics = &self.statics;
-        let mut pulled = CableList::new();
-        let count = statics.tensions.len();
-        for (block, (given, out)) in stations.iter_mut().zip(out).enumerate() {
-            let station = &self.unscaled(given);
-            let section = &statics.end_sections[block];
-            statics.pulled_in(&statics.end_cables[block * count..(block + 1) * count], &mut pulled);
-            let (sin, cos) = sin_cos(station.z[0]);
-            let z: [Lanes; N] = each(|a| station.z[a]);
-            let contact = in_directors([cos, sin], &z);
-            let rates = self.end_rates.get(block).copied().unwrap_or_default();
-            let solved = solve_section(
-                statics.volume,
-                &self.stiffened(&section.stiffness, &rates),
-                pulled.as_slice(),
-                contact,
-                station.inner,
-                station.closure_slope,
-                statics.inner_tolerance,
-            );
-            if !solved.is_solved(statics.inner_tolerance) {
-                return Err(failure(section.s, &solved, statics.inner_tolerance));
-            }
-            let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
-            *out = inner(&solved, each(|k| wide(by_state[k])));
-            self.scale_inner(out);
-            given.inner = solved.strain;
-        }
-        Ok(())
+        self.all_ends(stations, out)
     }
 
     fn left_count(&self) -> usize {

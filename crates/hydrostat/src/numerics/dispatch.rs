@@ -1,5 +1,6 @@
 //! The widest vectors that the processor has, chosen when the program runs.
 
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use pulp::{Arch, Simd, WithSimd};
 
 /// Work that is compiled for more than one kind of processor.
@@ -19,8 +20,10 @@ impl<R, F: FnOnce() -> R> Work for Any<F> {
     }
 }
 
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 struct Dispatched<W>(W);
 
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 impl<W: Work> WithSimd for Dispatched<W> {
     type Output = W::Output;
 
@@ -39,9 +42,18 @@ pub(crate) fn widest<R>(work: impl FnOnce() -> R) -> R {
 }
 
 /// [`widest`] for work that wants to know whether there is a fused multiply-add.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 #[inline(always)]
 pub(crate) fn dispatch<W: Work>(work: W) -> W::Output {
     Arch::new().dispatch(Dispatched(work))
+}
+
+/// [`widest`] for work that wants to know whether there is a fused multiply-add. Here what every processor of the kind has
+/// is what there is to choose, so that nothing is compiled twice.
+#[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+#[inline(always)]
+pub(crate) fn dispatch<W: Work>(work: W) -> W::Output {
+    work.run::<{ cfg!(target_arch = "aarch64") }>()
 }
 
 struct Fused;
@@ -55,7 +67,7 @@ impl Work for Fused {
 }
 
 /// Whether solves on this processor run on what is compiled for wide vectors with fused multiply-add (on x86: AVX2),
-/// not on what is compiled for any processor. Answers agree to the tolerance, not to the last bit.
+/// not on what is compiled for any processor; on 64-bit Arm always. Answers agree to the tolerance, not to the last bit.
 ///
 /// ```
 /// println!("wide vectors: {}", hydrostat::has_wide_vectors());

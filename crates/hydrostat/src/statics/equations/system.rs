@@ -7,6 +7,7 @@ use super::limits::SectionFailure;
 use super::place::{EndSection, Place};
 use super::range::Varied;
 use super::stroke_control::StrokeControl;
+use crate::numerics::dispatch::widest;
 use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::arm::Arm;
@@ -379,6 +380,58 @@ impl Equations {
         station.inner = solved.strain;
         Ok(())
     }
+
+    /// All stages. Compiled once, for collocations of every order.
+    #[inline(never)]
+    fn all_stages(
+        &self,
+        stations: &mut [Station<N, L>],
+        out: &mut [Local<N, Q, L, Lanes>],
+    ) -> Result<(), SectionFailure> {
+        let mut pulled = CableList::new();
+        widest(
+            #[inline(always)]
+            || {
+                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+                    self.block(block, station, &mut pulled, out)?;
+                }
+                Ok(())
+            },
+        )
+    }
+
+    /// All ends at which elements meet the section law.
+    #[inline(never)]
+    fn all_ends(&self, stations: &mut [Station<N, L>], out: &mut [Inner<N, L, Lanes>]) -> Result<(), SectionFailure> {
+        let mut pulled = CableList::new();
+        let count = self.tensions.len();
+        widest(
+            #[inline(always)]
+            || {
+                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+                    let section = &self.end_sections[block];
+                    self.pulled_in(&self.end_cables[block * count..(block + 1) * count], &mut pulled);
+                    let (sin, cos) = sin_cos(station.z[0]);
+                    let contact = in_directors([cos, sin], &station.z);
+                    let solved = solve_section(
+                        self.volume,
+                        &section.stiffness,
+                        pulled.as_slice(),
+                        contact,
+                        station.inner,
+                        station.closure_slope,
+                        self.inner_tolerance,
+                    );
+                    if !solved.is_solved(self.inner_tolerance) {
+                        return Err(failure(section.s, &solved, self.inner_tolerance));
+                    }
+                    *out = inner(&solved, strain_by_state(&solved.inverse, [cos, sin], contact));
+                    station.inner = solved.strain;
+                }
+                Ok(())
+            },
+        )
+    }
 }
 
 /// The section law linearised and solved for the strains, which follow the state by `by_state`.
@@ -421,50 +474,22 @@ impl Problem<N, Q, L> for Equations {
         self.is_closed()
     }
 
-    #[inline(always)]
     fn stages<const FUSED: bool>(
         &self,
         _: Groups,
         stations: &mut [Station<N, L>],
         out: &mut [Local<N, Q, L, Lanes>],
     ) -> Result<(), SectionFailure> {
-        let mut pulled = CableList::new();
-        for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-            self.block(block, station, &mut pulled, out)?;
-        }
-        Ok(())
+        self.all_stages(stations, out)
     }
 
-    #[inline(always)]
     fn ends<const FUSED: bool>(
         &self,
         _: &[EndPlace],
         stations: &mut [Station<N, L>],
         out: &mut [Inner<N, L, Lanes>],
     ) -> Result<(), SectionFailure> {
-        let mut pulled = CableList::new();
-        let count = self.tensions.len();
-        for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-            let section = &self.end_sections[block];
-            self.pulled_in(&self.end_cables[block * count..(block + 1) * count], &mut pulled);
-            let (sin, cos) = sin_cos(station.z[0]);
-            let contact = in_directors([cos, sin], &station.z);
-            let solved = solve_section(
-                self.volume,
-                &section.stiffness,
-                pulled.as_slice(),
-                contact,
-                station.inner,
-                station.closure_slope,
-                self.inner_tolerance,
-            );
-            if !solved.is_solved(self.inner_tolerance) {
-                return Err(failure(section.s, &solved, self.inner_tolerance));
-            }
-            *out = inner(&solved, strain_by_state(&solved.inverse, [cos, sin], contact));
-            station.inner = solved.strain;
-        }
-        Ok(())
+        self.all_ends(stations, out)
     }
 
     fn left_count(&self) -> usize {
