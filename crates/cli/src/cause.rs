@@ -37,6 +37,7 @@ pub(crate) enum Cause<'a> {
     PathInSpace(&'a PathError<SpatialError>),
     Motion(&'a MotionError),
     AfterSnap(&'a AfterSnapError),
+    AfterSnapInSpace(&'a AfterSnapError<SpatialError>),
     Loading(&'a LoadingError),
     TimeLoads,
     SavedMotion,
@@ -65,6 +66,7 @@ impl<'a> Cause<'a> {
         let found = found.or_else(|| error.downcast_ref().map(Self::PathInSpace));
         let found = found.or_else(|| error.downcast_ref().map(Self::Motion));
         let found = found.or_else(|| error.downcast_ref().map(Self::AfterSnap));
+        let found = found.or_else(|| error.downcast_ref().map(Self::AfterSnapInSpace));
         let found = found.or_else(|| error.downcast_ref().map(Self::Loading));
         let found = found.or_else(|| error.is::<TimeLoadsError>().then_some(Self::TimeLoads));
         let found = found.or_else(|| error.is::<ShapedError>().then_some(Self::TimeLoads));
@@ -98,7 +100,8 @@ impl<'a> Cause<'a> {
             Self::Path(error) => path(error, solve),
             Self::PathInSpace(error) => path(error, solve_in_space),
             Self::Motion(error) => motion(error),
-            Self::AfterSnap(error) => after_snap(error),
+            Self::AfterSnap(error) => after_snap(error, solve),
+            Self::AfterSnapInSpace(error) => after_snap(error, solve_in_space),
             Self::Loading(error) => loading(error),
             Self::Sensitivity(error) => sensitivity(error, solve),
             Self::Reach(error) => reach(error, solve),
@@ -137,6 +140,7 @@ impl<'a> Cause<'a> {
             | Self::ReachInSpace(_)
             | Self::Motion(_)
             | Self::AfterSnap(_)
+            | Self::AfterSnapInSpace(_)
             | Self::Loading(_)
             | Self::TimeLoads
             | Self::SavedMotion
@@ -177,7 +181,7 @@ fn motion(error: &MotionError) -> Blame {
     }
 }
 
-fn after_snap(error: &AfterSnapError) -> Blame {
+fn after_snap<E>(error: &AfterSnapError<E>, solve: fn(&E) -> Blame) -> Blame {
     match error {
         AfterSnapError::Solve(source) => solve(source),
         AfterSnapError::Motion { motion: source, .. } => motion(source),
@@ -187,7 +191,7 @@ fn after_snap(error: &AfterSnapError) -> Blame {
 
 fn loading(error: &LoadingError) -> Blame {
     match error {
-        LoadingError::Start(source) => after_snap(source),
+        LoadingError::Start(source) => after_snap(source, solve),
         LoadingError::Motion { motion: source, .. } => motion(source),
         LoadingError::Limit { .. } | LoadingError::NoRest { .. } => Blame::Arm,
         LoadingError::Arm(_) | LoadingError::Unsupported { .. } => Blame::Request,

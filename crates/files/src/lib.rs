@@ -80,8 +80,8 @@ pub use results::{FailureDocument, Note, SolutionDocument, TOLERANCE_MISSED, jso
 pub use shared_unit::{PartialUnit, shared_unit};
 pub use slips::{Slip, likeliest_slip, unit_slips};
 pub use spatial_motions::{
-    SPATIAL_MOTION_SHAPE_HEADS, spatial_motion_heads, spatial_motion_numbers, spatial_motion_shape_lines,
-    spatial_place_numbers,
+    SPATIAL_MOTION_SHAPE_HEADS, spatial_equilibrium_numbers, spatial_motion_heads, spatial_motion_numbers,
+    spatial_motion_shape_lines, spatial_place_numbers,
 };
 pub use spatial_results::{SpatialFailureDocument, SpatialSolutionDocument, spatial_stations_csv};
 pub use targets::{TargetsError, parse_targets, read_targets};

@@ -1,13 +1,14 @@
 //! Motions in space as JSON and CSV, by the names that equilibria in space have.
 
-use hydrostat::{SpatialInstant, SpatialMotionStation};
+use hydrostat::{SpatialInstant, SpatialMotionStation, SpatialTip};
 
 use crate::motions::{WORK_HEADS, motion_line, work_numbers};
 use crate::spatial_results::TipOut;
 
-/// The heads of a row of an arm in space with so many cables and so many stations: those of [`spatial_motion_numbers`],
-/// then of [`spatial_place_numbers`] for each station.
-pub fn spatial_motion_heads(cables: usize, stations: usize) -> Vec<String> {
+/// The heads of a row of an arm in space with so many cables and so many stations, and with the equilibrium of the same
+/// loads if `equilibrium`: those of [`spatial_motion_numbers`], then of [`spatial_place_numbers`] for each station, then
+/// of [`spatial_equilibrium_numbers`].
+pub fn spatial_motion_heads(cables: usize, stations: usize, equilibrium: bool) -> Vec<String> {
     let mut out: Vec<String> = ["t_s"].into_iter().chain(TipOut::COLUMNS).map(str::to_owned).collect();
     out.extend((0..cables).flat_map(|c| [format!("stroke_{c}_m"), format!("tension_{c}_N")]));
     let others = [
@@ -28,6 +29,10 @@ pub fn spatial_motion_heads(cables: usize, stations: usize) -> Vec<String> {
     for k in 0..stations {
         out.extend(of_place.map(|head| format!("place_{k}_{head}")));
     }
+    if equilibrium {
+        let heads = ["x_m", "y_m", "z_m", "a_x", "a_y", "a_z", "distance"];
+        out.extend(heads.map(|head| format!("equilibrium_{head}")));
+    }
     out
 }
 
@@ -46,6 +51,15 @@ pub fn spatial_motion_numbers(at: &SpatialInstant) -> Vec<f64> {
 pub fn spatial_place_numbers(at: &SpatialMotionStation) -> [f64; 10] {
     let ([x, y, z], [a_x, a_y, a_z], [vx, vy, vz]) = (at.place, at.a, at.velocity);
     [at.s, x, y, z, a_x, a_y, a_z, vx, vy, vz]
+}
+
+/// The tip of the equilibrium under the loads of `at`, its place and director a, and how far the tip is from it over
+/// the length (m); no numbers where there is none.
+pub fn spatial_equilibrium_numbers(at: &SpatialInstant, equilibrium: Option<SpatialTip>, length: f64) -> [f64; 7] {
+    equilibrium.map_or([f64::NAN; 7], |SpatialTip { x, y, z, a: [a_x, a_y, a_z], .. }| {
+        let distance = (at.tip.x - x).hypot(at.tip.y - y).hypot(at.tip.z - z) / length;
+        [x, y, z, a_x, a_y, a_z, distance]
+    })
 }
 
 /// The heads of [`spatial_motion_shape_lines`].

@@ -1,7 +1,8 @@
 //! Results of arms in space as JSON and CSV: the documents of arms in the plane, with three components and directors.
 
 use hydrostat::{
-    NoSpatialEquilibrium, SpatialConfiguration, SpatialSnap, SpatialStations, SpatialTip, SpatialWrench, Verdict,
+    AfterSnap, NoSpatialEquilibrium, SpatialConfiguration, SpatialSnap, SpatialSnapMotion, SpatialStations, SpatialTip,
+    SpatialWrench, Verdict,
 };
 use serde::Serialize;
 
@@ -116,6 +117,9 @@ struct SnapOut {
     distance: f64,
     /// rad
     angle: f64,
+    /// s, only where the motion after the snap was followed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    duration: Option<f64>,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -146,11 +150,21 @@ impl From<&SpatialSnap> for SnapOut {
             after: snap.after.into(),
             distance: snap.distance(),
             angle: snap.angle(),
+            duration: None,
         }
     }
 }
 
 impl Note {
+    /// The notes on a shape in space after snaps whose motions were followed.
+    pub fn after_snap_in_space(found: &AfterSnap<SpatialConfiguration, SpatialSnapMotion>, tol: f64) -> Vec<Self> {
+        let mut notes = Self::all_in_space(&found.configuration, tol);
+        for (note, motion) in notes.iter_mut().filter(|note| note.kind == "snap").zip(&found.snaps) {
+            note.message = motion.message();
+        }
+        notes
+    }
+
     /// All notes on a configuration in space, as [`Note::all`].
     pub fn all_in_space(configuration: &SpatialConfiguration, tol: f64) -> Vec<Self> {
         let snaps = configuration.snaps.iter().map(|snap| Self { kind: "snap", message: snap.message() });
@@ -209,6 +223,14 @@ impl<'a> SpatialSolutionDocument<'a> {
             inputs: Inputs::new(arm),
             statistics: (*statistics).into(),
         }
+    }
+
+    /// With what is known of the motions after its snaps.
+    pub fn with_motions(mut self, motions: &[SpatialSnapMotion]) -> Self {
+        let own =
+            |motion: &SpatialSnapMotion| SnapOut { duration: Some(motion.duration), ..SnapOut::from(&motion.snap) };
+        self.snaps = motions.iter().map(own).collect();
+        self
     }
 
     /// The document, one line.

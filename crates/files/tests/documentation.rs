@@ -199,7 +199,7 @@ fn its_names_are_those_of_the_results() {
     let (arm, _) = pulled();
     let beside = format!("{MOTION_SHAPE_HEADS}\n{MOTION_EVENT_HEADS}\n");
     assert_eq!(blocks("csv")[..4], [header, path_header(), motion, beside]);
-    let motion = spatial_motion_heads(1, 0).join(",") + "\n";
+    let motion = spatial_motion_heads(1, 0, false).join(",") + "\n";
     assert!(blocks("csv")[4].starts_with(&motion), "{}", blocks("csv")[4]);
     assert_eq!(blocks("csv")[5..7], [loading_header(&arm), over_header()]);
     let varied: Varied = "flow.speed=0:1".parse().unwrap();

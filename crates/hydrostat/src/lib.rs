@@ -156,7 +156,7 @@ pub use motion::{
     AfterSnap, AfterSnapError, CableMotion, Course, Inputs, Instant, Loading, LoadingError, LoadingSnap, LoadingStep,
     Mode, Modes, MotionError, MotionEvent, MotionEventKind, MotionOptions, MotionState, MotionStation,
     MotionStatistics, MotionVerdict, MotionVerdictKind, MotionWarning, QuasiStatic, Rest, Restless, Simulation,
-    SnapMotion, SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation, Works,
+    SnapMotion, SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation, SpatialSnapMotion, Works,
 };
 pub use numerics::dispatch::has_wide_vectors;
 pub use parameter::Parameter;

@@ -55,6 +55,7 @@ mod powers;
 mod quasi_static;
 mod relaxation;
 mod rest;
+mod resting;
 mod resumed;
 mod run;
 mod settling;
@@ -71,14 +72,17 @@ mod works;
 pub use self::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
 pub use self::error::{MotionError, MotionVerdict, MotionVerdictKind};
 pub use self::event::{MotionEvent, MotionEventKind};
-pub use self::in_space::{SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation};
+pub use self::in_space::{
+    SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation, SpatialSnapMotion,
+};
 pub use self::inputs::{Course, Inputs};
 pub use self::loading::{Loading, LoadingError, LoadingSnap, LoadingStep};
 pub use self::modes::{Mode, Modes};
 pub use self::options::{CableMotion, MotionOptions, MotionStatistics};
 pub use self::places::MotionStation;
 pub use self::quasi_static::QuasiStatic;
-pub use self::rest::{Rest, Restless};
+pub use self::rest::Rest;
+pub use self::resting::Restless;
 pub use self::simulation::{Instant, Simulation};
 pub use self::state::MotionState;
 pub use self::warning::MotionWarning;

@@ -28,7 +28,7 @@ cable[0].tension, flow.speed or tip.force[1], in SI units, angles in degrees; a 
 cable_0_tension_mN. Straight lines join the rows. Two rows at one time are a jump; such a pair at t = 0 is a \
 release. The table [dynamics] of the arm file sets added mass, viscosity of the material and inertia.
 
-Arms in space move too; of them --quasi-static, --from, --resume, --plot and --plot-time are refused.")]
+Arms in space move too; of them --plot and --plot-time are refused.")]
 #[command(after_help = format!("\
 Examples:
   hydrostat simulate silicone --input loads.csv --until 2s --every 10ms --tol 1e-4 -o out.csv

@@ -24,7 +24,7 @@ pub(super) struct Told {
     pub(super) warnings: Vec<MotionWarning>,
     pub(super) events: Vec<MotionEvent>,
     /// What another run goes on from.
-    pub(super) state: Option<MotionState>,
+    pub(super) state: MotionState,
 }
 
 /// How a run ended.
@@ -195,9 +195,7 @@ impl MotionOutput {
         if let (Some(table), Some(_), Some(last)) = (&mut self.event_table, ending.limit, events.last()) {
             table.add(&motion_event_line(last))?;
         }
-        if let Some(state) = &told.state {
-            self.keep(state.clone())?;
-        }
+        self.keep(told.state.clone())?;
         let path = self.path.as_deref();
         match self.format {
             MotionFormat::Csv => Ok(()),

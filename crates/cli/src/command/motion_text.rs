@@ -52,13 +52,12 @@ pub(super) fn in_space(arm: &Arm, at: &SpatialInstant, events: &[EventOut], told
     text
 }
 
-/// The equilibrium of the last row at x, y (m), and how far from it the tip is and was at most, over the length.
-pub(super) fn add_equilibrium(([x, y], [distance, most]): ([f64; 2], [f64; 2]), text: &mut String) {
+/// The tip of the equilibrium of the last row (m), and how far from it the tip is and was at most, over the length.
+pub(super) fn add_equilibrium(tip: &[f64], [distance, most]: [f64; 2], text: &mut String) {
     let _ = writeln!(
         text,
-        "statics in equilibrium the tip would be at ({}, {}) m, {} of the length away; at most {} on the way",
-        number(x),
-        number(y),
+        "statics in equilibrium the tip would be at ({}) m, {} of the length away; at most {} on the way",
+        tip.iter().copied().map(number).collect::<Vec<_>>().join(", "),
         number(distance),
         number(most)
     );

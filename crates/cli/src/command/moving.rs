@@ -21,18 +21,18 @@ pub(super) trait Moving {
     fn shape(&self, places: &[f64]) -> (String, MotionShape);
     fn told(&self) -> Told;
     /// What another run goes on from.
-    fn state(&self) -> Option<MotionState>;
+    fn state(&self) -> MotionState;
 }
 
 macro_rules! told {
-    ($simulation:expr, $state:expr) => {
+    ($simulation:expr) => {
         Told {
             statistics: $simulation.statistics(),
             estimate: $simulation.error_estimate(),
             energy_gap: $simulation.energy_gap(),
             warnings: $simulation.warnings(),
             events: $simulation.events().to_vec(),
-            state: $state,
+            state: $simulation.state(),
         }
     };
 }
@@ -64,11 +64,11 @@ impl Moving for Simulation {
     }
 
     fn told(&self) -> Told {
-        told!(self, Moving::state(self))
+        told!(self)
     }
 
-    fn state(&self) -> Option<MotionState> {
-        Some(Self::state(self))
+    fn state(&self) -> MotionState {
+        Self::state(self)
     }
 }
 
@@ -99,11 +99,10 @@ impl Moving for SpatialSimulation {
     }
 
     fn told(&self) -> Told {
-        told!(self, Moving::state(self))
+        told!(self)
     }
 
-    /// Motions in space do not go on in another run.
-    fn state(&self) -> Option<MotionState> {
-        None
+    fn state(&self) -> MotionState {
+        Self::state(self)
     }
 }

@@ -5,12 +5,12 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant as Clock};
 
 use hydrostat::{
-    Arm, ArmError, Inputs, Instant, MotionError, MotionOptions, QuasiStatic, Simulation, SolveError, SpatialSimulation,
+    Arm, ArmError, Inputs, Instant, MotionError, MotionOptions, Simulation, SolveError, SpatialSimulation,
 };
 use hydrostat_figures::{MotionFrame, motion_figure, strobe_figure};
 use hydrostat_files::{
     EventOut, MOTION_SHAPE_HEADS, SPATIAL_MOTION_SHAPE_HEADS, SavedMotion, equilibrium_numbers, motion_heads,
-    motion_state_beside, number, read_time_loads, set_shaped, spatial_motion_heads,
+    motion_state_beside, number, read_time_loads, set_shaped, spatial_equilibrium_numbers, spatial_motion_heads,
 };
 
 use super::motion_output::{Ending, MotionOutput, Told};
@@ -65,26 +65,28 @@ pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     };
     let resumed = resumed(args, request)?;
     let asked = Asked { args, arm: &arm, plan: &plan, request, resumed: resumed.as_ref() };
+    let state = match (&resumed, earlier) {
+        (Some(saved), _) => Some(saved.state.clone()),
+        (None, Some(earlier)) => Some(earlier.state.under_other_loads()),
+        (None, None) => None,
+    };
     if arm.space.is_some() {
-        return in_space(&asked, SpatialSimulation::new(&arm, loads, options).map_err(refused)?);
+        let simulation = match state {
+            Some(state) => SpatialSimulation::resume(&arm, loads, options, &state),
+            None => SpatialSimulation::new(&arm, loads, options),
+        };
+        return in_space(&asked, simulation.map_err(refused)?);
     }
-    let simulation = match (&resumed, earlier) {
-        (Some(saved), _) => Simulation::resume(&arm, loads, options, &saved.state),
-        (None, Some(earlier)) => Simulation::resume(&arm, loads, options, &earlier.state.under_other_loads()),
-        (None, None) => Simulation::new(&arm, loads, options),
+    let simulation = match state {
+        Some(state) => Simulation::resume(&arm, loads, options, &state),
+        None => Simulation::new(&arm, loads, options),
     };
     in_plane(&asked, simulation.map_err(refused)?)
 }
 
-/// Refuses what is asked of an arm in space and done in the plane alone.
+/// Refuses pictures of an arm in space.
 fn check_in_space(args: &SimulateArgs, arm: &Arm) -> anyhow::Result<()> {
-    let asked = [
-        (args.from.is_some(), "`--from`"),
-        (args.resume, "`--resume`"),
-        (args.quasi_static, "`--quasi-static`"),
-        (args.plot.is_some(), "`--plot`"),
-        (args.plot_time.is_some(), "`--plot-time`"),
-    ];
+    let asked = [(args.plot.is_some(), "`--plot`"), (args.plot_time.is_some(), "`--plot-time`")];
     match asked.into_iter().find(|(asked, _)| *asked && arm.space.is_some()) {
         Some((_, what)) => Err(SolveError::Arm(ArmError::OnlyInPlane { what }).into()),
         None => Ok(()),
@@ -107,21 +109,22 @@ fn in_plane(asked: &Asked, mut simulation: Simulation) -> anyhow::Result<()> {
     let heads = motion_heads(arm.cables.len(), plan.stations.len(), args.quasi_static);
     let mut output = MotionOutput::new(args, heads, MOTION_SHAPE_HEADS, resumed, request)?;
     let mut frames = (args.plot.is_some() || args.plot_time.is_some()).then(Frames::default);
-    let mut statics = Statics::default();
+    let mut statics = Statics::<2>::default();
     let mut last = None;
     let outcome = follow(plan, &mut simulation, &mut output, |simulation, at, numbers| {
         if let Some(frames) = &mut frames {
             frames.take(at, simulation);
         }
         if let Some(equilibria) = &mut equilibria {
-            numbers.extend(statics.take(at, equilibria, arm.length));
+            let own = equilibrium_numbers(at, equilibria.tip(at.time).ok(), arm.length);
+            numbers.extend(statics.take(own));
         }
         last = Some(at.clone());
     });
     let text = |events: &[_], told: &Told, wall: f64| {
         let mut text = motion_text::in_plane(arm, last.as_ref()?, events, told, wall);
-        if let Some(equilibrium) = statics.last {
-            motion_text::add_equilibrium(equilibrium, &mut text);
+        if let Some((tip, distances)) = &statics.last {
+            motion_text::add_equilibrium(tip, *distances, &mut text);
         }
         Some(text)
     };
@@ -133,17 +136,29 @@ fn in_plane(asked: &Asked, mut simulation: Simulation) -> anyhow::Result<()> {
 }
 
 fn in_space(asked: &Asked, mut simulation: SpatialSimulation) -> anyhow::Result<()> {
-    let Asked { args, arm, plan, request, .. } = *asked;
+    let Asked { args, arm, plan, request, resumed } = *asked;
     let clock = Clock::now();
-    let heads = spatial_motion_heads(arm.cables.len(), plan.stations.len());
-    let mut output = MotionOutput::new(args, heads, SPATIAL_MOTION_SHAPE_HEADS, None, request)?;
+    let mut equilibria = args.quasi_static.then(|| simulation.quasi_static()).transpose().map_err(refused)?;
+    let heads = spatial_motion_heads(arm.cables.len(), plan.stations.len(), args.quasi_static);
+    let mut output = MotionOutput::new(args, heads, SPATIAL_MOTION_SHAPE_HEADS, resumed, request)?;
+    let mut statics = Statics::<3>::default();
     let mut last = None;
-    let outcome = follow(plan, &mut simulation, &mut output, |_, at, _| last = Some(at.clone()));
+    let outcome = follow(plan, &mut simulation, &mut output, |_, at, numbers| {
+        if let Some(equilibria) = &mut equilibria {
+            let own = spatial_equilibrium_numbers(at, equilibria.tip(at.time).ok(), arm.length);
+            numbers.extend(statics.take(own));
+        }
+        last = Some(at.clone());
+    });
     let text = |events: &[_], told: &Told, wall: f64| {
-        last.as_ref().map(|last| motion_text::in_space(arm, last, events, told, wall))
+        let mut text = motion_text::in_space(arm, last.as_ref()?, events, told, wall);
+        if let Some((tip, distances)) = &statics.last {
+            motion_text::add_equilibrium(tip, *distances, &mut text);
+        }
+        Some(text)
     };
     let outcome = ended(asked, &simulation, &mut output, outcome, clock, text)?;
-    finish(&simulation, outcome, false)
+    finish(&simulation, outcome, output.is_resumable())
 }
 
 /// Writes what is written at the end of a run that has this outcome.
@@ -187,21 +202,25 @@ fn finish<M: Moving>(simulation: &M, outcome: Result<(), Stop>, is_resumable: bo
     }
 }
 
-/// The equilibria beside a motion in the plane.
-#[derive(Default)]
-struct Statics {
+/// The equilibria beside a motion, whose tips have `D` coordinates.
+struct Statics<const D: usize> {
     /// Tip of the last one (m), and the last and the largest distance from one over the length.
-    last: Option<([f64; 2], [f64; 2])>,
+    last: Option<([f64; D], [f64; 2])>,
 }
 
-impl Statics {
-    /// The numbers of a row.
-    fn take(&mut self, at: &Instant, equilibria: &mut QuasiStatic, length: f64) -> [f64; 4] {
-        let own = equilibrium_numbers(at, equilibria.tip(at.time).ok(), length);
-        let [x, y, _, distance] = own;
+impl<const D: usize> Default for Statics<D> {
+    fn default() -> Self {
+        Self { last: None }
+    }
+}
+
+impl<const D: usize> Statics<D> {
+    /// The numbers of a row: the tip is their start, the distance their end.
+    fn take<const K: usize>(&mut self, own: [f64; K]) -> [f64; K] {
+        let distance = own[K - 1];
         if distance.is_finite() {
             let most = self.last.map_or(0.0, |(_, [_, most])| most);
-            self.last = Some(([x, y], [distance, most.max(distance)]));
+            self.last = Some((std::array::from_fn(|k| own[k]), [distance, most.max(distance)]));
         }
         own
     }
@@ -419,9 +438,7 @@ fn follow<M: Moving>(
             return Err(Stop::User);
         }
         if kept.elapsed() > KEPT_EVERY {
-            if let Some(state) = simulation.state() {
-                output.keep(state).map_err(|error| Stop::Output(error.into()))?;
-            }
+            output.keep(simulation.state()).map_err(|error| Stop::Output(error.into()))?;
             kept = Clock::now();
         }
         progress.say(|| {

@@ -1,8 +1,7 @@
 //! `hydrostat solve`: one arm.
 
 use hydrostat::{
-    AfterSnapError, Arm, ArmError, Configuration, NoEquilibrium, Options, SnapMotion, SolveError, Solver, Stability,
-    VerdictKind,
+    AfterSnapError, Arm, Configuration, NoEquilibrium, Options, SnapMotion, SolveError, Solver, Stability, VerdictKind,
 };
 use hydrostat_figures::{arm_figure, last_good_note};
 use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, stations_csv};
@@ -17,9 +16,6 @@ use crate::request;
 pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
     let arm = request::arm_in_space(&args.arm)?;
     if arm.space.is_some() {
-        if args.snaps.after_snap {
-            return Err(SolveError::Arm(ArmError::OnlyInPlane { what: "`--after-snap`" }).into());
-        }
         return super::solve_spatial::run(args, &arm);
     }
     let options = Options { tol: args.tol, snaps: args.snaps.bounds() };

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use hydrostat::{
-    Arm, NoSpatialEquilibrium, Options, SpatialConfiguration, SpatialError, SpatialSolver, SpatialWrench, Stability,
+    AfterSnapError, Arm, NoSpatialEquilibrium, Options, SpatialConfiguration, SpatialError, SpatialSnapMotion,
+    SpatialSolver, SpatialWrench, Stability,
 };
 use hydrostat_figures::{last_good_note, spatial_arm_figure};
 use hydrostat_files::{Note, SpatialFailureDocument, SpatialSolutionDocument, number, spatial_stations_csv};
@@ -21,30 +22,63 @@ pub(super) fn run(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
+    if args.snaps.after_snap {
+        return after_snap(args, arm);
+    }
     match solver.solve() {
-        Ok(configuration) => report(args, configuration),
-        Err(SpatialError::NoEquilibrium(failure)) => {
-            report_failure(args, *failure.clone())?;
-            let advice = slip(arm, &failure.verdict);
-            Err(Advised::with(SpatialError::NoEquilibrium(failure), advice))
+        Ok(configuration) => {
+            let notes = Note::all_in_space(&configuration, args.tol);
+            report(args, configuration, &[], &notes)
         }
+        Err(error) => report_error(args, arm, error),
+    }
+}
+
+/// The shape after all snaps on the way.
+fn after_snap(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
+    match arm.solve_after_snap_in_space(args.tol) {
+        Ok(found) => {
+            let notes = Note::after_snap_in_space(&found, args.tol);
+            report(args, found.configuration, &found.snaps, &notes)
+        }
+        Err(AfterSnapError::Solve(error)) => report_error(args, arm, error),
         Err(error) => Err(error.into()),
     }
 }
 
-fn report(args: &SolveArgs, mut configuration: SpatialConfiguration) -> anyhow::Result<()> {
+fn report_error(args: &SolveArgs, arm: &Arm, error: SpatialError) -> anyhow::Result<()> {
+    match error {
+        SpatialError::NoEquilibrium(failure) => {
+            report_failure(args, *failure.clone())?;
+            let advice = slip(arm, &failure.verdict);
+            Err(Advised::with(SpatialError::NoEquilibrium(failure), advice))
+        }
+        error => Err(error.into()),
+    }
+}
+
+/// `motions` are those after its snaps, where they were followed.
+fn report(
+    args: &SolveArgs,
+    mut configuration: SpatialConfiguration,
+    motions: &[SpatialSnapMotion],
+    notes: &[Note],
+) -> anyhow::Result<()> {
     if let Some(plot) = &args.plot {
         draw(args, plot, &configuration, None)?;
     }
-    let notes = Note::all_in_space(&configuration, args.tol);
     resample(args, &mut configuration);
     let text = match args.format {
         Format::Text => summary(&configuration),
         Format::Csv => spatial_stations_csv(&configuration.stations),
-        Format::Json => output::line(SpatialSolutionDocument::new(&configuration, &notes).to_json()),
+        Format::Json => {
+            let document = SpatialSolutionDocument::new(&configuration, notes);
+            let document = if motions.is_empty() { document } else { document.with_motions(motions) };
+            output::line(document.to_json())
+        }
     };
     output::put(args.output.as_deref(), &text)?;
-    for note in &notes {
+    for note in notes {
         // A snap within its bounds is known to be harmless.
         let word = if note.kind == "snap" { "note" } else { "warning" };
         eprintln!("{word}: {}", note.message);

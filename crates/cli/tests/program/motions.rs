@@ -221,7 +221,6 @@ fn arms_in_space_move_too() {
     let more = ["--station", "0.5", "--shapes", "0.1", "--shape-stations", "5"];
     let done = motion(&[&more[..], &["--shapes-output", "shapes.csv", "-o", "out.csv"]].concat());
     assert_eq!(done.code, 0, "{}", done.err);
-    assert!(!here.join("out.csv.state.json").exists(), "runs in space do not go on");
     let text = read(here, "out.csv");
     let (names, _) = columns(&text);
     let rows = numbers(&text);
@@ -240,9 +239,51 @@ fn arms_in_space_move_too() {
     assert_eq!(document["shapes"][0]["z"].as_array().unwrap().len(), 5);
     assert_eq!(document["columns"].as_array().unwrap().len(), names.len());
     assert!(motion(&[]).out.contains("its normal along"));
-    for (option, value) in [("--quasi-static", None), ("--plot", Some("a.svg")), ("--from", Some("out.csv"))] {
-        let refused = motion(&[option].into_iter().chain(value).collect::<Vec<_>>());
+    for (option, value) in [("--plot", "a.svg"), ("--plot-time", "b.svg")] {
+        let refused = motion(&[option, value]);
         assert_eq!(refused.code, 2);
         assert!(refused.err.contains(option) && refused.err.contains("plane"), "{}", refused.err);
     }
+}
+
+#[test]
+fn runs_in_space_go_on_with_equilibria_beside_them() {
+    let directory = directory();
+    let here = directory.path();
+    let own = ["simulate", "silicone-spatial", "--vary", "cable[1].tension=ramp:0:0.1:0:0.1", "--every", "50ms"];
+    let rest = ["--set", "dynamics.relaxation_time=2.7ms", "--tol", "1e-3", "--quasi-static"];
+    let motion = |more: &[&str]| hydrostat_in(here, &[&own[..], &rest, more].concat());
+    assert_eq!(motion(&["--until", "0.2", "-o", "whole.csv"]).code, 0);
+    let whole = read(here, "whole.csv");
+    let (names, _) = columns(&whole);
+    assert_eq!(&names[names.len() - 2..], ["equilibrium_a_z", "equilibrium_distance"]);
+    let rows = numbers(&whole);
+    let z = names.iter().position(|name| *name == "tip_z_m").unwrap();
+    let distance = names.len() - 1;
+    assert!(rows[0][distance] < 1e-5 && rows.iter().skip(1).all(|row| row[distance] > 1e-4), "{rows:?}");
+    assert_eq!(motion(&["--until", "0.1", "-o", "first.csv"]).code, 0);
+    assert_eq!(motion(&["--until", "0.2", "--from", "first.csv", "-o", "second.csv"]).code, 0);
+    let second = numbers(&read(here, "second.csv"));
+    let (end, again) = (rows.last().unwrap(), second.last().unwrap());
+    assert!((end[0] - again[0]).abs() < 1e-12 && (end[z] - again[z]).abs() < 2e-4, "{} {}", end[z], again[z]);
+    // A planar state is none of an arm in space.
+    let flat = hydrostat_in(here, &["simulate", "silicone", "--until", "0.01", "-o", "flat.csv"]);
+    assert_eq!(flat.code, 0, "{}", flat.err);
+    let refused = motion(&["--until", "0.2", "--from", "flat.csv"]);
+    assert!(refused.code == 2 && refused.err.contains("does not fit"), "{}", refused.err);
+    assert!(motion(&["--until", "0.1"]).out.contains("in equilibrium the tip would be at ("));
+}
+
+#[test]
+fn modes_in_space_come_in_twos() {
+    let directory = directory();
+    let own = ["modes", "silicone-spatial", "--count", "4", "--elements", "6"];
+    let document = json(&hydrostat_in(directory.path(), &[&own[..], &["--format", "json"]].concat()).out);
+    let frequency = |k: usize| document["modes"][k]["frequency_hz"].as_f64().unwrap();
+    assert!(frequency(0) > 0.1 && (frequency(1) / frequency(0) - 1.0).abs() < 1e-6, "{document}");
+    assert!(document["tip"]["z"].as_f64().is_some() && document["tip"]["a"].as_array().is_some(), "{document}");
+    let over = ["--over", "flow.speed=0:0.1:2", "--plot", "locus.svg", "--format", "csv"];
+    let table = hydrostat_in(directory.path(), &[&own[..], &over].concat()).out;
+    assert_eq!(table.lines().count(), 9, "{table}");
+    assert!(directory.path().join("locus.svg").exists());
 }

@@ -2,7 +2,8 @@
 //! rests, and the path goes on from there.
 
 use super::error::MotionError;
-use super::rest::{Rest, Restless, can_rest, come_to_rest};
+use super::rest::{Rest, can_rest, come_to_rest};
+use super::resting::Restless;
 use super::start::not_found;
 use crate::rod::arm::Arm;
 use crate::statics::configuration::{Configuration, Tip};
@@ -19,7 +20,7 @@ pub(super) const PAST: f64 = 1e-3;
 const SAME: f64 = 1e-4;
 
 /// The most snaps on one way.
-const MOST_SNAPS: usize = 50;
+pub(super) const MOST_SNAPS: usize = 50;
 
 /// A snap whose motion was followed until the arm rested.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,19 +64,19 @@ impl SnapMotion {
 
 /// The equilibrium in which an arm rests whose loads grow slowly, after all snaps on its way.
 #[derive(Debug, Clone)]
-pub struct AfterSnap {
+pub struct AfterSnap<C = Configuration, S = SnapMotion> {
     /// The shape at the whole loads.
-    pub configuration: Configuration,
+    pub configuration: C,
     /// The snaps on the way, in their order; none where the arm does not snap.
-    pub snaps: Vec<SnapMotion>,
+    pub snaps: Vec<S>,
 }
 
 /// Why there is no shape after a snap.
 #[derive(Debug, Clone, thiserror::Error)]
-pub enum AfterSnapError {
+pub enum AfterSnapError<E = SolveError> {
     /// The way to the loads ends at something else than a snap, or the arm or an option is refused.
-    #[error(transparent)]
-    Solve(#[from] SolveError),
+    #[error("{0}")]
+    Solve(E),
     /// The arm snaps, and is one that cannot move, or its motion ends.
     #[error("the arm snaps at {}, and its motion is not known: {motion}", phase.load_at(*load_fraction))]
     Motion {
@@ -103,6 +104,16 @@ pub enum AfterSnapError {
     },
 }
 
+impl<E> AfterSnapError<E> {
+    /// Of the motion from a limit point.
+    pub(super) fn of(restless: Restless, phase: Phase, load_fraction: f64) -> Self {
+        match restless {
+            Restless::Motion(motion) => Self::Motion { phase, load_fraction, motion },
+            Restless::Moving { time, speed } => Self::NoRest { phase, load_fraction, time, speed },
+        }
+    }
+}
+
 impl Arm {
     /// The equilibrium in which this arm rests after its loads have grown slowly from nothing, as [`Arm::solve`] says,
     /// whatever snaps it makes on the way: at each limit point it moves, by its own `dynamics`, from the shape there
@@ -128,7 +139,7 @@ impl Arm {
     /// [`AfterSnapError`]. Arms that need no motion need nothing to damp it.
     pub fn solve_after_snap(&self, tol: f64) -> Result<AfterSnap, AfterSnapError> {
         let snaps = SnapBounds { distance: 0.0, angle: 0.0 };
-        let mut solver = Solver::new(self, Options { tol, snaps })?;
+        let mut solver = Solver::new(self, Options { tol, snaps }).map_err(AfterSnapError::Solve)?;
         let mut motions: Vec<SnapMotion> = Vec::new();
         let mut solved = solver.solve();
         loop {
@@ -145,9 +156,9 @@ impl Arm {
                 }
                 Err(SolveError::NoEquilibrium(mut no)) => {
                     before(&mut no.snaps);
-                    return Err(SolveError::NoEquilibrium(no).into());
+                    return Err(AfterSnapError::Solve(SolveError::NoEquilibrium(no)));
                 }
-                Err(error) => return Err(error.into()),
+                Err(error) => return Err(AfterSnapError::Solve(error)),
             }
         }
     }
@@ -169,15 +180,11 @@ fn snaps_at(no: &NoEquilibrium) -> bool {
 /// engine is left where the arm rests.
 fn follow(solver: &mut Solver, no: &NoEquilibrium, tol: f64) -> Result<(SnapMotion, f64), AfterSnapError> {
     let (phase, load_fraction) = (no.verdict.phase, no.verdict.load_fraction);
-    let of_motion = |motion| AfterSnapError::Motion { phase, load_fraction, motion };
     let past = (load_fraction + PAST).min(1.0);
     let engine = solver.engine_mut();
     let landed = land(engine, no, tol, |engine| engine.set_phase(phase, past));
     let Landed { before, rest: Rest { configuration, time }, on_curve } =
-        landed.map_err(|restless| match restless {
-            Restless::Motion(motion) => of_motion(motion),
-            Restless::Moving { time, speed } => AfterSnapError::NoRest { phase, load_fraction, time, speed },
-        })?;
+        landed.map_err(|restless| AfterSnapError::of(restless, phase, load_fraction))?;
     let snap = Snap { phase, load_fraction, before, after: configuration.tip() };
     Ok((SnapMotion { snap, duration: time, on_curve }, past))
 }

@@ -3,7 +3,8 @@
 
 use super::after_snap::{AfterSnap, AfterSnapError, Landed, PAST, elsewhere, land};
 use super::error::MotionError;
-use super::rest::{Rest, Restless};
+use super::rest::Rest;
+use super::resting::Restless;
 use crate::rod::arm::{Arm, ArmError};
 use crate::rod::parameter::Parameter;
 use crate::statics::configuration::{Configuration, Tip};

@@ -1,17 +1,14 @@
-//! The motion under constant loads, from a shape that is let go until it rests in an equilibrium.
-//!
-//! An arm that creeps away from a limit point is as slow as one that comes to rest. So rest is no matter of speed:
-//! where the arm is slow the statics look for an equilibrium at its shape, and the arm rests once it stays within
-//! [`NEAR`] of a stable one.
+//! The motion in the plane under constant loads, from a shape that is let go until it rests in an equilibrium
+//! ([`super::resting`]).
 
 use hydrostat_bvp::{Lanes, Real, Solution, Stage};
 
 use super::dimensions::{S, Shape, X};
 use super::equations::Moving;
 use super::error::MotionError;
-use super::history::{Snapshot, between};
 use super::in_plane::Planar;
 use super::inputs::Inputs;
+use super::resting::{self, ELEMENTS, Found, Restless, TOLERANCE, is_damped};
 use super::start::{check, mesh_at};
 use super::stepper::Stepper;
 use crate::rod::arm::Arm;
@@ -21,28 +18,6 @@ use crate::statics::engine::Engine;
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::stability::Stability;
 
-/// An arm rests that stays within this of an equilibrium, over L.
-const NEAR: f64 = 2e-3;
-
-/// Equilibria further away (over L) than this are not where an arm comes to rest.
-const FAR: f64 = 0.05;
-
-/// Steps that it has to stay there.
-const STEADY: usize = 20;
-
-/// Steps before the statics look for the first time.
-const FIRST_LOOK: usize = 20;
-
-/// The part of the largest speed until then below which an arm may be coming to rest.
-const SLOW: f64 = 0.5;
-
-/// The most steps of one motion.
-const MOST_STEPS: usize = 5000;
-
-/// Elements along the arm, and the tolerance of the tip.
-const ELEMENTS: usize = 20;
-const TOLERANCE: f64 = 1e-4;
-
 /// Where an arm came to rest.
 #[derive(Debug, Clone)]
 pub struct Rest {
@@ -50,22 +25,6 @@ pub struct Rest {
     pub configuration: Configuration,
     /// When the arm came within 0.002 L of it to stay, s after it was let go.
     pub time: f64,
-}
-
-/// Why an arm did not come to rest.
-#[derive(Debug, Clone, thiserror::Error)]
-pub enum Restless {
-    /// The motion could not be followed.
-    #[error(transparent)]
-    Motion(#[from] MotionError),
-    /// It goes on.
-    #[error("the arm does not come to rest: after {time:.3} s its tip still moves at {speed:.2e} m/s")]
-    Moving {
-        /// For how long it was followed, s.
-        time: f64,
-        /// The speed of the tip then, m/s.
-        speed: f64,
-    },
 }
 
 impl Configuration {
@@ -126,55 +85,22 @@ impl Configuration {
 pub(super) fn can_rest(engine: &Engine) -> Result<(), MotionError> {
     let arm = engine.equations.arm();
     check(arm)?;
-    let refuse = |key: String, reason| Err(MotionError::Unsupported { key, reason });
     if engine.equations.held.is_none()
         && let Some(i) = arm.cables.iter().position(|cable| cable.stroke.is_some())
     {
         let reason = "the arm snaps before its cables are reeled in, and no motion leads from there to a stroke";
-        return refuse(format!("cable[{i}].stroke"), reason);
+        return Err(MotionError::Unsupported { key: format!("cable[{i}].stroke"), reason });
     }
-    if arm.flow.density == 0.0 && arm.dynamics.relaxation_time == 0.0 {
-        let reason =
-            "in a vacuum nothing but a relaxation time brings an arm to rest; give one, or the density of the water";
-        return refuse("dynamics.relaxation_time".to_owned(), reason);
-    }
-    Ok(())
+    is_damped(arm)
 }
 
 /// Lets the shape of `engine` go under the loads that its equations have, and leaves it at the equilibrium in which the
 /// arm comes to rest, settled to `tol`.
 pub(super) fn come_to_rest(engine: &mut Engine, tol: f64) -> Result<Rest, Restless> {
     let arm = engine.equations.arm_at_fraction();
-    let mut stepper = let_go(engine, &arm);
-    let (mut next_look, mut fastest) = (FIRST_LOOK, 0.0_f64);
-    let mut found: Option<Found> = None;
-    while stepper.steps + stepper.rejected < MOST_STEPS {
-        stepper.advance(stepper.time + 1e6).map_err(Restless::Motion)?;
-        let speed = speed(&stepper.now);
-        fastest = fastest.max(speed);
-        if let Some(at) = &mut found {
-            let off = at.distance(&stepper.now);
-            if off > FAR {
-                found = None;
-            } else if off > NEAR {
-                at.since = None;
-            } else if at.since.is_none() {
-                at.since = Some((stepper.steps, at.entry(&stepper)));
-            }
-        }
-        match found {
-            Some(Found { since: Some((step, time)), configuration, .. }) if stepper.steps >= step + STEADY => {
-                return Ok(Rest { configuration: *configuration, time });
-            }
-            other => found = other,
-        }
-        if found.is_none() && stepper.steps >= next_look && speed <= SLOW * fastest {
-            next_look = stepper.steps + FIRST_LOOK.max(stepper.steps / 8);
-            found = look(engine, &stepper, tol);
-        }
-    }
-    let [_, u, v] = stepper.now.node_rate(stepper.now.layout.nodes - 1);
-    Err(Restless::Moving { time: stepper.time, speed: arm.length * u.hypot(v) })
+    let stepper = let_go(engine, &arm);
+    let (configuration, time) = resting::come_to_rest(stepper, |stepper| look(engine, stepper, tol))?;
+    Ok(Rest { configuration, time })
 }
 
 /// The motion of the engine's shape from rest.
@@ -188,43 +114,8 @@ fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper<Moving, S, L> {
     Stepper::at_rest(settling, arm.clone(), Inputs::default(), 0.0, TOLERANCE, None).let_go()
 }
 
-/// A stable equilibrium near the moving arm.
-struct Found {
-    configuration: Box<Configuration>,
-    /// x, y over L at the nodes of the motion's mesh.
-    places: Vec<[f64; 2]>,
-    /// Step and time (s) since when the arm is within [`NEAR`].
-    since: Option<(usize, f64)>,
-}
-
-impl Found {
-    /// How far the arm is from it, over L.
-    fn distance(&self, at: &Snapshot) -> f64 {
-        let off = |(i, place): (usize, &[f64; 2])| {
-            let [_, x, y] = at.node(i);
-            (x - place[0]).hypot(y - place[1])
-        };
-        self.places.iter().enumerate().map(off).fold(0.0, f64::max)
-    }
-
-    /// When in the last step the arm came within [`NEAR`].
-    fn entry(&self, stepper: &Stepper<Moving, S, L>) -> f64 {
-        let mut at = stepper.before.clone();
-        if self.distance(&at) <= NEAR {
-            return stepper.time - stepper.step;
-        }
-        let (mut outside, mut inside) = (0.0, 1.0);
-        for _ in 0..30 {
-            let middle = 0.5 * (outside + inside);
-            between(&stepper.before, &stepper.now, stepper.step, middle, &mut at);
-            if self.distance(&at) <= NEAR { inside = middle } else { outside = middle }
-        }
-        stepper.time - (1.0 - inside) * stepper.step
-    }
-}
-
 /// The stable equilibrium at the shape of the moving arm, where there is one, with the engine left there.
-fn look(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Found> {
+fn look(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Found<Configuration>> {
     let kept = engine.state();
     let found = look_from(engine, stepper, tol);
     if found.is_none() {
@@ -233,7 +124,7 @@ fn look(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Optio
     found
 }
 
-fn look_from(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Found> {
+fn look_from(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Found<Configuration>> {
     let settling = &stepper.settling;
     let force = settling.moving.statics.units.force / engine.equations.units.force;
     engine.solution = without_places(&settling.solution, &settling.moving.scales, force);
@@ -254,21 +145,11 @@ fn look_from(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> 
     let nodes = settling.solution.mesh.nodes().iter();
     let place = |s: &f64| {
         let at = configuration.at(s * length);
-        [at.x / length, at.y / length]
+        [at.x / length, at.y / length, 0.0]
     };
     let places = nodes.map(place).collect();
-    let found = Found { configuration: Box::new(configuration), places, since: None };
-    let near = found.distance(&stepper.now) < FAR;
-    (near && matches!(found.configuration.stability(), Some(Stability::Stable) | None)).then_some(found)
-}
-
-/// The largest speed of the centreline, over L.
-fn speed(at: &Snapshot) -> f64 {
-    let own = |i: usize| {
-        let [_, u, v] = at.node_rate(i);
-        u.hypot(v)
-    };
-    (0..at.layout.nodes).map(own).fold(0.0, f64::max)
+    let stands = matches!(configuration.stability(), Some(Stability::Stable) | None);
+    stands.then(|| Found::near(configuration, places, &stepper.now)).flatten()
 }
 
 /// The states of the statics in a solution of the motion whose states have the sizes `scales`, what it carries times

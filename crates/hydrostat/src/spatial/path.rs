@@ -100,20 +100,8 @@ pub(super) fn follow(engine: &mut Engine, bounds: SnapBounds) -> Result<Travelle
     let mut travelled = Travelled::default();
     engine.equations.set_phase(Phase::Loads, 0.0);
     engine.start_unloaded(8);
-    for phase in [Phase::Loads, Phase::Tension] {
-        let acts = match phase {
-            Phase::Loads => engine.equations.has_loads(),
-            _ => engine.equations.has_tension(),
-        };
-        if !acts {
-            engine.equations.set_phase(phase, 1.0);
-            continue;
-        }
-        let mut ramp = Ramp { engine, phase, scale: 1.0, trouble: None, travelled: &mut travelled, bounds };
-        if let Err(verdict) = ramp.follow() {
-            return Err(Stopped { verdict, snaps: travelled.snaps });
-        }
-    }
+    follow_phases(engine, &[Phase::Loads, Phase::Tension], START, bounds, &mut travelled)
+        .map_err(|verdict| Stopped { verdict, snaps: travelled.snaps.clone() })?;
     if !(engine.equations.has_loads() || engine.equations.has_tension()) {
         // Nothing acts: the unloaded arm.
         let settled = engine.iterate(1e-10, 14, None);
@@ -123,6 +111,42 @@ pub(super) fn follow(engine: &mut Engine, bounds: SnapBounds) -> Result<Travelle
         }
     }
     Ok(travelled)
+}
+
+/// Follows the path on from the engine's equilibrium at a fraction of a phase.
+pub(super) fn follow_on(
+    engine: &mut Engine,
+    (phase, fraction): (Phase, f64),
+    bounds: SnapBounds,
+) -> Result<Travelled, Stopped> {
+    let mut travelled = Travelled::default();
+    let phases: &[Phase] = if phase == Phase::Loads { &[Phase::Loads, Phase::Tension] } else { &[Phase::Tension] };
+    follow_phases(engine, phases, fraction, bounds, &mut travelled)
+        .map_err(|verdict| Stopped { verdict, snaps: travelled.snaps.clone() })?;
+    Ok(travelled)
+}
+
+/// Follows phases, the first one from a fraction of its loads.
+fn follow_phases(
+    engine: &mut Engine,
+    phases: &[Phase],
+    mut from: f64,
+    bounds: SnapBounds,
+    travelled: &mut Travelled,
+) -> Result<(), Verdict> {
+    for &phase in phases {
+        let acts = match phase {
+            Phase::Loads => engine.equations.has_loads(),
+            _ => engine.equations.has_tension(),
+        };
+        let start = std::mem::replace(&mut from, START);
+        if !acts || start >= 1.0 {
+            engine.equations.set_phase(phase, 1.0);
+            continue;
+        }
+        Ramp { engine, phase, scale: 1.0, trouble: None, travelled, bounds }.follow(start)?;
+    }
+    Ok(())
 }
 
 /// A verdict at `s`, m.
@@ -144,12 +168,12 @@ struct Ramp<'e, 't> {
 }
 
 impl Ramp<'_, '_> {
-    fn follow(&mut self) -> Result<(), Verdict> {
-        let mut here = match self.start() {
+    fn follow(&mut self, from: f64) -> Result<(), Verdict> {
+        let mut here = match self.start(from) {
             Ok(point) => point,
             Err(trouble) => {
                 self.trouble = Some(trouble);
-                return Err(self.stuck(START));
+                return Err(self.stuck(from));
             }
         };
         self.begin(&mut here);
@@ -232,11 +256,11 @@ impl Ramp<'_, '_> {
     }
 
     /// The point that the phase starts from.
-    fn start(&mut self) -> Result<Point, Trouble> {
-        self.engine.equations.set_phase(self.phase, START);
+    fn start(&mut self, from: f64) -> Result<Point, Trouble> {
+        self.engine.equations.set_phase(self.phase, from);
         roughly(self.engine.iterate(1e-6, 14, None))?;
         self.engine.keep_accuracy()?;
-        self.point(START, None)
+        self.point(from, None)
     }
 
     /// Takes the scale of the metric from the first point.

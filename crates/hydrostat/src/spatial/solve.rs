@@ -2,7 +2,8 @@
 
 use super::configuration::SpatialConfiguration;
 use super::engine::{Engine, State};
-use super::path::{SpatialSnap, Travelled, follow, verdict};
+use super::equations::Guess;
+use super::path::{SpatialSnap, Stopped, Travelled, follow, follow_on, verdict};
 use super::rotation::dot;
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::engine::{Trouble, WORK};
@@ -195,7 +196,22 @@ impl SpatialSolver {
 
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
     pub(crate) fn solve_along_the_path(&mut self) -> Result<SpatialConfiguration, SpatialError> {
-        let travelled = match follow(&mut self.engine, self.options.snaps) {
+        let travelled = follow(&mut self.engine, self.options.snaps);
+        self.end_of_path(travelled)
+    }
+
+    /// Follows the path on to whole loads from the engine's equilibrium at a fraction of a phase.
+    pub(crate) fn solve_on(&mut self, from: (Phase, f64)) -> Result<SpatialConfiguration, SpatialError> {
+        (self.settled, self.solved) = (false, false);
+        self.engine.reset_statistics();
+        self.engine.allowed = WORK;
+        let travelled = follow_on(&mut self.engine, from, self.options.snaps);
+        self.end_of_path(travelled)
+    }
+
+    /// The answer at the end of a path, which the engine is at.
+    fn end_of_path(&mut self, travelled: Result<Travelled, Stopped>) -> Result<SpatialConfiguration, SpatialError> {
+        let travelled = match travelled {
             Ok(travelled) => travelled,
             Err(stopped) => return Err(self.no_equilibrium(stopped.verdict, stopped.snaps)),
         };
@@ -244,6 +260,36 @@ impl SpatialSolver {
         let mut read = SpatialConfiguration::read(&mut self.engine, estimate * length, statistics)?;
         read.snaps = travelled.snaps;
         Ok(read)
+    }
+}
+
+impl Engine {
+    /// Takes shape and loads of a configuration.
+    pub(crate) fn take_shape_of(&mut self, configuration: &SpatialConfiguration) {
+        *self = configuration.engine().clone();
+        self.allowed = usize::MAX;
+    }
+
+    /// The equilibrium under the engine's loads near a shape, if `accepted` makes something of it: else the engine stays
+    /// as it is.
+    pub(crate) fn settle_near<T>(
+        &mut self,
+        shape: Guess,
+        tol: f64,
+        accepted: impl FnOnce(SpatialConfiguration) -> Option<T>,
+    ) -> Option<T> {
+        let kept: State = self.state();
+        self.solution = shape;
+        self.equations.place_on(&self.system.gauss, &self.solution);
+        let settled = self.settle(tol, First::Rough);
+        let statistics = self.statistics(0);
+        let length = self.equations.units.length;
+        let read = settled.and_then(|estimate| SpatialConfiguration::read(self, estimate * length, statistics));
+        let out = read.ok().and_then(accepted);
+        if out.is_none() {
+            self.restore(&kept);
+        }
+        out
     }
 }
 

@@ -66,7 +66,7 @@ pub(super) fn in_shape(arm: &Arm, at: &Snapshot, carried: &[Carried], mesh: Mesh
 }
 
 /// The solution of the statics with x, y, z, from the base, as states, and what it carries times `force`.
-fn with_places(given: &Guess, force: f64, base: [f64; 3], system: &Collocation<S, M, 0, L>) -> Shape {
+pub(super) fn with_places(given: &Guess, force: f64, base: [f64; 3], system: &Collocation<S, M, 0, L>) -> Shape {
     let mut statics = Collocation::<N, M, Q, L>::with(system.gauss.clone());
     statics.take_stations(given);
     let mut out = Solution {

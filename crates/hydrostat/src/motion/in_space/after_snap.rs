@@ -1,0 +1,159 @@
+//! What comes after a snap in space, see [`crate::motion::after_snap`].
+
+use hydrostat_bvp::{Lanes, Real, Solution, Stage, each};
+
+use super::equations::{S, Shape, Spatial, SpatialMoving};
+use super::start::with_places;
+use crate::motion::after_snap::{AfterSnap, AfterSnapError, MOST_SNAPS, PAST};
+use crate::motion::error::MotionError;
+use crate::motion::inputs::Inputs;
+use crate::motion::resting::{ELEMENTS, Found, Restless, TOLERANCE, come_to_rest, is_damped};
+use crate::motion::start::{check, force_unit, mesh_at};
+use crate::motion::stepper::Stepper;
+use crate::rod::arm::Arm;
+use crate::spatial::engine::Engine;
+use crate::spatial::equations::{FORCE, Guess, L, N};
+use crate::spatial::{NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialSnap, SpatialSolver};
+use crate::statics::snap::SnapBounds;
+use crate::statics::solve::Options;
+use crate::statics::stability::Stability;
+use crate::statics::verdict::VerdictKind;
+
+/// A snap in space whose motion was followed until the arm rested.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpatialSnapMotion {
+    /// At which load, from where, and where the arm rests.
+    pub snap: SpatialSnap,
+    /// How long it takes, s, see [`SnapMotion::duration`](crate::SnapMotion::duration).
+    pub duration: f64,
+}
+
+impl SpatialSnapMotion {
+    /// What happens, in a phrase with its numbers.
+    pub fn message(&self) -> String {
+        format!("{}; it rests after {:.3} s", self.snap.message(), self.duration)
+    }
+}
+
+impl Arm {
+    /// The equilibrium in space in which this arm rests after its loads have grown slowly from nothing, whatever snaps
+    /// it makes on the way, as [`Arm::solve_after_snap`] has it in the plane. Cables have tensions: commanded strokes
+    /// are refused where the arm snaps.
+    ///
+    /// # Errors
+    /// [`AfterSnapError`]. Arms that need no motion need nothing to damp it.
+    pub fn solve_after_snap_in_space(
+        &self,
+        tol: f64,
+    ) -> Result<AfterSnap<SpatialConfiguration, SpatialSnapMotion>, AfterSnapError<SpatialError>> {
+        let snaps = SnapBounds { distance: 0.0, angle: 0.0 };
+        let mut solver = SpatialSolver::new(self, Options { tol, snaps }).map_err(AfterSnapError::Solve)?;
+        let mut motions: Vec<SpatialSnapMotion> = Vec::new();
+        let mut solved = solver.solve();
+        loop {
+            let before = |own: &mut Vec<SpatialSnap>| drop(own.splice(0..0, motions.iter().map(|motion| motion.snap)));
+            match solved {
+                Ok(mut configuration) => {
+                    before(&mut configuration.snaps);
+                    return Ok(AfterSnap { configuration, snaps: motions });
+                }
+                Err(SpatialError::NoEquilibrium(no)) if snaps_at(&no) && motions.len() < MOST_SNAPS => {
+                    let (motion, past) = follow(&mut solver, &no, tol)?;
+                    motions.push(motion);
+                    solved = solver.solve_on((no.verdict.phase, past));
+                }
+                Err(SpatialError::NoEquilibrium(mut no)) => {
+                    before(&mut no.snaps);
+                    return Err(AfterSnapError::Solve(SpatialError::NoEquilibrium(no)));
+                }
+                Err(error) => return Err(AfterSnapError::Solve(error)),
+            }
+        }
+    }
+}
+
+/// Whether a motion begins where the path ended.
+fn snaps_at(no: &NoSpatialEquilibrium) -> bool {
+    no.verdict.kind == VerdictKind::LimitPoint && no.last_good.is_some()
+}
+
+/// The motion from the limit point at which the path ended, with the fraction of the loads that it was at. The solver's
+/// engine is left where the arm rests.
+fn follow(
+    solver: &mut SpatialSolver,
+    no: &NoSpatialEquilibrium,
+    tol: f64,
+) -> Result<(SpatialSnapMotion, f64), AfterSnapError<SpatialError>> {
+    let (phase, load_fraction) = (no.verdict.phase, no.verdict.load_fraction);
+    let of = |restless| AfterSnapError::of(restless, phase, load_fraction);
+    let past = (load_fraction + PAST).min(1.0);
+    let Some(last_good) = &no.last_good else {
+        return Err(AfterSnapError::Solve(SpatialError::NoEquilibrium(Box::new(no.clone()))));
+    };
+    let engine = solver.engine_mut();
+    engine.take_shape_of(last_good);
+    engine.equations.set_phase(phase, past);
+    let arm = engine.equations.arm_at_fraction();
+    can_rest(&arm).map_err(|error| of(Restless::Motion(error)))?;
+    let stepper = let_go(engine, &arm);
+    let rested = come_to_rest(stepper, |stepper| look(engine, stepper, tol));
+    let (configuration, duration) = rested.map_err(of)?;
+    let snap = SpatialSnap { phase, load_fraction, before: last_good.tip(), after: configuration.tip() };
+    Ok((SpatialSnapMotion { snap, duration }, past))
+}
+
+/// Refuses arms that cannot move or whose motion never ends.
+fn can_rest(arm: &Arm) -> Result<(), MotionError> {
+    check(arm)?;
+    if let Some(i) = arm.cables.iter().position(|cable| cable.stroke.is_some()) {
+        let reason = "no motion leads from a snap in space to a stroke";
+        return Err(MotionError::Unsupported { key: format!("cable[{i}].stroke"), reason });
+    }
+    is_damped(arm)
+}
+
+/// The motion of the engine's shape from rest.
+fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper<SpatialMoving, S, L> {
+    let mut settling = Spatial::of(SpatialMoving::new(arm, force_unit(arm)));
+    let mesh = mesh_at(engine, ELEMENTS);
+    let statics = &settling.moving.statics;
+    let force = engine.equations.units.force / statics.units.force;
+    let whole = with_places(&engine.solution, force, statics.base_place(), &settling.system);
+    settling.start_from(&whole, mesh);
+    Stepper::at_rest(settling, arm.clone(), Inputs::default(), 0.0, TOLERANCE, None).let_go()
+}
+
+/// The stable equilibrium at the shape of the moving arm, where there is one, with the engine left there.
+fn look(engine: &mut Engine, stepper: &Stepper<SpatialMoving, S, L>, tol: f64) -> Option<Found<SpatialConfiguration>> {
+    let settling = &stepper.settling;
+    let force = settling.moving.statics.units.force / engine.equations.units.force;
+    let shape = without_places(&settling.solution, &settling.moving.scales, force);
+    engine.settle_near(shape, tol, |configuration| {
+        let length = configuration.arm.length;
+        let place = |s: &f64| {
+            let at = configuration.at(s * length);
+            [at.x / length, at.y / length, at.z / length]
+        };
+        let places = settling.solution.mesh.nodes().iter().map(place).collect();
+        let stands = matches!(configuration.stability(), Some(Stability::Stable) | None);
+        stands.then(|| Found::near(configuration, places, &stepper.now)).flatten()
+    })
+}
+
+/// The states of the statics in a solution of the motion whose states have the sizes `scales`, what it carries times
+/// `force`.
+fn without_places(given: &Shape, scales: &[f64; S], force: f64) -> Guess {
+    let by: [f64; N] = each(|a| scales[a] * if a < FORCE { 1.0 } else { force });
+    let stage = |stage: &Stage<S, L>| Stage {
+        slope: each(|a| Lanes::of(by[a]) * stage.slope[a]),
+        inner: stage.inner,
+        closure_slope: stage.closure_slope,
+    };
+    Solution {
+        mesh: given.mesh.clone(),
+        directions: given.directions.clone(),
+        nodes: given.nodes.iter().map(|z| each(|a| by[a] * z[a])).collect(),
+        stages: given.stages.iter().map(stage).collect(),
+        ends: given.ends.clone(),
+    }
+}
