@@ -126,8 +126,11 @@ impl Real for Lanes {
     }
     #[inline(always)]
     fn all_below(self, bound: f64) -> bool {
-        let [a, b, c, d] = self.0;
-        (a < bound) & (b < bound) & (c < bound) & (d < bound)
+        let mut all = true;
+        for v in self.0 {
+            all &= v < bound;
+        }
+        all
     }
     #[inline(always)]
     fn sign(self) -> Self {

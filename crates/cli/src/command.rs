@@ -16,6 +16,7 @@ pub(crate) mod modes;
 mod motion_output;
 mod motion_text;
 mod moving;
+mod over;
 pub(crate) mod path;
 pub(crate) mod plot;
 pub(crate) mod reach;

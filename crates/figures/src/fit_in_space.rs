@@ -7,10 +7,12 @@ use crate::legend::Mark;
 use crate::page::Page;
 use crate::palette::{Color, INK};
 use crate::scene::{Scene, Stroke};
-use crate::three_views::{Placed, ThreeViews};
+use crate::three_views::{Placed, ThreeViews, centreline};
 
 /// Places that a centreline is drawn through.
 const PLACES: usize = 60;
+/// Room around what is drawn over its widest extent.
+const PAD: f64 = 0.05;
 
 /// One load case.
 pub(crate) struct SpatialCase<'a> {
@@ -31,28 +33,17 @@ pub(crate) struct InSpace {
 impl InSpace {
     pub(crate) fn new(cases: &[SpatialCase<'_>], top: f64, page: &Page) -> Self {
         let mm = |place: [f64; 3]| place.map(|v| 1e3 * v);
-        let centreline = |case: &SpatialCase<'_>| -> Vec<[f64; 3]> {
-            let places = case.shape.resampled(PLACES);
-            (0..places.len()).map(|i| mm([places.x[i], places.y[i], places.z[i]])).collect()
-        };
         let rods = |case: &SpatialCase<'_>| -> Vec<[[f64; 3]; 2]> {
             let shape = Shape::Space(Box::new(case.shape.clone()));
             let foot = |marker: &Marker| shape.place(Marker { offset: [0.0; 3], ..*marker });
             case.markers.iter().map(|(marker, _)| [mm(foot(marker)), mm(shape.place(*marker))]).collect()
         };
-        let centrelines: Vec<Vec<[f64; 3]>> = cases.iter().map(centreline).collect();
+        let centrelines: Vec<Vec<[f64; 3]>> = cases.iter().map(|case| centreline(case.shape, PLACES)).collect();
         let rods: Vec<Vec<[[f64; 3]; 2]>> = cases.iter().map(rods).collect();
         let measured = cases.iter().flat_map(|case| case.markers).map(|(_, place)| mm(*place));
         let drawn = centrelines.iter().flatten().copied().chain(rods.iter().flatten().map(|rod| rod[1]));
-        let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-        for place in drawn.chain(measured) {
-            for (range, v) in bounds.iter_mut().zip(place) {
-                *range = [range[0].min(v), range[1].max(v)];
-            }
-        }
-        let widest = bounds.iter().map(|[low, high]| high - low).fold(0.0_f64, f64::max);
-        let grown = bounds.map(|[low, high]| [low - 0.05 * widest, high + 0.05 * widest]);
-        Self { placed: ThreeViews::new(grown, page).placed(top), centrelines, rods }
+        let views = ThreeViews::around(drawn.chain(measured), PAD, page);
+        Self { placed: views.placed(top), centrelines, rods }
     }
 
     pub(crate) fn bottom(&self) -> f64 {

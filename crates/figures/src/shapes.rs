@@ -108,7 +108,7 @@ fn draw(
     page: &Page,
 ) -> Scene {
     let all: Vec<[f64; 2]> = members.iter().flat_map(|m| m.outline.surface.iter().copied()).collect();
-    let legend = legend(members, unknown, page);
+    let legend = legend(members.iter().map(|m| m.look), unknown, page);
     let heading = page.heading(title, None);
     let axes = axes(&all, heading.bottom + legend.height() + 6.0, page);
     let mut scene = Scene::new(page.width(), axes.frame.bottom + BELOW + MARGIN, says);
@@ -146,11 +146,13 @@ fn draw(
     scene
 }
 
-fn legend(members: &[Member<'_>], unknown: &str, page: &Page) -> Legend {
+/// The lines that shapes of these looks have.
+pub(crate) fn legend(looks: impl Iterator<Item = Look>, unknown: &str, page: &Page) -> Legend {
     let mut legend = Legend::new(page);
+    let looks: Vec<Look> = looks.collect();
     for look in [Look::Stable, Look::Unstable, Look::Unknown] {
         let words = if look == Look::Unknown { unknown } else { look.words() };
-        if members.iter().any(|m| m.look == look) {
+        if looks.contains(&look) {
             legend.add(Sample::Line(line_of(look, INK)), Label::plain(words));
         }
     }

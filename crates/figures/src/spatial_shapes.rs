@@ -5,21 +5,21 @@ use hydrostat::{Equilibrium, SpatialConfiguration, SpatialEquilibria};
 use crate::axes::BELOW;
 use crate::chart::Look;
 use crate::font::Label;
-use crate::legend::{Legend, Sample};
 use crate::page::{MARGIN, Page};
-use crate::palette::{Color, INK, series};
+use crate::palette::{Color, series};
 use crate::placement::Occupied;
 use crate::scene::{Scene, Stroke};
-use crate::shapes::line_of;
-use crate::three_views::ThreeViews;
+use crate::shapes::{legend, line_of};
+use crate::three_views::{ThreeViews, centreline};
 use crate::tip_labels::{TipLabel, draw_tip_labels};
 use crate::view::Vector;
 
-const MM: f64 = 1e3;
 /// Points of a centreline.
 const POINTS: usize = 200;
 /// How much wider a centreline is than a surface.
 const WIDER: f64 = 1.5;
+/// Room for labels over the widest extent.
+const PAD: f64 = 0.07;
 
 /// One centreline, mm.
 struct Member {
@@ -31,8 +31,7 @@ struct Member {
 
 impl Member {
     fn new(number: usize, one: &Equilibrium<SpatialConfiguration>) -> Self {
-        let st = one.configuration.resampled(POINTS);
-        let points = (0..st.s.len()).map(|k| [st.x[k], st.y[k], st.z[k]].map(|v| MM * v)).collect();
+        let points = centreline(&one.configuration, POINTS);
         let label = Label::plain(number.to_string());
         Self { points, look: Look::of(one.stability), color: series(number), label }
     }
@@ -53,14 +52,10 @@ impl Member {
 /// ```
 pub fn spatial_equilibria_figure(all: &SpatialEquilibria, title: &str, page: &Page) -> Scene {
     let members: Vec<Member> = all.found.iter().enumerate().map(|(k, one)| Member::new(k + 1, one)).collect();
-    let mut legend = Legend::new(page);
-    for look in [Look::Stable, Look::Unstable, Look::Unknown] {
-        if members.iter().any(|m| m.look == look) {
-            legend.add(Sample::Line(line_of(look, INK)), Label::plain(look.words()));
-        }
-    }
+    let legend = legend(members.iter().map(|m| m.look), Look::Unknown.words(), page);
     let heading = page.heading(title, None);
-    let placed = ThreeViews::new(bounds(&members), page).placed(heading.bottom + legend.height() + 6.0);
+    let placed = ThreeViews::around(members.iter().flat_map(|m| m.points.iter().copied()), PAD, page)
+        .placed(heading.bottom + legend.height() + 6.0);
     let says = format!("{}: equilibria in space", page.title_or(title));
     let mut scene = Scene::new(page.width(), placed.bottom + BELOW + MARGIN, says);
     heading.draw(&mut scene);
@@ -82,15 +77,4 @@ pub fn spatial_equilibria_figure(all: &SpatialEquilibria, title: &str, page: &Pa
         draw_tip_labels(&mut scene, &mut taken, axes.frame, &labels);
     }
     scene
-}
-
-/// Of all points, with room for labels.
-fn bounds(members: &[Member]) -> [[f64; 2]; 3] {
-    let all = || members.iter().flat_map(|m| &m.points);
-    let ranges = [0, 1, 2].map(|k| {
-        let fold = |from: f64, of: fn(f64, f64) -> f64| all().map(|p| p[k]).fold(from, of);
-        [fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)]
-    });
-    let pad = 0.07 * ranges.iter().map(|[low, high]| high - low).fold(1.0, f64::max);
-    ranges.map(|[low, high]| if low <= high { [low - pad, high + pad] } else { [0.0, 1.0] })
 }

@@ -1,11 +1,13 @@
 //! Three views along the axes at one scale: y over x, below it z over x, and beside that z over y.
 
+use hydrostat::SpatialConfiguration;
+
 use crate::axes::{Axes, LEFT};
 use crate::font::Label;
 use crate::page::Page;
 use crate::placement::Rect;
 use crate::scene::Scene;
-use crate::view::View;
+use crate::view::{Vector, View};
 
 /// The shortest side of a view, points.
 const LEAST: f64 = 58.0;
@@ -56,6 +58,19 @@ impl ThreeViews {
         Self { bounds, scale, widths: [long(x), long(y)], heights: [long(y), long(z)] }
     }
 
+    /// Of all these places, mm, with room around them: `pad` of the widest extent.
+    pub(crate) fn around(places: impl Iterator<Item = Vector>, pad: f64, page: &Page) -> Self {
+        let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        for place in places {
+            for (range, v) in ranges.iter_mut().zip(place) {
+                *range = [range[0].min(v), range[1].max(v)];
+            }
+        }
+        let room = pad * ranges.iter().map(|[low, high]| high - low).fold(1.0, f64::max);
+        let grown = ranges.map(|[low, high]| if low <= high { [low - room, high + room] } else { [0.0, 1.0] });
+        Self::new(grown, page)
+    }
+
     /// The room beside the views when their upper edge is at `top`.
     pub(crate) fn room(&self, top: f64, page: &Page) -> Room {
         let [x, y] = self.widths;
@@ -103,6 +118,12 @@ impl Placed {
         lower.draw(scene, &x, &z);
         beside.draw(scene, &y, &z);
     }
+}
+
+/// So many places of a centreline, mm.
+pub(crate) fn centreline(shape: &SpatialConfiguration, count: usize) -> Vec<Vector> {
+    let st = shape.resampled(count);
+    (0..st.len()).map(|k| [st.x[k], st.y[k], st.z[k]].map(|v| 1e3 * v)).collect()
 }
 
 /// The largest scale at which `a` and `b`, none shorter than it may be, fit into `points`.

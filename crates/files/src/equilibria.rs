@@ -9,7 +9,7 @@ use crate::others::Search;
 use crate::paths::{EndOut, limit_message};
 use crate::results::{SCHEMA, cell, json};
 use crate::state::State;
-use crate::varied::Varied;
+use crate::varied::{RangeOut, Varied};
 use crate::written::Inputs;
 
 fn states(all: Search<'_>) -> Vec<State<'_>> {
@@ -71,9 +71,8 @@ struct ValueOut<'a> {
 pub struct OverDocument<'a> {
     schema: u32,
     version: &'static str,
-    parameter: String,
-    unit: &'static str,
-    range: [f64; 2],
+    #[serde(flatten)]
+    over: RangeOut,
     values: Vec<ValueOut<'a>>,
     inputs: Inputs,
 }
@@ -159,9 +158,7 @@ impl<'a> OverDocument<'a> {
         Self {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
-            parameter: varied.parameter.to_string(),
-            unit: varied.parameter.unit(),
-            range: varied.range,
+            over: RangeOut::new(varied.parameter, varied.range),
             values: searches.iter().map(value).collect(),
             inputs: Inputs::new(arm),
         }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::csv_text::Rows;
 use crate::results::{SCHEMA, cell, json};
 use crate::spatial_results::TipOut;
-use crate::varied::Varied;
+use crate::varied::{RangeOut, Varied};
 use crate::written::Inputs;
 
 #[derive(Debug, Clone, Serialize)]
@@ -40,9 +40,8 @@ struct ValueOut<'a> {
 pub struct ModesOverDocument<'a> {
     schema: u32,
     version: &'static str,
-    parameter: String,
-    unit: &'static str,
-    range: [f64; 2],
+    #[serde(flatten)]
+    over: RangeOut,
     values: Vec<ValueOut<'a>>,
     inputs: Inputs,
 }
@@ -134,9 +133,7 @@ impl<'a> ModesOverDocument<'a> {
         Self {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
-            parameter: varied.parameter.to_string(),
-            unit: varied.parameter.unit(),
-            range: varied.range,
+            over: RangeOut::new(varied.parameter, varied.range),
             values: found.iter().map(value).collect(),
             inputs: Inputs::new(arm),
         }

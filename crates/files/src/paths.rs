@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::csv_text::Rows;
 use crate::results::{SCHEMA, TipOut, cell, json};
 use crate::state::State;
-use crate::varied::Varied;
+use crate::varied::{RangeOut, Varied};
 use crate::written::Inputs;
 
 /// The document of a path.
@@ -14,9 +14,8 @@ use crate::written::Inputs;
 pub struct PathDocument<'a> {
     schema: u32,
     version: &'static str,
-    parameter: String,
-    unit: &'static str,
-    range: [f64; 2],
+    #[serde(flatten)]
+    over: RangeOut,
     branches: Vec<BranchOut<'a>>,
     inputs: Inputs,
 }
@@ -153,9 +152,7 @@ impl<'a> PathDocument<'a> {
         Some(Self {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
-            parameter: path.parameter.to_string(),
-            unit: path.parameter.unit(),
-            range: path.range,
+            over: RangeOut::new(path.parameter, path.range),
             branches: path.branches.iter().map(|b| branch(b, varied, state)).collect(),
             inputs: Inputs::new(arm(&first.configuration)),
         })

@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use hydrostat::Parameter;
 use hydrostat::parameter::{UnknownParameter, names};
+use serde::Serialize;
 
 use crate::digits::number;
 use crate::error::shortened;
@@ -34,6 +35,20 @@ pub struct Varied {
     pub unit: &'static str,
     /// How many of that unit an SI unit is.
     pub per_si: f64,
+}
+
+/// What varied and over which range, as documents have it.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct RangeOut {
+    parameter: String,
+    unit: &'static str,
+    range: [f64; 2],
+}
+
+impl RangeOut {
+    pub(crate) fn new(parameter: Parameter, range: [f64; 2]) -> Self {
+        Self { parameter: parameter.to_string(), unit: parameter.unit(), range }
+    }
 }
 
 /// Why a text does not say what is to vary.

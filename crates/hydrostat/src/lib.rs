@@ -164,7 +164,7 @@ pub use path::{Branch, Equilibria, Equilibrium, Event, Path, PathEnd, PathError,
 pub use profile::{Join, Point, Profile, Sample, TableError};
 pub use reach::{
     Bound, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, BoundaryProgress, Followed, Follower,
-    Reach, ReachError, ReachOptions, Reached, SpatialTarget, Target,
+    Reach, ReachError, ReachOptions, Reached, SpatialFollower, SpatialTarget, Target,
 };
 pub use readings::{
     Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use hydrostat::parameter::{Unfit, UnknownParameter};
+use hydrostat::parameter::{BASE_PLACE, Unfit, UnknownParameter};
 use hydrostat::{Arm, Parameter};
 
 use crate::quantity::Quantity;
@@ -33,8 +33,6 @@ pub enum Unknown {
 
 /// The key of a factor on all tensions.
 const ALL: &str = "tension_factor";
-/// The keys of the place of the base.
-const BASE: [&str; 3] = ["arm.base.x", "arm.base.y", "arm.base.z"];
 
 impl From<Parameter> for Unknown {
     fn from(parameter: Parameter) -> Self {
@@ -54,7 +52,7 @@ impl fmt::Display for Unknown {
             Self::Of(parameter) => parameter.fmt(f),
             Self::TensionFactor => f.write_str(ALL),
             Self::CableFactor(c) => write!(f, "cable[{c}].{ALL}"),
-            Self::Base(k) => f.write_str(BASE[*k.min(&2)]),
+            Self::Base(k) => f.write_str(BASE_PLACE[*k.min(&2)]),
         }
     }
 }
@@ -66,7 +64,7 @@ impl FromStr for Unknown {
         if name == ALL {
             return Ok(Self::TensionFactor);
         }
-        if let Some(k) = BASE.iter().position(|key| *key == name) {
+        if let Some(k) = BASE_PLACE.iter().position(|key| *key == name) {
             return Ok(Self::Base(k));
         }
         let index =
@@ -107,12 +105,7 @@ impl Unknown {
                 Err(Unfit::Cable { key: self.to_string(), cables: arm.cables.len() })
             }
             Self::TensionFactor | Self::CableFactor(_) => Ok(1.0),
-            Self::Base(0) => Ok(arm.base.x),
-            Self::Base(1) => Ok(arm.base.y),
-            Self::Base(_) => match &arm.space {
-                Some(space) => Ok(space.z),
-                None => Err(Unfit::InPlane { key: self.to_string() }),
-            },
+            Self::Base(axis) => arm.base_place(axis),
         }
     }
 
@@ -125,11 +118,8 @@ impl Unknown {
             return parameter.set(arm, value);
         }
         self.of(arm)?;
-        match (self, &mut arm.space) {
-            (Self::Base(0), _) => arm.base.x = value,
-            (Self::Base(1), _) => arm.base.y = value,
-            (Self::Base(_), Some(space)) => space.z = value,
-            _ => {}
+        if let Self::Base(axis) = self {
+            *arm.base_place_mut(axis)? = value;
         }
         for cable in self.cables(arm) {
             arm.cables[cable].tension *= value;

@@ -15,6 +15,7 @@ use hydrostat_files::equilibria::{curve_message, side_message};
 use hydrostat_files::{EquilibriaDocument, Others, OverDocument, Search, Varied, equilibria_csv, number, over_csv};
 
 use super::NoAnswer;
+use super::over::{Value, at_values, say_what_is_missing};
 use super::path::{abscissa, check_quantity, title};
 use super::shape::Shape;
 use super::table::{stability_words, table};
@@ -31,6 +32,8 @@ trait Found: Sized {
     type Error: std::error::Error + Send + Sync + 'static;
     /// What there are points of, for the progress.
     const CURVES: &'static str;
+    /// What a picture of them is called.
+    const CALLED: &'static str;
 
     fn search(arm: &Arm, tol: f64, go_on: impl FnMut(usize) -> bool) -> Result<Self, PathError<Self::Error>>;
     fn all(&self) -> Search<'_>;
@@ -45,6 +48,7 @@ impl Found for Equilibria {
     type Shape = Configuration;
     type Error = SolveError;
     const CURVES: &'static str = "the curve of equilibria";
+    const CALLED: &'static str = "all equilibria";
 
     fn search(arm: &Arm, tol: f64, go_on: impl FnMut(usize) -> bool) -> Result<Self, PathError> {
         arm.equilibria_while(tol, go_on)
@@ -84,6 +88,8 @@ impl Found for SpatialEquilibria {
     type Shape = SpatialConfiguration;
     type Error = SpatialError;
     const CURVES: &'static str = "curves over turns of the base";
+    // There may be others.
+    const CALLED: &'static str = "equilibria";
 
     fn search(arm: &Arm, tol: f64, go_on: impl FnMut(usize) -> bool) -> Result<Self, PathError<SpatialError>> {
         arm.equilibria_in_space_while(tol, go_on)
@@ -144,7 +150,7 @@ fn at_loads<F: Found>(args: &EquilibriaArgs, arm: &Arm) -> anyhow::Result<()> {
     let all: F = search(arm, args)?;
     let nothing = all.shapes().is_empty();
     if let Some(file) = args.plot.as_ref().filter(|_| !nothing) {
-        let title = format!("{}: all equilibria", arm.name);
+        let title = format!("{}: {}", arm.name, F::CALLED);
         output::draw(&all.figure(&title, &args.picture.page()), file, &args.picture.page)?;
     }
     let text = match args.format {
@@ -188,8 +194,17 @@ fn search<F: Found>(arm: &Arm, args: &EquilibriaArgs) -> anyhow::Result<F> {
     })
 }
 
-fn over_range<F: Found>(args: &EquilibriaArgs, arm: &Arm, Over { varied, count }: Over) -> anyhow::Result<()> {
-    let searches = searches::<F>(arm, args, &varied, count)?;
+fn over_range<F: Found>(args: &EquilibriaArgs, arm: &Arm, over: Over) -> anyhow::Result<()> {
+    let varied = over.varied;
+    let mut progress = Progress::new();
+    let searches = at_values(arm, over, |there, Value { number, count, at }| {
+        let place = format!("value {number} of {count}, {at}, ");
+        match within::<F>(there, args, &mut progress, &place) {
+            Ok(all) => Ok(Ok(all)),
+            Err(PathError::Start { source, .. }) => Ok(Err(source.to_string())),
+            Err(other) => Err(other).with_context(|| at.clone()),
+        }
+    })?;
     if let Some(file) = &args.plot_over {
         let found: Vec<(f64, &F)> =
             searches.iter().filter_map(|(value, all)| Some((*value, all.as_ref().ok()?))).collect();
@@ -205,40 +220,7 @@ fn over_range<F: Found>(args: &EquilibriaArgs, arm: &Arm, Over { varied, count }
         Format::Csv => over_csv(arm.cables.len(), &varied, &found),
     };
     output::put(args.output.as_deref(), &text)?;
-    for (value, all) in &found {
-        if let Err(message) = all {
-            eprintln!("warning: at {}: {message}", varied.with_unit(*value));
-        }
-    }
-    if found.iter().all(|(_, all)| all.as_ref().map_or(0, |all| Others::of(*all).count) == 0) {
-        return Err(NoAnswer(format!("no equilibrium was found at any value of {}", varied.parameter)).into());
-    }
-    Ok(())
-}
-
-/// A search at each value; what the arm cannot be is an error, what has no equilibrium a result.
-fn searches<F: Found>(
-    arm: &Arm,
-    args: &EquilibriaArgs,
-    varied: &Varied,
-    count: usize,
-) -> anyhow::Result<Vec<(f64, Result<F, String>)>> {
-    let mut progress = Progress::new();
-    let mut out = Vec::new();
-    for (index, value) in varied.values(count).into_iter().enumerate() {
-        let at = || format!("at {} = {}", varied.parameter, varied.with_unit(value));
-        let place = format!("value {} of {count}, {}, ", index + 1, at());
-        let mut there = arm.clone();
-        varied.parameter.set(&mut there, value).map_err(|e| WrongRequest::Unfit("--over", e))?;
-        there.check().map_err(|e| WrongRequest::Value(at(), e))?;
-        let found = match within::<F>(&there, args, &mut progress, &place) {
-            Ok(all) => Ok(all),
-            Err(PathError::Start { source, .. }) => Err(source.to_string()),
-            Err(other) => return Err(other).with_context(at),
-        };
-        out.push((value, found));
-    }
-    Ok(out)
+    say_what_is_missing(&varied, &found, |all| Others::of(*all).count > 0)
 }
 
 fn summary<F: Found>(arm: &Arm, all: &F) -> String {

@@ -8,7 +8,7 @@ use hydrostat_files::{
     ModesDocument, ModesOverDocument, ModesTip, Varied, mode_kind, modes_csv, modes_over_csv, number,
 };
 
-use super::NoAnswer;
+use super::over::{Value, at_values, say_what_is_missing};
 use super::path::abscissa;
 use super::simulate::refused;
 use super::table::table;
@@ -51,28 +51,19 @@ fn at_loads(args: &ModesArgs, arm: &Arm, modes: &Modes<impl Copy + Into<ModesTip
 fn over_range<T: Copy + Into<ModesTip>>(
     args: &ModesArgs,
     arm: &Arm,
-    Over { varied, count }: Over,
+    over: Over,
     modes_of: impl Fn(&Arm) -> Result<Modes<T>, MotionError>,
 ) -> anyhow::Result<()> {
+    let varied = over.varied;
     let mut progress = Progress::new();
-    let mut found = Vec::new();
-    for value in varied.values(count) {
-        let at = || format!("at {} = {}", varied.parameter, varied.with_unit(value));
-        progress.say(|| format!("modes {}", at()));
-        let mut there = arm.clone();
-        varied.parameter.set(&mut there, value).map_err(|e| WrongRequest::Unfit("--over", e))?;
-        there.check().map_err(|e| WrongRequest::Value(at(), e))?;
-        found.push((
-            value,
-            match modes_of(&there) {
-                Ok(modes) => Ok(modes),
-                Err(error @ (MotionError::Option { .. } | MotionError::Unsupported { .. })) => {
-                    return Err(refused(error));
-                }
-                Err(error) => Err(error.to_string()),
-            },
-        ));
-    }
+    let found = at_values(arm, over, |there, Value { at, .. }| {
+        progress.say(|| format!("modes {at}"));
+        match modes_of(there) {
+            Ok(modes) => Ok(Ok(modes)),
+            Err(error @ (MotionError::Option { .. } | MotionError::Unsupported { .. })) => Err(refused(error)),
+            Err(error) => Ok(Err(error.to_string())),
+        }
+    })?;
     if let Some(file) = &args.plot {
         let all: Vec<(f64, &[Mode])> =
             found.iter().filter_map(|(value, modes)| Some((*value, &*modes.as_ref().ok()?.modes))).collect();
@@ -86,15 +77,7 @@ fn over_range<T: Copy + Into<ModesTip>>(
         Format::Csv => modes_over_csv(&varied, &found),
     };
     output::put(args.output.as_deref(), &text)?;
-    for (value, modes) in &found {
-        if let Err(message) = modes {
-            eprintln!("warning: at {}: {message}", varied.with_unit(*value));
-        }
-    }
-    if found.iter().all(|(_, modes)| modes.is_err()) {
-        return Err(NoAnswer(format!("no equilibrium was found at any value of {}", varied.parameter)).into());
-    }
-    Ok(())
+    say_what_is_missing(&varied, &found, |_| true)
 }
 
 fn summary<T>(arm: &Arm, modes: &Modes<T>) -> String {

@@ -3,9 +3,12 @@
 use super::conditions::ByTensions;
 use super::effort::dot;
 use super::in_plane::{Goal, SAME};
-use super::problem::{ReachError, ReachOptions, Reached, Target};
+use super::in_space::SpatialTarget;
+use super::problem::{Reach, ReachError, ReachOptions, Target};
+use super::reaching::Reaching;
 use super::search::{STILL, Search, State};
 use crate::rod::arm::Arm;
+use crate::spatial::{SpatialError, SpatialSolver};
 use crate::statics::configuration::Tip;
 use crate::statics::sensitivity::SensitivityError;
 use crate::statics::solve::Solver;
@@ -52,18 +55,46 @@ const LEAST: f64 = 1e-2;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Follower {
-    search: Search,
-    state: State,
+    inner: Following<Solver>,
+}
+
+/// [`Follower`] of an arm in space.
+///
+/// ```
+/// use hydrostat::{Arm, Cable, Profile, ReachOptions, Space, SpatialFollower, SpatialTarget};
+///
+/// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+/// for k in 0..3 {
+///     let angle = f64::from(k) * std::f64::consts::TAU / 3.0;
+///     arm.cables.push(Cable::new(format!("{k}"), Profile::linear(0.005, 0.001)).at_angle(angle).pulled(0.1));
+/// }
+/// arm.space = Some(Space::default());
+/// let [x, y, z] = [0.2447, 0.0, 0.0]; // m, near the tip
+/// let mut follower = SpatialFollower::new(&arm, &[SpatialTarget::tip([x, y, z])], &ReachOptions::default())?;
+/// let found = follower.follow(&[SpatialTarget::tip([x, y + 1e-3, z - 1e-3])])?;
+/// assert!(!found.jumped && found.tensions.len() == 3);
+/// # Ok::<(), hydrostat::ReachError<hydrostat::SpatialError>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct SpatialFollower {
+    inner: Following<SpatialSolver>,
+}
+
+/// What both do.
+#[derive(Debug, Clone)]
+struct Following<S: Reaching> {
+    search: Search<S>,
+    state: State<S>,
     slopes: ByTensions,
 }
 
 /// Where a follower got to.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Followed {
+pub struct Followed<T = Tip> {
     /// N.
     pub tensions: Vec<f64>,
-    /// The tip.
-    pub tip: Tip,
+    /// The tip; of an arm in space its place, m.
+    pub tip: T,
     /// Root of the weighted sum of squared distances to the targets, over L.
     pub distance: f64,
     /// Whether that is within the tolerance.
@@ -82,16 +113,7 @@ impl Follower {
     /// [`ReachError`].
     pub fn new(arm: &Arm, targets: &[Target], options: &ReachOptions) -> Result<Self, ReachError> {
         let search = Search::<Solver>::new(arm, Goal::Places(targets.to_vec()), options)?;
-        let own: Vec<f64> = arm.cables.iter().map(|cable| cable.tension).collect();
-        let mut state = search.begin(&own)?;
-        if state.distance() > search.tol {
-            let found = arm.reach(targets, options)?;
-            if let Some(Reached { tensions, .. }) = found.solutions.into_iter().next().or(found.closest) {
-                state = search.begin(&tensions)?;
-            }
-        }
-        let slopes = search.slopes(&state.solver).ok_or(SensitivityError::Singular)?;
-        Ok(Self { search, state, slopes })
+        Ok(Self { inner: Following::new(search, || Ok(best(arm.reach(targets, options)?)))? })
     }
 
     /// Goes to the next targets, which have to be for the same places as the first.
@@ -103,15 +125,94 @@ impl Follower {
     /// [`ReachError::Target`] for other places, and for targets that are none.
     pub fn follow(&mut self, targets: &[Target]) -> Result<Followed, ReachError> {
         let places = |targets: &[Target]| targets.iter().map(|t| (t.s, t.angle.is_some())).collect::<Vec<_>>();
-        match &mut self.search.goal {
+        let search = &mut self.inner.search;
+        match &mut search.goal {
             Goal::Places(own)
-                if places(own) == places(targets) && targets.iter().all(|target| target.is_for(&self.search.arm)) =>
+                if places(own) == places(targets) && targets.iter().all(|target| target.is_for(&search.arm)) =>
             {
                 own.clear();
                 own.extend_from_slice(targets);
             }
             _ => return Err(ReachError::Target),
         }
+        let went = self.inner.follow();
+        let tip = self.inner.state.solver.tip()?;
+        Ok(self.inner.followed(tip, went))
+    }
+}
+
+impl SpatialFollower {
+    /// As [`Follower::new`].
+    ///
+    /// # Errors
+    /// [`ReachError`].
+    pub fn new(
+        arm: &Arm,
+        targets: &[SpatialTarget],
+        options: &ReachOptions,
+    ) -> Result<Self, ReachError<SpatialError>> {
+        let search = Search::<SpatialSolver>::new(arm, targets.to_vec(), options)?;
+        Ok(Self { inner: Following::new(search, || Ok(best(arm.reach_in_space(targets, options)?)))? })
+    }
+
+    /// As [`Follower::follow`].
+    ///
+    /// # Errors
+    /// [`ReachError::Target`] for other places, and for targets that are none.
+    pub fn follow(&mut self, targets: &[SpatialTarget]) -> Result<Followed<[f64; 3]>, ReachError<SpatialError>> {
+        let places =
+            |targets: &[SpatialTarget]| targets.iter().map(|t| (t.s, t.direction.is_some())).collect::<Vec<_>>();
+        let Search { goal, arm, .. } = &mut self.inner.search;
+        if places(goal) != places(targets) || !targets.iter().all(|target| target.is_for(arm)) {
+            return Err(ReachError::Target);
+        }
+        targets.clone_into(goal);
+        let went = self.inner.follow();
+        let arm = &self.inner.search.arm;
+        let base = [arm.base.x, arm.base.y, arm.space.as_ref().map_or(0.0, |space| space.z)];
+        let (place, _) = self.inner.state.solver.pose_of(1.0);
+        let tip = [0, 1, 2].map(|k| base[k] + arm.length * place[k]);
+        Ok(self.inner.followed(tip, went))
+    }
+}
+
+/// The tensions of least effort, or those that come closest.
+fn best<C, P>(found: Reach<C, P>) -> Option<Vec<f64>> {
+    found.solutions.into_iter().next().or(found.closest).map(|one| one.tensions)
+}
+
+/// How a target was gone to.
+#[derive(Debug, Clone, Copy)]
+struct Went {
+    jumped: bool,
+    solves: usize,
+}
+
+impl<S: Reaching> Following<S> {
+    /// From the tensions of the arm, or where these do not reach the targets from those of `elsewhere`.
+    fn new(
+        search: Search<S>,
+        elsewhere: impl FnOnce() -> Result<Option<Vec<f64>>, ReachError<S::Error>>,
+    ) -> Result<Self, ReachError<S::Error>> {
+        let own: Vec<f64> = search.arm.cables.iter().map(|cable| cable.tension).collect();
+        let mut state = search.begin(&own)?;
+        if state.distance() > search.tol
+            && let Some(tensions) = elsewhere()?
+        {
+            state = search.begin(&tensions)?;
+        }
+        let slopes = search.slopes(&state.solver).ok_or(SensitivityError::Singular)?;
+        Ok(Self { search, state, slopes })
+    }
+
+    fn followed<T>(&self, tip: T, Went { jumped, solves }: Went) -> Followed<T> {
+        let distance = self.state.distance();
+        let reached = distance <= self.search.tol;
+        Followed { tensions: self.state.tensions.clone(), tip, distance, reached, jumped, solves }
+    }
+
+    /// Goes to the targets of the search.
+    fn follow(&mut self) -> Went {
         self.state.rest = self.search.rest(&self.state.solver);
         let (mut jumped, mut solves, mut fresh) = (false, 0, false);
         // After a step that led no nearer, with the jacobian of where it began: shorter ones.
@@ -160,14 +261,11 @@ impl Follower {
                 }
             }
         }
-        let tip = self.state.solver.tip()?;
-        let distance = self.state.distance();
-        let reached = distance <= self.search.tol;
-        Ok(Followed { tensions: self.state.tensions.clone(), tip, distance, reached, jumped, solves })
+        Went { jumped, solves }
     }
 
     /// The arm at other tensions, changed by what strokes are too long there, and whether that is on another branch.
-    fn at(&self, tensions: &[f64]) -> Option<(State, bool)> {
+    fn at(&self, tensions: &[f64]) -> Option<(State<S>, bool)> {
         let mut tensions = tensions.to_vec();
         let mut solver = self.state.solver.clone();
         let mut another_branch = false;
@@ -217,26 +315,24 @@ fn led_astray(columns: &[Vec<f64>], change: &[f64], before: &[f64], after: &[f64
 
 /// Solves at other tensions, from `kept`: in parts where one is too far, and where none lead there, as if nothing had
 /// been solved before. Whether that is another branch, which does not lead back. `None` where there is no equilibrium.
-fn go(solver: &mut Solver, tensions: &[f64], kept: &Solver) -> Option<bool> {
-    solver.set_tensions(tensions).ok()?;
-    if solver.update_warm().is_some() {
+fn go<S: Reaching>(solver: &mut S, tensions: &[f64], kept: &S) -> Option<bool> {
+    solver.pull(tensions)?;
+    if solver.settle_warm().is_some() {
         return Some(false);
     }
     if let Some(led) = led_to(kept.clone(), tensions) {
         *solver = led;
         return Some(false);
     }
-    solver.update().ok()?;
-    let from: Vec<f64> = kept.arm().cables.iter().map(|cable| cable.tension).collect();
-    let place = |solver: &Solver| solver.engine.pose_of(1.0);
-    let there = place(kept);
-    let back = led_to(solver.clone(), &from).map(|back| place(&back));
+    solver.settle()?;
+    let there = kept.tip_pose();
+    let back = led_to(solver.clone(), &kept.tensions()).map(|back| back.tip_pose());
     Some(!back.is_some_and(|back| back.iter().zip(there).all(|(a, b)| (a - b).abs() < SAME)))
 }
 
 /// To other tensions by small changes, on one branch.
-fn led_to(mut solver: Solver, tensions: &[f64]) -> Option<Solver> {
-    let from: Vec<f64> = solver.arm().cables.iter().map(|cable| cable.tension).collect();
+fn led_to<S: Reaching>(mut solver: S, tensions: &[f64]) -> Option<S> {
+    let from = solver.tensions();
     let (mut done, mut part) = (0.0, 0.5);
     while done < 1.0 {
         if part < LEAST {
@@ -246,8 +342,8 @@ fn led_to(mut solver: Solver, tensions: &[f64]) -> Option<Solver> {
         let mut next = solver.clone();
         let between: Vec<f64> =
             from.iter().zip(tensions).map(|(a, b)| if to < 1.0 { a + to * (b - a) } else { *b }).collect();
-        next.set_tensions(&between).ok()?;
-        if next.update_warm().is_some() {
+        next.pull(&between)?;
+        if next.settle_warm().is_some() {
             (solver, done) = (next, to);
         } else {
             part *= 0.5;

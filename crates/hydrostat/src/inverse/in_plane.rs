@@ -136,6 +136,10 @@ impl Reaching for Solver {
         Some(rows)
     }
 
+    fn tip_pose(&self) -> Vec<f64> {
+        self.engine.pose_of(1.0).to_vec()
+    }
+
     fn turned(&self, from: &Self) -> f64 {
         (self.engine.tip_angle() - from.engine.tip_angle()).abs()
     }

@@ -34,7 +34,7 @@ impl SpatialTarget {
     }
 
     /// Whether squares of its distances are numbers.
-    fn is_for(&self, arm: &Arm) -> bool {
+    pub(super) fn is_for(&self, arm: &Arm) -> bool {
         /// Lengths of the arm.
         const FURTHEST: f64 = 1e6;
         let far = dot(&self.place, &self.place).sqrt();
@@ -198,6 +198,11 @@ impl Reaching for SpatialSolver {
             sums.extend((0..cables.len()).map(|c| vec![(Quantity::Command(c), 1.0 / arm.length)]));
         }
         Some(self.derivatives_of(sums, &cables, SensitivityMethod::Best)?.rows)
+    }
+
+    fn tip_pose(&self) -> Vec<f64> {
+        let (place, a) = self.pose_of(1.0);
+        place.into_iter().chain(a).collect()
     }
 
     fn turned(&self, from: &Self) -> f64 {

@@ -8,6 +8,6 @@
 //! folds of the map from tensions to places.
 
 pub use super::boundary::{Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, BoundaryProgress};
-pub use super::follow::{Followed, Follower};
+pub use super::follow::{Followed, Follower, SpatialFollower};
 pub use super::in_space::SpatialTarget;
 pub use super::problem::{Bound, Reach, ReachError, ReachOptions, Reached, Target};

@@ -42,6 +42,8 @@ pub(super) trait Reaching: Clone + std::fmt::Debug {
     /// Derivatives by the tensions, a row each: of the distances, and after them, if asked for, of the strokes over L.
     /// `None` at a limit point.
     fn derivatives(&self, goal: &Self::Goal, arm: &Arm, of_strokes: bool) -> Option<Vec<Vec<f64>>>;
+    /// Place of the tip over L, with the direction of its section.
+    fn tip_pose(&self) -> Vec<f64>;
     /// The angle (rad) that the section at the tip has turned by.
     fn turned(&self, from: &Self) -> f64;
 

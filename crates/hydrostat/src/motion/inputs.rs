@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use super::error::MotionError;
 use crate::rod::arm::Arm;
-use crate::rod::parameter::{Parameter, Unfit};
+use crate::rod::parameter::{BASE_PLACE, Parameter, Unfit};
 use crate::rod::profile::Table;
 
 /// A quantity over time, in its unit.
@@ -156,18 +156,15 @@ impl Course {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Driven {
     Of(Parameter),
-    BaseX,
-    BaseY,
-    BaseZ,
+    /// The place of the base along e1 (0), e2 (1) or e3 (2), m.
+    Base(usize),
 }
 
 impl fmt::Display for Driven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Of(parameter) => parameter.fmt(f),
-            Self::BaseX => f.write_str("arm.base.x"),
-            Self::BaseY => f.write_str("arm.base.y"),
-            Self::BaseZ => f.write_str("arm.base.z"),
+            Self::Base(axis) => f.write_str(BASE_PLACE[*axis.min(&2)]),
         }
     }
 }
@@ -177,28 +174,19 @@ impl Driven {
     fn set(self, arm: &mut Arm, value: f64) -> Result<(), Unfit> {
         match self {
             Self::Of(parameter) => parameter.set(arm, value)?,
-            Self::BaseX => arm.base.x = value,
-            Self::BaseY => arm.base.y = value,
-            Self::BaseZ => match &mut arm.space {
-                Some(space) => space.z = value,
-                None => return Err(Unfit::InPlane { key: self.to_string() }),
-            },
+            Self::Base(axis) => *arm.base_place_mut(axis)? = value,
         }
         Ok(())
     }
 
     fn read(key: &str) -> Option<Self> {
-        match key {
-            "arm.base.x" => Some(Self::BaseX),
-            "arm.base.y" => Some(Self::BaseY),
-            "arm.base.z" => Some(Self::BaseZ),
-            _ => Parameter::from_str(key).ok().filter(|p| moves(*p)).map(Self::Of),
-        }
+        let base = BASE_PLACE.iter().position(|own| *own == key).map(Self::Base);
+        base.or_else(|| Parameter::from_str(key).ok().filter(|p| moves(*p)).map(Self::Of))
     }
 
     fn is_of_base(self) -> bool {
         match self {
-            Self::BaseX | Self::BaseY | Self::BaseZ => true,
+            Self::Base(_) => true,
             Self::Of(own) => {
                 matches!(own, Parameter::BaseAngle | Parameter::BaseAlong(_) | Parameter::SectionAlong(_))
             }
@@ -252,7 +240,7 @@ impl Inputs {
     /// The names of what may change in time, those of the cables with the index 0.
     pub fn names() -> Vec<String> {
         let of = crate::rod::parameter::names();
-        let base = ["arm.base.x", "arm.base.y", "arm.base.z"].map(str::to_owned);
+        let base = BASE_PLACE.map(str::to_owned);
         of.into_iter().filter(|name| Driven::read(name).is_some()).chain(base).collect()
     }
 
@@ -318,9 +306,7 @@ impl Inputs {
     pub(super) fn lead(&mut self, key: &str, value: f64, arm: &Arm, [start, end]: [f64; 2]) -> Result<(), MotionError> {
         let now = match Driven::read(key) {
             Some(Driven::Of(parameter)) => parameter.of(arm)?,
-            Some(Driven::BaseX) => arm.base.x,
-            Some(Driven::BaseY) => arm.base.y,
-            Some(Driven::BaseZ) => arm.space.as_ref().map_or(0.0, |space| space.z),
+            Some(Driven::Base(axis)) => arm.base_place(axis).unwrap_or_default(),
             // Which has no such name.
             None => 0.0,
         };

@@ -274,6 +274,45 @@ pub(crate) const PLAIN: [Parameter; 21] = [
     Parameter::DragTangential,
 ];
 
+/// The keys of the place of the base, along e1, e2 and e3.
+pub const BASE_PLACE: [&str; 3] = ["arm.base.x", "arm.base.y", "arm.base.z"];
+
+impl Arm {
+    /// The place of the base along e1 (0), e2 (1) or, in space, e3 (2), m. It moves shapes as they are.
+    ///
+    /// ```
+    /// let mut arm = hydrostat::Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+    /// *arm.base_place_mut(1)? = 0.1;
+    /// assert_eq!(arm.base.y, 0.1);
+    /// assert!(arm.base_place_mut(2).is_err());
+    /// # Ok::<(), hydrostat::parameter::Unfit>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Unfit::InPlane`] along e3 of an arm in the plane.
+    pub fn base_place_mut(&mut self, axis: usize) -> Result<&mut f64, Unfit> {
+        match (axis, &mut self.space) {
+            (0, _) => Ok(&mut self.base.x),
+            (1, _) => Ok(&mut self.base.y),
+            (_, Some(space)) => Ok(&mut space.z),
+            (_, None) => Err(Unfit::InPlane { key: BASE_PLACE[2].to_owned() }),
+        }
+    }
+
+    /// What [`base_place_mut`](Self::base_place_mut) sets.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn base_place(&self, axis: usize) -> Result<f64, Unfit> {
+        match (axis, &self.space) {
+            (0, _) => Ok(self.base.x),
+            (1, _) => Ok(self.base.y),
+            (_, Some(space)) => Ok(space.z),
+            (_, None) => Err(Unfit::InPlane { key: BASE_PLACE[2].to_owned() }),
+        }
+    }
+}
+
 impl fmt::Display for Parameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
