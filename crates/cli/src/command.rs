@@ -45,6 +45,12 @@ impl std::fmt::Display for NoAnswer {
 
 impl std::error::Error for NoAnswer {}
 
+/// The error of an option out of its range, in terms of the command line.
+fn wrong_option(option: &str, value: f64, expected: &str, error: impl Into<anyhow::Error>) -> anyhow::Error {
+    let option = option.replace('_', "-");
+    error.into().context(format!("--{option}: expected a number {expected}, found {value}"))
+}
+
 /// An error with advice that depends on the request.
 #[derive(Debug)]
 pub(crate) struct Advised {

@@ -14,7 +14,7 @@ use hydrostat_figures::{
 use hydrostat_files::equilibria::{curve_message, side_message};
 use hydrostat_files::{EquilibriaDocument, Others, OverDocument, Search, Varied, equilibria_csv, number, over_csv};
 
-use super::NoAnswer;
+use super::{NoAnswer, wrong_option};
 use super::over::{Value, at_values, say_what_is_missing};
 use super::path::{abscissa, check_quantity, title};
 use super::shape::Shape;
@@ -186,10 +186,7 @@ fn search<F: Found>(arm: &Arm, args: &EquilibriaArgs) -> anyhow::Result<F> {
             let message = format!("no equilibrium was found at any base angle; at the angle of the arm, {source}");
             anyhow::Error::new(source).context(message)
         }
-        PathError::Option { option, value, expected } => {
-            let message = format!("--{option}: expected a number {expected}, found {value}");
-            anyhow::Error::new(error).context(message)
-        }
+        PathError::Option { option, value, expected } => wrong_option(option, value, expected, error),
         other => other.into(),
     })
 }

@@ -208,7 +208,9 @@ fn together(found: &Fit) -> String {
     for (i, name) in names.iter().enumerate() {
         let row = found.correlation[i].iter().take(i + 1);
         let mut cells = vec![name.clone()];
-        cells.extend(row.map(|value| if value.is_finite() { format!("{value:.3}") } else { "?".to_owned() }));
+        // Adding zero makes one zero of both.
+        let cell = |value: &f64| format!("{:.3}", (1e3 * value).round() / 1e3 + 0.0);
+        cells.extend(row.map(|value| if value.is_finite() { cell(value) } else { "?".to_owned() }));
         rows.push(cells);
     }
     out.push_str(&table(&rows, 0));

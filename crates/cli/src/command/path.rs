@@ -9,7 +9,7 @@ use hydrostat::{
 use hydrostat_figures::{Abscissa, Quantity, path_shapes_figure};
 use hydrostat_files::{Landing, Varied, end_message, number};
 
-use super::NoAnswer;
+use super::{NoAnswer, wrong_option};
 use super::shape::Shape;
 use super::table::{decimals, stability_words, table, tip_cells};
 use crate::args::{Format, PathArgs};
@@ -146,9 +146,7 @@ fn follow<C: Shape>(arm: &Arm, args: &PathArgs) -> anyhow::Result<Path<C>> {
             anyhow::Error::new(error).context(message)
         }
         PathError::Option { option, value, expected } => {
-            let name = if option == "longest" { "max-step" } else { option };
-            let message = format!("--{name}: expected a number {expected}, found {value}");
-            anyhow::Error::new(error).context(message)
+            wrong_option(if option == "longest" { "max-step" } else { option }, value, expected, error)
         }
         PathError::Support | PathError::Stroke { .. } | PathError::Friction { .. } => error.into(),
     })

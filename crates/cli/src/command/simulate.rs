@@ -16,6 +16,7 @@ use hydrostat_files::{
 use super::motion_output::{Ending, MotionOutput, Told};
 use super::motion_text;
 use super::moving::Moving;
+use super::wrong_option;
 use crate::args::{MotionFormat, ShapeTimes, SimulateArgs, StationAt};
 use crate::progress::Progress;
 use crate::request::WrongRequest;
@@ -311,10 +312,7 @@ fn draw(args: &SimulateArgs, arm: &Arm, frames: &[MotionFrame]) -> anyhow::Resul
 /// An error of the motion in terms of the command's options.
 pub(super) fn refused(error: MotionError) -> anyhow::Error {
     match error {
-        MotionError::Option { option, value, expected } => {
-            let message = format!("--{option}: expected a number {expected}, found {value}");
-            anyhow::Error::new(error).context(message)
-        }
+        MotionError::Option { option, value, expected } => wrong_option(option, value, expected, error),
         MotionError::State { ref reason } => {
             let message = format!("--from: the earlier motion does not fit: {reason}");
             anyhow::Error::new(error).context(message)

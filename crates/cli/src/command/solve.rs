@@ -6,7 +6,7 @@ use hydrostat::{
 use hydrostat_figures::{arm_figure, last_good_note};
 use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, stations_csv};
 
-use super::Advised;
+use super::{Advised, wrong_option};
 use super::slip::slip;
 use super::summary::summary;
 use crate::args::{Format, SolveArgs};
@@ -20,10 +20,7 @@ pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
     }
     let options = Options { tol: args.tol, snaps: args.snaps.bounds() };
     let mut solver = Solver::new(&arm, options).map_err(|error| match error {
-        SolveError::Option { option, value, expected } => {
-            let message = format!("--{option}: expected a number {expected}, found {value}");
-            anyhow::Error::new(error).context(message)
-        }
+        SolveError::Option { option, value, expected } => wrong_option(option, value, expected, error),
         other => other.into(),
     })?;
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];

@@ -10,7 +10,7 @@ use hydrostat::{
 use hydrostat_figures::{last_good_note, spatial_arm_figure};
 use hydrostat_files::{Note, SpatialFailureDocument, SpatialSolutionDocument, number, spatial_stations_csv};
 
-use super::Advised;
+use super::{Advised, wrong_option};
 use super::slip::slip;
 use super::summary::{cable_rows, signed, stability_in_words, work};
 use crate::args::{Format, SolveArgs};
@@ -18,7 +18,11 @@ use crate::output;
 use crate::request;
 
 pub(super) fn run(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
-    let mut solver = SpatialSolver::new(arm, Options { tol: args.tol, snaps: args.snaps.bounds() })?;
+    let options = Options { tol: args.tol, snaps: args.snaps.bounds() };
+    let mut solver = SpatialSolver::new(arm, options).map_err(|error| match error {
+        SpatialError::Option { option, value, expected } => wrong_option(option, value, expected, error),
+        other => other.into(),
+    })?;
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;

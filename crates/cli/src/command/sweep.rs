@@ -4,7 +4,7 @@ use anyhow::Context as _;
 use hydrostat::SolveError;
 use hydrostat_sweep::{Plan, Sample, Summary, Sweep, SweepError, SweepOptions, note_beside};
 
-use super::NoAnswer;
+use super::{NoAnswer, wrong_option};
 use crate::args::SweepArgs;
 use crate::rate::{Rate, duration};
 use crate::request::WrongRequest;
@@ -29,8 +29,7 @@ pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
     };
     let sweep = Sweep::new(&file, plan, &options).map_err(|error| match error {
         SweepError::Option(SolveError::Option { option, value, expected }) => {
-            let message = format!("--{option}: expected a number {expected}, found {value}");
-            anyhow::Error::new(error).context(message)
+            wrong_option(option, value, expected, error)
         }
         other => other.into(),
     })?;

@@ -193,3 +193,12 @@ fn equilibria_in_space_are_listed_and_drawn() {
     assert!(table.starts_with("cable_0_tension_N,complete,number,tip_x_m,tip_y_m,tip_z_m,"), "{table}");
     assert!(table.lines().count() >= 3);
 }
+
+/// The message named the option as the library has it, `tol`.
+#[test]
+fn a_wrong_tolerance_is_named_as_on_the_command_line_in_space_too() {
+    for arm in ["silicone", "silicone-spatial"] {
+        let message = refused(&["solve", arm, "--tol", "1"]);
+        assert!(message.contains("--tol: expected a number in [1e-12, 1e-2], found 1"), "{message}");
+    }
+}
