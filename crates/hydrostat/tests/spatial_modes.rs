@@ -121,13 +121,14 @@ fn an_arm_bent_in_space_comes_to_rest_as_its_modes_say() {
     arm.dynamics.relaxation_time = 2.7e-3;
     let all = arm.modes_in_space(8, 12).unwrap();
     assert!(all.is_stable());
-    let release = inputs(&[("tip.force[1]", Course::step(1e-5, arm.tip.force[1], 0.0))]);
-    let every = 0.125;
-    let rows = motion(&arm, release, MotionOptions { elements: Some(12), ..options(1e-8) }, 2.5, every);
+    let release = inputs(&[("tip.force[1]", Course::step(1e-4, arm.tip.force[1], 0.0))]);
+    let every = 0.25;
+    let rows = motion(&arm, release, MotionOptions { elements: Some(12), ..options(1e-8) }, 5.0, every);
     let moved = |pair: &[SpatialInstant]| {
         let [from, to] = [&pair[0].tip, &pair[1].tip];
         [to.x - from.x, to.y - from.y, to.z - from.z]
     };
+    // From 2 s on, when faster ones are over.
     let ways: Vec<[f64; 3]> = rows.windows(2).skip(8).map(moved).collect();
     // d(t + 2 h) = (p + q) d(t + h) - p q d(t) with p, q the decays in h = 2 rows, by least squares.
     let (mut matrix, mut right) = ([[0.0; 2]; 2], [0.0; 2]);
@@ -150,7 +151,6 @@ fn an_arm_bent_in_space_comes_to_rest_as_its_modes_say() {
     slow.sort_by(|a, b| b.total_cmp(a));
     for (found, want) in [0.5 * sum + root, 0.5 * sum - root].into_iter().zip(slow) {
         let found = found.ln() / (2.0 * every);
-        eprintln!("rate {found} by the motion, {want} by the mode");
-        assert!((found / want - 1.0).abs() < 0.03, "{found} {want}");
+        assert!((found / want - 1.0).abs() < 3e-3, "{found} {want}");
     }
 }
