@@ -129,7 +129,8 @@ pub(super) fn follow_on(
     Ok(travelled)
 }
 
-/// Leads the engine, whose equilibrium is near a limit point of a phase, to that point; the fraction of the loads there.
+/// Leads the engine, whose equilibrium is near a limit point of a phase, to that point; the fraction of the loads
+/// there.
 pub(crate) fn slide_to_limit(engine: &mut Engine, phase: Phase) -> Option<f64> {
     let [loads, tension] = engine.equations.fraction;
     let from = if phase == Phase::Loads { loads } else { tension };
