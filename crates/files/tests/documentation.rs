@@ -203,7 +203,7 @@ fn its_names_are_those_of_the_results() {
     assert!(blocks("csv")[4].starts_with(&motion), "{}", blocks("csv")[4]);
     assert_eq!(blocks("csv")[5..7], [loading_header(&arm), over_header()]);
     let varied: Varied = "flow.speed=0:1".parse().unwrap();
-    assert_eq!(blocks("csv")[7], modes_over_csv::<hydrostat::Tip>(&varied, &[]));
+    assert_eq!(blocks("csv")[7], modes_over_csv::<[f64; 3]>(&varied, &[]));
     assert_eq!(blocks("csv")[8..], reached);
     let middle = Target { s: Some(0.1), ..Target::tip(0.09, 0.0) };
     let columns = reach_csv(1, &arm.reach(&[middle], &ReachOptions::default()).unwrap());

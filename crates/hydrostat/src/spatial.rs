@@ -17,7 +17,7 @@ mod kinks;
 mod lengths;
 pub(crate) mod loads;
 mod mesh;
-mod path;
+pub(crate) mod path;
 mod paths;
 mod place;
 mod places;

@@ -113,7 +113,6 @@ fn steps_see_an_arm_that_only_twists() {
         let own = MotionOptions { elements: Some(8), ..options(tol) };
         let rows = motion(&arm, load.clone(), own, 5.0 * period, 0.1 * period);
         let off = rows.iter().zip(&exact).map(|(a, b)| (twist(a) - twist(b)).abs()).fold(0.0, f64::max);
-        eprintln!("tol {tol}: twist off by {off:.2e} rad, {:.2e} L at the surface", r * off);
         assert!(r * off < tol, "{tol}: {off:.2e}");
         assert!(rows.iter().all(|at| apart(place(&at.tip), [1.0, 0.0, 0.0]) < 1e-9));
     }

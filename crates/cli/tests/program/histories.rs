@@ -33,8 +33,18 @@ fn snaps_that_cannot_be_followed_are_refused_by_name() {
     assert!(err.contains("the arm snaps at") && err.contains("`cable[0].friction`"), "{err}");
     let err = refused(&against("solve", &["--after-snap", "--follow-snaps"]));
     assert!(err.contains("--follow-snaps"), "{err}");
-    let err = refused(&["solve", "silicone-spatial", "--after-snap"]);
-    assert!(err.contains("--after-snap"), "{err}");
+}
+
+#[test]
+fn a_snap_in_space_says_how_far_and_how_long() {
+    let run = solved(&against("solve", &["--set", "arm.space=spatial", "--after-snap", "--format", "json"]));
+    assert!(run.err.contains("the arm snaps at") && run.err.contains("it rests after"), "{}", run.err);
+    let document = json(&run.out);
+    let snap = &document["snaps"][0];
+    assert!((snap["load_fraction"].as_f64().unwrap() - 0.6402).abs() < 2e-3, "{snap}");
+    assert!((snap["distance"].as_f64().unwrap() - 0.372).abs() < 2e-3, "{snap}");
+    assert!((snap["duration"].as_f64().unwrap() - 6.24).abs() < 0.3, "{snap}");
+    assert_eq!(document["stable"], true);
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use hydrostat_bvp::{Lanes, Real, each};
 
-/// Stiffness and reference strains of a section whose strains e change at the rates cv e + `rates`: C (e - e_o + t_v e.)
-/// = C (1 + t_v cv) (e - (e_o - t_v rates)/(1 + t_v cv)), with t_v = `time` (s) and cv in 1/s.
+/// Stiffness and reference strains of a section whose strains e change at the rates cv e + `rates`:
+/// C (e - e_o + t_v e.) = C (1 + t_v cv) (e - (e_o - t_v rates)/(1 + t_v cv)), with t_v = `time` (s) and cv in 1/s.
 #[inline(always)]
 pub(super) fn stiffened<const K: usize>(
     [value, reference]: [&[Lanes; K]; 2],

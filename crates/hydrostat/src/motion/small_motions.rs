@@ -1,8 +1,8 @@
 //! The rates of small motions about an equilibrium, in the plane or in space.
 //!
-//! About rest the equations of a stage are, with u = (places, turns) and the strains e at the stages of the mesh, and G
-//! what loads and what changes of the section law there move, by the tangent of the statics (beta', ends, cables, stream
-//! and follower loads in it),
+//! About rest the equations of a stage are, with u = (places, turns) and the strains e at the stages of the mesh, and
+//! G what loads and what changes of the section law there move, by the tangent of the statics (beta', ends, cables,
+//! stream and follower loads in it),
 //!
 //! ```text
 //! (u, e) = G (D lambda + M lambda^2) (u, e)

@@ -257,7 +257,7 @@ impl Engine {
     }
 
     /// Where the tip is, after Newton has converged.
-    pub(super) fn read_tip(&self) -> Option<SpatialTip> {
+    pub(crate) fn read_tip(&self) -> Option<SpatialTip> {
         let at = self.section_in(self.solution.mesh.elements() - 1, 1.0).ok()?;
         let length = self.equations.units.length;
         let base = self.base();

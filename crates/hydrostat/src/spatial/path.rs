@@ -27,6 +27,9 @@ const MOST: usize = 400;
 const BEYOND: usize = 200;
 /// Steps shorter than this go round a corner of the path, which the load's kinks make.
 const CORNER: f64 = 1e-5;
+/// The first step of arclength, and the most of them, from an equilibrium near a limit point to that.
+const NEARBY: f64 = 1e-3;
+const MOST_NEARBY: usize = 40;
 /// Largest correction (rad) of a prediction that leads to the same branch.
 const MOVED: f64 = 0.15;
 /// The least change of rotation (rad) that counts as much as the whole load.
@@ -124,6 +127,16 @@ pub(super) fn follow_on(
     follow_phases(engine, phases, fraction, bounds, &mut travelled)
         .map_err(|verdict| Stopped { verdict, snaps: travelled.snaps.clone() })?;
     Ok(travelled)
+}
+
+/// Leads the engine, whose equilibrium is near a limit point of a phase, to that point; the fraction of the loads
+/// there.
+pub(crate) fn slide_to_limit(engine: &mut Engine, phase: Phase) -> Option<f64> {
+    let [loads, tension] = engine.equations.fraction;
+    let from = if phase == Phase::Loads { loads } else { tension };
+    let mut travelled = Travelled::default();
+    let bounds = SnapBounds::NONE;
+    Ramp { engine, phase, scale: 1.0, trouble: None, travelled: &mut travelled, bounds }.limit(from)
 }
 
 /// Follows phases, the first one from a fraction of its loads.
@@ -253,6 +266,28 @@ impl Ramp<'_, '_> {
                 }
             }
         }
+    }
+
+    /// From the engine's equilibrium at a fraction to the limit point near it, which is on the way of rising loads on
+    /// either side of it; the fraction there.
+    fn limit(&mut self, from: f64) -> Option<f64> {
+        let mut here = self.start(from).ok()?;
+        self.begin(&mut here);
+        let mut step = NEARBY;
+        for _ in 0..MOST_NEARBY {
+            match self.advance(&here, step) {
+                Ok(next) if next.rise < 0.0 => {
+                    let share = here.rise / (here.rise - next.rise);
+                    return self.advance(&here, share * step).ok().map(|limit| limit.fraction);
+                }
+                Ok(next) => {
+                    here = next;
+                    step *= 1.5;
+                }
+                Err(_) => step *= 0.4,
+            }
+        }
+        None
     }
 
     /// The point that the phase starts from.

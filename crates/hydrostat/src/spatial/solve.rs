@@ -270,8 +270,8 @@ impl Engine {
         self.allowed = usize::MAX;
     }
 
-    /// The equilibrium under the engine's loads near a shape, if `accepted` makes something of it: else the engine stays
-    /// as it is.
+    /// The equilibrium under the engine's loads near a shape, if `accepted` makes something of it: else the engine
+    /// stays as it is.
     pub(crate) fn settle_near<T>(
         &mut self,
         shape: Guess,

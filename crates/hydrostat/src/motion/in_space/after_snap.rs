@@ -13,6 +13,7 @@ use crate::motion::stepper::Stepper;
 use crate::rod::arm::Arm;
 use crate::spatial::engine::Engine;
 use crate::spatial::equations::{FORCE, Guess, L, N};
+use crate::spatial::path::slide_to_limit;
 use crate::spatial::{NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialSnap, SpatialSolver};
 use crate::statics::snap::SnapBounds;
 use crate::statics::solve::Options;
@@ -84,21 +85,26 @@ fn follow(
     no: &NoSpatialEquilibrium,
     tol: f64,
 ) -> Result<(SpatialSnapMotion, f64), AfterSnapError<SpatialError>> {
-    let (phase, load_fraction) = (no.verdict.phase, no.verdict.load_fraction);
-    let of = |restless| AfterSnapError::of(restless, phase, load_fraction);
-    let past = (load_fraction + PAST).min(1.0);
+    let phase = no.verdict.phase;
     let Some(last_good) = &no.last_good else {
         return Err(AfterSnapError::Solve(SpatialError::NoEquilibrium(Box::new(no.clone()))));
     };
     let engine = solver.engine_mut();
     engine.take_shape_of(last_good);
+    let limit = slide_to_limit(engine, phase).and_then(|fraction| Some((fraction, engine.read_tip()?)));
+    if limit.is_none() {
+        engine.take_shape_of(last_good);
+    }
+    let (load_fraction, before) = limit.unwrap_or((no.verdict.load_fraction, last_good.tip()));
+    let of = |restless| AfterSnapError::of(restless, phase, load_fraction);
+    let past = (load_fraction + PAST).min(1.0);
     engine.equations.set_phase(phase, past);
     let arm = engine.equations.arm_at_fraction();
     can_rest(&arm).map_err(|error| of(Restless::Motion(error)))?;
     let stepper = let_go(engine, &arm);
     let rested = come_to_rest(stepper, |stepper| look(engine, stepper, tol));
     let (configuration, duration) = rested.map_err(of)?;
-    let snap = SpatialSnap { phase, load_fraction, before: last_good.tip(), after: configuration.tip() };
+    let snap = SpatialSnap { phase, load_fraction, before, after: configuration.tip() };
     Ok((SpatialSnapMotion { snap, duration }, past))
 }
 
