@@ -196,12 +196,17 @@ fn half_widths(arm: &Arm, s: &[f64], beta: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::Problem;
     use hydrostat_files::{ArmFile, shipped};
 
     #[test]
     fn surfaces_and_cables_follow_from_stations_and_drawing() {
         for name in shipped::names() {
             let mut arm = ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap();
+            if arm.space.is_some() {
+                cables_in_space_follow(&arm);
+                continue;
+            }
             arm.cables[0].tension = 0.2 * arm.cables[0].max_tension.unwrap();
             let mut shape = arm.solve().unwrap();
             shape.stations = shape.resampled(37);
@@ -221,6 +226,21 @@ mod tests {
                         assert!(near(point, place(st.beta[i] * y)));
                     }
                 }
+            }
+        }
+    }
+
+    fn cables_in_space_follow(arm: &Arm) {
+        let mut shape = SpatialConfiguration::solve(arm, 1e-8).map_err(Problem::from).unwrap();
+        shape.stations = shape.resampled(23);
+        let drawing = Drawing::in_space(&shape);
+        let (st, along_c) = (&shape.stations, drawing.offsets_c.unwrap());
+        for (c, offsets) in drawing.offsets.iter().enumerate() {
+            for (i, y) in offsets.iter().enumerate() {
+                let own = shape.cable_point(c, st.s[i]).unwrap();
+                let centre = [st.x[i], st.y[i], st.z[i]];
+                let drawn = [0, 1, 2].map(|k| centre[k] + st.beta[i] * (y * st.b[i][k] + along_c[c][i] * st.c[i][k]));
+                assert!(own.iter().zip(drawn).all(|(a, b)| (a - b).abs() < 1e-12), "{own:?} {drawn:?}");
             }
         }
     }

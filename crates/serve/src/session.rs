@@ -311,6 +311,26 @@ mod tests {
     }
 
     #[test]
+    fn a_tip_pulled_in_space_is_where_a_solve_at_its_tensions_puts_it() {
+        let mut memory = Memory::default();
+        let first = reply(&mut memory, r#"{"id": 1, "arm": "silicone-spatial", "stations": 11}"#);
+        let tip = ["x", "y", "z"].map(|key| first["answer"]["tip"][key].as_f64().unwrap());
+        assert_eq!(first["ghost"]["a"].as_array().unwrap().len(), 11);
+        assert_eq!(first["drawing"]["offsets_c"].as_array().unwrap().len(), 3);
+        let target = [tip[0] - 0.002, tip[1] + 0.01, tip[2] - 0.004];
+        let pulled = reply(&mut memory, &format!(r#"{{"id": 2, "target": {target:?}}}"#));
+        assert_eq!(pulled["pulled"]["elsewhere"], false, "{}", pulled["pulled"]);
+        let off: f64 = ["x", "y", "z"]
+            .iter()
+            .zip(target)
+            .map(|(key, to)| (pulled["answer"]["tip"][key].as_f64().unwrap() - to).powi(2))
+            .sum();
+        let distance = pulled["pulled"]["distance"].as_f64().unwrap();
+        assert!((off.sqrt() - distance).abs() < 1e-6, "{} against {distance}", off.sqrt());
+        assert!(distance < 0.002, "{distance}");
+    }
+
+    #[test]
     fn the_ghost_comes_once_and_again_for_another_arm() {
         let mut memory = Memory::default();
         assert!(reply(&mut memory, r#"{"id": 1, "arm": "paper"}"#)["ghost"].is_object());
