@@ -10,15 +10,6 @@
 /** e1 to the right, e2 up: that of every arm in the plane. @type {Camera} */
 export const FRONT = { right: [1, 0, 0], up: [0, 1, 0], back: [0, 0, 1] };
 
-/** Views to choose, by name. @type {Record<string, Camera>} */
-export const SIDES = {
-  xy: FRONT,
-  xz: { right: [1, 0, 0], up: [0, 0, 1], back: [0, -1, 0] },
-  yz: { right: [0, 1, 0], up: [0, 0, 1], back: [1, 0, 0] },
-  // From where the drawings of the program have their eye.
-  "3D": towards([0.4, 0.5, 1]),
-};
-
 /** @param {Place} a @param {Place} b */
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
@@ -40,6 +31,15 @@ function towards(from) {
   const right = unit(cross([0, 1, 0], back));
   return { right, up: cross(back, right), back };
 }
+
+/** Views to choose, by name. @type {Record<string, Camera>} */
+export const SIDES = {
+  xy: FRONT,
+  xz: { right: [1, 0, 0], up: [0, 0, 1], back: [0, -1, 0] },
+  yz: { right: [0, 1, 0], up: [0, 0, 1], back: [1, 0, 0] },
+  // From where the drawings of the program have their eye.
+  "3D": towards([0.4, 0.5, 1]),
+};
 
 /** The direction that a file gives, by an angle (deg) or by its parts. @param {import("./types").Direction} direction @returns {Place} */
 export function directionOf(direction) {
