@@ -45,7 +45,9 @@ export const SIDES = {
 export function directionOf(direction) {
   if (typeof direction !== "number") return unit(direction);
   const psi = (direction * Math.PI) / 180;
-  return [Math.cos(psi), Math.sin(psi), 0];
+  // What rounding leaves of a right angle is nothing.
+  const clean = (/** @type {number} */ v) => (Math.abs(v) < 1e-12 ? 0 : v);
+  return [clean(Math.cos(psi)), clean(Math.sin(psi)), 0];
 }
 
 /** @param {Camera} camera @param {Place} place @returns {Point} */
