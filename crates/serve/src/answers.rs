@@ -59,7 +59,7 @@ struct ShippedOut {
 
 /// The arms that can be chosen; first the one that the program was started with, if it is none of the shipped.
 pub(crate) fn arms(given: Option<&Given>) -> Answer {
-    let shipped = shipped::names().map(|name| ShippedOut {
+    let shipped = shipped::all_names().map(|name| ShippedOut {
         name: name.to_owned(),
         description: shipped::description(name).unwrap_or_default().to_owned(),
         toml: shipped::get(name).unwrap_or_default().to_owned(),

@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn surfaces_and_cables_follow_from_stations_and_drawing() {
-        for name in shipped::names() {
+        for name in shipped::all_names() {
             let mut arm = ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap();
             if arm.space.is_some() {
                 cables_in_space_follow(&arm);
