@@ -1,9 +1,7 @@
 //! What a drawing needs beside the stations of an answer, at the same stations.
 
-use hydrostat::{Arm, Cable, Configuration, SpatialConfiguration};
+use hydrostat::{Arm, Cable, Configuration, Options, Solver, SpatialConfiguration, SpatialSolver};
 use serde::Serialize;
-
-use crate::shape::Shape;
 
 /// Radii and cables of the straight arm at the stations of an answer: with x, y, theta and beta there they give the surface,
 /// r +- beta R b, and the cables, r + y beta b.
@@ -183,9 +181,11 @@ impl Silhouette {
         const TOL: f64 = 1e-6;
         let bare = arm.unloaded();
         if arm.space.is_some() {
-            return SpatialConfiguration::solve(&bare, TOL).ok().map(|shape| Self::in_space(&shape, count));
+            let shape = SpatialSolver::new(&bare, Options::with_tol(TOL)).and_then(|mut solver| solver.solve());
+            return shape.ok().map(|shape| Self::in_space(&shape, count));
         }
-        Configuration::solve(&bare, TOL).ok().map(|shape| Self::new(&shape, count))
+        let shape = Solver::new(&bare, Options::with_tol(TOL)).and_then(|mut solver| solver.solve());
+        shape.ok().map(|shape| Self::new(&shape, count))
     }
 }
 
@@ -196,7 +196,6 @@ fn half_widths(arm: &Arm, s: &[f64], beta: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::Problem;
     use hydrostat_files::{ArmFile, shipped};
 
     #[test]
@@ -231,7 +230,7 @@ mod tests {
     }
 
     fn cables_in_space_follow(arm: &Arm) {
-        let mut shape = SpatialConfiguration::solve(arm, 1e-8).map_err(Problem::from).unwrap();
+        let mut shape = SpatialSolver::new(arm, Options::default()).unwrap().solve().unwrap();
         shape.stations = shape.resampled(23);
         let drawing = Drawing::in_space(&shape);
         let (st, along_c) = (&shape.stations, drawing.offsets_c.unwrap());

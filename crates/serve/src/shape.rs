@@ -77,8 +77,6 @@ pub(crate) trait Shape: Sized {
     type Failure;
     /// One place of it.
     type Place;
-    /// Why there is none.
-    type Error: Into<Problem>;
     /// All that were found.
     type All;
 
@@ -130,7 +128,6 @@ pub(crate) trait Shape: Sized {
 impl Shape for Configuration {
     type Failure = NoEquilibrium;
     type Place = Station;
-    type Error = SolveError;
     type All = Equilibria;
 
     fn solve(arm: &Arm, tol: f64) -> Result<Self, Unsolved<NoEquilibrium>> {
@@ -272,7 +269,6 @@ impl Shape for Configuration {
 impl Shape for SpatialConfiguration {
     type Failure = NoSpatialEquilibrium;
     type Place = SpatialStation;
-    type Error = SpatialError;
     type All = SpatialEquilibria;
 
     fn solve(arm: &Arm, tol: f64) -> Result<Self, Unsolved<NoSpatialEquilibrium>> {
