@@ -231,7 +231,7 @@ class Fit(Result):
         return Figure(self._inner.figure())
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the fitted shapes with the measured places on one axis, of an arm in the plane. Needs matplotlib."""
+        """Draw the fitted shapes with the measured places on one axis, of an arm in space on one in three dimensions. Needs matplotlib."""
         from hydrostat.plotting import plot_fit
 
         return plot_fit(self, ax)

@@ -261,29 +261,33 @@ def plot_fit(fit: Fit, ax: Axes | None) -> Axes:
     import matplotlib.pyplot as plt
 
     if fit.arm.is_spatial:
-        raise ValueError("plot: draws fits in the plane; figure() has three views of a fit in space")
+        from hydrostat.plotting_3d import plot_fit_in_space
+
+        return plot_fit_in_space(fit, ax)
     ax = _new_axes(ax)
     per_m = UNITS[unit_of(ax, None)]
     cases = fit.residuals["case"]
     colors = plt.colormaps["viridis"](np.linspace(0.15, 0.85, max(len(fit.solutions), 2)))
     for (name, solution), color in zip(fit.solutions.items(), colors, strict=False):
         plot_shape(solution, ax, color=color, sections=0, cables=False, flow=False, label=name)
-        places = _measured_places(fit, cases == name)
+        places = measured_places(fit, cases == name, "xy")
         ax.plot(per_m * places[:, 0], per_m * places[:, 1], "+", color=color, markersize=9, markeredgewidth=1.5, zorder=6)
     ax.legend(frameon=False, fontsize=9)
     return ax
 
 
-def _measured_places(fit: Fit, own: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Where both coordinates of a place were measured, m."""
+def measured_places(fit: Fit, own: NDArray[np.bool_], axes: str) -> NDArray[np.float64]:
+    """Where all of these coordinates of a marker were measured, m."""
     columns = fit.residuals
+    markers = np.stack([np.nan_to_num(columns[name]) for name in ("s", "offset_a", "offset_b", "offset_c")], axis=1)
 
-    def measured(name: str) -> dict[float, float]:
+    def measured(name: str) -> dict[tuple[float, ...], float]:
         rows = own & (columns["quantity"] == name)
-        return dict(zip(columns["s"][rows].tolist(), columns["measured"][rows].tolist(), strict=True))
+        return dict(zip(map(tuple, markers[rows].tolist()), columns["measured"][rows].tolist(), strict=True))
 
-    x, y = measured("x"), measured("y")
-    return np.array([(x[s], y[s]) for s in x if s in y]).reshape(-1, 2)
+    along = [measured(name) for name in axes]
+    whole = [marker for marker in along[0] if all(marker in one for one in along)]
+    return np.array([[one[marker] for one in along] for marker in whole]).reshape(-1, len(axes))
 
 
 def plot_manipulability(found: Sensitivities, ax: Axes | None, effort: float | None) -> Axes:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hydrostat.plotting import INK, MM, SLACK, TAUT, UNITS, WATER, unit_of
+from hydrostat.plotting import INK, MM, SLACK, TAUT, UNITS, WATER, measured_places, unit_of
 
 if TYPE_CHECKING:
+    from hydrostat.identification import Fit
     from hydrostat.paths import Equilibria
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -91,8 +92,30 @@ def plot_equilibria_in_space(equilibria: Equilibria, ax: Axes | None) -> Axes:
         style = "-" if state == "stable" else "--"
         drawn.plot(*points, linestyle=style, color=f"C{index % 10}", linewidth=2.0, label=f"{index + 1}: {state or 'not established'}")
         drawn.text(*points[:, -1], f" {index + 1}", size=9)
+    return _finished(drawn, name)
+
+
+def plot_fit_in_space(fit: Fit, ax: Axes | None) -> Axes:
+    """See `Fit.plot`: centrelines, and crosses where markers were measured."""
+    import matplotlib.pyplot as plt
+
+    drawn = _new_axes(ax)
+    name = unit_of(drawn, None)
+    per_m = UNITS[name]
+    cases = fit.residuals["case"]
+    colors = plt.colormaps["viridis"](np.linspace(0.15, 0.85, max(len(fit.solutions), 2)))
+    for (case, solution), color in zip(fit.solutions.items(), colors, strict=False):
+        line: Any = solution.at(np.linspace(0.0, solution.arm.length, _POINTS))
+        drawn.plot(*(per_m * np.array([line.x, line.y, line.z])), color=color, linewidth=2.0, label=case)
+        places = per_m * measured_places(fit, cases == case, "xyz")
+        drawn.plot(*places.T, "+", color=color, markersize=9, markeredgewidth=1.5)
+    return _finished(drawn, name)
+
+
+def _finished(drawn: Any, unit: str) -> Axes:
+    """With labels and a legend, seen as drawings of one arm are."""
     for axis in "xyz":
-        getattr(drawn, f"set_{axis}label")(f"{axis} ({name})")
+        getattr(drawn, f"set_{axis}label")(f"{axis} ({unit})")
     drawn.view_init(elev=25.0, azim=25.0, vertical_axis="y")
     drawn.set_aspect("equal")
     drawn.legend(frameon=False, fontsize=9)

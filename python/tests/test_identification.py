@@ -214,5 +214,8 @@ def test_an_arm_in_space_with_markers_beside_it() -> None:
     assert set(fit.residuals["quantity"]) == {"x", "y", "z"} and fit.residuals["offset_c"].min() == -0.02
     assert all(isinstance(shape, hs.SpatialSolution) for shape in fit.solutions.values())
     assert fit.arm.is_spatial and fit.figure().svg().startswith("<svg")
-    with pytest.raises(ValueError, match="plane"):
-        fit.plot()
+    axis: Any = fit.plot()
+    assert axis.name == "3d"
+    # A centreline and the measured places of each load case.
+    assert len(axis.lines) == 2 * len(fit.solutions)
+    assert [len(line.get_data_3d()[0]) for line in axis.lines[1::2]] == [2, 2, 2]

@@ -67,5 +67,5 @@ pub use scene::Scene;
 pub use shaded::{Coloured, ColouredColumn};
 pub use shapes::{equilibria_figure, path_shapes_figure};
 pub use spatial_figure::spatial_arm_figure;
-pub use spatial_shapes::spatial_equilibria_figure;
+pub use spatial_shapes::{spatial_equilibria_figure, spatial_path_shapes_figure};
 pub use sweep::{KeyValues, curve_figure, map_figure, spatial_workspace_figure, value_text, workspace_figure};

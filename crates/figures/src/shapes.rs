@@ -9,7 +9,7 @@ use crate::legend::{Legend, Sample};
 use crate::outline::{Outline, Style, bounds};
 use crate::page::{MARGIN, Page};
 use crate::palette::{Color, INK, ordered, series};
-use crate::picked::{Picked, picked};
+use crate::picked::{Flat, Picked, picked};
 use crate::placement::Occupied;
 use crate::scene::{Scene, Stroke};
 use crate::surroundings::Surroundings;
@@ -47,20 +47,24 @@ pub fn path_shapes_figure(path: &Path, over: &Abscissa, title: &str, page: &Page
     let members: Vec<Member<'_>> = picked
         .into_iter()
         .enumerate()
-        .map(|(index, Picked { outline, arm, value, theta, look })| {
+        .map(|(index, Picked { drawn: Flat { outline, theta }, arm, value, look })| {
             let (color, label) = (ordered(index, count), Label::plain(over.text(value)));
             Member { outline, arm, theta, look, color, label }
         })
         .collect();
+    let says = format!("{}: shapes along the path", page.title_or(title));
+    draw(says, title, &members, marginal(path), Some(path.parameter), page)
+}
+
+/// What shapes without stability are, along a path.
+pub(crate) fn marginal<C>(path: &Path<C>) -> &'static str {
     let has = |event: Event| path.branches.iter().flat_map(|b| &b.points).any(|p| p.event == Some(event));
-    let marginal = match (has(Event::LimitPoint), has(Event::Bifurcation)) {
+    match (has(Event::LimitPoint), has(Event::Bifurcation)) {
         (true, true) => "limit point or bifurcation",
         (true, false) => "limit point",
         (false, true) => "bifurcation",
         (false, false) => Look::Unknown.words(),
-    };
-    let says = format!("{}: shapes along the path", page.title_or(title));
-    draw(says, title, &members, marginal, Some(path.parameter), page)
+    }
 }
 
 /// All equilibria under the same loads, numbered from 1: stable ones solid and filled, unstable ones dashed.

@@ -1,15 +1,16 @@
-//! Several equilibria of one arm in space: their centrelines in three views.
+//! Several shapes of one arm in space: their centrelines in three views.
 
-use hydrostat::{Equilibrium, SpatialConfiguration, SpatialEquilibria};
+use hydrostat::{Equilibrium, Path, SpatialConfiguration, SpatialEquilibria};
 
 use crate::axes::BELOW;
-use crate::chart::Look;
+use crate::chart::{Abscissa, Look};
 use crate::font::Label;
 use crate::page::{MARGIN, Page};
-use crate::palette::{Color, series};
+use crate::palette::{Color, ordered, series};
+use crate::picked::{Picked, picked};
 use crate::placement::Occupied;
 use crate::scene::{Scene, Stroke};
-use crate::shapes::{legend, line_of};
+use crate::shapes::{legend, line_of, marginal};
 use crate::three_views::{ThreeViews, centreline};
 use crate::tip_labels::{TipLabel, draw_tip_labels};
 use crate::view::Vector;
@@ -52,11 +53,47 @@ impl Member {
 /// ```
 pub fn spatial_equilibria_figure(all: &SpatialEquilibria, title: &str, page: &Page) -> Scene {
     let members: Vec<Member> = all.found.iter().enumerate().map(|(k, one)| Member::new(k + 1, one)).collect();
-    let legend = legend(members.iter().map(|m| m.look), Look::Unknown.words(), page);
+    let says = format!("{}: equilibria in space", page.title_or(title));
+    draw(says, title, &members, Look::Unknown.words(), page)
+}
+
+/// [`path_shapes_figure`](crate::path_shapes_figure) of an arm in space: centrelines in three views.
+///
+/// ```
+/// use hydrostat::{Arm, Cable, Parameter, PathOptions, Profile, Space};
+/// use hydrostat_figures::{Abscissa, Page, spatial_path_shapes_figure};
+///
+/// let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+/// arm.cables.push(Cable::new("aside", Profile::linear(0.005, 0.001)).at_angle(1.0));
+/// arm.space = Some(Space::default());
+/// let path = arm.path_in_space(Parameter::Tension(0), [0.0, 0.2], &PathOptions::default()).unwrap();
+/// let over = Abscissa { name: "tension".to_owned(), unit: "mN".to_owned(), per_si: 1e3 };
+/// assert!(spatial_path_shapes_figure(&path, &over, "a cone", &Page::default()).texts().any(|text| text == "200 mN"));
+/// ```
+pub fn spatial_path_shapes_figure(
+    path: &Path<SpatialConfiguration>,
+    over: &Abscissa,
+    title: &str,
+    page: &Page,
+) -> Scene {
+    let picked = picked(path, over.per_si);
+    let count = picked.len();
+    let member = |(index, Picked { drawn, value, look, .. }): (usize, Picked<'_, SpatialConfiguration>)| Member {
+        points: drawn,
+        look,
+        color: ordered(index, count),
+        label: Label::plain(over.text(value)),
+    };
+    let members: Vec<Member> = picked.into_iter().enumerate().map(member).collect();
+    let says = format!("{}: shapes along the path", page.title_or(title));
+    draw(says, title, &members, marginal(path), page)
+}
+
+fn draw(says: String, title: &str, members: &[Member], unknown: &str, page: &Page) -> Scene {
+    let legend = legend(members.iter().map(|m| m.look), unknown, page);
     let heading = page.heading(title, None);
     let placed = ThreeViews::around(members.iter().flat_map(|m| m.points.iter().copied()), PAD, page)
         .placed(heading.bottom + legend.height() + 6.0);
-    let says = format!("{}: equilibria in space", page.title_or(title));
     let mut scene = Scene::new(page.width(), placed.bottom + BELOW + MARGIN, says);
     heading.draw(&mut scene);
     legend.draw(&mut scene, heading.bottom);
@@ -64,7 +101,7 @@ pub fn spatial_equilibria_figure(all: &SpatialEquilibria, title: &str, page: &Pa
     for (axes, view) in &placed.views {
         let mut taken = Occupied::new(axes.frame.grown(-3.0));
         let mut labels = Vec::new();
-        for Member { points, look, color, label } in &members {
+        for Member { points, look, color, label } in members {
             let line: Vec<_> = points.iter().map(|p| axes.at(view.place(p))).collect();
             let stroke = line_of(*look, *color);
             scene.line(&line, Stroke { width: WIDER * stroke.width, ..stroke });

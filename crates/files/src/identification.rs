@@ -236,23 +236,43 @@ impl IdentificationDocument {
 
 /// Every measured number beside the fit, one row each.
 pub fn residuals_csv(cases: &[Case], fit: &Fit) -> String {
-    let names = ["case", "quantity", "s_m", "unit", "measured", "sd", "fitted", "residual_sd", "weight", "row"];
-    let mut out = Rows::new(&names.map(str::to_owned));
+    let mut out = Rows::new(&COLUMNS.map(str::to_owned));
     for one in &fit.residuals {
-        let quantity = one.measurement.quantity;
-        let case = cases.get(one.case).map(|case| case.name.as_str()).unwrap_or_default();
-        out.row(&[
-            case.to_owned(),
-            quantity.name(),
-            quantity.place().map_or_else(String::new, cell),
-            quantity.unit().to_owned(),
-            cell(one.measurement.value),
-            cell(one.measurement.sd),
-            cell(one.fitted),
-            cell(one.standardised),
-            cell(one.weight),
-            if one.measurement.row == 0 { String::new() } else { one.measurement.row.to_string() },
-        ]);
+        out.row(&residual_row(cases, one));
     }
     out.text()
+}
+
+/// [`residuals_csv`] followed by the numbers of load cases that were not fitted, with a column that tells the two apart.
+pub fn residuals_csv_with_predictions(cases: &[Case], fit: &Fit, others: &[Case], predicted: &[Prediction]) -> String {
+    let mut names = COLUMNS.map(str::to_owned).to_vec();
+    names.push("predicted".to_owned());
+    let mut out = Rows::new(&names);
+    let own = fit.residuals.iter().map(|one| (cases, one, false));
+    let of_others = predicted.iter().filter_map(|one| one.found.as_ref().ok()).flat_map(|(residuals, _)| residuals);
+    for (cases, one, was_predicted) in own.chain(of_others.map(|one| (others, one, true))) {
+        let mut row = residual_row(cases, one).to_vec();
+        row.push(was_predicted.to_string());
+        out.row(&row);
+    }
+    out.text()
+}
+
+const COLUMNS: [&str; 10] =
+    ["case", "quantity", "s_m", "unit", "measured", "sd", "fitted", "residual_sd", "weight", "row"];
+
+fn residual_row(cases: &[Case], one: &Residual) -> [String; 10] {
+    let quantity = one.measurement.quantity;
+    [
+        name(cases, one.case),
+        quantity.name(),
+        quantity.place().map_or_else(String::new, cell),
+        quantity.unit().to_owned(),
+        cell(one.measurement.value),
+        cell(one.measurement.sd),
+        cell(one.fitted),
+        cell(one.standardised),
+        cell(one.weight),
+        if one.measurement.row == 0 { String::new() } else { one.measurement.row.to_string() },
+    ]
 }

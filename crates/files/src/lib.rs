@@ -61,7 +61,7 @@ pub use error::{FileError, Place};
 pub use fitted::{FitKey, FitKeyError, PriorKey, bare_unit, fitted};
 pub use followed::{FollowedDocument, followed_csv};
 pub use heads::{head_now, head_of, key_of_head};
-pub use identification::{IdentificationDocument, residuals_csv};
+pub use identification::{IdentificationDocument, residuals_csv, residuals_csv_with_predictions};
 pub use loadings::{LoadingDocument, LoadingRow, RowSnap, loading_csv};
 pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
 pub use measurements_template::measurements_template;

@@ -63,6 +63,11 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     ARMS.iter().map(|arm| arm.name)
 }
 
+/// The names of all, those in space last.
+pub fn all_names() -> impl Iterator<Item = &'static str> {
+    names().chain(spatial_names())
+}
+
 /// The text of an arm's file.
 ///
 /// ```

@@ -1,8 +1,10 @@
-// The drawing: pan, zoom, hover, and the tip that can be pulled.
+// The drawing: pan, zoom, turn, hover, and the tip that can be pulled.
 
-/** @import { Point, Shown } from "./types" */
+/** @import { Place, Point, Shown } from "./types" */
+/** @import { Camera } from "./camera.js" */
 /** @import { Scene, View } from "./paint.js" */
 
+import { FRONT, SIDES, flat, placeAt, turned } from "./camera.js";
 import { boundsOf, nearest } from "./geometry.js";
 import { byId, kept } from "./page.js";
 import { Painter, colours } from "./paint.js";
@@ -12,13 +14,15 @@ const TRAIL = 400;
 
 export class ArmView {
   /**
-   * @param {(target: Point, asked: number) => void} onPull
+   * @param {(target: Place, asked: number) => void} onPull
    * @param {() => void} onRelease
    * @param {(s: number | undefined) => void} onHover
    */
   constructor(onPull, onRelease, onHover) {
     this.canvas = byId("drawing", HTMLCanvasElement);
     this.handle = byId("tip", HTMLButtonElement);
+    /** Views to choose, of an arm in space. */
+    this.sides = byId("sides", HTMLElement);
     /** What to do first, until it was done once. */
     this.hint = byId("hint", HTMLElement);
     this.isNew = kept.get("tip") === null;
@@ -35,7 +39,7 @@ export class ArmView {
       layers: { sections: true, stream: true, gravity: true, layer: true, ghost: true, trail: true, directors: true, contact: false },
     };
     /** @type {View} */
-    this.view = { k: 1000, ox: 0, oy: 0, width: 1, height: 1 };
+    this.view = { k: 1000, ox: 0, oy: 0, width: 1, height: 1, camera: FRONT };
     this.fitted = true;
     this.colour = colours();
     new ResizeObserver(() => this.resize()).observe(this.canvas);
@@ -62,18 +66,48 @@ export class ArmView {
     this.paint();
   }
 
-  /** @param {Shown} shown */
-  show(shown) {
+  /** @param {Omit<Shown, "outline">} answer */
+  show(answer) {
     const first = this.scene.shown === undefined;
+    if (first) this.look(answer.shape.stations.z ? SIDES["3D"] : FRONT);
+    const shown = { ...answer, outline: answer.body(this.view.camera) };
     this.scene.shown = shown;
     const tip = shown.outline.centre[shown.outline.centre.length - 1];
+    const place = shown.outline.tip;
     const last = this.scene.trail[this.scene.trail.length - 1];
-    if (shown.asked && (!last || Math.hypot(last[0] - tip[0], last[1] - tip[1]) * this.view.k > 0.5)) {
-      this.scene.trail.push(tip);
+    if (shown.asked && (!last || Math.hypot(last[0] - place[0], last[1] - place[1], last[2] - place[2]) * this.view.k > 0.5)) {
+      this.scene.trail.push(place);
       if (this.scene.trail.length > TRAIL) this.scene.trail.shift();
     }
     if (first || (this.fitted && !this.scene.target && this.isOut(tip))) this.fit();
     else this.paint();
+  }
+
+  /** Sees everything from elsewhere. @param {Camera} camera */
+  look(camera) {
+    this.view.camera = camera;
+    const { shown } = this.scene;
+    if (shown) shown.outline = shown.body(camera);
+    const chosen = Object.keys(SIDES).find((name) => SIDES[name] === camera);
+    for (const button of this.sides.querySelectorAll("button")) button.setAttribute("aria-pressed", String(button.dataset.side === chosen));
+  }
+
+  /** Turns what is seen about the middle of the picture, px as the hand moves. @param {number} dx @param {number} dy */
+  turn(dx, dy) {
+    const { camera } = this.view;
+    const { shown } = this.scene;
+    // The middle of the arm stays where it is.
+    const middle = shown ? placeAt(camera, shown.outline.centre[shown.outline.centre.length >> 1], shown.outline.tip) : FRONT.back;
+    const before = this.toPage(flat(camera, middle));
+    this.look(turned(camera, 0.008 * dx, 0.008 * dy));
+    const after = this.toPage(flat(this.view.camera, middle));
+    if (this.fitted) this.fit();
+    else this.pan(before[0] - after[0], before[1] - after[1]);
+  }
+
+  /** Whether what is shown is in space. */
+  get inSpace() {
+    return this.scene.shown?.outline.space !== undefined;
   }
 
   /** Whether a place is off the page or at its edge. @param {Point} point */
@@ -91,8 +125,9 @@ export class ArmView {
   /** Shows all of the arm. */
   fit() {
     const { shown, ghost } = this.scene;
-    const lines = [shown?.outline, ghost].flatMap((o) => (o ? [o.left, o.right] : []));
-    lines.push(this.scene.way.map(({ place }) => place));
+    const { camera } = this.view;
+    const lines = [shown?.outline, ghost?.(camera)].flatMap((o) => (o ? [o.left, o.right] : []));
+    lines.push(this.scene.way.map(({ place }) => flat(camera, place)));
     this.fitted = true;
     if (shown) {
       const { x, y } = boundsOf(lines);
@@ -133,6 +168,7 @@ export class ArmView {
   paint() {
     new Painter(this.ctx, this.view, this.scene, this.colour).paint();
     const centre = this.scene.shown?.outline.centre;
+    this.sides.hidden = !this.inSpace;
     this.handle.hidden = !centre || !this.scene.shown?.asked;
     if (centre) {
       const [x, y] = this.toPage(centre[centre.length - 1]);
@@ -145,10 +181,16 @@ export class ArmView {
   /** Beside the tip, between the director a and the label of the angle, and inside of the picture. @param {Point} tip */
   placeHint([x, y]) {
     const { offsetWidth: width, offsetHeight: height } = this.hint;
-    const angle = (this.scene.shown?.shape.tip.theta ?? 0) - Math.PI / 4;
+    const angle = (this.scene.shown?.shape.tip.theta ?? this.tipAngle()) - Math.PI / 4;
     const middle = [x + (0.5 * width + 18) * Math.cos(angle), y - (0.5 * height + 20) * Math.sin(angle)];
     const inside = (/** @type {number} */ v, /** @type {number} */ size, /** @type {number} */ most) => Math.min(Math.max(v - 0.5 * size, 4), most - size - 4);
     this.hint.style.transform = `translate(${inside(middle[0], width, this.view.width)}px, ${inside(middle[1], height, this.view.height)}px)`;
+  }
+
+  /** The direction of the centreline at the tip as it is seen, rad. */
+  tipAngle() {
+    const [[x0, y0], [x1, y1]] = (this.scene.shown?.outline.centre ?? [[0, 0], [1, 0]]).slice(-2);
+    return Math.atan2(y1 - y0, x1 - x0);
   }
 
   /** @param {Point} point @returns {Point} */
@@ -201,16 +243,25 @@ export class ArmView {
     byId("zoom-in", HTMLButtonElement).addEventListener("click", () => this.zoom(1.3));
     byId("zoom-out", HTMLButtonElement).addEventListener("click", () => this.zoom(1 / 1.3));
     byId("fit", HTMLButtonElement).addEventListener("click", () => this.fit());
+    for (const button of this.sides.querySelectorAll("button")) {
+      button.addEventListener("click", () => {
+        this.look(SIDES[button.dataset.side ?? "3D"]);
+        this.fit();
+      });
+    }
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.zoom(Math.exp(-0.0015 * event.deltaY), this.placeOf(event));
     }, { passive: false });
     this.canvas.addEventListener("keydown", (event) => {
-      const step = event.shiftKey ? 100 : 25;
+      // In space arrows turn, and move the view with Shift.
+      const turns = this.inSpace && !event.shiftKey;
+      const step = event.shiftKey && !this.inSpace ? 100 : 25;
+      const go = (/** @type {number} */ dx, /** @type {number} */ dy) => (turns ? this.turn(-0.5 * dx, -0.5 * dy) : this.pan(dx, dy));
       /** @type {Record<string, () => void>} */
       const keys = {
-        ArrowLeft: () => this.pan(step, 0), ArrowRight: () => this.pan(-step, 0), ArrowUp: () => this.pan(0, step),
-        ArrowDown: () => this.pan(0, -step), "+": () => this.zoom(1.3), "=": () => this.zoom(1.3), "-": () => this.zoom(1 / 1.3),
+        ArrowLeft: () => go(step, 0), ArrowRight: () => go(-step, 0), ArrowUp: () => go(0, step),
+        ArrowDown: () => go(0, -step), "+": () => this.zoom(1.3), "=": () => this.zoom(1.3), "-": () => this.zoom(1 / 1.3),
         0: () => this.fit(),
       };
       if (!keys[event.key] || event.ctrlKey || event.metaKey) return;
@@ -221,12 +272,15 @@ export class ArmView {
     this.listenToTip();
   }
 
-  /** One pointer pans, two pan and zoom. */
+  /** One pointer pans, or turns what is in space; two pan and zoom, as one does with Shift or another button. */
   listenToFingers() {
     /** @type {Map<number, Point>} */
     const down = new Map();
+    let moves = false;
+    this.canvas.addEventListener("contextmenu", (event) => this.inSpace && event.preventDefault());
     this.canvas.addEventListener("pointerdown", (event) => {
       down.set(event.pointerId, this.placeOf(event));
+      moves = event.shiftKey || event.button !== 0;
       this.canvas.setPointerCapture(event.pointerId);
     });
     this.canvas.addEventListener("pointermove", (event) => {
@@ -239,8 +293,10 @@ export class ArmView {
       const others = [...down].filter(([id]) => id !== event.pointerId).map(([, place]) => place);
       down.set(event.pointerId, now);
       if (others.length === 0) {
-        this.pan(now[0] - before[0], now[1] - before[1]);
+        if (this.inSpace && !moves) this.turn(now[0] - before[0], now[1] - before[1]);
+        else this.pan(now[0] - before[0], now[1] - before[1]);
       } else {
+        if (this.inSpace) this.pan(0.5 * (now[0] - before[0]), 0.5 * (now[1] - before[1]));
         const other = others[0];
         const [was, is] = [before, now].map(([x, y]) => Math.hypot(x - other[0], y - other[1]));
         this.zoom(is / Math.max(was, 1), other);
@@ -264,12 +320,15 @@ export class ArmView {
     const { handle } = this;
     /** From the pointer to the tip, on the page. @type {Point | undefined} */
     let grip;
+    /** Where it was taken hold of: it stays as near as that. @type {Place} */
+    let held = [0, 0, 0];
     handle.addEventListener("pointerdown", (event) => {
       const centre = this.scene.shown?.outline.centre;
       if (!centre) return;
       const [x, y] = this.placeOf(event);
       const tip = this.toPage(centre[centre.length - 1]);
       grip = [tip[0] - x, tip[1] - y];
+      held = this.scene.shown?.outline.tip ?? held;
       handle.setPointerCapture(event.pointerId);
       event.preventDefault();
       handle.focus();
@@ -277,7 +336,7 @@ export class ArmView {
     handle.addEventListener("pointermove", (event) => {
       if (!grip) return;
       const [x, y] = this.placeOf(event);
-      this.pull(this.toArm([x + grip[0], y + grip[1]]), event.timeStamp);
+      this.pull(placeAt(this.view.camera, this.toArm([x + grip[0], y + grip[1]]), held), event.timeStamp);
     });
     for (const kind of ["pointerup", "pointercancel"]) {
       handle.addEventListener(kind, () => {
@@ -288,18 +347,19 @@ export class ArmView {
     handle.addEventListener("keydown", (event) => {
       /** @type {Record<string, Point>} */
       const keys = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-      const centre = this.scene.shown?.outline.centre;
-      if (!keys[event.key] || !centre) return;
+      const { shown } = this.scene;
+      if (!keys[event.key] || !shown) return;
       event.preventDefault();
-      const step = (event.shiftKey ? 0.05 : 0.01) * (this.scene.shown?.shape.inputs.arm.length ?? 0);
-      const [x, y] = this.scene.target ?? centre[centre.length - 1];
-      this.pull([x + step * keys[event.key][0], y + step * keys[event.key][1]], event.timeStamp);
+      const step = (event.shiftKey ? 0.05 : 0.01) * shown.shape.inputs.arm.length;
+      const from = this.scene.target ?? shown.outline.tip;
+      const [x, y] = flat(this.view.camera, from);
+      this.pull(placeAt(this.view.camera, [x + step * keys[event.key][0], y + step * keys[event.key][1]], from), event.timeStamp);
     });
     handle.addEventListener("keyup", () => this.scene.target && this.release());
     handle.addEventListener("blur", () => this.scene.target && this.release());
   }
 
-  /** @param {Point} target @param {number} asked */
+  /** @param {Place} target @param {number} asked */
   pull(target, asked) {
     this.scene.target = target;
     if (this.isNew) {

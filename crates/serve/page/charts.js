@@ -11,7 +11,7 @@ import { colours } from "./paint.js";
  * @typedef {{ key: keyof Stations, name: string, unit: (shape: Solution) => [number, string] }} Quantity
  */
 
-/** @type {Quantity[]} */
+/** Those of an arm in the plane. @type {Quantity[]} */
 const QUANTITIES = [
   { key: "alpha", name: "\u03b1, centreline against section", unit: () => [degrees(1), "\u00b0"] },
   { key: "nu", name: "\u03bd, stretch", unit: () => [1, ""] },
@@ -22,6 +22,25 @@ const QUANTITIES = [
   { key: "n_b", name: "H, shear contact force", unit: (shape) => forceUnit(greatest(shape.stations.n_b)) },
   { key: "m", name: "M, contact moment", unit: () => [1e3, "N mm"] },
 ];
+
+/** Those of an arm in space. @type {Quantity[]} */
+const IN_SPACE = [
+  ...QUANTITIES.slice(0, 2),
+  { key: "eta", name: "\u03b7, shear along b", unit: () => [1, ""] },
+  { key: "zeta", name: "\u03b6, shear along c", unit: () => [1, ""] },
+  { key: "tau", name: "\u03c4, twist", unit: () => [1, "1/m"] },
+  { key: "kappa", name: "\u03ba, bending about b", unit: () => [1, "1/m"] },
+  { key: "mu", name: "\u03bc, bending about c", unit: () => [1, "1/m"] },
+  QUANTITIES[4], QUANTITIES[5],
+  { key: "n_b", name: "Contact force along b", unit: (shape) => forceUnit(greatest(shape.stations.n_b)) },
+  { key: "n_c", name: "Contact force along c", unit: (shape) => forceUnit(greatest(shape.stations.n_c ?? [])) },
+  { key: "m_a", name: "Contact torque, about a", unit: () => [1e3, "N mm"] },
+  { key: "m_b", name: "Contact moment about b", unit: () => [1e3, "N mm"] },
+  { key: "m_c", name: "Contact moment about c", unit: () => [1e3, "N mm"] },
+];
+
+/** A quantity along the arm, where it has it. @param {Solution} shape @param {keyof Stations} key @returns {number[] | undefined} */
+const along = ({ stations }, key) => /** @type {number[] | undefined} */ (stations[key]);
 
 /** What rounding leaves of zero is zero: else a chart of nothing would show it. @param {number} value */
 const clean = (value) => (Math.abs(value) < 1e-12 ? 0 : value);
@@ -48,7 +67,27 @@ export class AlongCharts {
     this.newest = undefined;
     this.due = false;
     this.look = look();
-    this.charts = QUANTITIES.map((quantity) => {
+    this.place = place;
+    this.onHover = onHover;
+    // What is out of sight costs no time.
+    this.watch = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) {
+        const one = this.charts.find(({ canvas }) => canvas === target);
+        if (one) one.seen = isIntersecting;
+      }
+      this.go();
+    });
+    this.quantities = QUANTITIES;
+    this.charts = this.made();
+    this.recolour();
+  }
+
+  /** Charts of the present quantities. */
+  made() {
+    this.watch.disconnect();
+    this.place.replaceChildren();
+    const { place, onHover } = this;
+    const charts = this.quantities.map((quantity) => {
       const canvas = element("canvas", { role: "img", "aria-label": `${quantity.name} along the arm` });
       const value = element("span", { class: "value" });
       const unit = element("span");
@@ -61,16 +100,8 @@ export class AlongCharts {
       canvas.addEventListener("pointerleave", () => onHover(undefined));
       return { quantity, chart, canvas, value, unit, stale: false, seen: false };
     });
-    // What is out of sight costs no time.
-    const watch = new IntersectionObserver((entries) => {
-      for (const { target, isIntersecting } of entries) {
-        const one = this.charts.find(({ canvas }) => canvas === target);
-        if (one) one.seen = isIntersecting;
-      }
-      this.go();
-    });
-    for (const { canvas } of this.charts) watch.observe(canvas);
-    this.recolour();
+    for (const { canvas } of charts) this.watch.observe(canvas);
+    return charts;
   }
 
   /** The theme has changed. */
@@ -90,6 +121,12 @@ export class AlongCharts {
    */
   show(shape, pins) {
     this.newest = { shape, pins };
+    const quantities = shape.stations.z ? IN_SPACE : QUANTITIES;
+    if (quantities !== this.quantities) {
+      this.quantities = quantities;
+      this.charts = this.made();
+      this.recolour();
+    }
     for (const one of this.charts) one.stale = true;
     this.go();
   }
@@ -112,7 +149,7 @@ export class AlongCharts {
     const { colour } = this.look;
     const [factor, name] = quantity.unit(shape);
     const points = (/** @type {Solution} */ own) =>
-      own.stations.s.map((s, i) => /** @type {Point} */ ([1e3 * s, clean(factor * own.stations[quantity.key][i])]));
+      (along(own, quantity.key) ?? []).map((value, i) => /** @type {Point} */ ([1e3 * own.stations.s[i], clean(factor * value)]));
     const caption = name === "" ? "" : `(${name})`;
     if (unit.textContent !== caption) unit.textContent = caption;
     chart.across.most = 1e3 * shape.inputs.arm.length;
@@ -150,7 +187,8 @@ export class AlongCharts {
     const at = Math.min(Math.max(this.mark, 0), s[s.length - 1]);
     const i = Math.max(1, s.findIndex((place) => place >= at));
     const share = (at - s[i - 1]) / Math.max(s[i] - s[i - 1], 1e-12);
-    const values = shape.stations[quantity.key];
+    const values = along(shape, quantity.key);
+    if (!values) return;
     const [factor] = quantity.unit(shape);
     value.textContent = number(factor * (values[i - 1] + share * (values[i] - values[i - 1])), 4);
   }
@@ -160,6 +198,7 @@ export class AlongCharts {
 const OVER = [
   { name: "Tip x (mm)", unit: "mm", of: ({ tip }) => 1e3 * tip.x },
   { name: "Tip y (mm)", unit: "mm", of: ({ tip }) => 1e3 * tip.y },
+  { name: "Tip z (mm)", unit: "mm", of: ({ tip }) => 1e3 * (tip.z ?? 0) },
   { name: "Tip section, \u03b1(L) (\u00b0)", unit: "\u00b0", of: ({ tip }) => degrees(tip.alpha) },
 ];
 
@@ -189,7 +228,7 @@ export class PathCharts {
         const near = chart.nearestTo(event);
         if (near) onChoose(chart.lines[near.line].points[near.k][0]);
       });
-      return { chart, canvas, name, unit, of };
+      return { chart, canvas, name, unit, of, figure: frame.parentElement };
     });
   }
 
@@ -206,7 +245,9 @@ export class PathCharts {
   show(path, name, shown) {
     this.newest = { path, name, shown };
     const { colour, chart: own } = look();
-    for (const { chart, canvas, name: quantity, unit, of } of this.charts) {
+    const inSpace = path.branches.some(({ points }) => points.some(({ tip }) => tip.z !== undefined));
+    for (const { chart, canvas, name: quantity, unit, of, figure } of this.charts) {
+      if (figure && quantity === "Tip z (mm)") figure.hidden = !inSpace;
       chart.look = own;
       chart.across = { title: name, least: undefined, most: undefined };
       chart.show(path.branches.map(({ points }, b) => {

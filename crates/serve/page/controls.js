@@ -1,8 +1,9 @@
 // The panel of loads, material and readings, made from what the arm has.
 
-/** @import { Choice, Inputs, Options, Profile } from "./types" */
+/** @import { Choice, Direction, Inputs, Options, Profile } from "./types" */
 /** @import { State } from "./state.js" */
 
+import { directionOf } from "./camera.js";
 import { number, roundUp } from "./numbers.js";
 import { element } from "./page.js";
 
@@ -68,24 +69,40 @@ export class Controls {
       this.cables(inputs),
       this.group("Stream", [
         this.range({ key: "flow.speed", label: "Speed", unit: "m/s", per: 1, min: 0, max: Math.max(1, roundUp(1.5 * inputs.flow.speed)), value: inputs.flow.speed }),
-        this.range({ key: "flow.direction", label: "Direction", unit: "\u00b0", per: 1, min: -180, max: 180, value: inputs.flow.direction }),
+        ...this.direction(inputs, "flow.direction", inputs.flow.direction),
         this.choice(this.options.flow_law, inputs.flow.law),
         ...this.drag(inputs),
         this.range({ key: "flow.layer_thickness", label: "Boundary layer", unit: "mm", per: 1e3, min: 0.001, max: 0.02, value: inputs.flow.layer_thickness }),
       ]),
       this.group("Gravity", [
         this.range({ key: "gravity.acceleration", label: "Acceleration", unit: "m/s\u00b2", per: 1, min: 0, max: 20, value: inputs.gravity?.acceleration ?? 0 }),
-        this.range({ key: "gravity.direction", label: "Direction", unit: "\u00b0", per: 1, min: -180, max: 180, value: inputs.gravity?.direction ?? -90 }),
+        ...this.direction(inputs, "gravity.direction", inputs.gravity?.direction ?? -90),
       ]),
       this.tipLoads(inputs, strongest),
       this.material(inputs),
-      this.group("Base", [
-        this.range({ key: "arm.base.angle", label: "Angle", unit: "\u00b0", per: 1, min: -180, max: 180, value: inputs.arm.base.angle }),
-      ]),
+      this.group("Base", inputs.arm.base.direction
+        ? this.direction(inputs, "arm.base.direction", inputs.arm.base.direction)
+        : [this.range({ key: "arm.base.angle", label: "Angle", unit: "\u00b0", per: 1, min: -180, max: 180, value: inputs.arm.base.angle ?? 0 })]),
       this.group("Readings of the source", this.options.readings.map((choice) => this.choice(choice, inputs.model[choice.key.replace("model.", "")]))),
       element("p", {}, [this.button("Reset to the arm file", () => this.state.choose(this.state.arm))]),
     );
     this.refresh();
+  }
+
+  /**
+   * A direction: its angle in the plane, its parts in space, where only their proportion counts.
+   * @param {Inputs} inputs
+   * @param {string} key
+   * @param {Direction} own
+   */
+  direction({ arm }, key, own) {
+    if (arm.space !== "spatial") {
+      return [this.range({ key, label: "Direction", unit: "\u00b0", per: 1, min: -180, max: 180, value: typeof own === "number" ? own : 0 })];
+    }
+    return directionOf(own).map((part, k) => {
+      const value = Number(part.toPrecision(6));
+      return this.range({ key: `${key}[${k}]`, label: `Direction along ${"xyz"[k]}`, unit: "", per: 1, min: -1, max: 1, value });
+    });
   }
 
   /** @param {string} text @param {() => void} onClick */
@@ -149,11 +166,14 @@ export class Controls {
     const force = roundUp(0.03 * strongest);
     const [unit, per] = force < 0.2 ? ["mN", 1e3] : ["N", 1];
     const moment = roundUp(0.3 * force * inputs.arm.length);
-    return this.group("Load on the tip", [
-      this.range({ key: "tip.force[0]", label: "Force along x", unit, per, min: -force, max: force, value: inputs.tip.force[0] }),
-      this.range({ key: "tip.force[1]", label: "Force along y", unit, per, min: -force, max: force, value: inputs.tip.force[1] }),
-      this.range({ key: "tip.moment", label: "Moment", unit: "N mm", per: 1e3, min: -moment, max: moment, value: inputs.tip.moment }),
-    ]);
+    const forces = inputs.tip.force.map((value, k) =>
+      this.range({ key: `tip.force[${k}]`, label: `Force along ${"xyz"[k]}`, unit, per, min: -force, max: force, value }));
+    const about = (/** @type {string} */ key, /** @type {string} */ label, /** @type {number} */ value) =>
+      this.range({ key, label, unit: "N mm", per: 1e3, min: -moment, max: moment, value });
+    const own = inputs.tip.moment;
+    const moments = typeof own === "number" ? [about("tip.moment", "Moment", own)]
+      : own.map((value, k) => about(`tip.moment[${k}]`, `Moment about ${"xyz"[k]}`, value));
+    return this.group("Load on the tip", [...forces, ...moments]);
   }
 
   /** @param {Inputs} inputs */
@@ -174,7 +194,7 @@ export class Controls {
       rows.push(this.range({ key: "material.poisson", label: "Poisson\u2019s ratio", unit: "", per: 1, min: 0, max: 0.5, value: scalar(material.poisson) ?? 0.5 }));
     } else {
       this.preset = undefined;
-      const labels = /** @type {const} */ ([["c1", "C1, stretch", "kPa", 1e-3], ["c2", "C2, shear", "kPa", 1e-3], ["c3", "C3, bending", "N", 1]]);
+      const labels = /** @type {const} */ ([["c1", "C1, stretch", "kPa", 1e-3], ["c2", "C2, shear", "kPa", 1e-3], ["c3", "C3, bending", "N", 1], ["c4", "C4, twist", "N", 1]]);
       for (const [name, label, unit, per] of labels) {
         const value = scalar(material[name]);
         if (value !== undefined) rows.push(this.range({ key: `material.${name}`, label, unit, per, min: 0.2 * value, max: roundUp(3 * value), value }));

@@ -1,6 +1,22 @@
 // The shape of an arm as lines, m, from the stations of an answer.
 
-/** @import { Drawing, Outline, Point, Silhouette, Stations } from "./types" */
+/** @import { Body, Drawing, Outline, Point, Silhouette, Solution, Stations } from "./types" */
+
+import { bodyInSpace, bodyOfSilhouette } from "./solid.js";
+
+/** What draws an answer, from wherever it is seen. @param {Solution} shape @param {Drawing} drawing @returns {Body} */
+export function bodyOf(shape, drawing) {
+  if (shape.stations.z) return bodyInSpace(shape, drawing);
+  const outline = outlineOf(shape.stations, drawing);
+  return () => outline;
+}
+
+/** @param {Silhouette} shape @returns {Body} */
+export function bodyOfShape(shape) {
+  if (shape.z) return bodyOfSilhouette(shape);
+  const outline = outlineOfSilhouette(shape);
+  return () => outline;
+}
 
 /**
  * Surface r +- beta R b, centreline and cables r + y beta b.
@@ -8,28 +24,34 @@
  * @param {Drawing} drawing
  * @returns {Outline}
  */
-export function outlineOf(st, drawing) {
+function outlineOf(st, drawing) {
+  const { theta = [] } = st;
   const place = (/** @type {number} */ i, /** @type {number} */ distance) =>
-    /** @type {Point} */ ([st.x[i] - distance * Math.sin(st.theta[i]), st.y[i] + distance * Math.cos(st.theta[i])]);
+    /** @type {Point} */ ([st.x[i] - distance * Math.sin(theta[i]), st.y[i] + distance * Math.cos(theta[i])]);
   const left = st.s.map((_, i) => place(i, st.beta[i] * drawing.radius[i]));
   const right = st.s.map((_, i) => place(i, -st.beta[i] * drawing.radius[i]));
   const centre = st.s.map((_, i) => place(i, 0));
   const cables = drawing.offsets.map((offsets) => offsets.map((y, i) => place(i, st.beta[i] * y)));
-  return { left, right, centre, cables };
+  return { left, right, centre, cables, tip: inPlane(centre[centre.length - 1]) };
 }
 
 /**
  * @param {Silhouette} shape
  * @returns {Outline}
  */
-export function outlineOfSilhouette(shape) {
+function outlineOfSilhouette(shape) {
+  const { theta = [] } = shape;
   const place = (/** @type {number} */ i, /** @type {number} */ side) => {
     const distance = side * shape.half_width[i];
-    return /** @type {Point} */ ([shape.x[i] - distance * Math.sin(shape.theta[i]), shape.y[i] + distance * Math.cos(shape.theta[i])]);
+    return /** @type {Point} */ ([shape.x[i] - distance * Math.sin(theta[i]), shape.y[i] + distance * Math.cos(theta[i])]);
   };
   const all = (/** @type {number} */ side) => shape.x.map((_, i) => place(i, side));
-  return { left: all(1), right: all(-1), centre: all(0), cables: [] };
+  const centre = all(0);
+  return { left: all(1), right: all(-1), centre, cables: [], tip: inPlane(centre[centre.length - 1]) };
 }
+
+/** A point of the plane as a place in space. @param {Point} point @returns {import("./types").Place} */
+const inPlane = ([x, y]) => [x, y, 0];
 
 /**
  * Least and greatest x and y.

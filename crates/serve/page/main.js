@@ -1,15 +1,16 @@
 // Puts the page together: what is wished goes to the server, what comes back to drawing, words, numbers and charts.
 
-/** @import { Drawing, Options, Point, Reply, Setting, Solution, Wish } from "./types" */
+/** @import { Body, Drawing, Options, Place, Reply, Setting, Solution, Wish } from "./types" */
 /** @import { Range } from "./controls.js" */
 
 import { ArmView } from "./arm_view.js";
 import { AlongCharts } from "./charts.js";
 import { Connection, armOf, ask } from "./connection.js";
 import { Controls } from "./controls.js";
-import { outlineOf, outlineOfSilhouette, stationAt } from "./geometry.js";
+import { directionOf } from "./camera.js";
+import { bodyOf, bodyOfShape, stationAt } from "./geometry.js";
 import { listenToHelp } from "./help.js";
-import { force } from "./numbers.js";
+import { fixed, force } from "./numbers.js";
 import { byId, element, kept, settled, tidyMenus, toast } from "./page.js";
 import { listenToFiles, listenToShare } from "./share.js";
 import { State } from "./state.js";
@@ -24,7 +25,7 @@ const RAMP = 6000;
 const state = new State();
 /** What is looked at. @type {{ shape: Solution, drawing: Drawing, asked: boolean } | undefined} */
 let present;
-/** @type {{ shape: Solution, outline: import("./types").Outline, colour: number, label: string }[]} */
+/** @type {{ shape: Solution, body: Body, colour: number, label: string }[]} */
 let pins = [];
 /** Whether the tip has been let go and the last answer to a pull is still to come. */
 let letGo = false;
@@ -101,12 +102,13 @@ byId("arm", HTMLSelectElement).addEventListener("change", (event) => {
   state.choose(toml === undefined ? { name } : { name, toml });
 });
 
-/** @param {Point} target @param {number} asked */
-function pull(target, asked) {
+/** @param {Place} place @param {number} asked */
+function pull(place, asked) {
   stopRamp?.();
   pulling = true;
   letGo = false;
   const most = Math.max(...controls.most, 0);
+  const target = present?.shape.stations.z ? place : place.slice(0, 2);
   connection.send({ ...wish(), target, ...(most > 0 ? { max_tension: most } : {}) }, asked);
 }
 
@@ -177,7 +179,7 @@ function sayTook(text, title) {
 
 /** @param {Reply} reply @param {number} asked */
 function receive(reply, asked) {
-  if (reply.ghost) view.scene.ghost = outlineOfSilhouette(reply.ghost);
+  if (reply.ghost) view.scene.ghost = bodyOfShape(reply.ghost);
   if (reply.error) {
     refused(reply.error);
   } else if (reply.answer) {
@@ -220,7 +222,7 @@ function answered(reply) {
   say(words);
   if (!shape || !drawing) return;
   present = { shape, drawing, asked: answer.converged };
-  view.show({ shape, drawing, outline: outlineOf(shape.stations, drawing), asked: answer.converged });
+  view.show({ shape, drawing, body: bodyOf(shape, drawing), asked: answer.converged });
   tabulate(shape);
   along.show(shape, pins);
   legend(shape);
@@ -271,7 +273,7 @@ function legend(shape) {
   const items = shape.cables.map((cable, c) => [`swatch c${c % 7}${cable.tension > 0 ? "" : " slack"}`, `${cable.name}: ${cable.tension > 0 ? force(cable.tension) : "slack"}`]);
   // What is not drawn has no sample.
   const flows = speed > 0 && (view.scene.layers.stream || view.scene.layers.layer);
-  if (flows) items.push(["swatch cflow", `stream ${Number(speed.toPrecision(4))} m/s at ${Number(direction.toPrecision(4))}\u00b0`]);
+  if (flows) items.push(["swatch cflow", `stream ${Number(speed.toPrecision(4))} m/s ${typeof direction === "number" ? `at ${Number(direction.toPrecision(4))}\u00b0` : `along (${directionOf(direction).map((v) => fixed(v, 2)).join(", ")})`}`]);
   if (view.scene.layers.ghost) items.push(["swatch cghost slack", "unloaded"]);
   const key = JSON.stringify(items);
   if (place.dataset.key === key) return;
@@ -290,7 +292,7 @@ byId("pin", HTMLButtonElement).addEventListener("click", () => {
   }
   const { shape, drawing } = present;
   const label = `${shape.inputs.name}: ${shape.cables.map((c) => force(c.tension)).join(", ")}; ${shape.inputs.flow.speed} m/s`;
-  pins.push({ shape, outline: outlineOf(shape.stations, drawing), colour: free, label });
+  pins.push({ shape, body: bodyOf(shape, drawing), colour: free, label });
   showPins();
 });
 

@@ -1,19 +1,22 @@
 // Paints a scene on a canvas: arm, cables, stream, ghost, trail. Lengths are in m, y up, and drawn true to scale.
 
-/** @import { Outline, Point, Shown, Solution } from "./types" */
+/** @import { Body, Outline, Place, Point, Shown, Solution } from "./types" */
+/** @import { Camera } from "./camera.js" */
 
+import { directionOf, flat } from "./camera.js";
 import { degrees, fixed, force } from "./numbers.js";
+import { tangent } from "./solid.js";
 
 /**
  * What there is to paint.
  * @typedef {{
  *   shown: Shown | undefined,
- *   ghost: Outline | undefined,
- *   pins: { outline: Outline, colour: number }[],
- *   extra: Outline | undefined,
- *   trail: Point[],
- *   way: { place: Point, stable: boolean, event: string | null }[],
- *   target: Point | undefined,
+ *   ghost: Body | undefined,
+ *   pins: { body: Body, colour: number }[],
+ *   extra: Body | undefined,
+ *   trail: Place[],
+ *   way: { place: Place, stable: boolean, event: string | null }[],
+ *   target: Place | undefined,
  *   hover: number | undefined,
  *   layers: Record<string, boolean>,
  *   tints: "plain" | "alpha" | "eta" | "nu",
@@ -21,8 +24,8 @@ import { degrees, fixed, force } from "./numbers.js";
  */
 
 /**
- * From m to pixels: x = ox + k x, y = oy - k y.
- * @typedef {{ k: number, ox: number, oy: number, width: number, height: number }} View
+ * From m on the plane of the page to pixels: x = ox + k x, y = oy - k y.
+ * @typedef {{ k: number, ox: number, oy: number, width: number, height: number, camera: Camera }} View
  */
 
 /** How many colours the palette has for shares from 0 to 1. */
@@ -71,27 +74,62 @@ export class Painter {
     ctx.fillRect(0, 0, view.width, view.height);
     const shape = scene.shown?.shape;
     if (shape && scene.layers.stream) this.stream(shape);
-    if (scene.ghost && scene.layers.ghost) this.outline(scene.ghost, this.colour("ghost"), 1, [5, 4]);
+    if (scene.ghost && scene.layers.ghost) this.outline(scene.ghost(view.camera), this.colour("ghost"), 1, [5, 4]);
     if (scene.layers.trail) this.trail();
     this.way();
-    for (const pin of scene.pins) this.outline(pin.outline, this.colour(`series-${pin.colour}`), 1.3);
+    for (const pin of scene.pins) this.outline(pin.body(view.camera), this.colour(`series-${pin.colour}`), 1.3);
     if (scene.shown) {
       if (scene.layers.layer) this.layer(scene.shown);
       this.arm(scene.shown);
       if (scene.layers.contact) this.contact(scene.shown);
       if (scene.layers.directors) this.directors(scene.shown);
     }
-    if (scene.extra) this.outline(scene.extra, this.colour("series-3"), 1.6, [7, 3]);
+    if (scene.extra) this.outline(scene.extra(view.camera), this.colour("series-3"), 1.6, [7, 3]);
     if (scene.shown && scene.hover !== undefined) this.hovered(scene.shown, scene.hover);
     if (scene.shown?.drawing.crossing) this.crossing(scene.shown.drawing.crossing);
     if (scene.target) this.target(scene.target);
     this.scale();
+    if (scene.shown?.outline.space) this.axes();
     if (shape && scene.layers.gravity) this.gravity(shape);
   }
 
   /** @param {Point} point @returns {Point} */
   at([x, y]) {
     return [this.view.ox + this.view.k * x, this.view.oy - this.view.k * y];
+  }
+
+  /** Of a place in space. @param {Place} place */
+  seen(place) {
+    return this.at(flat(this.view.camera, place));
+  }
+
+  /** An arrow along a direction in space, px; what points at whoever looks is a dot in a ring, what points away a cross in one.
+   * @param {Point} from @param {Place} direction @param {number} length @param {string} colour @param {number} width @param {number} [back] the share that lies behind */
+  along([x, y], direction, length, colour, width, back = 0) {
+    const [dx, dy] = flat(this.view.camera, direction);
+    const out = direction[0] * this.view.camera.back[0] + direction[1] * this.view.camera.back[1] + direction[2] * this.view.camera.back[2];
+    const ends = [-back, 1 - back].map((t) => /** @type {Point} */ ([x + t * length * dx, y - t * length * dy]));
+    if (Math.hypot(dx, dy) > 0.2) {
+      this.arrow(ends[0], ends[1], colour, width);
+      return ends[1];
+    }
+    const { ctx } = this;
+    ctx.strokeStyle = ctx.fillStyle = colour;
+    ctx.lineWidth = width;
+    ctx.beginPath();
+    ctx.arc(x, y, 5, 0, 2 * Math.PI);
+    ctx.stroke();
+    ctx.beginPath();
+    if (out > 0) ctx.arc(x, y, 1.6, 0, 2 * Math.PI);
+    else {
+      for (const [sx, sy] of [[3.4, 3.4], [3.4, -3.4]]) {
+        ctx.moveTo(x - sx, y - sy);
+        ctx.lineTo(x + sx, y + sy);
+      }
+      ctx.stroke();
+    }
+    ctx.fill();
+    return /** @type {Point} */ ([x + 10, y - 10]);
   }
 
   /** @param {Point[]} points */
@@ -162,15 +200,14 @@ export class Painter {
     const { ctx, view } = this;
     const { speed, direction } = shape.inputs.flow;
     if (!(speed > 0)) return;
-    const psi = (direction * Math.PI) / 180;
+    const towards = directionOf(direction);
     const length = 12 + 34 * Math.min(1, Math.sqrt(speed));
     const step = 72;
     ctx.globalAlpha = 0.5;
-    const [dx, dy] = [0.5 * length * Math.cos(psi), -0.5 * length * Math.sin(psi)];
     for (let j = 0; j * step < view.height + step; j += 1) {
       for (let i = 0; i * step < view.width + step; i += 1) {
         const [x, y] = [i * step + (j % 2) * 0.5 * step, j * step + 0.5 * step];
-        this.arrow([x - dx, y - dy], [x + dx, y + dy], this.colour("stream"), 1.1);
+        this.along([x, y], towards, length, this.colour("stream"), 1.1, 0.5);
       }
     }
     ctx.globalAlpha = 1;
@@ -184,10 +221,11 @@ export class Painter {
     const { ctx, view } = this;
     const { layer } = drawing;
     const { speed, layer_thickness: thickness } = shape.inputs.flow;
-    if (!layer) return;
+    const { theta } = shape.stations;
+    if (!layer || !theta) return;
     const colour = this.colour("layer");
     const count = shape.stations.s.length;
-    const along = (/** @type {number} */ i) => shape.stations.theta[i] + shape.stations.alpha[i];
+    const along = (/** @type {number} */ i) => theta[i] + shape.stations.alpha[i];
     const normal = (/** @type {number} */ i) => {
       const side = layer.windward[i];
       return /** @type {Point} */ ([-side * Math.sin(along(i)), side * Math.cos(along(i))]);
@@ -232,6 +270,87 @@ export class Painter {
    * @param {Shown} shown
    */
   arm({ shape, outline, asked }) {
+    if (outline.space) this.solid(shape, outline, asked);
+    else this.flatArm(shape, outline, asked);
+  }
+
+  /**
+   * A shape in space: shaded patches, edges of sections, cables, paler where they are behind the centreline.
+   * @param {Solution} shape
+   * @param {Outline} outline
+   * @param {boolean} asked
+   */
+  solid(shape, outline, asked) {
+    const { ctx, scene } = this;
+    const { space, left, cables } = outline;
+    if (!space) return;
+    this.trace(space.ring(0, 1.6));
+    ctx.fillStyle = this.colour("section");
+    ctx.globalAlpha = 0.5;
+    ctx.fill();
+    ctx.globalAlpha = asked ? 1 : 0.45;
+    ctx.fillStyle = this.colour("body");
+    const body = String(ctx.fillStyle);
+    const tint = this.tint(shape);
+    /** @type {Map<string, string>} */
+    const known = new Map();
+    ctx.lineWidth = 0.7;
+    for (const { corners, station, light } of space.patches()) {
+      const base = tint ? tint(station) : body;
+      const level = Math.round(20 * light);
+      const key = `${base} ${level}`;
+      let shaded = known.get(key);
+      if (shaded === undefined) known.set(key, (shaded = lit(base, level / 20)));
+      ctx.fillStyle = ctx.strokeStyle = shaded;
+      this.trace(corners);
+      ctx.closePath();
+      ctx.fill();
+      if (asked) ctx.stroke();
+    }
+    ctx.globalAlpha = 1;
+    const count = left.length - 1;
+    if (scene.layers.sections) {
+      for (let k = 0; k <= 40; k += 1) this.line(space.arc(Math.round((k / 40) * count)), this.colour("section"), 0.6);
+    }
+    if (!asked) this.outline(outline, this.colour("bad"), 1.4, [3, 3]);
+    cables.forEach((line, c) => this.cable(line, c, shape, space.hidden[c], count));
+  }
+
+  /**
+   * @param {Point[]} line
+   * @param {number} c
+   * @param {Solution} shape
+   * @param {boolean[]} hidden at its points
+   * @param {number} last station of the tip
+   */
+  cable(line, c, shape, hidden, last) {
+    const { ctx } = this;
+    const largest = Math.max(...shape.cables.map((cable) => cable.tension), 1e-300);
+    const { tension } = shape.cables[c];
+    const colour = this.colour(`series-${c % 7}`);
+    const [width, dash] = tension > 0 ? [1 + 2.4 * (tension / largest), []] : [1, [4, 3]];
+    for (let i = 0; i + 1 < line.length;) {
+      let end = i + 1;
+      while (end + 1 < line.length && hidden[end] === hidden[i]) end += 1;
+      ctx.globalAlpha = hidden[i] ? 0.32 : 1;
+      this.line(line.slice(i, end + 1), colour, width, dash);
+      i = end;
+    }
+    ctx.globalAlpha = 1;
+    if (line.length > 0 && line.length <= last) {
+      ctx.fillStyle = colour;
+      ctx.beginPath();
+      ctx.arc(...this.at(line[line.length - 1]), 3, 0, 2 * Math.PI);
+      ctx.fill();
+    }
+  }
+
+  /**
+   * @param {Solution} shape
+   * @param {Outline} outline
+   * @param {boolean} asked
+   */
+  flatArm(shape, outline, asked) {
     const { ctx, scene } = this;
     const { left, right, centre, cables } = outline;
     ctx.globalAlpha = asked ? 0.88 : 0.45;
@@ -258,19 +377,7 @@ export class Painter {
     const reach = 1.5;
     this.support([base[0] + reach * (top[0] - base[0]), base[1] + reach * (top[1] - base[1])],
       [base[0] + reach * (bottom[0] - base[0]), base[1] + reach * (bottom[1] - base[1])]);
-    const largest = Math.max(...shape.cables.map((c) => c.tension), 1e-300);
-    cables.forEach((line, c) => {
-      const { tension } = shape.cables[c];
-      const colour = this.colour(`series-${c % 7}`);
-      if (tension > 0) this.line(line, colour, 1 + 2.4 * (tension / largest));
-      else this.line(line, colour, 1, [4, 3]);
-      if (line.length > 0 && line.length < left.length) {
-        ctx.fillStyle = colour;
-        ctx.beginPath();
-        ctx.arc(...this.at(line[line.length - 1]), 3, 0, 2 * Math.PI);
-        ctx.fill();
-      }
-    });
+    cables.forEach((line, c) => this.cable(line, c, shape, [], left.length - 1));
   }
 
   /**
@@ -303,14 +410,23 @@ export class Painter {
    * @param {Outline} outline
    */
   tinted(shape, { left, right }) {
-    const { ctx, scene } = this;
-    const values = scene.tints === "nu" ? shape.stations.nu.map((nu) => nu - 1) : shape.stations[scene.tints === "eta" ? "eta" : "alpha"];
-    const most = Math.max(...values.map(Math.abs), 1e-12);
-    for (let i = 0; i + 1 < left.length; i += 1) {
-      ctx.fillStyle = this.shade(Math.abs(0.5 * (values[i] + values[i + 1])) / most);
+    const { ctx } = this;
+    const tint = this.tint(shape);
+    for (let i = 0; tint && i + 1 < left.length; i += 1) {
+      ctx.fillStyle = tint(i);
       this.trace([left[i], left[i + 1], right[i + 1], right[i]]);
       ctx.fill();
     }
+  }
+
+  /** The colour of the body between a station and the next; none where it is plain. @param {Solution} shape */
+  tint({ stations: st }) {
+    const { tints } = this.scene;
+    if (tints === "plain") return undefined;
+    const shear = st.eta.map((eta, i) => Math.hypot(eta, st.zeta?.[i] ?? 0));
+    const values = { nu: st.nu.map((nu) => nu - 1), eta: shear, alpha: st.alpha }[tints];
+    const most = Math.max(...values.map(Math.abs), 1e-12);
+    return (/** @type {number} */ i) => this.shade(Math.abs(0.5 * (values[i] + (values[i + 1] ?? values[i]))) / most);
   }
 
   /**
@@ -319,7 +435,7 @@ export class Painter {
    */
   contact({ shape, outline }) {
     const st = shape.stations;
-    const most = Math.max(...st.n_a.map((n, i) => Math.hypot(n, st.n_b[i])), 1e-300);
+    const most = Math.max(...st.n_a.map((_, i) => Math.hypot(...contactOf(shape, i))), 1e-300);
     const count = st.s.length - 1;
     for (let k = 0; k <= 14; k += 1) {
       const i = Math.round((k / 14) * count);
@@ -334,9 +450,7 @@ export class Painter {
    * @param {number} scale pixels a newton
    */
   contactAt(shape, outline, i, scale) {
-    const st = shape.stations;
-    const [cos, sin] = [Math.cos(st.theta[i]), Math.sin(st.theta[i])];
-    const [fx, fy] = [st.n_a[i] * cos - st.n_b[i] * sin, st.n_a[i] * sin + st.n_b[i] * cos];
+    const [fx, fy] = flat(this.view.camera, contactOf(shape, i));
     const [x, y] = this.at(outline.centre[i]);
     this.arrow([x, y], [x + scale * fx, y - scale * fy], this.colour("series-3"), 1.5);
   }
@@ -348,6 +462,10 @@ export class Painter {
   directors({ shape, outline }) {
     const { ctx } = this;
     const { theta, alpha } = shape.tip;
+    if (theta === undefined) {
+      this.directorsInSpace(shape, outline);
+      return;
+    }
     const tip = this.at(outline.centre[outline.centre.length - 1]);
     const end = (/** @type {number} */ angle, /** @type {number} */ length) =>
       /** @type {Point} */ ([tip[0] + length * Math.cos(angle), tip[1] - length * Math.sin(angle)]);
@@ -370,6 +488,38 @@ export class Painter {
     const label = `\u03b1(L) = ${fixed(degrees(alpha), 2)}\u00b0`;
     const away = end(theta - (Math.PI * 3) / 4, 58);
     this.text(label, away, ink, Math.cos(theta - (Math.PI * 3) / 4) < 0 ? "right" : "left");
+  }
+
+  /** @param {Solution} shape @param {Outline} outline */
+  directorsInSpace(shape, outline) {
+    const tip = this.at(outline.centre[outline.centre.length - 1]);
+    const ink = this.colour("ink");
+    const { alpha } = shape.tip;
+    for (const name of /** @type {const} */ (["a", "b", "c"])) {
+      const direction = shape.tip[name];
+      if (direction) this.text(name, this.named(this.along(tip, direction, 42, ink, 1.4), tip), ink, "center", "italic ");
+    }
+    if (Math.abs(alpha) > 0.02) {
+      const green = this.colour("series-2");
+      const end = this.along(tip, tangent(shape, shape.stations.s.length - 1), 42, green, 1.4);
+      this.text("t", this.named(end, tip), green, "center", "italic ");
+    }
+    this.text(`\u03b1(L) = ${fixed(degrees(alpha), 2)}\u00b0`, [tip[0] + 16, tip[1] + 64], ink, "left");
+  }
+
+  /** A little further than an end, seen from a place. @param {Point} end @param {Point} from @returns {Point} */
+  named([x, y], [x0, y0]) {
+    const length = Math.hypot(x - x0, y - y0) || 1;
+    return [x + (10 * (x - x0)) / length, y + (10 * (y - y0)) / length];
+  }
+
+  /** The directions e1, e2 and e3 in a corner. */
+  axes() {
+    const quiet = this.colour("quiet");
+    /** @type {Point} */
+    const corner = [44, this.view.height - 44];
+    const all = /** @type {[string, Place][]} */ ([["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]]);
+    for (const [name, direction] of all) this.text(name, this.named(this.along(corner, direction, 24, quiet, 1.3), corner), quiet, "center", "italic ");
   }
 
   /**
@@ -402,7 +552,7 @@ export class Painter {
     const colour = this.colour("accent");
     for (let i = 1; i < trail.length; i += 1) {
       ctx.globalAlpha = 0.08 + (0.6 * i) / trail.length;
-      this.line([trail[i - 1], trail[i]], colour, 2);
+      this.line([trail[i - 1], trail[i]].map((place) => flat(this.view.camera, place)), colour, 2);
     }
     ctx.globalAlpha = 1;
   }
@@ -413,15 +563,15 @@ export class Painter {
     const ink = this.colour("series-1");
     for (let i = 1; i < scene.way.length; i += 1) {
       const [a, b] = [scene.way[i - 1], scene.way[i]];
-      this.line([a.place, b.place], ink, 1.4, a.stable && b.stable ? [] : [2, 4]);
+      this.line([a.place, b.place].map((place) => flat(this.view.camera, place)), ink, 1.4, a.stable && b.stable ? [] : [2, 4]);
     }
     for (const { place, event } of scene.way) {
       if (event === null) continue;
       ctx.fillStyle = this.colour("series-0");
       ctx.beginPath();
-      ctx.arc(...this.at(place), 5, 0, 2 * Math.PI);
+      ctx.arc(...this.seen(place), 5, 0, 2 * Math.PI);
       ctx.fill();
-      const [x, y] = this.at(place);
+      const [x, y] = this.seen(place);
       this.text(event.replaceAll("_", " "), [x + 9, y - 9], this.colour("series-0"), "left");
     }
   }
@@ -432,10 +582,29 @@ export class Painter {
    * @param {number} i
    */
   hovered({ shape, outline }, i) {
-    const { ctx } = this;
     const st = shape.stations;
     if (i >= st.s.length) return;
-    const phi = st.theta[i] + st.alpha[i];
+    const centre = this.at(outline.centre[i]);
+    if (outline.space) this.line(outline.space.ring(i), this.colour("accent"), 2.2);
+    else this.sectionAt(shape, outline, i);
+    const size = Math.hypot(...contactOf(shape, i));
+    if (size > 0) this.contactAt(shape, outline, i, 60 / size);
+    const lines = [
+      `s = ${fixed(1e3 * st.s[i], 1)} mm`,
+      `\u03b1 = ${fixed(degrees(st.alpha[i]), 2)}\u00b0   \u03b7 = ${fixed(st.eta[i], 4)}   \u03bd = ${fixed(st.nu[i], 4)}`,
+      `contact ${force(size)}   moment ${fixed(1e3 * momentAt(shape, i), 3)} N mm`,
+    ];
+    if (st.tau && st.kappa) lines.splice(2, 0, `\u03c4 = ${fixed(st.tau[i], 2)}   \u03ba = ${fixed(st.kappa[i], 2)}   \u03bc = ${fixed(st.mu[i], 2)} 1/m`);
+    const right = centre[0] < 0.6 * this.view.width;
+    lines.forEach((line, k) => {
+      this.text(line, [centre[0] + (right ? 26 : -26), centre[1] - 34 + 16 * k], this.colour("ink"), right ? "left" : "right");
+    });
+  }
+
+  /** A section of the plane against the normal of the centreline. @param {Solution} shape @param {Outline} outline @param {number} i */
+  sectionAt({ stations: st }, outline, i) {
+    const { ctx } = this;
+    const phi = (st.theta?.[i] ?? 0) + st.alpha[i];
     const centre = this.at(outline.centre[i]);
     const half = 0.5 * Math.hypot(outline.left[i][0] - outline.right[i][0], outline.left[i][1] - outline.right[i][1]);
     const reach = Math.max(this.view.k * half, 14);
@@ -449,23 +618,12 @@ export class Painter {
     ctx.stroke();
     ctx.setLineDash([]);
     this.line([outline.left[i], outline.right[i]], this.colour("accent"), 2.6);
-    const size = Math.hypot(st.n_a[i], st.n_b[i]);
-    if (size > 0) this.contactAt(shape, outline, i, 60 / size);
-    const lines = [
-      `s = ${fixed(1e3 * st.s[i], 1)} mm`,
-      `\u03b1 = ${fixed(degrees(st.alpha[i]), 2)}\u00b0   \u03b7 = ${fixed(st.eta[i], 4)}   \u03bd = ${fixed(st.nu[i], 4)}`,
-      `contact ${force(size)}   moment ${fixed(1e3 * st.m[i], 3)} N mm`,
-    ];
-    const right = centre[0] < 0.6 * this.view.width;
-    lines.forEach((line, k) => {
-      this.text(line, [centre[0] + (right ? 26 : -26), centre[1] - 34 + 16 * k], this.colour("ink"), right ? "left" : "right");
-    });
   }
 
-  /** @param {Point} target */
+  /** @param {Place} target */
   target(target) {
     const { ctx, scene } = this;
-    const [x, y] = this.at(target);
+    const [x, y] = this.seen(target);
     ctx.strokeStyle = this.colour("bad");
     ctx.lineWidth = 2;
     ctx.beginPath();
@@ -475,7 +633,7 @@ export class Painter {
     }
     ctx.stroke();
     const centre = scene.shown?.outline.centre;
-    if (centre) this.line([centre[centre.length - 1], target], this.colour("bad"), 1, [2, 3]);
+    if (centre) this.line([centre[centre.length - 1], flat(this.view.camera, target)], this.colour("bad"), 1, [2, 3]);
   }
 
   /** A bar of a round length. */
@@ -502,10 +660,8 @@ export class Painter {
   gravity(shape) {
     const { gravity } = shape.inputs;
     if (!gravity || !(gravity.acceleration > 0)) return;
-    const psi = (gravity.direction * Math.PI) / 180;
     const [x, y] = [CORNER, CORNER];
-    const [dx, dy] = [17 * Math.cos(psi), -17 * Math.sin(psi)];
-    this.arrow([x - dx, y - dy], [x + dx, y + dy], this.colour("quiet"), 1.8);
+    this.along([x, y], directionOf(gravity.direction), 34, this.colour("quiet"), 1.8, 0.5);
     this.text("gravity", [x + 24, y], this.colour("quiet"), "left");
   }
 
@@ -526,6 +682,29 @@ export class Painter {
     const [low, high] = [at, at + 1].map((k) => bytes(this.colour(`shade-${k}`)));
     return `rgb(${low.map((v, c) => Math.round(v + (place - at) * (high[c] - v))).join(" ")})`;
   }
+}
+
+/** The contact force at a station in space, N. @param {Solution} shape @param {number} i @returns {Place} */
+function contactOf({ stations: st }, i) {
+  if (st.theta) {
+    const [cos, sin] = [Math.cos(st.theta[i]), Math.sin(st.theta[i])];
+    return [st.n_a[i] * cos - st.n_b[i] * sin, st.n_a[i] * sin + st.n_b[i] * cos, 0];
+  }
+  const parts = /** @type {[number, Place | undefined][]} */ ([[st.n_a[i], st.a?.[i]], [st.n_b[i], st.b?.[i]], [st.n_c?.[i] ?? 0, st.c?.[i]]]);
+  const sum = (/** @type {number} */ k) => parts.reduce((all, [n, director]) => all + n * (director?.[k] ?? 0), 0);
+  return [sum(0), sum(1), sum(2)];
+}
+
+/** The contact moment at a station, in space its size, N m. @param {Solution} shape @param {number} i */
+function momentAt({ stations: st }, i) {
+  return st.m ? st.m[i] : Math.hypot(st.m_a?.[i] ?? 0, st.m_b?.[i] ?? 0, st.m_c?.[i] ?? 0);
+}
+
+/** A colour in more or less light. @param {string} colour #rrggbb or rgb(r g b) @param {number} light from 0 to 1 */
+function lit(colour, light) {
+  const parts = colour.startsWith("#") ? bytes(colour) : (colour.match(/[\d.]+/g) ?? []).slice(0, 3).map(Number);
+  const share = 0.58 + 0.5 * light;
+  return `rgb(${parts.map((v) => Math.round(Math.min(255, share * v))).join(" ")})`;
 }
 
 /** Red, green and blue of #rrggbb. @param {string} hex */

@@ -1,13 +1,13 @@
 // What takes longer than a solve: paths, readings side by side, all equilibria. They come over the HTTP interface.
 
-/** @import { Answer, Drawing, EquilibriaDocument, Options, Outline, PathDocument, Solution } from "./types" */
+/** @import { Answer, Body, Drawing, EquilibriaDocument, Options, PathDocument, Solution, Tip } from "./types" */
 /** @import { ArmView } from "./arm_view.js" */
 /** @import { Controls, Range } from "./controls.js" */
 /** @import { State } from "./state.js" */
 
 import { PathCharts } from "./charts.js";
 import { armOf, ask } from "./connection.js";
-import { outlineOf, outlineOfSilhouette } from "./geometry.js";
+import { bodyOf, bodyOfShape } from "./geometry.js";
 import { degrees, fixed } from "./numbers.js";
 import { byId, element, toast } from "./page.js";
 
@@ -121,7 +121,7 @@ export class Studies {
       const shown = (/** @type {number} */ si) => (angle ? degrees(si) : si) * track.per;
       this.paths.show(path, `${track.key}${track.unit ? ` (${track.unit})` : ""}`, shown);
       const points = path.branches[0]?.points ?? [];
-      this.view.scene.way = points.map(({ tip, stability, event }) => ({ place: [tip.x, tip.y], stable: stability.state === "stable", event }));
+      this.view.scene.way = points.map(({ tip, stability, event }) => ({ place: [tip.x, tip.y, tip.z ?? 0], stable: stability.state === "stable", event }));
       if (this.view.fitted) this.view.fit();
       else this.view.paint();
       words.textContent = pathWords(path);
@@ -155,9 +155,9 @@ export class Studies {
         if (epoch !== this.epoch) return;
         rows.push(this.reading(name, meaning, await response.json(), present));
       } catch (error) {
-        rows.push([name, "", "", "", "", said(error)]);
+        rows.push([name, ...placeCells(base.tip).map(() => ""), "", "", said(error)]);
       }
-      place.replaceChildren(table(["Reading", "Tip x (mm)", "Tip y (mm)", "\u03b1(L) (\u00b0)", "Tip moves (mm)", "Verdict"], rows));
+      place.replaceChildren(table(["Reading", ...placeHeads(base.tip), "\u03b1(L) (\u00b0)", "Tip moves (mm)", "Verdict"], rows));
       this.choosableRows("readings-table");
     }
   }
@@ -170,45 +170,46 @@ export class Studies {
    * @returns {(string | Node)[]}
    */
   reading(name, meaning, answer, present) {
-    if (!answer.converged) return [name, "", "", "", "", answer.verdict.message];
+    const { tip: own } = present.shape;
+    if (!answer.converged) return [name, ...placeCells(own).map(() => ""), "", "", answer.verdict.message];
     const { tip } = answer;
-    const moved = 1e3 * Math.hypot(tip.x - present.shape.tip.x, tip.y - present.shape.tip.y);
-    const button = this.chooser("readings-table", name, outlineOf(answer.stations, present.drawing));
+    const moved = 1e3 * Math.hypot(tip.x - own.x, tip.y - own.y, (tip.z ?? 0) - (own.z ?? 0));
+    const button = this.chooser("readings-table", name, bodyOf(answer, present.drawing));
     button.title = meaning;
     if (meaning !== "") button.setAttribute("aria-description", meaning);
     const stable = answer.stable === true ? "stable" : answer.stable === false ? "unstable" : "stability not established";
     const words = [stable, ...answer.warnings.map((w) => w.kind.replaceAll("_", " "))].join(", ");
-    return [button, fixed(1e3 * tip.x, 3), fixed(1e3 * tip.y, 3), fixed(degrees(tip.alpha), 3), fixed(moved, 3), words];
+    return [button, ...placeCells(tip), fixed(degrees(tip.alpha), 3), fixed(moved, 3), words];
   }
 
   /**
    * A button that shows a shape in the picture, or takes it away again.
    * @param {string} table the table that it is in, whose others are then not chosen
    * @param {string} text
-   * @param {Outline} outline
+   * @param {Body} body
    */
-  chooser(table, text, outline) {
+  chooser(table, text, body) {
     const button = element("button", { type: "button", text, "aria-pressed": "false" });
     button.addEventListener("click", () => {
       const on = button.getAttribute("aria-pressed") !== "true";
       for (const other of byId(table, HTMLElement).querySelectorAll("button")) other.setAttribute("aria-pressed", "false");
       button.setAttribute("aria-pressed", String(on));
-      this.overlay(on ? outline : undefined);
+      this.overlay(on ? body : undefined);
       if (on) this.view.canvas.scrollIntoView({ block: "nearest" });
     });
     return button;
   }
 
-  /** @param {Outline | undefined} outline */
-  overlay(outline) {
-    this.view.scene.extra = outline;
+  /** @param {Body | undefined} body */
+  overlay(body) {
+    this.view.scene.extra = body;
     this.view.paint();
   }
 
   /** The button of one of all equilibria. @param {EquilibriaDocument} all @param {number} i */
   numbered({ shapes }, i) {
     if (!shapes?.[i]) return String(i + 1);
-    const button = this.chooser("all-table", String(i + 1), outlineOfSilhouette(shapes[i]));
+    const button = this.chooser("all-table", String(i + 1), bodyOfShape(shapes[i]));
     button.setAttribute("aria-label", `Show equilibrium ${i + 1} in the picture`);
     return button;
   }
@@ -236,13 +237,15 @@ export class Studies {
       const picture = await (await ask("/api/equilibria", { ...this.body(), format: "svg" })).blob();
       if (epoch !== this.epoch) return;
       const stable = all.equilibria.filter((one) => one.stability.state === "stable").length;
-      const whole = all.complete ? "These are all." : `The search is not complete: ${all.ends.flatMap((end) => end?.message ?? []).join("; and ")}.`;
+      const whole = all.complete ? "These are all." : all.curves !== undefined ? inSpaceWords(all) : `The search is not complete: ${all.ends.flatMap((end) => end?.message ?? []).join("; and ")}.`;
       words.textContent = `${all.equilibria.length} found, ${stable} of them stable. ${whole}`;
+      const first = all.equilibria[0]?.tip;
+      const heads = first === undefined ? [] : [...placeHeads(first), ...(first.theta === undefined ? [] : ["Turned (\u00b0)"])];
       const row = (/** @type {EquilibriaDocument["equilibria"][number]} */ { tip, stability }, /** @type {number} */ i) => [
-        this.numbered(all, i), fixed(1e3 * tip.x, 3), fixed(1e3 * tip.y, 3), fixed(degrees(tip.theta), 3), fixed(degrees(tip.alpha), 3),
+        this.numbered(all, i), ...placeCells(tip), ...(tip.theta === undefined ? [] : [fixed(degrees(tip.theta), 3)]), fixed(degrees(tip.alpha), 3),
         stability.state === "unstable" ? `unstable (${stability.directions})` : stability.state ?? "not established",
       ];
-      byId("all-table", HTMLElement).replaceChildren(table(["Number", "Tip x (mm)", "Tip y (mm)", "Turned (\u00b0)", "\u03b1(L) (\u00b0)", "Stability"], all.equilibria.map(row)));
+      byId("all-table", HTMLElement).replaceChildren(table(["Number", ...heads, "\u03b1(L) (\u00b0)", "Stability"], all.equilibria.map(row)));
       this.choosableRows("all-table");
       const image = byId("all-picture", HTMLImageElement);
       URL.revokeObjectURL(image.src);
@@ -254,6 +257,16 @@ export class Studies {
       toast(said(error), "bad");
     }
   }
+}
+
+/** The heads of a tip's coordinates. @param {Tip} tip */
+const placeHeads = (tip) => ["Tip x (mm)", "Tip y (mm)", ...(tip.z === undefined ? [] : ["Tip z (mm)"])];
+/** Its coordinates, mm. @param {Tip} tip */
+const placeCells = ({ x, y, z }) => [x, y, ...(z === undefined ? [] : [z])].map((v) => fixed(1e3 * v, 3));
+
+/** How far a search in space went. @param {EquilibriaDocument} all */
+function inSpaceWords({ curves, misses_some: some }) {
+  return `${some ? "At least one is missing" : "There may be others"}: ${curves} curves over turns of the base were followed.`;
 }
 
 /** @param {PathDocument} path */

@@ -1,13 +1,22 @@
 // The documents that the page gets, as docs/interface.md has them. For the type checker alone: nothing of this is served.
 
 export interface Stations {
-  s: number[]; x: number[]; y: number[]; theta: number[]; nu: number[]; eta: number[]; mu: number[]; beta: number[];
-  alpha: number[]; n_a: number[]; n_b: number[]; m: number[];
+  s: number[]; x: number[]; y: number[]; nu: number[]; eta: number[]; mu: number[]; beta: number[];
+  alpha: number[]; n_a: number[]; n_b: number[];
+  /** Of an arm in the plane. */
+  theta?: number[]; m?: number[];
+  /** Of an arm in space. */
+  z?: number[]; a?: Place[]; b?: Place[]; c?: Place[]; zeta?: number[]; tau?: number[]; kappa?: number[];
+  n_c?: number[]; m_a?: number[]; m_b?: number[]; m_c?: number[];
 }
 
 export interface Note { kind: string; message: string }
-export interface Tip { x: number; y: number; theta: number; alpha: number }
-export interface Wrench { force: [number, number]; moment: number }
+/** With theta in the plane, with z and directors in space. */
+export interface Tip { x: number; y: number; alpha: number; theta?: number; z?: number; a?: Place; b?: Place; c?: Place }
+/** Two forces and a moment in the plane, three each in space. */
+export interface Wrench { force: number[]; moment: number | number[] }
+/** An angle (deg) in the plane of e1 and e2, or the parts along e1, e2 and e3. */
+export type Direction = number | Place;
 
 export interface CableState {
   name: string; tension: number; length: number; stroke: number;
@@ -18,14 +27,17 @@ export type Profile = number | { base: number; tip: number } | [number, number][
 
 export interface Inputs {
   name: string;
-  arm: { length: number; radius: Profile; density: number; base: { x: number; y: number; angle: number } };
+  arm: {
+    length: number; radius: Profile; density: number; space?: "planar" | "spatial";
+    base: { x: number; y: number; angle?: number; z?: number; direction?: Place; section?: Place };
+  };
   material: Record<string, Profile>;
   cable?: {
     name: string; offset: Profile; tension?: number; stroke?: number; max_tension?: number; end: number; friction?: number;
   }[];
-  flow: { speed: number; direction: number; density: number; layer_thickness: number; law: string; cn?: number; ct?: number };
-  gravity?: { acceleration: number; direction: number };
-  tip: { force: [number, number]; moment: number; follower: [number, number] };
+  flow: { speed: number; direction: Direction; density: number; layer_thickness: number; law: string; cn?: number; ct?: number };
+  gravity?: { acceleration: number; direction: Direction };
+  tip: { force: number[]; moment: number | number[]; follower: number[] };
   model: Record<string, string>;
 }
 
@@ -49,8 +61,8 @@ export type Answer = Solution | Failure;
 /** The layer of the stream at the stations: speed along the surface outside of it (m/s), the side that the stream meets, and the share of that
  * speed at equal distances from the surface. */
 export interface Layer { speed: number[]; windward: (1 | -1)[]; profile: number[] }
-export interface Drawing { radius: number[]; offsets: number[][]; tension_scale: number[]; layer?: Layer; crossing?: Point }
-export interface Silhouette { x: number[]; y: number[]; theta: number[]; half_width: number[] }
+export interface Drawing { radius: number[]; offsets: number[][]; offsets_c?: number[][]; tension_scale: number[]; layer?: Layer; crossing?: Point }
+export interface Silhouette { x: number[]; y: number[]; theta?: number[]; z?: number[]; a?: Place[]; half_width: number[] }
 
 /** A choice among words, of which the first is the default. */
 export interface Choice { key: string; label: string; meaning: string; words: { word: string; meaning: string }[] }
@@ -71,21 +83,32 @@ export interface Reply {
 export type Setting = number | string;
 
 export interface Wish {
-  arm: ArmChoice; set: Record<string, Setting>; target?: Point; max_tension?: number;
+  arm: ArmChoice; set: Record<string, Setting>; target?: number[]; max_tension?: number;
 }
 
 /** A shipped arm by its name, or the text of an arm file. */
 export type ArmChoice = { name: string; toml?: undefined } | { name: string; toml: string };
 
 export type Point = [number, number];
+export type Place = [number, number, number];
 
-/** A shape in the form that it is painted in, m. */
+/** A part of a surface in space as it is seen. */
+export interface Patch { corners: Point[]; station: number; light: number }
+
+/** A shape in the form that it is painted in, on the page, m; `tip` is the place of its tip. */
 export interface Outline {
-  left: Point[]; right: Point[]; centre: Point[]; cables: Point[][];
+  left: Point[]; right: Point[]; centre: Point[]; cables: Point[][]; tip: Place;
+  /** Of a shape in space: its surface, the furthest first, the edges of sections and what is seen of them, where cables are behind the centreline. */
+  space?: {
+    patches: () => Patch[]; ring: (station: number, wider?: number) => Point[]; arc: (station: number) => Point[]; hidden: boolean[][];
+  };
 }
 
+/** What is painted of a shape, seen from where a camera is. */
+export type Body = (camera: import("./camera.js").Camera) => Outline;
+
 /** An answer that can be looked at: its shape, what draws it, and whether it is the one asked for. */
-export interface Shown { shape: Solution; drawing: Drawing; outline: Outline; asked: boolean }
+export interface Shown { shape: Solution; drawing: Drawing; body: Body; outline: Outline; asked: boolean }
 
 export interface State {
   value: number; tip: Tip; event: string | null; cable: number | null;
@@ -97,4 +120,4 @@ export interface PathDocument {
   branches: { end: { kind: string; message: string }; points: State[] }[];
 }
 
-export interface EquilibriaDocument { complete: boolean; equilibria: State[]; shapes?: Silhouette[]; ends: ({ message: string } | null)[] }
+export interface EquilibriaDocument { complete: boolean; equilibria: State[]; shapes?: Silhouette[]; ends: ({ message: string } | null)[]; misses_some?: boolean; curves?: number }

@@ -30,7 +30,7 @@ export function wordsOf(answer, drawing) {
   }
   const lines = answer.warnings.map((note) => sentence(note.message));
   if (answer.unmet) {
-    lines.push(`The balance at the tip is not met: a force of (${answer.unmet.force.map((f) => number(f, 4)).join(", ")}) N and a moment of ${number(answer.unmet.moment, 4)} N m remain.`);
+    lines.push(`The balance at the tip is not met: a force of ${vector(answer.unmet.force, (f) => number(f, 4))} N and a moment of ${vector(answer.unmet.moment, (m) => number(m, 4))} N m remain.`);
   }
   const { title, level } = stabilityOf(answer);
   if (drawing?.crossing) {
@@ -40,6 +40,9 @@ export function wordsOf(answer, drawing) {
   if (lines.length > 0) return { level: level === "good" ? "warn" : level, title: `${title}, with ${kindsOf(answer)}`, lines };
   return { level, title, lines };
 }
+
+/** One number, or several in brackets. @param {number | number[]} value @param {(v: number) => string} text */
+const vector = (value, text) => (typeof value === "number" ? text(value) : `(${value.map(text).join(", ")})`);
 
 /** @param {Solution} answer */
 function kindsOf(answer) {
@@ -83,6 +86,18 @@ function sentence(text) {
 }
 
 /**
+ * What else is said of the tip: its angle in the plane, its height and directors in space.
+ * @param {Solution["tip"]} tip
+ * @param {(rad: number) => string} degree
+ * @returns {[string, string][]}
+ */
+function place({ theta, z, a, b, c }, degree) {
+  if (z === undefined || !a || !b || !c) return [["Tip turned by", degree(theta ?? 0)]];
+  const director = (/** @type {number[]} */ v) => `(${v.map((part) => fixed(part, 3)).join(", ")})`;
+  return [["Tip z", `${fixed(1e3 * z, 3)} mm`], ["Tip normal a", director(a)], ["Tip director b", director(b)], ["Tip director c", director(c)]];
+}
+
+/**
  * The names and values beside the picture.
  * @param {Solution} shape
  * @returns {[string, string][]}
@@ -97,7 +112,7 @@ export function numbersOf(shape) {
   const rows = [
     ["Tip x", `${fixed(1e3 * tip.x, 3)} mm`],
     ["Tip y", `${fixed(1e3 * tip.y, 3)} mm`],
-    ["Tip turned by", degree(tip.theta)],
+    ...place(tip, degree),
     ["Tip section, \u03b1(L)", degree(tip.alpha)],
   ];
   for (const cable of cables) {
@@ -105,8 +120,8 @@ export function numbersOf(shape) {
     rows.push([`Tension, ${cable.name}`, `${force(cable.tension)}${slack}`], [`Stroke, ${cable.name}`, `${fixed(1e3 * cable.stroke, 2)} mm`]);
   }
   rows.push(
-    ["Base force", `(${base.force.map((f) => clean(factor * f)).join(", ")}) ${unit}`],
-    ["Base moment", `${clean(1e3 * base.moment)} N mm`],
+    ["Base force", `${vector(base.force, (f) => clean(factor * f))} ${unit}`],
+    ["Base moment", `${vector(base.moment, (m) => clean(1e3 * m))} N mm`],
     ["Fold margin", number(shape.fold_margin, 3)],
     ["Tip error, about", `${(1e6 * shape.error_estimate).toExponential(1).replace("-", "\u2212")} \u00b5m`],
   );

@@ -1,15 +1,9 @@
 //! What the HTTP interface answers: the documents of the program, from the same types.
 
-use hydrostat::{
-    Arm, Configuration, NoEquilibrium, Options, PathOptions, ReachOptions, SolveError, Solver, Stability, Target,
-    VerdictKind,
-};
-use hydrostat_figures::{
-    Abscissa, Page, Quantity, Scene, arm_figure, equilibria_figure, last_good_note, path_figure, reach_figure,
-};
+use hydrostat::{Arm, Configuration, Options, PathOptions, ReachOptions, SpatialConfiguration, VerdictKind};
+use hydrostat_figures::{Abscissa, Page, Scene, last_good_note};
 use hydrostat_files::{
-    Dimension, EquilibriaDocument, FailureDocument, Inputs, Note, Others, PathDocument, ReachDocument,
-    SolutionDocument, Varied, arm_to_toml, equilibria_csv, path_csv, reach_csv, shipped, stations_csv,
+    Dimension, EquilibriaDocument, Inputs, Note, Others, Varied, arm_to_toml, equilibria_csv, shipped,
 };
 use serde::Serialize;
 use serde_json::json;
@@ -22,6 +16,7 @@ use crate::requests::{
     AboutAnArm, By, CheckRequest, EquilibriaRequest, Format, PathRequest, ReachRequest, SolveRequest, count, stations,
     varied,
 };
+use crate::shape::{Aim, Shape, Unsolved};
 use crate::work::Deadline;
 
 /// The tolerance at which others are counted where a path turns back.
@@ -64,7 +59,7 @@ struct ShippedOut {
 
 /// The arms that can be chosen; first the one that the program was started with, if it is none of the shipped.
 pub(crate) fn arms(given: Option<&Given>) -> Answer {
-    let shipped = shipped::names().map(|name| ShippedOut {
+    let shipped = shipped::all_names().map(|name| ShippedOut {
         name: name.to_owned(),
         description: shipped::description(name).unwrap_or_default().to_owned(),
         toml: shipped::get(name).unwrap_or_default().to_owned(),
@@ -97,34 +92,41 @@ pub(crate) fn check(request: &CheckRequest) -> Result<Answer, Problem> {
 /// The shape of an arm, or the verdict.
 pub(crate) fn solve(request: &SolveRequest, deadline: Deadline) -> Result<Answer, Problem> {
     let arm = request.arm()?;
+    if arm.space.is_some() {
+        return solved::<SpatialConfiguration>(request, &arm, deadline);
+    }
+    solved::<Configuration>(request, &arm, deadline)
+}
+
+fn solved<C: Shape>(request: &SolveRequest, arm: &Arm, deadline: Deadline) -> Result<Answer, Problem>
+where
+    Problem: From<Box<C::Failure>>,
+{
     let stations = stations(request.stations.clone())?;
     let tol = request.tol.unwrap_or(Options::default().tol);
-    let mut solver = Solver::new(&arm, Options::with_tol(tol))?;
-    match solver.solve() {
-        Ok(mut configuration) => {
-            let notes = Note::all(&configuration, tol);
-            let margin = configuration.fold_margin().value;
+    match C::solve(arm, tol) {
+        Ok(mut shape) => {
+            let (notes, margin) = (shape.notes(tol), shape.margin());
             if let (Format::Svg | Format::Pdf | Format::Png, format) = (request.format, request.format) {
-                let note = said(&configuration, &notes);
-                return Answer::figure(&arm_figure(&configuration, note.as_deref(), &Page::default()), format);
+                let note = said(&shape, &notes);
+                return Answer::figure(&shape.figure(note.as_deref(), &Page::default()), format);
             }
             if let Some(stations) = stations {
-                configuration.stations = configuration.resampled(stations);
+                shape.resample(stations);
             }
             match request.format {
-                Format::Csv => Ok(Answer::csv(stations_csv(&configuration.stations))),
-                _ => Ok(Answer::json(&SolutionDocument::new(&configuration, margin, &notes))),
+                Format::Csv => Ok(Answer::csv(shape.csv())),
+                _ => Ok(Answer::json(&shape.document(margin, &notes))),
             }
         }
-        Err(SolveError::NoEquilibrium(failure)) => no_shape(request, &arm, *failure, stations, deadline),
-        Err(error) => Err(error.into()),
+        Err(Unsolved::Verdict(failure)) => no_shape::<C>(request, arm, failure, stations, deadline),
+        Err(Unsolved::Refused(problem)) => Err(problem),
     }
 }
 
 /// What a drawing says of a shape that is not simply stable.
-fn said(configuration: &Configuration, notes: &[Note]) -> Option<String> {
-    let unstable = configuration.stability().map_or(configuration.stable, Stability::is_stable) == Some(false);
-    let words: Vec<&str> = unstable
+fn said<C: Shape>(shape: &C, notes: &[Note]) -> Option<String> {
+    let words: Vec<&str> = (shape.is_stable() == Some(false))
         .then_some("UNSTABLE: the arm would leave this shape at the slightest push")
         .into_iter()
         .chain(notes.iter().map(|note| note.message.as_str()))
@@ -133,39 +135,43 @@ fn said(configuration: &Configuration, notes: &[Note]) -> Option<String> {
 }
 
 /// JSON gets the verdict, a drawing the last good shape, which says that it is one; a table has nothing to say.
-fn no_shape(
+fn no_shape<C: Shape>(
     request: &SolveRequest,
     arm: &Arm,
-    mut failure: NoEquilibrium,
+    mut failure: Box<C::Failure>,
     stations: Option<usize>,
     deadline: Deadline,
-) -> Result<Answer, Problem> {
-    let refused = |failure| Problem::from(SolveError::NoEquilibrium(Box::new(failure)));
+) -> Result<Answer, Problem>
+where
+    Problem: From<Box<C::Failure>>,
+{
     match request.format {
-        Format::Csv => Err(refused(failure)),
-        Format::Svg | Format::Pdf | Format::Png => match &failure.last_good {
-            Some(shape) => {
-                let note = last_good_note(&failure.verdict);
-                Answer::figure(&arm_figure(shape, Some(&note), &Page::default()), request.format)
+        Format::Csv => Err(failure.into()),
+        Format::Svg | Format::Pdf | Format::Png => {
+            let note = last_good_note(C::verdict(&failure));
+            match C::last_good(&mut failure) {
+                Some(shape) => Answer::figure(&shape.figure(Some(&note), &Page::default()), request.format),
+                None => Err(failure.into()),
             }
-            None => Err(refused(failure)),
-        },
+        }
         Format::Json => {
             // A tolerance was asked of the answer, not of the last good shape.
-            let notes = failure.last_good.as_ref().map(|c| Note::all(c, f64::INFINITY)).unwrap_or_default();
-            let margin = failure.last_good.as_ref().map_or(f64::NAN, |c| c.fold_margin().value);
-            if let (Some(shape), Some(stations)) = (&mut failure.last_good, stations) {
-                shape.stations = shape.resampled(stations);
+            let (mut notes, mut margin) = (Vec::new(), f64::NAN);
+            if let Some(shape) = C::last_good(&mut failure) {
+                (notes, margin) = (shape.notes(f64::INFINITY), shape.margin());
+                if let Some(stations) = stations {
+                    shape.resample(stations);
+                }
             }
-            let others = others(arm, failure.verdict.kind, deadline);
-            Ok(Answer::json(&FailureDocument::new(&failure, margin, &notes).with_others(others)))
+            let others = others(arm, C::verdict(&failure).kind, deadline);
+            Ok(Answer::json(&C::failure(&failure, margin, &notes, others)))
         }
     }
 }
 
 /// The equilibria that the path does not lead to, where it turns back.
 fn others(arm: &Arm, kind: VerdictKind, deadline: Deadline) -> Option<Others> {
-    if kind != VerdictKind::LimitPoint {
+    if kind != VerdictKind::LimitPoint || arm.space.is_some() {
         return None;
     }
     arm.equilibria_while(COARSE, |_| deadline.is_ahead()).ok().map(|all| Others::of(&all))
@@ -174,8 +180,15 @@ fn others(arm: &Arm, kind: VerdictKind, deadline: Deadline) -> Option<Others> {
 /// A path over the range of a parameter.
 pub(crate) fn path(request: &PathRequest, deadline: Deadline) -> Result<Answer, Problem> {
     let arm = request.arm()?;
+    if arm.space.is_some() {
+        return followed::<SpatialConfiguration>(request, &arm, deadline);
+    }
+    followed::<Configuration>(request, &arm, deadline)
+}
+
+fn followed<C: Shape>(request: &PathRequest, arm: &Arm, deadline: Deadline) -> Result<Answer, Problem> {
     let varied = varied(request.vary.as_ref())?;
-    varied.parameter.of(&arm).map_err(|error| Problem::field("vary", format!("vary: {error}")))?;
+    varied.parameter.of(arm).map_err(|error| Problem::field("vary", format!("vary: {error}")))?;
     let default = PathOptions::default();
     let options = PathOptions {
         tol: request.tol.unwrap_or(default.tol),
@@ -183,16 +196,15 @@ pub(crate) fn path(request: &PathRequest, deadline: Deadline) -> Result<Answer, 
         most: count("max_points", request.max_points.clone(), limits::POINTS)?.unwrap_or(default.most),
         branches: request.branches,
     };
-    let path = arm.path_with(varied.parameter, varied.range, &options, |_| deadline.is_ahead())?;
-    let document = PathDocument::new(&path, &varied)
+    let path = C::path(arm, varied.parameter, varied.range, &options, deadline)?;
+    let document = C::path_document(&path, &varied)
         .ok_or_else(|| Problem::field("vary", "vary: no point of the path was established at its start"))?;
     match request.format {
         Format::Json => Ok(Answer::json(&document)),
-        Format::Csv => Ok(Answer::csv(path_csv(&path, &varied))),
+        Format::Csv => Ok(Answer::csv(C::path_csv(&path, &varied))),
         format => {
             let title = format!("{}: equilibria over {}", arm.name, varied.parameter);
-            let page = Page::default();
-            Answer::figure(&path_figure(&path, &abscissa(&varied), Quantity::TipY, &title, &page), format)
+            Answer::figure(&C::path_figure(&path, &abscissa(&varied), &title, &Page::default()), format)
         }
     }
 }
@@ -211,37 +223,50 @@ struct WithShapes<'a> {
     shapes: Option<Vec<Silhouette>>,
 }
 
-/// All equilibria, as far as the time goes.
+/// All equilibria, as far as the time goes; in space those that were found.
 pub(crate) fn equilibria(request: &EquilibriaRequest, deadline: Deadline) -> Result<Answer, Problem> {
     let arm = request.arm()?;
+    if arm.space.is_some() {
+        return found::<SpatialConfiguration>(request, &arm, deadline);
+    }
+    found::<Configuration>(request, &arm, deadline)
+}
+
+fn found<C: Shape>(request: &EquilibriaRequest, arm: &Arm, deadline: Deadline) -> Result<Answer, Problem> {
     let stations = stations(request.stations.clone())?;
-    let all = arm.equilibria_while(request.tol.unwrap_or(1e-8), |_| deadline.is_ahead())?;
+    let all = C::all(arm, request.tol.unwrap_or(1e-8), deadline)?;
     match request.format {
         Format::Json => {
-            let document = EquilibriaDocument::new(&arm, &all);
-            let shape = |count| all.found.iter().map(|one| Silhouette::new(&one.configuration, count)).collect();
-            Ok(Answer::json(&WithShapes { document, shapes: stations.map(shape) }))
+            let document = EquilibriaDocument::new(arm, C::search(&all));
+            let shapes = stations.map(|count| C::silhouettes(&all, count));
+            Ok(Answer::json(&WithShapes { document, shapes }))
         }
-        Format::Csv => Ok(Answer::csv(equilibria_csv(arm.cables.len(), &all))),
-        format => {
-            let title = format!("{}: all equilibria", arm.name);
-            Answer::figure(&equilibria_figure(&all, &title, &Page::default()), format)
-        }
+        Format::Csv => Ok(Answer::csv(equilibria_csv(arm.cables.len(), C::search(&all)))),
+        format => Answer::figure(&C::all_figure(&all, arm, &Page::default()), format),
     }
 }
 
 /// The tensions that bring a place of the arm to a target.
 pub(crate) fn reach(request: &ReachRequest, deadline: Deadline) -> Result<Answer, Problem> {
     let arm = request.arm()?;
-    let [x, y] = request.target.as_ref().ok_or_else(|| Problem::missing("target", "[x, y] in m"))?;
-    let [x, y] = [x.value("target[0]", Dimension::Length)?, y.value("target[1]", Dimension::Length)?];
+    if arm.space.is_some() {
+        return reached::<SpatialConfiguration>(request, &arm, deadline);
+    }
+    reached::<Configuration>(request, &arm, deadline)
+}
+
+fn reached<C: Shape>(request: &ReachRequest, arm: &Arm, deadline: Deadline) -> Result<Answer, Problem> {
+    let expected = if arm.space.is_some() { "[x, y, z] in m" } else { "[x, y] in m" };
+    let target = request.target.as_ref().ok_or_else(|| Problem::missing("target", expected))?;
+    let place = target.iter().enumerate().map(|(k, v)| v.value(&format!("target[{k}]"), Dimension::Length));
     let read = |field: &str, amount: &Option<_>, dimension| {
         amount.as_ref().map(|amount: &crate::requests::Amount| amount.value(field, dimension)).transpose()
     };
-    let target = Target {
-        s: read("station", &request.station, Dimension::Length)?,
+    let aim = Aim {
+        place: place.collect::<Result<_, _>>()?,
+        station: read("station", &request.station, Dimension::Length)?,
         angle: read("angle", &request.angle, Dimension::Angle)?,
-        ..Target::tip(x, y)
+        direction: request.direction,
     };
     let options = ReachOptions {
         max_tension: read("max_tension", &request.max_tension, Dimension::Force)?,
@@ -249,21 +274,18 @@ pub(crate) fn reach(request: &ReachRequest, deadline: Deadline) -> Result<Answer
         tol: request.tol.unwrap_or(ReachOptions::default().tol),
         ..ReachOptions::default()
     };
-    let found = match request.by {
-        By::Tensions => arm.reach_while(&[target], &options, || deadline.is_ahead())?,
-        By::Strokes => arm.reach_by_strokes_while(&[target], &options, || deadline.is_ahead())?,
-    };
+    let found = C::reach(arm, &aim, request.by == By::Strokes, &options, deadline)?;
     if !deadline.is_ahead() {
         // What was not looked at may have been the answer.
         return Err(Problem::too_long());
     }
     match request.format {
-        Format::Json => Ok(Answer::json(&ReachDocument::new(&arm, &found))),
-        Format::Csv => Ok(Answer::csv(reach_csv(arm.cables.len(), &found))),
+        Format::Json => Ok(Answer::json(&C::reach_document(arm, &found))),
+        Format::Csv => Ok(Answer::csv(C::reach_csv(arm.cables.len(), &found))),
         format => match found.solutions.first().or(found.closest.as_ref()) {
             Some(best) => {
                 let note = found.closest.is_some().then_some("Not reached: the closest that was found");
-                Answer::figure(&reach_figure(&best.configuration, &[[x, y]], note, &Page::default()), format)
+                Answer::figure(&best.configuration.reach_figure(&aim, note, &Page::default()), format)
             }
             None => Err(Problem::field("target", "target: nothing was found")),
         },

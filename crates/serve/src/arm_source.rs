@@ -64,7 +64,7 @@ impl ArmSource {
         match self {
             Self::Name(name) => {
                 let text = shipped::get(name).ok_or_else(|| {
-                    let names: Vec<&str> = shipped::names().collect();
+                    let names: Vec<&str> = shipped::all_names().collect();
                     let names = names.join(", ");
                     Problem::field("arm", format!("arm: expected one of {names}, found \"{}\"", name.escape_debug()))
                 })?;
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn every_shipped_arm_is_the_same_by_name_as_toml_and_as_json() {
-        for name in shipped::names() {
+        for name in shipped::all_names() {
             let by_name = ArmSource::Name(name.to_owned()).file().unwrap().arm().unwrap();
             let text = hydrostat_files::arm_to_toml(&by_name);
             let by_text = ArmSource::Toml(text).file().unwrap().arm().unwrap();

@@ -1,6 +1,6 @@
 //! What a drawing needs beside the stations of an answer, at the same stations.
 
-use hydrostat::{Arm, Configuration, Options, Solver};
+use hydrostat::{Arm, Cable, Configuration, Options, Solver, SpatialConfiguration, SpatialSolver};
 use serde::Serialize;
 
 /// Radii and cables of the straight arm at the stations of an answer: with x, y, theta and beta there they give the surface,
@@ -11,6 +11,9 @@ pub(crate) struct Drawing {
     radius: Vec<f64>,
     /// y(s) of each cable from the base to its anchor, m.
     offsets: Vec<Vec<f64>>,
+    /// The same along c, of an arm in space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    offsets_c: Option<Vec<Vec<f64>>>,
     /// C1 A of the unloaded section at each cable's anchor, N.
     tension_scale: Vec<f64>,
     /// Where there is a stream.
@@ -63,15 +66,31 @@ impl Layer {
 
 impl Drawing {
     pub(crate) fn new(configuration: &Configuration) -> Self {
-        let (arm, stations) = (&configuration.arm, &configuration.stations);
-        let radius = stations.s.iter().map(|s| arm.radius.at(*s, arm.length).value).collect();
-        let offsets = arm.cables.iter().map(|cable| {
-            let anchor = cable.end * arm.length * (1.0 + 1e-12);
-            stations.s.iter().take_while(|s| **s <= anchor).map(|s| cable.offset.at(*s, arm.length).value).collect()
-        });
-        let tension_scale = (0..arm.cables.len()).map(|c| crate::arm_source::tension_scale(arm, c)).collect();
         let (layer, crossing) = (Layer::new(configuration), crossing(configuration));
-        Self { radius, offsets: offsets.collect(), tension_scale, layer, crossing }
+        Self { layer, crossing, ..Self::at(&configuration.arm, &configuration.stations.s) }
+    }
+
+    /// In space the cables are at r + beta (y b + z c).
+    pub(crate) fn in_space(configuration: &SpatialConfiguration) -> Self {
+        Self::at(&configuration.arm, &configuration.stations.s)
+    }
+
+    /// Of the straight arm.
+    fn at(arm: &Arm, stations: &[f64]) -> Self {
+        let along = |cable: &Cable, part: fn(f64) -> f64| -> Vec<f64> {
+            let anchor = cable.end * arm.length * (1.0 + 1e-12);
+            let place = |s: &f64| cable.offset.at(*s, arm.length).value * part(cable.angle.at(*s, arm.length).value);
+            stations.iter().take_while(|s| **s <= anchor).map(place).collect()
+        };
+        let all = |part: fn(f64) -> f64| arm.cables.iter().map(|cable| along(cable, part)).collect::<Vec<_>>();
+        Self {
+            radius: stations.iter().map(|s| arm.radius.at(*s, arm.length).value).collect(),
+            offsets: if arm.space.is_some() { all(f64::cos) } else { all(|_| 1.0) },
+            offsets_c: arm.space.is_some().then(|| all(f64::sin)),
+            tension_scale: (0..arm.cables.len()).map(|c| crate::arm_source::tension_scale(arm, c)).collect(),
+            layer: None,
+            crossing: None,
+        }
     }
 }
 
@@ -121,26 +140,57 @@ fn meeting([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
 pub(crate) struct Silhouette {
     x: Vec<f64>,
     y: Vec<f64>,
-    theta: Vec<f64>,
+    #[serde(flatten)]
+    turned: Turned,
     /// Half widths beta R, m.
     half_width: Vec<f64>,
+}
+
+/// How its sections are turned.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+enum Turned {
+    Plane {
+        theta: Vec<f64>,
+    },
+    Space {
+        z: Vec<f64>,
+        /// Normals.
+        a: Vec<[f64; 3]>,
+    },
 }
 
 impl Silhouette {
     /// At so many equally spaced stations.
     pub(crate) fn new(shape: &Configuration, count: usize) -> Self {
-        let stations = shape.resampled(count);
-        let radius = |s: &f64| shape.arm.radius.at(*s, shape.arm.length).value;
-        let half_width = stations.s.iter().zip(&stations.beta).map(|(s, beta)| beta * radius(s)).collect();
-        Self { x: stations.x, y: stations.y, theta: stations.theta, half_width }
+        let st = shape.resampled(count);
+        let half_width = half_widths(&shape.arm, &st.s, &st.beta);
+        Self { x: st.x, y: st.y, turned: Turned::Plane { theta: st.theta }, half_width }
+    }
+
+    /// The same of an arm in space.
+    pub(crate) fn in_space(shape: &SpatialConfiguration, count: usize) -> Self {
+        let st = shape.resampled(count);
+        let half_width = half_widths(&shape.arm, &st.s, &st.beta);
+        Self { x: st.x, y: st.y, turned: Turned::Space { z: st.z, a: st.a }, half_width }
     }
 
     /// Of the arm without its loads; `None` where even that has no shape.
     pub(crate) fn unloaded(arm: &Arm, count: usize) -> Option<Self> {
+        /// Over L.
+        const TOL: f64 = 1e-6;
         let bare = arm.unloaded();
-        let shape = Solver::new(&bare, Options::with_tol(1e-6)).and_then(|mut solver| solver.solve()).ok()?;
-        Some(Self::new(&shape, count))
+        if arm.space.is_some() {
+            let shape = SpatialSolver::new(&bare, Options::with_tol(TOL)).and_then(|mut solver| solver.solve());
+            return shape.ok().map(|shape| Self::in_space(&shape, count));
+        }
+        let shape = Solver::new(&bare, Options::with_tol(TOL)).and_then(|mut solver| solver.solve());
+        shape.ok().map(|shape| Self::new(&shape, count))
     }
+}
+
+fn half_widths(arm: &Arm, s: &[f64], beta: &[f64]) -> Vec<f64> {
+    s.iter().zip(beta).map(|(s, beta)| beta * arm.radius.at(*s, arm.length).value).collect()
 }
 
 #[cfg(test)]
@@ -150,8 +200,12 @@ mod tests {
 
     #[test]
     fn surfaces_and_cables_follow_from_stations_and_drawing() {
-        for name in shipped::names() {
+        for name in shipped::all_names() {
             let mut arm = ArmFile::parse(shipped::get(name).unwrap(), name).unwrap().arm().unwrap();
+            if arm.space.is_some() {
+                cables_in_space_follow(&arm);
+                continue;
+            }
             arm.cables[0].tension = 0.2 * arm.cables[0].max_tension.unwrap();
             let mut shape = arm.solve().unwrap();
             shape.stations = shape.resampled(37);
@@ -171,6 +225,21 @@ mod tests {
                         assert!(near(point, place(st.beta[i] * y)));
                     }
                 }
+            }
+        }
+    }
+
+    fn cables_in_space_follow(arm: &Arm) {
+        let mut shape = SpatialSolver::new(arm, Options::default()).unwrap().solve().unwrap();
+        shape.stations = shape.resampled(23);
+        let drawing = Drawing::in_space(&shape);
+        let (st, along_c) = (&shape.stations, drawing.offsets_c.unwrap());
+        for (c, offsets) in drawing.offsets.iter().enumerate() {
+            for (i, y) in offsets.iter().enumerate() {
+                let own = shape.cable_point(c, st.s[i]).unwrap();
+                let centre = [st.x[i], st.y[i], st.z[i]];
+                let drawn = [0, 1, 2].map(|k| centre[k] + st.beta[i] * (y * st.b[i][k] + along_c[c][i] * st.c[i][k]));
+                assert!(own.iter().zip(drawn).all(|(a, b)| (a - b).abs() < 1e-12), "{own:?} {drawn:?}");
             }
         }
     }

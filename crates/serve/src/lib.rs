@@ -25,10 +25,12 @@ mod limits;
 mod openapi;
 mod options;
 mod problem;
+mod pull;
 mod requests;
 mod routes;
 mod server;
 mod session;
+mod shape;
 mod work;
 
 pub use arm_source::Given;

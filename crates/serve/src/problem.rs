@@ -3,7 +3,7 @@
 use axum::body::Body;
 use axum::http::{HeaderValue, Response, StatusCode, header};
 use axum::response::IntoResponse;
-use hydrostat::{PathError, ReachError, SensitivityError, SolveError};
+use hydrostat::{PathError, ReachError, SensitivityError, SolveError, SpatialError, Verdict};
 use hydrostat_files::{FileError, Place};
 use serde::Serialize;
 
@@ -51,6 +51,12 @@ impl Problem {
         Self::field(field, format!("{field}: expected {expected}, found nothing"))
     }
 
+    /// A target with another count of coordinates, or with one that is none.
+    pub(crate) fn target(count: usize) -> Self {
+        let (number, coordinates) = if count == 3 { ("three", "x, y and z") } else { ("two", "x and y") };
+        Self::field("target", format!("target: expected {number} finite numbers, {coordinates} in m"))
+    }
+
     /// A body that is not JSON, or no body at all.
     pub(crate) fn body(message: impl Into<String>) -> Self {
         Self::new(StatusCode::BAD_REQUEST, "bad_request", Some("body"), message)
@@ -83,6 +89,11 @@ impl Problem {
         Self::new(StatusCode::METHOD_NOT_ALLOWED, "method_not_allowed", None, message)
     }
 
+    fn of_verdict(verdict: &Verdict, message: &str) -> Self {
+        let message = format!("{message}; try: {}", verdict.advice());
+        Self::new(StatusCode::UNPROCESSABLE_ENTITY, verdict.kind.name(), None, message)
+    }
+
     fn of_key(mut self, key: Option<String>) -> Self {
         self.body.error.key = key;
         self
@@ -102,19 +113,31 @@ impl From<FileError> for Problem {
 
 impl From<SolveError> for Problem {
     fn from(error: SolveError) -> Self {
+        let message = error.to_string();
         match &error {
-            SolveError::Option { option, .. } => Self::field(option, error.to_string()),
-            SolveError::Arm(source) => Self::field("arm", error.to_string()).of_key(Some(source.key().to_owned())),
-            SolveError::NoEquilibrium(failure) => {
-                let message = format!("{error}; try: {}", failure.verdict.advice());
-                Self::new(StatusCode::UNPROCESSABLE_ENTITY, failure.verdict.kind.name(), None, message)
-            }
+            SolveError::Option { option, .. } => Self::field(option, message),
+            SolveError::Arm(source) => Self::field("arm", message).of_key(Some(source.key().to_owned())),
+            SolveError::NoEquilibrium(failure) => Self::of_verdict(&failure.verdict, &message),
         }
     }
 }
 
-impl From<PathError> for Problem {
-    fn from(error: PathError) -> Self {
+impl From<SpatialError> for Problem {
+    fn from(error: SpatialError) -> Self {
+        let message = error.to_string();
+        match &error {
+            SpatialError::Option { option, .. } => Self::field(option, message),
+            SpatialError::Arm(source) => Self::field("arm", message).of_key(Some(source.key().to_owned())),
+            SpatialError::NoEquilibrium(failure) => Self::of_verdict(&failure.verdict, &message),
+        }
+    }
+}
+
+impl<E> From<PathError<E>> for Problem
+where
+    E: std::error::Error + Into<Self> + 'static,
+{
+    fn from(error: PathError<E>) -> Self {
         let message = error.to_string();
         match error {
             PathError::Option { option, .. } => {
@@ -126,7 +149,7 @@ impl From<PathError> for Problem {
                 Self::field("arm", message).of_key(Some("cable".to_owned()))
             }
             PathError::Start { source, .. } => {
-                let mut problem = Self::from(source);
+                let mut problem: Self = source.into();
                 problem.body.error.message = message;
                 problem
             }
@@ -134,8 +157,11 @@ impl From<PathError> for Problem {
     }
 }
 
-impl From<ReachError> for Problem {
-    fn from(error: ReachError) -> Self {
+impl<E> From<ReachError<E>> for Problem
+where
+    E: std::error::Error + Into<Self> + 'static,
+{
+    fn from(error: ReachError<E>) -> Self {
         let message = error.to_string();
         match error {
             ReachError::Solve(source) => source.into(),

@@ -110,8 +110,11 @@ pub(crate) struct ReachRequest {
     arm: Option<ArmSource>,
     #[serde(default)]
     set: Settings,
-    pub(crate) target: Option<[Amount; 2]>,
+    /// x and y, in space also z.
+    pub(crate) target: Option<Vec<Amount>>,
     pub(crate) angle: Option<Amount>,
+    /// Of the normal a, in space.
+    pub(crate) direction: Option<[f64; 3]>,
     pub(crate) station: Option<Amount>,
     #[serde(default)]
     pub(crate) by: By,

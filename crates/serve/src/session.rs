@@ -7,10 +7,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
-use hydrostat::{
-    Arm, Followed, Follower, NoEquilibrium, Options, ReachError, ReachOptions, SolveError, Solver, Target, Tip,
-};
-use hydrostat_files::{ArmFile, FailureDocument, Note, SolutionDocument, json};
+use hydrostat::{Arm, Configuration, Options, SpatialConfiguration};
+use hydrostat_files::{ArmFile, json};
 use serde::{Deserialize, Serialize};
 use tokio::time::{sleep, timeout};
 
@@ -18,20 +16,13 @@ use crate::arm_source::{ArmSource, Settings, arm, overridden};
 use crate::drawing::{Drawing, Silhouette};
 use crate::limits;
 use crate::problem::{Details, Problem};
+use crate::pull::{Pull, Pulled};
 use crate::requests::{read, stations};
+use crate::shape::{Answered, Shape, Unsolved};
 use crate::work::{Weight, Work};
 
 /// Stations of an answer where none are asked for.
 const STATIONS: usize = 121;
-
-/// Distance to a target over L at which the tip has reached it.
-const REACHED: f64 = 1e-6;
-
-/// How far (over L) a target is moved at once: further targets are gone to in parts.
-const PART: f64 = 0.05;
-
-/// Most parts.
-const PARTS: f64 = 12.0;
 
 /// Tips (over L) further apart than this are different shapes.
 const APART: f64 = 1e-4;
@@ -47,39 +38,11 @@ struct Wish {
     #[serde(default)]
     set: Settings,
     stations: Option<serde_json::Number>,
-    /// Where the tip is to go, m: then tensions are found, beginning with those of the arm.
-    target: Option<[f64; 2]>,
+    /// Where the tip is to go, two numbers in the plane and three in space, m: then tensions are found, beginning with
+    /// those of the arm.
+    target: Option<Vec<f64>>,
     /// The largest tension (N) of every cable while the tip is pulled; of this and the cable's own the smaller counts.
     max_tension: Option<f64>,
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Answered<'a> {
-    Shape(Box<SolutionDocument<'a>>),
-    None(Box<FailureDocument<'a>>),
-}
-
-/// Where the tip was pulled to.
-#[derive(Debug, Clone, Serialize)]
-struct Pulled {
-    /// N; these are the tensions of the answer.
-    tensions: Vec<f64>,
-    reached: bool,
-    /// From the target, m.
-    distance: f64,
-    /// Cables whose tension is at a bound.
-    bounds: Vec<BoundOut>,
-    /// Whether the arm went to another branch of its equilibria on the way.
-    jumped: bool,
-    /// Whether a solve from the unloaded arm at these tensions leads to another shape than following did.
-    elsewhere: bool,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct BoundOut {
-    cable: usize,
-    kind: &'static str,
 }
 
 #[derive(Serialize)]
@@ -107,15 +70,7 @@ struct Reply<'a> {
 struct Memory {
     source: Option<(ArmSource, ArmFile)>,
     ghost_of: Option<Arm>,
-    following: Option<Following>,
-}
-
-/// A tip that is being pulled.
-struct Following {
-    /// The arm with slack cables, and the bound: what must not change under the follower.
-    of: (Arm, Option<f64>),
-    follower: Follower,
-    at: [f64; 2],
+    pull: Option<Pull>,
 }
 
 /// Answers until the page goes away.
@@ -200,28 +155,49 @@ impl Memory {
         let mut arm = arm(&overridden(file, &set)?)?;
         let mut pulled = None;
         if let Some(target) = target {
-            pulled = Some(self.pull(&mut arm, target, max_tension)?);
+            pulled = Some(self.pull(&mut arm, &target, max_tension)?);
         } else {
-            self.following = None;
+            self.pull = None;
         }
         let ghost = self.ghost(&arm, count);
-        let mut solver = Solver::new(&arm, Options::default())?;
-        let mut reply = Reply { id, answer: None, drawing: None, ghost, pulled, error: None, dropped, microseconds: 0 };
-        match solver.solve() {
+        let reply = Reply { id, answer: None, drawing: None, ghost, pulled, error: None, dropped, microseconds: 0 };
+        if arm.space.is_some() {
+            self.shown::<SpatialConfiguration>(reply, &arm, count, start)
+        } else {
+            self.shown::<Configuration>(reply, &arm, count, start)
+        }
+    }
+
+    /// The reply with the shape of `arm`, or with the verdict and the last good shape to look at.
+    fn shown<C: Shape>(&self, mut reply: Reply<'_>, arm: &Arm, count: usize, start: Instant) -> Result<String, Problem>
+    where
+        Problem: From<Box<C::Failure>>,
+    {
+        let tol = Options::default().tol;
+        let done = |reply: Reply<'_>, answer| {
+            let microseconds = start.elapsed().as_micros();
+            json(&Reply { answer: Some(answer), microseconds, ..reply })
+        };
+        match C::solve(arm, tol) {
             Ok(mut shape) => {
-                if let (Some(pulled), Some(following)) = (&mut reply.pulled, &self.following) {
-                    pulled.elsewhere = apart(following.at, shape.tip(), arm.length);
+                if let (Some(pulled), Some(pull)) = (&mut reply.pulled, &self.pull) {
+                    pulled.elsewhere = apart(pull.at, shape.tip(), arm.length);
                 }
-                let notes = Note::all(&shape, Options::default().tol);
-                let margin = shape.fold_margin().value;
-                shape.stations = shape.resampled(count);
-                reply.drawing = Some(Drawing::new(&shape));
-                reply.answer = Some(Answered::Shape(Box::new(SolutionDocument::new(&shape, margin, &notes))));
-                reply.microseconds = start.elapsed().as_micros();
-                Ok(json(&reply))
+                let (notes, margin) = (shape.notes(tol), shape.margin());
+                shape.resample(count);
+                reply.drawing = Some(shape.drawing());
+                Ok(done(reply, shape.document(margin, &notes)))
             }
-            Err(SolveError::NoEquilibrium(failure)) => Ok(without_shape(reply, *failure, count, start)),
-            Err(error) => Err(error.into()),
+            Err(Unsolved::Verdict(mut failure)) => {
+                let (mut notes, mut margin) = (Vec::new(), f64::NAN);
+                if let Some(shape) = C::last_good(&mut failure) {
+                    (notes, margin) = (shape.notes(f64::INFINITY), shape.margin());
+                    shape.resample(count);
+                    reply.drawing = Some(shape.drawing());
+                }
+                Ok(done(reply, C::failure(&failure, margin, &notes, None)))
+            }
+            Err(Unsolved::Refused(problem)) => Err(problem),
         }
     }
 
@@ -251,110 +227,33 @@ impl Memory {
     }
 
     /// Brings the tip of `arm` to the target, or as near as it gets, by its tensions.
-    fn pull(&mut self, arm: &mut Arm, target: [f64; 2], most: Option<f64>) -> Result<Pulled, Problem> {
-        if !target.iter().all(|v| v.is_finite()) {
-            return Err(Problem::field("target", "target: expected two finite numbers, m"));
-        }
-        let of = (arm.slackened(), most);
-        if self.following.as_ref().is_none_or(|own| own.of != of) {
-            self.following = Some(begin(arm, of, most)?);
-        }
-        let Some(following) = &mut self.following else { return Err(Problem::defect()) };
-        let length = arm.length;
-        let [dx, dy] = [target[0] - following.at[0], target[1] - following.at[1]];
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and PARTS")]
-        let parts = (dx.hypot(dy) / (PART * length)).ceil().clamp(1.0, PARTS) as u32;
-        let from = following.at;
-        let mut jumped = false;
-        let mut last: Option<Followed> = None;
-        for part in 1..=parts {
-            let share = f64::from(part) / f64::from(parts);
-            let followed = following.follower.follow(&[Target::tip(from[0] + share * dx, from[1] + share * dy)]);
-            match followed {
-                Ok(found) => {
-                    jumped |= found.jumped;
-                    following.at = [found.tip.x, found.tip.y];
-                    last = Some(found);
-                }
-                Err(error) => {
-                    self.following = None;
-                    return Err(lost(error));
-                }
-            }
-        }
-        let Some(found) = last else { return Err(Problem::defect()) };
-        for (cable, tension) in arm.cables.iter_mut().zip(&found.tensions) {
-            (cable.tension, cable.stroke) = (*tension, None);
-        }
-        let bound = |(cable, tension): (usize, &f64)| {
-            let largest = arm.cables[cable].max_tension.into_iter().chain(most).reduce(f64::min);
-            let kind = match largest {
-                Some(largest) if *tension >= largest * (1.0 - 1e-9) => "most",
-                _ if *tension <= 0.0 => "slack",
-                _ => return None,
-            };
-            Some(BoundOut { cable, kind })
+    fn pull(&mut self, arm: &mut Arm, target: &[f64], most: Option<f64>) -> Result<Pulled, Problem> {
+        let place = match (target, arm.space.is_some()) {
+            ([x, y], false) => [*x, *y, 0.0],
+            ([x, y, z], true) => [*x, *y, *z],
+            (_, in_space) => return Err(Problem::target(if in_space { 3 } else { 2 })),
         };
-        Ok(Pulled {
-            reached: found.reached,
-            distance: found.distance * length,
-            bounds: found.tensions.iter().enumerate().filter_map(bound).collect(),
-            tensions: found.tensions,
-            jumped,
-            elsewhere: false,
-        })
+        if !place.iter().all(|v| v.is_finite()) {
+            return Err(Problem::target(target.len()));
+        }
+        let mut pull = match self.pull.take() {
+            Some(pull) if pull.is_of(arm, most) => pull,
+            _ => Pull::begin(arm, most)?,
+        };
+        let pulled = pull.to(place, arm)?;
+        self.pull = Some(pull);
+        Ok(pulled)
     }
 }
 
-/// Takes hold of the tip where it is.
-fn begin(arm: &Arm, of: (Arm, Option<f64>), most: Option<f64>) -> Result<Following, Problem> {
-    let found = arm.solve()?;
-    let tip = found.tip();
-    let mut held = of.0.clone();
-    // The tensions that commanded strokes have led to are where the pull begins.
-    for (cable, state) in held.cables.iter_mut().zip(&found.cables) {
-        cable.tension = cable.max_tension.map_or(state.tension, |max| state.tension.min(max));
-    }
-    let options = ReachOptions { max_tension: most, tol: REACHED, all: false, ..ReachOptions::default() };
-    let follower = Follower::new(&held, &[Target::tip(tip.x, tip.y)], &options)?;
-    Ok(Following { of, follower, at: [tip.x, tip.y] })
-}
-
-fn lost(error: ReachError) -> Problem {
-    let mut problem = Problem::from(error);
-    problem.body.error.message = format!("the arm cannot follow there: {}", problem.body.error.message);
-    problem
-}
-
-fn apart(at: [f64; 2], tip: Tip, length: f64) -> bool {
-    (at[0] - tip.x).hypot(at[1] - tip.y) > APART * length
-}
-
-/// The verdict, with the last good shape to look at.
-fn without_shape(mut reply: Reply<'_>, mut failure: NoEquilibrium, count: usize, start: Instant) -> String {
-    let notes = failure.last_good.as_ref().map(|c| Note::all(c, f64::INFINITY)).unwrap_or_default();
-    let margin = failure.last_good.as_ref().map_or(f64::NAN, |c| c.fold_margin().value);
-    if let Some(shape) = &mut failure.last_good {
-        shape.stations = shape.resampled(count);
-        reply.drawing = Some(Drawing::new(shape));
-    }
-    let Reply { id, drawing, ghost, pulled, dropped, .. } = reply;
-    let reply = Reply {
-        id,
-        answer: Some(Answered::None(Box::new(FailureDocument::new(&failure, margin, &notes)))),
-        drawing,
-        ghost,
-        pulled,
-        error: None,
-        dropped,
-        microseconds: start.elapsed().as_micros(),
-    };
-    json(&reply)
+fn apart(a: [f64; 3], b: [f64; 3], length: f64) -> bool {
+    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt() > APART * length
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hydrostat::Tip;
     use serde_json::Value;
 
     fn wish(text: &str) -> Wish {
@@ -409,6 +308,26 @@ mod tests {
         assert_eq!(failed["answer"]["verdict"]["kind"], "cable_fold");
         assert_eq!(failed["drawing"]["radius"].as_array().unwrap().len(), STATIONS);
         assert_eq!(failed["answer"]["last_good"]["stations"]["s"].as_array().unwrap().len(), STATIONS);
+    }
+
+    #[test]
+    fn a_tip_pulled_in_space_is_where_a_solve_at_its_tensions_puts_it() {
+        let mut memory = Memory::default();
+        let first = reply(&mut memory, r#"{"id": 1, "arm": "silicone-spatial", "stations": 11}"#);
+        let tip = ["x", "y", "z"].map(|key| first["answer"]["tip"][key].as_f64().unwrap());
+        assert_eq!(first["ghost"]["a"].as_array().unwrap().len(), 11);
+        assert_eq!(first["drawing"]["offsets_c"].as_array().unwrap().len(), 3);
+        let target = [tip[0] - 0.002, tip[1] + 0.01, tip[2] - 0.004];
+        let pulled = reply(&mut memory, &format!(r#"{{"id": 2, "target": {target:?}}}"#));
+        assert_eq!(pulled["pulled"]["elsewhere"], false, "{}", pulled["pulled"]);
+        let off: f64 = ["x", "y", "z"]
+            .iter()
+            .zip(target)
+            .map(|(key, to)| (pulled["answer"]["tip"][key].as_f64().unwrap() - to).powi(2))
+            .sum();
+        let distance = pulled["pulled"]["distance"].as_f64().unwrap();
+        assert!((off.sqrt() - distance).abs() < 1e-6, "{} against {distance}", off.sqrt());
+        assert!(distance < 0.002, "{distance}");
     }
 
     #[test]

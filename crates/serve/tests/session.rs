@@ -102,6 +102,7 @@ async fn what_is_no_wish_is_refused_and_the_session_goes_on() {
         (json!({ "id": 1, "arm": "paper", "stations": 100_000 }), "stations"),
         (json!({ "id": 1, "arm": "paper", "set": { "flow.speed": -1 } }), "set"),
         (json!({ "id": 1, "arm": "paper", "target": [0.1] }), "target"),
+        (json!({ "id": 1, "arm": "silicone-spatial", "target": [0.1, 0.1] }), "target"),
         (
             json!({ "id": 1, "arm": { "toml": "[arm]\nlength = 0.1\nradius = 0.01\n[material]\nyoung = 1e5" }, "target": [0.1, 0] }),
             "arm",
@@ -136,6 +137,15 @@ async fn messages_are_as_their_schema_says() {
         ),
         (json!({ "id": 4, "arm": "nobody" }), &["error"]),
         (json!({ "id": 5, "arm": "silicone", "set": { "flow.speed": "a lot" } }), &["error"]),
+        (json!({ "id": 6, "arm": "silicone-spatial", "set": stream, "stations": 21 }), &["answer", "drawing", "ghost"]),
+        (
+            json!({ "id": 7, "set": { "cable[0].tension": 0.1 }, "target": [0.22, 0.08, 0.02], "max_tension": 0.6 }),
+            &["pulled"],
+        ),
+        (
+            json!({ "id": 8, "arm": "silicone-spatial", "set": { "cable[0].max_tension": 3, "cable[0].tension": 2.5 } }),
+            &["answer"],
+        ),
     ] {
         if wish["arm"] != "nobody" {
             Described::check(&described.wish, &wish);

@@ -57,7 +57,8 @@ pub(crate) struct IdentifyArgs {
     /// Scale all standard deviations by a common factor, estimated from the residuals
     #[arg(long)]
     pub(crate) rescale: bool,
-    /// Measurements that are not fitted: the report says how far the fitted arm is from them. A CSV file as DATA
+    /// Measurements that are not fitted: the report says how far the fitted arm is from them, in CSV
+    /// with a column `predicted`. A CSV file as DATA
     #[arg(long, value_name = "FILE")]
     pub(crate) predict: Option<PathBuf>,
     /// Skip cross-validation, which fits again without each load case

@@ -4,7 +4,7 @@ use hydrostat::{Arm, SensitivityError};
 use hydrostat_figures::fit_figure;
 use hydrostat_files::{
     Deviations, IdentificationDocument, arm_to_toml, fitted, measurements_template, number, parse_measurements,
-    read_measurements, residuals_csv,
+    read_measurements, residuals_csv, residuals_csv_with_predictions,
 };
 use hydrostat_identify::{Case, Fit, FitOptions, Prediction, Unknown, fit, predict};
 use std::fmt::Write as _;
@@ -93,9 +93,17 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
             let document = IdentificationDocument::new(&best, &cases, &found, options.loss);
             output::line(document.with_predictions(&others, &predicted).to_json())
         }
-        Format::Csv => residuals_csv(&cases, &found),
+        Format::Csv if args.predict.is_none() => residuals_csv(&cases, &found),
+        Format::Csv => residuals_csv_with_predictions(&cases, &found, &others, &predicted),
     };
     output::put(args.output.as_deref(), &text)?;
+    if format == Format::Csv {
+        for one in &predicted {
+            if let Err(trial) = &one.found {
+                eprintln!("warning: load case {} is not predicted: {trial}", others[one.case].name);
+            }
+        }
+    }
     if found.converged {
         return Ok(());
     }

@@ -6,7 +6,7 @@ use hydrostat::{
     Arm, Branch, Configuration, Event, Path, PathEnd, PathError, PathOptions, PathPoint, SpatialConfiguration,
     Stability,
 };
-use hydrostat_figures::{Abscissa, Quantity, path_shapes_figure};
+use hydrostat_figures::{Abscissa, Quantity};
 use hydrostat_files::{Landing, Varied, end_message, number};
 
 use super::{NoAnswer, wrong_option};
@@ -27,26 +27,25 @@ pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
     request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &pictures)?;
     if arm.space.is_some() {
-        if args.plot_shapes.is_some() {
-            let instead = "--plot draws a quantity along the path, and `solve --plot` one shape in space";
-            return Err(WrongRequest::NotInSpace("--plot-shapes", instead).into());
-        }
         if args.after_snap {
             let instead = "motion is of arms in the plane";
             return Err(WrongRequest::NotInSpace("--after-snap", instead).into());
         }
         let path = follow::<SpatialConfiguration>(&arm, args)?;
+        draw_shapes(&arm, &path, args)?;
         return report(&arm, &path, None, args);
     }
     let path = follow::<Configuration>(&arm, args)?;
-    if let Some(file) = &args.plot_shapes
-        && Configuration::document(&path, varied).is_some()
-    {
-        let (title, page) = (title(&arm, varied), args.picture.page());
-        output::draw(&path_shapes_figure(&path, &abscissa(varied), &title, &page), file, &args.picture.page)?;
-    }
+    draw_shapes(&arm, &path, args)?;
     let landings = args.after_snap.then(|| landings(&path, varied));
     report(&arm, &path, landings.as_deref(), args)
+}
+
+fn draw_shapes<C: Shape>(arm: &Arm, path: &Path<C>, args: &PathArgs) -> anyhow::Result<()> {
+    let varied = &args.vary;
+    let Some(file) = args.plot_shapes.as_ref().filter(|_| C::document(path, varied).is_some()) else { return Ok(()) };
+    let figure = C::shapes(path, &abscissa(varied), &title(arm, varied), &args.picture.page());
+    output::draw(&figure, file, &args.picture.page)
 }
 
 /// Writes what was asked for.

@@ -12,7 +12,7 @@ use crate::request;
 pub(crate) fn run(args: &ServeArgs) -> anyhow::Result<()> {
     let file = request::arm_file(&args.arm)?;
     // A file that is wrong is better said here than in the page.
-    request::arm_of(&file, "`hydrostat serve`")?;
+    request::arm_anywhere(&file)?;
     let name = Path::new(file.path()).file_name().map_or(args.arm.clone(), |name| name.to_string_lossy().into_owned());
     let given = Some(Given { name, text: file.text().to_owned() });
     let options = Options { address: args.host, port: args.port, names: args.allow_host.clone(), given };

@@ -4,7 +4,9 @@ use hydrostat::{
     Arm, CableState, Configuration, Parameter, Path, PathError, PathOptions, PathPoint, Reach, SolveError,
     SpatialConfiguration, SpatialError, SpatialStation, SpatialTip, Station, Tip,
 };
-use hydrostat_figures::{Abscissa, Page, Quantity, Scene, path_figure, spatial_path_figure};
+use hydrostat_figures::{
+    Abscissa, Page, Quantity, Scene, path_figure, path_shapes_figure, spatial_path_figure, spatial_path_shapes_figure,
+};
 use hydrostat_files::{
     Landing, PathDocument, ReachDocument, Varied, path_csv, path_csv_with_landings, reach_csv, spatial_path_csv,
     spatial_reach_csv,
@@ -37,6 +39,8 @@ pub(super) trait Shape: Sized {
     fn document<'a>(path: &'a Path<Self>, varied: &Varied) -> Option<PathDocument<'a>>;
     fn csv(path: &Path<Self>, varied: &Varied, landings: Option<&[Landing]>) -> String;
     fn chart(path: &Path<Self>, over: &Abscissa, quantity: Quantity, title: &str, page: &Page) -> Scene;
+    /// Shapes along a path.
+    fn shapes(path: &Path<Self>, over: &Abscissa, title: &str, page: &Page) -> Scene;
 }
 
 impl Shape for Configuration {
@@ -86,6 +90,10 @@ impl Shape for Configuration {
     fn chart(path: &Path, over: &Abscissa, quantity: Quantity, title: &str, page: &Page) -> Scene {
         path_figure(path, over, quantity, title, page)
     }
+
+    fn shapes(path: &Path, over: &Abscissa, title: &str, page: &Page) -> Scene {
+        path_shapes_figure(path, over, title, page)
+    }
 }
 
 impl Shape for SpatialConfiguration {
@@ -134,5 +142,9 @@ impl Shape for SpatialConfiguration {
 
     fn chart(path: &Path<Self>, over: &Abscissa, quantity: Quantity, title: &str, page: &Page) -> Scene {
         spatial_path_figure(path, over, quantity, title, page)
+    }
+
+    fn shapes(path: &Path<Self>, over: &Abscissa, title: &str, page: &Page) -> Scene {
+        spatial_path_shapes_figure(path, over, title, page)
     }
 }

@@ -71,6 +71,13 @@ fn parameters_are_found_written_and_drawn() {
     let run = hydrostat_in(here.path(), &identify("young", &["--format", "csv"]));
     let (names, rows) = columns(&run.out);
     assert_eq!((names[0], names[7], rows.len()), ("case", "residual_sd", 30));
+    let predicted = hydrostat_in(here.path(), &identify("young", &["--format", "csv", "--predict", "data.csv"]));
+    let (names, rows) = columns(&predicted.out);
+    assert_eq!((names[10], rows.len()), ("predicted", 60), "{}", predicted.err);
+    assert!(rows[..30].iter().all(|row| row[10] == "false") && rows[30..].iter().all(|row| row[10] == "true"));
+    for (own, other) in rows[..30].iter().zip(&rows[30..]) {
+        assert_eq!(own[..6], other[..6], "the same numbers");
+    }
     let report = hydrostat_in(here.path(), &identify("young,cn", &[]));
     for part in ["material.young (Pa)", "verdict: the data determine", "correlation", "singular value", "predicted"] {
         assert!(report.out.contains(part), "{part}: {}", report.out);

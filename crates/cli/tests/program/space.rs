@@ -38,6 +38,16 @@ fn an_arm_in_space_is_drawn_in_every_form() {
 }
 
 #[test]
+fn shapes_along_a_path_in_space_are_drawn_in_three_views() {
+    let directory = directory();
+    let vary = ["path", "silicone-spatial", "--vary", "cable[2].tension=0:300 mN"];
+    let run = hydrostat_in(directory.path(), &[&vary[..], &["--plot-shapes", "shapes.svg", "--svg-text"]].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let svg = std::fs::read_to_string(directory.path().join("shapes.svg")).unwrap();
+    assert!(svg.matches("300 mN").count() >= 3, "the last shape has its value in every view");
+}
+
+#[test]
 fn tips_of_a_sweep_in_space_are_drawn_from_three_sides() {
     let directory = directory();
     // As many keys as cables: more than a map has axes.

@@ -146,11 +146,7 @@ impl SpatialFollower {
     ///
     /// # Errors
     /// [`ReachError`].
-    pub fn new(
-        arm: &Arm,
-        targets: &[SpatialTarget],
-        options: &ReachOptions,
-    ) -> Result<Self, ReachError<SpatialError>> {
+    pub fn new(arm: &Arm, targets: &[SpatialTarget], options: &ReachOptions) -> Result<Self, ReachError<SpatialError>> {
         let search = Search::<SpatialSolver>::new(arm, targets.to_vec(), options)?;
         Ok(Self { inner: Following::new(search, || Ok(best(arm.reach_in_space(targets, options)?)))? })
     }
