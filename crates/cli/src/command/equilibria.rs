@@ -14,11 +14,11 @@ use hydrostat_figures::{
 use hydrostat_files::equilibria::{curve_message, side_message};
 use hydrostat_files::{EquilibriaDocument, Others, OverDocument, Search, Varied, equilibria_csv, number, over_csv};
 
-use super::{NoAnswer, wrong_option};
 use super::over::{Value, at_values, say_what_is_missing};
 use super::path::{abscissa, check_quantity, title};
 use super::shape::Shape;
 use super::table::{stability_words, table};
+use super::{NoAnswer, wrong_option};
 use crate::args::{EquilibriaArgs, Format, Over};
 use crate::output;
 use crate::progress::Progress;

@@ -9,9 +9,9 @@ use hydrostat::{
 use hydrostat_figures::{Abscissa, Quantity};
 use hydrostat_files::{Landing, Varied, end_message, number};
 
-use super::{NoAnswer, wrong_option};
 use super::shape::Shape;
 use super::table::{decimals, stability_words, table, tip_cells};
+use super::{NoAnswer, wrong_option};
 use crate::args::{Format, PathArgs};
 use crate::output;
 use crate::progress::Progress;

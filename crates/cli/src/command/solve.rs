@@ -6,9 +6,9 @@ use hydrostat::{
 use hydrostat_figures::{arm_figure, last_good_note};
 use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, stations_csv};
 
-use super::{Advised, wrong_option};
 use super::slip::slip;
 use super::summary::summary;
+use super::{Advised, wrong_option};
 use crate::args::{Format, SolveArgs};
 use crate::output;
 use crate::request;

@@ -10,9 +10,9 @@ use hydrostat::{
 use hydrostat_figures::{last_good_note, spatial_arm_figure};
 use hydrostat_files::{Note, SpatialFailureDocument, SpatialSolutionDocument, number, spatial_stations_csv};
 
-use super::{Advised, wrong_option};
 use super::slip::slip;
 use super::summary::{cable_rows, signed, stability_in_words, work};
+use super::{Advised, wrong_option};
 use crate::args::{Format, SolveArgs};
 use crate::output;
 use crate::request;
