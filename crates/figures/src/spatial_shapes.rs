@@ -2,7 +2,7 @@
 
 use hydrostat::{Equilibrium, Path, SpatialConfiguration, SpatialEquilibria};
 
-use crate::axes::BELOW;
+use crate::axes::{Axes, BELOW};
 use crate::chart::{Abscissa, Look};
 use crate::font::Label;
 use crate::page::{MARGIN, Page};
@@ -21,6 +21,8 @@ const POINTS: usize = 200;
 const WIDER: f64 = 1.5;
 /// Room for labels over the widest extent.
 const PAD: f64 = 0.07;
+/// More labels than this stand in the largest view alone: the smaller ones have no room for them.
+const LABELS_IN_SMALL_VIEWS: usize = 5;
 
 /// One centreline, mm.
 struct Member {
@@ -98,6 +100,8 @@ fn draw(says: String, title: &str, members: &[Member], unknown: &str, page: &Pag
     heading.draw(&mut scene);
     legend.draw(&mut scene, heading.bottom);
     placed.draw(&mut scene);
+    let area = |axes: &Axes| axes.frame.width() * (axes.frame.bottom - axes.frame.top);
+    let largest = placed.views.iter().fold(0.0, |most, (axes, _)| f64::max(most, area(axes)));
     for (axes, view) in &placed.views {
         let mut taken = Occupied::new(axes.frame.grown(-3.0));
         let mut labels = Vec::new();
@@ -111,7 +115,9 @@ fn draw(says: String, title: &str, members: &[Member], unknown: &str, page: &Pag
                 labels.push(TipLabel { tip, towards, color: *color, label: label.clone() });
             }
         }
-        draw_tip_labels(&mut scene, &mut taken, axes.frame, &labels);
+        if area(axes) >= largest || members.len() <= LABELS_IN_SMALL_VIEWS {
+            draw_tip_labels(&mut scene, &mut taken, axes.frame, &labels);
+        }
     }
     scene
 }

@@ -39,7 +39,8 @@ proptest! {
             Err(error) => return Err(TestCaseError::fail(format!("{error}"))),
         };
         let there = turned(&m, [flat.tip().x, flat.tip().y, 0.0]);
-        prop_assert!(apart(tip(&space), there) < 5e-8 * arm.length, "{:?} {there:?}", tip(&space));
+        // Either tip is good to 1e-8 by an estimate that may be too small by a factor.
+        prop_assert!(apart(tip(&space), there) < 1e-7 * arm.length, "{:?} {there:?}", tip(&space));
         for (flat, space) in flat.cables.iter().zip(&space.cables) {
             prop_assert!((flat.tension - space.tension).abs() < 1e-6, "{flat:?} {space:?}");
             prop_assert_eq!(flat.command.map(|c| c.slack), space.command.map(|c| c.slack));

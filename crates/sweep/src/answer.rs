@@ -1,7 +1,7 @@
 //! What became of a row, in the plane or in space.
 
 use hydrostat::{
-    AfterSnapError, Arm, FoldMargin, MotionError, Options, Row, SolveError, SpatialConfiguration, SpatialError,
+    AfterSnapError, Arm, FoldMargin, MotionError, Options, Row, Snap, SolveError, SpatialConfiguration, SpatialError,
     SpatialSnap, SpatialSolver, SpatialTip, SpatialWrench, Stability, Verdict, Wanted, Warning,
 };
 
@@ -35,6 +35,8 @@ pub(crate) struct SpatialRow {
     stability: Option<Stability>,
     warnings: Vec<Warning>,
     snaps: Vec<SpatialSnap>,
+    /// How long they take, s, where their motion was followed.
+    snap_durations: Vec<f64>,
     /// Place and directors a and b at each station; empty unless asked for.
     shape: Vec<[f64; 9]>,
 }
@@ -52,6 +54,7 @@ impl SpatialRow {
             stability: if wanted.stability { configuration.stability() } else { None },
             warnings: if wanted.warnings { configuration.warnings() } else { Vec::new() },
             snaps: configuration.snaps.clone(),
+            snap_durations: Vec::new(),
             shape: if wanted.stations < 2 { Vec::new() } else { shape(configuration, wanted.stations) },
         }
     }
@@ -83,12 +86,38 @@ pub(crate) fn solve_after_snap(arm: &Arm, tol: f64, wanted: Wanted, verdict: Ver
             Ok(Found::Plane(Row { snap_durations, ..Row::new(&found.configuration, wanted) }))
         }
         Err(AfterSnapError::Solve(SolveError::NoEquilibrium(no))) => Err(NoAnswer::Verdict(no.verdict)),
-        Err(AfterSnapError::Solve(error)) => Err(NoAnswer::Arm(error.to_string())),
-        Err(error @ AfterSnapError::Motion { motion: MotionError::Unsupported { .. }, .. }) => {
-            Err(NoAnswer::Arm(error.to_string()))
+        Err(error) => Err(no_rest(&error, verdict)),
+    }
+}
+
+/// [`solve_after_snap`] of an arm in space.
+pub(crate) fn solve_after_snap_in_space(
+    arm: &Arm,
+    tol: f64,
+    wanted: Wanted,
+    verdict: Verdict,
+) -> Result<Found, NoAnswer> {
+    match arm.solve_after_snap_in_space(tol) {
+        Ok(found) => {
+            let snap_durations = found.snaps.iter().map(|motion| motion.duration).collect();
+            Ok(Found::Space(SpatialRow { snap_durations, ..SpatialRow::of(&found.configuration, wanted) }))
+        }
+        Err(AfterSnapError::Solve(SpatialError::NoEquilibrium(no))) => Err(NoAnswer::Verdict(no.verdict)),
+        Err(error) => Err(no_rest(&error, verdict)),
+    }
+}
+
+/// Why a row that snaps has no shape after it.
+fn no_rest<E>(error: &AfterSnapError<E>, verdict: Verdict) -> NoAnswer
+where
+    AfterSnapError<E>: std::fmt::Display,
+{
+    match error {
+        AfterSnapError::Solve(_) | AfterSnapError::Motion { motion: MotionError::Unsupported { .. }, .. } => {
+            NoAnswer::Arm(error.to_string())
         }
         // It snaps, and where to is not known.
-        Err(AfterSnapError::Motion { .. } | AfterSnapError::NoRest { .. }) => Err(NoAnswer::Verdict(verdict)),
+        AfterSnapError::Motion { .. } | AfterSnapError::NoRest { .. } => NoAnswer::Verdict(verdict),
     }
 }
 
@@ -98,19 +127,12 @@ impl Found {
     pub(crate) fn snaps(&self) -> (usize, [Option<f64>; 4]) {
         match self {
             Self::Plane(row) => {
-                let distance = |k: &usize| row.snaps[*k].distance();
-                let furthest = (0..row.snaps.len()).max_by(|a, b| distance(a).total_cmp(&distance(b)));
-                let of = furthest.map_or([None; 4], |k| {
-                    let snap = row.snaps[k];
-                    let duration = row.snap_durations.get(k).copied();
-                    [Some(snap.load_fraction), Some(snap.distance()), Some(snap.angle()), duration]
-                });
-                (row.snaps.len(), of)
+                let of = |s: &Snap| [s.load_fraction, s.distance(), s.angle()];
+                furthest(row.snaps.iter().map(of), &row.snap_durations)
             }
             Self::Space(row) => {
-                let furthest = row.snaps.iter().max_by(|a, b| a.distance().total_cmp(&b.distance()));
-                let of = |s: &SpatialSnap| [Some(s.load_fraction), Some(s.distance()), Some(s.angle()), None];
-                (row.snaps.len(), furthest.map_or([None; 4], of))
+                let of = |s: &SpatialSnap| [s.load_fraction, s.distance(), s.angle()];
+                furthest(row.snaps.iter().map(of), &row.snap_durations)
             }
         }
     }
@@ -190,4 +212,16 @@ impl Found {
             Self::Space(row) => row.shape.get(station)?.get(field).copied(),
         }
     }
+}
+
+/// How many snaps there are, given load fraction, distance and angle of each, and the duration of some; the same of the one
+/// that goes furthest.
+fn furthest(snaps: impl Iterator<Item = [f64; 3]>, durations: &[f64]) -> (usize, [Option<f64>; 4]) {
+    let snaps: Vec<[f64; 3]> = snaps.collect();
+    let furthest = (0..snaps.len()).max_by(|a, b| snaps[*a][1].total_cmp(&snaps[*b][1]));
+    let of = furthest.map_or([None; 4], |k| {
+        let [load_fraction, distance, angle] = snaps[k].map(Some);
+        [load_fraction, distance, angle, durations.get(k).copied()]
+    });
+    (snaps.len(), of)
 }

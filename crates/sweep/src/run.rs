@@ -10,7 +10,7 @@ use hydrostat_files::{ArmFile, arm_to_toml, write_whole, write_whole_with};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::answer::{Found, NoAnswer, solve_after_snap, solve_in_space};
+use crate::answer::{Found, NoAnswer, solve_after_snap, solve_after_snap_in_space, solve_in_space};
 use crate::arms::{Arms, Last};
 use crate::column::{Answer, Answered, Column, Data, Layout, Output, WARNINGS};
 use crate::error::{SweepError, parquet_error};
@@ -420,7 +420,12 @@ impl Sweep {
     /// What becomes of a row; `solver` has solved the one before.
     fn answer(&self, arm: &Arm, solver: &mut Tile) -> Answer {
         match (arm.space.is_some(), self.layout.is_spatial()) {
-            (true, true) => solve_in_space(arm, self.options, self.layout.wanted()),
+            (true, true) => match solve_in_space(arm, self.options, self.layout.wanted()) {
+                Err(NoAnswer::Verdict(verdict)) if self.after_snap && verdict.kind == VerdictKind::LimitPoint => {
+                    solve_after_snap_in_space(arm, self.options.tol, self.layout.wanted(), verdict)
+                }
+                found => found,
+            },
             (false, false) => match solver.solve(arm) {
                 Ok(row) => Ok(Found::Plane(row)),
                 Err(NoRow::Verdict(verdict)) if self.after_snap && verdict.kind == VerdictKind::LimitPoint => {

@@ -47,6 +47,29 @@ fn a_snap_in_space_says_how_far_and_how_long() {
     assert_eq!(document["stable"], true);
 }
 
+/// A row in space kept its verdict, whatever was asked for.
+#[test]
+fn rows_of_a_sweep_have_the_shape_after_a_snap_in_the_plane_and_in_space() {
+    let directory = directory();
+    let mut tips = Vec::new();
+    for space in ["planar", "spatial"] {
+        let space = format!("arm.space={space}");
+        let more = ["--after-snap", "--vary", "flow.speed=0.4", "--set", &space, "-o", "rows.csv"];
+        let swept = hydrostat_in(directory.path(), &[&["sweep"][..], &against("", &more)[1..]].concat());
+        assert_eq!(swept.code, 0, "{}", swept.err);
+        let table = std::fs::read_to_string(directory.path().join("rows.csv")).unwrap();
+        std::fs::remove_file(directory.path().join("rows.csv")).unwrap();
+        let (names, rows) = columns(&table);
+        let at = |name: &str| {
+            let column = names.iter().position(|n| *n == name).unwrap_or_else(|| panic!("{name}: {names:?}"));
+            rows[0][column].parse::<f64>().unwrap_or_else(|_| panic!("{name}: {table}"))
+        };
+        assert!((at("snap_duration_s") - 6.24).abs() < 0.3, "{table}");
+        tips.push([at("tip_x_m"), at("tip_y_m")]);
+    }
+    assert!((0..2).all(|k| (tips[0][k] - tips[1][k]).abs() < 1e-7), "{tips:?}");
+}
+
 #[test]
 fn a_path_says_where_the_arm_rests_past_its_limit_points() {
     let stream = ["path", "silicone", "--flow-speed", "0.2", "--set", "flow.direction=180"];
