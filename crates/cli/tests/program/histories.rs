@@ -54,7 +54,8 @@ fn rows_of_a_sweep_have_the_shape_after_a_snap_in_the_plane_and_in_space() {
     let mut tips = Vec::new();
     for space in ["planar", "spatial"] {
         let space = format!("arm.space={space}");
-        let more = ["--after-snap", "--vary", "flow.speed=0.4", "--set", &space, "-o", "rows.csv"];
+        let more =
+            ["--after-snap", "--columns", "tip,snaps", "--vary", "flow.speed=0.4", "--set", &space, "-o", "rows.csv"];
         let swept = hydrostat_in(directory.path(), &[&["sweep"][..], &against("", &more)[1..]].concat());
         assert_eq!(swept.code, 0, "{}", swept.err);
         let table = std::fs::read_to_string(directory.path().join("rows.csv")).unwrap();

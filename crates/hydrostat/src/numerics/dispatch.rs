@@ -48,8 +48,8 @@ pub(crate) fn dispatch<W: Work>(work: W) -> W::Output {
     Arch::new().dispatch(Dispatched(work))
 }
 
-/// [`widest`] for work that wants to know whether there is a fused multiply-add. Here what every processor of the kind has
-/// is what there is to choose, so that nothing is compiled twice.
+/// [`widest`] for work that wants to know whether there is a fused multiply-add. There is nothing to choose between on
+/// this kind of processor, so that nothing is compiled twice.
 #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
 #[inline(always)]
 pub(crate) fn dispatch<W: Work>(work: W) -> W::Output {
