@@ -53,13 +53,23 @@ fn rows_of_a_sweep_have_the_shape_after_a_snap_in_the_plane_and_in_space() {
     let directory = directory();
     let mut tips = Vec::new();
     for space in ["planar", "spatial"] {
-        let space = format!("arm.space={space}");
-        let more =
-            ["--after-snap", "--columns", "tip,snaps", "--vary", "flow.speed=0.4", "--set", &space, "-o", "rows.csv"];
-        let swept = hydrostat_in(directory.path(), &[&["sweep"][..], &against("", &more)[1..]].concat());
+        let (key, file) = (format!("arm.space={space}"), format!("{space}.csv"));
+        let more = [
+            "--after-snap",
+            "--tol",
+            "1e-8",
+            "--columns",
+            "tip,snaps",
+            "--vary",
+            "flow.speed=0.4",
+            "--set",
+            &key,
+            "-o",
+            &file,
+        ];
+        let swept = hydrostat_in(directory.path(), &against("sweep", &more));
         assert_eq!(swept.code, 0, "{}", swept.err);
-        let table = std::fs::read_to_string(directory.path().join("rows.csv")).unwrap();
-        std::fs::remove_file(directory.path().join("rows.csv")).unwrap();
+        let table = std::fs::read_to_string(directory.path().join(&file)).unwrap();
         let (names, rows) = columns(&table);
         let at = |name: &str| {
             let column = names.iter().position(|n| *n == name).unwrap_or_else(|| panic!("{name}: {names:?}"));

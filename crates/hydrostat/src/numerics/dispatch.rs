@@ -67,7 +67,8 @@ impl Work for Fused {
 }
 
 /// Whether solves on this processor run on what is compiled for wide vectors with fused multiply-add (on x86: AVX2),
-/// not on what is compiled for any processor; on 64-bit Arm always. Answers agree to the tolerance, not to the last bit.
+/// not on what is compiled for any processor; on 64-bit Arm always. Answers agree to the tolerance, not to the last
+/// bit.
 ///
 /// ```
 /// println!("wide vectors: {}", hydrostat::has_wide_vectors());
