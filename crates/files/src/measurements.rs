@@ -412,7 +412,7 @@ impl Table<'_> {
         let longest = arm.length * arm.reference.nu.range(arm.length, arm.length).1.max(1.0);
         for measurement in &case.measurements {
             let Some((marker, axis)) = measurement.quantity.marker() else { continue };
-            let base = [arm.base.x, arm.base.y, arm.space.as_ref().map_or(0.0, |space| space.z)][axis];
+            let base = arm.base_place(axis).unwrap_or_default();
             let measured = [Measured::X, Measured::Y, Measured::Z][axis];
             let off = (measurement.value - base).abs();
             if off <= FURTHEST * longest + marker.offset.iter().map(|v| v * v).sum::<f64>().sqrt() {

@@ -3,7 +3,7 @@
 /** @import { Body, Outline, Place, Point, Shown, Solution } from "./types" */
 /** @import { Camera } from "./camera.js" */
 
-import { directionOf, flat } from "./camera.js";
+import { directionOf, dot, flat } from "./camera.js";
 import { degrees, fixed, force } from "./numbers.js";
 import { tangent } from "./solid.js";
 
@@ -107,7 +107,7 @@ export class Painter {
    * @param {Point} from @param {Place} direction @param {number} length @param {string} colour @param {number} width @param {number} [back] the share that lies behind */
   along([x, y], direction, length, colour, width, back = 0) {
     const [dx, dy] = flat(this.view.camera, direction);
-    const out = direction[0] * this.view.camera.back[0] + direction[1] * this.view.camera.back[1] + direction[2] * this.view.camera.back[2];
+    const out = dot(direction, this.view.camera.back);
     const ends = [-back, 1 - back].map((t) => /** @type {Point} */ ([x + t * length * dx, y - t * length * dy]));
     if (Math.hypot(dx, dy) > 0.2) {
       this.arrow(ends[0], ends[1], colour, width);

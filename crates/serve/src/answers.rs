@@ -106,7 +106,7 @@ where
     let tol = request.tol.unwrap_or(Options::default().tol);
     match C::solve(arm, tol) {
         Ok(mut shape) => {
-            let (notes, margin) = (shape.notes(tol), shape.margin());
+            let notes = shape.notes(tol);
             if let (Format::Svg | Format::Pdf | Format::Png, format) = (request.format, request.format) {
                 let note = said(&shape, &notes);
                 return Answer::figure(&shape.figure(note.as_deref(), &Page::default()), format);
@@ -116,7 +116,7 @@ where
             }
             match request.format {
                 Format::Csv => Ok(Answer::csv(shape.csv())),
-                _ => Ok(Answer::json(&shape.document(margin, &notes))),
+                _ => Ok(Answer::json(&shape.document(&notes))),
             }
         }
         Err(Unsolved::Verdict(failure)) => no_shape::<C>(request, arm, failure, stations, deadline),
@@ -156,15 +156,15 @@ where
         }
         Format::Json => {
             // A tolerance was asked of the answer, not of the last good shape.
-            let (mut notes, mut margin) = (Vec::new(), f64::NAN);
+            let mut notes = Vec::new();
             if let Some(shape) = C::last_good(&mut failure) {
-                (notes, margin) = (shape.notes(f64::INFINITY), shape.margin());
+                notes = shape.notes(f64::INFINITY);
                 if let Some(stations) = stations {
                     shape.resample(stations);
                 }
             }
             let others = others(arm, C::verdict(&failure).kind, deadline);
-            Ok(Answer::json(&C::failure(&failure, margin, &notes, others)))
+            Ok(Answer::json(&C::failure(&failure, &notes, others)))
         }
     }
 }
@@ -238,7 +238,8 @@ fn found<C: Shape>(request: &EquilibriaRequest, arm: &Arm, deadline: Deadline) -
     match request.format {
         Format::Json => {
             let document = EquilibriaDocument::new(arm, C::search(&all));
-            let shapes = stations.map(|count| C::silhouettes(&all, count));
+            let shapes =
+                stations.map(|count| C::found(&all).iter().map(|one| one.configuration.silhouette(count)).collect());
             Ok(Answer::json(&WithShapes { document, shapes }))
         }
         Format::Csv => Ok(Answer::csv(equilibria_csv(arm.cables.len(), C::search(&all)))),

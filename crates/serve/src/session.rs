@@ -183,19 +183,19 @@ impl Memory {
                 if let (Some(pulled), Some(pull)) = (&mut reply.pulled, &self.pull) {
                     pulled.elsewhere = apart(pull.at, shape.tip(), arm.length);
                 }
-                let (notes, margin) = (shape.notes(tol), shape.margin());
+                let notes = shape.notes(tol);
                 shape.resample(count);
                 reply.drawing = Some(shape.drawing());
-                Ok(done(reply, shape.document(margin, &notes)))
+                Ok(done(reply, shape.document(&notes)))
             }
             Err(Unsolved::Verdict(mut failure)) => {
-                let (mut notes, mut margin) = (Vec::new(), f64::NAN);
+                let mut notes = Vec::new();
                 if let Some(shape) = C::last_good(&mut failure) {
-                    (notes, margin) = (shape.notes(f64::INFINITY), shape.margin());
+                    notes = shape.notes(f64::INFINITY);
                     shape.resample(count);
                     reply.drawing = Some(shape.drawing());
                 }
-                Ok(done(reply, C::failure(&failure, margin, &notes, None)))
+                Ok(done(reply, C::failure(&failure, &notes, None)))
             }
             Err(Unsolved::Refused(problem)) => Err(problem),
         }

@@ -1,9 +1,9 @@
 //! What the server asks of arms in the plane and in space.
 
 use hydrostat::{
-    Arm, Configuration, Equilibria, NoEquilibrium, NoSpatialEquilibrium, Options, Parameter, Path, PathError,
-    PathOptions, Reach, ReachError, ReachOptions, SolveError, Solver, SpatialConfiguration, SpatialEquilibria,
-    SpatialError, SpatialSolver, SpatialStation, SpatialTarget, Stability, Station, Target, Verdict,
+    Arm, Configuration, Equilibria, Equilibrium, NoEquilibrium, NoSpatialEquilibrium, Options, Parameter, Path,
+    PathError, PathOptions, Reach, ReachError, ReachOptions, SolveError, Solver, SpatialConfiguration,
+    SpatialEquilibria, SpatialError, SpatialSolver, SpatialStation, SpatialTarget, Stability, Station, Target, Verdict,
 };
 use hydrostat_figures::{
     Abscissa, Page, Quantity, Scene, arm_figure, equilibria_figure, path_figure, reach_figure, spatial_arm_figure,
@@ -83,19 +83,18 @@ pub(crate) trait Shape: Sized {
     fn solve(arm: &Arm, tol: f64) -> Result<Self, Unsolved<Self::Failure>>;
     fn notes(&self, tol: f64) -> Vec<Note>;
     fn is_stable(&self) -> Option<bool>;
-    fn margin(&self) -> f64;
     fn resample(&mut self, count: usize);
     fn tip(&self) -> [f64; 3];
     fn drawing(&self) -> Drawing;
     fn silhouette(&self, count: usize) -> Silhouette;
     fn csv(&self) -> String;
     fn figure(&self, note: Option<&str>, page: &Page) -> Scene;
-    /// `margin` is that before it was resampled.
-    fn document<'a>(&'a self, margin: f64, notes: &'a [Note]) -> Answered<'a>;
+    fn document<'a>(&'a self, notes: &'a [Note]) -> Answered<'a>;
 
     fn verdict(failure: &Self::Failure) -> &Verdict;
     fn last_good(failure: &mut Self::Failure) -> Option<&mut Self>;
-    fn failure<'a>(failure: &'a Self::Failure, margin: f64, notes: &'a [Note], others: Option<Others>) -> Answered<'a>;
+    /// `notes` are those on the last good shape.
+    fn failure<'a>(failure: &'a Self::Failure, notes: &'a [Note], others: Option<Others>) -> Answered<'a>;
 
     fn path(
         arm: &Arm,
@@ -110,7 +109,7 @@ pub(crate) trait Shape: Sized {
 
     fn all(arm: &Arm, tol: f64, deadline: Deadline) -> Result<Self::All, Problem>;
     fn search(all: &Self::All) -> Search<'_>;
-    fn silhouettes(all: &Self::All, count: usize) -> Vec<Silhouette>;
+    fn found(all: &Self::All) -> &[Equilibrium<Self>];
     fn all_figure(all: &Self::All, arm: &Arm, page: &Page) -> Scene;
 
     fn reach(
@@ -146,10 +145,6 @@ impl Shape for Configuration {
         self.stability().map_or(self.stable, Stability::is_stable)
     }
 
-    fn margin(&self) -> f64 {
-        self.fold_margin().value
-    }
-
     fn resample(&mut self, count: usize) {
         self.stations = self.resampled(count);
     }
@@ -175,8 +170,8 @@ impl Shape for Configuration {
         arm_figure(self, note, page)
     }
 
-    fn document<'a>(&'a self, margin: f64, notes: &'a [Note]) -> Answered<'a> {
-        Answered::Shape(Box::new(SolutionDocument::new(self, margin, notes)))
+    fn document<'a>(&'a self, notes: &'a [Note]) -> Answered<'a> {
+        Answered::Shape(Box::new(SolutionDocument::new(self, self.fold_margin().value, notes)))
     }
 
     fn verdict(failure: &NoEquilibrium) -> &Verdict {
@@ -187,7 +182,8 @@ impl Shape for Configuration {
         failure.last_good.as_mut()
     }
 
-    fn failure<'a>(failure: &'a NoEquilibrium, margin: f64, notes: &'a [Note], others: Option<Others>) -> Answered<'a> {
+    fn failure<'a>(failure: &'a NoEquilibrium, notes: &'a [Note], others: Option<Others>) -> Answered<'a> {
+        let margin = failure.last_good.as_ref().map_or(f64::NAN, |shape| shape.fold_margin().value);
         Answered::None(Box::new(FailureDocument::new(failure, margin, notes).with_others(others)))
     }
 
@@ -221,8 +217,8 @@ impl Shape for Configuration {
         all.into()
     }
 
-    fn silhouettes(all: &Equilibria, count: usize) -> Vec<Silhouette> {
-        all.found.iter().map(|one| one.configuration.silhouette(count)).collect()
+    fn found(all: &Equilibria) -> &[Equilibrium] {
+        &all.found
     }
 
     fn all_figure(all: &Equilibria, arm: &Arm, page: &Page) -> Scene {
@@ -287,10 +283,6 @@ impl Shape for SpatialConfiguration {
         self.stability().map_or(self.stable, Stability::is_stable)
     }
 
-    fn margin(&self) -> f64 {
-        self.fold_margin().value
-    }
-
     fn resample(&mut self, count: usize) {
         self.stations = self.resampled(count);
     }
@@ -316,7 +308,7 @@ impl Shape for SpatialConfiguration {
         spatial_arm_figure(self, note, page)
     }
 
-    fn document<'a>(&'a self, _: f64, notes: &'a [Note]) -> Answered<'a> {
+    fn document<'a>(&'a self, notes: &'a [Note]) -> Answered<'a> {
         Answered::ShapeInSpace(Box::new(SpatialSolutionDocument::new(self, notes)))
     }
 
@@ -328,7 +320,7 @@ impl Shape for SpatialConfiguration {
         failure.last_good.as_mut()
     }
 
-    fn failure<'a>(failure: &'a NoSpatialEquilibrium, _: f64, notes: &'a [Note], _: Option<Others>) -> Answered<'a> {
+    fn failure<'a>(failure: &'a NoSpatialEquilibrium, notes: &'a [Note], _: Option<Others>) -> Answered<'a> {
         Answered::NoneInSpace(Box::new(SpatialFailureDocument::new(failure, notes)))
     }
 
@@ -364,8 +356,8 @@ impl Shape for SpatialConfiguration {
         all.into()
     }
 
-    fn silhouettes(all: &SpatialEquilibria, count: usize) -> Vec<Silhouette> {
-        all.found.iter().map(|one| one.configuration.silhouette(count)).collect()
+    fn found(all: &SpatialEquilibria) -> &[Equilibrium<Self>] {
+        &all.found
     }
 
     fn all_figure(all: &SpatialEquilibria, arm: &Arm, page: &Page) -> Scene {

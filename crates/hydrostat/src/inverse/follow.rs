@@ -165,9 +165,8 @@ impl SpatialFollower {
         targets.clone_into(goal);
         let went = self.inner.follow();
         let arm = &self.inner.search.arm;
-        let base = [arm.base.x, arm.base.y, arm.space.as_ref().map_or(0.0, |space| space.z)];
         let (place, _) = self.inner.state.solver.pose_of(1.0);
-        let tip = [0, 1, 2].map(|k| base[k] + arm.length * place[k]);
+        let tip = [0, 1, 2].map(|k| arm.base_place(k).unwrap_or_default() + arm.length * place[k]);
         Ok(self.inner.followed(tip, went))
     }
 }

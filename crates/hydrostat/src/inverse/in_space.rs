@@ -159,7 +159,7 @@ impl Reaching for SpatialSolver {
     }
 
     fn rest(&self, goal: &Vec<SpatialTarget>, arm: &Arm) -> Vec<f64> {
-        let base = [arm.base.x, arm.base.y, arm.space.as_ref().map_or(0.0, |space| space.z)];
+        let base = [0, 1, 2].map(|axis| arm.base_place(axis).unwrap_or_default());
         let mut out = Vec::with_capacity(5 * goal.len());
         for target in goal {
             let (place, a) = self.pose_of(target.s.map_or(1.0, |s| s / arm.length));

@@ -17,7 +17,7 @@ use super::dimensions::{S, Shape, X};
 use super::history::{History, Layout};
 use super::relaxation::stiffened;
 use super::start::force_unit;
-use crate::numerics::dispatch::widest;
+use crate::numerics::dispatch::each_block;
 use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::arm::Arm;
@@ -28,7 +28,6 @@ use crate::rod::loads::{Load, centreline, load};
 use crate::rod::profile::Profile;
 use crate::rod::readings::{FlowSurface, Volume};
 use crate::rod::section::{CableAt, Stiffness};
-use crate::rod::section_solve::solve_section;
 use crate::statics::dimensions::{L, M, N};
 use crate::statics::equations::gradients::{by_strain_change, in_directors, jacobian, rate_gradient, strain_by_state};
 use crate::statics::equations::place::Place;
@@ -280,24 +279,13 @@ impl Moving {
         let place = &statics.places[block];
         let station = &self.unscaled(given);
         statics.pulled_in(statics.cables_in(block), pulled);
-        let (sin, cos) = sin_cos(station.z[0]);
-        let direction = [cos, sin];
-        let z: [Lanes; N] = each(|a| station.z[a]);
-        let contact = in_directors(direction, &z);
         let tolerance = statics.inner_tolerance;
         let stiffness = self.stiffened(&place.stiffness, &self.history.strain_rates(self.cv, block));
-        let solved = solve_section(
-            statics.volume,
-            &stiffness,
-            pulled.as_slice(),
-            contact,
-            station.inner,
-            station.closure_slope,
-            tolerance,
-        );
+        let (direction, contact, solved) = statics.solved(&stiffness, station, pulled);
         if !solved.is_solved(tolerance) {
             return Err(failure(place.s, &solved, tolerance));
         }
+        let [cos, sin] = direction;
         let [nu, eta, mu] = solved.strain;
         let (load, by_place, [inert, inert_by_theta, inert_by_nu]) =
             self.loads(block, station, direction, solved.strain, &solved.balance.section_stretch);
@@ -370,14 +358,11 @@ impl Moving {
         out: &mut [Local<S, 0, L, Lanes>],
     ) -> Result<(), SectionFailure> {
         let mut pulled = CableList::new();
-        widest(
+        each_block(
+            stations,
+            out,
             #[inline(always)]
-            || {
-                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-                    self.block(block, station, &mut pulled, out)?;
-                }
-                Ok(())
-            },
+            |block, station, out| self.block(block, station, &mut pulled, out),
         )
     }
 
@@ -387,34 +372,24 @@ impl Moving {
         let statics = &self.statics;
         let mut pulled = CableList::new();
         let count = statics.tensions.len();
-        widest(
+        each_block(
+            stations,
+            out,
             #[inline(always)]
-            || {
-                for (block, (given, out)) in stations.iter_mut().zip(out).enumerate() {
-                    let station = &self.unscaled(given);
-                    let section = &statics.end_sections[block];
-                    statics.pulled_in(&statics.end_cables[block * count..(block + 1) * count], &mut pulled);
-                    let (sin, cos) = sin_cos(station.z[0]);
-                    let z: [Lanes; N] = each(|a| station.z[a]);
-                    let contact = in_directors([cos, sin], &z);
-                    let rates = self.end_rates.get(block).copied().unwrap_or_default();
-                    let solved = solve_section(
-                        statics.volume,
-                        &self.stiffened(&section.stiffness, &rates),
-                        pulled.as_slice(),
-                        contact,
-                        station.inner,
-                        station.closure_slope,
-                        statics.inner_tolerance,
-                    );
-                    if !solved.is_solved(statics.inner_tolerance) {
-                        return Err(failure(section.s, &solved, statics.inner_tolerance));
-                    }
-                    let by_state = strain_by_state(&solved.inverse, [cos, sin], contact);
-                    *out = inner(&solved, each(|k| wide(by_state[k])));
-                    self.scale_inner(out);
-                    given.inner = solved.strain;
+            |block, given, out| {
+                let station = &self.unscaled(given);
+                let section = &statics.end_sections[block];
+                statics.pulled_in(&statics.end_cables[block * count..(block + 1) * count], &mut pulled);
+                let rates = self.end_rates.get(block).copied().unwrap_or_default();
+                let stiffness = self.stiffened(&section.stiffness, &rates);
+                let (direction, contact, solved) = statics.solved(&stiffness, station, &pulled);
+                if !solved.is_solved(statics.inner_tolerance) {
+                    return Err(failure(section.s, &solved, statics.inner_tolerance));
                 }
+                let by_state = strain_by_state(&solved.inverse, direction, contact);
+                *out = inner(&solved, each(|k| wide(by_state[k])));
+                self.scale_inner(out);
+                given.inner = solved.strain;
                 Ok(())
             },
         )

@@ -41,6 +41,25 @@ pub(crate) fn widest<R>(work: impl FnOnce() -> R) -> R {
     dispatch(Any(work))
 }
 
+/// [`widest`] of `block` for every block of stations with its part of `out`, along the arm, until one fails. Has to be given
+/// an inlined closure, too.
+#[inline(always)]
+pub(crate) fn each_block<S, O, E>(
+    stations: &mut [S],
+    out: &mut [O],
+    mut block: impl FnMut(usize, &mut S, &mut O) -> Result<(), E>,
+) -> Result<(), E> {
+    widest(
+        #[inline(always)]
+        || {
+            for (index, (station, out)) in stations.iter_mut().zip(out).enumerate() {
+                block(index, station, out)?;
+            }
+            Ok(())
+        },
+    )
+}
+
 /// [`widest`] for work that wants to know whether there is a fused multiply-add.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 #[inline(always)]

@@ -20,7 +20,7 @@ use super::place::{Place, base_of, loads_of};
 use super::rotation::{Directors, Vector, cross, spin, turn};
 use super::section::{CableAt, STRAINS, Stiffness, apply};
 use super::section_solve::{Solved, solve_section};
-use crate::numerics::dispatch::widest;
+use crate::numerics::dispatch::each_block;
 use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Space};
 use crate::rod::readings::{Support, Volume};
@@ -382,14 +382,11 @@ impl Equations {
         out: &mut [Local<N, Q, L, Lanes>],
     ) -> Result<(), SectionFailure> {
         let mut pulled = Vec::with_capacity(self.tensions.len());
-        widest(
+        each_block(
+            stations,
+            out,
             #[inline(always)]
-            || {
-                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-                    self.block(block, station, &mut pulled, out)?;
-                }
-                Ok(())
-            },
+            |block, station, out| self.block(block, station, &mut pulled, out),
         )
     }
 
@@ -397,20 +394,20 @@ impl Equations {
     #[inline(never)]
     fn all_ends(&self, stations: &mut [Station<N, L>], out: &mut [Inner<N, L, Lanes>]) -> Result<(), SectionFailure> {
         let mut pulled = Vec::with_capacity(self.tensions.len());
-        widest(
+        each_block(
+            stations,
+            out,
             #[inline(always)]
-            || {
-                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-                    let (s, stiffness) = &self.end_sections[block];
-                    self.pulled_in(self.cables_at_end(block), &mut pulled);
-                    let (directors, contact, solved) = self.solved(stiffness, station, &pulled);
-                    if !solved.is_fine(self.inner_tolerance) {
-                        return Err(failure(*s, &solved, self.inner_tolerance));
-                    }
-                    let turns = turn(&each(|k| station.z[k]));
-                    *out = inner(&solved, strain_by_state(&solved.inverse, &directors, &contact, &turns));
-                    station.inner = solved.strain;
+            |block, station, out| {
+                let (s, stiffness) = &self.end_sections[block];
+                self.pulled_in(self.cables_at_end(block), &mut pulled);
+                let (directors, contact, solved) = self.solved(stiffness, station, &pulled);
+                if !solved.is_fine(self.inner_tolerance) {
+                    return Err(failure(*s, &solved, self.inner_tolerance));
                 }
+                let turns = turn(&each(|k| station.z[k]));
+                *out = inner(&solved, strain_by_state(&solved.inverse, &directors, &contact, &turns));
+                station.inner = solved.strain;
                 Ok(())
             },
         )

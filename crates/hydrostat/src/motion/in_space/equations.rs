@@ -14,7 +14,7 @@ use hydrostat_bvp::{Condition, EndPlace, Gauss, Groups, Inner, Lanes, Local, Pro
 use crate::motion::history::{History, Layout};
 use crate::motion::relaxation::stiffened;
 use crate::motion::settling::Settling;
-use crate::numerics::dispatch::widest;
+use crate::numerics::dispatch::each_block;
 use crate::rod::area_law::SectionStretch;
 use crate::rod::arm::Arm;
 use crate::rod::inertia::Masses;
@@ -259,14 +259,11 @@ impl SpatialMoving {
         out: &mut [Local<S, 0, L, Lanes>],
     ) -> Result<(), SectionFailure> {
         let mut pulled = Vec::with_capacity(self.statics.tensions.len());
-        widest(
+        each_block(
+            stations,
+            out,
             #[inline(always)]
-            || {
-                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-                    self.block(block, station, &mut pulled, out)?;
-                }
-                Ok(())
-            },
+            |block, station, out| self.block(block, station, &mut pulled, out),
         )
     }
 
@@ -275,25 +272,25 @@ impl SpatialMoving {
     fn all_ends(&self, stations: &mut [Station<S, L>], out: &mut [Inner<S, L, Lanes>]) -> Result<(), SectionFailure> {
         let statics = &self.statics;
         let mut pulled = Vec::with_capacity(statics.tensions.len());
-        widest(
+        each_block(
+            stations,
+            out,
             #[inline(always)]
-            || {
-                for (block, (given, out)) in stations.iter_mut().zip(out).enumerate() {
-                    let (station, _) = self.unscaled(given);
-                    let (s, stiffness) = &statics.end_sections[block];
-                    statics.pulled_in(statics.cables_at_end(block), &mut pulled);
-                    let rates = self.end_rates.get(block).copied().unwrap_or_default();
-                    let stiffness = self.stiffened(stiffness, &rates);
-                    let (directors, contact, solved) = statics.solved(&stiffness, &station, &pulled);
-                    if !solved.is_fine(statics.inner_tolerance) {
-                        return Err(failure(*s, &solved, statics.inner_tolerance));
-                    }
-                    let turns = turn(&each(|k| station.z[k]));
-                    let by_state = strain_by_state(&solved.inverse, &directors, &contact, &turns);
-                    *out = wide(&inner(&solved, by_state));
-                    self.scale_inner(out);
-                    given.inner = solved.strain;
+            |block, given, out| {
+                let (station, _) = self.unscaled(given);
+                let (s, stiffness) = &statics.end_sections[block];
+                statics.pulled_in(statics.cables_at_end(block), &mut pulled);
+                let rates = self.end_rates.get(block).copied().unwrap_or_default();
+                let stiffness = self.stiffened(stiffness, &rates);
+                let (directors, contact, solved) = statics.solved(&stiffness, &station, &pulled);
+                if !solved.is_fine(statics.inner_tolerance) {
+                    return Err(failure(*s, &solved, statics.inner_tolerance));
                 }
+                let turns = turn(&each(|k| station.z[k]));
+                let by_state = strain_by_state(&solved.inverse, &directors, &contact, &turns);
+                *out = wide(&inner(&solved, by_state));
+                self.scale_inner(out);
+                given.inner = solved.strain;
                 Ok(())
             },
         )

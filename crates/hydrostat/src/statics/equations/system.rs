@@ -7,7 +7,7 @@ use super::limits::SectionFailure;
 use super::place::{EndSection, Place};
 use super::range::Varied;
 use super::stroke_control::StrokeControl;
-use crate::numerics::dispatch::widest;
+use crate::numerics::dispatch::each_block;
 use crate::numerics::sincos::sin_cos;
 use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::arm::Arm;
@@ -16,7 +16,7 @@ use crate::rod::flow::Law;
 use crate::rod::loads::{Load, Water, load, uniform};
 use crate::rod::profile::Profile;
 use crate::rod::readings::{FlowSurface, Support, Volume};
-use crate::rod::section::{CableAt, apply3};
+use crate::rod::section::{CableAt, Stiffness, apply3};
 use crate::rod::section_solve::{Solved, solve_section};
 use crate::statics::dimensions::{L, N, Q, Units};
 use crate::statics::friction::CapstanFactors;
@@ -325,11 +325,24 @@ impl Equations {
         pulled: &mut CableList<Lanes>,
     ) -> ([Lanes; 2], [Lanes; 3], Solved<Lanes>) {
         self.pulled_in(self.cables_in(block), pulled);
+        self.solved(&self.places[block].stiffness, station, pulled)
+    }
+
+    /// Direction of a section, what it carries in its directors, and its law near the strains of a station, whose first
+    /// states are those of the statics.
+    #[inline(always)]
+    pub(crate) fn solved<const S: usize>(
+        &self,
+        stiffness: &Stiffness<Lanes>,
+        station: &Station<S, L>,
+        pulled: &CableList<Lanes>,
+    ) -> ([Lanes; 2], [Lanes; 3], Solved<Lanes>) {
         let (sin, cos) = sin_cos(station.z[0]);
-        let contact = in_directors([cos, sin], &station.z);
+        let z: [Lanes; N] = each(|a| station.z[a]);
+        let contact = in_directors([cos, sin], &z);
         let solved = solve_section(
             self.volume,
-            &self.places[block].stiffness,
+            stiffness,
             pulled.as_slice(),
             contact,
             station.inner,
@@ -389,14 +402,11 @@ impl Equations {
         out: &mut [Local<N, Q, L, Lanes>],
     ) -> Result<(), SectionFailure> {
         let mut pulled = CableList::new();
-        widest(
+        each_block(
+            stations,
+            out,
             #[inline(always)]
-            || {
-                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-                    self.block(block, station, &mut pulled, out)?;
-                }
-                Ok(())
-            },
+            |block, station, out| self.block(block, station, &mut pulled, out),
         )
     }
 
@@ -405,29 +415,19 @@ impl Equations {
     fn all_ends(&self, stations: &mut [Station<N, L>], out: &mut [Inner<N, L, Lanes>]) -> Result<(), SectionFailure> {
         let mut pulled = CableList::new();
         let count = self.tensions.len();
-        widest(
+        each_block(
+            stations,
+            out,
             #[inline(always)]
-            || {
-                for (block, (station, out)) in stations.iter_mut().zip(out).enumerate() {
-                    let section = &self.end_sections[block];
-                    self.pulled_in(&self.end_cables[block * count..(block + 1) * count], &mut pulled);
-                    let (sin, cos) = sin_cos(station.z[0]);
-                    let contact = in_directors([cos, sin], &station.z);
-                    let solved = solve_section(
-                        self.volume,
-                        &section.stiffness,
-                        pulled.as_slice(),
-                        contact,
-                        station.inner,
-                        station.closure_slope,
-                        self.inner_tolerance,
-                    );
-                    if !solved.is_solved(self.inner_tolerance) {
-                        return Err(failure(section.s, &solved, self.inner_tolerance));
-                    }
-                    *out = inner(&solved, strain_by_state(&solved.inverse, [cos, sin], contact));
-                    station.inner = solved.strain;
+            |block, station, out| {
+                let section = &self.end_sections[block];
+                self.pulled_in(&self.end_cables[block * count..(block + 1) * count], &mut pulled);
+                let (direction, contact, solved) = self.solved(&section.stiffness, station, &pulled);
+                if !solved.is_solved(self.inner_tolerance) {
+                    return Err(failure(section.s, &solved, self.inner_tolerance));
                 }
+                *out = inner(&solved, strain_by_state(&solved.inverse, direction, contact));
+                station.inner = solved.strain;
                 Ok(())
             },
         )
