@@ -41,8 +41,8 @@ pub(crate) fn widest<R>(work: impl FnOnce() -> R) -> R {
     dispatch(Any(work))
 }
 
-/// [`widest`] of `block` for every block of stations with its part of `out`, along the arm, until one fails. Has to be given
-/// an inlined closure, too.
+/// Does `block` in [`widest`] for every block of stations with its part of `out`, along the arm, until one fails.
+/// `block` has to be an inlined closure, too.
 #[inline(always)]
 pub(crate) fn each_block<S, O, E>(
     stations: &mut [S],
