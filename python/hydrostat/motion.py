@@ -294,7 +294,7 @@ def _cubic(s: NDArray[np.float64], values: NDArray[np.float64], at: NDArray[np.f
 
 def _made(arm: Arm, courses: list[_native.Given], tol: float, elements: int | None) -> _native.Simulation:
     if arm._inner.is_spatial:
-        raise ValueError('arm: motion is of arms in the plane, and this one has `space = "spatial"`')
+        raise ValueError('arm: this is for arms in the plane, and it has `space = "spatial"`; the program\'s `hydrostat simulate` moves it')
     count = None if elements is None else _inputs.count("elements", elements)
     return _native.Simulation(arm._inner, courses, _inputs.number("tol", tol), 0.0, count)
 

@@ -28,7 +28,7 @@ pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
     request::check_picture(&args.picture, &pictures)?;
     if arm.space.is_some() {
         if args.after_snap {
-            let instead = "motion is of arms in the plane";
+            let instead = "`solve --after-snap` follows the snaps of an arm in space";
             return Err(WrongRequest::NotInSpace("--after-snap", instead).into());
         }
         let path = follow::<SpatialConfiguration>(&arm, args)?;
