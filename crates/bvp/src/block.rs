@@ -158,7 +158,7 @@ pub(crate) fn balanced_inverse<const N: usize>(m: &Block<N>, smallest: f64) -> O
     Some(out)
 }
 
-/// A pivot below this share of what stands under it would lose digits.
+/// A pivot below this fraction of what stands under it would lose digits.
 const SMALL_PIVOT: f64 = 0.1;
 
 /// Steps of an elimination that are compiled one by one.

@@ -153,13 +153,13 @@ impl Mesh {
         self.pinned.push(Pin::Pinned);
     }
 
-    /// Moves the nodes on by `share` times their way from the mesh `before` to this one; `None` where the two do not
+    /// Moves the nodes on by `fraction` times their way from the mesh `before` to this one; `None` where the two do not
     /// correspond node by node, or where that would more than halve or double an element.
-    pub fn extrapolated(&self, before: &Self, share: f64) -> Option<Self> {
+    pub fn extrapolated(&self, before: &Self, fraction: f64) -> Option<Self> {
         if self.pinned != before.pinned {
             return None;
         }
-        let ahead = |i: usize| self.nodes[i] + share * (self.nodes[i] - before.nodes[i]);
+        let ahead = |i: usize| self.nodes[i] + fraction * (self.nodes[i] - before.nodes[i]);
         let fits = |i: usize| (0.5..=2.0).contains(&((ahead(i + 1) - ahead(i)) / self.step(i)));
         let nodes = (0..self.nodes.len()).map(ahead).collect();
         (0..self.elements()).all(fits).then_some(Self { nodes, pinned: self.pinned.clone() })
@@ -236,7 +236,7 @@ impl Mesh {
     /// order `order` of the local error, and a sum of errors `target`. Pinned nodes stay. No element is made shorter than `shortest` says for the one it lies in.
     pub fn redistributed(&self, error: &[f64], shortest: &[f64], order: f64, target: f64, limits: Limits) -> Self {
         let n = self.elements();
-        // What is far below its share says nothing about the solution: it may be rounding.
+        // What is far below its fraction says nothing about the solution: it may be rounding.
         let floor = 1e-3 * target / n as f64;
         // Density of new nodes in each present element, up to a common factor.
         let mut density: Vec<f64> =
@@ -273,18 +273,18 @@ impl Mesh {
         let mut start = 0;
         for end in 1..=n {
             if self.is_pinned(end) {
-                let share = (start..end).map(|i| density[i] * self.step(i)).sum();
-                stretches.push(Stretch { start, end, share, count: 1 });
+                let fraction = (start..end).map(|i| density[i] * self.step(i)).sum();
+                stretches.push(Stretch { start, end, fraction, count: 1 });
                 start = end;
             }
         }
         allot(&mut stretches, limits.most);
         let mut mesh = Self { nodes: vec![0.0], pinned: vec![Pin::Pinned] };
-        for Stretch { start, end, share, count } in stretches {
+        for Stretch { start, end, fraction, count } in stretches {
             let mut i = start;
             let mut passed = 0.0;
             for k in 1..count {
-                let goal = share * k as f64 / count as f64;
+                let goal = fraction * k as f64 / count as f64;
                 while i + 1 < end && passed + density[i] * self.step(i) < goal {
                     passed += density[i] * self.step(i);
                     i += 1;
@@ -303,17 +303,17 @@ impl Mesh {
 struct Stretch {
     start: usize,
     end: usize,
-    share: f64,
+    fraction: f64,
     count: usize,
 }
 
-/// The largest share of an element that is as good as one: with orders of 8 or more it costs a factor below 3.
+/// The largest fraction of an element that is as good as one: with orders of 8 or more it costs a factor below 3.
 const CROWDED: f64 = 1.12;
 
 /// Gives every stretch its number of elements, and all of them together a multiple of [`LANES`], because an element
 /// more costs nothing until its group is full.
 fn allot(stretches: &mut [Stretch], most: usize) {
-    let asked: f64 = stretches.iter().map(|s| s.share.max(1.0)).sum();
+    let asked: f64 = stretches.iter().map(|s| s.fraction.max(1.0)).sum();
     let mut left = whole(asked / CROWDED).next_multiple_of(LANES).saturating_sub(stretches.len());
     let mut total = stretches.len();
     loop {
@@ -333,7 +333,7 @@ fn allot(stretches: &mut [Stretch], most: usize) {
 impl Stretch {
     /// Share an element.
     fn crowding(&self) -> f64 {
-        self.share / self.count as f64
+        self.fraction / self.count as f64
     }
 }
 

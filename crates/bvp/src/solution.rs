@@ -376,14 +376,14 @@ impl<const N: usize, const M: usize, const L: usize> Solution<N, M, L> {
         self.fill_ends(gauss, out);
     }
 
-    /// Moves the solution on by `share` times its way from the solution `before`; false, and as it was, where the two do not correspond.
-    pub fn extrapolate(&mut self, before: &Self, share: f64) -> bool {
+    /// Moves the solution on by `fraction` times its way from the solution `before`; false, and as it was, where the two do not correspond.
+    pub fn extrapolate(&mut self, before: &Self, fraction: f64) -> bool {
         if self.nodes.len() != before.nodes.len() || self.directions != before.directions {
             return false;
         }
-        let by = Lanes([share; LANES]);
+        let by = Lanes([fraction; LANES]);
         let nodes = self.nodes.as_flattened_mut().iter_mut().zip(before.nodes.as_flattened());
-        nodes.for_each(|(own, other)| *own += share * (*own - other));
+        nodes.for_each(|(own, other)| *own += fraction * (*own - other));
         for (own, other) in self.stages.iter_mut().zip(&before.stages) {
             own.slope.iter_mut().zip(&other.slope).for_each(|(own, other)| *own += by * (*own - *other));
             own.inner.iter_mut().zip(&other.inner).for_each(|(own, other)| *own += by * (*own - *other));

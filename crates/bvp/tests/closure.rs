@@ -213,13 +213,13 @@ fn responses_and_adjoints_match_differences() {
         let (wave, mut solution, mut system) = start(6, reach, 0.1);
         solve(&wave, &mut solution, &mut system);
         let one = Lanes([1.0; LANES]);
-        let drift = StageForcing { slope: [Lanes::default(), one], ..StageForcing::default() };
-        let change = Forcing { stages: vec![drift; solution.stages.len()], ..Forcing::default() };
+        let forcing = StageForcing { slope: [Lanes::default(), one], ..StageForcing::default() };
+        let change = Forcing { stages: vec![forcing; solution.stages.len()], ..Forcing::default() };
         let mut out = Correction::default();
         system.response::<false>(&change, &mut out);
         assert!((out.total[0] - difference.0).abs() < 1e-8, "{k}: {} {}", out.total[0], difference.0);
         assert!((out.nodes[6][0] - difference.1).abs() < 1e-8, "{k}");
-        // The adjoint of both at once, against drifts of everything.
+        // The adjoint of both at once, against forcings of everything.
         let mut functional = Functional { nodes: vec![(6, [1.0, 0.0]), (2, [0.3, -0.7])], ..Functional::default() };
         functional.stages.extend(system.locals().iter().enumerate().map(|(b, local)| {
             let weight = system.steps()[b / 4] * Lanes([system.gauss.b[b % 4]; LANES]);
@@ -290,9 +290,9 @@ fn responses_and_adjoints_match_differences() {
         }
         let mut backward = adjoint.left[0] * 0.4 + adjoint.right[0] * -0.3;
         let dot = |a: Lanes, b: Lanes| (0..LANES).map(|l| a.0[l] * b.0[l]).sum::<f64>();
-        for (b, drift) in change.stages.iter().enumerate() {
-            backward += dot(adjoint.slopes[b][0], drift.slope[0]) + dot(adjoint.slopes[b][1], drift.slope[1]);
-            backward += dot(adjoint.values[b], drift.value);
+        for (b, forcing) in change.stages.iter().enumerate() {
+            backward += dot(adjoint.slopes[b][0], forcing.slope[0]) + dot(adjoint.slopes[b][1], forcing.slope[1]);
+            backward += dot(adjoint.values[b], forcing.value);
         }
         for (b, end) in change.ends.iter().enumerate() {
             backward += dot(adjoint.ends[b], end.1);

@@ -209,15 +209,15 @@ impl Equation for Column {
 fn the_determinant_changes_sign_at_each_eigenvalue() {
     for mode in 0..4 {
         let eigenvalue = ((f64::from(mode) + 0.5) * PI).powi(2);
-        for share in [0.9999, 1.0001] {
-            let lambda = share * eigenvalue;
+        for fraction in [0.9999, 1.0001] {
+            let lambda = fraction * eigenvalue;
             for elements in [20, 37] {
                 let mut solution = Solution::<2, 4>::constant(Mesh::uniform(elements, &[]), [0.0; 2], []);
                 let found = newton(&Column { lambda }, &mut solution).determinant();
                 let want = lambda.sqrt().cos();
-                assert_eq!(found.sign, want.signum(), "mode {mode}, {share}, {elements} elements");
+                assert_eq!(found.sign, want.signum(), "mode {mode}, {fraction}, {elements} elements");
                 let off = (found.log.exp() - want.abs()).abs();
-                assert!(off < 1e-6, "mode {mode}, {share}, {elements} elements: off by {off:e}");
+                assert!(off < 1e-6, "mode {mode}, {fraction}, {elements} elements: off by {off:e}");
             }
         }
     }

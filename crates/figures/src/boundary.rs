@@ -19,7 +19,7 @@ const MAX_HEIGHT: f64 = 400.0;
 const REACHABLE: Color = Color { rgb: [222, 235, 245], opacity: 1.0 };
 /// Shapes that tell inside from outside: anywhere in the box of tensions, and beside the lines.
 const SAMPLES: [u32; 2] = [300, 300];
-/// How far from a line towards the middle of the box a sample beside it is, as a share.
+/// How far from a line towards the middle of the box a sample beside it is, as a fraction.
 const BESIDE: f64 = 0.03;
 /// Error of their tips over L: a tenth of a line's width.
 const TOL: f64 = 1e-4;
@@ -183,8 +183,8 @@ mod tests {
         let all: Vec<[f64; 2]> = outline.surface.iter().copied().chain(pieces).collect();
         let axes = axes_around(&all, place.top, &Page::default());
         assert!((axes.frame.bottom - place.bottom).abs() < 1e-9);
-        let cell = |share: f64, count: usize| {
-            (0..count).position(|k| share * (count as f64) < k as f64 + 1.0).unwrap_or(count - 1)
+        let cell = |fraction: f64, count: usize| {
+            (0..count).position(|k| fraction * (count as f64) < k as f64 + 1.0).unwrap_or(count - 1)
         };
         let filled = |[x, y]: Point| {
             let column = cell((x - place.left) / place.width(), picture.width);

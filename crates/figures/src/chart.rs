@@ -303,12 +303,12 @@ pub(crate) fn frame(
 }
 
 /// A range with some room at its ends, and never an empty one.
-pub(crate) fn padded([low, high]: [f64; 2], share: f64) -> [f64; 2] {
+pub(crate) fn padded([low, high]: [f64; 2], fraction: f64) -> [f64; 2] {
     if !(low.is_finite() && high.is_finite()) {
         return [0.0, 1.0];
     }
     let size = low.abs().max(high.abs()).max(1e-9);
-    let pad = (share * (high - low)).max(if high - low < 1e-6 * size { 0.1 * size } else { 0.0 });
+    let pad = (fraction * (high - low)).max(if high - low < 1e-6 * size { 0.1 * size } else { 0.0 });
     [low - pad, high + pad]
 }
 

@@ -17,11 +17,11 @@ impl Color {
         Self { rgb: self.rgb, opacity }
     }
 
-    /// The colour between this one (`share` 0) and `other` (`share` 1).
-    pub(crate) fn towards(self, other: Self, share: f64) -> Self {
+    /// The colour between this one (`fraction` 0) and `other` (`fraction` 1).
+    pub(crate) fn towards(self, other: Self, fraction: f64) -> Self {
         let mut mixed = self;
         for (own, other) in mixed.rgb.iter_mut().zip(other.rgb) {
-            let value = f64::from(*own) + share.clamp(0.0, 1.0) * (f64::from(other) - f64::from(*own));
+            let value = f64::from(*own) + fraction.clamp(0.0, 1.0) * (f64::from(other) - f64::from(*own));
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two bytes")]
             let byte = value.round() as u8;
             *own = byte;
@@ -63,7 +63,7 @@ pub(crate) fn ordered(index: usize, count: usize) -> Color {
     shade(if count < 2 { 1.0 } else { index as f64 / (count - 1) as f64 })
 }
 
-/// Colours of shares from 0 to 1 at equal distances.
+/// Colours of fractions from 0 to 1 at equal distances.
 const STOPS: [Color; 5] = [rgb(232, 158, 60), rgb(214, 96, 77), rgb(172, 52, 104), rgb(104, 32, 112), rgb(34, 20, 74)];
 
 /// The colours of all figures, red, green and blue, for whoever draws beside them.
@@ -71,7 +71,7 @@ const STOPS: [Color; 5] = [rgb(232, 158, 60), rgb(214, 96, 77), rgb(172, 52, 104
 pub struct Palette {
     /// Of cables and of whatever else is told apart.
     pub series: [[u8; 3]; 7],
-    /// Of shares from 0 to 1 at equal distances; what is between is mixed.
+    /// Of fractions from 0 to 1 at equal distances; what is between is mixed.
     pub shades: [[u8; 3]; 5],
     /// The body of an arm.
     pub body: [u8; 3],
@@ -88,9 +88,9 @@ pub fn palette() -> Palette {
     Palette { series: SERIES.map(|c| c.rgb), shades: STOPS.map(|c| c.rgb), body: BODY.rgb, water: WATER.rgb }
 }
 
-/// The colour of a share from 0 to 1.
-pub(crate) fn shade(share: f64) -> Color {
-    let place = share.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
+/// The colour of a fraction from 0 to 1.
+pub(crate) fn shade(fraction: f64) -> Color {
+    let place = fraction.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the stops")]
     let at = (place.floor() as usize).min(STOPS.len() - 2);
     STOPS[at].towards(STOPS[at + 1], place - at as f64)

@@ -61,8 +61,8 @@ impl Grid {
             let most = self.width + self.height;
             let steps = whole((b[0] - a[0]).hypot(b[1] - a[1]) * FINE * 2.0).clamp(1, 4 * most);
             for step in 0..=steps {
-                let share = step as f64 / steps as f64;
-                let at = [0, 1].map(|k| a[k] + share * (b[k] - a[k]));
+                let fraction = step as f64 / steps as f64;
+                let at = [0, 1].map(|k| a[k] + fraction * (b[k] - a[k]));
                 if let Some(cell) = self.cell(at) {
                     found[cell] = true;
                 }

@@ -364,8 +364,12 @@ const SEAM: f64 = 0.3;
 /// The body's colour where its surface is normal to `n` (to the right, up, out of the page).
 fn lit(n: &Vector) -> Color {
     const LIGHT: Vector = [-0.40, 0.69, 0.60];
-    let share = dot(n, &LIGHT);
-    if share > 0.75 { BODY.towards(PAPER, 2.4 * (share - 0.75)) } else { BODY.towards(INK, 0.42 * (0.75 - share)) }
+    let fraction = dot(n, &LIGHT);
+    if fraction > 0.75 {
+        BODY.towards(PAPER, 2.4 * (fraction - 0.75))
+    } else {
+        BODY.towards(INK, 0.42 * (0.75 - fraction))
+    }
 }
 
 /// Twice the area of a polygon on the page, positive if it runs counterclockwise as seen.

@@ -13,7 +13,7 @@ use crate::view::{View, dot};
 /// Length of an arrow and side of the square that it turns in, points.
 const ARROW: f64 = 22.0;
 const SQUARE: f64 = 24.0;
-/// Below this share of its length an arrow is drawn as seen from its end.
+/// Below this fraction of its length an arrow is drawn as seen from its end.
 pub(crate) const SHORTEST: f64 = 0.25;
 /// From the square to the label, and from that to the next square.
 const GAPS: [f64; 2] = [3.0, 10.0];
@@ -151,7 +151,7 @@ fn free(page: &Occupied, inside: Rect, [row, column]: [[f64; 2]; 2]) -> Option<(
     };
     let corners = [[1.0, 0.0], [0.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let along = (1..PLACES).map(|k| f64::from(k) / f64::from(PLACES));
-    let edges = along.flat_map(|share| [[share, 0.0], [share, 1.0], [0.0, share], [1.0, share]]);
+    let edges = along.flat_map(|fraction| [[fraction, 0.0], [fraction, 1.0], [0.0, fraction], [1.0, fraction]]);
     let places = corners.into_iter().chain(edges);
     let fits = |size: [f64; 2]| size[0] <= inside.width() && size[1] <= inside.height();
     let all = places.flat_map(|[across, down]| {

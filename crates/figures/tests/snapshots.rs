@@ -105,8 +105,8 @@ fn nine_places(path: &str) -> Vec<[f64; 2]> {
         along.push(along[along.len() - 1] + (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]));
     }
     let whole = along[along.len() - 1];
-    let at = |share: f64| {
-        let place = share * whole;
+    let at = |fraction: f64| {
+        let place = fraction * whole;
         let k = along.iter().rposition(|at| *at <= place).unwrap_or(0).min(points.len().saturating_sub(2));
         let (a, b) = (points[k], points[(k + 1).min(points.len() - 1)]);
         let part = if along[k + 1] > along[k] { (place - along[k]) / (along[k + 1] - along[k]) } else { 0.0 };

@@ -249,14 +249,14 @@ impl Axis {
         }
     }
 
-    /// The value at `share` in [0, 1) of the range, or of the list.
-    pub fn drawn(&self, share: f64) -> Option<AxisValue<'_>> {
+    /// The value at `fraction` in [0, 1) of the range, or of the list.
+    pub fn drawn(&self, fraction: f64) -> Option<AxisValue<'_>> {
         match &self.values {
-            AxisValues::Span { from, to } => Some(AxisValue::Number(from + share * (to - from))),
+            AxisValues::Span { from, to } => Some(AxisValue::Number(from + fraction * (to - from))),
             values => {
                 let count = values.count()?;
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
-                let index = (share * count as f64) as u64;
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a fraction of a count")]
+                let index = (fraction * count as f64) as u64;
                 self.value(index.min(count - 1))
             }
         }

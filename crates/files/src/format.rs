@@ -29,7 +29,7 @@ pub(crate) enum Kind {
     ProfilePair(Dimension),
     /// One profile, or three in space, `[_, _, _]`.
     AxialProfile(Dimension),
-    /// A profile, or shares of the radius.
+    /// A profile, or fractions of the radius.
     Offset(Dimension),
     /// A fraction of the length, or a length.
     Part,

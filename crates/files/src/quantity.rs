@@ -389,7 +389,7 @@ impl DecimalText<'_> {
     }
 }
 
-/// What a share such as "70 %" is of one.
+/// What a fraction such as "70 %" is of one.
 pub(crate) fn percent(text: &str) -> Option<f64> {
     let (number, unit) = split(text.trim())?;
     if unit == "%" { number.in_si(Decimal(-2)) } else { None }

@@ -1,4 +1,4 @@
-//! Values that are relative to others: an offset as a share of the radius, the end of a cable as a length. Both become plain numbers before the
+//! Values that are relative to others: an offset as a fraction of the radius, the end of a cable as a length. Both become plain numbers before the
 //! tree is read.
 
 use std::borrow::Cow;
@@ -16,7 +16,7 @@ pub(crate) fn resolved(fields: &[Field]) -> Cow<'_, [Field]> {
     let cables = |fields: &[Field]| fields.iter().position(|field| field.name == "cable");
     let is_relative = |cable: &Entry| match &cable.node {
         Node::Table(fields) => fields.iter().any(|field| match field.name.as_str() {
-            "offset" => has_share(&field.entry),
+            "offset" => has_fraction(&field.entry),
             "end" => matches!(field.entry.node, Node::Text(_)),
             _ => false,
         }),
@@ -54,12 +54,12 @@ fn size(fields: &[Field]) -> (Option<f64>, Option<Profile>) {
     (length, of("radius").and_then(|entry| values.profile_of(Dimension::Length, entry)))
 }
 
-/// Whether a share stands anywhere in a value.
-fn has_share(entry: &Entry) -> bool {
+/// Whether a fraction stands anywhere in a value.
+fn has_fraction(entry: &Entry) -> bool {
     match &entry.node {
         Node::Text(text) => percent(text).is_some(),
-        Node::Array(entries) => entries.iter().any(has_share),
-        Node::Table(fields) => fields.iter().any(|field| has_share(&field.entry)),
+        Node::Array(entries) => entries.iter().any(has_fraction),
+        Node::Table(fields) => fields.iter().any(|field| has_fraction(&field.entry)),
         Node::Number(_) | Node::Boolean(_) | Node::Datetime(_) => false,
     }
 }
@@ -67,7 +67,7 @@ fn has_share(entry: &Entry) -> bool {
 /// Shares of the radius at each place as lengths.
 fn offset(entry: &mut Entry, length: Option<f64>, radius: Option<&Profile>) {
     let (Some(length), Some(radius)) = (length, radius) else {
-        if has_share(entry) {
+        if has_fraction(entry) {
             entry.node = Node::Number(0.0);
         }
         return;
@@ -77,16 +77,16 @@ fn offset(entry: &mut Entry, length: Option<f64>, radius: Option<&Profile>) {
     let field = |name: &str, entry: Entry| Field { name: name.to_owned(), origin, entry };
     match &mut entry.node {
         Node::Text(text) => {
-            let Some(share) = percent(text) else { return };
+            let Some(fraction) = percent(text) else { return };
             entry.node = match radius {
-                Profile::Constant(value) => Node::Number(short_product(share, *value)),
+                Profile::Constant(value) => Node::Number(short_product(fraction, *value)),
                 Profile::Linear { base, tip } => Node::Table(vec![
-                    field(ENDS[0], number(short_product(share, *base))),
-                    field(ENDS[1], number(short_product(share, *tip))),
+                    field(ENDS[0], number(short_product(fraction, *base))),
+                    field(ENDS[1], number(short_product(fraction, *tip))),
                 ]),
                 Profile::Table(table) => {
                     let point =
-                        |[s, value]: [f64; 2]| Node::Array(vec![number(s), number(short_product(share, value))]);
+                        |[s, value]: [f64; 2]| Node::Array(vec![number(s), number(short_product(fraction, value))]);
                     let points = table.points().map(|at| Entry { node: point(at), origin }).collect();
                     joined(Entry { node: Node::Array(points), origin }, table.join(), &field)
                 }
@@ -96,8 +96,8 @@ fn offset(entry: &mut Entry, length: Option<f64>, radius: Option<&Profile>) {
         Node::Table(fields) => {
             for field in fields {
                 match (field.name.as_str(), &mut field.entry.node) {
-                    ("base", node) => share_at(node, 0.0, length, radius),
-                    ("tip", node) => share_at(node, length, length, radius),
+                    ("base", node) => fraction_at(node, 0.0, length, radius),
+                    ("tip", node) => fraction_at(node, length, length, radius),
                     ("points", Node::Array(points)) => shares_at(points, length, radius),
                     _ => {}
                 }
@@ -118,26 +118,26 @@ fn shares_at(points: &mut [Entry], length: f64, radius: &Profile) {
         let Node::Array(pair) = &mut point.node else { continue };
         let [place, value] = pair.as_mut_slice() else { continue };
         if let Some(s) = quantity_at(Dimension::Length, place) {
-            share_at(&mut value.node, s, length, radius);
+            fraction_at(&mut value.node, s, length, radius);
         }
     }
 }
 
-fn share_at(node: &mut Node, s: f64, length: f64, radius: &Profile) {
-    let share = match node {
+fn fraction_at(node: &mut Node, s: f64, length: f64, radius: &Profile) {
+    let fraction = match node {
         Node::Text(text) => percent(text),
         _ => None,
     };
-    if let Some(share) = share {
+    if let Some(fraction) = fraction {
         // Not `clamp`, which panics where a length is negative: that is refused later, by its key.
         let radius = radius.at(s.max(0.0).min(length), length).value;
-        *node = Node::Number(short_product(share, radius));
+        *node = Node::Number(short_product(fraction, radius));
     }
 }
 
-/// `share` of a length with 15 digits: 70 % of 10 mm is 7 mm, not 6.999999999999999 mm.
-fn short_product(share: f64, length: f64) -> f64 {
-    let product = share * length;
+/// `fraction` of a length with 15 digits: 70 % of 10 mm is 7 mm, not 6.999999999999999 mm.
+fn short_product(fraction: f64, length: f64) -> f64 {
+    let product = fraction * length;
     format!("{product:.14e}").parse().unwrap_or(product)
 }
 
@@ -145,7 +145,7 @@ fn short_product(share: f64, length: f64) -> f64 {
 fn end(entry: &mut Entry, length: Option<f64>) {
     let Node::Text(text) = &entry.node else { return };
     let fraction = match (percent(text), Dimension::Length.parse(text), length) {
-        (Some(share), ..) => Some(share),
+        (Some(fraction), ..) => Some(fraction),
         (None, Ok(place), Some(length)) => Some(place / length),
         // The length is missing, not this.
         (None, Ok(_), None) => Some(1.0),

@@ -171,8 +171,8 @@ impl Varied {
     pub fn values(&self, count: usize) -> Vec<f64> {
         let [from, to] = self.range;
         let last = count.saturating_sub(1).max(1);
-        let share = |k: usize| k as f64 / last as f64;
-        (0..count).map(|k| if k == last { to } else { rounded(from + share(k) * (to - from)) }).collect()
+        let fraction = |k: usize| k as f64 / last as f64;
+        (0..count).map(|k| if k == last { to } else { rounded(from + fraction(k) * (to - from)) }).collect()
     }
 
     /// The quantity with its SI unit, as the head of a column: `flow_speed_m_s`.

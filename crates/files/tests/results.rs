@@ -96,7 +96,7 @@ fn what_is_said_of_stability() {
         serde_json::to_value(SolutionDocument::new(&solved, 1.0, &[])).unwrap()["stable"].clone()
     };
     let critical = hydrostat::cases::column_buckling_load(1e6, 3e5).unwrap();
-    assert_eq!([0.9, 1.0, 1.1].map(|share| stable(share * critical)), [json!(true), Value::Null, json!(false)]);
+    assert_eq!([0.9, 1.0, 1.1].map(|fraction| stable(fraction * critical)), [json!(true), Value::Null, json!(false)]);
 }
 
 #[test]

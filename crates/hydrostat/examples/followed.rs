@@ -51,12 +51,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         least.remove(0);
         least.sort_by(f64::total_cmp);
-        let share = |part: usize| least[part * (least.len() - 1) / 100];
+        let fraction = |part: usize| least[part * (least.len() - 1) / 100];
         let solves = solves as f64 / f64::from(POINTS);
         println!(
             "{name}: {:.0} us median, {:.0} us in 95 %, {solves:.2} solves a point, {missed} missed",
-            share(50),
-            share(95)
+            fraction(50),
+            fraction(95)
         );
     }
     Ok(())

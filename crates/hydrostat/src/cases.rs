@@ -110,13 +110,13 @@ fn exact<const K: usize>(values: [(Measure, f64, f64); K]) -> Vec<Quantity> {
     values.into_iter().map(|(what, value, tolerance)| Quantity { what, value, tolerance }).collect()
 }
 
-/// nu of a straight or circular arm whose cables pull with `share` = sum T / (C1 pi R^2):
-/// the root below one of (1 - nu) beta(nu)^2 = share.
-fn compressed(volume: Volume, share: f64) -> f64 {
+/// nu of a straight or circular arm whose cables pull with `fraction` = sum T / (C1 pi R^2):
+/// the root below one of (1 - nu) beta(nu)^2 = fraction.
+fn compressed(volume: Volume, fraction: f64) -> f64 {
     match volume {
-        Volume::Planar => 2.0 / (1.0 + (1.0 + 4.0 * share).sqrt()),
-        Volume::Circular => 1.0 / (1.0 + share),
-        Volume::None => 1.0 - share,
+        Volume::Planar => 2.0 / (1.0 + (1.0 + 4.0 * fraction).sqrt()),
+        Volume::Circular => 1.0 / (1.0 + fraction),
+        Volume::None => 1.0 - fraction,
     }
 }
 

@@ -4,7 +4,7 @@
 //! What is the same in the plane is taken from there: profiles, sections along the arm, the section stretch, the
 //! scalar flow laws, meshes and their errors, verdicts.
 
-mod adversity;
+mod buckling;
 pub(crate) mod cable_paths;
 mod change;
 pub(crate) mod configuration;

@@ -37,8 +37,8 @@ fn distance(lines: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> f64 {
     let to = |pair: &[[f64; 2]]| {
         let [a, b] = [pair[0], pair[1]];
         let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-        let share = (((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy).max(1e-300)).clamp(0.0, 1.0);
-        (a[0] + share * dx - x).hypot(a[1] + share * dy - y)
+        let fraction = (((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy).max(1e-300)).clamp(0.0, 1.0);
+        (a[0] + fraction * dx - x).hypot(a[1] + fraction * dy - y)
     };
     lines.iter().flat_map(|line| line.windows(2)).map(to).fold(f64::INFINITY, f64::min)
 }

@@ -13,15 +13,15 @@ fn solve(arm: &Arm) -> Configuration {
 /// EA and GA of slender to stocky columns, soft in shear, soft in tension.
 const COLUMNS: [(f64, f64); 6] = [(1e6, 3e5), (2500.0, 800.0), (400.0, 130.0), (100.0, 33.0), (1e4, 3.0), (30.0, 1e6)];
 
-fn check_straight_columns(shares: &[f64]) {
+fn check_straight_columns(fractions: &[f64]) {
     for (ea, ga) in COLUMNS {
         let critical = column_buckling_load(ea, ga).unwrap();
-        for &share in shares {
-            let load = share * critical;
+        for &fraction in fractions {
+            let load = fraction * critical;
             let solved = solve(&column(ea, ga, load, 0.0));
             let off = (solved.tip().x - (1.0 - load / ea)).hypot(solved.tip().y);
-            assert!(off < 1e-9, "EA {ea}, GA {ga}: {share} of the load: off by {off:e}");
-            assert_eq!(solved.stable == Some(false), share > 1.0, "EA {ea}, GA {ga}: {share} of the load");
+            assert!(off < 1e-9, "EA {ea}, GA {ga}: {fraction} of the load: off by {off:e}");
+            assert_eq!(solved.stable == Some(false), fraction > 1.0, "EA {ea}, GA {ga}: {fraction} of the load");
         }
     }
 }
@@ -42,14 +42,14 @@ fn a_disturbed_column_bends_the_way_it_is_pushed() {
         let critical = column_buckling_load(ea, ga).unwrap();
         for across in [1e-2, -1e-3] {
             let mut last = 0.0;
-            for share in [0.5, 0.9, 0.999, 1.001, 1.1, 1.5] {
-                let solved = solve(&column(ea, ga, share * critical, across));
+            for fraction in [0.5, 0.9, 0.999, 1.001, 1.1, 1.5] {
+                let solved = solve(&column(ea, ga, fraction * critical, across));
                 let aside = solved.tip().y * across.signum();
                 assert!(
                     aside > last,
-                    "EA {ea}, GA {ga}: {share} of the load, pushed by {across}: {aside} after {last}"
+                    "EA {ea}, GA {ga}: {fraction} of the load, pushed by {across}: {aside} after {last}"
                 );
-                assert_ne!(solved.stable, Some(false), "EA {ea}, GA {ga}: {share} of the load, pushed by {across}");
+                assert_ne!(solved.stable, Some(false), "EA {ea}, GA {ga}: {fraction} of the load, pushed by {across}");
                 last = aside;
             }
         }
@@ -86,12 +86,12 @@ fn past_its_load_a_column_follows_the_elastica() {
     }
 }
 
-fn check_heavy_columns(shares: &[f64]) {
-    for &share in shares {
-        let solved = solve(&heavy_column(share * HEAVY_COLUMN, 0.0));
+fn check_heavy_columns(fractions: &[f64]) {
+    for &fraction in fractions {
+        let solved = solve(&heavy_column(fraction * HEAVY_COLUMN, 0.0));
         let off = (solved.tip().y - 1.0).hypot(solved.tip().x);
-        assert!(off < 1e-9, "{share} of the weight: off by {off:e}");
-        assert_eq!(solved.stable == Some(false), share > 1.0, "{share} of the weight");
+        assert!(off < 1e-9, "{fraction} of the weight: off by {off:e}");
+        assert_eq!(solved.stable == Some(false), fraction > 1.0, "{fraction} of the weight");
     }
 }
 
@@ -109,11 +109,11 @@ fn a_heavier_column_stays_upright_and_is_unstable() {
 fn a_disturbed_heavy_column_sags_the_way_it_is_pushed() {
     for across in [1e-2, -1e-3] {
         let mut last = 0.0;
-        for share in [0.5, 0.9, 0.99, 1.01, 1.1, 1.5] {
-            let solved = solve(&heavy_column(share * HEAVY_COLUMN, across));
+        for fraction in [0.5, 0.9, 0.99, 1.01, 1.1, 1.5] {
+            let solved = solve(&heavy_column(fraction * HEAVY_COLUMN, across));
             let aside = solved.tip().x * across.signum();
-            assert!(aside > last, "{share} of the weight, pushed by {across}: {aside} after {last}");
-            assert_ne!(solved.stable, Some(false), "{share} of the weight, pushed by {across}");
+            assert!(aside > last, "{fraction} of the weight, pushed by {across}: {aside} after {last}");
+            assert_ne!(solved.stable, Some(false), "{fraction} of the weight, pushed by {across}");
             last = aside;
         }
     }
@@ -123,15 +123,15 @@ fn a_disturbed_heavy_column_sags_the_way_it_is_pushed() {
 #[test]
 fn a_tangential_follower_never_buckles_statically() {
     for (ea, ga) in [(1e6, 3e5), (2500.0, 800.0)] {
-        for share in [0.9, 1.1, 3.0, 5.0, 7.0] {
+        for fraction in [0.9, 1.1, 3.0, 5.0, 7.0] {
             let mut arm = uniform_arm("follower", ea, ga);
-            arm.tip.follower = [-share * PI * FRAC_PI_2 / 2.0, 0.0];
+            arm.tip.follower = [-fraction * PI * FRAC_PI_2 / 2.0, 0.0];
             let straight = solve(&arm);
             assert!(straight.tip().y.abs() < 1e-9);
-            assert_ne!(straight.stable, Some(false), "{share} of the dead load");
+            assert_ne!(straight.stable, Some(false), "{fraction} of the dead load");
             arm.tip.force[1] = 1e-3;
             let pushed = solve(&arm);
-            assert_ne!(pushed.stable, Some(false), "{share} of the dead load, pushed");
+            assert_ne!(pushed.stable, Some(false), "{fraction} of the dead load, pushed");
         }
     }
 }

@@ -34,23 +34,23 @@ fn solve(arm: &Arm) -> Configuration {
 fn cables_of_fixed_lengths_hold_a_column_up_to_four_times_its_buckling_load() {
     // Enough stroke that the cables stay taut while the thrust shortens the column.
     let stroke = 16.0 / RIGID;
-    for (share, held, pulled) in [
+    for (fraction, held, pulled) in [
         (0.2, Stability::Stable, Stability::Stable),
         (0.26, Stability::Stable, Stability::Unstable(1)),
         (0.99, Stability::Stable, Stability::Unstable(1)),
         (1.01, Stability::Unstable(1), Stability::Unstable(1)),
     ] {
-        let thrust = share * PI * PI;
+        let thrust = fraction * PI * PI;
         let shape = solve(&held_column(thrust, stroke, None));
         assert!(shape.tip().y.abs() < 1e-9);
         let want = 0.5 * (RIGID * stroke - thrust);
         for cable in &shape.cables {
-            assert!((cable.tension - want).abs() < 1e-3, "{share}: {} N for {want}", cable.tension);
+            assert!((cable.tension - want).abs() < 1e-3, "{fraction}: {} N for {want}", cable.tension);
         }
-        assert_eq!(shape.stability(), Some(held), "{share} of the load");
+        assert_eq!(shape.stability(), Some(held), "{fraction} of the load");
         let mut given = shape.arm.clone();
         given.set_tensions(&[shape.cables[0].tension, shape.cables[1].tension]).unwrap();
-        assert_eq!(solve(&given).stability(), Some(pulled), "{share} of the load, at these tensions");
+        assert_eq!(solve(&given).stability(), Some(pulled), "{fraction} of the load, at these tensions");
     }
 }
 

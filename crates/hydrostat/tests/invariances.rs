@@ -15,7 +15,7 @@ fn solve(arm: &Arm) -> Result<Configuration, SolveError> {
 }
 
 prop_compose! {
-    /// Moderate arms: loads are shares of what bends the arm by about a radian.
+    /// Moderate arms: loads are fractions of what bends the arm by about a radian.
     fn arms()(
         (length, radius, taper, young, poisson) in (0.15..0.4, 0.03..0.06, 0.2..1.0, 5e4..3e5, 0.3..0.5),
         (left, right, inward, end) in (0.2..0.8, 0.2..0.8, 0.5..1.0, select(vec![1.0, 1.0, 0.45])),
@@ -36,7 +36,7 @@ prop_compose! {
         let middle = 0.5 * (radius + tip_radius);
         let bending = young * PI * middle.powi(4) / 4.0;
         let force = bending / (length * length);
-        let offset = |share: f64| Profile::linear(share * radius, share * inward * tip_radius);
+        let offset = |fraction: f64| Profile::linear(fraction * radius, fraction * inward * tip_radius);
         // A quarter of what folds a tip section shut.
         let most = 0.25 * young * PI * tip_radius * tip_radius;
         arm.cables.push(Cable::new("left", offset(left)).pulled(pulls.0 * most));
@@ -62,20 +62,20 @@ prop_compose! {
 }
 
 /// Both arms have an answer, and `image` takes the places (x, y, theta) of the first to those of
-/// the second at the same share of the length; or neither has one, for the same reason.
+/// the second at the same fraction of the length; or neither has one, for the same reason.
 fn check(one: &Arm, two: &Arm, image: impl Fn([f64; 3]) -> [f64; 3]) -> Result<(), TestCaseError> {
     match (solve(one), solve(two)) {
         (Ok(first), Ok(second)) => {
             prop_assert_eq!(first.stable, second.stable);
             for k in 0..=20 {
-                let share = f64::from(k) / 20.0;
-                let (a, b) = (first.at(share * one.length), second.at(share * two.length));
+                let fraction = f64::from(k) / 20.0;
+                let (a, b) = (first.at(fraction * one.length), second.at(fraction * two.length));
                 let want = image([a.x, a.y, a.theta]);
                 let off = (want[0] - b.x).hypot(want[1] - b.y) / two.length;
-                prop_assert!(off < 3.0 * TOL, "places differ by {off:e} L at {share}");
+                prop_assert!(off < 3.0 * TOL, "places differ by {off:e} L at {fraction}");
                 let turn = (want[2] - b.theta).abs();
-                prop_assert!(turn < 30.0 * TOL, "angles differ by {turn:e} at {share}");
-                prop_assert!((a.nu - b.nu).abs() < 30.0 * TOL, "stretches differ at {share}: {} {}", a.nu, b.nu);
+                prop_assert!(turn < 30.0 * TOL, "angles differ by {turn:e} at {fraction}");
+                prop_assert!((a.nu - b.nu).abs() < 30.0 * TOL, "stretches differ at {fraction}: {} {}", a.nu, b.nu);
             }
         }
         (Err(SolveError::NoEquilibrium(first)), Err(SolveError::NoEquilibrium(second))) => {
@@ -186,9 +186,9 @@ proptest! {
     }
 
     #[test]
-    fn a_slack_cable_is_no_cable(arm in arms(), share in -0.9..0.9, end in select(vec![0.3, 1.0])) {
+    fn a_slack_cable_is_no_cable(arm in arms(), fraction in -0.9..0.9, end in select(vec![0.3, 1.0])) {
         let mut more = arm.clone();
-        let offset = Profile::linear(share * arm.radius.at(0.0, arm.length).value, 0.0);
+        let offset = Profile::linear(fraction * arm.radius.at(0.0, arm.length).value, 0.0);
         more.cables.insert(1, Cable::new("slack", offset).ending_at(end));
         check(&arm, &more, |place| place)?;
     }

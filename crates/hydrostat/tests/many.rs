@@ -9,11 +9,11 @@ fn arm(name: &str) -> Arm {
 
 /// Tensions of the first cable and speeds of the stream, `count` by `count`, the tension running faster.
 fn grid(arm: &Arm, tension: f64, speed: f64, count: u32) -> Vec<Arm> {
-    let share = |k: u32| f64::from(k) / f64::from(count - 1);
+    let fraction = |k: u32| f64::from(k) / f64::from(count - 1);
     let row = |i: u32, k: u32| {
         let mut arm = arm.clone();
-        arm.flow.speed = speed * share(i);
-        arm.cables[0].tension = tension * share(k);
+        arm.flow.speed = speed * fraction(i);
+        arm.cables[0].tension = tension * fraction(k);
         arm
     };
     (0..count).flat_map(|i| (0..count).map(move |k| (i, k))).map(|(i, k)| row(i, k)).collect()

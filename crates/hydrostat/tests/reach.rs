@@ -12,8 +12,8 @@ use common::{cone, options, shipped_arm, strokes_at, target_of, wound_in_by};
 fn round_trips(arm: &Arm, most: f64, per_cable: u32) -> (usize, usize) {
     let last = arm.cables.len() - 1;
     let (mut all, mut met) = (0, 0);
-    let share = |k: u32| most * f64::from(k) / f64::from(per_cable - 1);
-    for (left, right) in (0..per_cable).flat_map(|a| (0..per_cable).map(move |b| (share(a), share(b)))) {
+    let fraction = |k: u32| most * f64::from(k) / f64::from(per_cable - 1);
+    for (left, right) in (0..per_cable).flat_map(|a| (0..per_cable).map(move |b| (fraction(a), fraction(b)))) {
         let mut tensions = vec![0.0; last + 1];
         (tensions[0], tensions[last]) = (left, right);
         let Some(target) = target_of(arm, &tensions) else { continue };
@@ -175,8 +175,8 @@ fn with_given(arm: &Arm, target: Target, start: [f64; 3], given: usize) -> Optio
         let (by_a, by_b) = (by(a)?, by(b)?);
         let det = by_a[0] * by_b[1] - by_b[0] * by_a[1];
         let step = [(by_b[1] * here[0] - by_b[0] * here[1]) / det, (by_a[0] * here[1] - by_a[1] * here[0]) / det];
-        let share = (0.05 / step[0].hypot(step[1])).min(1.0);
-        (t[a], t[b]) = (t[a] - share * step[0], t[b] - share * step[1]);
+        let fraction = (0.05 / step[0].hypot(step[1])).min(1.0);
+        (t[a], t[b]) = (t[a] - fraction * step[0], t[b] - fraction * step[1]);
         if t.iter().any(|t| *t < 0.0) {
             return None;
         }
@@ -270,8 +270,8 @@ fn wrong_requests_are_refused() {
 /// Tensions on a lattice with their tips, as solves of their own give them, of which every cable that pulls is wound in
 /// by `most` at most.
 fn scan_within_strokes(arm: &Arm, largest: f64, count: u32, most: f64) -> Vec<(Vec<f64>, [f64; 2])> {
-    let share = |k: u32| largest * f64::from(k) / f64::from(count);
-    let pairs = (0..=count).flat_map(|a| (0..=count).map(move |b| [share(a), share(b)]));
+    let fraction = |k: u32| largest * f64::from(k) / f64::from(count);
+    let pairs = (0..=count).flat_map(|a| (0..=count).map(move |b| [fraction(a), fraction(b)]));
     let solved = pairs.filter_map(|tensions| {
         let mut arm = arm.clone();
         arm.set_tensions(&tensions).unwrap();
@@ -347,8 +347,8 @@ fn bounded_strokes_take_another_cable() {
         let target = target_of(&arm, &tensions).unwrap();
         let free = arm.reach(&[target], &options(2.0)).unwrap().solutions.remove(0);
         let own = strokes_at(&arm, &free.tensions)[0];
-        for share in [1.02, 0.999, 0.97, 0.9, 0.4] {
-            let most = share * own;
+        for fraction in [1.02, 0.999, 0.97, 0.9, 0.4] {
+            let most = fraction * own;
             let mut least = f64::INFINITY;
             for (given, value) in [0, 2].into_iter().flat_map(|c| (0..=16).map(move |k| (c, 0.025 * f64::from(k)))) {
                 let mut start = tensions;
@@ -358,10 +358,10 @@ fn bounded_strokes_take_another_cable() {
             }
             let found = arm.reach(&[target], &wound_in_by(most, 2.0)).unwrap();
             let seen: Vec<_> = found.solutions.iter().map(|one| (&one.tensions, one.effort, &one.bounds)).collect();
-            println!("{share} of {own} m: {seen:?}, scan {least} (free {:?} {})", free.tensions, free.effort);
-            assert!(seen.iter().all(|(tensions, ..)| within(tensions, most + 1e-8)), "{share}");
+            println!("{fraction} of {own} m: {seen:?}, scan {least} (free {:?} {})", free.tensions, free.effort);
+            assert!(seen.iter().all(|(tensions, ..)| within(tensions, most + 1e-8)), "{fraction}");
             let best = found.solutions.first().map_or(f64::INFINITY, |one| one.effort);
-            assert!(best <= least * (1.0 + 1e-5), "{share}: {best} for {least}");
+            assert!(best <= least * (1.0 + 1e-5), "{fraction}: {best} for {least}");
             for one in &found.solutions {
                 bounded += usize::from(one.bounds.contains(&Bound::Stroke(0)));
             }

@@ -291,7 +291,7 @@ fn forward_and_adjoint_agree() {
 fn a_gradient_is_the_sum_of_weighted_rows() {
     for arm in [loaded(), held(), literal(), routed()] {
         let parameters = Parameter::all_of(&arm);
-        let places = [0.2, 0.45, 0.8, 1.0].map(|share| share * arm.length);
+        let places = [0.2, 0.45, 0.8, 1.0].map(|fraction| fraction * arm.length);
         let weights = [[1.0, -0.3, 0.2, 0.0], [0.0, 2.0, 0.0, -0.1], [-0.7, 0.4, 0.0, 0.3], [0.5, 0.0, -0.4, 0.2]];
         let pose = |[x, y, theta, alpha]: [f64; 4]| PoseChange { x, y, theta, alpha };
         let asked: Vec<(f64, PoseChange)> = places.into_iter().zip(weights.map(pose)).collect();

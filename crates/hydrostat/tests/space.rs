@@ -259,12 +259,12 @@ fn a_column_past_eulers_load_is_unstable_in_two_directions() {
         let (q, c) = (1.0 / ga - 1.0 / ea, PI * PI * ei / 4.0);
         ((1.0 + 4.0 * q * c).sqrt() - 1.0) / (2.0 * q)
     };
-    for (share, directions) in [(0.98, 0), (1.02, 2)] {
+    for (fraction, directions) in [(0.98, 0), (1.02, 2)] {
         let mut arm = rod(1.0, [ea, ga, ei, gj]);
-        arm.tip.force = [-share * critical, 0.0];
+        arm.tip.force = [-fraction * critical, 0.0];
         let shape = solved(&arm, 1e-9);
         assert!(shape.tip().y.abs() + shape.tip().z.abs() < 1e-9);
-        assert_eq!(shape.stability().and_then(hydrostat::Stability::directions), Some(directions), "{share}");
+        assert_eq!(shape.stability().and_then(hydrostat::Stability::directions), Some(directions), "{fraction}");
     }
 }
 

@@ -23,14 +23,14 @@ const COLUMNS: [(f64, f64); 6] = [(1e6, 3e5), (2500.0, 800.0), (400.0, 130.0), (
 fn the_buckling_load_of_columns_to_a_millionth() {
     for (ea, ga) in COLUMNS {
         let critical = column_buckling_load(ea, ga).unwrap();
-        let at = |share: f64| growth(&column(ea, ga, share * critical, 0.0));
-        for (share, want) in [(0.5, Stability::Stable), (0.9999, Stability::Stable), (1.0, Stability::Marginal)] {
-            assert_eq!(at(share).stability(), want, "EA {ea}, GA {ga}: {share} of the load");
+        let at = |fraction: f64| growth(&column(ea, ga, fraction * critical, 0.0));
+        for (fraction, want) in [(0.5, Stability::Stable), (0.9999, Stability::Stable), (1.0, Stability::Marginal)] {
+            assert_eq!(at(fraction).stability(), want, "EA {ea}, GA {ga}: {fraction} of the load");
         }
-        for share in [1.0001, 1.5, 2.0] {
-            assert_eq!(at(share).stability(), Stability::Unstable(1), "EA {ea}, GA {ga}: {share} of the load");
+        for fraction in [1.0001, 1.5, 2.0] {
+            assert_eq!(at(fraction).stability(), Stability::Unstable(1), "EA {ea}, GA {ga}: {fraction} of the load");
         }
-        let [below, exact, above] = [1.0 - 1e-6, 1.0, 1.0 + 1e-6].map(|share| at(share).rates[0][0]);
+        let [below, exact, above] = [1.0 - 1e-6, 1.0, 1.0 + 1e-6].map(|fraction| at(fraction).rates[0][0]);
         assert!(below < -5e-7 && above > 5e-7, "EA {ea}, GA {ga}: {below:e} {above:e}");
         assert!(exact.abs() < 1e-9, "EA {ea}, GA {ga}: {exact:e}");
     }
@@ -39,19 +39,19 @@ fn the_buckling_load_of_columns_to_a_millionth() {
 /// Without shear and stretch to speak of, the n-th load is (2n - 1)^2 Euler's.
 #[test]
 fn each_higher_buckling_load_adds_a_direction() {
-    for (share, count) in [(8.99, 1), (9.01, 2), (24.98, 2), (25.02, 3)] {
-        let arm = column(1e7, 3e6, share * PI * PI / 4.0, 0.0);
-        assert_eq!(growth(&arm).stability(), Stability::Unstable(count), "{share} of Euler's load");
+    for (fraction, count) in [(8.99, 1), (9.01, 2), (24.98, 2), (25.02, 3)] {
+        let arm = column(1e7, 3e6, fraction * PI * PI / 4.0, 0.0);
+        assert_eq!(growth(&arm).stability(), Stability::Unstable(count), "{fraction} of Euler's load");
     }
 }
 
 #[test]
 fn a_column_under_its_own_weight() {
-    let at = |share: f64| growth(&heavy_column(share * HEAVY_COLUMN, 0.0));
-    let [below, above] = [1.0 - 1e-6, 1.0 + 1e-6].map(|share| at(share).rates[0][0]);
+    let at = |fraction: f64| growth(&heavy_column(fraction * HEAVY_COLUMN, 0.0));
+    let [below, above] = [1.0 - 1e-6, 1.0 + 1e-6].map(|fraction| at(fraction).rates[0][0]);
     assert!(below < -5e-7 && above > 5e-7, "{below:e} {above:e}");
-    for (share, want) in [(0.99, Stability::Stable), (1.01, Stability::Unstable(1)), (2.0, Stability::Unstable(1))] {
-        assert_eq!(at(share).stability(), want, "{share} of the weight");
+    for (fraction, want) in [(0.99, Stability::Stable), (1.01, Stability::Unstable(1)), (2.0, Stability::Unstable(1))] {
+        assert_eq!(at(fraction).stability(), want, "{fraction} of the weight");
     }
     let beyond = solve(&heavy_column(1.5 * HEAVY_COLUMN, 0.0));
     assert!((beyond.tip().y - 1.0).abs() < 1e-9, "it stays upright");
@@ -60,9 +60,9 @@ fn a_column_under_its_own_weight() {
 /// The branch that leaves a buckling load to the side is stable.
 #[test]
 fn a_bent_column_past_its_load_is_stable() {
-    for share in [1.01, 1.5, 3.0] {
-        let arm = column(1e6, 3e5, share * PI * PI / 4.0, 1e-3);
-        assert_eq!(growth(&arm).stability(), Stability::Stable, "{share} of the load");
+    for fraction in [1.01, 1.5, 3.0] {
+        let arm = column(1e6, 3e5, fraction * PI * PI / 4.0, 1e-3);
+        assert_eq!(growth(&arm).stability(), Stability::Stable, "{fraction} of the load");
     }
 }
 
@@ -165,10 +165,10 @@ fn rates_do_not_depend_on_the_direction_of_the_arm() {
 /// What the solve knows of the determinant's sign agrees with the count.
 #[test]
 fn the_count_agrees_with_what_the_path_knows() {
-    for share in [0.5, 2.0, 8.0, 12.0] {
-        let solved = solve(&column(1e6, 3e5, share * PI * PI / 4.0, 0.0));
+    for fraction in [0.5, 2.0, 8.0, 12.0] {
+        let solved = solve(&column(1e6, 3e5, fraction * PI * PI / 4.0, 0.0));
         let stable = solved.stability().and_then(Stability::is_stable);
-        assert_eq!(solved.stable == Some(false), stable == Some(false), "{share} of Euler's load");
+        assert_eq!(solved.stable == Some(false), stable == Some(false), "{fraction} of Euler's load");
     }
 }
 

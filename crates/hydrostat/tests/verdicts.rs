@@ -46,7 +46,7 @@ impl Case {
             Phase::Tension => part.cables[0].tension / whole.cables[0].tension,
             Phase::Loads if whole.flow.speed > 0.0 => (part.flow.speed / whole.flow.speed).powi(2),
             Phase::Loads => part.tip.force[0] / whole.tip.force[0],
-            Phase::Stroke | Phase::Friction => panic!("no stroke is commanded here, and no cable rubs"),
+            Phase::Stroke | Phase::Friction => panic!("no stroke is commanded here, and no cable has friction"),
         }
     }
 
@@ -159,11 +159,11 @@ fn snapping() -> Vec<Case> {
             Case::new(format!("stream at {degrees} deg"), arm, LimitPoint, Phase::Loads)
         })
         .into();
-    for share in [1.2, 1.5] {
+    for fraction in [1.2, 1.5] {
         let mut arm = inextensible_arm("column");
-        arm.tip.force = [-share * column_buckling_load(1e12, 1e12).unwrap(), 0.01];
+        arm.tip.force = [-fraction * column_buckling_load(1e12, 1e12).unwrap(), 0.01];
         arm.cables.push(Cable::new("right", -0.04).pulled(100.0));
-        cases.push(Case::new(format!("{share} of the buckling load"), arm, LimitPoint, Phase::Tension));
+        cases.push(Case::new(format!("{fraction} of the buckling load"), arm, LimitPoint, Phase::Tension));
     }
     cases
 }

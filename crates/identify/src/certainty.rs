@@ -33,10 +33,10 @@ pub(crate) fn covariance(rows: &Rows, loss: Loss, free: &[usize], spread: f64) -
     // Information A = c J^T J + P and the covariance of the gradient B = q J^T J + P.
     let mut own = jacobian.clone();
     let mut pull = jacobian;
-    let share = 1.0 / (spread * spread);
+    let fraction = 1.0 / (spread * spread);
     for i in 0..rows.measured {
-        own.row_mut(i).scale_mut((curvature * share).sqrt());
-        pull.row_mut(i).scale_mut((square * share).sqrt());
+        own.row_mut(i).scale_mut((curvature * fraction).sqrt());
+        pull.row_mut(i).scale_mut((square * fraction).sqrt());
     }
     let SVD { v_t, singular_values, .. } = SVD::new(own, false, true);
     let Some(directions) = v_t else {

@@ -91,7 +91,7 @@ pub struct Residual {
     pub fitted: f64,
     /// Fitted less measured, in standard deviations.
     pub standardised: f64,
-    /// The share of its pull that the loss leaves it, in (0, 1].
+    /// The fraction of its pull that the loss leaves it, in (0, 1].
     pub weight: f64,
 }
 

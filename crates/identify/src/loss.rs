@@ -5,7 +5,7 @@
 /// The constants are those with which the estimate of a mean is 95 % as efficient as the arithmetic one when all errors are normal
 /// (Huber 1981; Holland and Welsch 1977).
 ///
-/// For outliers take `Cauchy`. Under `Huber` each of them pulls with the strength of 1.345 standard deviations however far out it is; a share e of n
+/// For outliers take `Cauchy`. Under `Huber` each of them pulls with the strength of 1.345 standard deviations however far out it is; a fraction e of n
 /// numbers, all off to one side, so moves an estimate by up to some 1.345 e sqrt(n) of its own standard deviations, which no number of data mends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Loss {
@@ -65,7 +65,7 @@ impl Loss {
         }
     }
 
-    /// The share of its pull under least squares that the residual keeps, in (0, 1].
+    /// The fraction of its pull under least squares that the residual keeps, in (0, 1].
     pub fn weight(self, r: f64) -> f64 {
         if r == 0.0 { 1.0 } else { self.slope(r) / r }
     }

@@ -22,7 +22,7 @@ pub enum Finding {
     },
     /// Parameters of which the data know a combination only.
     Inseparable {
-        /// Each with its share of the direction that is not known, the largest one.
+        /// Each with its fraction of the direction that is not known, the largest one.
         parameters: Vec<(Unknown, f64)>,
         /// How many standard deviations the measured numbers move along it when the largest moves by its scale.
         moves: f64,
@@ -92,14 +92,14 @@ fn short(value: f64) -> String {
     if (1e-3..1e4).contains(&plain.abs()) { format!("{plain}") } else { text }
 }
 
-/// By how much a parameter is moved, in words: a tenth of its scale times `share`.
-fn step(parameter: Unknown, scale: Scale, share: f64) -> String {
-    let way = if share < 0.0 { "down" } else { "up" };
+/// By how much a parameter is moved, in words: a tenth of its scale times `fraction`.
+fn step(parameter: Unknown, scale: Scale, fraction: f64) -> String {
+    let way = if fraction < 0.0 { "down" } else { "up" };
     if scale.own {
-        format!("{parameter} {way} by {} %", short(10.0 * share.abs()))
+        format!("{parameter} {way} by {} %", short(10.0 * fraction.abs()))
     } else {
         let unit = parameter.unit();
-        format!("{parameter} {way} by {} {unit}", short(0.1 * scale.size * share.abs())).trim_end().to_owned()
+        format!("{parameter} {way} by {} {unit}", short(0.1 * scale.size * fraction.abs())).trim_end().to_owned()
     }
 }
 
@@ -128,7 +128,8 @@ impl Finding {
             }
             Self::Inseparable { parameters, moves } => {
                 let names: Vec<String> = parameters.iter().map(|(parameter, _)| parameter.to_string()).collect();
-                let steps: Vec<String> = parameters.iter().map(|(p, share)| step(*p, scale(*p), *share)).collect();
+                let steps: Vec<String> =
+                    parameters.iter().map(|(p, fraction)| step(*p, scale(*p), *fraction)).collect();
                 format!(
                     "the data do not separate {}: {} changes {}. {HELP}",
                     joined(&names, "and"),

@@ -39,18 +39,18 @@ fn coverage(sets: u64, options: &FitOptions, stated: f64) -> Vec<f64> {
     held.iter().map(|held| *held as f64 / sets as f64).collect()
 }
 
-fn is_95(shares: &[f64], off: f64) {
-    for share in shares {
-        assert!((share - 0.95).abs() <= off, "{shares:?}");
+fn is_95(fractions: &[f64], off: f64) {
+    for fraction in fractions {
+        assert!((fraction - 0.95).abs() <= off, "{fractions:?}");
     }
 }
 
 /// What 1000 data sets leave open is 0.007 (one standard deviation).
 #[test]
 fn intervals_of_1000_data_sets_hold_the_truth_92_to_98_percent_of_the_time() {
-    let shares = coverage(1000, &QUICK, 1.0);
-    println!("{shares:?}");
-    is_95(&shares, 0.03);
+    let fractions = coverage(1000, &QUICK, 1.0);
+    println!("{fractions:?}");
+    is_95(&fractions, 0.03);
 }
 
 /// With standard deviations three times too small or too large, and intervals from the residuals.

@@ -122,9 +122,9 @@ fn is_load(parameter: Parameter) -> bool {
 fn hilbert(point: &[f64], x: &mut [u32], digits: usize) -> u128 {
     let count = x.len();
     let top = 1_u32 << (digits - 1);
-    for (whole, share) in x.iter_mut().zip(point) {
+    for (whole, fraction) in x.iter_mut().zip(point) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 2^20")]
-        let digits = (share.clamp(0.0, 1.0) * f64::from(2 * top - 1)) as u32;
+        let digits = (fraction.clamp(0.0, 1.0) * f64::from(2 * top - 1)) as u32;
         *whole = digits;
     }
     let mut q = top;

@@ -23,13 +23,13 @@ use crate::spatial_solution::SpatialSolution;
 /// A path and what it varies, in the unit that was asked for.
 #[pyclass(frozen, module = "hydrostat._native")]
 pub(crate) struct Path {
-    found: Found,
+    found: AnyPath,
     varied: Varied,
     tol: f64,
 }
 
 /// In the plane or in space.
-enum Found {
+enum AnyPath {
     Plane(hydrostat::Path),
     Space(hydrostat::Path<SpatialConfiguration>),
 }
@@ -104,14 +104,14 @@ pub(crate) fn path(
         };
         let found = interruptible(py, |_| Ok(()), follow)?
             .map_err(|error| spatial_path_error(py, error, Options::with_tol(tol)))?;
-        return Ok(Path { found: Found::Space(found), varied, tol });
+        return Ok(Path { found: AnyPath::Space(found), varied, tol });
     }
     let follow = |stop: &AtomicBool| {
         arm.given.path_with(varied.parameter, varied.range, &options, |_| !stop.load(Ordering::Relaxed))
     };
     let found =
         interruptible(py, |_| Ok(()), follow)?.map_err(|error| path_error(py, error, Options::with_tol(tol)))?;
-    Ok(Path { found: Found::Plane(found), varied, tol })
+    Ok(Path { found: AnyPath::Plane(found), varied, tol })
 }
 
 #[pymethods]
@@ -130,39 +130,39 @@ impl Path {
 
     #[getter]
     fn in_space(&self) -> bool {
-        matches!(self.found, Found::Space(_))
+        matches!(self.found, AnyPath::Space(_))
     }
 
     /// For each branch: how many points, the name and the words of its end, the value at which it was switched to.
     #[getter]
     fn branches(&self) -> Vec<(usize, &'static str, String, Option<f64>)> {
         match &self.found {
-            Found::Plane(path) => path.branches.iter().map(|branch| ends(branch, &self.varied)).collect(),
-            Found::Space(path) => path.branches.iter().map(|branch| ends(branch, &self.varied)).collect(),
+            AnyPath::Plane(path) => path.branches.iter().map(|branch| ends(branch, &self.varied)).collect(),
+            AnyPath::Space(path) => path.branches.iter().map(|branch| ends(branch, &self.varied)).collect(),
         }
     }
 
     /// Values of the parameter on a branch, in the unit shown.
     fn values<'py>(&self, py: Python<'py>, branch: usize) -> PyResult<Numbers<'py>> {
         let values = match &self.found {
-            Found::Plane(path) => self.values_of(one(path, branch)?),
-            Found::Space(path) => self.values_of(one(path, branch)?),
+            AnyPath::Plane(path) => self.values_of(one(path, branch)?),
+            AnyPath::Space(path) => self.values_of(one(path, branch)?),
         };
         Ok(given(py, values))
     }
 
     fn states<'py>(&self, py: Python<'py>, branch: usize) -> PyResult<States<'py>> {
         Ok(match &self.found {
-            Found::Plane(path) => states(py, &with_stability(one(path, branch)?)),
-            Found::Space(path) => states_in_space(py, &with_stability(one(path, branch)?)),
+            AnyPath::Plane(path) => states(py, &with_stability(one(path, branch)?)),
+            AnyPath::Space(path) => states_in_space(py, &with_stability(one(path, branch)?)),
         })
     }
 
     /// The name of each point's event, and its cable.
     fn events(&self, branch: usize) -> PyResult<Vec<Option<Named>>> {
         match &self.found {
-            Found::Plane(path) => Ok(events(one(path, branch)?)),
-            Found::Space(path) => Ok(events(one(path, branch)?)),
+            AnyPath::Plane(path) => Ok(events(one(path, branch)?)),
+            AnyPath::Space(path) => Ok(events(one(path, branch)?)),
         }
     }
 
@@ -171,11 +171,11 @@ impl Path {
         let none = || PyIndexError::new_err("point: the branch has no such point");
         let options = Options::with_tol(self.tol);
         match &self.found {
-            Found::Plane(path) => {
+            AnyPath::Plane(path) => {
                 let point = one(path, branch)?.points.get(point).ok_or_else(none)?;
                 Ok(Py::new(py, Solution::new(point.configuration.clone(), options))?.into_any())
             }
-            Found::Space(path) => {
+            AnyPath::Space(path) => {
                 let point = one(path, branch)?.points.get(point).ok_or_else(none)?;
                 Ok(Py::new(py, SpatialSolution::new(point.configuration.clone(), options))?.into_any())
             }
@@ -189,13 +189,13 @@ impl Path {
             return Err(wrong(format!("quantity: an arm {where_} has no {asked}")));
         }
         Ok(Figure::new(match &self.found {
-            Found::Plane(path) => hydrostat_figures::path_figure(path, &over, asked, title, &page),
-            Found::Space(path) => hydrostat_figures::spatial_path_figure(path, &over, asked, title, &page),
+            AnyPath::Plane(path) => hydrostat_figures::path_figure(path, &over, asked, title, &page),
+            AnyPath::Space(path) => hydrostat_figures::spatial_path_figure(path, &over, asked, title, &page),
         }))
     }
 
     fn shapes_figure(&self, title: &str) -> PyResult<Figure> {
-        let Found::Plane(path) = &self.found else {
+        let AnyPath::Plane(path) = &self.found else {
             return Err(wrong(
                 "shapes along a path are drawn of arms in the plane, and this arm has `space = \"spatial\"`",
             ));
@@ -206,16 +206,16 @@ impl Path {
 
     fn to_json(&self) -> Option<String> {
         let document = match &self.found {
-            Found::Plane(path) => PathDocument::new(path, &self.varied),
-            Found::Space(path) => PathDocument::in_space(path, &self.varied),
+            AnyPath::Plane(path) => PathDocument::new(path, &self.varied),
+            AnyPath::Space(path) => PathDocument::in_space(path, &self.varied),
         };
         document.map(|document| document.to_json())
     }
 
     fn to_csv(&self) -> String {
         match &self.found {
-            Found::Plane(path) => path_csv(path, &self.varied),
-            Found::Space(path) => spatial_path_csv(path, &self.varied),
+            AnyPath::Plane(path) => path_csv(path, &self.varied),
+            AnyPath::Space(path) => spatial_path_csv(path, &self.varied),
         }
     }
 }

@@ -34,7 +34,7 @@ pub(crate) enum Goals {
 }
 
 /// In the plane or in space.
-enum Found {
+enum AnyReach {
     Plane(Box<hydrostat::Reach>),
     Space(Box<hydrostat::Reach<SpatialConfiguration, SpatialStation>>),
 }
@@ -49,7 +49,7 @@ type FollowedFields<'py> = (Bound<'py, PyArray1<f64>>, (f64, f64, f64, f64), f64
 /// What was found for targets.
 #[pyclass(frozen, module = "hydrostat._native")]
 pub(crate) struct Reach {
-    found: Found,
+    found: AnyReach,
     arm: hydrostat::Arm,
     targets: Vec<Target>,
     tol: f64,
@@ -105,7 +105,12 @@ pub(crate) fn reach(
             };
             let found = interruptible(py, |_| Ok(()), search)?
                 .map_err(|error| spatial_reach_error(py, error, Options::with_tol(tol)))?;
-            return Ok(Reach { found: Found::Space(found.into()), arm: arm.given.clone(), targets: Vec::new(), tol });
+            return Ok(Reach {
+                found: AnyReach::Space(found.into()),
+                arm: arm.given.clone(),
+                targets: Vec::new(),
+                tol,
+            });
         }
     };
     let search = |stop: &AtomicBool| {
@@ -118,7 +123,7 @@ pub(crate) fn reach(
     };
     let found =
         interruptible(py, |_| Ok(()), search)?.map_err(|error| reach_error(py, error, Options::with_tol(tol)))?;
-    Ok(Reach { found: Found::Plane(found.into()), arm: arm.given.clone(), targets, tol })
+    Ok(Reach { found: AnyReach::Plane(found.into()), arm: arm.given.clone(), targets, tol })
 }
 
 /// What bounds the places that the tip reaches.
@@ -191,25 +196,25 @@ impl Reach {
     #[getter]
     fn counts(&self) -> (usize, bool) {
         match &self.found {
-            Found::Plane(found) => counts(found),
-            Found::Space(found) => counts(found),
+            AnyReach::Plane(found) => counts(found),
+            AnyReach::Space(found) => counts(found),
         }
     }
 
     fn fields<'py>(&self, py: Python<'py>, index: usize) -> PyResult<ReachedFields<'py>> {
         match &self.found {
-            Found::Plane(found) => Ok(fields(py, one(found, index)?)),
-            Found::Space(found) => Ok(fields(py, one(found, index)?)),
+            AnyReach::Plane(found) => Ok(fields(py, one(found, index)?)),
+            AnyReach::Space(found) => Ok(fields(py, one(found, index)?)),
         }
     }
 
     fn solution(&self, py: Python<'_>, index: usize) -> PyResult<Py<PyAny>> {
         let options = Options::with_tol(self.tol);
         match &self.found {
-            Found::Plane(found) => {
+            AnyReach::Plane(found) => {
                 Ok(Py::new(py, Solution::new(one(found, index)?.configuration.clone(), options))?.into_any())
             }
-            Found::Space(found) => {
+            AnyReach::Space(found) => {
                 Ok(Py::new(py, SpatialSolution::new(one(found, index)?.configuration.clone(), options))?.into_any())
             }
         }
@@ -219,25 +224,25 @@ impl Reach {
     fn figure(&self, index: usize, note: Option<&str>) -> PyResult<Figure> {
         let page = Page::default();
         Ok(Figure::new(match &self.found {
-            Found::Plane(found) => {
+            AnyReach::Plane(found) => {
                 let targets: Vec<[f64; 2]> = self.targets.iter().map(|target| [target.x, target.y]).collect();
                 reach_figure(&one(found, index)?.configuration, &targets, note, &page)
             }
-            Found::Space(found) => spatial_arm_figure(&one(found, index)?.configuration, note, &page),
+            AnyReach::Space(found) => spatial_arm_figure(&one(found, index)?.configuration, note, &page),
         }))
     }
 
     fn to_json(&self) -> String {
         match &self.found {
-            Found::Plane(found) => ReachDocument::new(&self.arm, found).to_json(),
-            Found::Space(found) => ReachDocument::in_space(&self.arm, found).to_json(),
+            AnyReach::Plane(found) => ReachDocument::new(&self.arm, found).to_json(),
+            AnyReach::Space(found) => ReachDocument::in_space(&self.arm, found).to_json(),
         }
     }
 
     fn to_csv(&self) -> String {
         match &self.found {
-            Found::Plane(found) => reach_csv(self.arm.cables.len(), found),
-            Found::Space(found) => spatial_reach_csv(self.arm.cables.len(), found),
+            AnyReach::Plane(found) => reach_csv(self.arm.cables.len(), found),
+            AnyReach::Space(found) => spatial_reach_csv(self.arm.cables.len(), found),
         }
     }
 }

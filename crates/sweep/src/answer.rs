@@ -16,7 +16,7 @@ pub(crate) enum NoAnswer {
 
 /// The answer of a row.
 #[derive(Debug, Clone)]
-pub(crate) enum Found {
+pub(crate) enum AnyRow {
     /// Of an arm in the plane.
     Plane(Row),
     /// Of an arm in space.
@@ -70,20 +70,20 @@ fn shape(configuration: &SpatialConfiguration, count: usize) -> Vec<[f64; 9]> {
 }
 
 /// Solves a row in space by itself: it does not depend on the rows before.
-pub(crate) fn solve_in_space(arm: &Arm, options: Options, wanted: Wanted) -> Result<Found, NoAnswer> {
+pub(crate) fn solve_in_space(arm: &Arm, options: Options, wanted: Wanted) -> Result<AnyRow, NoAnswer> {
     match SpatialSolver::new(arm, options).and_then(|mut solver| solver.solve()) {
-        Ok(configuration) => Ok(Found::Space(SpatialRow::of(&configuration, wanted))),
+        Ok(configuration) => Ok(AnyRow::Space(SpatialRow::of(&configuration, wanted))),
         Err(SpatialError::NoEquilibrium(no)) => Err(NoAnswer::Verdict(no.verdict)),
         Err(error) => Err(NoAnswer::Arm(error.to_string())),
     }
 }
 
 /// Solves a row whose `verdict` is a snap, with the motion after it.
-pub(crate) fn solve_after_snap(arm: &Arm, tol: f64, wanted: Wanted, verdict: Verdict) -> Result<Found, NoAnswer> {
+pub(crate) fn solve_after_snap(arm: &Arm, tol: f64, wanted: Wanted, verdict: Verdict) -> Result<AnyRow, NoAnswer> {
     match arm.solve_after_snap(tol) {
         Ok(found) => {
             let snap_durations = found.snaps.iter().map(|motion| motion.duration).collect();
-            Ok(Found::Plane(Row { snap_durations, ..Row::new(&found.configuration, wanted) }))
+            Ok(AnyRow::Plane(Row { snap_durations, ..Row::new(&found.configuration, wanted) }))
         }
         Err(AfterSnapError::Solve(SolveError::NoEquilibrium(no))) => Err(NoAnswer::Verdict(no.verdict)),
         Err(error) => Err(no_rest(&error, verdict)),
@@ -96,11 +96,11 @@ pub(crate) fn solve_after_snap_in_space(
     tol: f64,
     wanted: Wanted,
     verdict: Verdict,
-) -> Result<Found, NoAnswer> {
+) -> Result<AnyRow, NoAnswer> {
     match arm.solve_after_snap_in_space(tol) {
         Ok(found) => {
             let snap_durations = found.snaps.iter().map(|motion| motion.duration).collect();
-            Ok(Found::Space(SpatialRow { snap_durations, ..SpatialRow::of(&found.configuration, wanted) }))
+            Ok(AnyRow::Space(SpatialRow { snap_durations, ..SpatialRow::of(&found.configuration, wanted) }))
         }
         Err(AfterSnapError::Solve(SpatialError::NoEquilibrium(no))) => Err(NoAnswer::Verdict(no.verdict)),
         Err(error) => Err(no_rest(&error, verdict)),
@@ -121,7 +121,7 @@ where
     }
 }
 
-impl Found {
+impl AnyRow {
     /// How many snaps the arm makes on its way to the loads; of the one that goes furthest load fraction, distance (m),
     /// angle (rad) and, where its motion was followed, duration (s).
     pub(crate) fn snaps(&self) -> (usize, [Option<f64>; 4]) {

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use hydrostat::{Arm, Row, Stability, Wanted, Warning};
 use hydrostat_files::{Axis, AxisValue, TOLERANCE_MISSED};
 
-use crate::answer::{Found, NoAnswer};
+use crate::answer::{AnyRow, NoAnswer};
 
 /// Something that can be asked of every row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,7 +127,7 @@ pub struct Column {
 }
 
 /// What became of a row.
-pub(crate) type Answer = Result<Found, NoAnswer>;
+pub(crate) type Answer = Result<AnyRow, NoAnswer>;
 
 /// An answer, and the error of the tip (m) that was asked for.
 pub(crate) struct Answered {
@@ -276,29 +276,29 @@ impl Layout {
         for output in &self.outputs {
             match output {
                 Output::Tip => {
-                    let tip = found.map(Found::tip);
+                    let tip = found.map(AnyRow::tip);
                     cells.numbers((0..self.tip_columns().len()).map(|k| tip.as_ref()?.get(k).copied()));
                 }
-                Output::Alpha => cells.number(found.map_or(nothing, Found::alpha)),
+                Output::Alpha => cells.number(found.map_or(nothing, AnyRow::alpha)),
                 Output::Strokes => cells.numbers((0..self.cables).map(|c| found?.strokes().get(c).copied())),
                 Output::Tensions => cells.numbers((0..self.cables).map(|c| found?.tensions().get(c).copied())),
                 Output::Base => {
-                    let base = found.map(Found::base);
+                    let base = found.map(AnyRow::base);
                     let count = if self.space { 2 * AXES.len() } else { 3 };
                     cells.numbers((0..count).map(|k| base.as_ref()?.get(k).copied()));
                 }
                 Output::Fold => {
-                    let fold = found.and_then(Found::fold_margin);
+                    let fold = found.and_then(AnyRow::fold_margin);
                     cells.numbers([fold.map(|fold| fold.value), fold.map(|fold| fold.s)]);
                 }
-                Output::Error => cells.number(found.map_or(nothing, Found::error_estimate)),
+                Output::Error => cells.number(found.map_or(nothing, AnyRow::error_estimate)),
                 Output::Stability => {
-                    let stability = found.and_then(Found::stability);
+                    let stability = found.and_then(AnyRow::stability);
                     cells.text(stability.map(Stability::name));
                     cells.whole(stability.and_then(Stability::directions).and_then(|count| i64::try_from(count).ok()));
                 }
                 Output::Snaps => {
-                    let snaps = found.map(Found::snaps);
+                    let snaps = found.map(AnyRow::snaps);
                     cells.whole(snaps.and_then(|(count, _)| i64::try_from(count).ok()));
                     cells.numbers(snaps.map_or([None; 4], |(_, of)| of));
                 }

@@ -22,7 +22,7 @@ pub enum SweepError {
     /// The tolerance.
     #[error(transparent)]
     Option(#[from] SolveError),
-    /// A share of the sweep that is none.
+    /// A fraction of the sweep that is none.
     #[error(
         "--shard {index}/{of}: expected a number from 1 to {of}, and at most {rows} shards, because the sweep has {rows} rows"
     )]

@@ -178,7 +178,7 @@ impl Plan {
                     rest /= count;
                     value
                 }
-                _ => axis.drawn(self.share(k, row)),
+                _ => axis.drawn(self.fraction(k, row)),
             };
             values.push(value.unwrap_or(AxisValue::Number(f64::NAN)));
         }
@@ -187,7 +187,7 @@ impl Plan {
     }
 
     /// Where in the range of key `axis` a row of a sample is, in [0, 1).
-    fn share(&self, axis: usize, row: u64) -> f64 {
+    fn fraction(&self, axis: usize, row: u64) -> f64 {
         let stream = axis as u64;
         match self.sample {
             Sample::Sobol(_) => self.sobol.at(axis, row),
@@ -247,7 +247,7 @@ impl Plan {
     }
 
     fn by_nearest(&self, rows: Range<u64>) -> Vec<u64> {
-        let place = |row: u64| -> Vec<f64> { (0..self.axes.len()).map(|k| self.share(k, row)).collect() };
+        let place = |row: u64| -> Vec<f64> { (0..self.axes.len()).map(|k| self.fraction(k, row)).collect() };
         let mut left: Vec<(u64, Vec<f64>)> = rows.map(|row| (row, place(row))).collect();
         let mut order = Vec::with_capacity(left.len());
         let mut here = vec![0.0; self.axes.len()];

@@ -10,7 +10,7 @@ use hydrostat_files::{ArmFile, arm_to_toml, write_whole, write_whole_with};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::answer::{Found, NoAnswer, solve_after_snap, solve_after_snap_in_space, solve_in_space};
+use crate::answer::{AnyRow, NoAnswer, solve_after_snap, solve_after_snap_in_space, solve_in_space};
 use crate::arms::{Arms, Last};
 use crate::column::{Answer, Answered, Column, Data, Layout, Output, WARNINGS};
 use crate::error::{SweepError, parquet_error};
@@ -18,7 +18,7 @@ use crate::file_format::{Format, NOTE, noted};
 use crate::parquet_file::Reader;
 use crate::parts::{Part, Parts, difference};
 use crate::plan::Plan;
-use crate::shard::{Shard, common, rows_of, share};
+use crate::shard::{Shard, common, rows_of, tiles_and_rows};
 use crate::{csv_file, parquet_file};
 
 /// About so many parts of a sweep, within the bounds below.
@@ -41,7 +41,7 @@ pub struct SweepOptions {
     pub outputs: Vec<Output>,
     /// So many equally spaced stations of every row; none below two.
     pub stations: usize,
-    /// The share of the rows that is solved; `None` for all.
+    /// The part of the rows that is solved; `None` for all.
     pub shard: Option<Shard>,
 }
 
@@ -149,7 +149,7 @@ impl Sweep {
         let start = Tile::new(each, layout.wanted())?;
         let (tiles, rows) = match options.shard {
             None => (0..plan.tiles(), 0..plan.rows()),
-            Some(shard) => share(&plan, shard)?,
+            Some(shard) => tiles_and_rows(&plan, shard)?,
         };
         let note = note(&plan, &arms, &layout, options, &rows);
         let name = arms.base().name.clone();
@@ -427,7 +427,7 @@ impl Sweep {
                 found => found,
             },
             (false, false) => match solver.solve(arm) {
-                Ok(row) => Ok(Found::Plane(row)),
+                Ok(row) => Ok(AnyRow::Plane(row)),
                 Err(NoRow::Verdict(verdict)) if self.after_snap && verdict.kind == VerdictKind::LimitPoint => {
                     solve_after_snap(arm, self.options.tol, self.layout.wanted(), verdict)
                 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::error::SweepError;
 use crate::plan::Plan;
 
-/// One of several equal shares of a sweep.
+/// One of several equal fractions of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     /// Which, from 1.
@@ -25,18 +25,18 @@ pub(crate) fn common(a: &Range<u64>, b: &Range<u64>) -> Range<u64> {
     start..a.end.min(b.end).max(start)
 }
 
-/// The tiles of a share, and its rows. Rows of a tile are solved one after the other, each from the last: where there are more shards than
-/// tiles, a share solves the tiles that its rows are in and writes its own, so that they are those of the whole sweep to the last bit.
+/// The tiles of a shard, and its rows. Rows of a tile are solved one after the other, each from the last: where there are more shards than
+/// tiles, a shard solves the tiles that its rows are in and writes its own, so that they are those of the whole sweep to the last bit.
 ///
 /// # Errors
-/// [`SweepError::Shard`] for a share that is none, or more shares than rows.
-pub(crate) fn share(plan: &Plan, Shard { index, of }: Shard) -> Result<(Range<u64>, Range<u64>), SweepError> {
+/// [`SweepError::Shard`] for a shard that does not exist, or more shards than rows.
+pub(crate) fn tiles_and_rows(plan: &Plan, Shard { index, of }: Shard) -> Result<(Range<u64>, Range<u64>), SweepError> {
     let (rows, tiles) = (plan.rows(), plan.tiles());
     if index == 0 || index > of || of > rows {
         return Err(SweepError::Shard { index, of, rows });
     }
     let part = |whole: u64| {
-        let at = |share: u64| u64::try_from(u128::from(whole) * u128::from(share) / u128::from(of)).unwrap_or(whole);
+        let at = |shard: u64| u64::try_from(u128::from(whole) * u128::from(shard) / u128::from(of)).unwrap_or(whole);
         at(index - 1)..at(index)
     };
     if of <= tiles {

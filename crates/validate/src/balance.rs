@@ -269,7 +269,7 @@ fn row(arm: &Arm) -> Row {
     match Solver::new(arm, Options::default()).and_then(|mut solver| solver.solve()) {
         Ok(solved) => {
             let off = residuals(&solved);
-            // The section law holds to what Newton leaves there, a tenth of the balance's share.
+            // The section law holds to what Newton leaves there, a tenth of the balance's fraction.
             let checked = larger(larger(off.whole, off.parts), 10.0 * off.law);
             let allowed = if arm.readings.load_can_jump() { ALLOWED_AT_JUMPS } else { ALLOWED };
             Row::new([arm.name.clone(), size(off.whole), size(off.parts), size(off.law)])

@@ -33,13 +33,13 @@ const REPORTED: &str = "material.young, tension_factor, arm.base.z, arm.base.dir
                         tip.force[2]";
 
 /// A fit with what it predicts.
-struct Found {
+struct Comparison {
     cases: Vec<Case>,
     fit: Fit,
     others: Vec<Prediction>,
 }
 
-fn found(keys: &str) -> Result<Found, Box<dyn std::error::Error>> {
+fn found(keys: &str) -> Result<Comparison, Box<dyn std::error::Error>> {
     let file = ArmFile::parse(shipped::get("tentacle").unwrap_or_default(), "tentacle")?;
     let arm = file.arm()?;
     let mut deviations = Deviations::default();
@@ -50,7 +50,7 @@ fn found(keys: &str) -> Result<Found, Box<dyn std::error::Error>> {
     let options = FitOptions { rescale: true, cross_validate: false, ..FitOptions::default() };
     let fit = fit(&cases, &fitted(&arm, &keys, &[])?, &options, |_| true)?;
     let others = predict(&fit, &unseen, &options)?;
-    Ok(Found { cases, fit, others })
+    Ok(Comparison { cases, fit, others })
 }
 
 /// Root mean squares of the distances, mm; not a number of a marker without an answer.

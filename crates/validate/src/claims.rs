@@ -11,7 +11,7 @@ use hydrostat::Arm;
 /// The tension at which alpha(L) is [`TIP_ANGLE`], N (docs/model.md, section 10).
 const TENSION: f64 = 86.24;
 
-/// alpha in degrees at places of `paper` in 0, 0.5 and 1 m/s, to the digits of docs/model.md, section 10: tension (N), share of the length, values, half
+/// alpha in degrees at places of `paper` in 0, 0.5 and 1 m/s, to the digits of docs/model.md, section 10: tension (N), fraction of the length, values, half
 /// of the last digit.
 const ANGLES: [(f64, f64, [f64; 3], f64); 3] = [
     (40.0, 0.5, [1.91, 1.68, 1.14], 5e-3),
@@ -89,18 +89,18 @@ pub(crate) fn section() -> Section {
         Row::new(["tension there (N)".to_owned(), fixed(tension, 4), TENSION.to_string()])
             .checked(Check::within(tension - TENSION, 5e-3)),
     );
-    for (tension, share, known, half) in ANGLES {
+    for (tension, fraction, known, half) in ANGLES {
         for (speed, known) in [0.0, 0.5, 1.0].into_iter().zip(known) {
             let mut arm = arm.clone();
             arm.flow.speed = speed;
             for (k, cable) in arm.cables.iter_mut().enumerate() {
                 cable.tension = if k == 0 { tension } else { 0.0 };
             }
-            let alpha = arm.solve().map_or(f64::NAN, |c| c.at(share * arm.length).alpha.to_degrees());
+            let alpha = arm.solve().map_or(f64::NAN, |c| c.at(fraction * arm.length).alpha.to_degrees());
             let decimals = if half < 1e-3 { 4 } else { 2 };
             table.push(
                 Row::new([
-                    format!("alpha at {share} L, {tension} N, {speed} m/s (deg)"),
+                    format!("alpha at {fraction} L, {tension} N, {speed} m/s (deg)"),
                     fixed(alpha, decimals + 2),
                     fixed(known, decimals),
                 ])

@@ -231,10 +231,10 @@ fn against_references(section: &mut Section, scope: Scope, listener: &dyn Listen
     }
     every_ratio.sort_by(f64::total_cmp);
     let count = every_ratio.len() as f64;
-    let shares: Vec<[f64; 2]> =
+    let fractions: Vec<[f64; 2]> =
         every_ratio.iter().enumerate().map(|(k, r)| [*r, 100.0 * (k + 1) as f64 / count]).collect();
     let panel =
-        Panel { up: Measure { title: "share of arms (%)".to_owned(), scale: Scale::Even }, lines: vec![shares] };
+        Panel { up: Measure { title: "fraction of arms (%)".to_owned(), scale: Scale::Even }, lines: vec![fractions] };
     let across = Measure { title: "true error / estimate".to_owned(), scale: Scale::Logarithmic };
     section.figure(
         "estimates",

@@ -34,7 +34,7 @@ fn per_unit(measure: Measure, length: f64) -> f64 {
     }
 }
 
-/// Digits that both numbers share, over the larger of the known one and one.
+/// Digits that both numbers fraction, over the larger of the known one and one.
 fn digits(off: f64, known: f64) -> String {
     let relative = off / known.abs().max(1.0);
     if relative == 0.0 { "all".to_owned() } else { fixed(-relative.log10(), 1) }
@@ -94,7 +94,7 @@ fn add(case: &Case, table: &mut Table) {
     }
 }
 
-/// Loads at which a straight column stops being stable, between a share below and a share above the known one.
+/// Loads at which a straight column stops being stable, between a fraction below and a fraction above the known one.
 fn columns() -> Table {
     const NEAR: f64 = 1e-3;
     let mut table = Table::new(
@@ -104,7 +104,7 @@ fn columns() -> Table {
         &["column", "known load", "at 0.999 of it", "at 1.001 of it"],
     );
     let mut add = |name: String, known: f64, arm: &dyn Fn(f64) -> Arm| {
-        let at = |share: f64| solve(&arm(share * known)).map(|solved| solved.stable != Some(false));
+        let at = |fraction: f64| solve(&arm(fraction * known)).map(|solved| solved.stable != Some(false));
         let [below, above] = [1.0 - NEAR, 1.0 + NEAR].map(at);
         let words = |stands: Option<bool>| match stands {
             Some(true) => "stands",

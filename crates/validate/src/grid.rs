@@ -115,7 +115,8 @@ pub(crate) fn section(scope: Scope, listener: &dyn Listener) -> Section {
     );
     let arms = shipped::arms();
     let names: Vec<&str> = arms.iter().map(|arm| arm.name.as_str()).collect();
-    let columns: Vec<&str> = ["outcome"].into_iter().chain(names.iter().copied()).chain(["all", "share (%)"]).collect();
+    let columns: Vec<&str> =
+        ["outcome"].into_iter().chain(names.iter().copied()).chain(["all", "fraction (%)"]).collect();
     let mut table = Table::new(
         "Outcomes",
         "none: Hydrostat alone. No more than 0.5 % may be not found; that an answer is the right one is the subject of the other sections.",
@@ -125,12 +126,12 @@ pub(crate) fn section(scope: Scope, listener: &dyn Listener) -> Section {
     counts.entry(Outcome::Lost).or_default();
     for (outcome, by_arm) in &counts {
         let count: usize = by_arm.values().sum();
-        let share = 100.0 * count as f64 / total.max(1) as f64;
+        let fraction = 100.0 * count as f64 / total.max(1) as f64;
         let mut cells = vec![outcome.words()];
         cells.extend(names.iter().map(|name| by_arm.get(name).copied().unwrap_or(0).to_string()));
-        cells.extend([count.to_string(), fixed(share, 2)]);
+        cells.extend([count.to_string(), fixed(fraction, 2)]);
         let row = Row::new(cells);
-        table.push(if *outcome == Outcome::Lost { row.checked(Check::within(share, 0.5)) } else { row });
+        table.push(if *outcome == Outcome::Lost { row.checked(Check::within(fraction, 0.5)) } else { row });
     }
     let mut cells = vec!["all".to_owned()];
     cells.extend(names.iter().map(|name| all.iter().filter(|(own, _)| own == name).count().to_string()));

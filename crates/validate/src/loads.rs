@@ -132,8 +132,8 @@ pub(crate) fn weight(arm: &Arm, st: &Station) -> Pair {
     }
     let [left, right] = [1.0, -1.0].map(|sigma| along_normal(lateral(arm, st, sigma)));
     let [hit_left, hit_right] = [1.0, -1.0].map(|sigma| outward(arm, st, sigma));
-    let share = if hit_left < hit_right { 1.0 } else { f64::from(u8::from(hit_left == hit_right)) * 0.5 };
-    [0, 1].map(|k| share * left[k] + (1.0 - share) * right[k])
+    let fraction = if hit_left < hit_right { 1.0 } else { f64::from(u8::from(hit_left == hit_right)) * 0.5 };
+    [0, 1].map(|k| fraction * left[k] + (1.0 - fraction) * right[k])
 }
 
 /// Force and moment about the origin, N/m and N m/m, of everything spread along the arm.

@@ -21,13 +21,13 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }
 
-/// The value below which a share of `sorted` lies; NaN where there is none.
-pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
+/// The value below which a fraction of `sorted` lies; NaN where there is none.
+pub(crate) fn quantile(sorted: &[f64], fraction: f64) -> f64 {
     if sorted.is_empty() {
         return f64::NAN;
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the length")]
-    let at = ((sorted.len() - 1) as f64 * share.clamp(0.0, 1.0)).floor() as usize;
+    let at = ((sorted.len() - 1) as f64 * fraction.clamp(0.0, 1.0)).floor() as usize;
     sorted[at]
 }
 

@@ -95,7 +95,7 @@ pub(crate) fn section(file: &PeersFile) -> Section {
     let mut section = Section::new("peers", "Other programs on the same problems");
     section.text(
         "SciPy's solve_bvp gets the equations of the arm `paper`, written for it in Python; PyElastica relaxes a plain cantilever until it rests. Neither \
-         shares code with Hydrostat. How long each takes is the subject of validation/peers/README.md and docs/performance.md.",
+         fractions code with Hydrostat. How long each takes is the subject of validation/peers/README.md and docs/performance.md.",
     );
     let Provenance { made_by, date, python, packages } = &file.provenance;
     let versions: Vec<String> = packages.iter().map(|(name, version)| format!("{name} {version}")).collect();

@@ -168,14 +168,21 @@ fn figures(study: &Study, scope: Scope) -> Vec<(&'static str, Scene)> {
     let steps = if scope == Scope::Quick { 6 } else { 20 };
     let all = with_support();
     let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
-    let share = |k: u32| f64::from(k) / f64::from(steps);
+    let fraction = |k: u32| f64::from(k) / f64::from(steps);
     let [tension, speed] = study.at;
     [("tension", "T1 (N)", true), ("speed", "v (m/s)", false)]
         .into_iter()
         .map(|(name, across, raised)| {
-            let places: Vec<[f64; 2]> = (0..=steps)
-                .map(|k| if raised { [share(k) * study.upto[0], speed] } else { [tension, share(k) * study.upto[1]] })
-                .collect();
+            let places: Vec<[f64; 2]> =
+                (0..=steps)
+                    .map(|k| {
+                        if raised {
+                            [fraction(k) * study.upto[0], speed]
+                        } else {
+                            [tension, fraction(k) * study.upto[1]]
+                        }
+                    })
+                    .collect();
             let at = |place: &[f64; 2]| if raised { place[0] } else { place[1] };
             let solved: Vec<Vec<Option<[f64; 4]>>> = all
                 .par_iter()

@@ -95,7 +95,7 @@ impl Lines {
                 if i == 0 {
                     return [0.0; 2];
                 }
-                let (before, after, share) = if i == n {
+                let (before, after, fraction) = if i == n {
                     (pieces[n - 1], ([0.0, (self.force)(time)], pieces[n - 1].1), 0.5)
                 } else {
                     (pieces[i - 1], pieces[i], 1.0)
@@ -107,7 +107,7 @@ impl Lines {
                 let radius = self.radius(if i == n { arm.length - 0.25 * h } else { i as f64 * h });
                 let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
                 let own = motion.velocity[i];
-                let mut force = [0, 1].map(|k| (after.0[k] - before.0[k]) / (share * h));
+                let mut force = [0, 1].map(|k| (after.0[k] - before.0[k]) / (fraction * h));
                 if let FlowLaw::QuadraticDrag { cn, ct } = arm.flow.law {
                     let (along, across) = (-dot(own, u), -dot(own, w));
                     let [along, across] =

@@ -18,8 +18,8 @@ impl RegulaFalsi {
 
     /// The next place to look at: no nearer to either end than the part `margin` of the way.
     pub fn place(&self, margin: f64) -> f64 {
-        let share = (self.low.1 / (self.low.1 - self.high.1)).clamp(margin, 1.0 - margin);
-        self.low.0 + share * (self.high.0 - self.low.0)
+        let fraction = (self.low.1 / (self.low.1 - self.high.1)).clamp(margin, 1.0 - margin);
+        self.low.0 + fraction * (self.high.0 - self.low.0)
     }
 
     /// Takes the value at a place in between.

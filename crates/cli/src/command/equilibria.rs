@@ -25,7 +25,7 @@ use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
 
 /// What a search finds, in the plane or in space.
-trait Found: Sized {
+trait EquilibriaIn: Sized {
     /// The shapes.
     type Shape: Shape<Error = Self::Error>;
     /// Why there is no equilibrium to start from.
@@ -44,7 +44,7 @@ trait Found: Sized {
     fn chart(found: &[(f64, &Self)], over: &Abscissa, quantity: Quantity, title: &str, page: &Page) -> Scene;
 }
 
-impl Found for Equilibria {
+impl EquilibriaIn for Equilibria {
     type Shape = Configuration;
     type Error = SolveError;
     const CURVES: &'static str = "the curve of equilibria";
@@ -84,7 +84,7 @@ impl Found for Equilibria {
     }
 }
 
-impl Found for SpatialEquilibria {
+impl EquilibriaIn for SpatialEquilibria {
     type Shape = SpatialConfiguration;
     type Error = SpatialError;
     const CURVES: &'static str = "curves over turns of the base";
@@ -146,7 +146,7 @@ pub(crate) fn run(args: &EquilibriaArgs) -> anyhow::Result<()> {
     }
 }
 
-fn at_loads<F: Found>(args: &EquilibriaArgs, arm: &Arm) -> anyhow::Result<()> {
+fn at_loads<F: EquilibriaIn>(args: &EquilibriaArgs, arm: &Arm) -> anyhow::Result<()> {
     let all: F = search(arm, args)?;
     let nothing = all.shapes().is_empty();
     if let Some(file) = args.plot.as_ref().filter(|_| !nothing) {
@@ -166,7 +166,7 @@ fn at_loads<F: Found>(args: &EquilibriaArgs, arm: &Arm) -> anyhow::Result<()> {
 }
 
 /// The equilibria of `arm` that are found within the time limit. `place` says where the search is among others.
-fn within<F: Found>(
+fn within<F: EquilibriaIn>(
     arm: &Arm,
     args: &EquilibriaArgs,
     progress: &mut Progress,
@@ -180,7 +180,7 @@ fn within<F: Found>(
 }
 
 /// The equilibria of `arm`; an error says what a solve at its own base angle says.
-fn search<F: Found>(arm: &Arm, args: &EquilibriaArgs) -> anyhow::Result<F> {
+fn search<F: EquilibriaIn>(arm: &Arm, args: &EquilibriaArgs) -> anyhow::Result<F> {
     within(arm, args, &mut Progress::new(), "").map_err(|error| match error {
         PathError::Start { source, .. } => {
             let message = format!("no equilibrium was found at any base angle; at the angle of the arm, {source}");
@@ -191,7 +191,7 @@ fn search<F: Found>(arm: &Arm, args: &EquilibriaArgs) -> anyhow::Result<F> {
     })
 }
 
-fn over_range<F: Found>(args: &EquilibriaArgs, arm: &Arm, over: Over) -> anyhow::Result<()> {
+fn over_range<F: EquilibriaIn>(args: &EquilibriaArgs, arm: &Arm, over: Over) -> anyhow::Result<()> {
     let varied = over.varied;
     let mut progress = Progress::new();
     let searches = at_values(arm, over, |there, Value { number, count, at }| {
@@ -220,7 +220,7 @@ fn over_range<F: Found>(args: &EquilibriaArgs, arm: &Arm, over: Over) -> anyhow:
     say_what_is_missing(&varied, &found, |all| Others::of(*all).count > 0)
 }
 
-fn summary<F: Found>(arm: &Arm, all: &F) -> String {
+fn summary<F: EquilibriaIn>(arm: &Arm, all: &F) -> String {
     let mut out = format!("{}: {}\n", arm.name, counted(all.all()));
     let _ = writeln!(out, "{}\n", all.extent());
     let mut head = vec!["number".to_owned()];

@@ -8,7 +8,7 @@ use crate::args::Over;
 use crate::request::WrongRequest;
 
 /// What is found at a value, or why there is nothing.
-pub(super) type Found<T> = (f64, Result<T, String>);
+pub(super) type At<T> = (f64, Result<T, String>);
 
 /// One of the values.
 pub(super) struct Value {
@@ -25,7 +25,7 @@ pub(super) fn at_values<T>(
     arm: &Arm,
     Over { varied, count }: Over,
     mut find: impl FnMut(&Arm, &Value) -> anyhow::Result<Result<T, String>>,
-) -> anyhow::Result<Vec<Found<T>>> {
+) -> anyhow::Result<Vec<At<T>>> {
     let mut out = Vec::new();
     for (index, value) in varied.values(count).into_iter().enumerate() {
         let at = format!("at {} = {}", varied.parameter, varied.with_unit(value));
@@ -42,7 +42,7 @@ pub(super) fn at_values<T>(
 /// Warns of the values at which nothing was found; that there is none with an equilibrium is an error.
 pub(super) fn say_what_is_missing<T>(
     varied: &Varied,
-    found: &[Found<T>],
+    found: &[At<T>],
     has_equilibrium: impl Fn(&T) -> bool,
 ) -> anyhow::Result<()> {
     for (value, one) in found {

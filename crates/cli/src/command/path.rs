@@ -69,7 +69,7 @@ fn report<C: Shape>(arm: &Arm, path: &Path<C>, landings: Option<&[Landing]>, arg
     say_ends(path, varied)
 }
 
-/// The share of the range by which the parameter is past a limit point while the arm moves.
+/// The fraction of the range by which the parameter is past a limit point while the arm moves.
 const PAST: f64 = 1e-3;
 
 /// Where the arm rests that is let go at limit points which a stable part of the path leads up to.

@@ -9,9 +9,9 @@ use super::table::{counted, decimals};
 
 /// What is known of the stability of `c`, in words.
 pub(super) fn stability(c: &Configuration) -> Option<String> {
-    let rubs = || c.arm.cables.iter().any(|cable| cable.friction > 0.0);
+    let has_friction = || c.arm.cables.iter().any(|cable| cable.friction > 0.0);
     stability_in_words(c.stability(), c.stable)
-        .or_else(|| rubs().then(|| "stability is not established with friction".to_owned()))
+        .or_else(|| has_friction().then(|| "stability is not established with friction".to_owned()))
 }
 
 /// What a count of unstable directions, or else what the solve came to know, says in words.

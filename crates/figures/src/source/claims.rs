@@ -154,15 +154,15 @@ fn alphas(c: &Configuration) -> Vec<f64> {
     places(c).map(|s| c.at(s).alpha.to_degrees()).collect()
 }
 
-/// The share of `flags` that is set.
-fn share(flags: impl Iterator<Item = bool>) -> f64 {
+/// The fraction of `flags` that is set.
+fn fraction(flags: impl Iterator<Item = bool>) -> f64 {
     let (set, all) = flags.fold((0u32, 0u32), |(set, all), flag| (set + u32::from(flag), all + 1));
     f64::from(set) / f64::from(all.max(1))
 }
 
 fn grows_along(study: &Study) -> Claim {
     let shapes = study.angle_configurations();
-    let grown = |c: &Configuration| share(alphas(c).windows(2).map(|w| w[1] > w[0]));
+    let grown = |c: &Configuration| fraction(alphas(c).windows(2).map(|w| w[1] > w[0]));
     let grows: Vec<f64> = shapes.iter().map(|c| grown(c)).collect();
     let everywhere = grows.iter().filter(|g| **g == 1.0).count();
     let lots: Vec<String> = study
@@ -182,7 +182,7 @@ fn grows_along(study: &Study) -> Claim {
             Finding::of(everywhere, shapes.len())
         },
         evidence: format!(
-            "It grows over this share of the length, in {} m/s: {}. From base to tip it grows in {in_all} of {}{}.",
+            "It grows over this fraction of the length, in {} m/s: {}. From base to tip it grows in {in_all} of {}{}.",
             joined(study.faster.iter().map(|c| speed(c).to_string())),
             lots.join(", "),
             shapes.len(),
@@ -201,13 +201,13 @@ fn locally_smaller(study: &Study) -> Claim {
             angles.windows(2).map(|w| w[0].iter().zip(&w[1]).map(|(slow, fast)| slow - fast).collect()).collect()
         })
         .collect();
-    // The shares of the length over which it does.
-    let shares: Vec<Vec<f64>> =
-        falls.iter().map(|row| row.iter().map(|fall| share(fall.iter().map(|d| *d > 0.0))).collect()).collect();
-    let all = || shares.iter().flatten();
+    // The fractions of the length over which it does.
+    let fractions: Vec<Vec<f64>> =
+        falls.iter().map(|row| row.iter().map(|fall| fraction(fall.iter().map(|d| *d > 0.0))).collect()).collect();
+    let all = || fractions.iter().flatten();
     let least = falls.iter().flatten().flatten().copied().fold(f64::INFINITY, f64::min);
     let list = |i: usize| {
-        let percent = joined(shares[i].iter().map(|s| format!("{:.0}", 100.0 * s)));
+        let percent = joined(fractions[i].iter().map(|s| format!("{:.0}", 100.0 * s)));
         format!("{percent} % at {:.1} N", rows[i].first().map_or(0.0, tension))
     };
     let base = if least > 0.0 {
@@ -227,7 +227,7 @@ fn locally_smaller(study: &Study) -> Claim {
             Finding::InPart
         },
         evidence: format!(
-            "From each of {} m/s to the next it becomes smaller over this share of the length: {}. At {} N \
+            "From each of {} m/s to the next it becomes smaller over this fraction of the length: {}. At {} N \
              alpha(L/2) = {middles} deg, {base} {bases} deg.",
             joined(study.faster.iter().map(|c| speed(c).to_string())),
             (0..rows.len()).map(list).collect::<Vec<_>>().join(", "),

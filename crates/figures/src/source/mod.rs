@@ -67,7 +67,7 @@ impl Study {
         }
         let highest = target::configuration(arm)?;
         let highest_tension = highest.arm.cables[0].tension;
-        let lower = SHARES.map(|share| one_digit(share * highest_tension));
+        let lower = SHARES.map(|fraction| one_digit(fraction * highest_tension));
         let mut raised = lower.iter().map(|t| solved(arm, *t, SPEED)).collect::<Result<Vec<_>, _>>()?;
         raised.push(highest);
         let at = |tension: f64| speeds.iter().map(|v| solved(arm, tension, *v)).collect::<Result<Vec<_>, _>>();

@@ -365,13 +365,13 @@ impl Tracer<'_> {
             .collect()
     }
 
-    /// The last shape on the way to these shares of the largest tensions; `None` where there is no end on it.
-    fn limit_on(&self, pair: [usize; 2], share: [f64; 2]) -> Option<BoundaryPoint> {
+    /// The last shape on the way to these fractions of the largest tensions; `None` where there is no end on it.
+    fn limit_on(&self, pair: [usize; 2], fraction: [f64; 2]) -> Option<BoundaryPoint> {
         if !(self.go_on)() {
             return None;
         }
         let slack = vec![0.0; self.search.most.len()];
-        match self.search.at(&self.in_face(pair, &slack, share)) {
+        match self.search.at(&self.in_face(pair, &slack, fraction)) {
             Err(ReachError::Solve(SolveError::NoEquilibrium(no))) => {
                 let last = no.last_good?;
                 let tensions = last.arm.cables.iter().map(|cable| cable.tension).collect();

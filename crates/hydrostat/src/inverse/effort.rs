@@ -17,7 +17,7 @@ const ROUNDS: usize = 80;
 /// What is left (over the size of the conditions) when all is met, and what is still good enough.
 const MET: [f64; 2] = [1e-13, 1e-9];
 
-/// The share that a round may leave before the conditions are taken for ones that no tensions meet.
+/// The fraction that a round may leave before the conditions are taken for ones that no tensions meet.
 const STUCK: f64 = 0.999;
 
 /// Where a tension is.
@@ -144,7 +144,7 @@ impl Bounded<'_> {
             };
             let (step, _) = solved(free.iter().map(row).collect())?;
             // How much of the step there is room for, and who stops it.
-            let mut share = 1.0;
+            let mut fraction = 1.0;
             let mut stops = None;
             for (c, [d, _]) in free.iter().zip(&step) {
                 let (room, place) = if *d < 0.0 {
@@ -152,12 +152,12 @@ impl Bounded<'_> {
                 } else {
                     ((self.most[*c] - self.t[*c]) / d, Place::Most)
                 };
-                if *d != 0.0 && room < share {
-                    (share, stops) = (room.max(0.0), Some((*c, place)));
+                if *d != 0.0 && room < fraction {
+                    (fraction, stops) = (room.max(0.0), Some((*c, place)));
                 }
             }
             for (c, [d, _]) in free.iter().zip(&step) {
-                self.t[*c] = (self.t[*c] + share * d).clamp(0.0, self.most[*c]);
+                self.t[*c] = (self.t[*c] + fraction * d).clamp(0.0, self.most[*c]);
             }
             let Some((c, place)) = stops else { return Some(()) };
             self.places[c] = place;
@@ -214,8 +214,8 @@ mod tests {
             let (cables, rows) = (1 + k % 6, 1 + k / 6 % 3);
             let columns: Vec<Vec<f64>> = (0..cables).map(|_| (0..rows).map(|_| draw() - 0.5).collect()).collect();
             let most: Vec<f64> = (0..cables).map(|_| 0.1 + draw()).collect();
-            let share = |at: f64| (1.6 * at - 0.3).clamp(0.0, 1.0);
-            let t: Vec<f64> = most.iter().map(|most| most * share(draw())).collect();
+            let fraction = |at: f64| (1.6 * at - 0.3).clamp(0.0, 1.0);
+            let t: Vec<f64> = most.iter().map(|most| most * fraction(draw())).collect();
             let wanted: Vec<f64> = (0..rows).map(|r| columns.iter().zip(&t).map(|(c, t)| c[r] * t).sum()).collect();
             let Some(found) = least_effort(&columns, &wanted, &most, most.len()) else { continue };
             met += 1;

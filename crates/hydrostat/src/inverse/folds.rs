@@ -18,9 +18,9 @@ impl Tracer<'_> {
     /// Lines of folds in the face where the cables of `pair` are between their bounds.
     pub(super) fn folds(&self, pair: [usize; 2], corner: &[f64]) -> Vec<Vec<Here>> {
         let n = self.lattice + 1;
-        let share = |k: usize| k as f64 / self.lattice as f64;
+        let fraction = |k: usize| k as f64 / self.lattice as f64;
         let nodes: Vec<Option<Here>> =
-            (0..n * n).map(|k| self.at(&self.in_face(pair, corner, [share(k / n), share(k % n)]))).collect();
+            (0..n * n).map(|k| self.at(&self.in_face(pair, corner, [fraction(k / n), fraction(k % n)]))).collect();
         let mut lines: Vec<Vec<Here>> = Vec::new();
         for k in 0..n * n {
             let right = (k % n + 1 < n).then_some(k + 1);
@@ -40,28 +40,28 @@ impl Tracer<'_> {
         lines
     }
 
-    /// Tensions at shares of the largest in a face.
-    pub(super) fn in_face(&self, [f, g]: [usize; 2], corner: &[f64], share: [f64; 2]) -> Vec<f64> {
+    /// Tensions at fractions of the largest in a face.
+    pub(super) fn in_face(&self, [f, g]: [usize; 2], corner: &[f64], fraction: [f64; 2]) -> Vec<f64> {
         let mut tensions = corner.to_vec();
-        for (c, share) in [f, g].into_iter().zip(share) {
-            tensions[c] = (share * self.search.most[c]).min(self.search.most[c]);
+        for (c, fraction) in [f, g].into_iter().zip(fraction) {
+            tensions[c] = (fraction * self.search.most[c]).min(self.search.most[c]);
         }
         tensions
     }
 
-    fn share(&self, here: &Here, pair: [usize; 2]) -> [f64; 2] {
+    fn fraction(&self, here: &Here, pair: [usize; 2]) -> [f64; 2] {
         pair.map(|c| here.state.tensions[c] / self.search.most[c])
     }
 
     /// Between the tensions of two shapes, over their largest.
     fn far(&self, a: &Here, b: &Here, pair: [usize; 2]) -> f64 {
-        let [a, b] = [a, b].map(|here| self.share(here, pair));
+        let [a, b] = [a, b].map(|here| self.fraction(here, pair));
         (a[0] - b[0]).hypot(a[1] - b[1])
     }
 
     /// The fold between two shapes on either side of it.
     fn between(&self, a: &Here, b: &Here, pair: [usize; 2]) -> Option<Here> {
-        let [from, to] = [a, b].map(|here| self.share(here, pair));
+        let [from, to] = [a, b].map(|here| self.fraction(here, pair));
         let ends = [a, b].map(|here| self.fold_of(here, pair));
         let (sign, small) = (ends[0].signum(), 1e-8 * ends[0].abs().max(ends[1].abs()));
         let mut search = RegulaFalsi::between((0.0, sign * ends[0]), (1.0, sign * ends[1]));
@@ -117,7 +117,7 @@ impl Tracer<'_> {
             };
             let speed = moves(0).hypot(moves(1));
             step = (2.0 * step).min(longest).min(self.spacing / speed.max(1e-300));
-            let from = self.share(here, pair);
+            let from = self.fraction(here, pair);
             let next = loop {
                 let to = [from[0] + step * tangent[0], from[1] + step * tangent[1]];
                 let next = self.onto_fold(here, pair, to, normal, steep);
@@ -142,29 +142,29 @@ impl Tracer<'_> {
     /// Derivatives of the determinant by the tensions over their largest, by differences towards the middle of the
     /// face.
     fn fold_gradient(&self, here: &Here, pair: [usize; 2]) -> Option<[f64; 2]> {
-        let at = self.share(here, pair);
+        let at = self.fraction(here, pair);
         let value = self.fold_of(here, pair);
         let mut out = [0.0; 2];
         for k in 0..2 {
-            let mut share = at;
+            let mut fraction = at;
             let apart = if at[k] > 0.5 { -APART } else { APART };
-            share[k] += apart;
-            let other = self.to(here, &self.in_face(pair, &here.state.tensions, share))?;
+            fraction[k] += apart;
+            let other = self.to(here, &self.in_face(pair, &here.state.tensions, fraction))?;
             out[k] = (self.fold_of(&other, pair) - value) / apart;
         }
         Some(out)
     }
 
-    /// From shares `at` onto the fold along its normal, within the face: Newton, its slope corrected on the way.
+    /// From fractions `at` onto the fold along its normal, within the face: Newton, its slope corrected on the way.
     fn onto_fold(&self, from: &Here, pair: [usize; 2], at: [f64; 2], normal: [f64; 2], steep: f64) -> Option<Here> {
         let (mut off, mut slope) = (0.0, steep);
         let mut before: Option<(f64, f64)> = None;
         for _ in 0..8 {
-            let share = [at[0] + off * normal[0], at[1] + off * normal[1]];
-            if share.iter().any(|v| !(0.0..=1.0).contains(v)) {
+            let fraction = [at[0] + off * normal[0], at[1] + off * normal[1]];
+            if fraction.iter().any(|v| !(0.0..=1.0).contains(v)) {
                 return None;
             }
-            let here = self.to(from, &self.in_face(pair, &from.state.tensions, share))?;
+            let here = self.to(from, &self.in_face(pair, &from.state.tensions, fraction))?;
             let value = self.fold_of(&here, pair);
             if let Some((other, earlier)) = before
                 && off != other

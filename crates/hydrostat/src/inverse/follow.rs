@@ -16,7 +16,7 @@ use crate::statics::solve::Solver;
 /// Most rounds a target.
 const ROUNDS: usize = 12;
 
-/// The share of a distance that a round may leave before the jacobian is taken anew.
+/// The fraction of a distance that a round may leave before the jacobian is taken anew.
 const SLOW: f64 = 0.1;
 
 /// How far (tensions over their scale) more cables than conditions go towards their least effort a target, beyond what
@@ -285,12 +285,12 @@ impl<S: Reaching> Following<S> {
         }
         let nearest = nearest();
         let far = search.change(&least, &nearest);
-        let share = match far {
+        let fraction = match far {
             far if far <= SLIDE => 1.0,
             far if first => SLIDE / far,
             _ => return nearest,
         };
-        nearest.iter().zip(&least).map(|(near, least)| near + share * (least - near)).collect()
+        nearest.iter().zip(&least).map(|(near, least)| near + fraction * (least - near)).collect()
     }
 
     /// Derivatives of here, if there are any.

@@ -90,7 +90,7 @@ impl<S: Reaching> Search<S> {
 }
 
 impl<S: Reaching> Line<'_, S> {
-    fn shares(&self, state: &State<S>) -> Vec<f64> {
+    fn fractions(&self, state: &State<S>) -> Vec<f64> {
         state.tensions.iter().zip(&self.search.scale).map(|(t, scale)| t / scale).collect()
     }
 
@@ -137,7 +137,7 @@ impl<S: Reaching> Line<'_, S> {
 
     /// One way; what is near a solution goes to `out`.
     fn walk(&self, start: &Point<S>, sign: f64, go_on: &mut dyn FnMut() -> bool, out: &mut Vec<Vec<f64>>) {
-        let begun = self.shares(&start.state);
+        let begun = self.fractions(&start.state);
         let mut here = Point {
             state: start.state.clone(),
             columns: start.columns.clone(),
@@ -149,9 +149,9 @@ impl<S: Reaching> Line<'_, S> {
         let mut size = FIRST;
         let mut count = 0;
         while go_on() {
-            let (shares, offset) = (self.shares(&here.state), self.offset(&here.state));
+            let (fractions, offset) = (self.fractions(&here.state), self.offset(&here.state));
             let stepped = loop {
-                let stepped = self.step(&here, &shares, size);
+                let stepped = self.step(&here, &fractions, size);
                 if stepped.is_some() || size < SHORTEST {
                     break stepped;
                 }
@@ -162,9 +162,9 @@ impl<S: Reaching> Line<'_, S> {
             let after = self.offset(&next.state);
             let fresh = !solution(&here);
             if fresh && offset * after < 0.0 {
-                let share = offset / (offset - after);
+                let fraction = offset / (offset - after);
                 let tensions = here.state.tensions.iter().zip(&next.state.tensions);
-                out.push(tensions.map(|(a, b)| a + share * (b - a)).collect());
+                out.push(tensions.map(|(a, b)| a + fraction * (b - a)).collect());
             } else if fresh
                 && offset.abs() < NEAR
                 && before.is_some_and(|before| before * offset > 0.0 && before.abs() >= offset.abs())
@@ -181,8 +181,8 @@ impl<S: Reaching> Line<'_, S> {
             let turned = next.state.solver.turned(&here.state.solver);
             let moved = apart(&next.state.rest, &here.state.rest);
             let fit = (TURN / turned.max(1e-12)).min(0.5 * MOVED / moved.max(1e-12));
-            let reached = self.shares(&next.state);
-            let round = count > 5 && apart(&reached, &begun) < 0.7 * apart(&reached, &shares);
+            let reached = self.fractions(&next.state);
+            let round = count > 5 && apart(&reached, &begun) < 0.7 * apart(&reached, &fractions);
             size = (size * fit.clamp(0.3, 2.0)).min(LONGEST);
             before = Some(offset);
             here = next;
@@ -193,23 +193,23 @@ impl<S: Reaching> Line<'_, S> {
     }
 
     /// A step, and whether it ended at a bound.
-    fn step(&self, here: &Point<S>, shares: &[f64], size: f64) -> Option<(Point<S>, bool)> {
+    fn step(&self, here: &Point<S>, fractions: &[f64], size: f64) -> Option<(Point<S>, bool)> {
         // As far as there is room.
         let (mut length, mut stop) = (size, None);
-        for (c, (t, share)) in here.tangent.iter().zip(shares).enumerate() {
+        for (c, (t, fraction)) in here.tangent.iter().zip(fractions).enumerate() {
             let bound = if *t > 0.0 { self.most[c] } else { 0.0 };
-            if *t != 0.0 && (bound - share) / t <= length {
-                (length, stop) = (((bound - share) / t).max(0.0), Some((c, bound)));
+            if *t != 0.0 && (bound - fraction) / t <= length {
+                (length, stop) = (((bound - fraction) / t).max(0.0), Some((c, bound)));
             }
         }
         if length == 0.0 {
             return None;
         }
         let guide: Vec<f64> = match stop {
-            Some((c, _)) => (0..shares.len()).map(|k| f64::from(u8::from(k == c))).collect(),
+            Some((c, _)) => (0..fractions.len()).map(|k| f64::from(u8::from(k == c))).collect(),
             None => here.tangent.clone(),
         };
-        let mut to: Vec<f64> = shares.iter().zip(&here.tangent).map(|(share, t)| share + length * t).collect();
+        let mut to: Vec<f64> = fractions.iter().zip(&here.tangent).map(|(fraction, t)| fraction + length * t).collect();
         let mut solver = here.state.solver.clone();
         let mut corrections = 0;
         loop {

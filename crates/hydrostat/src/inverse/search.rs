@@ -127,8 +127,8 @@ impl<S: Reaching> Search<S> {
     /// cable also with all others slack, since these can then be beyond it.
     pub(super) fn starts(&self) -> Vec<Vec<f64>> {
         let n = self.scale.len();
-        let at = |shares: &dyn Fn(usize) -> f64| {
-            (0..n).map(|c| (shares(c) * self.scale[c]).min(self.most[c])).collect::<Vec<f64>>()
+        let at = |fractions: &dyn Fn(usize) -> f64| {
+            (0..n).map(|c| (fractions(c) * self.scale[c]).min(self.most[c])).collect::<Vec<f64>>()
         };
         let mut out = vec![at(&|_| 0.05)];
         for strong in [0.2, 0.6, 1.0] {
@@ -302,8 +302,8 @@ impl<S: Reaching> Search<S> {
     /// Tensions of least effort that meet the targets to first order, or as much of the way as a step may go.
     pub(super) fn towards_least_effort(&self, slopes: &ByTensions, state: &State<S>) -> Option<Vec<f64>> {
         let distance = state.distance();
-        let share = if distance > LONGEST { LONGEST / distance } else { 1.0 };
-        let wanted = linear(&slopes.rest, state, share);
+        let fraction = if distance > LONGEST { LONGEST / distance } else { 1.0 };
+        let wanted = linear(&slopes.rest, state, fraction);
         self.within_strokes(state.pulled(), slopes, |held, most| {
             let targets = (slopes.rest.clone(), wanted.clone());
             let all = self.conditions(targets, state.pulled(), slopes, (held, most), 1.0);
@@ -410,10 +410,10 @@ impl<S: Reaching> Search<S> {
     }
 }
 
-/// What the derivatives times tensions have to be for a share of the way to the targets.
-fn linear<S>(columns: &[Vec<f64>], state: &State<S>, share: f64) -> Vec<f64> {
+/// What the derivatives times tensions have to be for a fraction of the way to the targets.
+fn linear<S>(columns: &[Vec<f64>], state: &State<S>, fraction: f64) -> Vec<f64> {
     let carried = |r: usize| columns.iter().zip(&state.tensions).map(|(column, t)| column[r] * t).sum::<f64>();
-    state.rest.iter().enumerate().map(|(r, rest)| carried(r) - share * rest).collect()
+    state.rest.iter().enumerate().map(|(r, rest)| carried(r) - fraction * rest).collect()
 }
 
 /// Solves at other tensions, if it can.

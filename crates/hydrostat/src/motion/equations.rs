@@ -164,7 +164,7 @@ impl Moving {
 
     /// What a change of what sections carry, in a block of stations, changes at fixed states: the strains follow, and
     /// with them the slopes.
-    pub(super) fn drift(
+    pub(super) fn stage_forcing(
         &self,
         block: usize,
         given: &Station<S, L>,
@@ -190,7 +190,7 @@ impl Moving {
     }
 
     /// The same at a block of ends: strains, and the section stretch.
-    pub(super) fn end_drift(
+    pub(super) fn end_forcing(
         &self,
         given: &Station<S, L>,
         inner: &Inner<S, L, Lanes>,
@@ -222,12 +222,12 @@ impl Moving {
         out.stages.clear();
         for (block, (station, local)) in system.stations().iter().zip(system.locals()).enumerate() {
             let own = carried(&statics.cables_in(block)[c], station);
-            out.stages.push(self.drift(block, station, local, own));
+            out.stages.push(self.stage_forcing(block, station, local, own));
         }
         out.ends.clear();
         for (b, (station, inner)) in system.end_stations().iter().zip(system.ends()).enumerate() {
             let own = carried(&statics.end_cables[b * count + c], station);
-            out.ends.push(self.end_drift(station, inner, own));
+            out.ends.push(self.end_forcing(station, inner, own));
         }
     }
 

@@ -207,7 +207,8 @@ impl Loading {
                 {
                     let share = no.verdict.load_fraction;
                     from = (share + past).min(1.0);
-                    let landed = land(self.solver.engine_mut(), &no, tol, |engine| engine.equations.set_share(from));
+                    let landed =
+                        land(self.solver.engine_mut(), &no, tol, |engine| engine.equations.set_range_fraction(from));
                     let Landed { before, rest: Rest { configuration, time }, on_curve } =
                         landed.map_err(|restless| match restless {
                             Restless::Motion(motion) => LoadingError::Motion { share, motion },

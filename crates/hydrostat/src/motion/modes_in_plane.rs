@@ -49,23 +49,23 @@ impl Vibrates<S, L, C> for Moving {
         [change[X], change[X + 1], change[0]]
     }
 
-    fn drift(
+    fn stage_forcing(
         &self,
         block: usize,
         station: &Station<S, L>,
         local: &Local<S, 0, L, Lanes>,
         carried: [Lanes; L],
     ) -> StageForcing<S, 0, L> {
-        Self::drift(self, block, station, local, carried)
+        Self::stage_forcing(self, block, station, local, carried)
     }
 
-    fn end_drift(
+    fn end_forcing(
         &self,
         station: &Station<S, L>,
         inner: &Inner<S, L, Lanes>,
         carried: [Lanes; L],
     ) -> ([Lanes; L], Lanes) {
-        Self::end_drift(self, station, inner, carried)
+        Self::end_forcing(self, station, inner, carried)
     }
 
     fn end_places(&self) -> &[EndPlace] {

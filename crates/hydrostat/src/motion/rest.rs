@@ -8,7 +8,7 @@ use super::equations::Moving;
 use super::error::MotionError;
 use super::in_plane::Planar;
 use super::inputs::Inputs;
-use super::resting::{self, ELEMENTS, Found, Restless, TOLERANCE, is_damped};
+use super::resting::{self, Candidate, ELEMENTS, Restless, TOLERANCE, is_damped};
 use super::start::{check, mesh_at};
 use super::stepper::Stepper;
 use crate::rod::arm::Arm;
@@ -115,7 +115,7 @@ fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper<Moving, S, L> {
 }
 
 /// The stable equilibrium at the shape of the moving arm, where there is one, with the engine left there.
-fn look(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Found<Configuration>> {
+fn look(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Candidate<Configuration>> {
     let kept = engine.state();
     let found = look_from(engine, stepper, tol);
     if found.is_none() {
@@ -124,7 +124,7 @@ fn look(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Optio
     found
 }
 
-fn look_from(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Found<Configuration>> {
+fn look_from(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Candidate<Configuration>> {
     let settling = &stepper.settling;
     let force = settling.moving.statics.units.force / engine.equations.units.force;
     engine.solution = without_places(&settling.solution, &settling.moving.scales, force);
@@ -149,7 +149,7 @@ fn look_from(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> 
     };
     let places = nodes.map(place).collect();
     let stands = matches!(configuration.stability(), Some(Stability::Stable) | None);
-    stands.then(|| Found::near(configuration, places, &stepper.now)).flatten()
+    stands.then(|| Candidate::near(configuration, places, &stepper.now)).flatten()
 }
 
 /// The states of the statics in a solution of the motion whose states have the sizes `scales`, what it carries times

@@ -49,7 +49,7 @@ pub enum Restless {
 }
 
 /// A stable equilibrium near the moving arm.
-pub(super) struct Found<C> {
+pub(super) struct Candidate<C> {
     configuration: Box<C>,
     /// x, y, z over L at the nodes of the motion's mesh; z is 0 in the plane.
     places: Vec<[f64; 3]>,
@@ -57,7 +57,7 @@ pub(super) struct Found<C> {
     since: Option<(usize, f64)>,
 }
 
-impl<C> Found<C> {
+impl<C> Candidate<C> {
     /// One at these places, where the arm `at` may come to rest.
     pub(super) fn near(configuration: C, places: Vec<[f64; 3]>, at: &Snapshot) -> Option<Self> {
         let found = Self { configuration: Box::new(configuration), places, since: None };
@@ -93,10 +93,10 @@ impl<C> Found<C> {
 /// at the shape of the moving arm, where there is one.
 pub(super) fn come_to_rest<P: Moves<S, L>, C, const S: usize, const L: usize>(
     mut stepper: Stepper<P, S, L>,
-    mut look: impl FnMut(&Stepper<P, S, L>) -> Option<Found<C>>,
+    mut look: impl FnMut(&Stepper<P, S, L>) -> Option<Candidate<C>>,
 ) -> Result<(C, f64), Restless> {
     let (mut next_look, mut fastest) = (FIRST_LOOK, 0.0_f64);
-    let mut found: Option<Found<C>> = None;
+    let mut found: Option<Candidate<C>> = None;
     while stepper.steps + stepper.rejected < MOST_STEPS {
         stepper.advance(stepper.time + 1e6).map_err(Restless::Motion)?;
         let speed = speed(&stepper.now);
@@ -112,7 +112,7 @@ pub(super) fn come_to_rest<P: Moves<S, L>, C, const S: usize, const L: usize>(
             }
         }
         match found {
-            Some(Found { since: Some((step, time)), configuration, .. }) if stepper.steps >= step + STEADY => {
+            Some(Candidate { since: Some((step, time)), configuration, .. }) if stepper.steps >= step + STEADY => {
                 return Ok((*configuration, time));
             }
             other => found = other,

@@ -56,7 +56,7 @@ pub(super) trait Vibrates<const S: usize, const L: usize, const C: usize>: Moves
 
     /// What a change of what sections carry, in a block of stations, changes at fixed states: the strains follow, and
     /// with them the slopes.
-    fn drift(
+    fn stage_forcing(
         &self,
         block: usize,
         station: &Station<S, L>,
@@ -65,7 +65,7 @@ pub(super) trait Vibrates<const S: usize, const L: usize, const C: usize>: Moves
     ) -> StageForcing<S, 0, L>;
 
     /// The same at a block of ends: strains, and the section stretch.
-    fn end_drift(
+    fn end_forcing(
         &self,
         station: &Station<S, L>,
         inner: &Inner<S, L, Lanes>,
@@ -169,14 +169,14 @@ fn compliance<P: Vibrates<S, L, C>, const S: usize, const L: usize, const C: usi
                 for lane in lanes.clone() {
                     carried[field - C].0[lane] = 1.0;
                 }
-                forcing.stages[block] = moving.drift(block, station, &system.locals()[block], carried);
+                forcing.stages[block] = moving.stage_forcing(block, station, &system.locals()[block], carried);
                 // At ends sections follow the polynomial through the stages.
                 for (b, place) in moving.end_places().iter().enumerate() {
                     let mut carried = [Lanes::of(0.0); L];
                     for l in (0..LANES).filter(|l| place.elements[*l] == k / M) {
                         carried[field - C].0[l] = at_ends[place.sides[l].index()][k % M];
                     }
-                    forcing.ends.push(moving.end_drift(&system.end_stations()[b], &system.ends()[b], carried));
+                    forcing.ends.push(moving.end_forcing(&system.end_stations()[b], &system.ends()[b], carried));
                 }
             }
             settling.respond(&forcing, &mut response);

@@ -355,8 +355,8 @@ impl Arm {
         coefficients.map(|c| c * std::f64::consts::PI * (square - inner))
     }
 
-    /// Whether a cable that may be pulled rubs in its channel.
-    pub(crate) fn rubs(&self) -> bool {
+    /// Whether a cable that may be pulled has friction in its channel.
+    pub(crate) fn has_friction(&self) -> bool {
         self.cables.iter().any(|c| c.friction > 0.0)
     }
 

@@ -189,11 +189,11 @@ pub(crate) fn load<R: Real>(
             let radius = [body.radius, body.radius_slope];
             let side = |sigma| lateral(sigma, strain, section_stretch, radius, beta_slope).frame(cos, sin);
             let (left, right) = (side(1.0), side(-1.0));
-            let share = left_share(stream.unwrap_or([zero; 2]), &left, &right);
+            let fraction = left_fraction(stream.unwrap_or([zero; 2]), &left, &right);
             if let Some(stream) = stream {
-                lateral_load(water, stream, &left, &right, share, wetted, &mut out);
+                lateral_load(water, stream, &left, &right, fraction, wetted, &mut out);
             }
-            add_hydrostatics(water, body, nu, section_stretch, &[(share, left), (one - share, right)], &mut out);
+            add_hydrostatics(water, body, nu, section_stretch, &[(fraction, left), (one - fraction, right)], &mut out);
         }
     }
     out
@@ -220,10 +220,10 @@ fn hits<R: Real>(stream: [R; 2], left: &Frame<R>, right: &Frame<R>) -> [R; 2] {
     [dot(stream, left.w), -dot(stream, right.w)]
 }
 
-/// The left side's share of what acts on the windward surface: one or nothing, and half where the sides tie, as they do
-/// without a stream.
+/// The left side's fraction of what acts on the windward surface: one or nothing, and half where the sides tie, as
+/// they do without a stream.
 #[inline(always)]
-fn left_share<R: Real>(stream: [R; 2], left: &Frame<R>, right: &Frame<R>) -> R {
+fn left_fraction<R: Real>(stream: [R; 2], left: &Frame<R>, right: &Frame<R>) -> R {
     let (zero, one, half) = (R::of(0.0), R::of(1.0), R::of(0.5));
     let [hit_left, hit_right] = hits(stream, left, right);
     hit_left.if_less(hit_right, one, hit_right.if_less(hit_left, zero, half))
@@ -236,15 +236,15 @@ fn lateral_load<R: Real>(
     stream: [R; 2],
     left: &Frame<R>,
     right: &Frame<R>,
-    left_share: R,
+    left_fraction: R,
     wetted: (R, [R; 3]),
     out: &mut Load<R>,
 ) {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let [hit_left, hit_right] = hits(stream, left, right);
     let faces = |hit: R| hit.if_less(zero, one, zero);
-    stream_load(water, stream, left, faces(hit_left), wetted, left_share, out);
-    stream_load(water, stream, right, faces(hit_right), wetted, one - left_share, out);
+    stream_load(water, stream, left, faces(hit_left), wetted, left_fraction, out);
+    stream_load(water, stream, right, faces(hit_right), wetted, one - left_fraction, out);
     let speed = R::of(1.0 / water.stream[0].hypot(water.stream[1]));
     let windward = hit_left.min(hit_right);
     out.switches[1] = windward * speed;
@@ -252,7 +252,7 @@ fn lateral_load<R: Real>(
 }
 
 /// Adds weight less buoyancy, the hydrostatic part of (9) and (10). `surfaces` are the one or two whose normals direct
-/// it where only its normal part acts, with their shares.
+/// it where only its normal part acts, with their fractions.
 #[inline(always)]
 fn add_hydrostatics<R: Real>(
     water: &Water,
@@ -274,9 +274,10 @@ fn add_hydrostatics<R: Real>(
             }
         }
         Hydrostatics::NormalOnly => {
-            for (share, surface) in surfaces {
+            for (fraction, surface) in surfaces {
                 let Frame { u, w, turn, turn_beta_slope } = surface;
-                let (across, down, across_nu) = (dot(h, *w) * *share, dot(h, *u) * *share, dot(h_nu, *w) * *share);
+                let (across, down, across_nu) =
+                    (dot(h, *w) * *fraction, dot(h, *u) * *fraction, dot(h_nu, *w) * *fraction);
                 for k in 0..2 {
                     out.force[k] += across * w[k];
                     let turned = -(down * w[k] + across * u[k]);
@@ -292,7 +293,7 @@ fn add_hydrostatics<R: Real>(
     }
 }
 
-/// Adds `share` of the stream's load on one surface: S (g_t u + g_n w).
+/// Adds `fraction` of the stream's load on one surface: S (g_t u + g_n w).
 #[inline(always)]
 fn stream_load<R: Real>(
     water: &Water,
@@ -300,14 +301,14 @@ fn stream_load<R: Real>(
     frame: &Frame<R>,
     normal_share: R,
     (s, s_strain): (R, [R; 3]),
-    share: R,
+    fraction: R,
     out: &mut Load<R>,
 ) {
     let (u_t, u_n) = (dot(stream, frame.u), dot(stream, frame.w));
     let t = traction(water.law, u_t, u_n, normal_share);
     let factor = R::of(water.tangential_factor);
     let (tangential, tangential_turn) = (factor * t.tangential, factor * t.tangential_turn);
-    let s = s * share;
+    let s = s * fraction;
     for k in 0..2 {
         let per_s = tangential * frame.u[k] + t.normal * frame.w[k];
         let turned = s * ((tangential_turn - t.normal) * frame.u[k] + (t.normal_turn + tangential) * frame.w[k]);
@@ -315,7 +316,7 @@ fn stream_load<R: Real>(
         out.by_theta[k] += turned;
         out.by_beta_slope[k] += turned * frame.turn_beta_slope;
         for c in 0..3 {
-            out.by_strain[k][c] += turned * frame.turn[c] + share * s_strain[c] * per_s;
+            out.by_strain[k][c] += turned * frame.turn[c] + fraction * s_strain[c] * per_s;
         }
         for c in 0..2 {
             let by_speed = |[by_t, by_n]: [R; 2]| by_t * frame.u[c] + by_n * frame.w[c];
@@ -324,8 +325,8 @@ fn stream_load<R: Real>(
         }
     }
     let speed = R::of(1.0 / water.stream[0].hypot(water.stream[1]));
-    out.switches[0] += share * u_t * speed;
-    out.switches[1] += share * u_n * speed;
+    out.switches[0] += fraction * u_t * speed;
+    out.switches[1] += fraction * u_n * speed;
 }
 
 #[cfg(test)]

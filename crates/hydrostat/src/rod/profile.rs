@@ -244,9 +244,9 @@ mod tests {
         let p = Profile::joined(&points, Join::Linear).unwrap();
         for pair in points.windows(2) {
             let [[s, v], [t, w]] = [pair[0], pair[1]];
-            for share in [0.0, 0.25, 0.9] {
-                let at = p.at(s + share * (t - s), 1.0);
-                assert!((at.value - (v + share * (w - v))).abs() < 1e-14 && at.curvature == 0.0);
+            for fraction in [0.0, 0.25, 0.9] {
+                let at = p.at(s + fraction * (t - s), 1.0);
+                assert!((at.value - (v + fraction * (w - v))).abs() < 1e-14 && at.curvature == 0.0);
                 assert!((at.slope - (w - v) / (t - s)).abs() < 1e-12);
             }
         }

@@ -100,12 +100,12 @@ impl Equations {
         for (block, (station, by)) in stations.iter().zip(&explicit).enumerate() {
             let at = self.solved_in(block, station, &mut pulled)?;
             let inner = apply(&at.solved.inverse, &by.carried.map(|v| -v));
-            let mut drift = strained(&at, station, inner);
+            let mut forcing = strained(&at, station, inner);
             for k in 0..3 {
-                drift.slope[FORCE + k] -= by.force[k];
-                drift.slope[MOMENT + k] -= by.couple[k];
+                forcing.slope[FORCE + k] -= by.force[k];
+                forcing.slope[MOMENT + k] -= by.couple[k];
             }
-            out.stages.push(drift);
+            out.stages.push(forcing);
         }
         for (block, (station, by)) in end_stations.iter().zip(&carried).enumerate() {
             let solved = self.solved_at_end(block, station, &mut pulled);
@@ -119,7 +119,7 @@ impl Equations {
     pub(super) fn moved(&self, way: Way, change: f64) -> Option<Self> {
         let mut moved = self.clone();
         match way {
-            Way::Path => moved.set_share(self.share() + change),
+            Way::Path => moved.set_range_fraction(self.range_fraction() + change),
             Way::Tension(c) => moved.tensions[c] += change,
             Way::Of(parameter) => {
                 let value = parameter.of(&self.arm).ok()?;
@@ -181,12 +181,12 @@ impl Equations {
             let place = &self.places[block];
             let (stream, swelling) = (uniform(&self.water), &at.solved.balance.swelling);
             let own = load(&self.water, &place.body, stream, &at.directors, &at.solved.strain, swelling);
-            let mut drift = StageForcing::default();
+            let mut forcing = StageForcing::default();
             for k in 0..3 {
-                drift.slope[FORCE + k] = -own.force[k];
-                drift.slope[MOMENT + k] = -place.body.couple[k];
+                forcing.slope[FORCE + k] = -own.force[k];
+                forcing.slope[MOMENT + k] = -place.body.couple[k];
             }
-            out.stages.push(drift);
+            out.stages.push(forcing);
         }
         if !self.is_unstrained_base() {
             let (load, _) = self.tip_load(1.0, &Directors::of(&each(|k| tip[k])));
@@ -231,17 +231,17 @@ impl Equations {
 fn change_by_couples(couples: &[Vector<Lanes>], stations: &[Station<N, L>]) -> Forcing<N, Q, L> {
     let mut out = Forcing::default();
     for (couple, station) in couples.iter().zip(stations) {
-        let mut drift = StageForcing::default();
+        let mut forcing = StageForcing::default();
         let couple = Directors::of(&each(|k| station.z[k])).to_space(couple);
         for k in 0..3 {
-            drift.slope[MOMENT + k] = -couple[k];
+            forcing.slope[MOMENT + k] = -couple[k];
         }
-        out.stages.push(drift);
+        out.stages.push(forcing);
     }
     out
 }
 
-/// The drift at a station whose strains change.
+/// The forcing at a station whose strains change.
 fn strained(at: &AtStation<Lanes>, station: &Station<N, L>, inner: [Lanes; L]) -> StageForcing<N, Q, L> {
     StageForcing {
         slope: by_strain_change(at, &each(|k| station.z[k]), &inner),

@@ -174,7 +174,7 @@ impl SpatialStations {
 }
 
 /// A place between stations, solved.
-struct AtPlace {
+struct StationState {
     directors: Directors<f64>,
     strain: [f64; L],
     beta: f64,
@@ -187,7 +187,7 @@ struct AtPlace {
 
 impl Engine {
     /// The section at `x` in [0, 1] of element `i`; at x = 1 what is on the left of the node.
-    fn section_in(&self, i: usize, x: f64) -> Result<AtPlace, SectionFailure> {
+    fn section_in(&self, i: usize, x: f64) -> Result<StationState, SectionFailure> {
         /// Steps of the section law that may be left to what is read at a place.
         const SHARP: f64 = 1e-12;
         let (solution, gauss, equations) = (&self.solution, &self.system.gauss, &self.equations);
@@ -225,7 +225,7 @@ impl Engine {
         if !(solved.size < 1e-9 && solved.regularity > 0.0 && solved.balance.openness > FOLDED) {
             return Err(failure);
         }
-        Ok(AtPlace {
+        Ok(StationState {
             directors,
             strain: each(|k| solved.strain[k] + solved.change[k]),
             beta: area_law(volume, solved.strain[0] + solved.change[0]).beta,
@@ -403,11 +403,11 @@ impl SpatialConfiguration {
     /// Everything at `s` (m); `s` outside [0, L] is moved to the nearer end. At the end of a cable, the values on the
     /// tip's side. Between nodes by the polynomials of the solve.
     pub fn at(&self, s: f64) -> SpatialStation {
-        let share = (s / self.arm.length).clamp(0.0, 1.0);
-        let share = if share.is_nan() { 0.0 } else { share };
+        let fraction = (s / self.arm.length).clamp(0.0, 1.0);
+        let fraction = if fraction.is_nan() { 0.0 } else { fraction };
         let mesh = &self.dense.engine.solution.mesh;
-        let element = mesh.element_of(share);
-        let x = ((share - mesh.nodes()[element]) / mesh.step(element)).clamp(0.0, 1.0);
+        let element = mesh.element_of(fraction);
+        let x = ((fraction - mesh.nodes()[element]) / mesh.step(element)).clamp(0.0, 1.0);
         if let Ok((station, _)) = self.dense.at(element, x) {
             return station;
         }

@@ -95,7 +95,7 @@ pub(crate) struct Engine {
 pub(crate) struct State {
     pub(super) solution: Guess,
     pub(super) fraction: [f64; 2],
-    share: f64,
+    range_fraction: f64,
     base: [f64; 4],
     tensions: Vec<f64>,
     held: Option<StrokeControl>,
@@ -162,7 +162,7 @@ impl Engine {
         State {
             solution: self.solution.clone(),
             fraction: self.equations.fraction,
-            share: self.equations.share(),
+            range_fraction: self.equations.range_fraction(),
             base: self.equations.base,
             tensions: self.equations.tensions.clone(),
             held: self.held.clone(),
@@ -179,8 +179,8 @@ impl Engine {
         self.speeds.clone_from(&state.speeds);
         self.tip = state.tip;
         self.equations.fraction = state.fraction;
-        if self.equations.share() != state.share {
-            self.equations.set_share(state.share);
+        if self.equations.range_fraction() != state.range_fraction {
+            self.equations.set_range_fraction(state.range_fraction);
         }
         self.equations.base = state.base;
         self.held.clone_from(&state.held);

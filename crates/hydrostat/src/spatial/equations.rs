@@ -416,7 +416,7 @@ impl Equations {
     /// n_f(L) and m_f(L) that a fraction of the loads on the tip asks for, and their derivatives by a turn about each
     /// director.
     pub(crate) fn tip_load(&self, fraction: f64, directors: &Directors<f64>) -> ([f64; 6], [Vector<f64>; 3]) {
-        let share = fraction / self.units.force;
+        let fraction = fraction / self.units.force;
         let (tip, space) = (&self.arm.tip, &self.space);
         let follower = [tip.follower[0], tip.follower[1], space.tip_follower];
         let dead = [tip.force[0], tip.force[1], space.tip_force];
@@ -424,13 +424,13 @@ impl Equations {
         let moment = [space.tip_moment[0], space.tip_moment[1], tip.moment];
         let mut out = [0.0; 6];
         for k in 0..3 {
-            out[k] = share * (dead[k] + following[k]);
-            out[3 + k] = share * moment[k] / self.units.length;
+            out[k] = fraction * (dead[k] + following[k]);
+            out[3 + k] = fraction * moment[k] / self.units.length;
         }
         let by_turn = each(|k| {
             let mut axis = [0.0; 3];
             axis[k] = 1.0;
-            directors.to_space(&cross(&axis, &follower)).map(|v| share * v)
+            directors.to_space(&cross(&axis, &follower)).map(|v| fraction * v)
         });
         (out, by_turn)
     }

@@ -175,7 +175,7 @@ fn add_axis(axes: &mut Vec<Vector<f64>>, axis: Vector<f64>, unit: f64) {
 }
 
 /// An equilibrium with its engine.
-struct Found {
+struct Candidate {
     engine: Engine,
     tip: SpatialTip,
     shape: Equilibrium<SpatialConfiguration>,
@@ -184,7 +184,7 @@ struct Found {
 
 struct Search<'g> {
     tol: f64,
-    found: Vec<Found>,
+    found: Vec<Candidate>,
     /// Axes in space.
     axes: Vec<Vector<f64>>,
     /// Equilibria, axes and sides whose curve was followed.
@@ -206,7 +206,7 @@ impl Search<'_> {
             let mut solver = SpatialSolver::new(arm, options).map_err(failed)?;
             let equations = &mut solver.engine.equations;
             equations.turn_base(self.axes[axis]);
-            equations.set_share(turns);
+            equations.set_range_fraction(turns);
             if let Err(error) = solver.solve() {
                 if !matches!(error, SpatialError::NoEquilibrium(_)) {
                     return Err(failed(error));
@@ -294,7 +294,7 @@ impl Search<'_> {
         let configuration = SpatialConfiguration::read(engine, error, statistics).ok()?;
         let stability: Option<Stability> = configuration.stability();
         let shape = Equilibrium { configuration, stability };
-        self.found.push(Found { engine: engine.clone(), tip, shape, sign });
+        self.found.push(Candidate { engine: engine.clone(), tip, shape, sign });
         Some(self.found.len() - 1)
     }
 

@@ -86,11 +86,11 @@ impl<R: Real> Turn<R> {
     pub(crate) fn rates(&self) -> [Vector<R>; 2] {
         let Self { c, v, a } = self;
         let (half, quarter) = (R::of(0.5), R::of(0.25));
-        let share = R::of(1.0) / (R::of(1.0) + quarter * dot(c, c));
+        let fraction = R::of(1.0) / (R::of(1.0) + quarter * dot(c, c));
         let (cv, ca) = (cross(c, v), cross(c, a));
-        let omega: Vector<R> = each(|k| share * (v[k] - half * cv[k]));
-        let by = half * share * dot(c, v);
-        [omega, each(|k| share * (a[k] - half * ca[k]) - by * omega[k])]
+        let omega: Vector<R> = each(|k| fraction * (v[k] - half * cv[k]));
+        let by = half * fraction * dot(c, v);
+        [omega, each(|k| fraction * (a[k] - half * ca[k]) - by * omega[k])]
     }
 
     /// Changes of omega and omega. with a turn `psi` about the directors, where v and a change by `rate` and its square
@@ -99,21 +99,21 @@ impl<R: Real> Turn<R> {
     fn changes(&self, [omega, omega_rate]: &[Vector<R>; 2], rate: R, psi: &Vector<R>) -> [Vector<R>; 2] {
         let Self { c, v, a } = self;
         let (half, quarter) = (R::of(0.5), R::of(0.25));
-        let share = R::of(1.0) / (R::of(1.0) + quarter * dot(c, c));
+        let fraction = R::of(1.0) / (R::of(1.0) + quarter * dot(c, c));
         let sideways = cross(c, psi);
         let along = quarter * dot(c, psi);
         let dc: Vector<R> = each(|k| psi[k] + half * sideways[k] + along * c[k]);
         let dv: Vector<R> = each(|k| rate * dc[k]);
         let da: Vector<R> = each(|k| rate * dv[k]);
-        let less = half * share * dot(c, &dc);
+        let less = half * fraction * dot(c, &dc);
         let (first, second) = (cross(&dc, v), cross(c, &dv));
-        let turned: Vector<R> = each(|k| share * (dv[k] - half * (first[k] + second[k])) - less * omega[k]);
-        let by = half * share * dot(c, v);
+        let turned: Vector<R> = each(|k| fraction * (dv[k] - half * (first[k] + second[k])) - less * omega[k]);
+        let by = half * fraction * dot(c, v);
         let (first, second) = (cross(&dc, a), cross(c, &da));
-        // share (a - c x a/2) = omega. + by omega.
+        // fraction (a - c x a/2) = omega. + by omega.
         let own: Vector<R> =
-            each(|k| share * (da[k] - half * (first[k] + second[k])) - less * (omega_rate[k] + by * omega[k]));
-        let by_change = half * share * (dot(&dc, v) + dot(c, &dv)) - less * by;
+            each(|k| fraction * (da[k] - half * (first[k] + second[k])) - less * (omega_rate[k] + by * omega[k]));
+        let by_change = half * fraction * (dot(&dc, v) + dot(c, &dv)) - less * by;
         [turned, each(|k| own[k] - by_change * omega[k] - by * turned[k])]
     }
 }

@@ -92,8 +92,8 @@ struct Point {
     response: Correction<N, M, Q, L>,
     /// The turns (about the directors) of the nodes a unit of the fraction.
     turns: Vec<Vector<f64>>,
-    /// The fraction's part of the unit tangent: `rise` times `response` is the rest.
-    rise: f64,
+    /// The fraction's part of the unit tangent: `dlambda_ds` times `response` is the rest.
+    dlambda_ds: f64,
     /// The sign of the determinant, where it is known.
     sign: Option<f64>,
 }
@@ -213,10 +213,10 @@ impl Ramp<'_, '_> {
                 Ok(next) => {
                     self.travelled.steps += 1;
                     let crossed = matches!((here.sign, next.sign), (Some(a), Some(b)) if a != b);
-                    if crossed && here.rise * next.rise > 0.0 {
+                    if crossed && here.dlambda_ds * next.dlambda_ds > 0.0 {
                         self.travelled.crossings += 1;
                     }
-                    if limit.is_none() && next.rise < 0.0 {
+                    if limit.is_none() && next.dlambda_ds < 0.0 {
                         // The path turns back between both points: steps are halved until its place is known.
                         if step > 1e-3 && (next.fraction - here.fraction).abs() > 1e-4 {
                             step *= 0.4;
@@ -236,7 +236,7 @@ impl Ramp<'_, '_> {
                         return Err(self.end(VerdictKind::LimitPoint, fraction));
                     }
                     if let Some((fraction, state, tip)) = &limit
-                        && next.rise > 0.0
+                        && next.dlambda_ds > 0.0
                         && next.fraction >= *fraction
                     {
                         let after = self.engine.read_tip();
@@ -276,9 +276,9 @@ impl Ramp<'_, '_> {
         let mut step = NEARBY;
         for _ in 0..MOST_NEARBY {
             match self.advance(&here, step) {
-                Ok(next) if next.rise < 0.0 => {
-                    let share = here.rise / (here.rise - next.rise);
-                    return self.advance(&here, share * step).ok().map(|limit| limit.fraction);
+                Ok(next) if next.dlambda_ds < 0.0 => {
+                    let fraction = here.dlambda_ds / (here.dlambda_ds - next.dlambda_ds);
+                    return self.advance(&here, fraction * step).ok().map(|limit| limit.fraction);
                 }
                 Ok(next) => {
                     here = next;
@@ -302,20 +302,20 @@ impl Ramp<'_, '_> {
     fn begin(&mut self, start: &mut Point) {
         let turn = turn_by_load(start);
         self.scale = if turn.is_finite() { turn.clamp(FINE_SCALE, 1.0) } else { 1.0 };
-        start.rise = 1.0 / (turn / self.scale).hypot(1.0);
+        start.dlambda_ds = 1.0 / (turn / self.scale).hypot(1.0);
     }
 
     /// One step from `here`.
     fn advance(&mut self, here: &Point, step: f64) -> Result<Point, Trouble> {
         let engine = &mut *self.engine;
         engine.restore(&here.state);
-        let mut climb = step * here.rise;
-        let lands = here.fraction + climb >= 1.0;
+        let mut d_lambda = step * here.dlambda_ds;
+        let lands = here.fraction + d_lambda >= 1.0;
         if lands {
-            climb = 1.0 - here.fraction;
+            d_lambda = 1.0 - here.fraction;
         }
-        engine.solution.add(&here.response, climb);
-        let mut fraction = here.fraction + climb;
+        engine.solution.add(&here.response, d_lambda);
+        let mut fraction = here.fraction + d_lambda;
         let predicted = engine.solution.nodes.clone();
         if lands {
             fraction = 1.0;
@@ -343,9 +343,9 @@ impl Ramp<'_, '_> {
             if step > CORNER {
                 return Err(Trouble::Stalled(cosine));
             }
-            next.rise = next.rise.abs() * here.rise.signum() * before * after;
+            next.dlambda_ds = next.dlambda_ds.abs() * here.dlambda_ds.signum() * before * after;
         }
-        if lands && next.rise * here.rise < 0.0 {
+        if lands && next.dlambda_ds * here.dlambda_ds < 0.0 {
             return Err(Trouble::Stalled(step));
         }
         Ok(next)
@@ -357,7 +357,7 @@ impl Ramp<'_, '_> {
         let square = self.scale * self.scale;
         let normal: Vec<Vector<f64>> = weights(&engine.solution.mesh)
             .zip(&here.turns)
-            .map(|(w, t)| t.map(|t| w * t * here.rise / square))
+            .map(|(w, t)| t.map(|t| w * t * here.dlambda_ds / square))
             .collect();
         let mut response = Correction::default();
         engine.match_closure();
@@ -372,7 +372,7 @@ impl Ramp<'_, '_> {
                 let nodes = normal.iter().zip(&solution.nodes).zip(&c.nodes);
                 nodes.map(|((n, z), dz)| dot(n, &turn_of(z, dz))).sum()
             };
-            let by_response = along(&response, &engine.solution) + here.rise;
+            let by_response = along(&response, &engine.solution) + here.dlambda_ds;
             let slide = -along(&engine.correction, &engine.solution) / by_response;
             if !slide.is_finite() {
                 return Err(Trouble::Singular);
@@ -406,16 +406,16 @@ impl Ramp<'_, '_> {
         let nodes = engine.solution.nodes.iter().zip(&response.nodes);
         let turns: Vec<Vector<f64>> = nodes.map(|(z, dz)| turn_of(z, dz)).collect();
         let sign = engine.system.determinant().known_sign();
-        let mut out = Point { state: engine.state(), fraction, response, turns, rise: 1.0, sign };
+        let mut out = Point { state: engine.state(), fraction, response, turns, dlambda_ds: 1.0, sign };
         let norm = (turn_by_load(&out) / self.scale).hypot(1.0);
         if !norm.is_finite() {
             return Err(Trouble::Singular);
         }
-        out.rise = 1.0 / norm;
+        out.dlambda_ds = 1.0 / norm;
         if let Some(before) = before
             && self.cosine(before, &out) < 0.0
         {
-            out.rise = -out.rise;
+            out.dlambda_ds = -out.dlambda_ds;
         }
         Ok(out)
     }
@@ -434,7 +434,7 @@ impl Ramp<'_, '_> {
                 w * dot(&own, t)
             })
             .sum();
-        a.rise * b.rise * (1.0 + turned / square)
+        a.dlambda_ds * b.dlambda_ds * (1.0 + turned / square)
     }
 
     /// Why no step leads on from the engine's shape.

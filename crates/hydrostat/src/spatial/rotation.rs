@@ -116,11 +116,11 @@ pub(crate) fn spin<R: Real>(q: &[R; 4], u: &Vector<R>) -> [R; 4] {
 pub(crate) fn relative<R: Real>(from: &[R; 4], q: &[R; 4]) -> Vector<R> {
     let [w, x, y, z] = *from;
     let [a, b, c, d] = *q;
-    let share = R::of(2.0) / (w * a + x * b + y * c + z * d);
+    let fraction = R::of(2.0) / (w * a + x * b + y * c + z * d);
     [
-        share * (w * b - x * a - y * d + z * c),
-        share * (w * c - y * a - z * b + x * d),
-        share * (w * d - z * a - x * c + y * b),
+        fraction * (w * b - x * a - y * d + z * c),
+        fraction * (w * c - y * a - z * b + x * d),
+        fraction * (w * d - z * a - x * c + y * b),
     ]
 }
 
@@ -128,8 +128,8 @@ pub(crate) fn relative<R: Real>(from: &[R; 4], q: &[R; 4]) -> Vector<R> {
 #[inline(always)]
 pub(crate) fn turned_by<R: Real>(from: &[R; 4], c: &Vector<R>) -> [R; 4] {
     let own = spin(from, c);
-    let share = R::of(1.0) / (R::of(1.0) + R::of(0.25) * dot(c, c)).sqrt();
-    each(|k| share * (from[k] + own[k]))
+    let fraction = R::of(1.0) / (R::of(1.0) + R::of(0.25) * dot(c, c)).sqrt();
+    each(|k| fraction * (from[k] + own[k]))
 }
 
 /// The quaternion q turned by the rotation vector `phi` in its directors.

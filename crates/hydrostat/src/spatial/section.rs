@@ -111,11 +111,11 @@ pub(crate) fn pull<R: Real>(
     let lever = times(swelling.beta, &place);
     let force = times(tension, &t);
     let moment = cross(&lever, &force);
-    let share = tension * inverse;
+    let fraction = tension * inverse;
     // T dt for a change of tau.
     let turned = |d: &Vector<R>| {
         let along = dot(&t, d);
-        each(|k| share * (d[k] - along * t[k]))
+        each(|k| fraction * (d[k] - along * t[k]))
     };
     let mut out = Pull {
         load: [force[0], force[1], force[2], moment[0], moment[1], moment[2]],

@@ -84,18 +84,18 @@ pub(crate) fn solve_section<R: Real>(
             return Solved { strain, balance, inverse, change, regularity: pivot / slack, size };
         }
         let turning_at = (round >= SWIFT).then_some(beta_slope);
-        let share = share_of(&balance, cables, &strain, &change, size, turning_at);
+        let fraction = fraction_of(&balance, cables, &strain, &change, size, turning_at);
         for k in 0..STRAINS {
-            strain[k] += share * change[k];
+            strain[k] += fraction * change[k];
         }
     }
     unreachable!("the loop returns at its last round")
 }
 
-/// The share of a step of the section law that neither more than halves nu, nor closes a cable's side by more than
+/// The fraction of a step of the section law that neither more than halves nu, nor closes a cable's side by more than
 /// two thirds, nor leaps; with beta' also turns no cable by more than a fraction of a radian.
 #[inline(always)]
-fn share_of<R: Real>(
+fn fraction_of<R: Real>(
     balance: &Balance<R>,
     cables: &[CableAt<R>],
     strain: &[R; STRAINS],
@@ -105,8 +105,8 @@ fn share_of<R: Real>(
 ) -> R {
     let (zero, one, least) = (R::of(0.0), R::of(1.0), R::of(1e-30));
     let swelling = &balance.swelling;
-    let mut share = one.min(R::of(0.5) * strain[0] / step[0].abs().max(least));
-    share = share.min(R::of(0.7) / size.max(least));
+    let mut fraction = one.min(R::of(0.5) * strain[0] / step[0].abs().max(least));
+    fraction = fraction.min(R::of(0.7) / size.max(least));
     for cable in cables {
         // tau_c . a = nu + beta (kappa z - mu y), and how much of it the step takes away.
         let bend = strain[4] * cable.z - strain[5] * cable.y;
@@ -114,7 +114,7 @@ fn share_of<R: Real>(
         let gained =
             step[0] + swelling.slope * step[0] * bend + swelling.beta * (step[4] * cable.z - step[5] * cable.y);
         let allowed = R::of(0.67) * now.abs() / (-gained).max(least);
-        share = share.min(zero.if_less(cable.tension, allowed, one));
+        fraction = fraction.min(zero.if_less(cable.tension, allowed, one));
         if let Some(beta_slope) = turning_at {
             let tau = tangent(cable, strain, swelling, beta_slope).tau;
             let stretch = (tau[0] * tau[0] + tau[1] * tau[1] + tau[2] * tau[2]).sqrt();
@@ -123,8 +123,8 @@ fn share_of<R: Real>(
             let b = across(step[1], cable.y_slope, -(step[3] * cable.z)).abs();
             let c = across(step[2], cable.z_slope, step[3] * cable.y).abs();
             let allowed = R::of(0.3) * stretch / (b + c).max(least);
-            share = share.min(zero.if_less(cable.tension, allowed, one));
+            fraction = fraction.min(zero.if_less(cable.tension, allowed, one));
         }
     }
-    share
+    fraction
 }

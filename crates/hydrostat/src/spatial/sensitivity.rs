@@ -103,7 +103,7 @@ impl Sensitivities<SpatialPoseChange, SpatialWrench> {
     }
 }
 
-type Found<T> = Result<T, SensitivityError<SpatialError>>;
+type Outcome<T> = Result<T, SensitivityError<SpatialError>>;
 
 impl SpatialSolver {
     /// [`crate::Solver::sensitivities`] in space.
@@ -235,7 +235,7 @@ impl SpatialSolver {
     }
 
     /// Solves, with nodes at the stations (m), until rounds move nothing any more. The stations over L.
-    fn settle_for_derivatives(&mut self, parameters: &[Parameter], stations: &[f64]) -> Found<Vec<f64>> {
+    fn settle_for_derivatives(&mut self, parameters: &[Parameter], stations: &[f64]) -> Outcome<Vec<f64>> {
         let arm = self.engine.equations.arm();
         check(arm, parameters, stations)?;
         let places: Vec<f64> = stations.iter().map(|s| s / arm.length).collect();

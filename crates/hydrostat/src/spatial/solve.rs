@@ -124,7 +124,7 @@ impl SpatialSolver {
             .and_then(|()| engine.approach(tol))
             .and_then(|()| engine.settle(tol, First::Fair));
         if let Ok(estimate) = direct
-            && !self.engine.may_have_left_the_branch()
+            && !self.engine.needs_continuation()
             && let Ok(configuration) = self.read(estimate, Travelled::default())
         {
             self.settled = true;

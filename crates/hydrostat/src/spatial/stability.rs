@@ -115,10 +115,10 @@ fn compliance(engine: &Engine, functions: usize) -> Option<DMatrix<f64>> {
     }
     for column in 0..size {
         let (l, g) = (column / FIELDS, column % FIELDS);
-        for (block, drift) in change.stages.iter_mut().enumerate() {
-            drift.slope = [Lanes::default(); N];
+        for (block, forcing) in change.stages.iter_mut().enumerate() {
+            forcing.slope = [Lanes::default(); N];
             // (n_f, m_f)' = -load.
-            drift.slope[if g < 3 { FORCE + g } else { MOMENT + g - 3 }] = -basis.both(l, block)[0];
+            forcing.slope[if g < 3 { FORCE + g } else { MOMENT + g - 3 }] = -basis.both(l, block)[0];
         }
         respond(system, &change, &mut response);
         for (row, moved) in project(engine, &basis, functions, &response, &change).into_iter().enumerate() {

@@ -20,7 +20,7 @@ const SHORTEST: f64 = 1e-6;
 const MOST: usize = 400;
 /// Turn (rad) of a node in one step that Newton's method may lead to.
 const LONGEST: f64 = 1.0;
-/// How near to the last point (in the share of the way) the determinant's zero has to be to name a limit point.
+/// How near to the last point (in the fraction of the way) the determinant's zero has to be to name a limit point.
 const NEAR: f64 = 1e-3;
 
 /// What was met on the way.
@@ -42,7 +42,7 @@ impl SpatialSolver {
         let from = engine.strokes();
         if let Some(held) = &mut engine.held {
             held.from = from;
-            held.share = 0.0;
+            held.fraction = 0.0;
         }
         let mut way = Way::default();
         if let Err(verdict) = raise(engine, &mut way) {
@@ -118,11 +118,11 @@ fn raise(engine: &mut Engine, way: &mut Way) -> Result<(), Verdict> {
     Err(verdict(engine, kind, Phase::Stroke, here, s))
 }
 
-/// One step to a share of the way.
-fn advance(engine: &mut Engine, share: f64) -> Result<(), Trouble> {
+/// One step to a fraction of the way.
+fn advance(engine: &mut Engine, fraction: f64) -> Result<(), Trouble> {
     let before = engine.solution.clone();
     if let Some(held) = &mut engine.held {
-        held.share = share;
+        held.fraction = fraction;
     }
     engine.damped = false;
     engine.iterate(1e-6, 9, None)?;
@@ -139,7 +139,7 @@ fn advance(engine: &mut Engine, share: f64) -> Result<(), Trouble> {
     engine.find_border()
 }
 
-/// Where the square of the determinant, which is linear in the share of the way before a limit point, comes to zero.
+/// Where the square of the determinant, which is linear in the fraction of the way before a limit point, comes to zero.
 fn limit_point(points: &[(f64, f64)]) -> Option<f64> {
     let [.., (a, log_a), (b, log_b)] = points else { return None };
     // (D_b / D_a)^2.

@@ -149,10 +149,10 @@ fn changes_by_the_fraction_of_a_phase_match_differences() {
                 }
                 all
             });
-            let drift = &change.stages[1];
+            let forcing = &change.stages[1];
             let mut exact: Vec<f64> =
-                drift.slope.iter().chain(&drift.rate).chain(&drift.inner).map(|v| v.0[2]).collect();
-            exact.push(drift.value.0[2]);
+                forcing.slope.iter().chain(&forcing.rate).chain(&forcing.inner).map(|v| v.0[2]).collect();
+            exact.push(forcing.value.0[2]);
             exact.extend(change.left.iter().chain(&change.right));
             exact.extend(change.ends.iter().flat_map(|(inner, _)| inner.iter().map(|v| v.0[0])));
             for (k, exact) in exact.iter().enumerate() {

@@ -29,10 +29,10 @@ impl Traced for Engine {
             Along::Phase(phase) => {
                 self.equations.set_phase(phase, fraction);
                 if let Some(held) = &mut self.held {
-                    held.share = if phase == Phase::Stroke { fraction } else { 1.0 };
+                    held.fraction = if phase == Phase::Stroke { fraction } else { 1.0 };
                 }
             }
-            Along::Range => self.equations.set_share(fraction),
+            Along::Range => self.equations.set_range_fraction(fraction),
         }
     }
 
@@ -66,7 +66,7 @@ impl Traced for Engine {
         if before.speeds.is_empty() || self.speeds.is_empty() {
             return 0.0;
         }
-        let mut share = 0.0;
+        let mut fraction = 0.0;
         for i in 0..mesh.elements() {
             for j in 0..M {
                 let s = mesh.nodes()[i] + mesh.step(i) * gauss.c[j];
@@ -84,12 +84,12 @@ impl Traced for Engine {
                 let across = across.map(|v| v.0[i % LANES]);
                 for turned in [then[0] * along.0[i % LANES], dot(&[then[1], then[2], then[3]], &across)] {
                     if turned < 0.0 {
-                        share += mesh.step(i) * gauss.b[j];
+                        fraction += mesh.step(i) * gauss.b[j];
                     }
                 }
             }
         }
-        share
+        fraction
     }
 
     fn note_sides(&mut self) {
@@ -179,8 +179,8 @@ impl Traced for Engine {
         self.equations.value_at(fraction)
     }
 
-    fn share(&self) -> f64 {
-        self.equations.share()
+    fn range_fraction(&self) -> f64 {
+        self.equations.range_fraction()
     }
 
     fn read(&mut self, error: f64) -> Option<SpatialConfiguration> {

@@ -17,17 +17,17 @@ use crate::statics::path::traced::Turn;
 use crate::statics::verdict::Phase;
 
 impl Equations {
-    /// Lets `parameter` run from `from` to `to`; the equations are at share 0 of the range.
+    /// Lets `parameter` run from `from` to `to`; the equations are at fraction 0 of the range.
     pub(super) fn vary(&mut self, parameter: Parameter, from: f64, to: f64) {
-        self.varied = Some(Varied { ways: vec![Change { parameter, from, to }], share: 0.0 });
-        self.set_share(0.0);
+        self.varied = Some(Varied { ways: vec![Change { parameter, from, to }], fraction: 0.0 });
+        self.set_range_fraction(0.0);
     }
 
-    /// Lets the base turn about `axis`, a unit vector in space, once round; the equations are at share 0.
+    /// Lets the base turn about `axis`, a unit vector in space, once round; the equations are at fraction 0.
     pub(super) fn turn_base(&mut self, axis: Vector<f64>) {
         self.turning = Some(axis);
-        self.varied = Some(Varied { ways: Vec::new(), share: 0.0 });
-        self.set_share(0.0);
+        self.varied = Some(Varied { ways: Vec::new(), fraction: 0.0 });
+        self.set_range_fraction(0.0);
     }
 
     /// Lets nothing vary: the base is where the arm has it.
@@ -48,22 +48,22 @@ impl Equations {
         out
     }
 
-    /// The parameter's value at a share of its range.
-    pub(super) fn value_at(&self, share: f64) -> f64 {
-        self.varied_over().and_then(|ways| ways.first()).map_or(share, |way| way.value(share))
+    /// The parameter's value at a fraction of its range.
+    pub(super) fn value_at(&self, fraction: f64) -> f64 {
+        self.varied_over().and_then(|ways| ways.first()).map_or(fraction, |way| way.value(fraction))
     }
 
     /// Where in the range the equations are.
-    pub(super) fn share(&self) -> f64 {
-        self.varied.as_ref().map_or(0.0, |v| v.share)
+    pub(super) fn range_fraction(&self) -> f64 {
+        self.varied.as_ref().map_or(0.0, |v| v.fraction)
     }
 
-    /// Takes the arm at a share of the range, within it or beyond.
-    pub(super) fn set_share(&mut self, share: f64) {
+    /// Takes the arm at a fraction of the range, within it or beyond.
+    pub(super) fn set_range_fraction(&mut self, fraction: f64) {
         let Some(varied) = &mut self.varied else { return };
-        varied.share = share;
+        varied.fraction = fraction;
         for way in varied.ways.clone() {
-            self.set_parameter(way.parameter, way.value(share));
+            self.set_parameter(way.parameter, way.value(fraction));
         }
         if self.turning.is_some() {
             self.take_base();
@@ -76,8 +76,8 @@ impl Equations {
         self.take_arm(parameter.is_of_sections());
     }
 
-    /// Takes loads, base and tensions of the arm of other equations, which may be at another share of a range, before
-    /// anything is placed.
+    /// Takes loads, base and tensions of the arm of other equations, which may be at another fraction of a range,
+    /// before anything is placed.
     pub(super) fn take_arm_of(&mut self, other: &Self) {
         if other.varied.is_some() {
             self.arm.clone_from(&other.arm);
@@ -135,7 +135,7 @@ impl Equations {
     fn take_base(&mut self) {
         let mut base = base_of(&self.arm);
         if let Some(axis) = &self.turning {
-            base = turned(&base, &times(TAU * self.share(), &Directors::of(&base).to_body(axis)));
+            base = turned(&base, &times(TAU * self.range_fraction(), &Directors::of(&base).to_body(axis)));
         }
         let along: f64 = (0..4).map(|k| base[k] * self.base[k]).sum();
         self.base = if along < 0.0 { base.map(|v| -v) } else { base };

@@ -65,10 +65,10 @@ impl Compliance {
         let mut response = Correction::default();
         for column in 0..columns {
             let (l, g) = (column / FIELDS, column % FIELDS);
-            for (block, drift) in change.stages.iter_mut().enumerate() {
-                drift.slope = [Lanes::default(); N];
+            for (block, forcing) in change.stages.iter_mut().enumerate() {
+                forcing.slope = [Lanes::default(); N];
                 // (n_f, m_f)' = -load.
-                drift.slope[1 + g] = -basis.value(l, block);
+                forcing.slope[1 + g] = -basis.value(l, block);
             }
             respond(system, &change, &mut response);
             let motion = project(system, &basis, &response, &Forcing::default());
@@ -168,8 +168,8 @@ pub(crate) fn project(
             for a in 0..N {
                 moved[q] += local.rate_gradient[q][a] * states[block][a];
             }
-            if let Some(drift) = change.stages.get(block) {
-                moved[q] += drift.rate[q];
+            if let Some(forcing) = change.stages.get(block) {
+                moved[q] += forcing.rate[q];
             }
         }
         let mut weight = Lanes::default();

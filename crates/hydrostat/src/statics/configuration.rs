@@ -145,21 +145,21 @@ impl Configuration {
     /// nearer end. At the end of a cable, the values on the tip's side. Should the section law have no strains at a
     /// place between two nodes that have some, the values of the nearest node.
     pub fn at(&self, s: f64) -> Station {
-        let share = (s / self.arm.length).clamp(0.0, 1.0);
-        let share = if share.is_nan() { 0.0 } else { share };
-        let element = self.dense.solution.mesh.element_of(share);
-        match self.dense.at(element, share) {
+        let fraction = (s / self.arm.length).clamp(0.0, 1.0);
+        let fraction = if fraction.is_nan() { 0.0 } else { fraction };
+        let element = self.dense.solution.mesh.element_of(fraction);
+        match self.dense.at(element, fraction) {
             Ok((station, _)) => station,
             // A section that cannot be solved between two that can: as near as the nodes come.
-            Err(_) => self.nearest(element, share),
+            Err(_) => self.nearest(element, fraction),
         }
     }
 
-    /// What was read at the nearer node of `element` to `share` (over L).
-    fn nearest(&self, element: usize, share: f64) -> Station {
+    /// What was read at the nearer node of `element` to `fraction` (over L).
+    fn nearest(&self, element: usize, fraction: f64) -> Station {
         let st = &self.stations;
         let nodes = self.dense.solution.mesh.nodes();
-        let at_end = nodes[element + 1] - share < share - nodes[element];
+        let at_end = nodes[element + 1] - fraction < fraction - nodes[element];
         let node = nodes[element + usize::from(at_end)] * self.arm.length;
         let i = (0..st.len())
             .min_by(|i, j| (st.s[*i] - node).abs().total_cmp(&(st.s[*j] - node).abs()))

@@ -99,10 +99,10 @@ impl Dense {
         let mesh = &self.solution.mesh;
         let (start, from) = (mesh.nodes()[i], self.solution.nodes[i]);
         let h = s - start;
-        let share = h / mesh.step(i);
+        let fraction = h / mesh.step(i);
         let places = self.gauss.c.map(|c| start + h * c);
         let mut slopes: [[f64; N]; M] =
-            std::array::from_fn(|j| self.solution.slope_in(&self.gauss, i, share * self.gauss.c[j]));
+            std::array::from_fn(|j| self.solution.slope_in(&self.gauss, i, fraction * self.gauss.c[j]));
         let mut rates = [[0.0; Q]; M];
         for _ in 0..8 {
             let mut states = [from; M];
@@ -265,8 +265,8 @@ mod tests {
         let dense = found.dense();
         let nodes = dense.solution.mesh.nodes();
         for i in 0..nodes.len() - 1 {
-            for share in [0.1, 0.5, 0.8, 1.0] {
-                let s = nodes[i] + share * (nodes[i + 1] - nodes[i]);
+            for fraction in [0.1, 0.5, 0.8, 1.0] {
+                let s = nodes[i] + fraction * (nodes[i + 1] - nodes[i]);
                 let (station, _) = dense.at(i, s).unwrap();
                 let [x, y] = dense.position_in(i, s).map(|v| arm.length * v);
                 let off = (x - station.x).hypot(y - station.y) / arm.length;

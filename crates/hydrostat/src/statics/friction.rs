@@ -27,7 +27,7 @@ use crate::statics::dimensions::M;
 /// What friction leaves of the tensions, for turns that are a mixture of those of several shapes.
 #[derive(Debug, Clone)]
 pub(crate) struct CapstanFactors {
-    /// The share of the friction that acts.
+    /// The fraction of the friction that acts.
     pub(crate) of_friction: f64,
     /// What the exponent is by the turn, a cable.
     exponents: Vec<f64>,
@@ -60,7 +60,7 @@ struct Turn {
     kinks: Vec<f64>,
 }
 
-/// What the exponent is by the turn, a cable, with a share of the friction: minus the friction while reeling in.
+/// What the exponent is by the turn, a cable, with a fraction of the friction: minus the friction while reeling in.
 pub(crate) fn exponents(arm: &Arm, of_friction: f64) -> Vec<f64> {
     let sign = |motion| match motion {
         Motion::In => -1.0,
@@ -307,8 +307,8 @@ impl CapstanFactors {
         last.into_iter().flat_map(|(_, shape)| cables.iter().flat_map(|c| shape.cables[*c].kinks.iter().copied()))
     }
 
-    /// The share of its tension that cable `c` has left at `s` (over L).
-    pub(crate) fn share(&self, c: usize, s: f64, from_left: bool) -> f64 {
+    /// The fraction of its tension that cable `c` has left at `s` (over L).
+    pub(crate) fn tension_ratio(&self, c: usize, s: f64, from_left: bool) -> f64 {
         let exponent = self.exponents[c];
         if exponent == 0.0 {
             return 1.0;

@@ -57,57 +57,57 @@ impl Solver {
 
     /// Friction from none to whole at the present loads.
     fn raise_friction(&mut self) -> Result<Configuration, Verdict> {
-        let (mut share, mut step) = (0.0, 1.0_f64);
+        let (mut fraction, mut step) = (0.0, 1.0_f64);
         loop {
             let kept = self.engine.state();
-            let next = (share + step).min(1.0);
+            let next = (fraction + step).min(1.0);
             match self.rub(next).map(|estimate| if next == 1.0 { self.confirm(estimate) } else { estimate }) {
                 Ok(estimate) if next == 1.0 => {
                     return self
                         .read(estimate, PathSummary::default())
-                        .map_err(|trouble| self.limit(Phase::Friction, share, &trouble));
+                        .map_err(|trouble| self.limit(Phase::Friction, fraction, &trouble));
                 }
                 Ok(_) => {
-                    share = next;
+                    fraction = next;
                     step *= 1.5;
                 }
                 Err(trouble) => {
                     self.engine.restore(&kept);
                     step *= 0.4;
                     if step < LEAST {
-                        return Err(self.limit(Phase::Friction, share, &trouble));
+                        return Err(self.limit(Phase::Friction, fraction, &trouble));
                     }
                 }
             }
         }
     }
 
-    /// Tensions from the share `from`, where there is an equilibrium without friction, to whole with friction. `None`
-    /// when there is no start.
+    /// Tensions from the fraction `from`, where there is an equilibrium without friction, to the requested ones with
+    /// friction. `None` when there is no start.
     fn raise_tensions(&mut self, from: f64) -> Result<Configuration, Option<Verdict>> {
         self.engine.set_phase(Phase::Tension, from);
         if self.engine.settle(self.options.tol, First::Rough).is_err() {
             return Err(None);
         }
         let mut last = self.raise_friction()?;
-        let (mut share, mut step) = (from, 0.1 * from);
-        while share < 1.0 {
+        let (mut fraction, mut step) = (from, 0.1 * from);
+        while fraction < 1.0 {
             let kept = self.engine.state();
-            let next = (share + step).min(1.0);
+            let next = (fraction + step).min(1.0);
             self.engine.set_phase(Phase::Tension, next);
             match self.rub(1.0).map(|estimate| if next == 1.0 { self.confirm(estimate) } else { estimate }) {
                 Ok(estimate) => {
-                    share = next;
+                    fraction = next;
                     step *= 1.5;
                     last = self
                         .read(estimate, PathSummary::default())
-                        .map_err(|trouble| Some(self.limit(Phase::Tension, share, &trouble)))?;
+                        .map_err(|trouble| Some(self.limit(Phase::Tension, fraction, &trouble)))?;
                 }
                 Err(trouble) => {
                     self.engine.restore(&kept);
                     step *= 0.4;
                     if step < LEAST {
-                        return Err(Some(self.limit(Phase::Tension, share, &trouble)));
+                        return Err(Some(self.limit(Phase::Tension, fraction, &trouble)));
                     }
                 }
             }
@@ -153,12 +153,12 @@ impl Solver {
         estimate
     }
 
-    /// Rounds of turns and shape at `share` of the friction until the tip stays; its estimated error over L.
-    fn rub(&mut self, share: f64) -> Result<f64, Trouble> {
+    /// Rounds of turns and shape at `fraction` of the friction until the tip stays; its estimated error over L.
+    fn rub(&mut self, fraction: f64) -> Result<f64, Trouble> {
         let tol = self.options.tol;
         let start = self.engine.tip_angle();
         let sign = self.engine.determinant().sign;
-        let mut rounds = Rounds::new(share, exponents(self.engine.equations.arm(), share));
+        let mut rounds = Rounds::new(fraction, exponents(self.engine.equations.arm(), fraction));
         for _ in 0..ROUNDS {
             let ease = rounds.go_on(self.engine.wrap_angles().map_err(Trouble::Section)?);
             self.engine.set_capstan(Some(&rounds.capstan()));
@@ -181,7 +181,7 @@ impl Solver {
 
 /// Shapes and the turns that they were solved with.
 struct Rounds {
-    share: f64,
+    fraction: f64,
     exponents: Vec<f64>,
     /// Of all shapes, in order; the first is that before the first round.
     shapes: Vec<Arc<WrapAngles>>,
@@ -192,8 +192,8 @@ struct Rounds {
 }
 
 impl Rounds {
-    fn new(share: f64, exponents: Vec<f64>) -> Self {
-        Self { share, exponents, shapes: Vec::new(), used: Vec::new(), off: Vec::new() }
+    fn new(fraction: f64, exponents: Vec<f64>) -> Self {
+        Self { fraction, exponents, shapes: Vec::new(), used: Vec::new(), off: Vec::new() }
     }
 
     /// What the next shape is to be solved with.
@@ -201,11 +201,11 @@ impl Rounds {
         let weights = self.used.last().into_iter().flatten();
         let shapes = weights.zip(&self.shapes).filter(|(weight, _)| **weight != 0.0);
         let shapes = shapes.map(|(weight, shape)| (*weight, Arc::clone(shape))).collect();
-        CapstanFactors::new(self.share, self.exponents.clone(), shapes)
+        CapstanFactors::new(self.fraction, self.exponents.clone(), shapes)
     }
 
-    /// Takes the turns of the last round's shape, and chooses those for the next; the share of what is off that these
-    /// make up for.
+    /// Takes the turns of the last round's shape, and chooses those for the next; the fraction of the residual that
+    /// these make up for.
     fn go_on(&mut self, turns: WrapAngles) -> f64 {
         self.shapes.push(Arc::new(turns));
         let count = self.shapes.len();
@@ -241,8 +241,8 @@ impl Rounds {
         out
     }
 
-    /// The share of what is off that a round is to make up for: where less tension bends clearly less, about as much as
-    /// would be right if all of the arm did the same.
+    /// The fraction of the residual that a round is to make up for: where less tension bends clearly less, about as
+    /// much as would be right if all of the arm did the same.
     fn ease(&self) -> f64 {
         let Some(shape) = self.shapes.last() else { return 1.0 };
         let steep = |(c, exponent): (usize, &f64)| -exponent * shape.at(c, 1.0, true);

@@ -159,7 +159,7 @@ impl Tile {
         };
         let mut solver = Solver::new(arm, self.options).map_err(no_row)?;
         let configuration = solver.solve().map_err(no_row)?;
-        let follows = arm.readings.support == Support::Clamped && !arm.rubs() && !arm.is_commanded();
+        let follows = arm.readings.support == Support::Clamped && !arm.has_friction() && !arm.is_commanded();
         self.solver = follows.then_some(solver);
         Ok(self.row(&configuration))
     }

@@ -9,7 +9,7 @@ pub enum Phase {
     /// All other loads are whole; tensions are multiplied by the load fraction.
     Tension,
     /// Loads and given tensions are whole; cables with a commanded stroke are reeled from the strokes that they have
-    /// when slack to those commanded, the load fraction being the share of that way.
+    /// when slack to those commanded, the load fraction being the fraction of that way.
     Stroke,
     /// Loads, tensions and strokes are as without friction; the coefficients of friction are multiplied by the load
     /// fraction.
@@ -30,12 +30,12 @@ impl Phase {
     /// The loads that are applied at a load fraction, in a phrase: `62.9 % of the requested tensions, other loads fully
     /// applied`.
     pub fn load_at(self, fraction: f64) -> String {
-        let share = percent(fraction);
+        let fraction = percent(fraction);
         match self {
-            Self::Loads => format!("{share} of the stream, weight, tip and distributed loads, cables slack"),
-            Self::Tension => format!("{share} of the requested tensions, other loads fully applied"),
-            Self::Stroke => format!("{share} of the way from the strokes of slack cables to the requested strokes"),
-            Self::Friction => format!("{share} of the friction coefficients of the cables"),
+            Self::Loads => format!("{fraction} of the stream, weight, tip and distributed loads, cables slack"),
+            Self::Tension => format!("{fraction} of the requested tensions, other loads fully applied"),
+            Self::Stroke => format!("{fraction} of the way from the strokes of slack cables to the requested strokes"),
+            Self::Friction => format!("{fraction} of the friction coefficients of the cables"),
         }
     }
 }

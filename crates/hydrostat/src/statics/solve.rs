@@ -106,8 +106,8 @@ impl Solver {
     /// [`Solver::solve`] in so much work.
     pub(crate) fn solve_within(&mut self, work: usize) -> Result<Configuration, SolveError> {
         self.engine.allow(work);
-        let rubs = self.engine.equations.arm().rubs();
-        let solved = if rubs { self.solve_with_friction() } else { self.solve_smooth() };
+        let has_friction = self.engine.equations.arm().has_friction();
+        let solved = if has_friction { self.solve_with_friction() } else { self.solve_smooth() };
         // What is done with the answer, a path say, has bounds of its own.
         self.engine.lift_limit();
         solved
@@ -325,7 +325,7 @@ impl Solver {
     /// the arm moved further than a small change moves it, or cables rub, and which way they slid is part of the
     /// answer.
     fn settle_warm(&mut self) -> Option<f64> {
-        if !self.settled || self.engine.equations.arm().rubs() {
+        if !self.settled || self.engine.equations.arm().has_friction() {
             return None;
         }
         self.settled = false;
@@ -375,8 +375,8 @@ impl Solver {
         Err(self.no_equilibrium(verdict))
     }
 
-    /// Follows the engine's range to its end, from the engine's equilibrium at a share of it, behind a limit point down
-    /// to a lowest one.
+    /// Follows the engine's range to its end, from the engine's equilibrium at a fraction of it, behind a limit point
+    /// down to a lowest one.
     pub(crate) fn solve_along_range(&mut self, from: [f64; 2]) -> Result<Configuration, SolveError> {
         self.forget();
         self.engine.allow(WORK);
@@ -510,8 +510,8 @@ pub(crate) fn known_on_the_way(configuration: &Configuration, bifurcations: usiz
 fn alike(a: &Arm, b: &Arm) -> bool {
     a.has_geometry_of(b)
         && a.cables.iter().zip(&b.cables).all(|(a, b)| a.stroke.is_some() == b.stroke.is_some())
-        && !a.rubs()
-        && !b.rubs()
+        && !a.has_friction()
+        && !b.has_friction()
         && a.breaks() == b.breaks()
 }
 

@@ -39,9 +39,9 @@ use crate::statics::verdict::Phase;
 
 /// Rates whose real part is smaller, over the slowest decay of the unloaded arm, are neither growth nor decay.
 ///
-/// Near a buckling load the scaled rate is about the share of the load that is missing or too much. A straight column
-/// at its exact load comes out below 1e-9. Of a hundred random arms, most of them bent, the first rate moves by up to
-/// 2e-6 of the larger of one and itself between solves to 1e-8 and to 1e-11, growing ones left out.
+/// Near a buckling load the scaled rate is about the fraction of the load that is missing or too much. A straight
+/// column at its exact load comes out below 1e-9. Of a hundred random arms, most of them bent, the first rate moves by
+/// up to 2e-6 of the larger of one and itself between solves to 1e-8 and to 1e-11, growing ones left out.
 pub(crate) const MARGIN: f64 = 1e-6;
 
 /// Rates this many times the smallest one are rounding: an eigenvalue of the compliance has no digit left there.
@@ -147,7 +147,7 @@ pub(crate) fn growing(rates: &[[f64; 2]]) -> usize {
 /// The growth, and how many times it was resolved more finely.
 fn growth(dense: &Dense) -> Option<(Growth, usize)> {
     let arm = dense.equations.arm();
-    if arm.readings.support == Support::UnstrainedBase || arm.rubs() {
+    if arm.readings.support == Support::UnstrainedBase || arm.has_friction() {
         return None;
     }
     for (level, functions) in POLYNOMIALS.into_iter().enumerate() {
@@ -317,8 +317,8 @@ mod tests {
         }
 
         fn one_of<T: Copy>(&mut self, of: &[T]) -> T {
-            let share = self.roll() * of.len() as f64;
-            *of.iter().enumerate().find(|(i, _)| share < (*i + 1) as f64).unwrap().1
+            let fraction = self.roll() * of.len() as f64;
+            *of.iter().enumerate().find(|(i, _)| fraction < (*i + 1) as f64).unwrap().1
         }
     }
 
@@ -331,11 +331,11 @@ mod tests {
         let young = 10_f64.powf(dice.between(4.0, 5.7));
         let mut arm = Arm::cone(length, base, tip, young, 0.5);
         arm.density = dice.between(1000.0, 1150.0);
-        let share = dice.between(0.4, 0.8);
+        let fraction = dice.between(0.4, 0.8);
         let most = 0.05 * young * std::f64::consts::PI * tip * tip;
         let tension = dice.one_of(&[0.0, 1.0]) * most * dice.between(0.0, 1.5);
-        arm.cables.push(Cable::new("left", Profile::linear(share * base, share * tip)).pulled(tension));
-        arm.cables.push(Cable::new("right", Profile::linear(-share * base, -share * tip)));
+        arm.cables.push(Cable::new("left", Profile::linear(fraction * base, fraction * tip)).pulled(tension));
+        arm.cables.push(Cable::new("right", Profile::linear(-fraction * base, -fraction * tip)));
         arm.base.angle = dice.one_of(&[0.0, std::f64::consts::FRAC_PI_2]);
         arm.flow.speed = dice.one_of(&[0.0, 1.0]) * dice.between(0.0, 1.0);
         arm.flow.direction = dice.one_of(&[0.0_f64, 60.0, 90.0, 180.0, 270.0]).to_radians();
@@ -382,8 +382,8 @@ mod tests {
                 unsettled += 1;
                 continue;
             };
-            let mut stroke = |share: f64| {
-                solver.set_tensions(&[share * arm.cables[0].tension, 0.0]).unwrap();
+            let mut stroke = |fraction: f64| {
+                solver.set_tensions(&[fraction * arm.cables[0].tension, 0.0]).unwrap();
                 solver.resolve().map(|shape| shape.cables[0].stroke)
             };
             let (Ok(less), Ok(more)) = (stroke(1.0 - 1e-4), stroke(1.0 + 1e-4)) else { continue };

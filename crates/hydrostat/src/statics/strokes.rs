@@ -52,8 +52,8 @@ impl Solver {
         }
         let guess = self.straight_tensions(&arm);
         let mut first = None;
-        for share in STARTS {
-            match self.solve_strokes_from(&with_tensions(&arm, |c| share * guess[c])) {
+        for fraction in STARTS {
+            match self.solve_strokes_from(&with_tensions(&arm, |c| fraction * guess[c])) {
                 Err(SolveError::NoEquilibrium(no)) if is_start(&no.verdict) => {
                     first = first.or(Some(SolveError::NoEquilibrium(no)));
                 }

@@ -65,8 +65,8 @@ fn radius(dice: &mut Dice, length: f64, thick: f64) -> Profile {
             let inner = 1 + dice.index(4);
             let mut points = vec![[0.0, thick]];
             for k in 1..=inner {
-                let share = (k as f64 + dice.between(-0.3, 0.3)) / (inner + 1) as f64;
-                points.push([share * length, (thick + share * (tip - thick)) * dice.between(0.8, 1.2)]);
+                let fraction = (k as f64 + dice.between(-0.3, 0.3)) / (inner + 1) as f64;
+                points.push([fraction * length, (thick + fraction * (tip - thick)) * dice.between(0.8, 1.2)]);
             }
             points.push([length, tip]);
             Profile::table(&points).expect("places increase")
@@ -82,8 +82,8 @@ fn geometry(dice: &mut Dice, arm: &mut Arm) {
         if dice.chance(0.3) { dice.pick(&[0.0, FRAC_PI_2, -FRAC_PI_2, PI]) } else { dice.between(-PI, PI) };
     arm.density = dice.between(300.0, 2500.0);
     if dice.chance(0.2) {
-        let share = dice.between(0.2, 0.9);
-        arm.inner_radius = scaled(&arm.radius, share);
+        let fraction = dice.between(0.2, 0.9);
+        arm.inner_radius = scaled(&arm.radius, fraction);
         arm.cavity = dice.pick(&[Cavity::Flooded, Cavity::Sealed]);
     }
     let young = dice.order(3e3, 3e7);
@@ -157,25 +157,25 @@ fn cables(dice: &mut Dice, arm: &mut Arm, bending: f64, draw: &Draw) {
     for i in 0..count {
         let end = if dice.chance(0.3) { dice.between(0.2, 1.0) } else { 1.0 };
         let side = dice.sign();
-        let share = side * dice.between(0.1, 0.95);
+        let fraction = side * dice.between(0.1, 0.95);
         let tip = arm.radius.at(end * arm.length, arm.length).value;
         let thinnest = (0..=50).map(|k| arm.radius.at(end * arm.length * f64::from(k) / 50.0, arm.length).value);
         let thinnest = thinnest.fold(f64::INFINITY, f64::min);
         let offset = match dice.index(4) {
-            0 => (share * thinnest).into(),
+            0 => (fraction * thinnest).into(),
             1 if matches!(arm.radius, Profile::Linear { .. }) => {
-                // Another share of the radius at the tip: a cable that changes sides, too.
-                let other = if dice.chance(0.3) { -share } else { side * dice.between(0.05, 0.95) };
+                // Another fraction of the radius at the tip: a cable that changes sides, too.
+                let other = if dice.chance(0.3) { -fraction } else { side * dice.between(0.05, 0.95) };
                 let last = arm.radius.at(arm.length, arm.length).value;
-                Profile::linear(share * thick, other * last)
+                Profile::linear(fraction * thick, other * last)
             }
-            _ => scaled(&arm.radius, share),
+            _ => scaled(&arm.radius, fraction),
         };
         let mut cable = Cable::new(format!("cable {i}"), offset);
         cable.end = end;
         if dice.chance(0.85) {
             // What bends by about one, and what the section at the anchor carries.
-            let bends = bending / (share.abs() * thick * arm.length) / (1.0 + count as f64).sqrt();
+            let bends = bending / (fraction.abs() * thick * arm.length) / (1.0 + count as f64).sqrt();
             let carries = bending * 4.0 * tip * tip / thick.powi(4) / count as f64;
             cable.tension = (dice.order(0.01, 6.0) * bends).min(dice.order(0.01, 0.5) * carries);
         }
@@ -184,8 +184,8 @@ fn cables(dice: &mut Dice, arm: &mut Arm, bending: f64, draw: &Draw) {
             cable.motion = dice.pick(&[Motion::In, Motion::Out]);
         }
         if held && dice.chance(0.5) {
-            let bent = share.abs() * thick;
-            cable.stroke = Some(if dice.chance(0.7) { bent * dice.between(0.0, 1.5) } else { -bent * dice.share() });
+            let bent = fraction.abs() * thick;
+            cable.stroke = Some(if dice.chance(0.7) { bent * dice.between(0.0, 1.5) } else { -bent * dice.fraction() });
             cable.stroke = cable.stroke.map(|stroke| stroke.clamp(-0.5 * arm.length, 0.5 * arm.length));
             if dice.chance(0.5) {
                 cable.stiffness = Some(dice.order(0.1, 1e4) * bending / (thick * arm.length));

@@ -133,8 +133,8 @@ impl Cord {
                 break;
             }
             // Regula falsi by turns with halving.
-            let share = if round % 2 == 0 && above.is_finite() { below / (below - above) } else { 0.5 };
-            let middle = low + (high - low) * share.clamp(1e-3, 1.0 - 1e-3);
+            let fraction = if round % 2 == 0 && above.is_finite() { below / (below - above) } else { 0.5 };
+            let middle = low + (high - low) * fraction.clamp(1e-3, 1.0 - 1e-3);
             let there = off(middle);
             if there > 0.0 {
                 (high, above) = (middle, there);
@@ -234,9 +234,9 @@ pub(crate) fn cord(seed: u64, heaviest: f64) -> Cord {
             let load = axial * young * PI * radius * radius / length;
             let turn = dice.between(-PI, PI);
             arm.base.angle += turn + FRAC_PI_2;
-            let share = if dice.chance(0.5) { 1.0 } else { dice.between(0.3, 1.0) };
+            let fraction = if dice.chance(0.5) { 1.0 } else { dice.between(0.3, 1.0) };
             let along = |v: f64| -> Profile {
-                if share == 1.0 { (load * v).into() } else { Profile::linear(load * v, share * load * v) }
+                if fraction == 1.0 { (load * v).into() } else { Profile::linear(load * v, fraction * load * v) }
             };
             arm.distributed.force = [along(turn.cos()), along(turn.sin())];
         }

@@ -109,9 +109,9 @@ fn correct_once(shape: &mut Shape<'_>) -> Result<Correction, NoCorrection> {
     let mut tip = newton.shape.tip();
     let mut settled = 0.0;
     if newton.shape.hangs_on_more() {
-        let (mut last, mut share) = (f64::INFINITY, 1.0);
+        let (mut last, mut fraction) = (f64::INFINITY, 1.0);
         for _ in 0..OUTER {
-            newton.shape.follow(share);
+            newton.shape.follow(fraction);
             newton.reel()?;
             newton.solve()?;
             let moved = newton.shape.tip();
@@ -121,7 +121,7 @@ fn correct_once(shape: &mut Shape<'_>) -> Result<Correction, NoCorrection> {
                 break;
             }
             if settled > 0.7 * last {
-                share = 0.5;
+                fraction = 0.5;
             }
             last = settled;
         }
@@ -389,13 +389,13 @@ impl Shape<'_> {
         self.model.arm.cables.iter().any(|cable| cable.friction != 0.0) || !self.taut().is_empty()
     }
 
-    /// The tensions along the arm, by the present strains; a `share` of the way.
-    fn follow(&mut self, share: f64) {
+    /// The tensions along the arm, by the present strains; a `fraction` of the way.
+    fn follow(&mut self, fraction: f64) {
         let before: Vec<Vec<f64>> = self.elements.iter().map(|own| own.start.clone()).collect();
         self.rub();
         for (element, old) in self.elements.iter_mut().zip(before) {
             for (new, old) in element.start.iter_mut().zip(old) {
-                *new = share * *new + (1.0 - share) * old;
+                *new = fraction * *new + (1.0 - fraction) * old;
             }
             element.follow_turns(self.model, self.points);
         }

@@ -17,12 +17,12 @@ impl Dice {
     }
 
     /// In [0, 1).
-    pub(crate) fn share(&mut self) -> f64 {
+    pub(crate) fn fraction(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.share()
+        low + (high - low) * self.fraction()
     }
 
     /// Evenly over the orders of magnitude between `low` and `high`.
@@ -30,9 +30,9 @@ impl Dice {
         (self.between(low.ln(), high.ln())).exp()
     }
 
-    /// True in `share` of all cases.
-    pub(crate) fn chance(&mut self, share: f64) -> bool {
-        self.share() < share
+    /// True in `fraction` of all cases.
+    pub(crate) fn chance(&mut self, fraction: f64) -> bool {
+        self.fraction() < fraction
     }
 
     pub(crate) fn sign(&mut self) -> f64 {

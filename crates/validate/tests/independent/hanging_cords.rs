@@ -147,7 +147,7 @@ fn beyond_its_limit_a_cord_is_refused_at_the_true_load() {
     }
 }
 
-/// The share of its weight at which a cord has no shape any more, by halving: past it shots do not arrive.
+/// The fraction of its weight at which a cord has no shape any more, by halving: past it shots do not arrive.
 fn limit_of(arm: &Arm) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..20 {

@@ -257,9 +257,9 @@ impl Model {
             // A stretch stays positive, and no step is longer than the section is thin.
             let most = (0.5 * e[0]).min(0.3);
             let long = (step[0].abs() / most).max(step[1].abs() / 0.3).max(step[2].abs() * place.radius / 0.5);
-            let share = if long > 1.0 { 1.0 / long } else { 1.0 };
+            let fraction = if long > 1.0 { 1.0 / long } else { 1.0 };
             for k in 0..3 {
-                e[k] += share * step[k];
+                e[k] += fraction * step[k];
             }
             let size = step[0].abs().max(step[1].abs()).max(step[2].abs() * place.radius);
             let scale = 1.0 + e[0].abs() + (e[2] * place.radius).abs();
@@ -287,21 +287,21 @@ impl Model {
         unit(theta, along, across)
     }
 
-    /// Tangents that the stream's load acts by, each with its side (0: both) and its share.
+    /// Tangents that the stream's load acts by, each with its side (0: both) and its fraction.
     fn surfaces(&self, place: &Place, theta: f64, e: Strains, beta_slope: f64) -> Vec<(Pair, f64, f64)> {
         if self.arm.readings.flow_surface == FlowSurface::Centreline {
             return vec![(unit(theta, e[0], e[1]), 0.0, 1.0)];
         }
         let sides = [1.0, -1.0].map(|sigma| (self.lateral(place, theta, e, beta_slope, sigma), sigma));
         let [left, right] = sides.map(|(u, sigma)| sigma * dot(self.stream, left_of(u)));
-        let share = if left < right {
+        let fraction = if left < right {
             1.0
         } else if right < left {
             0.0
         } else {
             0.5
         };
-        vec![(sides[0].0, 1.0, share), (sides[1].0, -1.0, 1.0 - share)]
+        vec![(sides[0].0, 1.0, fraction), (sides[1].0, -1.0, 1.0 - fraction)]
     }
 
     fn stream_load(&self, place: &Place, theta: f64, e: Strains, beta_slope: f64) -> Pair {
@@ -312,7 +312,7 @@ impl Model {
         let width = beta(readings.volume, e[0])[0] * place.radius;
         let wet = if readings.wetted_length == WettedLength::Deformed { e[0].hypot(e[1]) } else { 1.0 };
         let mut out = [0.0; 2];
-        for (u, sigma, share) in self.surfaces(place, theta, e, beta_slope) {
+        for (u, sigma, fraction) in self.surfaces(place, theta, e, beta_slope) {
             let w = left_of(u);
             let (along, across) = (dot(self.stream, u), dot(self.stream, w));
             // What comes against the side that carries the load.
@@ -340,15 +340,15 @@ impl Model {
                 }
             };
             for k in 0..2 {
-                out[k] += share * wet * (f_t * u[k] + f_n * w[k]);
+                out[k] += fraction * wet * (f_t * u[k] + f_n * w[k]);
             }
         }
         out
     }
 
     fn hydrostatics(&self, place: &Place, theta: f64, e: Strains) -> Pair {
-        let share = displaced(&self.arm, e[0]);
-        let whole = [0, 1].map(|k| place.weight[k] - share * place.buoyancy[k]);
+        let fraction = displaced(&self.arm, e[0]);
+        let whole = [0, 1].map(|k| place.weight[k] - fraction * place.buoyancy[k]);
         if self.arm.readings.hydrostatics == Hydrostatics::Archimedes {
             return whole;
         }

@@ -105,11 +105,11 @@ impl Element {
             }
             // No strain changes by more than a part of what keeps a section open.
             let narrowest = self.strains.iter().map(|e| e[0]).fold(1.0, f64::min);
-            let share = (0.3 * narrowest / size).min(1.0);
+            let fraction = (0.3 * narrowest / size).min(1.0);
             for j in 0..states.len() {
                 for k in 0..3 {
                     let unit = self.unit(j, k);
-                    self.strains[j][k] -= share * step[3 * j + k] * unit;
+                    self.strains[j][k] -= fraction * step[3 * j + k] * unit;
                 }
             }
             if size < 1e-14 || (size < 1e-9 && size > 0.3 * before) {

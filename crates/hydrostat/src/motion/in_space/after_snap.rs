@@ -7,7 +7,7 @@ use super::start::with_places;
 use crate::motion::after_snap::{AfterSnap, AfterSnapError, MOST_SNAPS, PAST};
 use crate::motion::error::MotionError;
 use crate::motion::inputs::Inputs;
-use crate::motion::resting::{ELEMENTS, Found, Restless, TOLERANCE, come_to_rest, is_damped};
+use crate::motion::resting::{Candidate, ELEMENTS, Restless, TOLERANCE, come_to_rest, is_damped};
 use crate::motion::start::{check, force_unit, mesh_at};
 use crate::motion::stepper::Stepper;
 use crate::rod::arm::Arm;
@@ -130,7 +130,11 @@ fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper<SpatialMoving, S, L> {
 }
 
 /// The stable equilibrium at the shape of the moving arm, where there is one, with the engine left there.
-fn look(engine: &mut Engine, stepper: &Stepper<SpatialMoving, S, L>, tol: f64) -> Option<Found<SpatialConfiguration>> {
+fn look(
+    engine: &mut Engine,
+    stepper: &Stepper<SpatialMoving, S, L>,
+    tol: f64,
+) -> Option<Candidate<SpatialConfiguration>> {
     let settling = &stepper.settling;
     let force = settling.moving.statics.units.force / engine.equations.units.force;
     let shape = without_places(&settling.solution, &settling.moving.scales, force);
@@ -142,7 +146,7 @@ fn look(engine: &mut Engine, stepper: &Stepper<SpatialMoving, S, L>, tol: f64) -
         };
         let places = settling.solution.mesh.nodes().iter().map(place).collect();
         let stands = matches!(configuration.stability(), Some(Stability::Stable) | None);
-        stands.then(|| Found::near(configuration, places, &stepper.now)).flatten()
+        stands.then(|| Candidate::near(configuration, places, &stepper.now)).flatten()
     })
 }
 

@@ -26,12 +26,12 @@ impl SpatialMoving {
         out.stages.clear();
         for (block, (station, local)) in system.stations().iter().zip(system.locals()).enumerate() {
             let carried = self.carried(&statics.cables_in(block)[c], station);
-            out.stages.push(self.drift(block, station, &local.inner, &carried));
+            out.stages.push(self.stage_forcing(block, station, &local.inner, &carried));
         }
         out.ends.clear();
         for (block, (station, inner)) in system.end_stations().iter().zip(system.ends()).enumerate() {
             let carried = self.carried(&statics.cables_at_end(block)[c], station);
-            out.ends.push(self.end_drift(station, inner, &carried));
+            out.ends.push(self.end_forcing(station, inner, &carried));
         }
     }
 
@@ -43,7 +43,7 @@ impl SpatialMoving {
 
     /// What a change of what sections carry, in a block of stations, changes at fixed states: the strains follow, and
     /// with them the slopes.
-    pub(super) fn drift(
+    pub(super) fn stage_forcing(
         &self,
         block: usize,
         given: &Station<S, L>,
@@ -74,7 +74,7 @@ impl SpatialMoving {
     }
 
     /// The same at a block of ends: strains, and the section stretch.
-    pub(super) fn end_drift(
+    pub(super) fn end_forcing(
         &self,
         given: &Station<S, L>,
         inner: &Inner<S, L, Lanes>,

@@ -45,13 +45,13 @@ impl Engine {
         self.equations.place_ends(&self.solution);
     }
 
-    /// Moves the solution on by each share times its way from that solution before, one after the other, and nodes on
+    /// Moves the solution on by each factor times its way from that solution before, one after the other, and nodes on
     /// kinks with it. Left as it is where one of them does not correspond node by node.
     pub(crate) fn lead_on(&mut self, steps: &[(&Guess, f64)]) {
         let mut next = self.solution.clone();
-        for (before, share) in steps {
-            let Some(mesh) = next.mesh.extrapolated(&before.mesh, *share) else { return };
-            if !next.extrapolate(before, *share) {
+        for (before, fraction) in steps {
+            let Some(mesh) = next.mesh.extrapolated(&before.mesh, *fraction) else { return };
+            if !next.extrapolate(before, *fraction) {
                 return;
             }
             next.mesh = mesh;

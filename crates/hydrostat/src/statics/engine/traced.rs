@@ -25,7 +25,7 @@ impl Traced for Engine {
     fn set(&mut self, along: Along, fraction: f64) {
         match along {
             Along::Phase(phase) => self.set_phase(phase, fraction),
-            Along::Range => self.equations.set_share(fraction),
+            Along::Range => self.equations.set_range_fraction(fraction),
         }
     }
 
@@ -58,7 +58,7 @@ impl Traced for Engine {
 
     fn changed_sides(&self, before: &State) -> f64 {
         let (mesh, gauss, from) = (&self.solution.mesh, &self.system.gauss, &before.solution.mesh);
-        let mut share = 0.0;
+        let mut fraction = 0.0;
         for (k, s) in self.equations.stations().iter().enumerate() {
             let e = from.element_of(*s);
             let w = gauss.cardinals((s - from.nodes()[e]) / from.step(e));
@@ -66,11 +66,11 @@ impl Traced for Engine {
             for side in 0..2 {
                 let then: f64 = (0..M).map(|j| w[j] * before.switch(e, j, side)).sum();
                 if then * self.switch(k / M, k % M, side) < 0.0 {
-                    share += length;
+                    fraction += length;
                 }
             }
         }
-        share
+        fraction
     }
 
     fn note_sides(&mut self) {
@@ -154,8 +154,8 @@ impl Traced for Engine {
         self.equations.value_at(fraction)
     }
 
-    fn share(&self) -> f64 {
-        self.equations.share()
+    fn range_fraction(&self) -> f64 {
+        self.equations.range_fraction()
     }
 
     fn read(&mut self, error: f64) -> Option<Configuration> {

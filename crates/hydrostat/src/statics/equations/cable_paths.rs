@@ -84,16 +84,16 @@ impl Equations {
         let per_force = self.per_force(c);
         let tension = self.tensions[c];
         let stretch = |block: usize| self.cable_tangent(c, block, &at.stations[block]).stretch;
-        let share = |block: usize| self.cables_in(block)[c].tension;
+        let fraction = |block: usize| self.cables_in(block)[c].tension;
         if per_force == 0.0 {
             return [self.along_cable(c, at, stretch), 0.0];
         }
-        let longer = |block: usize| Lanes::of(1.0) + share(block) * Lanes::of(tension * per_force);
+        let longer = |block: usize| Lanes::of(1.0) + fraction(block) * Lanes::of(tension * per_force);
         [
             self.along_cable(c, at, |block| stretch(block) / longer(block)),
             self.along_cable(c, at, |block| {
                 let longer = longer(block);
-                -(stretch(block) * share(block) * Lanes::of(per_force)) / (longer * longer)
+                -(stretch(block) * fraction(block) * Lanes::of(per_force)) / (longer * longer)
             }),
         ]
     }

@@ -89,9 +89,9 @@ impl Equations {
         out.stages = explicit
             .iter()
             .enumerate()
-            .map(|(block, by)| self.drift(&self.places[block], &stations[block], &locals[block], by))
+            .map(|(block, by)| self.stage_forcing(&self.places[block], &stations[block], &locals[block], by))
             .collect();
-        out.ends = end_explicit.iter().zip(ends).enumerate().map(|(b, (by, at))| self.end_drift(b, at, by)).collect();
+        out.ends = end_explicit.iter().zip(ends).enumerate().map(|(b, (by, at))| self.end_forcing(b, at, by)).collect();
         out
     }
 
@@ -206,9 +206,9 @@ impl Equations {
         }
     }
 
-    /// The drift at a station, the strains eliminated.
+    /// The forcing at a station, the strains eliminated.
     #[inline(always)]
-    fn drift(
+    fn stage_forcing(
         &self,
         place: &Place<Lanes>,
         station: &Station<N, L>,
@@ -233,7 +233,7 @@ impl Equations {
         }
     }
 
-    fn end_drift(&self, block: usize, station: &Station<N, L>, carried: &[Lanes; 3]) -> ([Lanes; L], Lanes) {
+    fn end_forcing(&self, block: usize, station: &Station<N, L>, carried: &[Lanes; 3]) -> ([Lanes; L], Lanes) {
         let section = &self.end_sections[block];
         let mut pulled = CableList::new();
         let count = self.tensions.len();
@@ -280,8 +280,8 @@ impl Equations {
         match way {
             Way::Path => match self.varied_over() {
                 Some(_) => {
-                    let share = self.share() + change;
-                    self.set_share_with(share, sections);
+                    let fraction = self.range_fraction() + change;
+                    self.set_range_fraction_with(fraction, sections);
                 }
                 None => match self.phase {
                     Phase::Loads => self.fraction[0] += change,

@@ -54,14 +54,14 @@ impl Equations {
 
     fn load_of(&self, tip: &TipLoad, theta: f64) -> ([f64; 3], [f64; 3]) {
         let (sin, cos) = theta.sin_cos();
-        let share = self.fraction[0] / self.units.force;
+        let fraction = self.fraction[0] / self.units.force;
         let [f_a, f_b] = tip.follower;
         let load = [
-            share * (tip.force[0] + f_a * cos - f_b * sin),
-            share * (tip.force[1] + f_a * sin + f_b * cos),
-            share * tip.moment / self.units.length,
+            fraction * (tip.force[0] + f_a * cos - f_b * sin),
+            fraction * (tip.force[1] + f_a * sin + f_b * cos),
+            fraction * tip.moment / self.units.length,
         ];
-        let turn = [share * (-f_a * sin - f_b * cos), share * (f_a * cos - f_b * sin), 0.0];
+        let turn = [fraction * (-f_a * sin - f_b * cos), fraction * (f_a * cos - f_b * sin), 0.0];
         (load, turn)
     }
 }

@@ -20,7 +20,7 @@ impl Equations {
     }
 
     /// What friction leaves of the tension of cable `c` at `s`.
-    pub(crate) fn pull_share(&self, c: usize, s: f64, from_left: bool) -> f64 {
-        self.capstan.as_ref().map_or(1.0, |capstan| capstan.share(c, s, from_left))
+    pub(crate) fn tension_ratio(&self, c: usize, s: f64, from_left: bool) -> f64 {
+        self.capstan.as_ref().map_or(1.0, |capstan| capstan.tension_ratio(c, s, from_left))
     }
 }

@@ -47,9 +47,9 @@ impl Equations {
         }
     }
 
-    pub(super) fn set_stroke_share(&mut self, phase: Phase, fraction: f64) {
+    pub(super) fn set_stroke_fraction(&mut self, phase: Phase, fraction: f64) {
         if let Some(held) = &mut self.held {
-            held.share = if phase == Phase::Stroke { fraction } else { 1.0 };
+            held.fraction = if phase == Phase::Stroke { fraction } else { 1.0 };
         }
     }
 

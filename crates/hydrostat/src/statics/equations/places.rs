@@ -149,7 +149,7 @@ impl Equations {
     /// What is left of a unit of the tension of cable `c` at `s` (over L), on the side of it that is said.
     pub(super) fn pull_at(&self, c: usize, s: f64, from_left: bool) -> f64 {
         let runs = if from_left { s <= self.ends[c] + 1e-12 } else { s < self.ends[c] - 1e-12 };
-        if runs { self.pull_share(c, s, from_left) } else { 0.0 }
+        if runs { self.tension_ratio(c, s, from_left) } else { 0.0 }
     }
 
     /// Whether strains jump at `s` (over L), where a cable ends.
@@ -171,8 +171,8 @@ impl Equations {
         let cable_count = self.tensions.len();
         for c in 0..cable_count {
             let runs = f64::from(u8::from(s <= self.ends[c]));
-            let share = self.pull_share(c, s, true);
-            self.cables[block * cable_count + c].tension.0[lane] = runs * share;
+            let fraction = self.tension_ratio(c, s, true);
+            self.cables[block * cable_count + c].tension.0[lane] = runs * fraction;
         }
     }
 

@@ -7,10 +7,10 @@ use crate::rod::parameter::Parameter;
 pub(crate) struct Varied {
     pub(crate) ways: Vec<Change>,
     /// Where the equations are.
-    pub(crate) share: f64,
+    pub(crate) fraction: f64,
 }
 
-/// A parameter with its values at the shares 0 and 1 of a range.
+/// A parameter with its values at the fractions 0 and 1 of a range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Change {
     pub(crate) parameter: Parameter,
@@ -19,9 +19,9 @@ pub(crate) struct Change {
 }
 
 impl Change {
-    /// The value at a share of the range.
-    pub(crate) fn value(self, share: f64) -> f64 {
-        self.from + share * (self.to - self.from)
+    /// The value at a fraction of the range.
+    pub(crate) fn value(self, fraction: f64) -> f64 {
+        self.from + fraction * (self.to - self.from)
     }
 
     /// The change over the whole range.

@@ -152,7 +152,7 @@ impl Equations {
 
     /// The tension of cable `c` at a place up to its end.
     fn tension_at(&self, c: usize, asked: &SectionQuery) -> f64 {
-        self.tension(c) * self.pull_share(c, asked.s, asked.from_left)
+        self.tension(c) * self.tension_ratio(c, asked.s, asked.from_left)
     }
 
     /// Whether cable `c` pulls at a place.

@@ -9,8 +9,8 @@ pub(crate) struct StrokeControl {
     pub(crate) taut: Vec<bool>,
     /// Strokes that the phase of strokes starts from, over L.
     pub(crate) from: Vec<f64>,
-    /// The share of the way from these to those commanded.
-    pub(crate) share: f64,
+    /// The fraction of the way from these to those commanded.
+    pub(crate) fraction: f64,
     /// Whether rounds may change which cables are taut. Along a path that is an event of its own.
     pub(crate) switching: bool,
 }
@@ -23,13 +23,13 @@ impl StrokeControl {
     pub(crate) fn slack(cables: Vec<usize>) -> Option<Self> {
         let count = cables.len();
         let (taut, from) = (vec![false; count], vec![0.0; count]);
-        (count > 0).then_some(Self { cables, taut, from, share: 1.0, switching: true })
+        (count > 0).then_some(Self { cables, taut, from, fraction: 1.0, switching: true })
     }
 
     /// Stroke that is commanded of cable `index` now, `whole` (over L) being the one asked for.
     pub(crate) fn command(&self, index: usize, whole: f64) -> f64 {
         let from = self.from[index];
-        if self.share == 1.0 { whole } else { from + self.share * (whole - from) }
+        if self.fraction == 1.0 { whole } else { from + self.fraction * (whole - from) }
     }
 
     /// Which of the commanded cables are taut.

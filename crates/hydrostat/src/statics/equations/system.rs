@@ -221,7 +221,7 @@ impl Equations {
             Phase::Tension => [1.0, fraction],
             Phase::Stroke | Phase::Friction => [1.0, 1.0],
         };
-        self.set_stroke_share(phase, fraction);
+        self.set_stroke_fraction(phase, fraction);
     }
 
     /// The tension of cable `c` at the present fraction, in the unit of force.

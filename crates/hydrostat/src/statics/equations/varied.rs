@@ -6,40 +6,40 @@ use crate::rod::arm::Arm;
 use crate::rod::parameter::Parameter;
 
 impl Equations {
-    /// Lets `parameter` run from `from` to `to`; the equations are at share 0 of the range.
+    /// Lets `parameter` run from `from` to `to`; the equations are at fraction 0 of the range.
     pub(crate) fn vary(&mut self, parameter: Parameter, from: f64, to: f64) {
         self.vary_together(vec![Change { parameter, from, to }]);
     }
 
-    /// Lets several parameters run together, along a straight line; the equations are at share 0 of it.
+    /// Lets several parameters run together, along a straight line; the equations are at fraction 0 of it.
     pub(crate) fn vary_together(&mut self, ways: Vec<Change>) {
-        self.varied = Some(Varied { ways, share: 0.0 });
-        self.set_share(0.0);
+        self.varied = Some(Varied { ways, fraction: 0.0 });
+        self.set_range_fraction(0.0);
     }
 
-    /// The value of the (first) parameter at a share of its range.
-    pub(crate) fn value_at(&self, share: f64) -> f64 {
-        self.varied_over().and_then(|ways| ways.first()).map_or(share, |way| way.value(share))
+    /// The value of the (first) parameter at a fraction of its range.
+    pub(crate) fn value_at(&self, fraction: f64) -> f64 {
+        self.varied_over().and_then(|ways| ways.first()).map_or(fraction, |way| way.value(fraction))
     }
 
-    /// Takes the arm at a share of the range, within it or beyond.
-    pub(crate) fn set_share(&mut self, share: f64) {
-        self.set_share_with(share, true);
+    /// Takes the arm at a fraction of the range, within it or beyond.
+    pub(crate) fn set_range_fraction(&mut self, fraction: f64) {
+        self.set_range_fraction_with(fraction, true);
     }
 
-    /// [`Equations::set_share`], without what is along the arm where that is not asked for.
-    pub(super) fn set_share_with(&mut self, share: f64, sections: bool) {
+    /// [`Equations::set_range_fraction`], without what is along the arm where that is not asked for.
+    pub(super) fn set_range_fraction_with(&mut self, fraction: f64, sections: bool) {
         let Some(varied) = &mut self.varied else { return };
-        varied.share = share;
+        varied.fraction = fraction;
         for way in &varied.ways {
             // That the arm has the parameter was checked when the range was.
-            let _ = way.parameter.set(&mut self.arm, way.value(share));
+            let _ = way.parameter.set(&mut self.arm, way.value(fraction));
         }
         let of_sections = varied.ways.iter().any(|way| way.parameter.is_of_sections());
         self.take_arm(sections && of_sections);
     }
 
-    /// Takes the arm of other equations, which may be at another share of a range.
+    /// Takes the arm of other equations, which may be at another fraction of a range.
     pub(crate) fn take_arm_of(&mut self, other: &Self) {
         if let Some(varied) = &other.varied {
             self.arm.clone_from(&other.arm);
@@ -78,8 +78,8 @@ impl Equations {
     }
 
     /// Where in the range the equations are.
-    pub(crate) fn share(&self) -> f64 {
-        self.varied.as_ref().map_or(0.0, |v| v.share)
+    pub(crate) fn range_fraction(&self) -> f64 {
+        self.varied.as_ref().map_or(0.0, |v| v.fraction)
     }
 
     /// Makes the derivative by the parameter that by a couple along the arm, of the shape `couple` over s/L.

@@ -8,7 +8,7 @@ use crate::statics::phase::Phase;
 /// What the equations are differentiated by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Way {
-    /// The parameter of a path: the fraction of a phase, the share of a range, or an imposed couple.
+    /// The parameter of a path: the fraction of a phase, the fraction of a range, or an imposed couple.
     Path,
     /// The tension of a cable, in the unit of force.
     Tension(usize),

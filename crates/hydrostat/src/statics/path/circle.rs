@@ -275,8 +275,8 @@ fn fill_in(
     fill_in(stepper, asked, [&middle, b], halvings - 1, out);
 }
 
-/// A point of the curve between two, at the share `x` of the way between the angles of their tips, or nearer to one of
-/// them where no such tangent leads.
+/// A point of the curve between two, at the fraction `x` of the way between the angles of their tips, or nearer to one
+/// of them where no such tangent leads.
 fn inside(stepper: &mut Stepper<'_>, [a, b]: [&Point; 2], x: f64) -> Option<Point> {
     let way = b.tip_angle() - a.tip_angle();
     for part in [1.0, 0.3, 0.1, 0.03, 0.01] {
@@ -299,9 +299,9 @@ fn extreme_between(stepper: &mut Stepper<'_>, a: &Point, b: &Point) -> Option<Po
     let mut best = None;
     for k in 0..EXTREMES {
         // The zero of the slope by its values at both ends, or, at every third time, halfway, so that both come in.
-        let share = if k % 3 == 2 { 0.5 } else { low.slope() / (low.slope() - high.slope()) };
-        let share = if share.is_finite() { share.clamp(0.05, 0.95) } else { 0.5 };
-        let point = inside(stepper, [&low, &high], share)?;
+        let fraction = if k % 3 == 2 { 0.5 } else { low.slope() / (low.slope() - high.slope()) };
+        let fraction = if fraction.is_finite() { fraction.clamp(0.05, 0.95) } else { 0.5 };
+        let point = inside(stepper, [&low, &high], fraction)?;
         let side = point.slope() * low.slope() > 0.0;
         best = Some(point.clone());
         if side {
@@ -330,7 +330,7 @@ impl Cubic {
         Self { ends: [a, b].map(|point| [point.tip_angle(), point.fraction, point.slope()]) }
     }
 
-    /// Value and slope at the share `x` of the way.
+    /// Value and slope at the fraction `x` of the way.
     fn at(&self, x: f64) -> [f64; 2] {
         let [[p, f, s], [q, g, t]] = self.ends;
         let (width, y) = (q - p, 1.0 - x);
@@ -487,8 +487,8 @@ impl Stepper<'_> {
     /// The point of the branch at which the tip has a given angle, from one nearby. There is one wherever that angle
     /// alone decides the shape, round sharp folds, too, of which no tangent at a distance knows.
     fn at_tip_angle(&mut self, here: &Point, angle: f64, control: StepControl) -> Result<Point, Trouble> {
-        let climb = (angle - here.tip_angle()) * here.slope();
-        let mut fraction = self.predict(here, climb / here.dlambda_ds);
+        let d_lambda = (angle - here.tip_angle()) * here.slope();
+        let mut fraction = self.predict(here, d_lambda / here.dlambda_ds);
         let from = self.engine.nodes();
         self.correct_at_tip(&mut fraction)?;
         let moved = self.engine.largest_turn_since(&from);

@@ -68,8 +68,8 @@ impl<E: Traced> Stepper<'_, E> {
     ) -> Result<Contact<E>, Trouble> {
         // The first of them, over how far each is from it at the start.
         let least = |point: &Point<E>| {
-            let share = |i: &usize| point.margins[*i] / here.margins[*i];
-            past.iter().map(|i| (share(i), *i)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((1.0, 0))
+            let fraction = |i: &usize| point.margins[*i] / here.margins[*i];
+            past.iter().map(|i| (fraction(i), *i)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((1.0, 0))
         };
         let (mut low, mut high) = ((0.0, 1.0), (step, least(&next).0));
         let mut reached = next;
@@ -79,8 +79,8 @@ impl<E: Traced> Stepper<'_, E> {
                 return self.change(reached, i);
             }
             // False position, its older end weighed down so that both ends come in.
-            let share: f64 = low.1 / (low.1 - high.1);
-            let middle = low.0 + share.clamp(0.02, 0.98) * (high.0 - low.0);
+            let fraction: f64 = low.1 / (low.1 - high.1);
+            let middle = low.0 + fraction.clamp(0.02, 0.98) * (high.0 - low.0);
             let (point, turn) = self.advance(here, middle, control)?;
             if turn == StepOutcome::Bifurcation {
                 return Err(Trouble::Stalled(step));

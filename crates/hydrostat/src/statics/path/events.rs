@@ -8,7 +8,7 @@ use super::traced::{Change, Traced, Turn};
 use crate::statics::border::NewtonStep;
 use crate::statics::stability::Stability;
 
-/// The climb that stands for none in the tangent of a branch that crosses.
+/// The dlambda/ds that stands for zero in the tangent of a branch that crosses.
 const MODE: f64 = 1e-9;
 
 /// About a, b and c: the couple that the search for a mode begins with. In the plane that about c alone acts.
@@ -18,7 +18,8 @@ const FIRST_COUPLE: Turn = [0.3, 0.6, 1.0];
 /// six halvings leave a sixty-fourth of the way.
 const SMALL: f64 = 0.25;
 
-/// The climb that is none at a limit point: the fraction is off by its square, the shape by itself.
+/// The dlambda/ds that counts as zero at a limit point: the error of the fraction is its square, the error of the
+/// shape is linear in it.
 const LEVEL: f64 = 1e-6;
 
 impl<E: Traced> Stepper<'_, E> {
@@ -230,7 +231,7 @@ impl<E: Traced> Stepper<'_, E> {
             if accurate.is_err() {
                 continue;
             }
-            let fraction = self.engine.share();
+            let fraction = self.engine.range_fraction();
             let Ok(mut point) = self.point(fraction) else { continue };
             // Away from the bifurcation.
             let along: f64 = {

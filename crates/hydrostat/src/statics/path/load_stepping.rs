@@ -126,8 +126,8 @@ pub(crate) fn follow_on(
 }
 
 /// Follows the range that the engine's equations vary over to its end, or to a verdict, from the engine's equilibrium
-/// at the share `from` of it. Behind a limit point it is followed down to the share `lowest`. Fractions of snaps and
-/// verdicts are shares of the range, and their phase says nothing.
+/// at the fraction `from` of it. Behind a limit point it is followed down to the fraction `lowest`. Fractions of snaps
+/// and verdicts are fractions of the range, and their phase says nothing.
 pub(crate) fn follow_range(
     engine: &mut Engine,
     [from, lowest]: [f64; 2],
@@ -142,7 +142,7 @@ pub(crate) fn follow_range(
     if let Err(verdict) = outcome {
         return Err(way.stopped(engine, verdict));
     }
-    engine.equations.set_share(1.0);
+    engine.equations.set_range_fraction(1.0);
     way.whole(engine)
 }
 
@@ -248,7 +248,7 @@ impl Ramp<'_, '_> {
         self.stepper.begin(&mut here);
         let first = if self.stepper.engine.in_a_hurry { 0.2 } else { 0.1_f64.min(control.longest) };
         let mut step = first;
-        // A point before this one whose tangent climbed clearly more.
+        // A point before this one with a clearly larger dlambda/ds.
         let mut steeper = (here.fraction, here.dlambda_ds);
         let mut sharpened = false;
         let mut most = control.most;
@@ -415,8 +415,8 @@ impl Ramp<'_, '_> {
         })
     }
 
-    /// Why no step leads on from `here`, given fraction and rise of a point before it whose tangent climbed clearly
-    /// more.
+    /// Why no step leads on from `here`, given fraction and dlambda/ds of a point before it with a clearly larger
+    /// dlambda/ds.
     fn stuck(&mut self, here: &Point, steeper: (f64, f64)) -> Verdict {
         let residual = self.stepper.engine.last;
         self.stepper.engine.restore(&here.state);
@@ -429,7 +429,7 @@ impl Ramp<'_, '_> {
             return self.end(VerdictKind::LimitPoint, here.fraction, None);
         }
         let end = self.end(kind, here.fraction, s);
-        // Towards a fold the square of the climb falls to zero linearly in the load.
+        // Towards a fold the square of dlambda/ds falls to zero linearly in the load.
         let fall = steeper.1.powi(2) - here.dlambda_ds.powi(2);
         let ahead = (here.fraction - steeper.0) * here.dlambda_ds.powi(2) / fall;
         if kind == VerdictKind::NotFound && here.dlambda_ds < 0.1 && fall > 0.0 && ahead < 1e-3 {

@@ -18,8 +18,8 @@ impl Dice {
     }
 
     fn one_of<T: Copy>(&mut self, of: &[T]) -> T {
-        let share = self.roll() * of.len() as f64;
-        *of.iter().enumerate().find(|(i, _)| share < (*i + 1) as f64).unwrap().1
+        let fraction = self.roll() * of.len() as f64;
+        *of.iter().enumerate().find(|(i, _)| fraction < (*i + 1) as f64).unwrap().1
     }
 }
 
@@ -30,11 +30,11 @@ pub(crate) fn random_arm(dice: &mut Dice) -> Arm {
     let young = 10_f64.powf(dice.between(4.0, 5.7));
     let mut arm = Arm::cone(length, base, tip, young, 0.5);
     arm.density = dice.between(1000.0, 1150.0);
-    let share = dice.between(0.4, 0.8);
+    let fraction = dice.between(0.4, 0.8);
     let most = 0.05 * young * std::f64::consts::PI * tip * tip;
     let tension = most * dice.between(0.0, 1.5);
-    arm.cables.push(Cable::new("left", Profile::linear(share * base, share * tip)).pulled(tension));
-    arm.cables.push(Cable::new("right", Profile::linear(-share * base, -share * tip)));
+    arm.cables.push(Cable::new("left", Profile::linear(fraction * base, fraction * tip)).pulled(tension));
+    arm.cables.push(Cable::new("right", Profile::linear(-fraction * base, -fraction * tip)));
     arm.flow.speed = dice.between(0.0, 1.0);
     arm.flow.direction = dice.one_of(&[0.0_f64, 60.0, 90.0, 180.0]).to_radians();
     arm.gravity = dice.one_of(&[None, Some(Gravity::default())]);

@@ -21,8 +21,8 @@ pub(super) const MANY: usize = 100;
 /// Two branches that come as near as this fraction meet.
 pub(super) const MEET: f64 = 1e-3;
 
-/// By how much of the steeper climb the mean climb of a step may differ from that of its two ends: two
-/// folds within one step would make them differ by far more.
+/// How far the secant slope dlambda/ds of a step may differ from the mean of the slopes at its two ends, relative to
+/// the larger of them: two limit points within one step would make them differ by far more.
 pub(super) const EVEN: f64 = 0.15;
 
 /// Steps shorter than this go round a corner of the path, which the load's kinks make where a whole part

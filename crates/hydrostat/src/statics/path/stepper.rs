@@ -93,7 +93,7 @@ struct Progress {
     /// The sum of the turns of all steps, rad (root mean square along the arm).
     turn: f64,
     /// The sum of the changes of the fraction.
-    climb: f64,
+    d_lambda: f64,
 }
 
 /// The fraction of a path, and whether corrections may change it.
@@ -121,7 +121,7 @@ pub(super) struct Stepper<'e, E: Traced> {
     /// The last linearisation.
     pub(super) round: NewtonStep<E::Change>,
     pub(super) last_trouble: Option<Trouble>,
-    /// Sign of the climb times that of the determinant.
+    /// Sign of dlambda/ds times that of the determinant.
     pub(super) orientation: f64,
     /// Fraction of the last solution that was refused as the next point because it is on a branch of
     /// the other orientation.
@@ -133,7 +133,7 @@ pub(super) struct Stepper<'e, E: Traced> {
     /// The turn (rad, root mean square along the arm) that counts as much as the whole of the load in the
     /// metric of the path.
     scale: f64,
-    /// Where the branch began, and how far its shape has turned and its fraction has climbed since.
+    /// Where the branch began, and how far its shape has turned and its fraction has changed since.
     progress: Progress,
     /// How much of what a step may bend the path the last one did, over all of it: of the second order in the step.
     stretch: f64,
@@ -219,10 +219,10 @@ impl<'e, E: Traced> Stepper<'e, E> {
     /// either side, would turn back and forth within a step.
     pub(super) fn went(&mut self, here: &Point<E>, next: &mut Point<E>) {
         let way = self.distance(here, next);
-        let climb = next.fraction - here.fraction;
-        self.progress.turn += self.scale * (way * way - climb * climb).max(0.0).sqrt();
-        self.progress.climb += climb.abs();
-        self.rescale(next, self.progress.turn / self.progress.climb);
+        let d_lambda = next.fraction - here.fraction;
+        self.progress.turn += self.scale * (way * way - d_lambda * d_lambda).max(0.0).sqrt();
+        self.progress.d_lambda += d_lambda.abs();
+        self.rescale(next, self.progress.turn / self.progress.d_lambda);
     }
 
     /// Widens the scale of turns to `wanted` (rad a whole load), and gives `point` the tangent of the metric that
@@ -236,7 +236,7 @@ impl<'e, E: Traced> Stepper<'e, E> {
         point.dlambda_ds = point.dlambda_ds.signum() / turn.hypot(1.0);
     }
 
-    /// The point here. Its tangent is oriented by the determinant, whose sign times that of the climb is
+    /// The point here. Its tangent is oriented by the determinant, whose sign times the sign of dlambda/ds is
     /// the same all along a branch, round folds and corners alike, until another branch crosses.
     pub(super) fn point(&mut self, fraction: f64) -> Result<Point<E>, Trouble> {
         self.linearise()?;
@@ -266,9 +266,9 @@ impl<'e, E: Traced> Stepper<'e, E> {
         self.current = false;
         self.stretch = 0.0;
         self.engine.restore(&here.state);
-        let climb = step * here.dlambda_ds;
-        self.engine.move_along(&here.response, &here.tensions, climb);
-        here.fraction + climb
+        let d_lambda = step * here.dlambda_ds;
+        self.engine.move_along(&here.response, &here.tensions, d_lambda);
+        here.fraction + d_lambda
     }
 
     pub(super) fn advance(
@@ -322,9 +322,9 @@ impl<'e, E: Traced> Stepper<'e, E> {
         self.correct_on(&normal, 0.0, fraction)
     }
 
-    /// Newton on the plane through the present state with the normal `normal`, over the turns of the nodes, and
-    /// `climb`, over the fraction.
-    fn correct_on(&mut self, normal: &[Turn], climb: f64, fraction: &mut f64) -> Result<(), Trouble> {
+    /// Newton on the plane through the present state with the normal (`normal`, `d_lambda`): its parts by the turns of
+    /// the nodes and by the fraction.
+    fn correct_on(&mut self, normal: &[Turn], d_lambda: f64, fraction: &mut f64) -> Result<(), Trouble> {
         // In a hurry, when the next one would be none.
         let close = self.scale * if self.engine.is_in_a_hurry() { CLOSE } else { 1e-6 };
         let mut before = f64::INFINITY;
@@ -333,7 +333,7 @@ impl<'e, E: Traced> Stepper<'e, E> {
             self.linearise()?;
             let [rest, response] = [&self.round.rest, &self.round.response].map(|change| self.engine.turns(change));
             let along = |turns: &[Turn]| -> f64 { normal.iter().zip(turns).map(|(n, turn)| dot(n, turn)).sum() };
-            let slide = bordered(along(&rest), along(&response), climb);
+            let slide = bordered(along(&rest), along(&response), d_lambda);
             self.engine.take_round(&self.round, slide);
             *fraction += slide;
             let turns = rest.iter().zip(&response).map(|(rest, by)| size(&each(|k| rest[k] + slide * by[k])));
@@ -403,13 +403,13 @@ impl<'e, E: Traced> Stepper<'e, E> {
         Ok((next, StepOutcome::Regular))
     }
 
-    /// How far the climb from `a` to `b` over the way there is from the mean of the climbs at both,
-    /// over the steeper. Unlike an angle it sees a fold that takes little load.
+    /// How far the secant slope dlambda/ds from `a` to `b` is from the mean of the slopes at both, relative to the
+    /// larger. Unlike an angle between tangents it sees a limit point that takes little load.
     fn unevenness(&self, a: &Point<E>, b: &Point<E>, step: f64) -> f64 {
         // A step that ended past a bound is landed backwards.
-        let climb = (b.fraction - a.fraction) * step.signum();
-        let square = self.square_of_way(climb, a, b);
-        let mean = climb / square.sqrt();
+        let d_lambda = (b.fraction - a.fraction) * step.signum();
+        let square = self.square_of_way(d_lambda, a, b);
+        let mean = d_lambda / square.sqrt();
         (mean - 0.5 * (a.dlambda_ds + b.dlambda_ds)).abs() / a.dlambda_ds.abs().max(b.dlambda_ds.abs())
     }
 
@@ -463,9 +463,9 @@ impl<'e, E: Traced> Stepper<'e, E> {
     }
 
     /// The square of the way between two points, the engine being at the second, in the metric of the path.
-    fn square_of_way(&self, climb: f64, a: &Point<E>, b: &Point<E>) -> f64 {
+    fn square_of_way(&self, d_lambda: f64, a: &Point<E>, b: &Point<E>) -> f64 {
         let turns = self.engine.turns_between(&a.state, &b.state);
-        turns.iter().zip(self.weights()).fold(climb * climb, |sum, (turn, w)| sum + w * dot(turn, turn))
+        turns.iter().zip(self.weights()).fold(d_lambda * d_lambda, |sum, (turn, w)| sum + w * dot(turn, turn))
     }
 
     fn cosine(&self, a: &Point<E>, b: &Point<E>) -> f64 {

@@ -63,7 +63,7 @@ pub(crate) trait Traced: Clone + Refinable {
     fn turns(&self, change: &Self::Change) -> Vec<Turn>;
     /// The turns of the nodes of a state from where sections there are at another.
     fn turns_between(&self, before: &Self::State, after: &Self::State) -> Vec<Turn>;
-    /// The share of the arm that the stream meets from the other side than it did.
+    /// The fraction of the arm that the stream meets from the other side than it did.
     fn changed_sides(&self, before: &Self::State) -> f64;
     /// Brings what [`Traced::changed_sides`] goes by up to date.
     fn note_sides(&mut self);
@@ -105,7 +105,7 @@ pub(crate) trait Traced: Clone + Refinable {
     /// The parameter's value at a fraction of its range.
     fn value_at(&self, fraction: f64) -> f64;
     /// Where in the range the equations are.
-    fn share(&self) -> f64;
+    fn range_fraction(&self) -> f64;
     /// The shape, given the error of its tip over L.
     fn read(&mut self, error: f64) -> Option<Self::Shape>;
     /// Whether a shape is stable.

@@ -43,7 +43,7 @@ pub(crate) fn follow_turns<E: Traced>(
     side: f64,
     further: &mut dyn FnMut(Met<'_, E>) -> Further,
 ) -> Option<PathEnd> {
-    let start = engine.share();
+    let start = engine.range_fraction();
     let mut stepper = Stepper::new(engine, Along::Range, [f64::NEG_INFINITY, f64::INFINITY]);
     let begun = stepper
         .keep_accuracy(None, &mut Fraction::Fixed(start), [CONTROL.accuracy; 2])

@@ -30,9 +30,9 @@ pub(crate) struct Derivatives {
 /// A quantity as weights on the change of the solution and on that of the equations.
 pub(crate) struct Row<const N: usize, const Q: usize, const L: usize> {
     pub(crate) functional: Functional<N>,
-    /// Weights on the drifts of rates and strains at the stages, in blocks; empty where there are none.
+    /// Weights on the forcings of rates and strains at the stages, in blocks; empty where there are none.
     pub(crate) stages: Vec<([Lanes; Q], [Lanes; L])>,
-    /// Weights on the drifts of strains at ends: block, lane.
+    /// Weights on the forcings of strains at ends: block, lane.
     pub(crate) ends: Vec<(usize, usize, [f64; L])>,
     /// What follows the sources at a fixed solution, in SI.
     pub(crate) direct: Vec<f64>,
@@ -51,15 +51,15 @@ impl<const N: usize, const Q: usize, const L: usize> Row<N, Q, L> {
         self.stages.resize(blocks, ([Lanes::default(); Q], [Lanes::default(); L]));
     }
 
-    /// What the drifts of rates and strains add.
-    fn drifts(&self, change: &Forcing<N, Q, L>) -> f64 {
+    /// What the forcings of rates and strains add.
+    fn forced(&self, change: &Forcing<N, Q, L>) -> f64 {
         let mut sum = Lanes::default();
-        for ((rates, strains), drift) in self.stages.iter().zip(&change.stages) {
+        for ((rates, strains), forcing) in self.stages.iter().zip(&change.stages) {
             for q in 0..Q {
-                sum += rates[q] * drift.rate[q];
+                sum += rates[q] * forcing.rate[q];
             }
             for k in 0..L {
-                sum += strains[k] * drift.inner[k];
+                sum += strains[k] * forcing.inner[k];
             }
         }
         let mut out: f64 = sum.0.iter().sum();
@@ -117,7 +117,7 @@ pub(crate) fn unheld<const N: usize, const M: usize, const Q: usize, const L: us
         for (row, out) in rows.iter().zip(&mut out) {
             let cotangent = system.adjoint(&row.functional);
             for (out, change) in out.iter_mut().zip(changes) {
-                *out += along(&cotangent, change) + row.drifts(change);
+                *out += along(&cotangent, change) + row.forced(change);
             }
         }
     } else {
@@ -126,7 +126,7 @@ pub(crate) fn unheld<const N: usize, const M: usize, const Q: usize, const L: us
             respond(system, change, &mut response);
             let states = system.moved_states(&response);
             for (row, out) in rows.iter().zip(&mut out) {
-                out[k] += apply(system, solution, &row.functional, &response, &states) + row.drifts(change);
+                out[k] += apply(system, solution, &row.functional, &response, &states) + row.forced(change);
             }
         }
     }
@@ -212,11 +212,11 @@ fn apply<const N: usize, const M: usize, const Q: usize, const L: usize>(
 /// What weights on changes of the equations make of one.
 fn along<const N: usize, const Q: usize, const L: usize>(weights: &Cotangent<N>, change: &Forcing<N, Q, L>) -> f64 {
     let mut sum = Lanes::default();
-    for ((slopes, values), drift) in weights.slopes.iter().zip(&weights.values).zip(&change.stages) {
+    for ((slopes, values), forcing) in weights.slopes.iter().zip(&weights.values).zip(&change.stages) {
         for a in 0..N {
-            sum += slopes[a] * drift.slope[a];
+            sum += slopes[a] * forcing.slope[a];
         }
-        sum += *values * drift.value;
+        sum += *values * forcing.value;
     }
     for (weight, (_, value)) in weights.ends.iter().zip(&change.ends) {
         sum += *weight * *value;

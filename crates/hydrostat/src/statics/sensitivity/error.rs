@@ -27,7 +27,7 @@ pub enum SensitivityError<E = SolveError> {
         /// Of the arm, m.
         length: f64,
     },
-    /// A cable that rubs, by its index: which way it slides decides what a change does.
+    /// A cable with friction, by its index: which way it slides decides what a change does.
     #[error(
         "`cable[{0}].friction` is above 0: the effect of a change depends on the direction in which the cable slides, so that \
          there is no single derivative; set the friction to 0"

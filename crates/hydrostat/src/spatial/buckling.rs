@@ -8,13 +8,13 @@ use super::rotation::{Directors, Vector, dot, times, turned};
 use crate::rod::area_law::{area_law, displacement};
 use crate::rod::readings::Support;
 
-/// Adversity from which on a direct solve may have landed on a branch that the path does not lead to.
+/// Buckling indicator from which on a direct solve may have landed on a branch that the path does not lead to.
 const HARD: f64 = 0.3;
 
 impl Engine {
     /// Whether something pushes against the arm hard enough that a direct solve may have landed on a branch that the
     /// path does not lead to. Cheap and on the safe side.
-    pub(super) fn may_have_left_the_branch(&mut self) -> bool {
+    pub(super) fn needs_continuation(&mut self) -> bool {
         let equations = &self.equations;
         if equations.arm().readings.support == Support::UnstrainedBase {
             // An initial-value problem has one solution.
@@ -36,7 +36,7 @@ impl Engine {
                 unloaded = turned(&unloaded, &times(mesh.step(i) * self.system.gauss.b[j], &rate));
                 let z: [f64; N] = each(|k| station.z[k].0[lane]);
                 let strain: [f64; L] = each(|k| station.inner[k].0[lane]);
-                if equations.adversity(block, lane, &z, &strain, &Directors::of(&unloaded)) > HARD {
+                if equations.buckling_indicator(block, lane, &z, &strain, &Directors::of(&unloaded)) > HARD {
                     return true;
                 }
             }
@@ -48,7 +48,14 @@ impl Engine {
 impl Equations {
     /// Compression of the contact force by (1 - s)^2/EI, and stream and weight by (1 - s)^3/EI where they run against
     /// the tangent, now or in the unloaded arm: as in the plane.
-    fn adversity(&self, block: usize, lane: usize, z: &[f64; N], strain: &[f64; L], unloaded: &Directors<f64>) -> f64 {
+    fn buckling_indicator(
+        &self,
+        block: usize,
+        lane: usize,
+        z: &[f64; N],
+        strain: &[f64; L],
+        unloaded: &Directors<f64>,
+    ) -> f64 {
         let place = &self.places[block];
         let rest = 1.0 - place.s.0[lane];
         let own = area_law(self.volume, strain[0]);
