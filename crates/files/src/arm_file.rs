@@ -5,9 +5,9 @@ use std::io::Read;
 use std::path::Path;
 
 use hydrostat::{
-    Arm, Base, BaseDirections, Cable, Cavity, Displaced, DistributedLoad, Dynamics, EnteringSpeed, Flow, FlowLaw,
-    FlowSurface, Gravity, Hydrostatics, LayerMean, Material, Motion, Profile, Readings, Reference, Space, Support,
-    TipLoad, Volume, WettedLength,
+    Arm, ArmError, Base, BaseDirections, Cable, Cavity, Displaced, DistributedLoad, Dynamics, EnteringSpeed, Flow,
+    FlowLaw, FlowSurface, Gravity, Hydrostatics, LayerMean, Material, Motion, Profile, Readings, Reference, Space,
+    Support, TipLoad, Volume, WettedLength,
 };
 
 use crate::document::{self, Field, Origin};
@@ -182,25 +182,29 @@ impl ArmFile {
     pub fn errors(&self) -> Vec<FileError> {
         let mut values = Values::read(&resolved(&self.fields));
         let mut refused: Vec<Fault> = Vec::new();
-        // Numbers are held against each other only where those that most others depend on are right.
-        if !["arm", "material"].iter().any(|table| values.is_faulty(table)) {
-            while refused.len() < MOST_FAULTS
-                && let Err(source) = self.built(&values).check()
-            {
-                let key = source.key().to_owned();
-                let origin = values.origin(&key);
-                let is_old = values.is_faulty(&key) || refused.iter().any(|fault| fault.key == key);
-                let goes_on = values.set_aside(&key);
-                if !is_old {
-                    refused.push(Fault { origin, key, kind: FaultKind::Arm(source) });
-                }
-                if !goes_on {
-                    break;
-                }
+        // One by one, what the core refuses is set aside until it takes the rest.
+        while refused.len() < MOST_FAULTS
+            && let Err(source) = self.built(&values).check()
+        {
+            let key = source.key().to_owned();
+            let origin = values.origin(&key);
+            let is_of = |own: &str| values.is_faulty(own) || refused.iter().any(|fault| fault.key == own);
+            // What was not read stands in for what is missing or wrong, and was told.
+            let is_old = !values.is_read(&key) || is_of(&key) || (is_of("arm.length") && is_against_length(&source));
+            let goes_on = values.set_aside(&key);
+            if !is_old {
+                refused.push(Fault { origin, key, kind: FaultKind::Arm(source) });
+            }
+            if !goes_on {
+                break;
             }
         }
-        let all = values.into_faults().into_iter().chain(refused).take(MOST_FAULTS);
-        all.map(|fault| self.error(fault)).collect()
+        let mut all: Vec<Fault> = values.into_faults().into_iter().chain(refused).take(MOST_FAULTS).collect();
+        all.sort_by_key(|fault| match fault.origin {
+            Origin::Text(at) => (0, at),
+            Origin::Setting(index) => (1, index),
+        });
+        all.into_iter().map(|fault| self.error(fault)).collect()
     }
 
     fn built(&self, values: &Values) -> Arm {
@@ -220,6 +224,15 @@ impl ArmFile {
             FaultKind::Value { expected, found } => FileError::Value { place, key, expected, found },
             FaultKind::Arm(source) => FileError::Arm { place, key, source: Box::new(source) },
         }
+    }
+}
+
+/// Whether a value is refused because of the arm's length: nothing is known of it while the length is wrong itself.
+fn is_against_length(source: &ArmError) -> bool {
+    match source {
+        ArmError::TableDoesNotCover { .. } => true,
+        ArmError::OutOfRange { key, .. } => key.ends_with("].stroke"),
+        _ => false,
     }
 }
 

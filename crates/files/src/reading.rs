@@ -28,7 +28,7 @@ pub(crate) enum FaultKind {
 }
 
 /// A value in SI, angles in rad.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Value {
     Text(String),
     Word(&'static str),
@@ -46,8 +46,11 @@ pub(crate) enum Value {
 /// The most that is said of one file: who has more mends these first.
 pub(crate) const MOST_FAULTS: usize = 50;
 
+/// A radius (m) within which every offset is.
+const WIDE: f64 = 1e9;
+
 /// What is asked of several keys of a table at once.
-type Check = fn(&Values) -> Result<(), Fault>;
+type Check = fn(&Values) -> Vec<Fault>;
 
 /// All values of a file by dotted key, where they were written, and what is wrong with the others.
 #[derive(Debug, Default)]
@@ -65,18 +68,16 @@ impl Values {
         values.table("", format::FILE, fields, Origin::Text(0));
         // What a key of a table should be is open while another is wrong.
         let checks: [(&str, Check); 6] = [
-            ("material", Self::check_material),
+            ("material", |values| values.check_material().err().into_iter().collect()),
             ("flow", Self::check_drag),
             ("cable", Self::check_pull),
-            ("arm", Self::check_base),
-            ("arm.space", Self::check_space),
-            ("dynamics", Self::check_rate),
+            ("arm", |values| values.check_base().err().into_iter().collect()),
+            ("arm.space", |values| values.check_space().err().into_iter().collect()),
+            ("dynamics", |values| values.check_rate().err().into_iter().collect()),
         ];
         for (table, check) in checks {
-            if !values.is_faulty(table)
-                && let Err(fault) = check(&values)
-            {
-                values.faults.push(fault);
+            if !values.is_faulty(table) {
+                values.faults.extend(check(&values));
             }
         }
         values
@@ -99,14 +100,36 @@ impl Values {
         })
     }
 
-    /// Takes a value out that the core refuses, so that it can be asked about the others; false where an arm needs it.
-    pub(crate) fn set_aside(&mut self, key: &str) -> bool {
-        let needed = |key: &str| ["arm.length", "arm.radius"].contains(&key) || key.starts_with("material");
+    /// Whether a key, or the value that it is a part of, was read.
+    pub(crate) fn is_read(&self, key: &str) -> bool {
         let mut key = key;
         loop {
-            if needed(key) {
-                return false;
+            match (self.found.get(key), key.rfind(['.', '['])) {
+                (Some((value, _)), _) => return *value != Value::Group,
+                (None, Some(end)) => key = &key[..end],
+                (None, None) => return false,
             }
+        }
+    }
+
+    /// Takes a value out that the core refuses, so that it can be asked about the others; false where nothing is left to
+    /// take out.
+    pub(crate) fn set_aside(&mut self, key: &str) -> bool {
+        // What an arm cannot be without gets a value beside which all others are right.
+        let stand_in = match key {
+            "arm.length" | "material.young" => Value::Number(1.0),
+            "arm.radius" => Value::Profile(Profile::Constant(WIDE)),
+            "material.c1" | "material.c2" | "material.c3" | "reference.nu" => Value::Profile(Profile::Constant(1.0)),
+            _ => return self.take_out(key),
+        };
+        let origin = self.origin(key);
+        let before = self.found.insert(key.to_owned(), (stand_in.clone(), origin));
+        before.is_none_or(|(before, _)| before != stand_in)
+    }
+
+    fn take_out(&mut self, key: &str) -> bool {
+        let mut key = key;
+        loop {
             match self.found.get_mut(key) {
                 Some((Value::Group, _)) => return false,
                 // The default of an offset need not be inside the section.
@@ -441,16 +464,15 @@ impl Values {
     }
 
     /// A file gives a cable a tension or a stroke; an override of one takes the place of the other.
-    fn check_pull(&self) -> Result<(), Fault> {
-        for index in 0..self.cables {
+    fn check_pull(&self) -> Vec<Fault> {
+        let by_setting = |key: &str| matches!(self.origin(key), Origin::Setting(_));
+        let twice = |index: usize| {
             let [tension, stroke] = PULL.map(|name| format!("cable[{index}].{name}"));
-            let by_setting = |key: &str| matches!(self.origin(key), Origin::Setting(_));
-            if self.has(&tension) && self.has(&stroke) && by_setting(&tension) == by_setting(&stroke) {
-                let expected = "either tension or stroke".to_owned();
-                return Err(value_fault(&stroke, self.origin(&stroke), expected, "both".to_owned()));
-            }
-        }
-        Ok(())
+            let is_twice = self.has(&tension) && self.has(&stroke) && by_setting(&tension) == by_setting(&stroke);
+            let expected = || "either tension or stroke".to_owned();
+            is_twice.then(|| value_fault(&stroke, self.origin(&stroke), expected(), "both".to_owned()))
+        };
+        (0..self.cables).filter_map(twice).collect()
     }
 
     /// Whether cable `index` is given by its stroke.
@@ -483,15 +505,16 @@ impl Values {
         self.has(&viscosity) && !overridden
     }
 
-    fn check_drag(&self) -> Result<(), Fault> {
+    fn check_drag(&self) -> Vec<Fault> {
         if self.word("flow.law") != Some("quadratic-drag") {
-            return Ok(());
+            return Vec::new();
         }
-        let missing = DRAG.into_iter().map(|n| format!("flow.{n}")).find(|k| !self.has(k));
-        missing.map_or(Ok(()), |key| {
+        let missing = DRAG.into_iter().map(|n| format!("flow.{n}")).filter(|k| !self.has(k));
+        let fault = |key: String| {
             let expected = format!("{} with law = \"quadratic-drag\"", Dimension::Number.expected());
-            Err(Fault { origin: self.origin("flow.law"), key, kind: FaultKind::Missing { expected } })
-        })
+            Fault { origin: self.origin("flow.law"), key, kind: FaultKind::Missing { expected } }
+        };
+        missing.map(fault).collect()
     }
 }
 
