@@ -174,9 +174,9 @@ impl SpatialStations {
 }
 
 /// A place between stations, solved.
-struct StationState {
-    directors: Directors<f64>,
-    strain: [f64; L],
+pub(super) struct StationState {
+    pub(super) directors: Directors<f64>,
+    pub(super) strain: [f64; L],
     beta: f64,
     /// What the body carries, in the directors.
     contact: [f64; STRAINS],
@@ -187,7 +187,7 @@ struct StationState {
 
 impl Engine {
     /// The section at `x` in [0, 1] of element `i`; at x = 1 what is on the left of the node.
-    fn section_in(&self, i: usize, x: f64) -> Result<StationState, SectionFailure> {
+    pub(super) fn section_in(&self, i: usize, x: f64) -> Result<StationState, SectionFailure> {
         /// Steps of the section law that may be left to what is read at a place.
         const SHARP: f64 = 1e-12;
         let (solution, gauss, equations) = (&self.solution, &self.system.gauss, &self.equations);

@@ -10,12 +10,15 @@ use hydrostat_bvp::{LANES, each};
 
 use super::engine::Engine;
 use super::equations::M;
+use super::loads::Tangent;
 use super::rotation::{Vector, dot};
+use crate::statics::engine::at_jumps;
 
 /// How close (over L) nodes are kept to the kinks of the load at a tolerance: closer than in the plane, so that what
 /// the estimate does not see is less.
-pub(super) fn kink_resolution(tolerance: f64) -> f64 {
-    (0.002 * tolerance.sqrt()).max(5e-8)
+pub(super) fn kink_resolution(tolerance: f64, jumps: bool) -> f64 {
+    let resolution = (0.002 * tolerance.sqrt()).max(5e-8);
+    if jumps { resolution.min(at_jumps(tolerance)) } else { resolution }
 }
 
 /// Kinks that nodes are placed on, as in the plane.
@@ -62,6 +65,7 @@ impl Engine {
         let gauss = &self.system.gauss;
         let mesh = &self.solution.mesh;
         for which in 0..2 {
+            let first = out.len();
             // Place and value before.
             let mut before = (0.0, 0.0);
             for i in 0..mesh.elements() {
@@ -97,7 +101,16 @@ impl Engine {
                         }
                         let kink = 0.5 * (lo.0 + hi.0);
                         let across = vector(&gauss.cardinals((kink - start) / h));
-                        if which == 0 || dot(&across, &across).sqrt() < FAR {
+                        if which == 0 {
+                            // Polynomials on both sides of a node put the same change at slightly different places.
+                            let apart = resolution.max(1e-3 * h);
+                            let kink = self.sharpened(kink, i, &along);
+                            if out.len() > first && kink - out[out.len() - 1] < apart {
+                                out.pop();
+                            } else {
+                                out.push(kink);
+                            }
+                        } else if dot(&across, &across).sqrt() < FAR {
                             out.push(kink);
                         }
                     }
@@ -114,6 +127,34 @@ impl Engine {
             out.clear();
         }
         out
+    }
+
+    /// The place of a change of sign of U_t, given where the polynomial through its values `own` at the stages of
+    /// element `i` has it: near a node, that polynomial is moved to U_t there, as in the plane.
+    fn sharpened(&self, place: f64, i: usize, own: &[f64; M]) -> f64 {
+        const NEAR_NODE: f64 = 0.3;
+        let (mesh, gauss) = (&self.solution.mesh, &self.system.gauss);
+        let (start, h) = (mesh.nodes()[i], mesh.step(i));
+        let end = if place - start > 0.5 * h { 1.0 } else { 0.0 };
+        let node = if end == 1.0 { i + 1 } else { i };
+        if ((place - start) / h - end).abs() > NEAR_NODE || node == 0 || node == mesh.elements() {
+            return place;
+        }
+        let Ok(section) = self.section_in(i, end) else { return place };
+        let water = &self.equations.water;
+        let speed = dot(&water.stream, &water.stream).sqrt();
+        let at_node = dot(&section.directors.to_body(&water.stream), &Tangent::of(&section.strain).t) / speed;
+        let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
+        let off = at_node - weigh(&gauss.cardinals(end));
+        let mut x = end;
+        for _ in 0..4 {
+            let moved = (weigh(&gauss.cardinals(x)) + off) / weigh(&gauss.slopes(x));
+            x -= moved;
+            if moved.abs() * h < 1e-12 {
+                break;
+            }
+        }
+        if (x - end).abs() < NEAR_NODE { start + h * x } else { place }
     }
 
     /// Moves nodes onto the kinks at the present solution, where no pinned node is within `resolution`; whether any

@@ -94,7 +94,7 @@ impl WrapAngles {
     }
 
     /// What kinks inside of elements cost at most (tip over L, to first order), for cables with these exponents by the
-    /// turn.
+    /// turn, 0 for those that are slack.
     ///
     /// Beside a kink chi' = c' x. A polynomial across it, at the distance d from the node, misses c' d^2 of the turn,
     /// which changes the tension by the exponent times that, and the direction of the tip by what the cable turns times

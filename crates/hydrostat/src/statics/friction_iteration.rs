@@ -171,7 +171,11 @@ impl Solver {
             let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
             let turned = (self.engine.tip_angle() - angle).abs();
             if moved.max(0.1 * turned) <= 0.2 * ease * tol {
-                let inside = rounds.shapes.last().map_or(0.0, |shape| shape.off_nodes(&rounds.exponents));
+                // A slack cable has no tension that kinks could change.
+                let pulls = |c: usize| self.engine.equations.tension(c) != 0.0;
+                let own = rounds.exponents.iter().enumerate();
+                let pulling: Vec<f64> = own.map(|(c, exponent)| if pulls(c) { *exponent } else { 0.0 }).collect();
+                let inside = rounds.shapes.last().map_or(0.0, |shape| shape.off_nodes(&pulling));
                 return Ok(estimate + moved + inside);
             }
         }

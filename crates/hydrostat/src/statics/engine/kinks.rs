@@ -6,9 +6,16 @@ use crate::statics::friction::merged;
 
 /// How close (over L) nodes are kept to the kinks of the load at a tolerance: the error that a kink leaves is of second
 /// order in the distance, and the estimate does not see all of it. Closer than rounding places kinks, nodes would chase
-/// it.
-pub(crate) fn kink_resolution(tolerance: f64) -> f64 {
-    (0.02 * tolerance.sqrt()).max(5e-8)
+/// it. `jumps` says whether the load can jump under the arm's readings.
+pub(crate) fn kink_resolution(tolerance: f64, jumps: bool) -> f64 {
+    let resolution = (0.02 * tolerance.sqrt()).max(5e-8);
+    if jumps { resolution.min(at_jumps(tolerance)) } else { resolution }
+}
+
+/// How close (over L) nodes are kept at a tolerance to places where the load jumps: the error that a jump leaves is of
+/// first order in the distance, times the load, and the estimate does not see it.
+pub(crate) fn at_jumps(tolerance: f64) -> f64 {
+    (0.02 * tolerance).max(1e-11)
 }
 
 /// Kinks that nodes are placed on. An arm with more winds through the stream so often that no mesh of any use resolves
@@ -121,7 +128,7 @@ impl Engine {
         for _ in 0..4 {
             let moved = (weigh(&gauss.cardinals(x)) + off) / weigh(&gauss.slopes(x));
             x -= moved;
-            if moved.abs() * h < 1e-10 {
+            if moved.abs() * h < 1e-12 {
                 break;
             }
         }
