@@ -190,3 +190,19 @@ fn nodes_clustered_where_a_cable_turns_the_other_way() {
         assert!(shortest > 1e-3 * arm.length, "{tol:e}: nodes {shortest:e} m apart");
     }
 }
+
+/// Kinks of a slack cable change nothing. The estimate had them as if it pulled: 0.02 mm on an arm that is right to
+/// 1e-9 mm.
+#[test]
+fn the_kinks_of_a_slack_cable_counted_in_the_estimate() {
+    let mut arm = Arm::cone(0.2, 0.010, 0.004, 100e3, 0.5);
+    arm.cables.push(Cable::new("pull", Profile::linear(0.006, 0.002)).pulled(0.3));
+    let slack = Cable::new("slack", Profile::linear(-0.006, 0.002)).reeled_in(-0.02);
+    arm.cables.push(slack.with_friction(0.3, Motion::In));
+    arm.tip.force = [0.0, -0.02];
+    for tol in [1e-6, 1e-8, 1e-10] {
+        let solved = solve(&arm, tol);
+        assert_eq!(solved.cables[1].tension, 0.0);
+        assert!(solved.error_estimate <= tol * arm.length, "{tol:e}: {:e} m", solved.error_estimate);
+    }
+}

@@ -425,7 +425,12 @@ impl Ramp<'_, '_> {
         // that the load's kinks make. Where sections end it, branches beyond are none.
         let of_sections =
             kind != VerdictKind::NotFound && matches!(self.stepper.last_trouble, Some(Trouble::Section(_)));
-        if !of_sections && self.stepper.opposite.is_some_and(|fraction| (fraction - here.fraction).abs() < MEET) {
+        // At its very beginning a path can be at such a corner of a shape that lies in the stream, and turn nowhere.
+        let is_under_way = here.fraction > MEET;
+        if !of_sections
+            && is_under_way
+            && self.stepper.opposite.is_some_and(|fraction| (fraction - here.fraction).abs() < MEET)
+        {
             return self.end(VerdictKind::LimitPoint, here.fraction, None);
         }
         let end = self.end(kind, here.fraction, s);
