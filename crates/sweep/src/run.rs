@@ -345,20 +345,19 @@ impl Sweep {
     }
 
     /// Solves some of the tiles on the threads of rayon's current pool: the rows as columns, for those who keep them elsewhere than in a
-    /// file of [`Sweep::run`]. `go_on` hears of every tile how many rows it had; when it is false, the tiles not yet begun
-    /// are left out.
+    /// file of [`Sweep::run`]. `go_on` hears of every row that is done how many these are; when it is false, the rows not yet begun are
+    /// left out, with their tiles.
     pub fn columns(&self, tiles: &Range<u64>, go_on: &(dyn Fn(u64) -> bool + Sync)) -> Vec<Column> {
         let stopped = AtomicBool::new(false);
-        let solve = |tile| {
-            if stopped.load(Ordering::Relaxed) {
-                return (0..0, Vec::new());
-            }
-            let (rows, answers) = self.tile(tile);
-            let wanted = common(&self.rows, &rows);
-            if !go_on(wanted.end - wanted.start) {
+        let row_done = |row: u64| {
+            if !go_on(u64::from(self.rows.contains(&row))) {
                 stopped.store(true, Ordering::Relaxed);
             }
-            (rows, answers)
+            !stopped.load(Ordering::Relaxed)
+        };
+        let solve = |tile| {
+            if stopped.load(Ordering::Relaxed) { None } else { self.tile(tile, &row_done) }
+                .unwrap_or((0..0, Vec::new()))
         };
         let solved: Vec<(Range<u64>, Vec<Answered>)> = tiles.clone().into_par_iter().map(solve).collect();
         let mut columns: Vec<Column> = self.layout.columns(self.plan.axes());
@@ -399,8 +398,8 @@ impl Sweep {
         if whole { Ok(columns) } else { Err(SweepError::Stopped) }
     }
 
-    /// The rows of a tile with what became of each.
-    fn tile(&self, tile: u64) -> (Range<u64>, Vec<Answered>) {
+    /// The rows of a tile with what became of each; `None` where `row_done`, which hears of each row, is false.
+    fn tile(&self, tile: u64, row_done: &dyn Fn(u64) -> bool) -> Option<(Range<u64>, Vec<Answered>)> {
         let rows = self.plan.tile(tile);
         let mut solver = self.start.clone();
         let mut last = Last::default();
@@ -410,9 +409,12 @@ impl Sweep {
             let asked = arm.as_ref().map_or(f64::INFINITY, |arm| self.options.tol * arm.length);
             let answer = arm.map_err(NoAnswer::Arm).and_then(|arm| self.answer(arm, &mut solver));
             solved.push((row, Answered { answer, asked }));
+            if !row_done(row) {
+                return None;
+            }
         }
         solved.sort_unstable_by_key(|(row, _)| *row);
-        (rows, solved.into_iter().map(|(_, answer)| answer).collect())
+        Some((rows, solved.into_iter().map(|(_, answer)| answer).collect()))
     }
 }
 
