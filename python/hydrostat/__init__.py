@@ -61,7 +61,16 @@ from hydrostat.figures import (
 from hydrostat.history import History, HistorySnap, history
 from hydrostat.identification import Estimate, Fit, LeftOut, Miss
 from hydrostat.many import Many, solve_many
-from hydrostat.motion import Moment, MovingShape, Simulation, motion_figures, simulate
+from hydrostat.modes import Mode, Modes, modes
+from hydrostat.motion import (
+    Moment,
+    MovingShape,
+    MovingShapeInSpace,
+    Simulation,
+    SpatialMoment,
+    motion_figures,
+    simulate,
+)
 from hydrostat.paths import Branch, Equilibria, EquilibriumPath, Event, Path
 from hydrostat.reach import (
     Bound,
@@ -120,10 +129,13 @@ __all__ = [
     "Many",
     "MeasurementsError",
     "Miss",
+    "Mode",
     "ModelWarning",
+    "Modes",
     "Moment",
     "MotionError",
     "MovingShape",
+    "MovingShapeInSpace",
     "NoDerivative",
     "NoDerivativeError",
     "NoEquilibrium",
@@ -144,6 +156,7 @@ __all__ = [
     "Snap",
     "Solution",
     "Solver",
+    "SpatialMoment",
     "SpatialPoseChange",
     "SpatialSensitivities",
     "SpatialSolution",
@@ -164,6 +177,7 @@ __all__ = [
     "history",
     "load",
     "map_figure",
+    "modes",
     "motion_figures",
     "over_figure",
     "path_figure",

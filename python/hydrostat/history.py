@@ -14,6 +14,7 @@ from hydrostat._errors import MotionError
 from hydrostat.arm import Arm, arm_of
 from hydrostat.figures import Figure
 from hydrostat.solution import Solution, Tip, solution_of
+from hydrostat.spatial import tip_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,7 +34,7 @@ class HistorySnap:
     share : float
         The share of the way from the row before, 0 to 1.
     before, after : Tip
-        The tip, m and rad, before the snap and where the arm rests.
+        The tip, m and rad, before the snap and where the arm rests; of an arm in space a `SpatialTip`.
     distance, angle : float
         How far the tip jumps, m, and turns, rad.
     duration : float
@@ -69,7 +70,7 @@ class History(Sequence[Solution]):
         self.keys = tuple(native.keys)
         self.snaps = tuple(
             HistorySnap(
-                row, dict(zip(self.keys, loads, strict=True)), share, Tip(*before), Tip(*after), distance, angle, duration, elsewhere
+                row, dict(zip(self.keys, loads, strict=True)), share, tip_of(*before), tip_of(*after), distance, angle, duration, elsewhere
             )
             for row, loads, share, before, after, distance, angle, duration, elsewhere in native.snaps
         )
@@ -157,8 +158,6 @@ def history(arm: Arm | str | PathLike[str], table: Mapping[str, ArrayLike] | pd.
     [(1, -30), (2, 30)]
     """
     own = arm_of(arm)
-    if own._inner.is_spatial:
-        raise ValueError('arm: histories are of arms in the plane, and this one has `space = "spatial"`')
     columns = {str(key): table[key] for key in (table.columns if hasattr(table, "columns") else _inputs.mapping("table", table, "{}"))}
     columns.pop("t_s", None)
     values = {key: _inputs.numbers(key, column, 1) for key, column in columns.items()}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
-from typing import TYPE_CHECKING, Any, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Union, cast
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from hydrostat import _inputs, _native
 from hydrostat._errors import MotionError
 from hydrostat.arm import Arm, arm_of
 from hydrostat.figures import Figure
+from hydrostat.spatial import SpatialTip, Vector
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,12 +29,31 @@ _OF_CABLES = {"stroke": ("m", "length reeled in"), "tension": ("N", "tension at 
 _COLUMNS = {
     "tip_x_m": ("tip_x", "m", "place of the tip"),
     "tip_y_m": ("tip_y", "m", "place of the tip"),
+    "tip_z_m": ("tip_z", "m", "place of the tip"),
     "tip_theta_rad": ("tip_theta", "rad", "turn of the tip section"),
     "tip_vx_m_s": ("tip_vx", "m/s", "velocity of the tip"),
     "tip_vy_m_s": ("tip_vy", "m/s", "velocity of the tip"),
+    "tip_vz_m_s": ("tip_vz", "m/s", "velocity of the tip"),
+    "tip_alpha_rad": ("tip_alpha", "rad", "angle between the normal of the tip section and the centreline"),
     "kinetic_energy_J": ("kinetic_energy", "J", "kinetic energy of the arm"),
     "strain_energy_J": ("strain_energy", "J", "energy of strain"),
 }
+
+#: What there is at a node, with how many components: in the plane, and in space.
+_AT_NODES: tuple[tuple[tuple[str, int, str, str], ...], ...] = (
+    (("x", 1, "m", "centreline"), ("y", 1, "m", "centreline"), ("theta", 1, "rad", "turn of the section")),
+    (
+        ("x", 1, "m", "centreline"),
+        ("y", 1, "m", "centreline"),
+        ("z", 1, "m", "centreline"),
+        ("a", 3, "1", "director normal to the section"),
+        ("b", 3, "1", "director in the section"),
+        ("c", 3, "1", "director in the section, a x b"),
+    ),
+)
+
+#: Numbers at a node in the plane.
+_PLANE = 3
 
 #: How far (over its range) a smooth line through samples may be from a function of time.
 _SAMPLED = 1e-5
@@ -56,13 +76,32 @@ class Moment(NamedTuple):
     strain_energy: float
 
 
+class SpatialMoment(NamedTuple):
+    """A `Moment` in space: the directors of the tip in place of its turn, and three components."""
+
+    time: float
+    tip_x: float
+    tip_y: float
+    tip_z: float
+    tip_a: Vector
+    tip_b: Vector
+    tip_c: Vector
+    tip_vx: float
+    tip_vy: float
+    tip_vz: float
+    tensions: tuple[float, ...]
+    strokes: tuple[float, ...]
+    kinetic_energy: float
+    strain_energy: float
+
+
 class Simulation:
     """An arm in motion, step by step: for control loops. It begins at rest in the equilibrium of its loads.
 
     Parameters
     ----------
     arm : Arm, str or path
-        The arm, or the name or file of one, in the plane. Its table ``[dynamics]`` has added mass, viscosity and whether there is inertia.
+        The arm, or the name or file of one. Its table ``[dynamics]`` has added mass, viscosity and whether there is inertia.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-9, 1e-2]. Steps in time follow from it.
     elements : int, optional
@@ -105,7 +144,7 @@ class Simulation:
         return self._inner.time
 
     def now(self) -> Moment:
-        """The arm at the present time."""
+        """The arm at the present time; of an arm in space a `SpatialMoment`."""
         return self._moment(self._inner.now())
 
     def step(self, dt: float, tensions: ArrayLike | None = None, *, loads: Mapping[str, float] | None = None) -> Moment:
@@ -119,6 +158,11 @@ class Simulation:
             Those at the end of the step, N.
         loads : mapping, optional
             Keys of the arm file with their values at the end of the step, SI units, angles in degrees: ``{"flow.speed": 0.1}``.
+
+        Returns
+        -------
+        Moment
+            Of an arm with ``space = "spatial"`` a `SpatialMoment`.
 
         Raises
         ------
@@ -135,10 +179,9 @@ class Simulation:
             wanted.append((key, float(_si(key, np.array([_inputs.number(key, value)]))[0])))
         return self._moment(self._inner.step(_inputs.number("dt", dt), wanted))
 
-    def shape(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """x and y, m, and theta, rad, at the nodes of the mesh, base to tip."""
-        x, y, theta = self._inner.shape()
-        return x, y, theta
+    def shape(self) -> tuple[NDArray[np.float64], ...]:
+        """x and y, m, and theta, rad, at the nodes of the mesh, base to tip; in space x, y and z, m, and the directors a, b, c, shape (n, 3)."""
+        return tuple(values for _, values, _ in _at_nodes(self._inner, self._inner.shape(), 0))
 
     @property
     def statistics(self) -> dict[str, int]:
@@ -153,18 +196,15 @@ class Simulation:
     def _moment(self, row: list[float]) -> Moment:
         at = {name: row[k] for name, k in self._columns.items()}
         cables = range(len(self._arm.cables))
-        return Moment(
-            at["t_s"],
-            at["tip_x_m"],
-            at["tip_y_m"],
-            at["tip_theta_rad"],
-            at["tip_vx_m_s"],
-            at["tip_vy_m_s"],
-            tuple(at[f"tension_{c}_N"] for c in cables),
-            tuple(at[f"stroke_{c}_m"] for c in cables),
-            at["kinetic_energy_J"],
-            at["strain_energy_J"],
-        )
+        energies = (at["kinetic_energy_J"], at["strain_energy_J"])
+        pulls = (tuple(at[f"tension_{c}_N"] for c in cables), tuple(at[f"stroke_{c}_m"] for c in cables))
+        if not self._arm._inner.is_spatial:
+            tip = (at["tip_x_m"], at["tip_y_m"], at["tip_theta_rad"], at["tip_vx_m_s"], at["tip_vy_m_s"])
+            return Moment(at["t_s"], *tip, *pulls, *energies)
+        a, b, c = ((at[f"tip_{name}_x"], at[f"tip_{name}_y"], at[f"tip_{name}_z"]) for name in "abc")
+        place = (at["tip_x_m"], at["tip_y_m"], at["tip_z_m"])
+        velocity = (at["tip_vx_m_s"], at["tip_vy_m_s"], at["tip_vz_m_s"])
+        return cast("Moment", SpatialMoment(at["t_s"], *place, a, b, c, *velocity, *pulls, *energies))
 
 
 def simulate(
@@ -181,7 +221,7 @@ def simulate(
     Parameters
     ----------
     arm : Arm, str or path
-        The arm, or the name or file of one, in the plane. Its table ``[dynamics]`` has added mass, viscosity and whether there is inertia.
+        The arm, or the name or file of one. Its table ``[dynamics]`` has added mass, viscosity and whether there is inertia.
     inputs : mapping or DataFrame, optional
         Keys of the arm file with what they are over time, SI units, angles in degrees: a number; a function of the time in s, which is
         sampled until a smooth line through the samples is within 1e-5 of its range; or rows ``[time, value]`` joined by straight lines,
@@ -198,7 +238,8 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        Over ``time``: the tip and its velocity, energies, and over ``cable`` strokes and tensions; over ``node`` the whole shape.
+        Over ``time``: the tip and its velocity, energies, and over ``cable`` strokes and tensions; over ``node`` the whole shape. Of an arm
+        in space there are ``z``, and over ``axis`` the directors ``a``, ``b``, ``c`` and those of the tip, in place of ``theta``.
 
     Raises
     ------
@@ -230,11 +271,16 @@ def simulate(
 
 
 def motion_figures(motion: xr.Dataset, *, shapes: int = 24, title: str | None = None) -> tuple[Figure, Figure]:
-    """The figures of `simulate`: shapes at equal times, from pale to dark, with the tip trace; and tip and energies over time."""
-    places = np.stack([motion["x"].to_numpy(), motion["y"].to_numpy()], axis=-1).ravel()
+    """The figures of `simulate`: shapes at equal times, from pale to dark, with the tip trace; and tip and energies over time.
+
+    Shapes in space are seen from four sides.
+    """
+    axes = [name for name in ("x", "y", "z") if name in motion.data_vars]
+    places = np.stack([motion[name].to_numpy() for name in axes], axis=-1).ravel()
     energies = (_plain(motion["kinetic_energy"]), _plain(motion["strain_energy"]))
     name = str(motion.attrs.get("arm", "arm")) + " in motion" if title is None else title
-    strobe, over_time = _native.motion_figures(_plain(motion["time"]), places, energies, _inputs.count("shapes", shapes), name)
+    times, count = _plain(motion["time"]), _inputs.count("shapes", shapes)
+    strobe, over_time = _native.motion_figures(times, places, energies, len(axes), count, name)
     return Figure(strobe), Figure(over_time)
 
 
@@ -273,19 +319,71 @@ class MovingShape:
         return middle + across, middle - across
 
 
-def shapes_of(motion: xr.Dataset) -> list[MovingShape]:
+class MovingShapeInSpace:
+    """An arm in space at one time of a motion, as `hydrostat.animate` draws it, with the width of the unloaded arm."""
+
+    def __init__(self, s: NDArray[np.float64], half_width: NDArray[np.float64], *fields: ArrayLike) -> None:
+        self.s = s
+        self._half_width = half_width
+        self._fields = tuple(np.asarray(field, dtype=np.float64) for field in fields)
+        self.cables: tuple[object, ...] = ()
+        self.arm = self
+        self.length = float(s[-1])
+
+    @property
+    def tip(self) -> SpatialTip:
+        """Place of the tip, m, and its directors."""
+        x, y, z, a, b, c = (field[-1] for field in self._fields)
+        return SpatialTip.of(float(x), float(y), float(z), a, b, c, math.nan)
+
+    def at(self, s: ArrayLike) -> MovingShapeInSpace:
+        """The same at other places along the arm, m."""
+        places = np.asarray(s, dtype=np.float64)
+        width = np.interp(places, self.s, self._half_width)
+        return MovingShapeInSpace(places, width, *(_cubic(self.s, field, places) for field in self._fields))
+
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """m."""
+        return self._fields[0]
+
+    @property
+    def y(self) -> NDArray[np.float64]:
+        """m."""
+        return self._fields[1]
+
+    @property
+    def z(self) -> NDArray[np.float64]:
+        """m."""
+        return self._fields[2]
+
+    def surface(self, s: ArrayLike, sides: int) -> NDArray[np.float64]:
+        """Places on the surface, m, shape (n, sides, 3)."""
+        at = self.at(s)
+        x, y, z, _, b, c = at._fields
+        angles = 2.0 * np.pi * np.arange(sides) / sides
+        across = np.cos(angles)[:, None] * b[:, None, :] + np.sin(angles)[:, None] * c[:, None, :]
+        out: NDArray[np.float64] = np.stack([x, y, z], axis=-1)[:, None, :] + at._half_width[:, None, None] * across
+        return out
+
+
+def shapes_of(motion: xr.Dataset) -> list[MovingShape] | list[MovingShapeInSpace]:
     """The shapes of a motion, one a time."""
     s, width = _plain(motion["s"]), _plain(motion["half_width"])
-    fields = zip(*(motion[name].to_numpy() for name in ("x", "y", "theta")), strict=True)
-    return [MovingShape(s, width, x, y, theta) for x, y, theta in fields]
+    in_space = "z" in motion.data_vars
+    fields = zip(*(motion[name].to_numpy() for name, *_ in _AT_NODES[in_space]), strict=True)
+    if in_space:
+        return [MovingShapeInSpace(s, width, *own) for own in fields]
+    return [MovingShape(s, width, *own) for own in fields]
 
 
 def _cubic(s: NDArray[np.float64], values: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A smooth line through values at places."""
-    slopes = np.gradient(values, s, edge_order=2)
+    """A smooth line through values at places, the first axis."""
+    slopes = np.gradient(values, s, axis=0, edge_order=2)
     k = np.clip(np.searchsorted(s, at, side="right") - 1, 0, len(s) - 2)
-    h = s[k + 1] - s[k]
-    t = (at - s[k]) / h
+    over = (...,) + (np.newaxis,) * (values.ndim - 1)
+    h = (s[k + 1] - s[k])[over]
+    t = (at - s[k])[over] / h
     rise = t * t * (3.0 - 2.0 * t)
     bend = h * t * (1.0 - t) * ((1.0 - t) * slopes[k] - t * slopes[k + 1])
     out: NDArray[np.float64] = values[k] + rise * (values[k + 1] - values[k]) + bend
@@ -293,8 +391,6 @@ def _cubic(s: NDArray[np.float64], values: NDArray[np.float64], at: NDArray[np.f
 
 
 def _made(arm: Arm, courses: list[_native.Given], tol: float, elements: int | None) -> _native.Simulation:
-    if arm._inner.is_spatial:
-        raise ValueError('arm: this is for arms in the plane, and it has `space = "spatial"`; the program\'s `hydrostat simulate` moves it')
     count = None if elements is None else _inputs.count("elements", elements)
     return _native.Simulation(arm._inner, courses, _inputs.number("tol", tol), 0.0, count)
 
@@ -353,23 +449,39 @@ def _dataset(arm: Arm, native: _native.Simulation, rows: NDArray[np.float64], sh
     table = rows.reshape(-1, len(columns))
     at = {name: table[:, k] for k, name in enumerate(columns)}
     s, width = native.nodes()
-    places = shapes.reshape(len(table), len(s), 3)
     data: dict[str, Any] = {}
     for name, (unit, meaning) in _OF_CABLES.items():
         each = [at.pop(f"{name}_{c}_{unit}") for c in range(len(arm.cables))]
         values = np.stack(each, axis=1) if each else np.empty((len(table), 0))
         data[name] = (("time", "cable"), values, {"units": unit, "long_name": meaning})
     time = at.pop("t_s")
+    for name in "abc" if arm._inner.is_spatial else "":
+        director = np.stack([at.pop(f"tip_{name}_{axis}") for axis in "xyz"], axis=1)
+        data[f"tip_{name}"] = (("time", "axis"), director, {"units": "1", "long_name": "director of the tip section"})
     for name, values in at.items():
         short, unit, meaning = _COLUMNS.get(name, (name, "", name))
         data[short] = ("time", values, {"units": unit, "long_name": meaning})
-    for k, (name, unit, meaning) in enumerate([("x", "m", "centreline"), ("y", "m", "centreline"), ("theta", "rad", "turn of the section")]):
-        data[name] = (("time", "node"), places[:, :, k], {"units": unit, "long_name": meaning})
+    for name, values, about in _at_nodes(native, shapes, len(table)):
+        data[name] = (("time", "node", "axis")[: values.ndim], values, about)
     data["half_width"] = ("node", width, {"units": "m", "long_name": "radius of the unloaded arm"})
-    coordinates = {
+    coordinates: dict[str, Any] = {
         "time": ("time", time, {"units": "s"}),
         "cable": ("cable", list(arm.cables)),
         "s": ("node", s, {"units": "m", "long_name": "place along the unloaded arm"}),
     }
+    if arm._inner.is_spatial:
+        coordinates["axis"] = ("axis", ["x", "y", "z"])
     attributes = {"arm": arm.name, "error_estimate": native.error_estimate, **dict(native.statistics)}
     return xr.Dataset(data, coordinates, attributes)
+
+
+def _at_nodes(
+    native: _native.Simulation, shapes: NDArray[np.float64], rows: int
+) -> Iterable[tuple[str, NDArray[np.float64], dict[str, str]]]:
+    """What there is at the nodes, with its name and what it is; over the rows first, where there are any."""
+    whole = shapes.reshape(*([rows] if rows else []), -1, native.width)
+    first = 0
+    for name, count, unit, meaning in _AT_NODES[native.width > _PLANE]:
+        own = whole[..., first] if count == 1 else whole[..., first : first + count]
+        first += count
+        yield name, np.ascontiguousarray(own), {"units": unit, "long_name": meaning}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -322,29 +322,37 @@ def animate(
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
     shapes = list(solutions)
-    if not shapes or not all(hasattr(shape, "surfaces") for shape in shapes):
-        raise ValueError("solutions: expected at least one solution, and nothing else")
-    if any(hasattr(shape, "z") for shape in shapes):
-        raise ValueError('solutions: animations are of arms in the plane, and one of these has `space = "spatial"`')
+    in_space = bool(shapes) and all(hasattr(shape, "surface") for shape in shapes)
+    if not shapes or not (in_space or all(hasattr(shape, "surfaces") and not hasattr(shape, "z") for shape in shapes)):
+        raise ValueError("solutions: expected at least one solution, and nothing else, all in the plane or all in space")
     target = None if output is None else FilePath(output)
     if target is not None and target.suffix not in (".gif", ".mp4", ".html"):
         raise ValueError(f"output: expected a name that ends in .gif, .mp4 or .html, found {target.name!r}")
     if not fps > 0.0:
         raise ValueError(f"fps: expected a number above zero, found {fps}")
-    figure, ax = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+    in_3d: dict[str, Any] = {"subplot_kw": {"projection": "3d"}} if in_space else {}
+    figure, ax = plt.subplots(figsize=(6.4, 5.2 if in_space else 4.2), layout="constrained", **in_3d)
     per_m = UNITS[unit_of(ax, unit)]
-    ends = np.concatenate([per_m * side for shape in shapes for side in shape.surfaces(shape.s)])
+    ends = np.concatenate([per_m * places for shape in shapes for places in _surface(shape, in_space)])
     low, high = ends.min(axis=0), ends.max(axis=0)
     margin = 0.05 * float((high - low).max())
 
     def draw(index: int) -> list[Artist]:
         ax.clear()
-        shape = shapes[index]
-        plot_shape(shape, ax, color=_BODY, sections=sections, cables=True, flow=False, label=None, unit=unit)
-        ax.set_aspect("equal", adjustable="box")
-        ax.set_xlim(low[0] - margin, high[0] + margin)
-        ax.set_ylim(low[1] - margin, high[1] + margin)
-        return [*ax.lines, *ax.patches]
+        shape: Any = shapes[index]
+        if in_space:
+            from hydrostat.plotting_3d import plot_in_space
+
+            plot_in_space(shape, ax, color=_BODY, sections=sections, cables=True, flow=False, label=None, unit=unit)
+        else:
+            plot_shape(shape, ax, color=_BODY, sections=sections, cables=True, flow=False, label=None, unit=unit)
+        for axis, least, most in zip("xyz", low, high, strict=False):
+            getattr(ax, f"set_{axis}lim")(least - margin, most + margin)
+        if in_space:
+            ax.set_aspect("equal")
+        else:
+            ax.set_aspect("equal", adjustable="box")
+        return [*ax.lines, *ax.patches, *ax.collections]
 
     moving = FuncAnimation(figure, draw, frames=len(shapes), interval=1e3 / fps)
     if target is None:
@@ -358,3 +366,8 @@ def animate(
     finally:
         plt.close(figure)
     return target
+
+
+def _surface(shape: Any, in_space: bool) -> list[NDArray[np.float64]]:
+    """Places on the surface, m, so many of them that all of it lies between."""
+    return list(shape.surface(shape.s, 4)) if in_space else list(shape.surfaces(shape.s))

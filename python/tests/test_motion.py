@@ -120,8 +120,6 @@ def test_wrong_requests_name_the_argument(arm: hs.Arm) -> None:
             hs.simulate(arm, inputs, until=0.1)
     with pytest.raises(ValueError, match="until"):
         hs.simulate(arm, until=0.0)
-    with pytest.raises(ValueError, match="space"):
-        hs.simulate("silicone-spatial", until=0.1)
 
 
 def test_figures_and_animations_of_a_motion(arm: hs.Arm, tmp_path: Path) -> None:

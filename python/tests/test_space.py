@@ -205,7 +205,6 @@ def test_what_is_for_arms_in_the_plane_says_so(arm: hs.Arm, solution: hs.Spatial
     calls: list[Any] = [
         lambda: arm.path("flow.speed", 0, 0.1).shapes_figure(),
         lambda: arm.reachable(max_tension=0.2),
-        lambda: hs.animate([solution]),
     ]
     for call in calls:
         with pytest.raises(ValueError, match="space"):

@@ -10,6 +10,7 @@ pub(crate) mod history;
 pub(crate) mod identify;
 pub(crate) mod init;
 mod limits;
+mod loaded;
 pub(crate) mod main_job;
 mod misses;
 pub(crate) mod modes;

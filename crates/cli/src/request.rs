@@ -40,12 +40,7 @@ pub(crate) fn shipped_arm(name: &str) -> anyhow::Result<Arm> {
     Ok(shipped_file(name)?.arm()?)
 }
 
-/// The arm that `command`, a command for arms in the plane, is asked for: a file, then what overrides it.
-pub(crate) fn arm(args: &ArmArgs, command: &'static str) -> anyhow::Result<Arm> {
-    arm_of(&overridden(args)?, command)
-}
-
-/// The same, in the plane or in space.
+/// The arm that is asked for, in the plane or in space: a file, then what overrides it.
 pub(crate) fn arm_in_space(args: &ArmArgs) -> anyhow::Result<Arm> {
     arm_anywhere(&overridden(args)?)
 }

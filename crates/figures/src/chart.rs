@@ -139,7 +139,7 @@ pub fn spatial_path_figure(
     title: &str,
     page: &Page,
 ) -> Scene {
-    chart(path, over, |c| quantity.of_spatial(c), quantity, title, page)
+    chart(path, over, |c| quantity.of(c), quantity, title, page)
 }
 
 /// The chart of a path, given the value of the quantity.
@@ -246,7 +246,7 @@ pub fn spatial_over_figure(
     page: &Page,
 ) -> Scene {
     let found: Vec<_> = searches.iter().map(|(value, all)| (*value, all.found.as_slice())).collect();
-    over_chart(&found, over, |shape| quantity.of_spatial(shape), quantity, title, page)
+    over_chart(&found, over, |shape| quantity.of(shape), quantity, title, page)
 }
 
 /// The chart of equilibria at several values, given the value of the quantity.

@@ -8,7 +8,7 @@
 //! [`arm_figure`] draws one configuration to scale, [`spatial_arm_figure`] one in space, [`path_shapes_figure`] and [`equilibria_figure`]
 //! several, [`boundary_figure`] the places that a tip reaches; [`path_figure`] and [`over_figure`] draw a [`Quantity`]
 //! over a parameter; [`map_figure`], [`workspace_figure`], [`spatial_workspace_figure`] and [`curve_figure`] draw a sweep, [`fit_figure`] a fit beside
-//! its data, [`loading_figure`] a load that rises and falls, [`strobe_figure`] and [`motion_figure`] a motion, and
+//! its data, [`loading_figure`] a load that rises and falls, [`strobe_figure`], [`spatial_strobe_figure`] and [`motion_figure`] a motion, [`mode_shapes_figure`] small ones, and
 //! [`lines_figure`] whatever numbers are compared. [`source`] solves what the source's Fig. 1
 //! shows, judges what its text says about it, and draws the three parts.
 
@@ -24,12 +24,14 @@ mod hull;
 mod legend;
 mod lines;
 mod loading;
+mod mode_shapes;
 mod motion;
 mod numbers;
 mod outline;
 mod page;
 mod palette;
 mod pdf;
+mod perspective;
 mod picked;
 mod placement;
 mod png;
@@ -57,11 +59,12 @@ pub use chart::{Abscissa, over_figure, path_figure, spatial_over_figure, spatial
 pub use fit::fit_figure;
 pub use lines::{Measure, Panel, lines_figure};
 pub use loading::{LoadingPoint, loading_figure};
-pub use motion::{MotionFrame, motion_figure, strobe_figure};
+pub use mode_shapes::mode_shapes_figure;
+pub use motion::{MotionFrame, motion_figure, spatial_strobe_figure, strobe_figure};
 pub use page::Page;
 pub use palette::{Palette, palette};
 pub use png::PngError;
-pub use quantity::{Quantity, UnknownQuantity};
+pub use quantity::{Posed, Quantity, UnknownQuantity};
 pub use root_locus::root_locus_figure;
 pub use scene::Scene;
 pub use shaded::{Coloured, ColouredColumn};

@@ -1,6 +1,6 @@
 //! A quantity of the arm over a load that rises and falls: the way there, the way back, and the snaps.
 
-use hydrostat::{Configuration, LoadingSnap, Tip};
+use hydrostat::{Configuration, LoadingSnap};
 
 use crate::arm_figure::place_label;
 use crate::chart::{Abscissa, frame, smooth};
@@ -9,21 +9,21 @@ use crate::legend::{Legend, Mark, Sample};
 use crate::page::Page;
 use crate::palette::{GREY, INK, series};
 use crate::placement::Occupied;
-use crate::quantity::Quantity;
+use crate::quantity::{Posed, Quantity};
 use crate::scene::{Scene, Stroke};
 
 /// More labels than this would hide what they mean.
 const MOST_LABELS: usize = 8;
 
-/// An equilibrium of a sequence of loads.
+/// An equilibrium of a sequence of loads: in the plane, or with [`hydrostat::SpatialConfiguration`] in space.
 #[derive(Debug, Clone)]
-pub struct LoadingPoint<'a> {
+pub struct LoadingPoint<'a, C: Posed = Configuration> {
     /// The load, SI.
     pub value: f64,
     /// The equilibrium.
-    pub configuration: &'a Configuration,
+    pub configuration: &'a C,
     /// The snaps since the point before, with the load at each, SI.
-    pub snaps: Vec<(f64, LoadingSnap)>,
+    pub snaps: Vec<(f64, LoadingSnap<C::Tip>)>,
 }
 
 /// A part of the way in one direction.
@@ -50,18 +50,18 @@ struct Piece {
 /// assert!(figure.texts().any(|text| text == "load rises"));
 /// # Ok::<(), hydrostat::LoadingError>(())
 /// ```
-pub fn loading_figure(
-    points: &[LoadingPoint<'_>],
+pub fn loading_figure<C: Posed>(
+    points: &[LoadingPoint<'_, C>],
     over: &Abscissa,
     quantity: Quantity,
     title: &str,
     page: &Page,
 ) -> Scene {
     let at = |value: f64, shown: f64| [over.per_si * value, shown];
-    let of_tip = |tip: Tip, else_of: &Configuration| quantity.of_tip(tip).unwrap_or_else(|| quantity.of(else_of));
+    let of_tip = |tip: C::Tip, else_of: &C| C::of_tip(quantity, &tip).unwrap_or_else(|| quantity.of(else_of));
     let mut pieces: Vec<Piece> = Vec::new();
     let mut jumps: Vec<([[f64; 2]; 2], f64)> = Vec::new();
-    let mut last: Option<(&LoadingPoint<'_>, [f64; 2])> = None;
+    let mut last: Option<(&LoadingPoint<'_, C>, [f64; 2])> = None;
     for point in points {
         let end = at(point.value, quantity.of(point.configuration));
         if let Some((before, start)) = last {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use hydrostat::{Configuration, SpatialConfiguration, Tip};
+use hydrostat::{CableState, Configuration, Pose, SpatialConfiguration, SpatialTip, Tip};
 
 use crate::font::Label;
 
@@ -77,37 +77,11 @@ impl Quantity {
         }
     }
 
-    /// Its value in space, in mm or degrees.
-    pub(crate) fn of_spatial(self, c: &SpatialConfiguration) -> f64 {
-        let tip = c.tip();
+    /// Its value, in mm or degrees.
+    pub(crate) fn of<C: Posed>(self, c: &C) -> f64 {
         match self {
-            Self::TipX => 1e3 * tip.x,
-            Self::TipY => 1e3 * tip.y,
-            Self::TipZ => 1e3 * tip.z,
-            Self::TipTheta => f64::NAN,
-            Self::TipAlpha => tip.alpha.to_degrees(),
-            Self::Stroke(cable) => c.cables.get(cable).map_or(f64::NAN, |cable| 1e3 * cable.stroke),
-        }
-    }
-
-    /// Its value in the plane, in mm or degrees.
-    pub(crate) fn of(self, c: &Configuration) -> f64 {
-        match self {
-            Self::TipZ => 0.0,
-            Self::Stroke(cable) => c.cables.get(cable).map_or(f64::NAN, |cable| 1e3 * cable.stroke),
-            of_tip => of_tip.of_tip(c.tip()).unwrap_or(f64::NAN),
-        }
-    }
-
-    /// The same of a tip alone, where that is enough.
-    pub(crate) fn of_tip(self, tip: Tip) -> Option<f64> {
-        match self {
-            Self::TipX => Some(1e3 * tip.x),
-            Self::TipY => Some(1e3 * tip.y),
-            Self::TipTheta => Some(tip.theta.to_degrees()),
-            Self::TipAlpha => Some(tip.alpha.to_degrees()),
-            Self::TipZ => Some(0.0),
-            Self::Stroke(_) => None,
+            Self::Stroke(cable) => c.cables().get(cable).map_or(f64::NAN, |cable| 1e3 * cable.stroke),
+            of_tip => C::of_tip(of_tip, &c.posed()).unwrap_or(f64::NAN),
         }
     }
 
@@ -120,6 +94,65 @@ impl Quantity {
             Self::TipTheta => Label::math("$θ$($L$) (°)"),
             Self::TipAlpha => Label::math("$α$($L$) (°)"),
             Self::Stroke(cable) => Label::plain(format!("stroke of cable {cable} (mm)")),
+        }
+    }
+}
+
+/// A shape whose tip is shown, in the plane or in space.
+pub trait Posed {
+    /// Where its tip is.
+    type Tip: Pose;
+
+    /// Its tip.
+    fn posed(&self) -> Self::Tip;
+    /// Its cables.
+    fn cables(&self) -> &[CableState];
+    /// A quantity of a tip alone, in mm or degrees, where that is enough; not a number where it has none.
+    fn of_tip(quantity: Quantity, tip: &Self::Tip) -> Option<f64>;
+}
+
+impl Posed for Configuration {
+    type Tip = Tip;
+
+    fn posed(&self) -> Tip {
+        self.tip()
+    }
+
+    fn cables(&self) -> &[CableState] {
+        &self.cables
+    }
+
+    fn of_tip(quantity: Quantity, tip: &Tip) -> Option<f64> {
+        match quantity {
+            Quantity::TipX => Some(1e3 * tip.x),
+            Quantity::TipY => Some(1e3 * tip.y),
+            Quantity::TipTheta => Some(tip.theta.to_degrees()),
+            Quantity::TipAlpha => Some(tip.alpha.to_degrees()),
+            Quantity::TipZ => Some(0.0),
+            Quantity::Stroke(_) => None,
+        }
+    }
+}
+
+impl Posed for SpatialConfiguration {
+    type Tip = SpatialTip;
+
+    fn posed(&self) -> SpatialTip {
+        self.tip()
+    }
+
+    fn cables(&self) -> &[CableState] {
+        &self.cables
+    }
+
+    fn of_tip(quantity: Quantity, tip: &SpatialTip) -> Option<f64> {
+        match quantity {
+            Quantity::TipX => Some(1e3 * tip.x),
+            Quantity::TipY => Some(1e3 * tip.y),
+            Quantity::TipZ => Some(1e3 * tip.z),
+            Quantity::TipTheta => Some(f64::NAN),
+            Quantity::TipAlpha => Some(tip.alpha.to_degrees()),
+            Quantity::Stroke(_) => None,
         }
     }
 }

@@ -71,6 +71,11 @@ impl ThreeViews {
         Self::new(grown, page)
     }
 
+    /// What they show (x, y and z).
+    pub(crate) fn bounds(&self) -> [[f64; 2]; 3] {
+        self.bounds
+    }
+
     /// The room beside the views when their upper edge is at `top`.
     pub(crate) fn room(&self, top: f64, page: &Page) -> Room {
         let [x, y] = self.widths;

@@ -13,7 +13,7 @@ use hydrostat_figures::{
     Abscissa, Coloured, ColouredColumn, KeyValues, LoadingPoint, Measure, MotionFrame, Page, Panel, Quantity, Scale,
     Scene, arm_figure, boundary_figure, curve_figure, equilibria_figure, fit_figure, last_good_note, lines_figure,
     loading_figure, map_figure, motion_figure, over_figure, path_figure, path_shapes_figure, reach_figure,
-    spatial_arm_figure, strobe_figure, workspace_figure,
+    spatial_arm_figure, spatial_strobe_figure, strobe_figure, workspace_figure,
 };
 use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, fit};
 use insta::comparator::Comparator;
@@ -312,4 +312,21 @@ fn motion() {
     simulation.run(1.0, 0.02, every).unwrap();
     check("strobe", &strobe_figure(&frames, 11, "let go", &page()));
     check("motion", &motion_figure(&frames, "let go", &page()));
+}
+
+/// A rod that turns about an axis aslant, as it is bent aside.
+#[test]
+fn motion_in_space() {
+    let frame = |k: u32| {
+        let time = 0.1 * f64::from(k);
+        let place = |s: f64| {
+            let (sin, cos) = (time * s / 0.2).sin_cos();
+            [s * cos, s * sin * (0.5 * time).cos(), s * sin * (0.5 * time).sin()]
+        };
+        let centreline = (0..=8).map(|i| place(0.025 * f64::from(i))).collect();
+        MotionFrame { time, centreline, kinetic_energy: 1e-3 * time, strain_energy: 2e-3 * time * time }
+    };
+    let frames: Vec<MotionFrame<3>> = (0..16).map(frame).collect();
+    check("spatial_strobe", &spatial_strobe_figure(&frames, 6, "turned aside", &page()));
+    check("spatial_motion", &motion_figure(&frames, "turned aside", &page()));
 }

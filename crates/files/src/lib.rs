@@ -62,10 +62,10 @@ pub use fitted::{FitKey, FitKeyError, PriorKey, bare_unit, fitted};
 pub use followed::{FollowedDocument, followed_csv};
 pub use heads::{head_now, head_of, key_of_head};
 pub use identification::{IdentificationDocument, residuals_csv, residuals_csv_with_predictions};
-pub use loadings::{LoadingDocument, LoadingRow, RowSnap, loading_csv};
+pub use loadings::{LoadingDocument, LoadingRow, RowSnap, loading_csv, spatial_loading_csv};
 pub use measurements::{MeasurementsError, parse_measurements, read_measurements};
 pub use measurements_template::measurements_template;
-pub use modes::{ModesDocument, ModesOverDocument, ModesTip, mode_kind, modes_csv, modes_over_csv};
+pub use modes::{ModesDocument, ModesOverDocument, ModesTip, mode_kind, mode_shapes_csv, modes_csv, modes_over_csv};
 pub use motion_states::{SavedMotion, SavedMotionError, motion_state_beside};
 pub use motions::{
     EventOut, MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, MotionDocument, MotionShape, equilibrium_numbers, motion_columns,
@@ -73,7 +73,10 @@ pub use motions::{
 };
 pub use others::{Others, Search};
 pub use output::{WriteError, is_same_file, remove_leftovers, write_whole, write_whole_with};
-pub use paths::{Landing, PathDocument, end_message, path_csv, path_csv_with_landings, spatial_path_csv};
+pub use paths::{
+    Landing, PathDocument, end_message, path_csv, path_csv_with_landings, spatial_path_csv,
+    spatial_path_csv_with_landings,
+};
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
 pub use reach::{ReachDocument, reach_csv, spatial_reach_csv};
 pub use results::{FailureDocument, Note, SolutionDocument, TOLERANCE_MISSED, json, stations_csv};

@@ -1,35 +1,35 @@
 //! Equilibria along a sequence of loads as JSON and CSV.
 
-use hydrostat::{Arm, LoadingSnap, LoadingStep, Tip};
+use hydrostat::{Arm, Configuration, LoadingSnap, LoadingStep, Pose, SpatialConfiguration, SpatialTip, Tip};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
-use crate::results::{SCHEMA, TipOut, cell, json};
-use crate::state::State;
+use crate::results::{SCHEMA, cell, json};
+use crate::state::{AnyTip, State};
 use crate::time_loads::LoadRows;
 use crate::written::Inputs;
 
 /// A snap on the way to a row, with the loads at which the arm snaps.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RowSnap {
+pub struct RowSnap<T = Tip> {
     /// The loads at the limit point, in the order of the keys, SI units, angles in degrees.
     pub loads: Vec<f64>,
     /// The snap.
-    pub snap: LoadingSnap,
+    pub snap: LoadingSnap<T>,
 }
 
 /// A row of a sequence of loads: its loads, its equilibrium, and the snaps since the row before.
 #[derive(Debug, Clone)]
-pub struct LoadingRow {
+pub struct LoadingRow<C = Configuration, T = Tip> {
     /// The loads in the order of the keys, SI units, angles in degrees.
     pub loads: Vec<f64>,
     /// The equilibrium.
-    pub step: LoadingStep,
+    pub step: LoadingStep<C, T>,
     /// The snaps since the row before.
-    pub snaps: Vec<RowSnap>,
+    pub snaps: Vec<RowSnap<T>>,
 }
 
-impl LoadingRow {
+impl<C, T: Pose> LoadingRow<C, T> {
     /// Of a step to these loads from those `before`, which the first row has not.
     ///
     /// ```
@@ -43,8 +43,8 @@ impl LoadingRow {
     /// assert!(row.snaps.is_empty() && row.step.configuration.tip().y > 0.0);
     /// # Ok::<(), hydrostat::LoadingError>(())
     /// ```
-    pub fn new(before: Option<&[f64]>, loads: Vec<f64>, step: LoadingStep) -> Self {
-        let at = |snap: &LoadingSnap| {
+    pub fn new(before: Option<&[f64]>, loads: Vec<f64>, step: LoadingStep<C, T>) -> Self {
+        let at = |snap: &LoadingSnap<T>| {
             let before = before.unwrap_or(&loads);
             before.iter().zip(&loads).map(|(from, to)| from + snap.share * (to - from)).collect()
         };
@@ -80,8 +80,8 @@ struct RowOut<'a> {
 struct SnapOut<'a> {
     loads: &'a [f64],
     share: f64,
-    before: TipOut,
-    after: TipOut,
+    before: AnyTip,
+    after: AnyTip,
     /// m
     distance: f64,
     /// rad
@@ -92,7 +92,7 @@ struct SnapOut<'a> {
 }
 
 impl<'a> SnapOut<'a> {
-    fn new(row: &'a RowSnap, length: f64) -> Self {
+    fn new<T: Pose + Into<AnyTip>>(row: &'a RowSnap<T>, length: f64) -> Self {
         let LoadingSnap { share, before, after, duration, .. } = row.snap;
         Self {
             loads: &row.loads,
@@ -110,13 +110,30 @@ impl<'a> SnapOut<'a> {
 impl<'a> LoadingDocument<'a> {
     /// Of rows of `arm` over these keys; `verdict` says why they end early.
     pub fn new(arm: &Arm, loads: &'a LoadRows, rows: &'a [LoadingRow], verdict: Option<String>) -> Self {
-        let one = |row: &'a LoadingRow| {
-            let configuration = &row.step.configuration;
-            RowOut {
-                loads: &row.loads,
-                state: State::new(configuration, configuration.stability()),
-                snaps: row.snaps.iter().map(|snap| SnapOut::new(snap, arm.length)).collect(),
-            }
+        Self::of(arm, loads, rows, verdict, in_plane)
+    }
+
+    /// The same of an arm in space.
+    pub fn in_space(
+        arm: &Arm,
+        loads: &'a LoadRows,
+        rows: &'a [LoadingRow<SpatialConfiguration, SpatialTip>],
+        verdict: Option<String>,
+    ) -> Self {
+        Self::of(arm, loads, rows, verdict, in_space)
+    }
+
+    fn of<C, T: Pose + Into<AnyTip>>(
+        arm: &Arm,
+        loads: &'a LoadRows,
+        rows: &'a [LoadingRow<C, T>],
+        verdict: Option<String>,
+        state: impl Fn(&'a C) -> State<'a>,
+    ) -> Self {
+        let one = |row: &'a LoadingRow<C, T>| RowOut {
+            loads: &row.loads,
+            state: state(&row.step.configuration),
+            snaps: row.snaps.iter().map(|snap| SnapOut::new(snap, arm.length)).collect(),
         };
         Self {
             schema: SCHEMA,
@@ -135,33 +152,58 @@ impl<'a> LoadingDocument<'a> {
     }
 }
 
+fn in_plane(configuration: &Configuration) -> State<'_> {
+    State::new(configuration, configuration.stability())
+}
+
+fn in_space(configuration: &SpatialConfiguration) -> State<'_> {
+    State::in_space(configuration, configuration.stability())
+}
+
+/// The columns of snaps before the place of the tip.
+const SNAPS: [&str; 5] = ["snaps", "snap_share", "snap_distance_m", "snap_angle_rad", "snap_duration_s"];
+
 /// The rows as CSV: loads under their keys, what [`crate::path_csv`] has of an equilibrium, and the snaps since the row
-/// before: how many, and of the one that goes furthest share, distance, angle and duration.
+/// before: how many, and of the one that goes furthest share, distance, angle, duration and the place of the tip.
 pub fn loading_csv(loads: &LoadRows, rows: &[LoadingRow]) -> String {
-    let cables = rows.first().map_or(0, |row| row.step.configuration.cables.len());
+    let columns =
+        |more: &[&str]| State::columns(rows.first().map_or(0, |row| row.step.configuration.cables.len()), more);
+    written(loads, rows, columns, in_plane, |tip| [("snap_x_m", tip.x), ("snap_y_m", tip.y)])
+}
+
+/// The same of an arm in space.
+pub fn spatial_loading_csv(loads: &LoadRows, rows: &[LoadingRow<SpatialConfiguration, SpatialTip>]) -> String {
+    let columns = |more: &[&str]| {
+        State::columns_in_space(rows.first().map_or(0, |row| row.step.configuration.cables.len()), more)
+    };
+    let place = |tip: SpatialTip| [("snap_x_m", tip.x), ("snap_y_m", tip.y), ("snap_z_m", tip.z)];
+    written(loads, rows, columns, in_space, place)
+}
+
+fn written<'a, C, T: Pose + Default, const D: usize>(
+    loads: &LoadRows,
+    rows: &'a [LoadingRow<C, T>],
+    columns: impl Fn(&[&str]) -> Vec<String>,
+    state: impl Fn(&'a C) -> State<'a>,
+    place: impl Fn(T) -> [(&'static str, f64); D],
+) -> String {
     let mut names = loads.keys.clone();
-    names.extend(State::columns(
-        cables,
-        &["snaps", "snap_share", "snap_distance_m", "snap_angle_rad", "snap_duration_s", "snap_x_m", "snap_y_m"],
-    ));
+    let places = place(T::default()).map(|(name, _)| name);
+    names.extend(columns(&SNAPS.into_iter().chain(places).collect::<Vec<_>>()));
     let mut out = Rows::new(&names);
     for row in rows {
         let mut cells: Vec<String> = row.loads.iter().copied().map(cell).collect();
         let furthest = row.snaps.iter().map(|row| row.snap).max_by(|a, b| a.distance().total_cmp(&b.distance()));
-        let number =
-            |of: &dyn Fn(&LoadingSnap) -> f64| furthest.as_ref().map_or_else(String::new, |snap| cell(of(snap)));
-        let more = [
-            row.snaps.len().to_string(),
-            number(&|snap| snap.share),
-            number(&LoadingSnap::distance),
-            number(&LoadingSnap::angle),
-            number(&|snap| snap.duration),
-            number(&|LoadingSnap { before: Tip { x, .. }, .. }| *x),
-            number(&|LoadingSnap { before: Tip { y, .. }, .. }| *y),
-        ];
-        let configuration = &row.step.configuration;
+        let mut more = vec![row.snaps.len().to_string()];
+        match furthest {
+            Some(snap) => {
+                more.extend([snap.share, snap.distance(), snap.angle(), snap.duration].map(cell));
+                more.extend(place(snap.before).map(|(_, value)| cell(value)));
+            }
+            None => more.extend(vec![String::new(); SNAPS.len() - 1 + D]),
+        }
         let more: Vec<&str> = more.iter().map(String::as_str).collect();
-        cells.extend(State::new(configuration, configuration.stability()).cells(&more));
+        cells.extend(state(&row.step.configuration).cells(&more));
         out.row(&cells);
     }
     out.text()

@@ -1,11 +1,14 @@
 //! Paths of equilibria as JSON and CSV.
 
-use hydrostat::{Arm, Branch, Event, Path, PathEnd, PathPoint, Rest, SpatialConfiguration, VerdictKind};
+use hydrostat::{
+    Arm, Branch, Configuration, Event, Path, PathEnd, PathPoint, Rest, SpatialConfiguration, SpatialTip, Tip,
+    VerdictKind,
+};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
-use crate::results::{SCHEMA, TipOut, cell, json};
-use crate::state::State;
+use crate::results::{SCHEMA, cell, json};
+use crate::state::{AnyTip, State};
 use crate::varied::{RangeOut, Varied};
 use crate::written::Inputs;
 
@@ -36,29 +39,64 @@ pub(crate) struct EndOut {
 
 /// Where an arm rests that is let go at a limit point of a path.
 #[derive(Debug, Clone)]
-pub struct Landing {
+pub struct Landing<C = Configuration> {
     /// The branch and the point on it, from 0.
     pub at: [usize; 2],
     /// The shape and the time that it takes, or why there is none.
-    pub outcome: Result<Rest, String>,
+    pub outcome: Result<Rest<C>, String>,
 }
 
 #[derive(Debug, Clone, Serialize)]
 struct LandingOut {
     /// The tip where the arm rests.
-    tip: Option<TipOut>,
+    tip: Option<AnyTip>,
     /// s
     duration: Option<f64>,
     /// Why it is not known where.
     message: Option<String>,
 }
 
-impl From<&Landing> for LandingOut {
-    fn from(landing: &Landing) -> Self {
+impl LandingOut {
+    fn new<C: Landed>(landing: &Landing<C>) -> Self {
         match &landing.outcome {
-            Ok(rest) => Self { tip: Some(TipOut::new(&rest.configuration)), duration: Some(rest.time), message: None },
+            Ok(rest) => Self { tip: Some(rest.configuration.landed()), duration: Some(rest.time), message: None },
             Err(message) => Self { tip: None, duration: None, message: Some(message.clone()) },
         }
+    }
+}
+
+/// What is said of a shape in which an arm rests.
+pub(crate) trait Landed {
+    /// The heads of [`Landed::place`].
+    const PLACE: &'static [&'static str];
+
+    fn landed(&self) -> AnyTip;
+    fn place(&self) -> Vec<f64>;
+}
+
+impl Landed for Configuration {
+    const PLACE: &'static [&'static str] = &["after_snap_x_m", "after_snap_y_m", "after_snap_theta_rad"];
+
+    fn landed(&self) -> AnyTip {
+        self.tip().into()
+    }
+
+    fn place(&self) -> Vec<f64> {
+        let Tip { x, y, theta, .. } = self.tip();
+        vec![x, y, theta]
+    }
+}
+
+impl Landed for SpatialConfiguration {
+    const PLACE: &'static [&'static str] = &["after_snap_x_m", "after_snap_y_m", "after_snap_z_m"];
+
+    fn landed(&self) -> AnyTip {
+        self.tip().into()
+    }
+
+    fn place(&self) -> Vec<f64> {
+        let SpatialTip { x, y, z, .. } = self.tip();
+        vec![x, y, z]
     }
 }
 
@@ -159,12 +197,13 @@ impl<'a> PathDocument<'a> {
     }
 
     /// With where the arm rests after limit points.
-    pub fn with_landings(mut self, landings: &[Landing]) -> Self {
+    #[allow(private_bounds, reason = "in the plane or in space")]
+    pub fn with_landings<C: Landed>(mut self, landings: &[Landing<C>]) -> Self {
         for landing in landings {
             let [branch, point] = landing.at;
             let point = self.branches.get_mut(branch).and_then(|branch| branch.points.get_mut(point));
             if let Some(point) = point {
-                point.after_snap = Some(landing.into());
+                point.after_snap = Some(LandingOut::new(landing));
             }
         }
         self
@@ -179,7 +218,7 @@ impl<'a> PathDocument<'a> {
 /// The points of all branches, one row each, with names and SI units in the first row. Branches count from 0.
 pub fn path_csv(path: &Path, varied: &Varied) -> String {
     let columns = |more: &[&str]| State::columns(cables_of(path, |c| c.cables.len()), more);
-    rows(path, varied, columns, in_plane, None)
+    rows(path, varied, columns, in_plane, None::<&[Landing]>)
 }
 
 /// [`path_csv`] with the tip where the arm rests after limit points, and how long that takes.
@@ -191,23 +230,33 @@ pub fn path_csv_with_landings(path: &Path, varied: &Varied, landings: &[Landing]
 /// The same of an arm in space.
 pub fn spatial_path_csv(path: &Path<SpatialConfiguration>, varied: &Varied) -> String {
     let columns = |more: &[&str]| State::columns_in_space(cables_of(path, |c| c.cables.len()), more);
-    rows(path, varied, columns, in_space, None)
+    rows(path, varied, columns, in_space, None::<&[Landing<SpatialConfiguration>]>)
+}
+
+/// [`path_csv_with_landings`] of an arm in space.
+pub fn spatial_path_csv_with_landings(
+    path: &Path<SpatialConfiguration>,
+    varied: &Varied,
+    landings: &[Landing<SpatialConfiguration>],
+) -> String {
+    let columns = |more: &[&str]| State::columns_in_space(cables_of(path, |c| c.cables.len()), more);
+    rows(path, varied, columns, in_space, Some(landings))
 }
 
 fn cables_of<C>(path: &Path<C>, cables: impl Fn(&C) -> usize) -> usize {
     path.branches.iter().flat_map(|b| &b.points).next().map_or(0, |point| cables(&point.configuration))
 }
 
-fn rows<'a, C>(
+fn rows<'a, C: Landed>(
     path: &'a Path<C>,
     varied: &Varied,
     columns: impl Fn(&[&str]) -> Vec<String>,
     state: impl Fn(&'a PathPoint<C>) -> State<'a>,
-    landings: Option<&[Landing]>,
+    landings: Option<&[Landing<C>]>,
 ) -> String {
     let mut names = vec!["branch".to_owned(), varied.column()];
-    let after = ["after_snap_x_m", "after_snap_y_m", "after_snap_theta_rad", "after_snap_s"];
-    let more: Vec<&str> = ["event"].into_iter().chain(after.into_iter().filter(|_| landings.is_some())).collect();
+    let after: Vec<&str> = C::PLACE.iter().copied().chain(["after_snap_s"]).collect();
+    let more: Vec<&str> = ["event"].into_iter().chain(after.iter().copied().filter(|_| landings.is_some())).collect();
     names.extend(columns(&more));
     let mut out = Rows::new(&names);
     let all = path.branches.iter().enumerate();
@@ -223,10 +272,13 @@ fn rows<'a, C>(
             let rest =
                 landings.iter().find(|landing| landing.at == at).and_then(|landing| landing.outcome.as_ref().ok());
             let numbers = rest.map(|rest| {
-                let tip = rest.configuration.tip();
-                [tip.x, tip.y, tip.theta, rest.time]
+                let mut numbers = rest.configuration.place();
+                numbers.push(rest.time);
+                numbers
             });
-            more.extend((0..after.len()).map(|k| numbers.map_or_else(String::new, |numbers| cell(numbers[k]))));
+            more.extend(
+                (0..after.len()).map(|k| numbers.as_ref().map_or_else(String::new, |numbers| cell(numbers[k]))),
+            );
         }
         let more: Vec<&str> = more.iter().map(String::as_str).collect();
         cells.extend(state(point).cells(&more));

@@ -1,6 +1,6 @@
 //! One equilibrium of several: what documents and tables say of it.
 
-use hydrostat::{Configuration, SpatialConfiguration, Stability};
+use hydrostat::{Configuration, SpatialConfiguration, SpatialTip, Stability, Tip};
 use serde::Serialize;
 
 use crate::results::{CableOut, TipOut, cell};
@@ -22,9 +22,21 @@ impl From<Option<Stability>> for StabilityOut {
 /// The tip in the plane or in space.
 #[derive(Debug, Clone, Serialize)]
 #[serde(untagged)]
-enum AnyTip {
+pub(crate) enum AnyTip {
     Plane(TipOut),
     Space(SpatialTipOut),
+}
+
+impl From<Tip> for AnyTip {
+    fn from(tip: Tip) -> Self {
+        Self::Plane(tip.into())
+    }
+}
+
+impl From<SpatialTip> for AnyTip {
+    fn from(tip: SpatialTip) -> Self {
+        Self::Space(tip.into())
+    }
 }
 
 /// An equilibrium without its stations.

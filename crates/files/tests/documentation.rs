@@ -11,7 +11,7 @@ use hydrostat::{
 use hydrostat_files::{
     ArmFile, BoundaryDocument, Dimension, EquilibriaDocument, FollowedDocument, LoadRows, LoadingRow,
     MOTION_EVENT_HEADS, MOTION_SHAPE_HEADS, OverDocument, PathDocument, ReachDocument, Varied, boundary_csv,
-    followed_csv, loading_csv, modes_over_csv, motion_columns, over_csv, path_csv, reach_csv, schema,
+    followed_csv, loading_csv, mode_shapes_csv, modes_over_csv, motion_columns, over_csv, path_csv, reach_csv, schema,
     spatial_motion_heads, stations_csv,
 };
 use serde_json::Value;
@@ -204,7 +204,10 @@ fn its_names_are_those_of_the_results() {
     assert_eq!(blocks("csv")[5..7], [loading_header(&arm), over_header()]);
     let varied: Varied = "flow.speed=0:1".parse().unwrap();
     assert_eq!(blocks("csv")[7], modes_over_csv::<[f64; 3]>(&varied, &[]));
-    assert_eq!(blocks("csv")[8..], reached);
+    let head = |text: String| text.lines().next().unwrap().to_owned() + "\n";
+    let shapes = [mode_shapes_csv(&arm.modes(1, 4).unwrap()), mode_shapes_csv(&arm.modes_in_space(1, 4).unwrap())];
+    assert_eq!(blocks("csv")[8], shapes.map(head).concat());
+    assert_eq!(blocks("csv")[9..], reached);
     let middle = Target { s: Some(0.1), ..Target::tip(0.09, 0.0) };
     let columns = reach_csv(1, &arm.reach(&[middle], &ReachOptions::default()).unwrap());
     for name in columns.lines().next().unwrap().split(',').filter(|name| name.starts_with("place")) {

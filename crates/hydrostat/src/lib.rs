@@ -154,9 +154,10 @@ pub use configuration::{
 pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
 pub use motion::{
     AfterSnap, AfterSnapError, CableMotion, Course, Inputs, Instant, Loading, LoadingError, LoadingSnap, LoadingStep,
-    Mode, Modes, MotionError, MotionEvent, MotionEventKind, MotionOptions, MotionState, MotionStation,
-    MotionStatistics, MotionVerdict, MotionVerdictKind, MotionWarning, QuasiStatic, Rest, Restless, Simulation,
-    SnapMotion, SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation, SpatialSnapMotion, Works,
+    Mode, ModeSection, ModeShape, ModeStation, Modes, MotionError, MotionEvent, MotionEventKind, MotionOptions,
+    MotionState, MotionStation, MotionStatistics, MotionVerdict, MotionVerdictKind, MotionWarning, QuasiStatic, Rest,
+    Restless, Simulation, SnapMotion, SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation,
+    SpatialSnapMotion, Works,
 };
 pub use numerics::dispatch::has_wide_vectors;
 pub use parameter::Parameter;
@@ -179,4 +180,5 @@ pub use spatial::{
     SpatialSnap, SpatialSolver, SpatialStation, SpatialStations, SpatialTip, SpatialWrench,
 };
 pub use stability::{Growth, Stability};
+pub use statics::shape::Pose;
 pub use verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};

@@ -32,7 +32,7 @@
 //! given one by one: memory does not grow with the run. A step that fails is halved; if it cannot be done the run
 //! ends with a [`MotionVerdict`] that names time and limit, after all before it was given.
 //!
-//! **Eigenmodes** (`modes`, `small_motions`) are those of the same equations, linearised about an equilibrium.
+//! **Eigenmodes** (`modes`, `small_motions`, `mode_shapes`) are those of the same equations, linearised about an equilibrium.
 
 mod after_snap;
 mod along;
@@ -46,13 +46,17 @@ mod history;
 mod in_plane;
 mod in_space;
 mod inputs;
+mod landing;
 mod loading;
+mod mode;
+mod mode_shapes;
 mod modes;
 mod modes_in_plane;
 mod options;
 mod places;
 mod powers;
 mod quasi_static;
+mod ranged;
 mod relaxation;
 mod rest;
 mod resting;
@@ -76,12 +80,14 @@ pub use self::in_space::{
     SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation, SpatialSnapMotion,
 };
 pub use self::inputs::{Course, Inputs};
+pub use self::landing::Rest;
 pub use self::loading::{Loading, LoadingError, LoadingSnap, LoadingStep};
-pub use self::modes::{Mode, Modes};
+pub use self::mode::Mode;
+pub use self::mode_shapes::{ModeSection, ModeShape, ModeStation};
+pub use self::modes::Modes;
 pub use self::options::{CableMotion, MotionOptions, MotionStatistics};
 pub use self::places::MotionStation;
 pub use self::quasi_static::QuasiStatic;
-pub use self::rest::Rest;
 pub use self::resting::Restless;
 pub use self::simulation::{Instant, Simulation};
 pub use self::state::MotionState;

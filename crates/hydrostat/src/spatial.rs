@@ -15,6 +15,7 @@ mod held;
 pub(crate) mod inertia;
 mod kinks;
 mod lengths;
+mod loaded;
 pub(crate) mod loads;
 mod mesh;
 pub(crate) mod path;

@@ -110,9 +110,14 @@ impl Arm {
             arm.flow.speed = speed;
         }
         let options = options(tol, snaps);
+        if after_snap && arm.space.is_some() {
+            let solved = py.detach(|| arm.solve_after_snap_in_space(tol));
+            let found = solved.map_err(|error| after_snap_error(py, error, options, spatial_error))?;
+            return Ok(Py::new(py, SpatialSolution::after_snap(found, options))?.into_any());
+        }
         if after_snap {
             let solved = py.detach(|| arm.solve_after_snap(tol));
-            let found = solved.map_err(|error| after_snap_error(py, error, options))?;
+            let found = solved.map_err(|error| after_snap_error(py, error, options, solve_error))?;
             return Ok(Py::new(py, Solution::after_snap(found, options))?.into_any());
         }
         if arm.space.is_some() {

@@ -117,6 +117,7 @@ pub(crate) fn motion_error(py: Python<'_>, error: MotionError) -> PyErr {
     static ENDED: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     match error {
         MotionError::Start(source) => solve_error(py, *source, Options::default()),
+        MotionError::SpatialStart(source) => spatial_error(py, *source, Options::default()),
         MotionError::Ended(verdict) => {
             let fields = (verdict.message(), verdict.kind.name(), verdict.time, verdict.s);
             made(py, &ENDED, "MotionError", fields)

@@ -8,9 +8,11 @@ mod arm_class;
 mod arrays;
 mod errors;
 mod figure;
+mod history;
 mod identification;
 mod interrupt;
 mod many;
+mod modes;
 mod motion;
 mod order;
 mod paths;
@@ -33,11 +35,15 @@ mod _native {
     #[pymodule_export]
     use super::figure::{Figure, curve_figure, map_figure, source_figures, workspace_figure};
     #[pymodule_export]
+    use super::history::{History, history};
+    #[pymodule_export]
     use super::identification::{Fit, identify, measurements_template};
     #[pymodule_export]
     use super::many::{parameter_names, solve_many};
     #[pymodule_export]
-    use super::motion::{History, Simulation, history, motion_figures};
+    use super::modes::{Modes, modes};
+    #[pymodule_export]
+    use super::motion::{Simulation, motion_figures};
     #[pymodule_export]
     use super::paths::{Equilibria, Path, equilibria, over_figure, path};
     #[pymodule_export]

@@ -1,31 +1,123 @@
-//! Arms in motion, and along loads that rise and fall.
+//! Arms in motion.
 
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use hydrostat::{
-    AfterSnapError, Course, Inputs, Loading, LoadingError, LoadingStep, MotionError, MotionOptions, Options,
+    AfterSnapError, Course, Inputs, Instant, MotionError, MotionOptions, Options, SpatialInstant, SpatialSimulation,
 };
-use hydrostat_figures::{LoadingPoint, MotionFrame, Page};
-use hydrostat_files::{LoadRows, LoadingDocument, LoadingRow, loading_csv, motion_columns, motion_numbers};
+use hydrostat_figures::{MotionFrame, Page, motion_figure, spatial_strobe_figure, strobe_figure};
+use hydrostat_files::{motion_columns, motion_numbers, spatial_motion_heads, spatial_motion_numbers};
 use numpy::{PyArray1, PyReadonlyArray1};
-use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
 use crate::arm_class::Arm;
 use crate::arrays::{finite, given};
-use crate::errors::{motion_error, solve_error, wrong};
-use crate::figure::{Axis, Figure, abscissa, quantity};
+use crate::errors::{motion_error, wrong};
+use crate::figure::Figure;
 use crate::interrupt::interruptible;
-use crate::solution::{Solution, TipFields, tip};
 
 /// A key with its times and values, and whether a smooth line joins them.
 type Given<'py> = (String, PyReadonlyArray1<'py, f64>, PyReadonlyArray1<'py, f64>, bool);
 
-/// An arm in motion.
+/// A motion of one kind, as Python has it.
+trait Rowed {
+    type At;
+
+    /// Numbers at a node in [`Simulation::fields`].
+    const WIDTH: usize;
+
+    fn columns(cables: usize) -> Vec<String>;
+    fn numbers(at: &Self::At) -> Vec<f64>;
+    /// The numbers of all nodes, node by node, and the places of these, m.
+    fn at_nodes(&self) -> Vec<(f64, Vec<f64>)>;
+}
+
+impl Rowed for hydrostat::Simulation {
+    type At = Instant;
+
+    const WIDTH: usize = 3;
+
+    fn columns(cables: usize) -> Vec<String> {
+        motion_columns(cables)
+    }
+
+    fn numbers(at: &Instant) -> Vec<f64> {
+        motion_numbers(at)
+    }
+
+    fn at_nodes(&self) -> Vec<(f64, Vec<f64>)> {
+        self.shape().iter().map(|[s, own @ ..]| (*s, own.to_vec())).collect()
+    }
+}
+
+impl Rowed for SpatialSimulation {
+    type At = SpatialInstant;
+
+    const WIDTH: usize = 12;
+
+    fn columns(cables: usize) -> Vec<String> {
+        spatial_motion_heads(cables, 0, false)
+    }
+
+    fn numbers(at: &SpatialInstant) -> Vec<f64> {
+        spatial_motion_numbers(at)
+    }
+
+    fn at_nodes(&self) -> Vec<(f64, Vec<f64>)> {
+        let of = |[s, ..]: &[f64; 4]| {
+            let at = self.station(*s);
+            (*s, [at.place, at.a, at.b, at.c].concat())
+        };
+        self.shape().iter().map(of).collect()
+    }
+}
+
+#[derive(Clone)]
+enum Motion {
+    Plane(Box<hydrostat::Simulation>),
+    Space(Box<SpatialSimulation>),
+}
+
+/// The same of either kind of motion.
+macro_rules! of {
+    ($motion:expr, $own:ident => $what:expr) => {
+        match $motion {
+            Motion::Plane($own) => $what,
+            Motion::Space($own) => $what,
+        }
+    };
+}
+
+fn numbers_of<M: Rowed>(_: &M, at: &M::At) -> Vec<f64> {
+    M::numbers(at)
+}
+
+fn columns_of<M: Rowed>(_: &M, cables: usize) -> Vec<String> {
+    M::columns(cables)
+}
+
+fn width_of<M: Rowed>(_: &M) -> usize {
+    M::WIDTH
+}
+
+/// Takes rows, and the numbers at the nodes, for as long as nobody wants it to stop.
+fn taken<'a, M: Rowed>(
+    rows: &'a mut Vec<f64>,
+    shapes: &'a mut Vec<f64>,
+    stop: &'a AtomicBool,
+) -> impl FnMut(&M::At, &M) -> bool + 'a {
+    |at, simulation| {
+        rows.extend(M::numbers(at));
+        shapes.extend(simulation.at_nodes().into_iter().flat_map(|(_, own)| own));
+        !stop.load(Ordering::Relaxed)
+    }
+}
+
+/// An arm in motion, in the plane or in space.
 #[pyclass(module = "hydrostat._native")]
 pub(crate) struct Simulation {
-    simulation: hydrostat::Simulation,
+    motion: Motion,
     arm: hydrostat::Arm,
 }
 
@@ -43,43 +135,53 @@ impl Simulation {
     ) -> PyResult<Self> {
         let inputs = courses(&inputs)?;
         let options = MotionOptions { tol, start, elements, ..MotionOptions::default() };
-        let made = py.detach(|| hydrostat::Simulation::new(&arm.given, inputs, options));
-        let simulation = made.map_err(|error| motion_error(py, error))?;
-        Ok(Self { simulation, arm: arm.given.clone() })
+        let made = py.detach(|| {
+            if arm.given.space.is_some() {
+                SpatialSimulation::new(&arm.given, inputs, options).map(|own| Motion::Space(Box::new(own)))
+            } else {
+                hydrostat::Simulation::new(&arm.given, inputs, options).map(|own| Motion::Plane(Box::new(own)))
+            }
+        });
+        let motion = made.map_err(|error| motion_error(py, error))?;
+        Ok(Self { motion, arm: arm.given.clone() })
     }
 
     /// A motion of its own that goes on from here.
     fn copy(&self) -> Self {
-        Self { simulation: self.simulation.clone(), arm: self.arm.clone() }
+        Self { motion: self.motion.clone(), arm: self.arm.clone() }
     }
 
     /// The names of the numbers of a row.
     #[getter]
     fn columns(&self) -> Vec<String> {
-        motion_columns(self.arm.cables.len())
+        of!(&self.motion, own => columns_of(&**own, self.arm.cables.len()))
     }
 
     #[getter]
     fn time(&self) -> f64 {
-        self.simulation.time()
+        of!(&self.motion, own => own.time())
     }
 
     /// The row of the present time.
     fn now(&mut self) -> Vec<f64> {
-        motion_numbers(&self.simulation.now())
+        of!(&mut self.motion, own => {
+            let at = own.now();
+            numbers_of(&**own, &at)
+        })
     }
 
     /// Moves on by so many seconds, while loads change to these values.
     fn step(&mut self, py: Python<'_>, dt: f64, loads: Vec<(String, f64)>) -> PyResult<Vec<f64>> {
-        let simulation = &mut self.simulation;
+        let motion = &mut self.motion;
         let loads: Vec<(&str, f64)> = loads.iter().map(|(key, value)| (key.as_str(), *value)).collect();
-        let at = py.detach(|| simulation.step_to(dt, &loads)).map_err(|error| motion_error(py, error))?;
+        let row = py.detach(|| of!(motion, own => own.step_to(dt, &loads).map(|at| numbers_of(&**own, &at))));
+        let row = row.map_err(|error| motion_error(py, error))?;
         py.check_signals()?;
-        Ok(motion_numbers(&at))
+        Ok(row)
     }
 
-    /// All rows up to a time, one after the other, the shapes at them (x, y and theta at the nodes), and why it ended
-    /// early: kind, time, place, and message.
+    /// All rows up to a time, one after the other, what `shape` has at them, and why it ended early: kind, time, place,
+    /// and message.
     #[allow(clippy::type_complexity, reason = "a row of plain values")]
     fn run<'py>(
         &mut self,
@@ -87,18 +189,12 @@ impl Simulation {
         until: f64,
         every: f64,
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Option<Verdict>)> {
-        let simulation = &mut self.simulation;
+        let motion = &mut self.motion;
         let (mut rows, mut shapes) = (Vec::new(), Vec::new());
         let outcome = interruptible(
             py,
             |_| Ok(()),
-            |stop| {
-                simulation.run(until, every, |at, simulation| {
-                    rows.extend(motion_numbers(at));
-                    shapes.extend(simulation.shape().iter().flat_map(|[_, x, y, theta]| [*x, *y, *theta]));
-                    !stop.load(Ordering::Relaxed)
-                })
-            },
+            |stop| of!(motion, own => own.run(until, every, taken(&mut rows, &mut shapes, stop))),
         )?;
         let verdict = match outcome {
             Ok(()) => None,
@@ -110,25 +206,31 @@ impl Simulation {
 
     /// Places of the nodes along the arm, m, and half the width of the arm without loads there.
     fn nodes<'py>(&self, py: Python<'py>) -> [Bound<'py, PyArray1<f64>>; 2] {
-        let places: Vec<f64> = self.simulation.shape().iter().map(|at| at[0]).collect();
+        let places: Vec<f64> = of!(&self.motion, own => own.at_nodes()).into_iter().map(|(s, _)| s).collect();
         let widths = places.iter().map(|s| self.arm.radius.at(*s, self.arm.length).value).collect();
         [given(py, places), given(py, widths)]
     }
 
-    /// x, y and theta at the nodes at the present time.
-    fn shape<'py>(&self, py: Python<'py>) -> [Bound<'py, PyArray1<f64>>; 3] {
-        let shape = self.simulation.shape();
-        [1, 2, 3].map(|k| given(py, shape.iter().map(|at| at[k]).collect()))
+    /// How many numbers there are at a node: x, y and theta in the plane; x, y, z, a, b and c in space.
+    #[getter]
+    fn width(&self) -> usize {
+        of!(&self.motion, own => width_of(&**own))
+    }
+
+    /// The numbers at the nodes at the present time, node by node.
+    fn shape<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let nodes = of!(&self.motion, own => own.at_nodes());
+        given(py, nodes.into_iter().flat_map(|(_, own)| own).collect())
     }
 
     #[getter]
     fn error_estimate(&self) -> f64 {
-        self.simulation.error_estimate()
+        of!(&self.motion, own => own.error_estimate())
     }
 
     #[getter]
     fn statistics(&self) -> [(&'static str, usize); 5] {
-        let s = self.simulation.statistics();
+        let s = of!(&self.motion, own => own.statistics());
         [
             ("steps", s.steps),
             ("rejected", s.rejected),
@@ -159,37 +261,62 @@ fn courses(all: &[Given<'_>]) -> PyResult<Inputs> {
     Ok(inputs)
 }
 
-/// The figures of a motion: shapes at equal times, and what changes over time.
+/// The figures of a motion: shapes at equal times, and what changes over time; `dimensions` are those of a place.
 #[pyfunction]
 pub(crate) fn motion_figures(
     times: PyReadonlyArray1<'_, f64>,
     shapes: PyReadonlyArray1<'_, f64>,
     energies: (PyReadonlyArray1<'_, f64>, PyReadonlyArray1<'_, f64>),
+    dimensions: usize,
     count: usize,
     title: &str,
 ) -> PyResult<(Figure, Figure)> {
-    let (times, shapes) = (times.as_array(), shapes.as_array().to_vec());
-    let nodes = shapes.len() / (2 * times.len().max(1));
-    if nodes == 0 || shapes.len() != 2 * nodes * times.len() {
-        return Err(wrong("motion: expected x and y of the same nodes at each time"));
-    }
-    let frames: Vec<MotionFrame> = shapes
-        .chunks(2 * nodes)
-        .enumerate()
-        .map(|(k, shape)| MotionFrame {
-            time: times[k],
-            centreline: shape.chunks(2).map(|p| [p[0], p[1]]).collect(),
-            kinetic_energy: energies.0.as_array()[k],
-            strain_energy: energies.1.as_array()[k],
-        })
-        .collect();
+    let given = Frames { times: &times, shapes: &shapes, energies: &energies };
     let page = Page::default();
-    let strobe = hydrostat_figures::strobe_figure(&frames, count, title, &page);
-    Ok((Figure::new(strobe), Figure::new(hydrostat_figures::motion_figure(&frames, title, &page))))
+    let (strobe, over_time) = if dimensions == 3 {
+        let frames = given.read::<3>()?;
+        (spatial_strobe_figure(&frames, count, title, &page), motion_figure(&frames, title, &page))
+    } else {
+        let frames = given.read::<2>()?;
+        (strobe_figure(&frames, count, title, &page), motion_figure(&frames, title, &page))
+    };
+    Ok((Figure::new(strobe), Figure::new(over_time)))
 }
 
-/// What a solve after snaps ends with.
-pub(crate) fn after_snap_error(py: Python<'_>, error: AfterSnapError, options: Options) -> PyErr {
+/// Arrays of a motion.
+struct Frames<'a, 'py> {
+    times: &'a PyReadonlyArray1<'py, f64>,
+    shapes: &'a PyReadonlyArray1<'py, f64>,
+    energies: &'a (PyReadonlyArray1<'py, f64>, PyReadonlyArray1<'py, f64>),
+}
+
+impl Frames<'_, '_> {
+    fn read<const D: usize>(&self) -> PyResult<Vec<MotionFrame<D>>> {
+        let (times, shapes) = (self.times.as_array(), self.shapes.as_array().to_vec());
+        let nodes = shapes.len() / (D * times.len().max(1));
+        if nodes == 0 || shapes.len() != D * nodes * times.len() {
+            return Err(wrong("motion: expected places of the same nodes at each time"));
+        }
+        let frame = |(k, shape): (usize, &[f64])| MotionFrame {
+            time: times[k],
+            centreline: shape.chunks(D).map(|p| std::array::from_fn(|axis| p[axis])).collect(),
+            kinetic_energy: self.energies.0.as_array()[k],
+            strain_energy: self.energies.1.as_array()[k],
+        };
+        Ok(shapes.chunks(D * nodes).enumerate().map(frame).collect())
+    }
+}
+
+/// What a solve after snaps ends with; `solve_error` makes an exception of what the statics say.
+pub(crate) fn after_snap_error<E>(
+    py: Python<'_>,
+    error: AfterSnapError<E>,
+    options: Options,
+    solve_error: impl FnOnce(Python<'_>, E, Options) -> PyErr,
+) -> PyErr
+where
+    AfterSnapError<E>: std::fmt::Display,
+{
     match error {
         AfterSnapError::Solve(error) => solve_error(py, error, options),
         AfterSnapError::Motion { motion: MotionError::Unsupported { .. }, .. } => wrong(error),
@@ -198,136 +325,7 @@ pub(crate) fn after_snap_error(py: Python<'_>, error: AfterSnapError, options: O
 }
 
 /// `hydrostat.MotionError` of a motion after a snap.
-fn not_at_rest(py: Python<'_>, words: &str) -> PyErr {
+pub(crate) fn not_at_rest(py: Python<'_>, words: &str) -> PyErr {
     static ENDED: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     crate::wrong::made(py, &ENDED, "MotionError", (words, "no_rest", f64::NAN, None::<f64>))
-}
-
-/// Equilibria along a sequence of loads.
-#[pyclass(frozen, module = "hydrostat._native")]
-pub(crate) struct History {
-    arm: hydrostat::Arm,
-    loads: LoadRows,
-    rows: Vec<LoadingRow>,
-    tol: f64,
-}
-
-/// Index of its row, the loads, share, tips before and after, distance, angle, duration, and, where the curve leads on,
-/// whether the motion lands elsewhere.
-type RowSnapFields = (usize, Vec<f64>, f64, TipFields, TipFields, f64, f64, f64, Option<bool>);
-
-/// Follows `arm` along rows of loads: the rows that were reached, and what ended the way to the next one.
-#[pyfunction]
-pub(crate) fn history(
-    py: Python<'_>,
-    arm: &Arm,
-    keys: Vec<String>,
-    rows: Vec<Vec<f64>>,
-    tol: f64,
-) -> PyResult<(History, Option<PyErr>)> {
-    let loads = LoadRows::new(&keys, rows);
-    let arms = loads.arms(&arm.given).map_err(wrong)?;
-    let (found, failure) = interruptible(
-        py,
-        |_| Ok(()),
-        |stop| {
-            let mut rows: Vec<LoadingRow> = Vec::new();
-            let values = |k: usize| loads.rows[k].1.clone();
-            let (mut loading, first) = match Loading::start(&arms[0], tol) {
-                Ok(started) => started,
-                Err(error) => return (rows, Some((0, error))),
-            };
-            let step = LoadingStep { configuration: first.configuration, snaps: Vec::new() };
-            rows.push(LoadingRow::new(None, values(0), step));
-            for (k, arm) in arms.iter().enumerate().skip(1) {
-                if stop.load(Ordering::Relaxed) {
-                    break;
-                }
-                match loading.go_to(arm) {
-                    Ok(step) => rows.push(LoadingRow::new(Some(&values(k - 1)), values(k), step)),
-                    Err(error) => return (rows, Some((k, error))),
-                }
-            }
-            (rows, None)
-        },
-    )?;
-    let error = failure.map(|(row, error)| loading_error(py, row, error, tol));
-    Ok((History { arm: arm.given.clone(), loads, rows: found, tol }, error))
-}
-
-fn loading_error(py: Python<'_>, row: usize, error: LoadingError, tol: f64) -> PyErr {
-    match error {
-        LoadingError::Start(error) => after_snap_error(py, error, Options::with_tol(tol)),
-        error @ (LoadingError::Arm(_)
-        | LoadingError::Unsupported { .. }
-        | LoadingError::Motion { motion: MotionError::Unsupported { .. }, .. }) => wrong(format!("row {row}: {error}")),
-        error => not_at_rest(py, &format!("row {row}: {error}")),
-    }
-}
-
-#[pymethods]
-impl History {
-    fn __len__(&self) -> usize {
-        self.rows.len()
-    }
-
-    #[getter]
-    fn keys(&self) -> Vec<String> {
-        self.loads.keys.clone()
-    }
-
-    /// The loads of all rows at a key.
-    fn loads<'py>(&self, py: Python<'py>, column: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        if column >= self.loads.keys.len() {
-            return Err(PyIndexError::new_err("column: the history has no such column"));
-        }
-        Ok(given(py, self.rows.iter().map(|row| row.loads[column]).collect()))
-    }
-
-    fn solution(&self, row: usize) -> PyResult<Solution> {
-        let row = self.rows.get(row).ok_or_else(|| PyIndexError::new_err("row: the history has no such row"))?;
-        Ok(Solution::new(row.step.configuration.clone(), Options::with_tol(self.tol)))
-    }
-
-    #[getter]
-    fn snaps(&self) -> Vec<RowSnapFields> {
-        let one = |(k, row): (usize, &LoadingRow)| -> Vec<RowSnapFields> {
-            let fields = |snap: &hydrostat_files::RowSnap| {
-                let own = snap.snap;
-                let elsewhere = own.on_curve.map(|_| own.lands_elsewhere(self.arm.length));
-                let (before, after) = (tip(own.before), tip(own.after));
-                let sizes = (own.distance(), own.angle());
-                (k, snap.loads.clone(), own.share, before, after, sizes.0, sizes.1, own.duration, elsewhere)
-            };
-            row.snaps.iter().map(fields).collect()
-        };
-        self.rows.iter().enumerate().flat_map(one).collect()
-    }
-
-    fn figure(&self, column: usize, asked: &str, title: &str) -> PyResult<Figure> {
-        let Some(key) = self.loads.keys.get(column) else {
-            return Err(PyIndexError::new_err("column: the history has no such column"));
-        };
-        let points: Vec<LoadingPoint<'_>> = self
-            .rows
-            .iter()
-            .map(|row| LoadingPoint {
-                value: row.loads[column],
-                configuration: &row.step.configuration,
-                snaps: row.snaps.iter().map(|snap| (snap.loads[column], snap.snap)).collect(),
-            })
-            .collect();
-        let axis: Axis = (key.clone(), self.loads.unit(column).to_owned(), 1.0);
-        let page = Page::default();
-        let scene = hydrostat_figures::loading_figure(&points, &abscissa(axis), quantity(asked)?, title, &page);
-        Ok(Figure::new(scene))
-    }
-
-    fn to_json(&self) -> String {
-        LoadingDocument::new(&self.arm, &self.loads, &self.rows, None).to_json()
-    }
-
-    fn to_csv(&self) -> String {
-        loading_csv(&self.loads, &self.rows)
-    }
 }

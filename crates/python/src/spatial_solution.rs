@@ -1,6 +1,9 @@
 //! Configurations of arms in space and their stations.
 
-use hydrostat::{Options, SpatialConfiguration, SpatialSnap, SpatialStations, SpatialTip, SpatialWrench};
+use hydrostat::{
+    AfterSnap, Options, SpatialConfiguration, SpatialSnap, SpatialSnapMotion, SpatialStations, SpatialTip,
+    SpatialWrench,
+};
 use hydrostat_files::{Note, SpatialSolutionDocument, spatial_stations_csv};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::{PyIndexError, PyKeyError};
@@ -18,14 +21,17 @@ type Point = [f64; 3];
 /// x, y, z, the directors a, b, c, and alpha.
 pub(crate) type TipFields = (f64, f64, f64, Point, Point, Point, f64);
 
-/// Phase, load fraction, the tip before and after, distance and angle.
-pub(crate) type SnapFields = (&'static str, f64, TipFields, TipFields, f64, f64);
+/// Phase, load fraction, the tip before and after, distance and angle; where its motion was followed, the duration, and
+/// whether the motion lands elsewhere than the curve leads on to, which is not known in space.
+pub(crate) type SnapFields = (&'static str, f64, TipFields, TipFields, f64, f64, Option<f64>, Option<bool>);
 
 /// A configuration in space and the options that it was asked for with.
 #[pyclass(frozen, module = "hydrostat._native")]
 pub(crate) struct SpatialSolution {
     configuration: SpatialConfiguration,
     options: Options,
+    /// Those of the snaps that were followed.
+    motions: Vec<SpatialSnapMotion>,
 }
 
 /// Stations along an arm in space.
@@ -56,9 +62,12 @@ pub(crate) fn tip(tip: SpatialTip) -> TipFields {
 
 /// What Python's `Snap` is made of.
 pub(crate) fn snaps(all: &[SpatialSnap]) -> Vec<SnapFields> {
-    let fields =
-        |s: &SpatialSnap| (s.phase.name(), s.load_fraction, tip(s.before), tip(s.after), s.distance(), s.angle());
-    all.iter().map(fields).collect()
+    all.iter().map(|snap| snap_fields(snap, None)).collect()
+}
+
+fn snap_fields(s: &SpatialSnap, duration: Option<f64>) -> SnapFields {
+    let (before, after) = (tip(s.before), tip(s.after));
+    (s.phase.name(), s.load_fraction, before, after, s.distance(), s.angle(), duration, None)
 }
 
 fn wrench(wrench: SpatialWrench) -> (Point, Point) {
@@ -67,7 +76,12 @@ fn wrench(wrench: SpatialWrench) -> (Point, Point) {
 
 impl SpatialSolution {
     pub(crate) fn new(configuration: SpatialConfiguration, options: Options) -> Self {
-        Self { configuration, options }
+        Self { configuration, options, motions: Vec::new() }
+    }
+
+    /// A shape after snaps whose motions were followed.
+    pub(crate) fn after_snap(found: AfterSnap<SpatialConfiguration, SpatialSnapMotion>, options: Options) -> Self {
+        Self { configuration: found.configuration, options, motions: found.snaps }
     }
 }
 
@@ -99,7 +113,10 @@ impl SpatialSolution {
 
     #[getter]
     fn snaps(&self) -> Vec<SnapFields> {
-        snaps(&self.configuration.snaps)
+        if self.motions.is_empty() {
+            return snaps(&self.configuration.snaps);
+        }
+        self.motions.iter().map(|motion| snap_fields(&motion.snap, Some(motion.duration))).collect()
     }
 
     /// The arm with the loads that are balanced.
@@ -225,7 +242,8 @@ impl SpatialSolution {
     /// The document of `hydrostat solve --format json`.
     fn to_json(&self) -> String {
         let notes = Note::all_in_space(&self.configuration, self.options.tol);
-        SpatialSolutionDocument::new(&self.configuration, &notes).to_json()
+        let document = SpatialSolutionDocument::new(&self.configuration, &notes);
+        if self.motions.is_empty() { document.to_json() } else { document.with_motions(&self.motions).to_json() }
     }
 
     /// The stations as CSV.

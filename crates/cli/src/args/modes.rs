@@ -21,6 +21,7 @@ Exit status:
 Examples:
   hydrostat modes silicone
   hydrostat modes silicone --flow-speed 0.1 --tension 0.2,0 --format json
+  hydrostat modes silicone --plot-shapes shapes.svg --shapes-output shapes.csv
   hydrostat modes silicone --over flow.speed=0:0.3:31 --plot locus.svg
 
 {EXIT}"))]
@@ -36,12 +37,18 @@ pub(crate) struct ModesArgs {
     /// Find the modes at COUNT equally spaced values of a parameter, such as flow.speed=0:0.5:26 (root locus)
     #[arg(long, value_name = "KEY=FROM:TO:COUNT", allow_hyphen_values = true)]
     pub(crate) over: Option<Over>,
-    /// text: a table; json: all results; csv: one row per mode
+    /// text: a table; json: all results, with shapes; csv: one row per mode
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) format: Format,
     /// Draw the rates in the complex plane; FILE ends in .svg, .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot: Option<PathBuf>,
+    /// Draw the shapes of the first six modes; FILE ends in .svg, .pdf or .png
+    #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "over")]
+    pub(crate) plot_shapes: Option<PathBuf>,
+    /// Write the shapes to FILE as CSV, one row a mode and station
+    #[arg(long, value_name = "FILE", conflicts_with = "over")]
+    pub(crate) shapes_output: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     /// Write the result to FILE instead of standard output

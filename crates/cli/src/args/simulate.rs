@@ -26,9 +26,7 @@ Moves the arm in time: it starts at rest, in equilibrium under the loads at t = 
 The loads file is a CSV table with the column t_s and columns named by keys of the arm file, such as \
 cable[0].tension, flow.speed or tip.force[1], in SI units, angles in degrees; a head may have a unit, as in \
 cable_0_tension_mN. Straight lines join the rows. Two rows at one time are a jump; such a pair at t = 0 is a \
-release. The table [dynamics] of the arm file sets added mass, viscosity of the material and inertia.
-
-Arms in space move too; of them --plot and --plot-time are refused.")]
+release. The table [dynamics] of the arm file sets added mass, viscosity of the material and inertia.")]
 #[command(after_help = format!("\
 Examples:
   hydrostat simulate silicone --input loads.csv --until 2s --every 10ms --tol 1e-4 -o out.csv
@@ -97,7 +95,8 @@ pub(crate) struct SimulateArgs {
     /// Write the rows to FILE; CSV grows as the motion goes on. Beside it FILE.state.json keeps the state of the end
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw shapes at equal times, from pale to dark, and the tip trace; FILE ends in .svg, .pdf or .png
+    /// Draw shapes at equal times, from pale to dark, and the tip trace, in space from four sides; FILE ends in .svg,
+    /// .pdf or .png
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot: Option<PathBuf>,
     /// Draw the place of the tip and the energies over time; FILE ends in .svg, .pdf or .png

@@ -2,36 +2,44 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{Arm, Loading, LoadingError, LoadingStep};
+use hydrostat::{Arm, Configuration, LoadingError, LoadingStep, SpatialConfiguration};
 use hydrostat_figures::{Abscissa, LoadingPoint, loading_figure};
-use hydrostat_files::{LoadRows, LoadingDocument, LoadingRow, loading_csv, number, read_load_rows};
+use hydrostat_files::{LoadRows, LoadingRow, number, read_load_rows};
 
+use super::loaded::Loaded;
 use super::path::check_quantity;
-use super::table::{TIP, counted, decimals, table, tip_cells};
+use super::table::{counted, decimals, table};
 use crate::args::{Format, HistoryArgs};
 use crate::output;
 use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &HistoryArgs) -> anyhow::Result<()> {
-    let arm = request::arm(&args.arm, "`hydrostat history`")?;
+    let arm = request::arm_in_space(&args.arm)?;
     check_quantity(&arm, args.quantity)?;
     let inputs = [request::arm_input(&args.arm.file), Some(("--input", args.input.as_path()))];
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&inputs, &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
     let loads = read_load_rows(&args.input)?;
-    let over = column(&loads, args.over.as_deref())?;
-    let arms = loads.arms(&arm)?;
-    let (rows, failure) = follow(&arms, &loads, args.tol);
-    let verdict = failure.as_ref().map(|(row, error)| at_row(&loads, *row, error));
+    if arm.space.is_some() {
+        return along::<SpatialConfiguration>(args, &arm, &loads);
+    }
+    along::<Configuration>(args, &arm, &loads)
+}
+
+fn along<C: Loaded>(args: &HistoryArgs, arm: &Arm, loads: &LoadRows) -> anyhow::Result<()> {
+    let over = column(loads, args.over.as_deref())?;
+    let arms = loads.arms(arm)?;
+    let (rows, failure) = follow::<C>(&arms, loads, args.tol);
+    let verdict = failure.as_ref().map(|(row, error)| at_row(loads, *row, error));
     if let Some(file) = args.plot.as_ref().filter(|_| rows.len() > 1) {
-        output::draw(&diagram(args, &arm, &loads, over, &rows), file, &args.picture.page)?;
+        output::draw(&diagram(args, arm, loads, over, &rows), file, &args.picture.page)?;
     }
     let text = match args.format {
-        Format::Text => summary(&arm, &loads, &rows),
-        Format::Json => output::line(LoadingDocument::new(&arm, &loads, &rows, verdict.clone()).to_json()),
-        Format::Csv => loading_csv(&loads, &rows),
+        Format::Text => summary(arm, loads, &rows),
+        Format::Json => output::line(C::loading_document(arm, loads, &rows, verdict.clone()).to_json()),
+        Format::Csv => C::loading_csv(loads, &rows),
     };
     output::put(args.output.as_deref(), &text)?;
     match failure {
@@ -43,21 +51,28 @@ pub(crate) fn run(args: &HistoryArgs) -> anyhow::Result<()> {
     }
 }
 
+/// A row of loads with its equilibrium.
+type Row<C> = LoadingRow<C, <C as hydrostat_figures::Posed>::Tip>;
+
 /// The rows that were reached, and the index of the one that was not, with why.
-fn follow(arms: &[Arm], loads: &LoadRows, tol: f64) -> (Vec<LoadingRow>, Option<(usize, LoadingError)>) {
+#[allow(clippy::type_complexity, reason = "names of what is there")]
+fn follow<C: Loaded>(
+    arms: &[Arm],
+    loads: &LoadRows,
+    tol: f64,
+) -> (Vec<Row<C>>, Option<(usize, LoadingError<C::Error>)>) {
     let mut progress = Progress::new();
-    let mut rows: Vec<LoadingRow> = Vec::new();
+    let mut rows: Vec<Row<C>> = Vec::new();
     let Some(first) = arms.first() else { return (rows, None) };
-    let (mut loading, start) = match Loading::start(first, tol) {
+    let (mut loading, configuration) = match C::start(first, tol) {
         Ok(started) => started,
         Err(error) => return (rows, Some((0, error))),
     };
     let values = |row: usize| loads.rows[row].1.clone();
-    let step = LoadingStep { configuration: start.configuration, snaps: Vec::new() };
-    rows.push(LoadingRow::new(None, values(0), step));
+    rows.push(LoadingRow::new(None, values(0), LoadingStep { configuration, snaps: Vec::new() }));
     for (k, arm) in arms.iter().enumerate().skip(1) {
         progress.say(|| format!("row {k} of {}", arms.len()));
-        match loading.go_to(arm) {
+        match C::go_to(&mut loading, arm) {
             Ok(step) => rows.push(LoadingRow::new(Some(&values(k - 1)), values(k), step)),
             Err(error) => return (rows, Some((k, error))),
         }
@@ -66,7 +81,7 @@ fn follow(arms: &[Arm], loads: &LoadRows, tol: f64) -> (Vec<LoadingRow>, Option<
 }
 
 /// What ended the way to a row.
-fn at_row(loads: &LoadRows, row: usize, error: &LoadingError) -> String {
+fn at_row(loads: &LoadRows, row: usize, error: &impl std::fmt::Display) -> String {
     let line = loads.rows.get(row).map_or(0, |(line, _)| *line);
     format!("row {} (line {line}): {error}", row + 1)
 }
@@ -80,14 +95,14 @@ fn column(loads: &LoadRows, asked: Option<&str>) -> Result<usize, WrongRequest> 
     Ok((0..loads.keys.len()).find(changes).unwrap_or(0))
 }
 
-fn diagram(
+fn diagram<C: Loaded>(
     args: &HistoryArgs,
     arm: &Arm,
     loads: &LoadRows,
     over: usize,
-    rows: &[LoadingRow],
+    rows: &[Row<C>],
 ) -> hydrostat_figures::Scene {
-    let points: Vec<LoadingPoint<'_>> = rows
+    let points: Vec<LoadingPoint<'_, C>> = rows
         .iter()
         .map(|row| LoadingPoint {
             value: row.loads[over],
@@ -101,7 +116,7 @@ fn diagram(
 }
 
 /// The snaps, and where the arm is at the end.
-fn summary(arm: &Arm, loads: &LoadRows, rows: &[LoadingRow]) -> String {
+fn summary<C: Loaded>(arm: &Arm, loads: &LoadRows, rows: &[Row<C>]) -> String {
     let with_unit = |k: usize, value: f64| format!("{} {}", number(value), loads.unit(k)).trim_end().to_owned();
     let mut out = format!("history {}, {} of {}\n", arm.name, counted(rows.len(), "row"), loads.keys.join(", "));
     let snaps: Vec<_> =
@@ -129,10 +144,10 @@ fn summary(arm: &Arm, loads: &LoadRows, rows: &[LoadingRow]) -> String {
         }
         let _ = write!(out, "\n{}", table(&lines, 1));
     }
-    let mut lines = vec![[vec!["row".to_owned()], TIP.map(str::to_owned).into()].concat()];
+    let mut lines = vec![[vec!["row".to_owned()], C::TIP.map(str::to_owned).into()].concat()];
     for k in [0, rows.len().saturating_sub(1)] {
         if let Some(row) = rows.get(k) {
-            lines.push([vec![(k + 1).to_string()], tip_cells(&row.step.configuration).into()].concat());
+            lines.push([vec![(k + 1).to_string()], row.step.configuration.tip_cells().into()].concat());
         }
     }
     let _ = write!(out, "\n{}", table(&lines, 0));

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use hydrostat::{Arm, Mode, Modes, MotionError};
-use hydrostat_figures::root_locus_figure;
+use hydrostat_figures::{mode_shapes_figure, root_locus_figure};
 use hydrostat_files::{
-    ModesDocument, ModesOverDocument, ModesTip, Varied, mode_kind, modes_csv, modes_over_csv, number,
+    ModesDocument, ModesOverDocument, ModesTip, Varied, mode_kind, mode_shapes_csv, modes_csv, modes_over_csv, number,
 };
 
 use super::over::{Value, at_values, say_what_is_missing};
@@ -22,9 +22,11 @@ pub(crate) fn run(args: &ModesArgs) -> anyhow::Result<()> {
     if let Some(Over { varied, .. }) = &args.over {
         varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--over", e))?;
     }
-    let picture = ("--plot", args.plot.as_deref());
-    request::check_outputs(&[request::arm_input(&args.arm.file)], &[("-o", args.output.as_deref()), picture])?;
-    request::check_picture(&args.picture, &[picture])?;
+    let pictures = [("--plot", args.plot.as_deref()), ("--plot-shapes", args.plot_shapes.as_deref())];
+    let shapes = ("--shapes-output", args.shapes_output.as_deref());
+    let outputs = [("-o", args.output.as_deref()), shapes, pictures[0], pictures[1]];
+    request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
+    request::check_picture(&args.picture, &pictures)?;
     let (count, elements) = (args.count, args.elements);
     match (args.over, arm.space.is_some()) {
         (Some(over), false) => over_range(args, &arm, over, |arm| arm.modes(count, elements)),
@@ -39,6 +41,13 @@ fn at_loads(args: &ModesArgs, arm: &Arm, modes: &Modes<impl Copy + Into<ModesTip
         let title = format!("{}: rates of small motions", arm.name);
         let figure = root_locus_figure(&[(0.0, &modes.modes)], None, &title, &args.picture.page());
         output::draw(&figure, file, &args.picture.page)?;
+    }
+    if let Some(file) = &args.plot_shapes {
+        let title = format!("{}: shapes of small motions", arm.name);
+        output::draw(&mode_shapes_figure(arm, modes, &title, &args.picture.page()), file, &args.picture.page)?;
+    }
+    if let Some(file) = &args.shapes_output {
+        output::put(Some(file), &mode_shapes_csv(modes))?;
     }
     let text = match args.format {
         Format::Text => summary(arm, modes),

@@ -10,7 +10,7 @@ use hydrostat_figures::{Abscissa, Quantity};
 use hydrostat_files::{Landing, Varied, end_message, number};
 
 use super::shape::Shape;
-use super::table::{decimals, stability_words, table, tip_cells};
+use super::table::{decimals, stability_words, table};
 use super::{NoAnswer, wrong_option};
 use crate::args::{Format, PathArgs};
 use crate::output;
@@ -26,19 +26,14 @@ pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
     let outputs = [("-o", args.output.as_deref()), pictures[0], pictures[1]];
     request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
     request::check_picture(&args.picture, &pictures)?;
-    if arm.space.is_some() {
-        if args.after_snap {
-            let instead = "`solve --after-snap` follows the snaps of an arm in space";
-            return Err(WrongRequest::NotInSpace("--after-snap", instead).into());
-        }
-        let path = follow::<SpatialConfiguration>(&arm, args)?;
-        draw_shapes(&arm, &path, args)?;
-        return report(&arm, &path, None, args);
-    }
-    let path = follow::<Configuration>(&arm, args)?;
-    draw_shapes(&arm, &path, args)?;
-    let landings = args.after_snap.then(|| landings(&path, varied));
-    report(&arm, &path, landings.as_deref(), args)
+    if arm.space.is_some() { along::<SpatialConfiguration>(&arm, args) } else { along::<Configuration>(&arm, args) }
+}
+
+fn along<C: Shape>(arm: &Arm, args: &PathArgs) -> anyhow::Result<()> {
+    let path = follow::<C>(arm, args)?;
+    draw_shapes(arm, &path, args)?;
+    let landings = args.after_snap.then(|| landings(&path, &args.vary));
+    report(arm, &path, landings.as_deref(), args)
 }
 
 fn draw_shapes<C: Shape>(arm: &Arm, path: &Path<C>, args: &PathArgs) -> anyhow::Result<()> {
@@ -49,7 +44,7 @@ fn draw_shapes<C: Shape>(arm: &Arm, path: &Path<C>, args: &PathArgs) -> anyhow::
 }
 
 /// Writes what was asked for.
-fn report<C: Shape>(arm: &Arm, path: &Path<C>, landings: Option<&[Landing]>, args: &PathArgs) -> anyhow::Result<()> {
+fn report<C: Shape>(arm: &Arm, path: &Path<C>, landings: Option<&[Landing<C>]>, args: &PathArgs) -> anyhow::Result<()> {
     let varied = &args.vary;
     let Some(document) = C::document(path, varied) else {
         let start = varied.with_unit(varied.range[0]);
@@ -62,7 +57,7 @@ fn report<C: Shape>(arm: &Arm, path: &Path<C>, landings: Option<&[Landing]>, arg
     }
     let text = match args.format {
         Format::Text => summary(arm, path, varied) + &rests(path, varied, landings.unwrap_or_default()),
-        Format::Json => output::line(document.with_landings(landings.unwrap_or_default()).to_json()),
+        Format::Json => output::line(C::with_landings(document, landings.unwrap_or_default()).to_json()),
         Format::Csv => C::csv(path, varied, landings),
     };
     output::put(args.output.as_deref(), &text)?;
@@ -73,7 +68,7 @@ fn report<C: Shape>(arm: &Arm, path: &Path<C>, landings: Option<&[Landing]>, arg
 const PAST: f64 = 1e-3;
 
 /// Where the arm rests that is let go at limit points which a stable part of the path leads up to.
-fn landings(path: &Path, varied: &Varied) -> Vec<Landing> {
+fn landings<C: Shape>(path: &Path<C>, varied: &Varied) -> Vec<Landing<C>> {
     const TOLERANCE: f64 = 1e-8;
     let mut progress = Progress::new();
     let mut out = Vec::new();
@@ -85,7 +80,7 @@ fn landings(path: &Path, varied: &Varied) -> Vec<Landing> {
             }
             progress.say(|| format!("motion from the limit point at {}", varied.with_unit(at.value)));
             let past = at.value + PAST * (path.range[1] - path.range[0]).abs() * (at.value - before.value).signum();
-            let mut arm = at.configuration.arm.clone();
+            let mut arm = at.configuration.arm().clone();
             // The arm has the parameter: the path varies it.
             let _ = path.parameter.set(&mut arm, past);
             let outcome = at.configuration.let_go(&arm, TOLERANCE).map_err(|restless| restless.to_string());
@@ -96,15 +91,14 @@ fn landings(path: &Path, varied: &Varied) -> Vec<Landing> {
 }
 
 /// A line a limit point.
-fn rests<C>(path: &Path<C>, varied: &Varied, landings: &[Landing]) -> String {
+fn rests<C: Shape>(path: &Path<C>, varied: &Varied, landings: &[Landing<C>]) -> String {
     let mut out = String::new();
     for (k, Landing { at: [branch, point], outcome }) in landings.iter().enumerate() {
         let value = varied.with_unit(path.branches[*branch].points[*point].value);
         let words = match outcome {
             Ok(rest) => {
-                let [x, y, theta, _] = tip_cells(&rest.configuration);
                 let seconds = decimals(rest.time, 2);
-                format!("the arm rests after {seconds} s, with the tip at x {x} mm, y {y} mm, turned by {theta} deg")
+                format!("the arm rests after {seconds} s, with the tip at {}", rest.configuration.tip_words())
             }
             Err(message) => message.clone(),
         };

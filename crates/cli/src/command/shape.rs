@@ -1,15 +1,15 @@
 //! Shapes in the plane and in space, as paths have them.
 
 use hydrostat::{
-    Arm, CableState, Configuration, Parameter, Path, PathError, PathOptions, PathPoint, Reach, SolveError,
-    SpatialConfiguration, SpatialError, SpatialStation, SpatialTip, Station, Tip,
+    Arm, CableState, Configuration, Parameter, Path, PathError, PathOptions, PathPoint, Reach, Rest, Restless,
+    SolveError, SpatialConfiguration, SpatialError, SpatialStation, SpatialTip, Station, Tip,
 };
 use hydrostat_figures::{
     Abscissa, Page, Quantity, Scene, path_figure, path_shapes_figure, spatial_path_figure, spatial_path_shapes_figure,
 };
 use hydrostat_files::{
     Landing, PathDocument, ReachDocument, Varied, path_csv, path_csv_with_landings, reach_csv, spatial_path_csv,
-    spatial_reach_csv,
+    spatial_path_csv_with_landings, spatial_reach_csv,
 };
 
 use super::table::{SPATIAL_TIP, TIP, place_cells, spatial_tip_cells, tip_cells};
@@ -37,7 +37,14 @@ pub(super) trait Shape: Sized {
         watch: impl FnMut(&PathPoint<Self>) -> bool,
     ) -> Result<Path<Self>, PathError<Self::Error>>;
     fn document<'a>(path: &'a Path<Self>, varied: &Varied) -> Option<PathDocument<'a>>;
-    fn csv(path: &Path<Self>, varied: &Varied, landings: Option<&[Landing]>) -> String;
+    fn csv(path: &Path<Self>, varied: &Varied, landings: Option<&[Landing<Self>]>) -> String;
+    fn with_landings<'a>(document: PathDocument<'a>, landings: &[Landing<Self>]) -> PathDocument<'a>;
+    /// The arm with the loads that are balanced.
+    fn arm(&self) -> &Arm;
+    /// Where the arm rests that is let go in this shape under other loads.
+    fn let_go(&self, arm: &Arm, tol: f64) -> Result<Rest<Self>, Restless>;
+    /// Where the tip is, in words.
+    fn tip_words(&self) -> String;
     fn chart(path: &Path<Self>, over: &Abscissa, quantity: Quantity, title: &str, page: &Page) -> Scene;
     /// Shapes along a path.
     fn shapes(path: &Path<Self>, over: &Abscissa, title: &str, page: &Page) -> Scene;
@@ -85,6 +92,23 @@ impl Shape for Configuration {
 
     fn csv(path: &Path, varied: &Varied, landings: Option<&[Landing]>) -> String {
         landings.map_or_else(|| path_csv(path, varied), |landings| path_csv_with_landings(path, varied, landings))
+    }
+
+    fn with_landings<'a>(document: PathDocument<'a>, landings: &[Landing<Self>]) -> PathDocument<'a> {
+        document.with_landings(landings)
+    }
+
+    fn arm(&self) -> &Arm {
+        &self.arm
+    }
+
+    fn let_go(&self, arm: &Arm, tol: f64) -> Result<Rest<Self>, Restless> {
+        self.let_go(arm, tol)
+    }
+
+    fn tip_words(&self) -> String {
+        let [x, y, theta, _] = self.tip_cells();
+        format!("x {x} mm, y {y} mm, turned by {theta} deg")
     }
 
     fn chart(path: &Path, over: &Abscissa, quantity: Quantity, title: &str, page: &Page) -> Scene {
@@ -136,8 +160,26 @@ impl Shape for SpatialConfiguration {
         PathDocument::in_space(path, varied)
     }
 
-    fn csv(path: &Path<Self>, varied: &Varied, _: Option<&[Landing]>) -> String {
-        spatial_path_csv(path, varied)
+    fn csv(path: &Path<Self>, varied: &Varied, landings: Option<&[Landing<Self>]>) -> String {
+        let with = |landings| spatial_path_csv_with_landings(path, varied, landings);
+        landings.map_or_else(|| spatial_path_csv(path, varied), with)
+    }
+
+    fn with_landings<'a>(document: PathDocument<'a>, landings: &[Landing<Self>]) -> PathDocument<'a> {
+        document.with_landings(landings)
+    }
+
+    fn arm(&self) -> &Arm {
+        &self.arm
+    }
+
+    fn let_go(&self, arm: &Arm, tol: f64) -> Result<Rest<Self>, Restless> {
+        self.let_go(arm, tol)
+    }
+
+    fn tip_words(&self) -> String {
+        let [x, y, z, _] = self.tip_cells();
+        format!("x {x} mm, y {y} mm, z {z} mm")
     }
 
     fn chart(path: &Path<Self>, over: &Abscissa, quantity: Quantity, title: &str, page: &Page) -> Scene {

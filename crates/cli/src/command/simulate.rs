@@ -4,14 +4,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant as Clock};
 
-use hydrostat::{
-    Arm, ArmError, Inputs, Instant, MotionError, MotionOptions, Simulation, SolveError, SpatialSimulation,
-};
-use hydrostat_figures::{MotionFrame, motion_figure, strobe_figure};
-use hydrostat_files::{
-    EventOut, MOTION_SHAPE_HEADS, SPATIAL_MOTION_SHAPE_HEADS, SavedMotion, equilibrium_numbers, motion_heads,
-    motion_state_beside, number, read_time_loads, set_shaped, spatial_equilibrium_numbers, spatial_motion_heads,
-};
+use hydrostat::{Arm, Inputs, MotionError, MotionOptions, Simulation, SpatialSimulation};
+use hydrostat_figures::{MotionFrame, motion_figure};
+use hydrostat_files::{EventOut, SavedMotion, motion_state_beside, number, read_time_loads, set_shaped};
 
 use super::motion_output::{Ending, MotionOutput, Told};
 use super::motion_text;
@@ -30,7 +25,6 @@ const KEPT_EVERY: Duration = Duration::from_secs(5);
 
 pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let arm = request::arm_in_space(&args.arm)?;
-    check_in_space(args, &arm)?;
     let pictures = [("--plot", args.plot.as_deref()), ("--plot-time", args.plot_time.as_deref())];
     let state_file = args.output.as_deref().map(motion_state_beside);
     let from_file = args.from.as_deref().map(|file| {
@@ -76,22 +70,13 @@ pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
             Some(state) => SpatialSimulation::resume(&arm, loads, options, &state),
             None => SpatialSimulation::new(&arm, loads, options),
         };
-        return in_space(&asked, simulation.map_err(refused)?);
+        return moved(&asked, simulation.map_err(refused)?);
     }
     let simulation = match state {
         Some(state) => Simulation::resume(&arm, loads, options, &state),
         None => Simulation::new(&arm, loads, options),
     };
-    in_plane(&asked, simulation.map_err(refused)?)
-}
-
-/// Refuses pictures of an arm in space.
-fn check_in_space(args: &SimulateArgs, arm: &Arm) -> anyhow::Result<()> {
-    let asked = [(args.plot.is_some(), "`--plot`"), (args.plot_time.is_some(), "`--plot-time`")];
-    match asked.into_iter().find(|(asked, _)| *asked && arm.space.is_some()) {
-        Some((_, what)) => Err(SolveError::Arm(ArmError::OnlyInPlane { what }).into()),
-        None => Ok(()),
-    }
+    moved(&asked, simulation.map_err(refused)?)
 }
 
 /// What is asked for.
@@ -103,27 +88,26 @@ struct Asked<'a> {
     resumed: Option<&'a SavedMotion>,
 }
 
-fn in_plane(asked: &Asked, mut simulation: Simulation) -> anyhow::Result<()> {
+fn moved<M: Moving<D>, const D: usize>(asked: &Asked, mut simulation: M) -> anyhow::Result<()> {
     let Asked { args, arm, plan, request, resumed } = *asked;
     let clock = Clock::now();
-    let mut equilibria = args.quasi_static.then(|| simulation.quasi_static()).transpose().map_err(refused)?;
-    let heads = motion_heads(arm.cables.len(), plan.stations.len(), args.quasi_static);
-    let mut output = MotionOutput::new(args, heads, MOTION_SHAPE_HEADS, resumed, request)?;
-    let mut frames = (args.plot.is_some() || args.plot_time.is_some()).then(Frames::default);
-    let mut statics = Statics::<2>::default();
+    let mut equilibria = args.quasi_static.then(|| simulation.statics()).transpose().map_err(refused)?;
+    let heads = M::heads(arm.cables.len(), plan.stations.len(), args.quasi_static);
+    let mut output = MotionOutput::new(args, heads, M::SHAPE_HEADS, resumed, request)?;
+    let mut frames = (args.plot.is_some() || args.plot_time.is_some()).then(Frames::<D>::default);
+    let mut statics = Statics::<D>::default();
     let mut last = None;
     let outcome = follow(plan, &mut simulation, &mut output, |simulation, at, numbers| {
         if let Some(frames) = &mut frames {
-            frames.take(at, simulation);
+            frames.take(|| simulation.frame(at));
         }
         if let Some(equilibria) = &mut equilibria {
-            let own = equilibrium_numbers(at, equilibria.tip(at.time).ok(), arm.length);
-            numbers.extend(statics.take(own));
+            numbers.extend(statics.take(M::equilibrium(equilibria, at, arm.length)));
         }
         last = Some(at.clone());
     });
     let text = |events: &[_], told: &Told, wall: f64| {
-        let mut text = motion_text::in_plane(arm, last.as_ref()?, events, told, wall);
+        let mut text = M::text(arm, last.as_ref()?, events, told, wall);
         if let Some((tip, distances)) = &statics.last {
             motion_text::add_equilibrium(tip, *distances, &mut text);
         }
@@ -131,39 +115,13 @@ fn in_plane(asked: &Asked, mut simulation: Simulation) -> anyhow::Result<()> {
     };
     let outcome = ended(asked, &simulation, &mut output, outcome, clock, text)?;
     if let Some(frames) = &frames {
-        draw(args, arm, &frames.kept)?;
+        draw::<M, D>(args, arm, &frames.kept)?;
     }
     finish(&simulation, outcome, output.is_resumable())
 }
 
-fn in_space(asked: &Asked, mut simulation: SpatialSimulation) -> anyhow::Result<()> {
-    let Asked { args, arm, plan, request, resumed } = *asked;
-    let clock = Clock::now();
-    let mut equilibria = args.quasi_static.then(|| simulation.quasi_static()).transpose().map_err(refused)?;
-    let heads = spatial_motion_heads(arm.cables.len(), plan.stations.len(), args.quasi_static);
-    let mut output = MotionOutput::new(args, heads, SPATIAL_MOTION_SHAPE_HEADS, resumed, request)?;
-    let mut statics = Statics::<3>::default();
-    let mut last = None;
-    let outcome = follow(plan, &mut simulation, &mut output, |_, at, numbers| {
-        if let Some(equilibria) = &mut equilibria {
-            let own = spatial_equilibrium_numbers(at, equilibria.tip(at.time).ok(), arm.length);
-            numbers.extend(statics.take(own));
-        }
-        last = Some(at.clone());
-    });
-    let text = |events: &[_], told: &Told, wall: f64| {
-        let mut text = motion_text::in_space(arm, last.as_ref()?, events, told, wall);
-        if let Some((tip, distances)) = &statics.last {
-            motion_text::add_equilibrium(tip, *distances, &mut text);
-        }
-        Some(text)
-    };
-    let outcome = ended(asked, &simulation, &mut output, outcome, clock, text)?;
-    finish(&simulation, outcome, output.is_resumable())
-}
-
 /// Writes what is written at the end of a run that has this outcome.
-fn ended<M: Moving>(
+fn ended<M: Moving<D>, const D: usize>(
     asked: &Asked,
     simulation: &M,
     output: &mut MotionOutput,
@@ -191,7 +149,11 @@ fn ended<M: Moving>(
 }
 
 /// Warns, and says how the run ended.
-fn finish<M: Moving>(simulation: &M, outcome: Result<(), Stop>, is_resumable: bool) -> anyhow::Result<()> {
+fn finish<M: Moving<D>, const D: usize>(
+    simulation: &M,
+    outcome: Result<(), Stop>,
+    is_resumable: bool,
+) -> anyhow::Result<()> {
     for warning in simulation.told().warnings {
         eprintln!("warning: {}", warning.message());
     }
@@ -217,9 +179,8 @@ impl<const D: usize> Default for Statics<D> {
 
 impl<const D: usize> Statics<D> {
     /// The numbers of a row: the tip is their start, the distance their end.
-    fn take<const K: usize>(&mut self, own: [f64; K]) -> [f64; K] {
-        let distance = own[K - 1];
-        if distance.is_finite() {
+    fn take(&mut self, own: Vec<f64>) -> Vec<f64> {
+        if let Some(&distance) = own.last().filter(|distance| distance.is_finite()) {
             let most = self.last.map_or(0.0, |(_, [_, most])| most);
             self.last = Some((std::array::from_fn(|k| own[k]), [distance, most.max(distance)]));
         }
@@ -265,27 +226,27 @@ const SHAPES: usize = 24;
 const MOST_FRAMES: usize = 4000;
 
 /// Frames of a run at equal times: every second one goes where there are too many.
-#[derive(Default)]
-struct Frames {
-    kept: Vec<MotionFrame>,
+struct Frames<const D: usize> {
+    kept: Vec<MotionFrame<D>>,
     /// Rows so far, and those from one frame to the next, less one.
     rows: usize,
     skipped: usize,
 }
 
-impl Frames {
-    fn take(&mut self, at: &Instant, simulation: &Simulation) {
+impl<const D: usize> Default for Frames<D> {
+    fn default() -> Self {
+        Self { kept: Vec::new(), rows: 0, skipped: 0 }
+    }
+}
+
+impl<const D: usize> Frames<D> {
+    fn take(&mut self, frame: impl FnOnce() -> MotionFrame<D>) {
         let row = self.rows;
         self.rows += 1;
         if !row.is_multiple_of(self.skipped + 1) {
             return;
         }
-        self.kept.push(MotionFrame {
-            time: at.time,
-            centreline: simulation.shape().iter().map(|[_, x, y, _]| [*x, *y]).collect(),
-            kinetic_energy: at.kinetic_energy,
-            strain_energy: at.strain_energy,
-        });
+        self.kept.push(frame());
         if self.kept.len() > MOST_FRAMES {
             let mut index = 0;
             self.kept.retain(|_| {
@@ -297,11 +258,11 @@ impl Frames {
     }
 }
 
-fn draw(args: &SimulateArgs, arm: &Arm, frames: &[MotionFrame]) -> anyhow::Result<()> {
+fn draw<M: Moving<D>, const D: usize>(args: &SimulateArgs, arm: &Arm, frames: &[MotionFrame<D>]) -> anyhow::Result<()> {
     let page = args.picture.page();
     if let Some(file) = &args.plot {
         let title = format!("{}: shapes at equal times", arm.name);
-        output::draw(&strobe_figure(frames, SHAPES, &title, &page), file, &args.picture.page)?;
+        output::draw(&M::strobe(frames, SHAPES, &title, &page), file, &args.picture.page)?;
     }
     if let Some(file) = &args.plot_time {
         output::draw(&motion_figure(frames, &format!("{} in motion", arm.name), &page), file, &args.picture.page)?;
@@ -402,7 +363,7 @@ enum Stop {
 }
 
 /// Moves on from row to row and from shape to shape; `row_taken` sees every row and may lengthen its numbers.
-fn follow<M: Moving>(
+fn follow<M: Moving<D>, const D: usize>(
     plan: &Plan,
     simulation: &mut M,
     output: &mut MotionOutput,

@@ -99,6 +99,38 @@ fn a_path_says_where_the_arm_rests_past_its_limit_points() {
     assert!(known.iter().all(|after| after["duration"].as_f64().unwrap() > 1.0), "{known:?}");
 }
 
+#[test]
+fn a_path_in_space_says_where_the_arm_rests_too() {
+    let stream =
+        ["path", "silicone", "--flow-speed", "0.2", "--set", "flow.direction=180", "--set", "arm.space=spatial"];
+    let range = ["--set", "dynamics.relaxation_time=2.7ms", "--vary", "arm.base.angle=60:-60", "--after-snap"];
+    let text = solved(&[&stream[..], &range].concat()).out;
+    assert!(text.contains("the arm rests after ") || text.contains("does not come to rest"), "{text}");
+    let csv = solved(&[&stream[..], &range, &["--format", "csv"]].concat()).out;
+    let (names, _) = columns(&csv);
+    assert!(names.contains(&"after_snap_z_m") && names.contains(&"after_snap_s"), "{names:?}");
+}
+
+#[test]
+fn a_history_in_space_is_that_in_the_plane() {
+    let place = directory();
+    std::fs::write(place.path().join("turns.csv"), TURNS).unwrap();
+    let stream = ["history", "silicone", "--flow-speed", "0.2", "--set", "flow.direction=180", "--input", "turns.csv"];
+    let more = ["--set", "arm.space=spatial", "--set", "dynamics.relaxation_time=2.7ms", "--plot", "loading.svg"];
+    let run = hydrostat_in(place.path(), &[&stream[..], &more, &["--format", "csv", "--quantity", "tip.y"]].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let (names, rows) = columns(&run.out);
+    let at = |name: &str| names.iter().position(|own| *own == name).unwrap();
+    assert_eq!(rows.iter().map(|row| row[at("snaps")]).collect::<Vec<_>>(), ["0", "0", "1", "0", "1"]);
+    assert!(names.contains(&"snap_z_m") && names.contains(&"tip_z_m"), "{names:?}");
+    let run = hydrostat_in(place.path(), &[&stream[..], &more, &["--format", "json"]].concat());
+    let document = json(&run.out);
+    let snap = &document["rows"][2]["snaps"][0];
+    assert!((snap["loads"][0].as_f64().unwrap() + 29.643).abs() < 1e-2, "{snap}");
+    assert!(snap["after"]["z"].as_f64().unwrap().abs() < 1e-6, "{snap}");
+    assert!(hydrostat_in(place.path(), &[&stream[..], &more].concat()).out.contains("z (mm)"));
+}
+
 const TURNS: &str = "arm.base.angle\n40\n0\n-40\n0\n40\n";
 
 #[test]

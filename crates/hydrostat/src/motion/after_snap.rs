@@ -2,25 +2,13 @@
 //! rests, and the path goes on from there.
 
 use super::error::MotionError;
-use super::rest::{Rest, can_rest, come_to_rest};
+use super::landing::{Landed, MOST_SNAPS, PAST, Rest, elsewhere, land};
 use super::resting::Restless;
-use super::start::not_found;
 use crate::rod::arm::Arm;
 use crate::statics::configuration::{Configuration, Tip};
-use crate::statics::engine::Engine;
-use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::snap::{Snap, SnapBounds};
 use crate::statics::solve::{Options, Solver};
 use crate::statics::verdict::{NoEquilibrium, Phase, SolveError, VerdictKind};
-
-/// The share of the loads by which they are past the limit point while the arm moves.
-pub(super) const PAST: f64 = 1e-3;
-
-/// Tips (over L) that are as near as this are those of one equilibrium.
-const SAME: f64 = 1e-4;
-
-/// The most snaps on one way.
-pub(super) const MOST_SNAPS: usize = 50;
 
 /// A snap whose motion was followed until the arm rested.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -164,13 +152,6 @@ impl Arm {
     }
 }
 
-/// Whether the tip is elsewhere than `on_curve`, where there is such a place.
-pub(super) fn elsewhere(after: Tip, on_curve: Option<Tip>, length: f64) -> bool {
-    on_curve.is_some_and(|tip| {
-        (tip.x - after.x).hypot(tip.y - after.y) > SAME * length || (tip.theta - after.theta).abs() > 0.01
-    })
-}
-
 /// Whether a motion begins where the path ended.
 fn snaps_at(no: &NoEquilibrium) -> bool {
     no.verdict.kind == VerdictKind::LimitPoint && no.last_good.is_some()
@@ -182,43 +163,10 @@ fn follow(solver: &mut Solver, no: &NoEquilibrium, tol: f64) -> Result<(SnapMoti
     let (phase, load_fraction) = (no.verdict.phase, no.verdict.load_fraction);
     let past = (load_fraction + PAST).min(1.0);
     let engine = solver.engine_mut();
-    let landed = land(engine, no, tol, |engine| engine.set_phase(phase, past));
+    let (last_good, after_snap) = (no.last_good.as_ref(), no.after_snap.as_ref());
+    let landed = land(engine, last_good, after_snap, tol, |engine| engine.set_phase(phase, past));
     let Landed { before, rest: Rest { configuration, time }, on_curve } =
         landed.map_err(|restless| AfterSnapError::of(restless, phase, load_fraction))?;
     let snap = Snap { phase, load_fraction, before, after: configuration.tip() };
     Ok((SnapMotion { snap, duration: time, on_curve }, past))
-}
-
-/// A motion from a limit point.
-pub(super) struct Landed {
-    /// The tip at the limit point.
-    pub(super) before: Tip,
-    pub(super) rest: Rest,
-    /// The tip where the curve leads on to at the same loads.
-    pub(super) on_curve: Option<Tip>,
-}
-
-/// The motion from the limit point at which a path ended, with the loads past it that `past` gives the engine, which is
-/// left where the arm rests.
-pub(super) fn land(
-    engine: &mut Engine,
-    no: &NoEquilibrium,
-    tol: f64,
-    past: impl Fn(&mut Engine),
-) -> Result<Landed, Restless> {
-    let ended = || Restless::Motion(not_found(0.0, 0.0, None, engine.equations.arm()));
-    let last_good = no.last_good.as_ref().ok_or_else(ended)?;
-    let take = |engine: &mut Engine, shape: &Configuration| {
-        engine.equations.clone_from(&shape.dense().equations);
-        engine.solution.clone_from(&shape.dense().solution);
-        past(engine);
-    };
-    let on_curve = no.after_snap.as_ref().and_then(|shape| {
-        take(engine, shape);
-        let settled = engine.settle(tol, First::Warm).ok();
-        settled.and_then(|_| engine.read_tip().ok())
-    });
-    take(engine, last_good);
-    can_rest(engine).map_err(Restless::Motion)?;
-    Ok(Landed { before: last_good.tip(), rest: come_to_rest(engine, tol)?, on_curve })
 }

@@ -1,45 +1,45 @@
 //! Quasi-static loading: equilibria along any sequence of loads, each reached from the one before, with the snaps on
 //! the way. An arm that snaps one way at one load snaps back at another: the answer depends on the way.
 
-use super::after_snap::{AfterSnap, AfterSnapError, Landed, PAST, elsewhere, land};
+use super::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
 use super::error::MotionError;
-use super::rest::Rest;
+use super::in_space::SpatialSnapMotion;
+use super::landing::{Landed, MOST_SNAPS, Rest, elsewhere, land};
+use super::ranged::{Ended, Ranged, lowest, past, ways};
 use super::resting::Restless;
 use crate::rod::arm::{Arm, ArmError};
-use crate::rod::parameter::Parameter;
+use crate::spatial::{SpatialConfiguration, SpatialError, SpatialSolver, SpatialTip};
 use crate::statics::configuration::{Configuration, Tip};
-use crate::statics::equations::Change;
-use crate::statics::snap::SnapBounds;
-use crate::statics::solve::{Options, Solver};
+use crate::statics::path::loaded::Loaded;
+use crate::statics::path::traced::{Along, Traced};
+use crate::statics::shape::Pose;
+use crate::statics::solve::Solver;
 use crate::statics::verdict::{SolveError, VerdictKind};
 
-/// The most snaps on the way from one row to the next.
-const MOST_SNAPS: usize = 50;
-
-/// A snap on the way from one sequence of loads to the next.
+/// A snap on the way from one sequence of loads to the next: in the plane, or with [`SpatialTip`] in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LoadingSnap {
+pub struct LoadingSnap<T = Tip> {
     /// The share of the way from the loads before at the limit point, 0 to 1.
     pub share: f64,
     /// The tip there.
-    pub before: Tip,
+    pub before: T,
     /// The tip where the arm rests.
-    pub after: Tip,
+    pub after: T,
     /// How long that takes, as [`crate::SnapMotion::duration`], s.
     pub duration: f64,
     /// As [`crate::SnapMotion::on_curve`].
-    pub on_curve: Option<Tip>,
+    pub on_curve: Option<T>,
 }
 
-impl LoadingSnap {
+impl<T: Pose> LoadingSnap<T> {
     /// How far the tip jumps, m.
     pub fn distance(&self) -> f64 {
-        (self.after.x - self.before.x).hypot(self.after.y - self.before.y)
+        self.before.distance_to(&self.after)
     }
 
     /// How far the tip turns, rad, never negative.
     pub fn angle(&self) -> f64 {
-        (self.after.theta - self.before.theta).abs()
+        self.before.turn_to(&self.after)
     }
 
     /// As [`crate::SnapMotion::lands_elsewhere`].
@@ -50,19 +50,19 @@ impl LoadingSnap {
 
 /// The equilibrium that the arm is in at given loads, and how it came there.
 #[derive(Debug, Clone)]
-pub struct LoadingStep {
+pub struct LoadingStep<C = Configuration, T = Tip> {
     /// The shape.
-    pub configuration: Configuration,
+    pub configuration: C,
     /// The snaps since the loads before, in their order.
-    pub snaps: Vec<LoadingSnap>,
+    pub snaps: Vec<LoadingSnap<T>>,
 }
 
 /// Why there is no equilibrium at the next loads.
 #[derive(Debug, Clone, thiserror::Error)]
-pub enum LoadingError {
+pub enum LoadingError<E = SolveError> {
     /// There is none at the first loads.
-    #[error(transparent)]
-    Start(#[from] AfterSnapError),
+    #[error("{0}")]
+    Start(AfterSnapError<E>),
     /// The loads make no arm.
     #[error(transparent)]
     Arm(#[from] ArmError),
@@ -135,33 +135,24 @@ fn place(s: Option<f64>) -> String {
 /// # Ok::<(), hydrostat::LoadingError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Loading {
-    solver: Solver,
+pub struct Loading<S = Solver> {
+    solver: S,
     tol: f64,
 }
+
+/// The first equilibrium.
+pub(super) type First<S> = AfterSnap<<<S as Ranged>::Engine as Traced>::Shape, <S as Ranged>::Motion>;
+
+/// An equilibrium on the way.
+pub(super) type Step<S> = LoadingStep<<<S as Ranged>::Engine as Traced>::Shape, <<S as Ranged>::Engine as Loaded>::Tip>;
 
 impl Loading {
     /// The arm at its first loads, where [`Arm::solve_after_snap`] has it, to a tip error of `tol` L.
     ///
     /// # Errors
     /// [`LoadingError::Start`], and [`LoadingError::Unsupported`] with friction of cables or an unstrained base.
-    pub fn start(arm: &Arm, tol: f64) -> Result<(Self, AfterSnap), LoadingError> {
-        if let Some(i) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
-            let reason = "cables with friction stick as they turn back, which loading leaves out";
-            return Err(LoadingError::Unsupported { key: format!("cable[{i}].friction"), reason });
-        }
-        if arm.readings.support == crate::rod::readings::Support::UnstrainedBase {
-            let reason = "only a clamped arm has equilibria that follow its loads";
-            return Err(LoadingError::Unsupported { key: "model.support".to_owned(), reason });
-        }
-        let first = arm.solve_after_snap(tol)?;
-        let snaps = SnapBounds { distance: 0.0, angle: 0.0 };
-        let mut solver = Solver::new(arm, Options { tol, snaps }).map_err(AfterSnapError::Solve)?;
-        let engine = solver.engine_mut();
-        let dense = first.configuration.dense();
-        engine.equations.clone_from(&dense.equations);
-        engine.solution.clone_from(&dense.solution);
-        Ok((Self { solver, tol }, first))
+    pub fn start(arm: &Arm, tol: f64) -> Result<(Self, AfterSnap<Configuration, SnapMotion>), LoadingError> {
+        begin(arm, tol)
     }
 
     /// The arm at its present loads.
@@ -177,149 +168,123 @@ impl Loading {
     /// # Errors
     /// [`LoadingError`].
     pub fn go_to(&mut self, arm: &Arm) -> Result<LoadingStep, LoadingError> {
-        arm.check()?;
-        let kept = self.solver.clone();
-        let outcome = self.follow(arm);
-        if outcome.is_err() {
-            self.solver = kept;
-        }
-        outcome
+        go_on(self, arm)
+    }
+}
+
+impl Loading<SpatialSolver> {
+    /// The arm in space at its first loads, where [`Arm::solve_after_snap_in_space`] has it.
+    ///
+    /// # Errors
+    /// As [`Loading::start`].
+    #[allow(clippy::type_complexity, reason = "names of what is there")]
+    pub fn start_in_space(
+        arm: &Arm,
+        tol: f64,
+    ) -> Result<(Self, AfterSnap<SpatialConfiguration, SpatialSnapMotion>), LoadingError<SpatialError>> {
+        let mut arm = arm.clone();
+        arm.space.get_or_insert_default();
+        begin(&arm, tol)
     }
 
-    fn follow(&mut self, arm: &Arm) -> Result<LoadingStep, LoadingError> {
-        let ways = ways(self.solver.arm(), arm)?;
-        let (tol, base) = (self.tol, [arm.base.x, arm.base.y]);
-        let (past, lowest) = (past(&ways), lowest(&ways));
-        let engine = self.solver.engine_mut();
-        (engine.equations.arm.base.x, engine.equations.arm.base.y) = (base[0], base[1]);
-        let mut from = 0.0;
-        let mut snaps: Vec<LoadingSnap> = Vec::new();
-        if ways.is_empty() {
-            let configuration = self.solver.resettle().map_err(|error| limit(&error, 1.0))?;
-            return Ok(LoadingStep { configuration, snaps });
-        }
-        engine.equations.vary_together(ways);
-        loop {
-            match self.solver.solve_along_range([from, lowest]) {
-                Ok(configuration) => return Ok(LoadingStep { configuration, snaps }),
-                Err(SolveError::NoEquilibrium(no))
-                    if no.verdict.kind == VerdictKind::LimitPoint && snaps.len() < MOST_SNAPS =>
-                {
-                    let share = no.verdict.load_fraction;
-                    from = (share + past).min(1.0);
-                    let landed =
-                        land(self.solver.engine_mut(), &no, tol, |engine| engine.equations.set_range_fraction(from));
-                    let Landed { before, rest: Rest { configuration, time }, on_curve } =
-                        landed.map_err(|restless| match restless {
-                            Restless::Motion(motion) => LoadingError::Motion { share, motion },
-                            Restless::Moving { time, speed } => LoadingError::NoRest { share, time, speed },
-                        })?;
-                    snaps.push(LoadingSnap { share, before, after: configuration.tip(), duration: time, on_curve });
-                    if from == 1.0 {
-                        return Ok(LoadingStep { configuration, snaps });
-                    }
+    /// The arm at its present loads.
+    pub fn arm(&self) -> &Arm {
+        self.solver.arm()
+    }
+
+    /// [`Loading::go_to`] in space: the parts of directions and loads along e3 may change, too. Directions change along
+    /// straight lines of their parts. Where the arm snaps, cables have tensions.
+    ///
+    /// # Errors
+    /// [`LoadingError`].
+    pub fn go_to(
+        &mut self,
+        arm: &Arm,
+    ) -> Result<LoadingStep<SpatialConfiguration, SpatialTip>, LoadingError<SpatialError>> {
+        let mut arm = arm.clone();
+        arm.space.get_or_insert_default();
+        go_on(self, &arm)
+    }
+}
+
+#[allow(clippy::type_complexity, reason = "names of what is there")]
+fn begin<S: Ranged>(arm: &Arm, tol: f64) -> Result<(Loading<S>, First<S>), LoadingError<S::Error>> {
+    if let Some(i) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
+        let reason = "cables with friction stick as they turn back, which loading leaves out";
+        return Err(LoadingError::Unsupported { key: format!("cable[{i}].friction"), reason });
+    }
+    if arm.readings.support == crate::rod::readings::Support::UnstrainedBase {
+        let reason = "only a clamped arm has equilibria that follow its loads";
+        return Err(LoadingError::Unsupported { key: "model.support".to_owned(), reason });
+    }
+    let first = S::first(arm, tol).map_err(LoadingError::Start)?;
+    let solver = S::at(arm, &first.configuration, tol).map_err(|e| LoadingError::Start(AfterSnapError::Solve(e)))?;
+    Ok((Loading { solver, tol }, first))
+}
+
+fn go_on<S: Ranged>(loading: &mut Loading<S>, arm: &Arm) -> Result<Step<S>, LoadingError<S::Error>> {
+    arm.check()?;
+    let kept = loading.solver.clone();
+    let outcome = follow(loading, arm);
+    if outcome.is_err() {
+        loading.solver = kept;
+    }
+    outcome
+}
+
+fn follow<S: Ranged>(loading: &mut Loading<S>, arm: &Arm) -> Result<Step<S>, LoadingError<S::Error>> {
+    let Loading { solver, tol } = loading;
+    let ways = ways(solver.arm(), arm).map_err(|(key, reason)| LoadingError::Unsupported { key, reason })?;
+    let (past, lowest) = (past(&ways), lowest(&ways));
+    solver.take_place_of_base(arm);
+    let mut from = 0.0;
+    let mut snaps = Vec::new();
+    if ways.is_empty() {
+        let configuration = solver.resettle().map_err(|error| limit::<S>(error, 1.0))?;
+        return Ok(LoadingStep { configuration, snaps });
+    }
+    solver.vary_together(ways);
+    loop {
+        let ended = match solver.along_range([from, lowest]) {
+            Ok(configuration) => return Ok(LoadingStep { configuration, snaps }),
+            Err(error) => S::ended(error),
+        };
+        match ended {
+            Ok(Ended { verdict, last_good, after_snap })
+                if verdict.kind == VerdictKind::LimitPoint && snaps.len() < MOST_SNAPS =>
+            {
+                let share = verdict.load_fraction;
+                from = (share + past).min(1.0);
+                let engine = solver.engine_mut();
+                let set = |engine: &mut S::Engine| engine.set(Along::Range, from);
+                let landed = land(engine, last_good.as_ref(), after_snap.as_ref(), *tol, set);
+                let Landed { before, rest: Rest { configuration, time }, on_curve } =
+                    landed.map_err(|restless| match restless {
+                        Restless::Motion(motion) => LoadingError::Motion { share, motion },
+                        Restless::Moving { time, speed } => LoadingError::NoRest { share, time, speed },
+                    })?;
+                let after = <S::Engine as super::landing::Lands>::tip_of(&configuration);
+                snaps.push(LoadingSnap { share, before, after, duration: time, on_curve });
+                if from == 1.0 {
+                    return Ok(LoadingStep { configuration, snaps });
                 }
-                Err(error) => return Err(limit(&error, from)),
+            }
+            Ok(Ended { verdict, .. }) => return Err(at_limit(verdict.kind, verdict.load_fraction, verdict.s)),
+            Err(error) => {
+                return Err(error.map_or_else(|| at_limit(VerdictKind::NotFound, from, None), LoadingError::Arm));
             }
         }
     }
 }
 
-/// A verdict of the statics in terms of the way.
-fn limit(error: &SolveError, from: f64) -> LoadingError {
-    match error {
-        SolveError::NoEquilibrium(no) => {
-            LoadingError::Limit { kind: no.verdict.kind, share: no.verdict.load_fraction, s: no.verdict.s }
-        }
-        SolveError::Arm(error) => LoadingError::Arm(error.clone()),
-        SolveError::Option { .. } => LoadingError::Limit { kind: VerdictKind::NotFound, share: from, s: None },
+/// An error of the statics in terms of the way.
+fn limit<S: Ranged>(error: S::Error, from: f64) -> LoadingError<S::Error> {
+    match S::ended(error) {
+        Ok(Ended { verdict, .. }) => at_limit(verdict.kind, verdict.load_fraction, verdict.s),
+        Err(error) => error.map_or_else(|| at_limit(VerdictKind::NotFound, from, None), LoadingError::Arm),
     }
 }
 
-/// The loads that may change.
-fn loads(cables: usize) -> impl Iterator<Item = Parameter> {
-    let of_cables = (0..cables).flat_map(|c| [Parameter::Tension(c), Parameter::Stroke(c)]);
-    of_cables.chain([
-        Parameter::FlowSpeed,
-        Parameter::FlowDirection,
-        Parameter::GravityAcceleration,
-        Parameter::GravityDirection,
-        Parameter::TipForce(0),
-        Parameter::TipForce(1),
-        Parameter::TipMoment,
-        Parameter::TipFollower(0),
-        Parameter::TipFollower(1),
-        Parameter::BaseAngle,
-    ])
-}
-
-/// What changes from one arm to another of the same kind.
-fn ways(own: &Arm, arm: &Arm) -> Result<Vec<Change>, LoadingError> {
-    let mut moved = own.clone();
-    let mut out = Vec::new();
-    for parameter in loads(arm.cables.len().min(own.cables.len())) {
-        let commanded = |c: usize| own.cables[c].stroke.is_some();
-        let acts = match parameter {
-            Parameter::Tension(c) => !commanded(c),
-            Parameter::Stroke(c) => commanded(c) && arm.cables[c].stroke.is_some(),
-            Parameter::GravityAcceleration | Parameter::GravityDirection => {
-                own.gravity.is_some() && arm.gravity.is_some()
-            }
-            _ => true,
-        };
-        let (Ok(from), Ok(to)) = (parameter.of(own), parameter.of(arm)) else { continue };
-        if acts && from != to {
-            out.push(Change { parameter, from, to });
-            // It is a load of this arm.
-            let _ = parameter.set(&mut moved, to);
-        }
-    }
-    moved.base = arm.base;
-    for (own, other) in moved.cables.iter_mut().zip(&arm.cables) {
-        // Tensions of cables whose strokes are commanded follow from these.
-        if own.stroke.is_some() && other.stroke.is_some() {
-            own.tension = other.tension;
-        }
-    }
-    if moved == *arm {
-        return Ok(out);
-    }
-    let key = if moved.cables.iter().zip(&arm.cables).any(|(a, b)| a.stroke.is_some() != b.stroke.is_some()) {
-        "cable.stroke"
-    } else if moved.gravity.is_some() != arm.gravity.is_some() {
-        "gravity"
-    } else {
-        "arm"
-    };
-    let reason =
-        "only tensions or strokes of the same cables, stream, gravity, loads on the tip and the base may change";
-    Err(LoadingError::Unsupported { key: key.to_owned(), reason })
-}
-
-/// The share of the way, at most 0, down to which the curve behind a limit point is followed: there the first load that
-/// is not negative is nothing.
-fn lowest(ways: &[Change]) -> f64 {
-    /// How many ways back is far enough.
-    const FAR: f64 = -100.0;
-    let own = |way: &Change| match way.parameter {
-        Parameter::Tension(_) | Parameter::FlowSpeed | Parameter::GravityAcceleration if way.to > way.from => {
-            -way.from / (way.to - way.from)
-        }
-        _ => FAR,
-    };
-    ways.iter().map(own).fold(FAR, f64::max).min(0.0)
-}
-
-/// The share of the way by which loads are past a limit point while the arm moves: [`PAST`] of the largest load that
-/// changes, so that it does not hang on how finely the way is cut.
-fn past(ways: &[Change]) -> f64 {
-    let own = |way: &Change| {
-        let size = match way.parameter {
-            // Angles have no size.
-            Parameter::FlowDirection | Parameter::GravityDirection | Parameter::BaseAngle => 1.0,
-            _ => way.from.abs().max(way.to.abs()),
-        };
-        PAST * size / (way.to - way.from).abs()
-    };
-    ways.iter().map(own).fold(f64::INFINITY, f64::min)
+fn at_limit<E>(kind: VerdictKind, share: f64, s: Option<f64>) -> LoadingError<E> {
+    LoadingError::Limit { kind, share, s }
 }

@@ -3,54 +3,25 @@
 use super::dimensions::X;
 use super::error::MotionError;
 use super::in_plane::{Planar, start_at_rest};
+use super::mode::{Mode, NOTHING};
+use super::mode_shapes::{ModeSection, ModeShape, TWINS, sections, shapes};
 use super::settling::Settling;
-use super::small_motions::{Vibrates, rates};
+use super::small_motions::{Vibrates, rates, spectrum};
 use crate::rod::arm::Arm;
-
-/// Real parts below this share of a rate are what rounding leaves of none.
-const NOTHING: f64 = 1e-7;
 
 /// Rates within this share of -1/t_v are left out: they gather there without end, and are no motion of the arm but
 /// its material that relaxes.
 const RELAXATION: f64 = 0.02;
-
-/// One motion about an equilibrium: a real rate, or a conjugate pair of them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mode {
-    /// Real and imaginary part of lambda, 1/s: the motion goes as exp(lambda t); of a pair the one with the positive
-    /// imaginary part.
-    pub rate: [f64; 2],
-}
-
-impl Mode {
-    /// |Im lambda|/(2 pi), Hz; zero where the motion does not swing.
-    pub fn frequency(&self) -> f64 {
-        self.rate[1].abs() / (2.0 * std::f64::consts::PI)
-    }
-
-    /// -Re lambda/|lambda|: 0 of a free swing, 1 of one that only decays, negative where it grows.
-    pub fn damping_ratio(&self) -> f64 {
-        let size = self.rate[0].hypot(self.rate[1]);
-        // Taken from zero, what is nothing is 0 and not -0.
-        if size > 0.0 { 0.0 - self.rate[0] / size } else { 0.0 }
-    }
-
-    /// Whether it grows.
-    pub fn grows(&self) -> bool {
-        self.rate[0] > NOTHING * self.rate[0].hypot(self.rate[1])
-    }
-
-    /// Whether it grows as it swings.
-    pub fn is_flutter(&self) -> bool {
-        self.grows() && self.rate[1] != 0.0
-    }
-}
 
 /// The slowest motions about an equilibrium, in the plane or in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modes<T = [f64; 3]> {
     /// In order of frequency, those of one frequency by the size of their rates.
     pub modes: Vec<Mode>,
+    /// The shape of each.
+    pub shapes: Vec<ModeShape>,
+    /// The equilibrium at the places of the shapes.
+    pub sections: Vec<ModeSection>,
     /// The tip in the equilibrium: x, y (m) and theta (rad) in the plane.
     pub tip: T,
 }
@@ -89,10 +60,23 @@ impl Arm {
             let mut settling = Planar::new(arm);
             start_at_rest(&mut settling, arm, Some(elements), 1e-8, 0.0).map(|()| settling)
         };
-        let (modes, settling) = slowest(self, count, elements, start)?;
+        let (slowest, settling) = slowest(self, count, elements, start)?;
         let end = settling.solution.nodes[settling.solution.mesh.elements()];
         let length = self.length;
-        Ok(Modes { modes, tip: [end[X] * length, end[X + 1] * length, end[0]] })
+        Ok(slowest.with([end[X] * length, end[X + 1] * length, end[0]]))
+    }
+}
+
+/// The slowest motions, before the tip is read.
+pub(super) struct Slowest {
+    modes: Vec<(Mode, ModeShape)>,
+    sections: Vec<ModeSection>,
+}
+
+impl Slowest {
+    pub(super) fn with<T>(self, tip: T) -> Modes<T> {
+        let (modes, shapes) = self.modes.into_iter().unzip();
+        Modes { modes, shapes, sections: self.sections, tip }
     }
 }
 
@@ -102,7 +86,7 @@ pub(super) fn slowest<P: Vibrates<S, L, C>, const S: usize, const L: usize, cons
     count: usize,
     elements: usize,
     start: impl Fn(&Arm) -> Result<Settling<P, S, L>, MotionError>,
-) -> Result<(Vec<Mode>, Settling<P, S, L>), MotionError> {
+) -> Result<(Slowest, Settling<P, S, L>), MotionError> {
     if !(1..=64).contains(&elements) {
         return Err(MotionError::Option { option: "elements", value: elements as f64, expected: "in [1, 64]" });
     }
@@ -111,9 +95,9 @@ pub(super) fn slowest<P: Vibrates<S, L, C>, const S: usize, const L: usize, cons
         return Err(MotionError::Unsupported { key: format!("cable[{i}].stroke"), reason });
     }
     let mut settling = start(arm)?;
-    let rates = rates(&mut settling)?;
+    let spectrum = spectrum(&mut settling)?;
     let time = arm.dynamics.relaxation_time;
-    let mut modes: Vec<Mode> = rates
+    let mut modes: Vec<Mode> = rates(&spectrum, settling.moving.time_unit())
         .into_iter()
         .filter(|[re, im]| *im >= 0.0 && (re * time + 1.0).hypot(im * time) > RELAXATION)
         .map(|[re, im]| {
@@ -124,7 +108,17 @@ pub(super) fn slowest<P: Vibrates<S, L, C>, const S: usize, const L: usize, cons
         .collect();
     let size = |mode: &Mode| mode.rate[0].hypot(mode.rate[1]);
     modes.sort_by(|a, b| size(a).total_cmp(&size(b)));
-    modes.truncate(count);
+    // The last one may have a twin.
+    modes.truncate(count + 1);
     modes.sort_by(|a, b| a.frequency().total_cmp(&b.frequency()).then(size(a).total_cmp(&size(b))));
-    Ok((modes, settling))
+    let sections = sections(&settling);
+    let shapes = shapes(&settling, &spectrum, &modes)?;
+    let mut modes: Vec<(Mode, ModeShape)> = modes.into_iter().zip(shapes).collect();
+    let largest = modes.iter().map(|(mode, _)| size(mode)).fold(0.0, f64::max);
+    if modes.len() > count
+        && let Some(last) = modes.iter().rposition(|(mode, _)| size(mode) >= (1.0 - TWINS) * largest)
+    {
+        modes.remove(last);
+    }
+    Ok((Slowest { modes, sections }, settling))
 }

@@ -45,6 +45,15 @@ impl Vibrates<S, L, C> for Moving {
         each(|a| Lanes::of(if a == 1 + field { 1.0 } else { 0.0 }))
     }
 
+    fn section(z: &[f64; S]) -> ([f64; 3], [[f64; 3]; 3]) {
+        let (sin, cos) = z[0].sin_cos();
+        ([z[X], z[X + 1], 0.0], [[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    }
+
+    fn in_space(_: &[f64; S], [x, y, theta]: &[f64; C]) -> [[f64; 3]; 2] {
+        [[*x, *y, 0.0], [0.0, 0.0, *theta]]
+    }
+
     fn moved(&self, _: &Station<S, L>, change: &[Lanes; S]) -> [Lanes; C] {
         [change[X], change[X + 1], change[0]]
     }

@@ -8,24 +8,16 @@ use super::equations::Moving;
 use super::error::MotionError;
 use super::in_plane::Planar;
 use super::inputs::Inputs;
+use super::landing::{Lands, Rest};
 use super::resting::{self, Candidate, ELEMENTS, Restless, TOLERANCE, is_damped};
 use super::start::{check, mesh_at};
 use super::stepper::Stepper;
 use crate::rod::arm::Arm;
-use crate::statics::configuration::Configuration;
+use crate::statics::configuration::{Configuration, Tip};
 use crate::statics::dimensions::{Guess, L};
 use crate::statics::engine::Engine;
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::stability::Stability;
-
-/// Where an arm came to rest.
-#[derive(Debug, Clone)]
-pub struct Rest {
-    /// The equilibrium, which is stable.
-    pub configuration: Configuration,
-    /// When the arm came within 0.002 L of it to stay, s after it was let go.
-    pub time: f64,
-}
 
 impl Configuration {
     /// Lets this shape go, at rest, under the loads of `arm`, which has the same geometry, and follows the motion until
@@ -76,31 +68,39 @@ impl Configuration {
             engine.equations.hold_strokes();
         }
         engine.equations.place_on(&engine.system.gauss, &engine.solution);
-        can_rest(&engine)?;
-        come_to_rest(&mut engine, tol)
+        engine.can_rest()?;
+        engine.come_to_rest(tol)
     }
 }
 
-/// Refuses arms that cannot move or whose motion never ends.
-pub(super) fn can_rest(engine: &Engine) -> Result<(), MotionError> {
-    let arm = engine.equations.arm();
-    check(arm)?;
-    if engine.equations.held.is_none()
-        && let Some(i) = arm.cables.iter().position(|cable| cable.stroke.is_some())
-    {
-        let reason = "the arm snaps before its cables are reeled in, and no motion leads from there to a stroke";
-        return Err(MotionError::Unsupported { key: format!("cable[{i}].stroke"), reason });
+impl Lands for Engine {
+    fn take(&mut self, shape: &Configuration) {
+        self.equations.clone_from(&shape.dense().equations);
+        self.solution.clone_from(&shape.dense().solution);
     }
-    is_damped(arm)
-}
 
-/// Lets the shape of `engine` go under the loads that its equations have, and leaves it at the equilibrium in which the
-/// arm comes to rest, settled to `tol`.
-pub(super) fn come_to_rest(engine: &mut Engine, tol: f64) -> Result<Rest, Restless> {
-    let arm = engine.equations.arm_at_fraction();
-    let stepper = let_go(engine, &arm);
-    let (configuration, time) = resting::come_to_rest(stepper, |stepper| look(engine, stepper, tol))?;
-    Ok(Rest { configuration, time })
+    fn tip_of(shape: &Configuration) -> Tip {
+        shape.tip()
+    }
+
+    fn can_rest(&self) -> Result<(), MotionError> {
+        let arm = self.equations.arm();
+        check(arm)?;
+        if self.equations.held.is_none()
+            && let Some(i) = arm.cables.iter().position(|cable| cable.stroke.is_some())
+        {
+            let reason = "the arm snaps before its cables are reeled in, and no motion leads from there to a stroke";
+            return Err(MotionError::Unsupported { key: format!("cable[{i}].stroke"), reason });
+        }
+        is_damped(arm)
+    }
+
+    fn come_to_rest(&mut self, tol: f64) -> Result<Rest, Restless> {
+        let arm = self.equations.arm_at_fraction();
+        let stepper = let_go(self, &arm);
+        let (configuration, time) = resting::come_to_rest(stepper, |stepper| look(self, stepper, tol))?;
+        Ok(Rest { configuration, time })
+    }
 }
 
 /// The motion of the engine's shape from rest.

@@ -390,7 +390,7 @@ impl SpatialConfiguration {
     }
 
     /// The engine that holds this configuration.
-    pub(super) fn engine(&self) -> &Engine {
+    pub(crate) fn engine(&self) -> &Engine {
         &self.dense.engine
     }
 

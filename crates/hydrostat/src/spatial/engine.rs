@@ -58,7 +58,7 @@ pub(crate) struct Engine {
     pub(super) held: Option<StrokeControl>,
     /// Determinant of the strokes of taut cables by their tensions, at the last round.
     pub(super) border: Option<Determinant>,
-    pub(super) system: Collocation<N, M, Q, L>,
+    pub(crate) system: Collocation<N, M, Q, L>,
     pub(super) check_equations: Equations,
     pub(super) check: Collocation<N, K, Q, L>,
     pub(crate) solution: Guess,

@@ -13,6 +13,7 @@ use super::tip::SpatialTip;
 use crate::numerics::rounds::{correct, linearise};
 use crate::statics::engine::{Trouble, roughly};
 use crate::statics::limit::limit_at;
+use crate::statics::shape::Pose as _;
 use crate::statics::snap::{self, SnapBounds};
 use crate::statics::verdict::{Phase, Verdict, VerdictKind};
 
@@ -51,15 +52,12 @@ pub struct SpatialSnap {
 impl SpatialSnap {
     /// How far the tip jumps, m.
     pub fn distance(&self) -> f64 {
-        let (a, b) = (&self.before, &self.after);
-        (a.x - b.x).hypot(a.y - b.y).hypot(a.z - b.z)
+        self.before.distance_to(&self.after)
     }
 
     /// The angle of the rotation between both tip sections, rad.
     pub fn angle(&self) -> f64 {
-        let (p, q) = (&self.before, &self.after);
-        let trace = dot(&p.a, &q.a) + dot(&p.b, &q.b) + dot(&p.c, &q.c);
-        (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos()
+        self.before.turn_to(&self.after)
     }
 
     /// What happens, in a phrase with its numbers.

@@ -7,6 +7,7 @@ use super::path::{SpatialSnap, Stopped, Travelled, follow, follow_on, verdict};
 use super::rotation::dot;
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::engine::{Trouble, WORK};
+use crate::statics::path::{LOOSE, PathSummary, StepControl, Stopped as RangeStopped, follow_range};
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::solve::Options;
 use crate::statics::verdict::{Phase, Verdict, VerdictKind};
@@ -52,6 +53,9 @@ pub struct NoSpatialEquilibrium {
     pub last_good: Option<SpatialConfiguration>,
     /// The snaps that the arm makes on the way.
     pub snaps: Vec<SpatialSnap>,
+    /// With the verdict [`VerdictKind::LimitPoint`]: the shape that the arm snaps to, at the loads of the limit point,
+    /// where the path was followed to it.
+    pub after_snap: Option<SpatialConfiguration>,
 }
 
 /// Solves one arm in space, again and again as its tensions change.
@@ -209,6 +213,46 @@ impl SpatialSolver {
         self.end_of_path(travelled)
     }
 
+    /// The engine's equilibrium, read again.
+    pub(crate) fn resettle(&mut self) -> Result<SpatialConfiguration, SpatialError> {
+        let settled = self.engine.settle(self.options.tol, First::Warm);
+        if let Ok(estimate) = settled
+            && let Ok(configuration) = self.read(estimate, Travelled::default())
+        {
+            return Ok(configuration);
+        }
+        Err(self.last_verdict(Vec::new()))
+    }
+
+    /// Follows the engine's range to its end, from the engine's equilibrium at a share of it, behind a limit point down
+    /// to a lowest one.
+    pub(crate) fn solve_along_range(&mut self, from: [f64; 2]) -> Result<SpatialConfiguration, SpatialError> {
+        (self.settled, self.solved) = (false, false);
+        self.engine.reset_statistics();
+        self.engine.allowed = WORK;
+        let travelled = follow_range(&mut self.engine, from, StepControl::BRISK, self.options.snaps);
+        let solved = match travelled {
+            Ok(PathSummary { steps, bifurcations, snaps, .. }) => {
+                self.end_of_path(Ok(Travelled { steps, crossings: bifurcations, snaps }))
+            }
+            Err(RangeStopped { verdict, snaps, after_snap, .. }) => {
+                let last_good = self.read(LOOSE, Travelled::default()).ok();
+                let after_snap = after_snap.and_then(|state| self.read_state(&state));
+                let no = NoSpatialEquilibrium { verdict, last_good, snaps, after_snap };
+                Err(SpatialError::NoEquilibrium(Box::new(no)))
+            }
+        };
+        self.engine.allowed = usize::MAX;
+        solved
+    }
+
+    /// The shape of a state that the path came through.
+    fn read_state(&mut self, state: &State) -> Option<SpatialConfiguration> {
+        self.engine.restore(state);
+        let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
+        self.read(estimate, Travelled::default()).ok()
+    }
+
     /// The answer at the end of a path, which the engine is at.
     fn end_of_path(&mut self, travelled: Result<Travelled, Stopped>) -> Result<SpatialConfiguration, SpatialError> {
         let travelled = match travelled {
@@ -239,7 +283,12 @@ impl SpatialSolver {
     /// Nothing could be made of the end of the path.
     fn last_verdict(&mut self, snaps: Vec<SpatialSnap>) -> SpatialError {
         let verdict = verdict(&self.engine, VerdictKind::NotFound, Phase::Tension, 1.0, None);
-        SpatialError::NoEquilibrium(Box::new(NoSpatialEquilibrium { verdict, last_good: None, snaps }))
+        SpatialError::NoEquilibrium(Box::new(NoSpatialEquilibrium {
+            verdict,
+            last_good: None,
+            snaps,
+            after_snap: None,
+        }))
     }
 
     /// The verdict with the engine's shape, the last good one.
@@ -251,7 +300,7 @@ impl SpatialSolver {
             super::mesh::LOOSE
         });
         let last_good = self.read(estimate, Travelled::default()).ok();
-        SpatialError::NoEquilibrium(Box::new(NoSpatialEquilibrium { verdict, last_good, snaps }))
+        SpatialError::NoEquilibrium(Box::new(NoSpatialEquilibrium { verdict, last_good, snaps, after_snap: None }))
     }
 
     pub(super) fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<SpatialConfiguration, Trouble> {

@@ -1,5 +1,8 @@
 //! The tip of an arm in space.
 
+use super::rotation::dot;
+use crate::statics::shape::Pose;
+
 /// The tip of an arm in space.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SpatialTip {
@@ -17,4 +20,16 @@ pub struct SpatialTip {
     pub c: [f64; 3],
     /// Angle between section normal and centreline tangent, rad, in [0, pi].
     pub alpha: f64,
+}
+
+impl Pose for SpatialTip {
+    fn distance_to(&self, other: &Self) -> f64 {
+        (self.x - other.x).hypot(self.y - other.y).hypot(self.z - other.z)
+    }
+
+    /// The angle of the rotation between both sections.
+    fn turn_to(&self, other: &Self) -> f64 {
+        let trace = dot(&self.a, &other.a) + dot(&self.b, &other.b) + dot(&self.c, &other.c);
+        (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos()
+    }
 }

@@ -19,8 +19,21 @@ use crate::statics::verdict::Phase;
 impl Equations {
     /// Lets `parameter` run from `from` to `to`; the equations are at fraction 0 of the range.
     pub(super) fn vary(&mut self, parameter: Parameter, from: f64, to: f64) {
-        self.varied = Some(Varied { ways: vec![Change { parameter, from, to }], fraction: 0.0 });
+        self.vary_together(vec![Change { parameter, from, to }]);
+    }
+
+    /// Lets several parameters run together, along a straight line; the equations are at fraction 0 of it.
+    pub(crate) fn vary_together(&mut self, ways: Vec<Change>) {
+        self.varied = Some(Varied { ways, fraction: 0.0 });
         self.set_range_fraction(0.0);
+    }
+
+    /// Takes the place of the base of another arm, which moves the arm as it is.
+    pub(crate) fn take_place_of_base(&mut self, arm: &Arm) {
+        (self.arm.base.x, self.arm.base.y) = (arm.base.x, arm.base.y);
+        let z = arm.space.as_ref().map_or(0.0, |space| space.z);
+        self.arm.space.get_or_insert_default().z = z;
+        self.space.z = z;
     }
 
     /// Lets the base turn about `axis`, a unit vector in space, once round; the equations are at fraction 0.
@@ -59,7 +72,7 @@ impl Equations {
     }
 
     /// Takes the arm at a fraction of the range, within it or beyond.
-    pub(super) fn set_range_fraction(&mut self, fraction: f64) {
+    pub(crate) fn set_range_fraction(&mut self, fraction: f64) {
         let Some(varied) = &mut self.varied else { return };
         varied.fraction = fraction;
         for way in varied.ways.clone() {

@@ -5,6 +5,7 @@ mod carry_over;
 mod discrete;
 mod held;
 mod kinks;
+mod loaded;
 mod loads;
 #[cfg(test)]
 pub(crate) mod manufactured;

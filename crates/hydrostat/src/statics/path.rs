@@ -6,6 +6,7 @@ mod contact;
 mod events;
 mod limits;
 mod load_stepping;
+pub(crate) mod loaded;
 mod points;
 mod range;
 #[cfg(test)]

@@ -110,6 +110,24 @@ pub struct Tip {
     pub alpha: f64,
 }
 
+/// Where a tip is and how it is turned: [`Tip`], or [`SpatialTip`](crate::SpatialTip).
+pub trait Pose: Copy {
+    /// How far another one is, m.
+    fn distance_to(&self, other: &Self) -> f64;
+    /// By how much another one is turned, rad, never negative.
+    fn turn_to(&self, other: &Self) -> f64;
+}
+
+impl Pose for Tip {
+    fn distance_to(&self, other: &Self) -> f64 {
+        (other.x - self.x).hypot(other.y - self.y)
+    }
+
+    fn turn_to(&self, other: &Self) -> f64 {
+        (other.theta - self.theta).abs()
+    }
+}
+
 /// A force (N, in space) and a moment (N m).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Wrench {

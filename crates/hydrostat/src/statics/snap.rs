@@ -1,7 +1,7 @@
 //! Snaps: jumps that an arm makes as its loads grow slowly, where its path of equilibria turns back and then leads on
 //! (section 7 of `docs/model.md`).
 
-use crate::statics::configuration::Tip;
+use crate::statics::shape::{Pose as _, Tip};
 use crate::statics::verdict::Phase;
 
 /// A jump from a limit point of the path to the next stable part of the same curve at the same loads.
@@ -28,12 +28,12 @@ pub struct Snap {
 impl Snap {
     /// How far the tip jumps, m.
     pub fn distance(&self) -> f64 {
-        (self.after.x - self.before.x).hypot(self.after.y - self.before.y)
+        self.before.distance_to(&self.after)
     }
 
     /// How far the tip turns, rad, never negative.
     pub fn angle(&self) -> f64 {
-        (self.after.theta - self.before.theta).abs()
+        self.before.turn_to(&self.after)
     }
 
     /// What happens, in a phrase with its numbers.

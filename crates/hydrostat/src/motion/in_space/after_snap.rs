@@ -4,17 +4,20 @@ use hydrostat_bvp::{Lanes, Real, Solution, Stage, each};
 
 use super::equations::{S, Shape, Spatial, SpatialMoving};
 use super::start::with_places;
-use crate::motion::after_snap::{AfterSnap, AfterSnapError, MOST_SNAPS, PAST};
+use crate::motion::after_snap::{AfterSnap, AfterSnapError};
 use crate::motion::error::MotionError;
 use crate::motion::inputs::Inputs;
-use crate::motion::resting::{Candidate, ELEMENTS, Restless, TOLERANCE, come_to_rest, is_damped};
+use crate::motion::landing::{Lands, MOST_SNAPS, PAST, Rest};
+use crate::motion::resting::{self, Candidate, ELEMENTS, Restless, TOLERANCE, is_damped};
 use crate::motion::start::{check, force_unit, mesh_at};
 use crate::motion::stepper::Stepper;
 use crate::rod::arm::Arm;
 use crate::spatial::engine::Engine;
 use crate::spatial::equations::{FORCE, Guess, L, N};
 use crate::spatial::path::slide_to_limit;
-use crate::spatial::{NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialSnap, SpatialSolver};
+use crate::spatial::{
+    NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialSnap, SpatialSolver, SpatialTip,
+};
 use crate::statics::snap::SnapBounds;
 use crate::statics::solve::Options;
 use crate::statics::stability::Stability;
@@ -99,23 +102,85 @@ fn follow(
     let of = |restless| AfterSnapError::of(restless, phase, load_fraction);
     let past = (load_fraction + PAST).min(1.0);
     engine.equations.set_phase(phase, past);
-    let arm = engine.equations.arm_at_fraction();
-    can_rest(&arm).map_err(|error| of(Restless::Motion(error)))?;
-    let stepper = let_go(engine, &arm);
-    let rested = come_to_rest(stepper, |stepper| look(engine, stepper, tol));
-    let (configuration, duration) = rested.map_err(of)?;
+    engine.can_rest().map_err(|error| of(Restless::Motion(error)))?;
+    let Rest { configuration, time: duration } = engine.come_to_rest(tol).map_err(of)?;
     let snap = SpatialSnap { phase, load_fraction, before, after: configuration.tip() };
     Ok((SpatialSnapMotion { snap, duration }, past))
 }
 
-/// Refuses arms that cannot move or whose motion never ends.
-fn can_rest(arm: &Arm) -> Result<(), MotionError> {
-    check(arm)?;
-    if let Some(i) = arm.cables.iter().position(|cable| cable.stroke.is_some()) {
-        let reason = "no motion leads from a snap in space to a stroke";
-        return Err(MotionError::Unsupported { key: format!("cable[{i}].stroke"), reason });
+impl Lands for Engine {
+    fn take(&mut self, shape: &SpatialConfiguration) {
+        self.take_shape_of(shape);
     }
-    is_damped(arm)
+
+    fn tip_of(shape: &SpatialConfiguration) -> SpatialTip {
+        shape.tip()
+    }
+
+    fn can_rest(&self) -> Result<(), MotionError> {
+        let arm = self.equations.arm();
+        check(arm)?;
+        if let Some(i) = arm.cables.iter().position(|cable| cable.stroke.is_some()) {
+            let reason = "no motion leads from a snap in space to a stroke";
+            return Err(MotionError::Unsupported { key: format!("cable[{i}].stroke"), reason });
+        }
+        is_damped(arm)
+    }
+
+    fn come_to_rest(&mut self, tol: f64) -> Result<Rest<SpatialConfiguration>, Restless> {
+        let arm = self.equations.arm_at_fraction();
+        let stepper = let_go(self, &arm);
+        let (configuration, time) = resting::come_to_rest(stepper, |stepper| look(self, stepper, tol))?;
+        Ok(Rest { configuration, time })
+    }
+}
+
+impl SpatialConfiguration {
+    /// Lets this shape go, at rest, under the loads of `arm`, as [`Configuration::let_go`](crate::Configuration::let_go)
+    /// does in the plane. Cables have tensions.
+    ///
+    /// # Errors
+    /// [`Restless`].
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Cable, Options, Profile, Space, SpatialSolver};
+    ///
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// arm.density = 1080.0;
+    /// arm.dynamics.relaxation_time = 2.7e-3; // s
+    /// arm.cables.push(Cable::new("aside", Profile::linear(0.005, 0.001)).at_angle(1.0).pulled(0.2));
+    /// arm.space = Some(Space::default());
+    /// let bent = SpatialSolver::new(&arm, Options::default())?.solve()?;
+    /// arm.cables[0].tension = 0.0;
+    /// let rest = bent.let_go(&arm, 1e-8).expect("water and material damp it");
+    /// assert!(rest.configuration.tip().z.abs() < 1e-9 && rest.time > 0.1);
+    /// # Ok::<(), hydrostat::SpatialError>(())
+    /// ```
+    pub fn let_go(&self, arm: &Arm, tol: f64) -> Result<Rest<Self>, Restless> {
+        let mut arm = arm.clone();
+        arm.space.get_or_insert_default();
+        arm.check().map_err(MotionError::Arm)?;
+        if !self.arm.has_geometry_of(&arm) {
+            let reason = "a shape can be let go under other loads only, not as another arm";
+            return Err(MotionError::Unsupported { key: "arm".to_owned(), reason }.into());
+        }
+        let own = self.engine();
+        let mut engine = Engine::new(&arm);
+        let by = own.equations.units.force / engine.equations.units.force;
+        engine.solution.clone_from(&own.solution);
+        engine.solution.nodes.iter_mut().for_each(|z| z[FORCE..].iter_mut().for_each(|v| *v *= by));
+        engine.solution.stages.iter_mut().for_each(|stage| {
+            stage.slope[FORCE..].iter_mut().for_each(|v| *v = *v * Lanes::of(by));
+        });
+        // Two quaternions have the same directors.
+        let base = engine.equations.base;
+        if (0..4).map(|k| base[k] * own.solution.nodes[0][k]).sum::<f64>() < 0.0 {
+            engine.equations.base = base.map(|v| -v);
+        }
+        engine.equations.place_on(&engine.system.gauss, &engine.solution);
+        engine.can_rest()?;
+        engine.come_to_rest(tol)
+    }
 }
 
 /// The motion of the engine's shape from rest.

@@ -59,6 +59,16 @@ impl Vibrates<S, L, COORDINATES> for SpatialMoving {
         out
     }
 
+    fn section(z: &[f64; S]) -> ([f64; 3], [[f64; 3]; 3]) {
+        let Directors { a, b, c } = Directors::of(&each(|k| z[k]));
+        ([z[X], z[X + 1], z[X + 2]], [a, b, c])
+    }
+
+    fn in_space(z: &[f64; S], moved: &[f64; COORDINATES]) -> [[f64; 3]; 2] {
+        let [x, y, z_, turns @ ..] = *moved;
+        [[x, y, z_], Directors::of(&each(|k| z[k])).to_space(&turns)]
+    }
+
     fn moved(&self, station: &Station<S, L>, change: &[Lanes; S]) -> [Lanes; COORDINATES] {
         let turns = turn(&each(|k| station.z[k]));
         each(|k| match k {
@@ -114,13 +124,13 @@ impl Arm {
     pub fn modes_in_space(&self, count: usize, elements: usize) -> Result<Modes<SpatialTip>, MotionError> {
         let mut arm = self.clone();
         arm.space.get_or_insert_default();
-        let (modes, settling) = slowest(&arm, count, elements, |arm| at_rest(arm, Some(elements), 1e-8, 0.0))?;
+        let (slowest, settling) = slowest(&arm, count, elements, |arm| at_rest(arm, Some(elements), 1e-8, 0.0))?;
         let (solution, length) = (&settling.solution, self.length);
         let last = solution.mesh.elements();
         let z = solution.nodes[last];
         let Directors { a, b, c } = Directors::of(&each(|k| z[k]));
         let alpha = angle_to_tangent(&solution.inner_in(&settling.system.gauss, last - 1, 1.0).inner);
         let [x, y, z] = each(|k| length * z[X + k]);
-        Ok(Modes { modes, tip: SpatialTip { x, y, z, a, b, c, alpha } })
+        Ok(slowest.with(SpatialTip { x, y, z, a, b, c, alpha }))
     }
 }

@@ -2,13 +2,13 @@
 //! `docs/model.md`).
 
 use super::contact::Contact;
+use super::loaded::Loaded;
 use super::step_control::{LOOSE, MEET, PathSummary, START, StepControl};
-use super::stepper::{self, Fraction, StepOutcome, Stepper};
+use super::stepper::{Fraction, Point, StepOutcome, Stepper};
 use super::traced::Along;
-use crate::statics::configuration::{Configuration, Tip};
-use crate::statics::engine::{Engine, State, Trouble, roughly};
-use crate::statics::refinement::{First, Refinable as _};
-use crate::statics::snap::{Snap, SnapBounds};
+use crate::statics::engine::{Engine, Trouble, roughly};
+use crate::statics::refinement::First;
+use crate::statics::snap::SnapBounds;
 use crate::statics::stability::Stability;
 use crate::statics::verdict::{Phase, Verdict, VerdictKind};
 
@@ -27,33 +27,29 @@ const BEYOND: usize = 400;
 /// The first step on that mesh.
 const SHARP_STEP: f64 = 1e-3;
 
-type Point = stepper::Point<Engine>;
-
 /// Where a path ends without an answer. The engine is at the last good point.
-#[derive(Debug, Clone)]
-pub(crate) struct Stopped {
+pub(crate) struct Stopped<E: Loaded = Engine> {
     pub(crate) verdict: Verdict,
     /// The snaps on the way, with the one that is refused.
-    pub(crate) snaps: Vec<Snap>,
+    pub(crate) snaps: Vec<E::Snap>,
     /// Where the arm lands after the refused snap.
-    pub(crate) after_snap: Option<Box<State>>,
+    pub(crate) after_snap: Option<Box<E::State>>,
     /// The end of the path beyond that snap, at whole loads.
-    pub(crate) at_full_loads: Option<Box<State>>,
+    pub(crate) at_full_loads: Option<Box<E::State>>,
 }
 
-impl From<Verdict> for Stopped {
+impl<E: Loaded> From<Verdict> for Stopped<E> {
     fn from(verdict: Verdict) -> Self {
         Self { verdict, snaps: Vec::new(), after_snap: None, at_full_loads: None }
     }
 }
 
 /// A snap that goes too far, after which the path is followed for what lies beyond.
-#[derive(Debug, Clone)]
-struct Refused {
+struct Refused<E: Loaded> {
     verdict: Verdict,
     /// At the limit point.
-    before: State,
-    after: State,
+    before: E::State,
+    after: E::State,
 }
 
 /// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
@@ -128,21 +124,21 @@ pub(crate) fn follow_on(
 /// Follows the range that the engine's equations vary over to its end, or to a verdict, from the engine's equilibrium
 /// at the fraction `from` of it. Behind a limit point it is followed down to the fraction `lowest`. Fractions of snaps
 /// and verdicts are fractions of the range, and their phase says nothing.
-pub(crate) fn follow_range(
-    engine: &mut Engine,
+pub(crate) fn follow_range<E: Loaded>(
+    engine: &mut E,
     [from, lowest]: [f64; 2],
     control: StepControl,
     bounds: SnapBounds,
-) -> Result<PathSummary, Stopped> {
+) -> Result<PathSummary<E::Snap>, Stopped<E>> {
     let mut way = Way::new(bounds);
     let stepper = Stepper::new(engine, Along::Range, [f64::NEG_INFINITY, 1.0]);
     let outcome = Ramp { stepper, phase: Phase::Tension, from: Some(from), lowest, way: &mut way, turned_back: None }
         .follow(control);
-    engine.equations.let_cables_switch(true);
+    engine.let_cables_switch(true);
     if let Err(verdict) = outcome {
         return Err(way.stopped(engine, verdict));
     }
-    engine.equations.set_range_fraction(1.0);
+    engine.set(Along::Range, 1.0);
     way.whole(engine)
 }
 
@@ -164,26 +160,26 @@ pub(crate) fn follow_strokes(
 }
 
 /// What the path has met so far.
-struct Way {
+struct Way<E: Loaded> {
     bounds: SnapBounds,
-    travelled: PathSummary,
-    refused: Option<Refused>,
+    travelled: PathSummary<E::Snap>,
+    refused: Option<Refused<E>>,
 }
 
-impl Way {
+impl<E: Loaded> Way<E> {
     fn new(bounds: SnapBounds) -> Self {
         Self { bounds, travelled: PathSummary::default(), refused: None }
     }
 
     /// One phase of the path.
-    fn along(&mut self, engine: &mut Engine, phase: Phase, control: StepControl) -> Result<(), Verdict> {
+    fn along(&mut self, engine: &mut E, phase: Phase, control: StepControl) -> Result<(), Verdict> {
         self.along_from(engine, phase, None, control)
     }
 
     /// The rest of a phase, from the engine's equilibrium at a fraction of it where there is one.
     fn along_from(
         &mut self,
-        engine: &mut Engine,
+        engine: &mut E,
         phase: Phase,
         from: Option<f64>,
         control: StepControl,
@@ -193,7 +189,7 @@ impl Way {
     }
 
     /// The end of the path at whole loads.
-    fn whole(self, engine: &mut Engine) -> Result<PathSummary, Stopped> {
+    fn whole(self, engine: &mut E) -> Result<PathSummary<E::Snap>, Stopped<E>> {
         let Some(refused) = self.refused else { return Ok(self.travelled) };
         let end = engine.state();
         engine.restore(&refused.before);
@@ -207,7 +203,7 @@ impl Way {
     }
 
     /// The end of the path before that, for the reason that `verdict` gives.
-    fn stopped(self, engine: &mut Engine, verdict: Verdict) -> Stopped {
+    fn stopped(self, engine: &mut E, verdict: Verdict) -> Stopped<E> {
         let snaps = self.travelled.snaps;
         let Some(Refused { verdict, before, after }) = self.refused else {
             return Stopped { snaps, ..verdict.into() };
@@ -218,26 +214,26 @@ impl Way {
 }
 
 /// A limit point at which the path turned back, and past whose load it has not come again.
-struct TurnedBack {
+struct TurnedBack<E: Loaded> {
     fraction: f64,
-    state: State,
+    state: E::State,
     /// `None` where the section at the tip is at its limit.
-    tip: Option<Tip>,
+    tip: Option<E::Tip>,
 }
 
 /// One phase of the path.
-struct Ramp<'e, 'w> {
-    stepper: Stepper<'e, Engine>,
+struct Ramp<'e, 'w, E: Loaded> {
+    stepper: Stepper<'e, E>,
     phase: Phase,
     /// The fraction at which the engine has an equilibrium to start from, where it does.
     from: Option<f64>,
     /// The fraction below which it is not followed once it has turned back.
     lowest: f64,
-    way: &'w mut Way,
-    turned_back: Option<TurnedBack>,
+    way: &'w mut Way<E>,
+    turned_back: Option<TurnedBack<E>>,
 }
 
-impl Ramp<'_, '_> {
+impl<E: Loaded> Ramp<'_, '_, E> {
     fn follow(&mut self, control: StepControl) -> Result<(), Verdict> {
         let mut here = self.start_or_verdict()?;
         // Which side of zero the determinant is on is a matter of the branch, which way is up is not.
@@ -246,7 +242,7 @@ impl Ramp<'_, '_> {
             here.dlambda_ds = -here.dlambda_ds;
         }
         self.stepper.begin(&mut here);
-        let first = if self.stepper.engine.in_a_hurry { 0.2 } else { 0.1_f64.min(control.longest) };
+        let first = if self.stepper.engine.is_in_a_hurry() { 0.2 } else { 0.1_f64.min(control.longest) };
         let mut step = first;
         // A point before this one with a clearly larger dlambda/ds.
         let mut steeper = (here.fraction, here.dlambda_ds);
@@ -339,18 +335,18 @@ impl Ramp<'_, '_> {
     /// Notes the limit point that the engine is at.
     fn turn_back(&mut self, fraction: f64) {
         let engine = &self.stepper.engine;
-        self.turned_back = Some(TurnedBack { fraction, state: engine.state(), tip: engine.read_tip().ok() });
+        self.turned_back = Some(TurnedBack { fraction, state: engine.state(), tip: engine.tip() });
         self.stepper.bounds[0] = self.lowest;
     }
 
     /// Whether a step leads past the load of the limit point again, upwards.
-    fn comes_past(&self, here: &Point, next: &Point) -> bool {
+    fn comes_past(&self, here: &Point<E>, next: &Point<E>) -> bool {
         self.turned_back.as_ref().is_some_and(|limit| here.fraction < limit.fraction && next.fraction >= limit.fraction)
     }
 
     /// The arm lands where a step from `here` comes past the load of the limit point, if that shape is stable. Whether
     /// the path is known that far.
-    fn land(&mut self, here: &Point, control: StepControl) -> bool {
+    fn land(&mut self, here: &Point<E>, control: StepControl) -> bool {
         let Some(limit) = self.turned_back.take() else { return true };
         let kept = (self.stepper.engine.state(), self.stepper.orientation);
         // From before the second limit point no tangent leads there.
@@ -374,8 +370,10 @@ impl Ramp<'_, '_> {
         if self.way.refused.is_some() {
             return true;
         }
+        let [distance, angle] = E::jump(&snap);
+        let holds = self.way.bounds.hold(distance, angle, self.stepper.engine.arm().length);
         self.way.travelled.snaps.push(snap);
-        if !self.way.bounds.allow(&snap, self.stepper.engine.equations.units.length) {
+        if !holds {
             let verdict = self.end(VerdictKind::LimitPoint, limit.fraction, None);
             self.way.refused = Some(Refused { verdict, before: limit.state, after });
         }
@@ -383,14 +381,13 @@ impl Ramp<'_, '_> {
     }
 
     /// The snap from a limit point to the engine's shape, and whether that is stable.
-    fn landing(&mut self, limit: &TurnedBack) -> Option<(Snap, bool)> {
+    fn landing(&mut self, limit: &TurnedBack<E>) -> Option<(E::Snap, bool)> {
         let engine = &mut *self.stepper.engine;
         let estimate = engine.settle(SHARP_TOLERANCE, First::Warm).ok()?;
-        let (before, after) = (limit.tip?, engine.read_tip().ok()?);
-        let statistics = engine.statistics(0);
-        let read = Configuration::read(engine, estimate, statistics).ok()?;
-        let stable = matches!(read.stability(), Some(Stability::Stable) | None);
-        Some((Snap { phase: self.phase, load_fraction: limit.fraction, before, after }, stable))
+        let (before, after) = (limit.tip?, engine.tip()?);
+        let read = engine.read(estimate)?;
+        let stable = matches!(E::stability(&read), Some(Stability::Stable) | None);
+        Some((E::snap(self.phase, limit.fraction, before, after), stable))
     }
 
     /// Why a path that turned back has not come past the limit point again; the engine is at that.
@@ -401,7 +398,7 @@ impl Ramp<'_, '_> {
     }
 
     /// [`Ramp::start`], or why there is no such point.
-    fn start_or_verdict(&mut self) -> Result<Point, Verdict> {
+    fn start_or_verdict(&mut self) -> Result<Point<E>, Verdict> {
         // What the phase before it ended with is what is last good.
         let kept = (self.phase != Phase::Loads || self.from.is_some()).then(|| self.stepper.engine.state());
         self.start().map_err(|_| {
@@ -417,8 +414,8 @@ impl Ramp<'_, '_> {
 
     /// Why no step leads on from `here`, given fraction and dlambda/ds of a point before it with a clearly larger
     /// dlambda/ds.
-    fn stuck(&mut self, here: &Point, steeper: (f64, f64)) -> Verdict {
-        let residual = self.stepper.engine.last;
+    fn stuck(&mut self, here: &Point<E>, steeper: (f64, f64)) -> Verdict {
+        let residual = *self.stepper.engine.last_mut();
         self.stepper.engine.restore(&here.state);
         let (kind, s) = self.stepper.name_limit(here.fraction, residual);
         // Two branches of opposite orientation end where they meet: the path turns back in a corner
@@ -445,14 +442,14 @@ impl Ramp<'_, '_> {
 
     /// The point that a phase starts from. An arm that lies in the stream, or along another load, has tiny angles to it
     /// whose signs decide where it goes, so this point is made very accurate then, as far as that can be had.
-    fn start(&mut self) -> Result<Point, Trouble> {
+    fn start(&mut self) -> Result<Point<E>, Trouble> {
         if let Some(from) = self.from {
             self.stepper.set(from);
             roughly(self.stepper.engine.newton(1e-6, 12))?;
             self.stepper.keep_accuracy(None, &mut Fraction::Fixed(from), [LOOSE, LOOSE])?;
             return self.stepper.first_contacts(from);
         }
-        let whole = self.stepper.engine.solution.clone();
+        let whole = self.stepper.engine.guess();
         let mut fraction = START;
         loop {
             self.stepper.set(fraction);
@@ -461,12 +458,12 @@ impl Ramp<'_, '_> {
                 // Straight in line with the stream an arm has a kink all along, and corrections hop.
                 Err(_) if fraction > 1e-5 * START => {
                     fraction *= 0.1;
-                    self.stepper.engine.solution.clone_from(&whole);
+                    self.stepper.engine.take_guess(&whole);
                 }
                 Err(trouble) => return Err(trouble),
             }
         }
-        let careful = !self.stepper.engine.in_a_hurry || self.stepper.engine.is_in_line();
+        let careful = !self.stepper.engine.is_in_a_hurry() || self.stepper.engine.may_be_in_line();
         let accuracies: &[f64] = if careful { &[1e-5, 1e-6, 1e-7] } else { &[1e-5] };
         let refined = accuracies.iter().all(|accuracy| {
             self.stepper.or_back(|this| this.keep_accuracy(None, &mut Fraction::Fixed(fraction), [*accuracy, LOOSE]))
@@ -480,7 +477,7 @@ impl Ramp<'_, '_> {
     /// The last good point, or one just before it, on a mesh that is as accurate as an answer. Where the section law
     /// ends the path it may be for what a coarse mesh makes of the ends of the arm, and where cables go slack or taut
     /// close to each other what a mesh is off by decides which does first. `None` where something else ends the path.
-    fn sharpen(&mut self, here: &Point) -> Option<Point> {
+    fn sharpen(&mut self, here: &Point<E>) -> Option<Point<E>> {
         let at_contact = here.margins.iter().any(|margin| *margin < CONTACT);
         if !matches!(self.stepper.last_trouble, Some(Trouble::Section(_))) && !at_contact {
             return None;
@@ -489,13 +486,13 @@ impl Ramp<'_, '_> {
             self.stepper.engine.restore(&here.state);
             let fraction = here.fraction * (1.0 - back);
             self.stepper.set(fraction);
-            let before = self.stepper.engine.tip;
-            self.stepper.engine.equations.let_cables_switch(at_contact);
+            let before = self.stepper.engine.tip_place();
+            self.stepper.engine.let_cables_switch(at_contact);
             let settled = self.stepper.engine.settle(SHARP_TOLERANCE, First::Warm);
-            self.stepper.engine.equations.let_cables_switch(false);
-            let [x, y] = self.stepper.engine.tip;
+            self.stepper.engine.let_cables_switch(false);
+            let [x, y, z] = self.stepper.engine.tip_place();
             if settled.is_ok()
-                && (x - before[0]).hypot(y - before[1]) < 10.0 * (LOOSE + back)
+                && (x - before[0]).hypot(y - before[1]).hypot(z - before[2]) < 10.0 * (LOOSE + back)
                 && self.stepper.engine.check_ends().is_ok()
                 && let Ok(point) = self.stepper.point(fraction)
                 && point.dlambda_ds * here.dlambda_ds > 0.0
@@ -507,19 +504,19 @@ impl Ramp<'_, '_> {
     }
 
     /// A verdict at `s`, m.
-    fn end(&self, kind: VerdictKind, load_fraction: f64, s: Option<f64>) -> Verdict {
+    fn end(&mut self, kind: VerdictKind, load_fraction: f64, s: Option<f64>) -> Verdict {
         let load_fraction = if load_fraction <= START { 0.0 } else { load_fraction.min(1.0) };
-        let engine = &self.stepper.engine;
+        let engine = &mut *self.stepper.engine;
         let spent = engine.spent().filter(|_| kind == VerdictKind::NotFound);
-        Verdict { kind, phase: self.phase, load_fraction, s, residual: engine.last, spent }
+        Verdict { kind, phase: self.phase, load_fraction, s, residual: *engine.last_mut(), spent }
     }
 
     fn never_started(&mut self) -> Verdict {
-        self.stepper.engine.last = 0.0;
+        *self.stepper.engine.last_mut() = 0.0;
         let engine = &self.stepper.engine;
-        if engine.spent().is_none() && engine.equations.arm().readings.load_can_jump() {
-            let length = self.stepper.engine.equations.units.length;
-            let place = self.stepper.engine.nearest_switch();
+        if engine.spent().is_none() && engine.arm().readings.load_can_jump() {
+            let length = self.stepper.engine.arm().length;
+            let place = self.stepper.engine.place_of_jump();
             self.end(VerdictKind::LoadJump, 0.0, place.map(|s| s * length))
         } else {
             self.end(VerdictKind::NotFound, 0.0, None)

@@ -47,13 +47,19 @@ impl StepControl {
 }
 
 /// What a path met.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct PathSummary {
+#[derive(Debug, Clone)]
+pub(crate) struct PathSummary<S = Snap> {
     pub(crate) steps: usize,
     /// Times the determinant changed sign while the load went on rising: bifurcations passed since the last snap.
     pub(crate) bifurcations: usize,
     /// The snaps that the arm makes on its way.
-    pub(crate) snaps: Vec<Snap>,
+    pub(crate) snaps: Vec<S>,
     /// Whether it ended on a branch that nothing but the load moves along.
     pub(crate) symmetric: bool,
+}
+
+impl<S> Default for PathSummary<S> {
+    fn default() -> Self {
+        Self { steps: 0, bifurcations: 0, snaps: Vec::new(), symmetric: false }
+    }
 }

@@ -1,0 +1,276 @@
+//! Solvers that follow an arm along a line from one sequence of loads to another, and which loads these may be.
+
+use super::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
+use super::in_space::SpatialSnapMotion;
+use super::landing::{Lands, PAST};
+use crate::rod::arm::{Arm, ArmError};
+use crate::rod::parameter::Parameter;
+use crate::spatial::engine::Engine as SpatialEngine;
+use crate::spatial::{SpatialConfiguration, SpatialError, SpatialSolver};
+use crate::statics::configuration::Configuration;
+use crate::statics::engine::Engine;
+use crate::statics::equations::Change;
+use crate::statics::path::traced::Traced;
+use crate::statics::snap::SnapBounds;
+use crate::statics::solve::{Options, Solver};
+use crate::statics::verdict::{NoEquilibrium, SolveError, Verdict};
+
+/// Where a range ends that is not followed to its end.
+pub(super) struct Ended<C> {
+    pub(super) verdict: Verdict,
+    pub(super) last_good: Option<C>,
+    /// Where the curve leads on to at a limit point.
+    pub(super) after_snap: Option<C>,
+}
+
+/// The shapes of a solver.
+type ShapeOf<S> = <<S as Ranged>::Engine as Traced>::Shape;
+
+/// A solver in the plane or in space.
+pub(super) trait Ranged: Clone {
+    type Engine: Lands;
+    type Error;
+    type Motion;
+
+    /// The arm at its first loads.
+    #[allow(clippy::type_complexity, reason = "names of what is there")]
+    fn first(arm: &Arm, tol: f64) -> Result<AfterSnap<ShapeOf<Self>, Self::Motion>, AfterSnapError<Self::Error>>;
+    /// A solver that holds a configuration of `arm`.
+    fn at(arm: &Arm, configuration: &ShapeOf<Self>, tol: f64) -> Result<Self, Self::Error>;
+    fn arm(&self) -> &Arm;
+    fn engine_mut(&mut self) -> &mut Self::Engine;
+    fn take_place_of_base(&mut self, arm: &Arm);
+    /// Lets several parameters run together, from where they are.
+    fn vary_together(&mut self, ways: Vec<Change>);
+    /// The engine's equilibrium, read again.
+    fn resettle(&mut self) -> Result<ShapeOf<Self>, Self::Error>;
+    /// Follows the range from the engine's equilibrium at a share of it, behind a limit point down to a lowest one.
+    fn along_range(&mut self, from: [f64; 2]) -> Result<ShapeOf<Self>, Self::Error>;
+    /// What an error says of the range, else whether it says something of the arm.
+    fn ended(error: Self::Error) -> Result<Ended<ShapeOf<Self>>, Option<ArmError>>;
+}
+
+/// Every snap is followed by its motion.
+fn options(tol: f64) -> Options {
+    Options { tol, snaps: SnapBounds { distance: 0.0, angle: 0.0 } }
+}
+
+impl Ranged for Solver {
+    type Engine = Engine;
+    type Error = SolveError;
+    type Motion = SnapMotion;
+
+    fn first(arm: &Arm, tol: f64) -> Result<AfterSnap, AfterSnapError> {
+        arm.solve_after_snap(tol)
+    }
+
+    fn at(arm: &Arm, configuration: &Configuration, tol: f64) -> Result<Self, SolveError> {
+        let mut solver = Self::new(arm, options(tol))?;
+        solver.engine_mut().take(configuration);
+        Ok(solver)
+    }
+
+    fn arm(&self) -> &Arm {
+        self.arm()
+    }
+
+    fn engine_mut(&mut self) -> &mut Engine {
+        self.engine_mut()
+    }
+
+    fn take_place_of_base(&mut self, arm: &Arm) {
+        let own = &mut self.engine_mut().equations.arm.base;
+        (own.x, own.y) = (arm.base.x, arm.base.y);
+    }
+
+    fn vary_together(&mut self, ways: Vec<Change>) {
+        self.engine_mut().equations.vary_together(ways);
+    }
+
+    fn resettle(&mut self) -> Result<Configuration, SolveError> {
+        self.resettle()
+    }
+
+    fn along_range(&mut self, from: [f64; 2]) -> Result<Configuration, SolveError> {
+        self.solve_along_range(from)
+    }
+
+    fn ended(error: SolveError) -> Result<Ended<Configuration>, Option<ArmError>> {
+        match error {
+            SolveError::NoEquilibrium(no) => {
+                let NoEquilibrium { verdict, last_good, after_snap, .. } = *no;
+                Ok(Ended { verdict, last_good, after_snap })
+            }
+            SolveError::Arm(error) => Err(Some(error)),
+            SolveError::Option { .. } => Err(None),
+        }
+    }
+}
+
+impl Ranged for SpatialSolver {
+    type Engine = SpatialEngine;
+    type Error = SpatialError;
+    type Motion = SpatialSnapMotion;
+
+    fn first(
+        arm: &Arm,
+        tol: f64,
+    ) -> Result<AfterSnap<SpatialConfiguration, SpatialSnapMotion>, AfterSnapError<SpatialError>> {
+        arm.solve_after_snap_in_space(tol)
+    }
+
+    fn at(arm: &Arm, configuration: &SpatialConfiguration, tol: f64) -> Result<Self, SpatialError> {
+        let mut solver = Self::new(arm, options(tol))?;
+        solver.engine_mut().take(configuration);
+        Ok(solver)
+    }
+
+    fn arm(&self) -> &Arm {
+        self.arm()
+    }
+
+    fn engine_mut(&mut self) -> &mut SpatialEngine {
+        self.engine_mut()
+    }
+
+    fn take_place_of_base(&mut self, arm: &Arm) {
+        self.engine_mut().equations.take_place_of_base(arm);
+    }
+
+    fn vary_together(&mut self, ways: Vec<Change>) {
+        self.engine_mut().equations.vary_together(ways);
+    }
+
+    fn resettle(&mut self) -> Result<SpatialConfiguration, SpatialError> {
+        self.resettle()
+    }
+
+    fn along_range(&mut self, from: [f64; 2]) -> Result<SpatialConfiguration, SpatialError> {
+        self.solve_along_range(from)
+    }
+
+    fn ended(error: SpatialError) -> Result<Ended<SpatialConfiguration>, Option<ArmError>> {
+        match error {
+            SpatialError::NoEquilibrium(no) => {
+                Ok(Ended { verdict: no.verdict, last_good: no.last_good, after_snap: no.after_snap })
+            }
+            SpatialError::Arm(error) => Err(Some(error)),
+            SpatialError::Option { .. } => Err(None),
+        }
+    }
+}
+
+/// The loads that may change.
+fn loads(cables: usize) -> impl Iterator<Item = Parameter> {
+    let of_cables = (0..cables).flat_map(|c| [Parameter::Tension(c), Parameter::Stroke(c)]);
+    of_cables.chain([
+        Parameter::FlowSpeed,
+        Parameter::FlowDirection,
+        Parameter::GravityAcceleration,
+        Parameter::GravityDirection,
+        Parameter::TipForce(0),
+        Parameter::TipForce(1),
+        Parameter::TipMoment,
+        Parameter::TipFollower(0),
+        Parameter::TipFollower(1),
+        Parameter::BaseAngle,
+        // Of an arm in space.
+        Parameter::StreamAlong(0),
+        Parameter::StreamAlong(1),
+        Parameter::StreamAlong(2),
+        Parameter::GravityAlong(0),
+        Parameter::GravityAlong(1),
+        Parameter::GravityAlong(2),
+        Parameter::TipForce(2),
+        Parameter::TipMomentAbout(0),
+        Parameter::TipMomentAbout(1),
+        Parameter::TipFollower(2),
+        Parameter::BaseAlong(0),
+        Parameter::BaseAlong(1),
+        Parameter::BaseAlong(2),
+        Parameter::SectionAlong(0),
+        Parameter::SectionAlong(1),
+        Parameter::SectionAlong(2),
+    ])
+}
+
+/// What changes from one arm to another of the same kind.
+pub(super) fn ways(own: &Arm, arm: &Arm) -> Result<Vec<Change>, (String, &'static str)> {
+    let mut moved = own.clone();
+    let mut out = Vec::new();
+    for parameter in loads(arm.cables.len().min(own.cables.len())) {
+        let commanded = |c: usize| own.cables[c].stroke.is_some();
+        let acts = match parameter {
+            Parameter::Tension(c) => !commanded(c),
+            Parameter::Stroke(c) => commanded(c) && arm.cables[c].stroke.is_some(),
+            Parameter::GravityAcceleration | Parameter::GravityDirection => {
+                own.gravity.is_some() && arm.gravity.is_some()
+            }
+            _ => true,
+        };
+        // An angle and the parts of its direction are one load.
+        let (Ok(from), Ok(to)) = (parameter.of(&moved), parameter.of(arm)) else { continue };
+        if acts && from != to {
+            out.push(Change { parameter, from, to });
+            // It is a load of this arm.
+            let _ = parameter.set(&mut moved, to);
+        }
+    }
+    (moved.base.x, moved.base.y) = (arm.base.x, arm.base.y);
+    if let (Some(space), Some(other)) = (&mut moved.space, &arm.space) {
+        space.z = other.z;
+    }
+    for (own, other) in moved.cables.iter_mut().zip(&arm.cables) {
+        // Tensions of cables whose strokes are commanded follow from these.
+        if own.stroke.is_some() && other.stroke.is_some() {
+            own.tension = other.tension;
+        }
+    }
+    if moved == *arm {
+        return Ok(out);
+    }
+    let key = if moved.cables.iter().zip(&arm.cables).any(|(a, b)| a.stroke.is_some() != b.stroke.is_some()) {
+        "cable.stroke"
+    } else if moved.gravity.is_some() != arm.gravity.is_some() {
+        "gravity"
+    } else {
+        "arm"
+    };
+    let reason =
+        "only tensions or strokes of the same cables, stream, gravity, loads on the tip and the base may change";
+    Err((key.to_owned(), reason))
+}
+
+/// The share of the way, at most 0, down to which the curve behind a limit point is followed: there the first load that
+/// is not negative is nothing.
+pub(super) fn lowest(ways: &[Change]) -> f64 {
+    /// How many ways back is far enough.
+    const FAR: f64 = -100.0;
+    let own = |way: &Change| match way.parameter {
+        Parameter::Tension(_) | Parameter::FlowSpeed | Parameter::GravityAcceleration if way.to > way.from => {
+            -way.from / (way.to - way.from)
+        }
+        _ => FAR,
+    };
+    ways.iter().map(own).fold(FAR, f64::max).min(0.0)
+}
+
+/// The share of the way by which loads are past a limit point while the arm moves: [`PAST`] of the largest load that
+/// changes, so that it does not hang on how finely the way is cut.
+pub(super) fn past(ways: &[Change]) -> f64 {
+    let own = |way: &Change| {
+        let size = match way.parameter {
+            // Angles and parts of directions have no size.
+            Parameter::FlowDirection
+            | Parameter::GravityDirection
+            | Parameter::BaseAngle
+            | Parameter::StreamAlong(_)
+            | Parameter::GravityAlong(_)
+            | Parameter::BaseAlong(_)
+            | Parameter::SectionAlong(_) => 1.0,
+            _ => way.from.abs().max(way.to.abs()),
+        };
+        PAST * size / (way.to - way.from).abs()
+    };
+    ways.iter().map(own).fold(f64::INFINITY, f64::min)
+}
