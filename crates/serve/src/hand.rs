@@ -13,10 +13,10 @@ use hydrostat::Arm;
 use crate::moving::Now;
 
 /// The longest step, s.
-const LONGEST: f64 = 4e-3;
+const LONGEST: f64 = 12e-3;
 
 /// The step over the time in which the arm swings.
-const STEP: f64 = 0.02;
+const STEP: f64 = 0.01;
 
 /// The longest time of the damper, s, and that over the time in which the arm swings.
 const DAMPED: f64 = 0.02;
