@@ -13,7 +13,7 @@ use hydrostat::Arm;
 use crate::moving::Now;
 
 /// The longest step, s.
-const LONGEST: f64 = 12e-3;
+const LONGEST: f64 = 20e-3;
 
 /// The step over the time in which the arm swings.
 const STEP: f64 = 0.01;
