@@ -6,7 +6,8 @@
 //!
 //! k is the stiffness of a uniform rod against a force on its tip, so that the arm bends by about as much as the hand
 //! is ahead. The force is led along straight lines over short steps to its value where tip and velocity foretell the end
-//! of each: a force that lags behind would feed the motion.
+//! of each. A force that is not that of where the tip then is would feed the motion, most where nothing damps it: such a
+//! step is done again with the force of where it led to.
 
 use hydrostat::Arm;
 
@@ -21,6 +22,10 @@ const STEP: f64 = 0.01;
 /// The longest time of the damper, s, and that over the time in which the arm swings.
 const DAMPED: f64 = 0.02;
 const DAMPED_SHARE: f64 = 0.05;
+
+/// A step is done again where the force at its end is off by more than this share of it, or of that over this share of
+/// the length.
+const OFF: f64 = 0.02;
 
 /// The spring between hand and tip.
 #[derive(Debug, Clone)]
@@ -68,6 +73,14 @@ impl Hand {
         self.at.is_some() || self.force != [0.0; 3]
     }
 
+    /// Whether a step that ended at `now` with `force` (N) is to be done again.
+    pub(crate) fn is_off(&self, now: &Now, force: &[f64; 3]) -> bool {
+        let own = self.ahead(now, 0.0);
+        let size = |v: [f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let off = size(std::array::from_fn(|k| own[k] - force[k]));
+        off > OFF * size(own).max(OFF * self.stiffness * self.reach)
+    }
+
     /// The force (N) at the end of a step of `dt` (s) from `now`.
     pub(crate) fn ahead(&self, now: &Now, dt: f64) -> [f64; 3] {
         let Some(at) = self.at else { return [0.0; 3] };
@@ -97,12 +110,13 @@ mod tests {
             works: Works::default(),
         };
         assert_eq!(hand.ahead(&now, 1e-3), [0.0; 3]);
-        assert!(!hand.is_felt());
+        assert!(!hand.is_felt() && !hand.is_off(&now, &[0.0; 3]));
         hand.at = Some([0.2, 0.01, 0.0]);
         let [x, y, z] = hand.ahead(&now, 1e-3);
         // 3 EI/L^3 with EI = E pi R^4/4.
         let stiffness = 3.0 * 1e5 * std::f64::consts::PI * 1e-8 / 4.0 / 0.008;
         assert!(x == 0.0 && z == 0.0 && (y / (0.01 * stiffness) - 1.0).abs() < 1e-12, "{y}");
+        assert!(hand.is_off(&now, &[0.0, 0.97 * y, 0.0]) && !hand.is_off(&now, &[0.0, 0.99 * y, 0.0]));
         hand.at = Some([1e6, 0.0, 0.0]);
         assert!((hand.ahead(&now, 1e-3)[0] / (0.2 * stiffness) - 1.0).abs() < 1e-12);
         let away = Now { velocity: [0.0, 1.0, 0.0], ..now };

@@ -260,26 +260,26 @@ impl Run {
             let start = self.now.time;
             let mut to = if self.hand.is_felt() { end.min(start + self.hand.step) } else { end };
             to = self.ramps.iter().fold(to, |to, ramp| to.min(ramp.times[1].max(start + OVER)));
-            let (before, ahead) = (self.hand.force, self.hand.ahead(&self.now, to - start));
-            let mut loads: Vec<(&str, f64)> = self.ramps.iter().map(|ramp| (ramp.key.as_str(), ramp.at(to))).collect();
-            if self.hand.is_felt() {
-                for (k, name) in (0..self.dimensions()).zip(FORCE) {
-                    let own = match loads.iter().position(|(key, _)| *key == name) {
-                        Some(i) => loads.remove(i).1,
-                        None => Parameter::from_str(name).ok().and_then(|p| p.of(&self.arm).ok()).unwrap_or_default(),
-                    };
-                    loads.push((name, own + ahead[k]));
-                }
+            let before = self.hand.force;
+            let mut ahead = self.hand.ahead(&self.now, to - start);
+            let kept = self.hand.at.map(|_| self.moving.copy());
+            let mut moved = self.step(to, &ahead, until);
+            if let (Ok(now), Some(kept)) = (&moved, kept)
+                && to - now.time < OVER
+                && self.hand.is_off(now, &ahead)
+            {
+                ahead = self.hand.ahead(now, 0.0);
+                self.moving = kept;
+                moved = self.step(to, &ahead, until);
             }
-            match self.moving.move_on(to - start, &loads, &mut || Instant::now() < until) {
-                Ok(()) => {}
+            self.now = match moved {
+                Ok(now) => now,
                 Err(MotionError::Ended(verdict)) => {
                     self.ended = Some(verdict);
                     return Ok(());
                 }
                 Err(error) => return Err(error.into()),
-            }
-            self.now = self.moving.now();
+            };
             let time = self.now.time;
             let share = ((time - start) / (to - start)).min(1.0);
             self.hand.force = std::array::from_fn(|k| before[k] + share * (ahead[k] - before[k]));
@@ -289,6 +289,22 @@ impl Run {
             self.ramps.retain(|ramp| time < ramp.times[1] - OVER);
         }
         Ok(())
+    }
+
+    /// One step to `to` (s), over which the hand's force becomes `ahead` (N).
+    fn step(&mut self, to: f64, ahead: &[f64; 3], until: Instant) -> Result<Now, MotionError> {
+        let mut loads: Vec<(&str, f64)> = self.ramps.iter().map(|ramp| (ramp.key.as_str(), ramp.at(to))).collect();
+        if self.hand.is_felt() {
+            for (k, name) in (0..self.dimensions()).zip(FORCE) {
+                let own = match loads.iter().position(|(key, _)| *key == name) {
+                    Some(i) => loads.remove(i).1,
+                    None => Parameter::from_str(name).ok().and_then(|p| p.of(&self.arm).ok()).unwrap_or_default(),
+                };
+                loads.push((name, own + ahead[k]));
+            }
+        }
+        self.moving.move_on(to - self.now.time, &loads, &mut || Instant::now() < until)?;
+        Ok(self.moving.now())
     }
 
     /// A run has a largest number of steps; a clock has none, and begins another run before it comes to that.

@@ -32,6 +32,8 @@ pub(crate) trait Moving: Send {
     /// is false.
     fn move_on(&mut self, dt: f64, loads: &[(&str, f64)], go_on: &mut dyn FnMut() -> bool) -> Result<(), MotionError>;
     fn now(&mut self) -> Now;
+    /// A motion of its own that goes on from here.
+    fn copy(&self) -> Box<dyn Moving>;
     fn state(&self) -> MotionState;
     /// The shape at places along the arm (m), and the stretch nu there.
     fn shape(&self, places: &[f64]) -> (MotionShape, Vec<f64>);
@@ -70,6 +72,10 @@ impl Moving for Simulation {
             strained: at.strain_energy,
             works: at.works,
         }
+    }
+
+    fn copy(&self) -> Box<dyn Moving> {
+        Box::new(self.clone())
     }
 
     fn state(&self) -> MotionState {
@@ -114,6 +120,10 @@ impl Moving for SpatialSimulation {
             strained: at.strain_energy,
             works: at.works,
         }
+    }
+
+    fn copy(&self) -> Box<dyn Moving> {
+        Box::new(self.clone())
     }
 
     fn state(&self) -> MotionState {
