@@ -456,6 +456,26 @@ mod tests {
         }
     }
 
+    /// Spring and arm have an energy that the damper alone takes from, where the section is rigid and nothing flows. The
+    /// force of a hand that lagged behind fed the motion.
+    #[test]
+    fn a_hand_feeds_no_motion() {
+        let mut own = run("silicone", r#"{"flow.density": 0, "model.volume": "none"}"#);
+        let (hold, most) = ([0.22, 0.07], own.hand.stiffness());
+        let energy = |own: &Run| {
+            let [x, y, _] = own.now.tip;
+            let stretch = (x - hold[0]).powi(2) + (y - hold[1]).powi(2);
+            own.now.kinetic + own.now.strained + 0.5 * most * stretch
+        };
+        let mut before = energy(&own);
+        for _ in 0..20 {
+            moved(&mut own, 0.1, "", &format!(r#", "hold": {hold:?}"#));
+            let now = energy(&own);
+            assert!(now < 1.02 * before, "{now:e} after {before:e} at {} s", own.now.time);
+            before = now;
+        }
+    }
+
     #[test]
     fn a_run_that_ends_says_why_and_keeps_what_it_has() {
         let mut own = run("silicone", SOFT);
