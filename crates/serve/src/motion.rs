@@ -227,7 +227,8 @@ impl Run {
             let mut state = self.moving.state().under_other_loads();
             let dynamics = &arm.dynamics;
             if dynamics.inertia && dynamics.relaxation_time == 0.0 {
-                self.jumped = self.jumped.or(Some(self.now.time));
+                // As people read it: to a microsecond.
+                self.jumped = self.jumped.or(Some((1e6 * self.now.time).round() / 1e6));
             }
             state.jumped = self.jumped;
             self.moving = moving(&self.pulled(&arm), Some(&state))?;
@@ -516,5 +517,6 @@ mod tests {
         let out = moved(&mut own, 0.02, r#", "loads": {"cable[0].tension": 0}"#, "");
         assert_eq!(out.warnings.len(), 1);
         assert_eq!(out.warnings[0].kind, "unresolved_jump");
+        assert!(out.warnings[0].message.starts_with("a load jumps at 0.02 s and"), "{}", out.warnings[0].message);
     }
 }
