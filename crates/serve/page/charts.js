@@ -92,13 +92,14 @@ export class AlongCharts {
       const value = element("span", { class: "value" });
       const unit = element("span");
       const frame = element("div", {}, [canvas]);
-      place.append(element("figure", { class: "chart" }, [element("figcaption", {}, [element("span", {}, [quantity.name, " ", unit]), value]), frame]));
+      const figure = element("figure", { class: "chart" }, [element("figcaption", {}, [element("span", {}, [quantity.name, " ", unit]), value]), frame]);
+      place.append(figure);
       const chart = new Chart(frame, canvas);
       chart.across = { title: "s (mm)", least: 0, most: undefined };
       canvas.addEventListener("pointermove", (event) => onHover(chart.valueAt(event) / 1e3));
       canvas.addEventListener("pointerdown", (event) => onHover(chart.valueAt(event) / 1e3));
       canvas.addEventListener("pointerleave", () => onHover(undefined));
-      return { quantity, chart, canvas, value, unit, stale: false, seen: false };
+      return { quantity, chart, canvas, figure, value, unit, stale: false, seen: false };
     });
     for (const { canvas } of charts) this.watch.observe(canvas);
     return charts;
@@ -127,7 +128,11 @@ export class AlongCharts {
       this.charts = this.made();
       this.recolour();
     }
-    for (const one of this.charts) one.stale = true;
+    for (const one of this.charts) {
+      one.stale = true;
+      // Of a moving arm no forces are known.
+      one.figure.hidden = (along(shape, one.quantity.key) ?? []).length === 0;
+    }
     this.go();
   }
 

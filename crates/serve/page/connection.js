@@ -54,10 +54,12 @@ export class Connection {
   /**
    * @param {Wish} wish
    * @param {number} [asked] when the user wished it
+   * @returns {number} its number; 0 where there is no connection
    */
   send(wish, asked = performance.now()) {
-    this.latest = wish;
-    if (this.socket?.readyState !== WebSocket.OPEN) return;
+    // A run ends with its connection: what is asked of it is not asked again.
+    if (!wish.motion) this.latest = wish;
+    if (this.socket?.readyState !== WebSocket.OPEN) return 0;
     this.id += 1;
     this.asked.set(this.id, asked);
     const { arm, ...rest } = wish;
@@ -68,6 +70,7 @@ export class Connection {
       this.arm = arm;
     }
     this.socket.send(JSON.stringify(message));
+    return this.id;
   }
 }
 

@@ -10,12 +10,13 @@ import { Controls } from "./controls.js";
 import { directionOf } from "./camera.js";
 import { bodyOf, bodyOfShape, stationAt } from "./geometry.js";
 import { listenToHelp } from "./help.js";
+import { Clock } from "./motion.js";
 import { fixed, force } from "./numbers.js";
 import { byId, element, kept, settled, tidyMenus, toast } from "./page.js";
 import { listenToFiles, listenToShare } from "./share.js";
 import { State } from "./state.js";
 import { Studies } from "./studies.js";
-import { numbersOf, wordsOf, wordsOfPull } from "./words.js";
+import { numbersOf, numbersOfMotion, wordsOf, wordsOfPull } from "./words.js";
 
 /** Most shapes that are kept to compare with. */
 const PINS = 4;
@@ -40,9 +41,19 @@ const hover = (/** @type {number | undefined} */ s) => {
 const view = new ArmView(pull, release, hover);
 const along = new AlongCharts(byId("along", HTMLElement), hover);
 const controls = new Controls(byId("controls", HTMLElement), state, ramp);
+const clock = new Clock(state, controls, {
+  send: (motion, stations) => {
+    const { arm, set } = wish();
+    return connection.send(motion.start ? { arm, set, stations, motion } : { arm, set: {}, motion });
+  },
+  show: moved,
+  say: (words) => say(words),
+  still,
+});
 const connection = new Connection(receive, (open) => {
   byId("link", HTMLElement).textContent = open ? "" : "not connected";
   byId("took", HTMLElement).hidden = !open;
+  if (!open) clock.stop();
   if (!open) say({ level: "bad", title: "Not connected", lines: ["The server does not answer. Is `hydrostat serve` still running? The page reconnects automatically."] });
 });
 const studies = new Studies(state, view, controls, () => (present?.asked ? present : undefined));
@@ -65,6 +76,7 @@ const compareSoon = settled(400, () => {
 state.onChange(async (what) => {
   studies.outdated();
   if (what === "arm") {
+    clock.stop();
     view.clear();
     present = undefined;
     try {
@@ -75,9 +87,10 @@ state.onChange(async (what) => {
     }
   }
   // The server works while the panel is brought up to date.
-  connection.send(wish(), controls.moved || undefined);
+  if (!clock.on) connection.send(wish(), controls.moved || undefined);
   controls.moved = 0;
   controls.refresh();
+  if (clock.on) clock.changed();
   remember();
   compareSoon();
 });
@@ -104,6 +117,10 @@ byId("arm", HTMLSelectElement).addEventListener("change", (event) => {
 
 /** @param {Place} place @param {number} asked */
 function pull(place, asked) {
+  if (clock.on) {
+    clock.pull(place);
+    return;
+  }
   stopRamp?.();
   pulling = true;
   letGo = false;
@@ -113,6 +130,10 @@ function pull(place, asked) {
 }
 
 function release() {
+  if (clock.on) {
+    clock.letGo();
+    return;
+  }
   letGo = true;
   if (connection.asked.size === 0) endPull();
 }
@@ -132,6 +153,7 @@ function endPull() {
  * @param {Range} range
  */
 function ramp(key, range) {
+  clock.stop();
   if (stopRamp) {
     stopRamp();
     return;
@@ -180,7 +202,12 @@ function sayTook(text, title) {
 /** @param {Reply} reply @param {number} asked */
 function receive(reply, asked) {
   if (reply.ghost) view.scene.ghost = bodyOfShape(reply.ghost);
-  if (reply.error) {
+  if (clock.on) {
+    // An equilibrium that was asked for before the clock was is no more to be shown.
+    if (reply.id === clock.waiting) clock.receive(reply);
+  } else if (reply.motion) {
+    // Nor a moving arm after it.
+  } else if (reply.error) {
     refused(reply.error);
   } else if (reply.answer) {
     controls.blame(null);
@@ -223,9 +250,34 @@ function answered(reply) {
   if (!shape || !drawing) return;
   present = { shape, drawing, asked: answer.converged };
   view.show({ shape, drawing, body: bodyOf(shape, drawing), asked: answer.converged });
-  tabulate(shape);
+  tabulate(numbersOf(shape));
   along.show(shape, pins);
   legend(shape);
+}
+
+/**
+ * An arm in motion.
+ * @param {{ shape: Solution, drawing: Drawing, motion: import("./types").MotionReply, body: Body }} moving
+ */
+function moved({ shape, drawing, motion, body }) {
+  const asked = motion.ended === undefined;
+  present = { shape, drawing, asked };
+  view.show({ shape, drawing, body, asked });
+  const now = performance.now();
+  if (now - movedSaid < READABLE && asked && clock.playing) return;
+  movedSaid = now;
+  tabulate(numbersOfMotion(shape, motion));
+  along.show(shape, pins);
+  legend(shape);
+}
+let movedSaid = -READABLE;
+
+/** Nothing moves any more: the equilibrium again. @param {string} [why] */
+function still(why) {
+  view.scene.trail = [];
+  view.scene.target = undefined;
+  if (why) toast(why, "bad");
+  connection.send(wish());
 }
 
 /** @param {import("./types").Problem} problem */
@@ -253,10 +305,9 @@ const sayAloud = settled(700, () => {
   byId("said", HTMLElement).textContent = lines.join(" ");
 });
 
-/** @param {Solution} shape */
-function tabulate(shape) {
+/** @param {[string, string][]} rows */
+function tabulate(rows) {
   const list = byId("numbers", HTMLElement);
-  const rows = numbersOf(shape);
   if (list.children.length !== rows.length) list.replaceChildren(...rows.map(() => element("div", {}, [element("dt"), element("dd")])));
   rows.forEach(([name, value], i) => {
     const [term, text] = list.children[i].children;
@@ -364,6 +415,7 @@ function recolour() {
   view.recolour();
   along.recolour();
   studies.paths.recolour();
+  clock.charts.draw();
 }
 dark.addEventListener("change", recolour);
 byId("theme", HTMLButtonElement).addEventListener("click", () => {

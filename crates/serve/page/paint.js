@@ -435,6 +435,7 @@ export class Painter {
    */
   contact({ shape, outline }) {
     const st = shape.stations;
+    if (st.n_a.length === 0) return;
     const most = Math.max(...st.n_a.map((_, i) => Math.hypot(...contactOf(shape, i))), 1e-300);
     const count = st.s.length - 1;
     for (let k = 0; k <= 14; k += 1) {
@@ -587,12 +588,13 @@ export class Painter {
     const centre = this.at(outline.centre[i]);
     if (outline.space) this.line(outline.space.ring(i), this.colour("accent"), 2.2);
     else this.sectionAt(shape, outline, i);
-    const size = Math.hypot(...contactOf(shape, i));
+    // Of a moving arm no forces are known.
+    const size = st.n_a.length > 0 ? Math.hypot(...contactOf(shape, i)) : NaN;
     if (size > 0) this.contactAt(shape, outline, i, 60 / size);
     const lines = [
       `s = ${fixed(1e3 * st.s[i], 1)} mm`,
       `\u03b1 = ${fixed(degrees(st.alpha[i]), 2)}\u00b0   \u03b7 = ${fixed(st.eta[i], 4)}   \u03bd = ${fixed(st.nu[i], 4)}`,
-      `contact ${force(size)}   moment ${fixed(1e3 * momentAt(shape, i), 3)} N mm`,
+      ...(size >= 0 ? [`contact ${force(size)}   moment ${fixed(1e3 * momentAt(shape, i), 3)} N mm`] : []),
     ];
     if (st.tau && st.kappa) lines.splice(2, 0, `\u03c4 = ${fixed(st.tau[i], 2)}   \u03ba = ${fixed(st.kappa[i], 2)}   \u03bc = ${fixed(st.mu[i], 2)} 1/m`);
     const right = centre[0] < 0.6 * this.view.width;

@@ -73,17 +73,36 @@ export interface Pulled {
   jumped: boolean; elsewhere: boolean;
 }
 
+/** The shape of a moving arm at one time (s), by the names of stations. */
+export interface MotionShape {
+  time: number; s: number[]; x: number[]; y: number[]; nu: number[]; eta: number[]; mu: number[];
+  theta?: number[]; z?: number[]; a?: Place[]; b?: Place[]; c?: Place[]; zeta?: number[]; tau?: number[]; kappa?: number[];
+}
+
+/** A moving arm: energies and works in J, the hand's force in N, `inputs` with the present loads where they are others than before. */
+export interface MotionReply {
+  shape: MotionShape; beta: number[]; velocity: Place; cables: { tension: number; stroke: number }[];
+  kinetic_energy: number; strain_energy: number; works: Record<string, number>; hand?: Place; error_estimate: number;
+  events: { time: number; kind: string; cable: number | null; s: number | null }[]; warnings: Note[]; inputs?: Inputs; ramping: boolean;
+  ended?: { kind: string; time: number; s: number | null; message: string };
+}
+
+/** What is asked of a moving arm: to begin, a piece of time (s), loads and how long they take (s), and where a hand is. */
+export interface MotionWish {
+  by: number; start?: boolean; loads?: Record<string, Setting>; within?: number; hold?: number[];
+}
+
 export interface Problem { kind: string; field: string | null; key: string | null; line: number | null; message: string }
 
 export interface Reply {
-  id: number; answer?: Answer; drawing?: Drawing; ghost?: Silhouette; pulled?: Pulled; error?: Problem; dropped: number;
+  id: number; answer?: Answer; drawing?: Drawing; ghost?: Silhouette; pulled?: Pulled; motion?: MotionReply; error?: Problem; dropped: number;
   microseconds: number;
 }
 
 export type Setting = number | string;
 
 export interface Wish {
-  arm: ArmChoice; set: Record<string, Setting>; target?: number[]; max_tension?: number;
+  arm: ArmChoice; set: Record<string, Setting>; target?: number[]; max_tension?: number; stations?: number; motion?: MotionWish;
 }
 
 /** A shipped arm by its name, or the text of an arm file. */

@@ -1,6 +1,6 @@
 // The answer of the solver in words.
 
-/** @import { Answer, CableState, Drawing, Pulled, Solution } from "./types" */
+/** @import { Answer, CableState, Drawing, MotionReply, Pulled, Solution } from "./types" */
 
 import { fixed, force, forceUnit, number } from "./numbers.js";
 
@@ -78,6 +78,24 @@ export function wordsOfPull(pulled, cables) {
   if (pulled.elsewhere) lines.push("A solve from the unloaded arm at these tensions gives another shape than this drag. The picture shows the shape of the solve.");
   else if (pulled.jumped) lines.push("On the way, the arm jumped to another branch of equilibria.");
   return lines;
+}
+
+/**
+ * The names and values beside the picture of a moving arm.
+ * @param {Solution} shape
+ * @param {MotionReply} motion
+ * @returns {[string, string][]}
+ */
+export function numbersOfMotion({ tip, cables, error_estimate: error }, { velocity, kinetic_energy: kinetic, strain_energy: strain, hand }) {
+  const energy = (/** @type {number} */ joule) => (Math.abs(joule) < 1e-12 ? "0 \u00b5J" : Math.abs(joule) < 1e-3 ? `${number(1e6 * joule, 3)} \u00b5J` : `${number(1e3 * joule, 3)} mJ`);
+  /** @type {[string, string][]} */
+  const rows = [["Tip x", `${fixed(1e3 * tip.x, 2)} mm`], ["Tip y", `${fixed(1e3 * tip.y, 2)} mm`]];
+  if (tip.z !== undefined) rows.push(["Tip z", `${fixed(1e3 * tip.z, 2)} mm`]);
+  rows.push(["Speed of the tip", `${fixed(1e3 * Math.hypot(...velocity), 1)} mm/s`], ["Kinetic energy", energy(kinetic)], ["Energy of strain", energy(strain)]);
+  rows.push(["Hand", hand ? force(Math.hypot(...hand)) : "\u2013"]);
+  for (const cable of cables) rows.push([`Tension, ${cable.name}`, force(cable.tension)], [`Stroke, ${cable.name}`, `${fixed(1e3 * cable.stroke, 2)} mm`]);
+  rows.push(["Tip error, at most about", `${number(1e3 * error, 2)} mm`]);
+  return rows;
 }
 
 /** @param {string} text */

@@ -39,6 +39,7 @@ const ASSETS: &[Asset] = &[
     asset!("/help.html", HTML, "help.html"),
     asset!("/help.js", JS, "help.js"),
     asset!("/help_page.js", JS, "help_page.js"),
+    asset!("/motion.js", JS, "motion.js"),
     asset!("/numbers.js", JS, "numbers.js"),
     asset!("/page.js", JS, "page.js"),
     asset!("/paint.js", JS, "paint.js"),

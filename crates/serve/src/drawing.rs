@@ -75,8 +75,8 @@ impl Drawing {
         Self::at(&configuration.arm, &configuration.stations.s)
     }
 
-    /// Of the straight arm.
-    fn at(arm: &Arm, stations: &[f64]) -> Self {
+    /// Of the straight arm alone, in the plane or in space.
+    pub(crate) fn at(arm: &Arm, stations: &[f64]) -> Self {
         let along = |cable: &Cable, part: fn(f64) -> f64| -> Vec<f64> {
             let anchor = cable.end * arm.length * (1.0 + 1e-12);
             let place = |s: &f64| cable.offset.at(*s, arm.length).value * part(cable.angle.at(*s, arm.length).value);

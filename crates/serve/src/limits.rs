@@ -34,3 +34,15 @@ pub(crate) const SILENCE: Duration = Duration::from_mins(30);
 
 /// A viewer that takes nothing for so long is let go.
 pub(crate) const STALLED: Duration = Duration::from_secs(10);
+
+/// The longest piece of time that a message moves an arm on by, s.
+pub(crate) const MOTION_BY: f64 = 0.25;
+
+/// How long a message works at that: to the end of the step in time that it is in then.
+pub(crate) const MOTION_WORK: Duration = Duration::from_millis(50);
+
+/// The longest time in which a load gets elsewhere, s.
+pub(crate) const MOTION_WITHIN: f64 = 3600.0;
+
+/// Steps of a run after which another one goes on in its place.
+pub(crate) const MOTION_STEPS: usize = 500_000;

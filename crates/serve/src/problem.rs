@@ -3,7 +3,7 @@
 use axum::body::Body;
 use axum::http::{HeaderValue, Response, StatusCode, header};
 use axum::response::IntoResponse;
-use hydrostat::{PathError, ReachError, SensitivityError, SolveError, SpatialError, Verdict};
+use hydrostat::{MotionError, PathError, ReachError, SensitivityError, SolveError, SpatialError, Verdict};
 use hydrostat_files::{FileError, Place};
 use serde::Serialize;
 
@@ -170,6 +170,24 @@ where
             ReachError::NoCables => Self::field("arm", message).of_key(Some("cable".to_owned())),
             ReachError::Sensitivity(SensitivityError::Station { .. }) => Self::field("station", message),
             ReachError::Sensitivity(_) => Self::field("arm", message),
+        }
+    }
+}
+
+impl From<MotionError> for Problem {
+    fn from(error: MotionError) -> Self {
+        let message = error.to_string();
+        match error {
+            MotionError::Arm(source) => Self::field("arm", message).of_key(Some(source.key().to_owned())),
+            MotionError::Unsupported { key, .. } => Self::field("arm", message).of_key(Some(key)),
+            MotionError::Course { key, .. } => Self::field("motion.loads", message).of_key(Some(key)),
+            MotionError::Unfit(_) | MotionError::State { .. } => Self::field("motion.loads", message),
+            MotionError::Option { .. } => Self::field("motion", message),
+            MotionError::Start(source) => (*source).into(),
+            MotionError::SpatialStart(source) => (*source).into(),
+            MotionError::Ended(verdict) => {
+                Self::new(StatusCode::UNPROCESSABLE_ENTITY, verdict.kind.name(), None, message)
+            }
         }
     }
 }

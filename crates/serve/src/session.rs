@@ -15,6 +15,7 @@ use tokio::time::{sleep, timeout};
 use crate::arm_source::{ArmSource, Settings, arm, overridden};
 use crate::drawing::{Drawing, Silhouette};
 use crate::limits;
+use crate::motion::{MotionOut, MotionWish, Run, no_run};
 use crate::problem::{Details, Problem};
 use crate::pull::{Pull, Pulled};
 use crate::requests::{read, stations};
@@ -43,6 +44,8 @@ struct Wish {
     target: Option<Vec<f64>>,
     /// The largest tension (N) of every cable while the tip is pulled; of this and the cable's own the smaller counts.
     max_tension: Option<f64>,
+    /// The arm in motion in place of its equilibrium.
+    motion: Option<MotionWish>,
 }
 
 #[derive(Serialize)]
@@ -58,6 +61,8 @@ struct Reply<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pulled: Option<Pulled>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    motion: Option<MotionOut>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<Details>,
     /// Wishes that were dropped for newer ones since the answer before.
     dropped: u64,
@@ -71,6 +76,8 @@ struct Memory {
     source: Option<(ArmSource, ArmFile)>,
     ghost_of: Option<Arm>,
     pull: Option<Pull>,
+    /// The arm in motion, until something else is wished.
+    run: Option<Run>,
 }
 
 /// Answers until the page goes away.
@@ -133,24 +140,36 @@ async fn answer(memory: Box<Memory>, work: &Work, text: String, dropped: u64) ->
 }
 
 fn refusal(id: u64, problem: Problem, dropped: u64) -> String {
-    let reply = Reply {
-        id,
-        answer: None,
-        drawing: None,
-        ghost: None,
-        pulled: None,
-        error: Some(problem.body.error),
-        dropped,
-        microseconds: 0,
-    };
-    json(&reply)
+    json(&Reply { error: Some(problem.body.error), ..Reply::to(id, dropped) })
+}
+
+impl Reply<'_> {
+    /// One that says nothing yet.
+    fn to(id: u64, dropped: u64) -> Self {
+        Self {
+            id,
+            answer: None,
+            drawing: None,
+            ghost: None,
+            pulled: None,
+            motion: None,
+            error: None,
+            dropped,
+            microseconds: 0,
+        }
+    }
 }
 
 impl Memory {
     fn reply(&mut self, wish: Wish, dropped: u64) -> Result<String, Problem> {
         let start = Instant::now();
-        let Wish { id, arm: source, set, stations: asked, target, max_tension } = wish;
+        let Wish { id, arm: source, set, stations: asked, target, max_tension, motion } = wish;
         let count = stations(asked)?.unwrap_or(STATIONS);
+        if let Some(motion) = motion {
+            let reply = self.moved(Reply::to(id, dropped), source, &set, count, &motion)?;
+            return Ok(json(&Reply { microseconds: start.elapsed().as_micros(), ..reply }));
+        }
+        self.run = None;
         let file = self.file(source)?;
         let mut arm = arm(&overridden(file, &set)?)?;
         let mut pulled = None;
@@ -160,12 +179,36 @@ impl Memory {
             self.pull = None;
         }
         let ghost = self.ghost(&arm, count);
-        let reply = Reply { id, answer: None, drawing: None, ghost, pulled, error: None, dropped, microseconds: 0 };
+        let reply = Reply { ghost, pulled, ..Reply::to(id, dropped) };
         if arm.space.is_some() {
             self.shown::<SpatialConfiguration>(reply, &arm, count, start)
         } else {
             self.shown::<Configuration>(reply, &arm, count, start)
         }
+    }
+
+    /// The reply with the arm in motion.
+    fn moved<'a>(
+        &mut self,
+        mut reply: Reply<'a>,
+        source: Option<ArmSource>,
+        set: &Settings,
+        count: usize,
+        wish: &MotionWish,
+    ) -> Result<Reply<'a>, Problem> {
+        self.pull = None;
+        if wish.start {
+            self.run = None;
+            let file = overridden(self.file(source)?, set)?;
+            let arm = arm(&file)?;
+            reply.ghost = self.ghost(&arm, count);
+            let run = Run::begin(file, arm, count)?;
+            reply.drawing = Some(Drawing::at(run.arm(), &run.places));
+            self.run = Some(run);
+        }
+        let run = self.run.as_mut().ok_or_else(no_run)?;
+        reply.motion = Some(run.answer(wish)?);
+        Ok(reply)
     }
 
     /// The reply with the shape of `arm`, or with the verdict and the last good shape to look at.

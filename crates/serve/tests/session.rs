@@ -107,6 +107,9 @@ async fn what_is_no_wish_is_refused_and_the_session_goes_on() {
             json!({ "id": 1, "arm": { "toml": "[arm]\nlength = 0.1\nradius = 0.01\n[material]\nyoung = 1e5" }, "target": [0.1, 0] }),
             "arm",
         ),
+        (json!({ "id": 1, "arm": "silicone", "motion": { "by": 0.1 } }), "motion"),
+        (json!({ "id": 1, "arm": "silicone", "motion": { "start": true, "by": 1 } }), "motion.by"),
+        (json!({ "id": 1, "arm": "silicone", "motion": { "start": true } }), "motion"),
         (json!("what"), "body"),
     ] {
         ask(&mut socket, &wrong).await;
@@ -155,6 +158,32 @@ async fn messages_are_as_their_schema_says() {
         Described::check(&described.reply, &reply);
         assert!(holds.iter().all(|key| reply[key].is_object()), "{reply}");
     }
+    for (wish, holds) in [
+        (
+            json!({ "id": 9, "arm": "silicone", "set": stream, "stations": 21, "motion": { "start": true, "by": 0.01 } }),
+            &["motion", "drawing", "ghost"][..],
+        ),
+        (json!({ "id": 10, "motion": { "by": 0.02, "hold": [0.2, 0.1] } }), &["motion"]),
+        (
+            json!({ "id": 11, "motion": { "by": 0.02, "loads": { "cable[0].tension": "100 mN" }, "within": 0.1 } }),
+            &["motion"],
+        ),
+        (json!({ "id": 12, "motion": { "by": 0.02, "loads": { "cable[0].tension": 0 } } }), &["motion"]),
+        (json!({ "id": 13, "motion": { "by": 0.02, "loads": { "arm.length": 1 } } }), &["error"]),
+        (
+            json!({ "id": 14, "arm": "silicone-spatial", "stations": 21, "motion": { "start": true, "by": 0.01 } }),
+            &["motion", "drawing", "ghost"],
+        ),
+        (json!({ "id": 15, "motion": { "by": 0.01, "hold": [0.2, 0.1, 0.05] } }), &["motion"]),
+        (json!({ "id": 16, "arm": "silicone" }), &["answer"]),
+        (json!({ "id": 17, "motion": { "by": 0.01 } }), &["error"]),
+    ] {
+        Described::check(&described.wish, &wish);
+        ask(&mut socket, &wish).await;
+        let reply = reply(&mut socket).await;
+        Described::check(&described.reply, &reply);
+        assert!(holds.iter().all(|key| reply[key].is_object()), "{reply}");
+    }
     for wrong in [json!({ "id": -1 }), json!({ "arm": "paper" }), json!({ "id": 1, "more": 1 }), json!([])] {
         assert!(!described.wish.is_valid(&wrong), "{wrong}");
         ask(&mut socket, &wrong).await;
@@ -167,6 +196,25 @@ async fn messages_are_as_their_schema_says() {
         json!({ "id": 1, "error": {}, "dropped": 0, "microseconds": 0 }),
     ] {
         assert!(!described.reply.is_valid(&wrong), "{wrong}");
+    }
+}
+
+/// However much is asked for, a message works for a bounded time and says how far it came.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_message_moves_an_arm_for_a_bounded_time() {
+    let mut socket = session(server().await).await;
+    let start = json!({ "id": 1, "arm": "octopus-spatial", "stations": 11, "motion": { "start": true, "by": 0 } });
+    ask(&mut socket, &start).await;
+    assert_eq!(reply(&mut socket).await["motion"]["shape"]["time"], 0.0);
+    let mut time = 0.0;
+    for id in 2..12 {
+        let hold = [0.1, 0.05 * f64::from(id % 3), 0.05];
+        ask(&mut socket, &json!({ "id": id, "motion": { "by": 0.25, "hold": hold } })).await;
+        let reply = reply(&mut socket).await;
+        let now = reply["motion"]["shape"]["time"].as_f64().unwrap_or_else(|| panic!("{reply}"));
+        assert!(now > time && now <= time + 0.25 + 1e-9, "{time} {now}");
+        time = now;
+        assert!(reply["microseconds"].as_u64().unwrap() < 5_000_000, "{}", reply["microseconds"]);
     }
 }
 

@@ -126,8 +126,14 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Run<P, S, L> {
         arm
     }
 
-    /// Moves on by `dt` (s) while `loads` change to these values along straight lines.
-    pub(super) fn step_to(&mut self, dt: f64, loads: &[(&str, f64)]) -> Result<(), MotionError> {
+    /// Moves on by `dt` (s) while `loads` change to these values along straight lines, or until `go_on` refuses the
+    /// next step in time.
+    pub(super) fn step_to(
+        &mut self,
+        dt: f64,
+        loads: &[(&str, f64)],
+        mut go_on: impl FnMut() -> bool,
+    ) -> Result<(), MotionError> {
         if !(dt > 0.0 && dt.is_finite()) {
             return Err(MotionError::Option { option: "dt", value: dt, expected: "above 0" });
         }
@@ -141,11 +147,14 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Run<P, S, L> {
         for (key, value) in loads {
             self.stepper.inputs.lead(key, *value, &arm, [self.time, end])?;
         }
-        while self.stepper.time < end {
+        loop {
             self.stepper.advance(end)?;
+            if self.stepper.time >= end || !go_on() {
+                break;
+            }
         }
         self.asked.clone_from(&self.stepper.now);
-        self.time = end;
+        self.time = self.stepper.time;
         Ok(())
     }
 

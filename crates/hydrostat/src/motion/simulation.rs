@@ -178,7 +178,22 @@ impl Simulation {
     /// # Ok::<(), hydrostat::MotionError>(())
     /// ```
     pub fn step_to(&mut self, dt: f64, loads: &[(&str, f64)]) -> Result<Instant, MotionError> {
-        self.run.step_to(dt, loads)?;
+        self.run.step_to(dt, loads, || true)?;
+        Ok(self.read())
+    }
+
+    /// As [`Simulation::step_to`], but not further than to the end of the first step in time after which `go_on` is
+    /// false: [`Instant::time`] says how far it came. Work that is bounded, as a clock on the wall bounds it.
+    ///
+    /// # Errors
+    /// As [`Simulation::step_to`].
+    pub fn step_to_while(
+        &mut self,
+        dt: f64,
+        loads: &[(&str, f64)],
+        go_on: impl FnMut() -> bool,
+    ) -> Result<Instant, MotionError> {
+        self.run.step_to(dt, loads, go_on)?;
         Ok(self.read())
     }
 

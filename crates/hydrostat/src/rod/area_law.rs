@@ -32,6 +32,21 @@ pub(crate) fn area_law<R: Real>(volume: Volume, nu: R) -> SectionStretch<R> {
     }
 }
 
+impl Volume {
+    /// beta at the stretch `nu`, above 0: what a section's lengths across the arm are over those of the unloaded arm.
+    ///
+    /// ```
+    /// use hydrostat::Volume;
+    ///
+    /// assert_eq!(Volume::Planar.section_stretch(0.5), 2.0);
+    /// assert_eq!(Volume::Circular.section_stretch(0.25), 2.0);
+    /// assert_eq!(Volume::None.section_stretch(0.5), 1.0);
+    /// ```
+    pub fn section_stretch(self, nu: f64) -> f64 {
+        area_law(self, nu).beta
+    }
+}
+
 /// beta^2 and its first two derivatives by nu: beta^2 = nu^-p with p = 2, 1, 0 under `planar`, `circular`, `none`.
 #[inline(always)]
 pub(crate) fn area_derivatives<R: Real>(volume: Volume, nu: R) -> [R; 3] {

@@ -170,7 +170,22 @@ impl SpatialSimulation {
     /// # Errors
     /// As there.
     pub fn step_to(&mut self, dt: f64, loads: &[(&str, f64)]) -> Result<SpatialInstant, MotionError> {
-        self.run.step_to(dt, loads)?;
+        self.run.step_to(dt, loads, || true)?;
+        Ok(self.read())
+    }
+
+    /// As [`SpatialSimulation::step_to`] for as long as `go_on` is true, see
+    /// [`Simulation::step_to_while`](crate::Simulation::step_to_while).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn step_to_while(
+        &mut self,
+        dt: f64,
+        loads: &[(&str, f64)],
+        go_on: impl FnMut() -> bool,
+    ) -> Result<SpatialInstant, MotionError> {
+        self.run.step_to(dt, loads, go_on)?;
         Ok(self.read())
     }
 
