@@ -4,6 +4,7 @@ use hydrostat::{Arm, LoadingSnap, LoadingStep, Tip};
 use serde::Serialize;
 
 use crate::csv_text::Rows;
+use crate::heads::head_of;
 use crate::results::{SCHEMA, TipOut, cell, json};
 use crate::state::State;
 use crate::time_loads::LoadRows;
@@ -135,11 +136,11 @@ impl<'a> LoadingDocument<'a> {
     }
 }
 
-/// The rows as CSV: loads under their keys, what [`crate::path_csv`] has of an equilibrium, and the snaps since the row
+/// The rows as CSV: loads in SI units, angles in degrees, under their keys with the unit (`cable_0_tension_N`), what [`crate::path_csv`] has of an equilibrium, and the snaps since the row
 /// before: how many, and of the one that goes furthest share, distance, angle and duration.
 pub fn loading_csv(loads: &LoadRows, rows: &[LoadingRow]) -> String {
     let cables = rows.first().map_or(0, |row| row.step.configuration.cables.len());
-    let mut names = loads.keys.clone();
+    let mut names: Vec<String> = loads.keys.iter().enumerate().map(|(k, key)| head_of(key, loads.unit(k))).collect();
     names.extend(State::columns(
         cables,
         &["snaps", "snap_share", "snap_distance_m", "snap_angle_rad", "snap_duration_s", "snap_x_m", "snap_y_m"],

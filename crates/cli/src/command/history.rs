@@ -1,26 +1,31 @@
 //! `hydrostat history`: equilibria along loads that rise and fall.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use hydrostat::{Arm, Loading, LoadingError, LoadingStep};
 use hydrostat_figures::{Abscissa, LoadingPoint, loading_figure};
-use hydrostat_files::{LoadRows, LoadingDocument, LoadingRow, loading_csv, number, read_load_rows};
+use hydrostat_files::{LoadRows, LoadingDocument, LoadingRow, loading_csv, number, parse_load_rows, read_load_rows};
 
 use super::path::check_quantity;
+use super::slip;
 use super::table::{TIP, counted, decimals, table, tip_cells};
 use crate::args::{Format, HistoryArgs};
+use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &HistoryArgs) -> anyhow::Result<()> {
+    input::check_once(&[("ARM", Some(Path::new(&args.arm.file))), ("--input", Some(&args.input))])?;
     let arm = request::arm(&args.arm, "`hydrostat history`")?;
     check_quantity(&arm, args.quantity)?;
-    let inputs = [request::arm_input(&args.arm.file), Some(("--input", args.input.as_path()))];
+    let inputs = [request::arm_input(&args.arm.file), Some(("--input", input::source(&args.input)))];
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&inputs, &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
-    let loads = read_load_rows(&args.input)?;
+    let loads = loads(args)?;
+    slip::warn(&arm, &loads.spans());
     let over = column(&loads, args.over.as_deref())?;
     let arms = loads.arms(&arm)?;
     let (rows, failure) = follow(&arms, &loads, args.tol);
@@ -41,6 +46,14 @@ pub(crate) fn run(args: &HistoryArgs) -> anyhow::Result<()> {
         }
         None => Ok(()),
     }
+}
+
+/// The loads, row by row.
+fn loads(args: &HistoryArgs) -> anyhow::Result<LoadRows> {
+    if input::is_standard(&args.input) {
+        return Ok(parse_load_rows(&input::text()?, input::NAME)?);
+    }
+    Ok(read_load_rows(&args.input)?)
 }
 
 /// The rows that were reached, and the index of the one that was not, with why.
