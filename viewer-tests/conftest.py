@@ -33,7 +33,7 @@ class Viewer:
 
     def __init__(self, *arguments: str, port: str = "0") -> None:
         assert PROGRAM, "HYDROSTAT_PROGRAM names the program to test"
-        command = [PROGRAM, "serve", "--port", port, *arguments]
+        command = [PROGRAM, "serve", "--port", port, *(arguments or ["paper"])]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         assert self.process.stdout is not None
         self.url = self.process.stdout.readline().strip()

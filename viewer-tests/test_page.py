@@ -158,7 +158,7 @@ def test_too_much_tension_is_said_in_words(watched: Watched) -> None:
     page = watched.open("#arm=silicone&cable[0].tension=1.2")
     verdict = page.locator("#verdict")
     expect(verdict).to_have_attribute("data-level", "bad")
-    expect(verdict).to_contain_text("No equilibrium at these loads: cable fold")
+    expect(verdict).to_contain_text("No equilibrium at these loads: side compressed to zero length")
     expect(verdict).to_contain_text("Try: lower the tension")
     expect(verdict).to_contain_text("not the requested loads")
     assert solved("silicone", "--tension", "1.2,0")["verdict"]["kind"] == "cable_fold"
@@ -399,7 +399,7 @@ def test_a_ramp_runs_and_stops_at_the_verdict(page: Page, tmp_path: Path) -> Non
     expect(page.locator("#arm")).to_have_value("strong.toml")
     slider = page.locator('input[type=range][data-key="cable[0].tension"]')
     page.get_by_label("Raise left from zero and watch").click()
-    expect(page.locator("#verdict")).to_contain_text("cable fold", timeout=20_000)
+    expect(page.locator("#verdict")).to_contain_text("side compressed to zero length", timeout=20_000)
     page.wait_for_timeout(200)
     stopped = float(slider.input_value())
     page.wait_for_timeout(300)

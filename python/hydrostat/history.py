@@ -138,7 +138,7 @@ def history(arm: Arm | str | PathLike[str], table: Mapping[str, ArrayLike] | pd.
     arm : Arm, str or path
         The arm, or the name or file of one, in the plane.
     table : mapping or DataFrame
-        Keys of loads with their values, one a row, SI units, angles in degrees; a column ``t_s`` is passed over.
+        Keys of loads with their values, one a row, SI units, angles in degrees; a column ``t_s`` is ignored.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
 

@@ -20,7 +20,9 @@ mod workspace;
 
 use std::path::PathBuf;
 
+use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args as ClapArgs, Parser, Subcommand};
+use hydrostat_files::Dimension;
 
 use common::count;
 pub(crate) use common::{ArmArgs, Format};
@@ -67,12 +69,22 @@ Examples:
   hydrostat serve silicone --open                           drag an arm in the browser
   hydrostat help solve                                      the help of a command";
 
-/// Computes static shapes of soft, cable-driven arms under water.
+/// Colours of help and of refused arguments, on a terminal.
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Green.on_default().bold())
+    .usage(AnsiColor::Green.on_default().bold())
+    .literal(AnsiColor::Cyan.on_default().bold())
+    .placeholder(AnsiColor::Cyan.on_default())
+    .error(AnsiColor::Red.on_default().bold())
+    .valid(AnsiColor::Green.on_default())
+    .invalid(AnsiColor::Yellow.on_default());
+
+/// Computes shapes and motions of soft, cable-driven arms under water.
 ///
 /// Without a command, it solves the arm of the source's figure, compares the statements of the source with the
 /// numbers, and writes the figure into ./figures.
 #[derive(Debug, Parser)]
-#[command(name = "hydrostat", version, after_help = format!("{EXAMPLES}\n\n{EXIT}"), max_term_width = 120)]
+#[command(name = "hydrostat", version, after_help = format!("{EXAMPLES}\n\n{EXIT}"), max_term_width = 120, styles = STYLES)]
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
@@ -178,8 +190,8 @@ pub(crate) struct FiguresArgs {
     #[arg(long)]
     pub(crate) at_highest: bool,
     /// Further flow speeds, m/s, above 0.5 m/s and in rising order
-    #[arg(long, value_name = "SPEED,...", value_delimiter = ',', default_value = "1,2")]
-    pub(crate) faster: Vec<f64>,
+    #[arg(long, value_name = "SPEED,...", default_value = "1,2", value_parser = speeds, allow_hyphen_values = true)]
+    pub(crate) faster: Speeds,
     /// Output directory, created if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "figures")]
     pub(crate) output: PathBuf,
@@ -206,6 +218,14 @@ Examples:
 pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
+}
+
+/// Speeds, m/s.
+#[derive(Debug, Clone)]
+pub(crate) struct Speeds(pub(crate) Vec<f64>);
+
+fn speeds(text: &str) -> Result<Speeds, String> {
+    common::list(Dimension::Speed, "SPEED", text).map(Speeds)
 }
 
 /// A number of stations.

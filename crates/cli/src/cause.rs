@@ -160,6 +160,22 @@ impl<'a> Cause<'a> {
     }
 }
 
+impl<'a> Cause<'a> {
+    /// The failed solve of an arm in space behind it, if that is what it is.
+    pub(crate) fn solve_in_space(&self) -> Option<&'a SpatialError> {
+        match self {
+            Self::Spatial(error) => Some(error),
+            Self::PathInSpace(PathError::Start { source, .. })
+            | Self::AfterSnapInSpace(AfterSnapError::Solve(source))
+            | Self::ReachInSpace(
+                ReachError::Solve(source) | ReachError::Sensitivity(SensitivityError::Solve(source)),
+            ) => Some(source),
+            Self::Motion(MotionError::SpatialStart(source)) => Some(source),
+            _ => None,
+        }
+    }
+}
+
 fn solve_of_reach(error: &ReachError) -> Option<&SolveError> {
     match error {
         ReachError::Solve(source) | ReachError::Sensitivity(SensitivityError::Solve(source)) => Some(source),

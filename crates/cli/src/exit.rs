@@ -1,16 +1,18 @@
 //! The one place that turns errors into messages and exit codes.
 
+use std::f64::consts::TAU;
 use std::io;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hydrostat::{SolveError, SpatialError, VerdictKind};
+use hydrostat::{SolveError, SpatialConfiguration, SpatialError, VerdictKind};
 use hydrostat_figures::source::StudyError;
 use hydrostat_files::WriteError;
 
 use crate::cause::{Blame, Cause};
 use crate::command::Advised;
+use crate::say;
 
 /// Arguments, arm file or output path are wrong.
 const WRONG_REQUEST: u8 = 2;
@@ -29,12 +31,12 @@ pub(crate) fn of(result: anyhow::Result<()>) -> ExitCode {
         return ExitCode::SUCCESS;
     }
     // The first message says it all: those of the libraries carry what caused them.
-    eprintln!("error: {error}");
+    say::error(&error);
     if let Some(seen) = last_seen(&error) {
-        eprintln!("note: {seen}");
+        say::note(seen);
     }
     if let Some(advice) = advice(&error) {
-        eprintln!("try: {advice}");
+        say::advice(advice);
     }
     ExitCode::from(code(&error))
 }
@@ -46,7 +48,7 @@ pub(crate) fn at_ctrl_c(words: &'static str) {
         let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };
         if runtime.block_on(tokio::signal::ctrl_c()).is_ok() {
             // The terminal shows ^C, and a bar may stand there.
-            eprintln!("\n{words}");
+            say::line(format_args!("\n{words}"));
             std::process::exit(i32::from(INTERRUPTED));
         }
     });
@@ -74,7 +76,7 @@ pub(crate) fn of_usage(error: &clap::Error) -> ExitCode {
 
 /// Of a panic, whose message has been printed.
 pub(crate) fn defect() -> ExitCode {
-    eprintln!("error: this is a bug in the program, not a mistake in the request");
+    say::error("this is a bug in the program, not a mistake in the request");
     ExitCode::from(OTHER)
 }
 
@@ -98,7 +100,7 @@ fn advice(error: &anyhow::Error) -> Option<&str> {
              `hydrostat path ARM --vary cable.0.tension=FROM:TO --plot-shapes FILE` draws any arm under a rising tension",
         );
     }
-    if let Cause::Spatial(SpatialError::NoEquilibrium(failure)) = cause {
+    if let Some(SpatialError::NoEquilibrium(failure)) = cause.solve_in_space() {
         return Some(failure.verdict.advice());
     }
     match cause.solve()? {
@@ -109,17 +111,37 @@ fn advice(error: &anyhow::Error) -> Option<&str> {
 
 /// The last shape on the way, where the solver gave up without a limit of the arm: what is far from any arm shows there.
 fn last_seen(error: &anyhow::Error) -> Option<String> {
-    let SolveError::NoEquilibrium(failure) = Cause::behind(error)?.solve()? else { return None };
+    let cause = Cause::behind(error)?;
+    if let Some(SpatialError::NoEquilibrium(failure)) = cause.solve_in_space() {
+        let shape = failure.last_good.as_ref().filter(|_| failure.verdict.kind == VerdictKind::NotFound)?;
+        return Some(last_in_space(shape));
+    }
+    let SolveError::NoEquilibrium(failure) = cause.solve()? else { return None };
     if failure.verdict.kind != VerdictKind::NotFound {
         return None;
     }
     let shape = failure.last_good.as_ref()?;
-    let turns = (shape.tip().theta - shape.arm.base.angle) / std::f64::consts::TAU;
+    let turns = (shape.tip().theta - shape.arm.base.angle) / TAU;
     Some(format!(
         "in the last shape that was found the tip is turned by {turns:.2} turns, with a fold margin of {:.3} (below 0 the surface passes \
          through itself)",
         shape.fold_margin().value
     ))
+}
+
+/// In space no angle says how far the tip is turned: what counts is how much the arm bends and twists on the way to it.
+fn last_in_space(shape: &SpatialConfiguration) -> String {
+    let st = &shape.stations;
+    let over = |rate: &dyn Fn(usize) -> f64| -> f64 {
+        (1..st.len()).map(|k| 0.5 * (rate(k - 1) + rate(k)) * (st.s[k] - st.s[k - 1])).sum::<f64>() / TAU
+    };
+    let bent = over(&|k| st.kappa[k].hypot(st.mu[k]));
+    let twisted = over(&|k| st.tau[k].abs());
+    format!(
+        "in the last shape that was found the arm bends by {bent:.2} turns and twists by {twisted:.2} turns from base to tip, with a fold \
+         margin of {:.3} (below 0 the surface passes through itself)",
+        shape.fold_margin().value
+    )
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {

@@ -14,6 +14,21 @@ pub(crate) fn is_standard(path: impl AsRef<Path>) -> bool {
     path.as_ref() == Path::new("-")
 }
 
+/// The file that is read where `path` is given: of standard input the one that it comes from, if it comes from one.
+pub(crate) fn source(path: &Path) -> &Path {
+    if is_standard(path) { Path::new("/dev/stdin") } else { path }
+}
+
+/// Refuses standard input for two files: it is read once.
+pub(crate) fn check_once(files: &[(&'static str, Option<&Path>)]) -> Result<(), WrongRequest> {
+    let given: Vec<&'static str> =
+        files.iter().filter(|(_, file)| file.is_some_and(is_standard)).map(|(name, _)| *name).collect();
+    match given[..] {
+        [first, second, ..] => Err(WrongRequest::InputTwice([first, second])),
+        _ => Ok(()),
+    }
+}
+
 /// All of it.
 pub(crate) fn bytes() -> Result<Vec<u8>, WrongRequest> {
     let mut bytes = Vec::new();

@@ -10,6 +10,7 @@ mod progress;
 mod question;
 mod rate;
 mod request;
+mod say;
 mod wrong_request;
 
 use std::process::ExitCode;

@@ -9,9 +9,14 @@ use hydrostat_files::{WriteError, write_whole};
 
 use crate::args::{Form, PageArgs, form};
 
+/// The file that a result is written to; none where it is standard output, asked for as `-`.
+pub(crate) fn file(path: &Path) -> Option<&Path> {
+    (path != Path::new("-")).then_some(path)
+}
+
 /// Writes a result to standard output or to the file asked for instead.
-pub(crate) fn put(file: Option<&Path>, text: &str) -> anyhow::Result<()> {
-    match file {
+pub(crate) fn put(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
+    match path.and_then(file) {
         Some(path) => write_whole(path, text.as_bytes())?,
         None => print(text)?,
     }
@@ -102,6 +107,10 @@ impl Drop for MadeDirectory {
 /// # Errors
 /// [`WriteError`] with the directory.
 pub(crate) fn make_directory(path: &Path) -> Result<MadeDirectory, WriteError> {
+    if file(path).is_none() {
+        let source = io::Error::new(io::ErrorKind::InvalidInput, "several files need a directory, not standard output");
+        return Err(WriteError { path: path.to_owned(), source });
+    }
     let missing = path.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists());
     let made = MadeDirectory { made: missing.map(Path::to_owned).collect() };
     fs::create_dir_all(path)

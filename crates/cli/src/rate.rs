@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
+use crate::say;
+
 /// A bar on a terminal, a line now and then elsewhere.
 pub(crate) struct Rate {
     bar: ProgressBar,
@@ -18,13 +20,16 @@ impl Rate {
     pub(crate) fn new(rows: u64) -> Self {
         let bar = ProgressBar::new(rows);
         let style =
-            ProgressStyle::with_template("{bar:30} {percent}% {human_pos} of {human_len} rows, {per_sec}, {left} left");
+            ProgressStyle::with_template("{bar:30} {percent}% {human_pos} of {human_len} rows, {speed}, {left} left");
         if let Ok(style) = style {
             // What cannot be shown is no failure.
             let left = |state: &ProgressState, out: &mut dyn std::fmt::Write| {
                 let _ = out.write_str(&duration(state.eta().as_secs_f64()));
             };
-            bar.set_style(style.with_key("left", left));
+            let speed = |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+                let _ = write!(out, "{:.0} rows/s", state.per_sec());
+            };
+            bar.set_style(style.with_key("left", left).with_key("speed", speed));
         }
         let start = Instant::now();
         Self { bar, rows, start, said: Mutex::new((None, start)) }
@@ -46,7 +51,7 @@ impl Rate {
             let rate = (done - resumed.min(done)) as f64 / self.start.elapsed().as_secs_f64();
             let left = duration((self.rows - done.min(self.rows)) as f64 / rate);
             let percent = 100.0 * done as f64 / self.rows as f64;
-            eprintln!("{percent:.1} %, {done} of {} rows, {rate:.0} rows/s, {left} left", self.rows);
+            say::line(format_args!("{percent:.1} %, {done} of {} rows, {rate:.0} rows/s, {left} left", self.rows));
         }
     }
 

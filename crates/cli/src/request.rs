@@ -7,7 +7,7 @@ use hydrostat_files::{ArmFile, Dimension, FileError, is_same_file, shared_unit, 
 
 use crate::args::{ArmArgs, PictureArgs};
 pub(crate) use crate::wrong_request::WrongRequest;
-use crate::{input, output};
+use crate::{input, output, say};
 
 /// The arm file that `arm` names: a file if there is one or if it looks like a path, else an arm
 /// that ships with the program. A file of the name of a shipped arm wins, as a file's contents are
@@ -58,7 +58,7 @@ pub(crate) fn arm_of(file: &ArmFile, command: &'static str) -> anyhow::Result<Ar
 pub(crate) fn arm_anywhere(file: &ArmFile) -> anyhow::Result<Arm> {
     let arm = file.arm().map_err(|first| wrong(file, first))?;
     for slip in unit_slips(&arm) {
-        eprintln!("warning: {slip}");
+        say::warning(slip);
     }
     Ok(arm)
 }
@@ -104,7 +104,7 @@ pub(crate) type Input<'a> = (&'static str, &'a Path);
 
 /// The file of an arm, if it is read from one.
 pub(crate) fn arm_input(arm: &str) -> Option<Input<'_>> {
-    (!input::is_standard(arm) && is_file(arm)).then_some(("ARM", Path::new(arm)))
+    (input::is_standard(arm) || is_file(arm)).then(|| ("ARM", input::source(Path::new(arm))))
 }
 
 /// Refuses outputs that could not be written, and those that are files that are read, before the work: each option that names one, with
@@ -122,7 +122,9 @@ pub(crate) fn check_outputs(
         check_not_read(inputs, option, file)?;
     }
     for (_, file) in given {
-        output::check_writable(file)?;
+        if let Some(file) = output::file(file) {
+            output::check_writable(file)?;
+        }
     }
     Ok(())
 }
@@ -147,7 +149,8 @@ pub(crate) fn check_not_read(
     option: &'static str,
     file: &Path,
 ) -> Result<(), WrongRequest> {
-    match inputs.iter().flatten().find(|(_, read)| is_same_file(read, file)) {
+    let is_own = |read: &Path| output::file(file).is_some_and(|file| is_same_file(read, file));
+    match inputs.iter().flatten().find(|(_, read)| is_own(read)) {
         Some((input, _)) => Err(WrongRequest::Overwrites { option, path: file.to_owned(), input }),
         None => Ok(()),
     }

@@ -7,6 +7,8 @@ use hydrostat::parameter::Unfit;
 use hydrostat_figures::Quantity;
 use hydrostat_files::{FileError, PartialUnit, shipped};
 
+use crate::say::MORE;
+
 /// What messages call standard input.
 pub(crate) const STANDARD_INPUT: &str = "standard input";
 
@@ -43,6 +45,8 @@ pub(crate) enum WrongRequest {
     Over(Vec<String>),
     /// A key whose values are words.
     Words(String),
+    /// Keys of a sweep, all of whose values are words.
+    OnlyWords(Vec<String>),
     /// Numbers of other programs that cannot be read.
     Peers(PathBuf, String),
     /// A cable without a largest tension, where one is needed.
@@ -126,6 +130,11 @@ impl std::fmt::Display for WrongRequest {
                 write!(f, "--over: expected one or two different keys of those that were varied, {}", keys.join(", "))
             }
             Self::Words(key) => write!(f, "--over: the values of {key} are words, and an axis needs numbers"),
+            Self::OnlyWords(keys) => write!(
+                f,
+                "the values of {} are words, and the axes of a map need numbers; --workspace FILE draws the tips alone",
+                keys.join(", ")
+            ),
             Self::Peers(path, why) => write!(f, "--peers {}: {why}", path.display()),
             Self::Unbounded(cable) => {
                 write!(
@@ -152,7 +161,7 @@ impl std::fmt::Display for WrongRequest {
             }
             Self::File(errors) => {
                 for (k, error) in errors.iter().enumerate() {
-                    write!(f, "{}{error}", if k == 0 { "" } else { "\nerror: " })?;
+                    write!(f, "{}{error}", if k == 0 { "" } else { MORE })?;
                 }
                 Ok(())
             }

@@ -1,6 +1,6 @@
 //! One arm drawn to scale.
 
-use hydrostat::{CableState, Configuration, Verdict};
+use hydrostat::{CableState, Configuration, Verdict, VerdictKind};
 
 use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE};
 use crate::font::{CAP_HEIGHT, DESCENT, Label};
@@ -91,14 +91,23 @@ pub fn reach_figure(configuration: &Configuration, targets: &[[f64; 2]], note: O
 /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
 /// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(1.5));
 /// let Err(SolveError::NoEquilibrium(no)) = arm.solve() else { panic!("1.5 N fold the tip") };
-/// assert!(hydrostat_figures::last_good_note(&no.verdict).ends_with("(cable fold)"));
+/// assert!(hydrostat_figures::last_good_note(&no.verdict).ends_with("(side compressed to zero length)"));
 /// ```
 pub fn last_good_note(verdict: &Verdict) -> String {
     format!(
         "Last good shape, at {} ({})",
         verdict.phase.load_at(verdict.load_fraction),
-        verdict.kind.name().replace('_', " ")
+        kind_words(verdict.kind.name())
     )
+}
+
+/// The name of a kind in results, for people. What folds is the surface; `cable_fold` is something else.
+pub(crate) fn kind_words(kind: &str) -> String {
+    if kind == VerdictKind::CableFold.name() {
+        "side compressed to zero length".to_owned()
+    } else {
+        kind.replace('_', " ")
+    }
 }
 
 /// Axes that show the arm and the arrows at its tip.

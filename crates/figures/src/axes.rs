@@ -1,7 +1,7 @@
 //! Axes: from data to the page, with ticks and titles.
 
 use crate::font::{CAP_HEIGHT, Label};
-use crate::numbers::short;
+use crate::numbers::{roundest, short};
 use crate::palette::INK;
 use crate::placement::Rect;
 use crate::scene::{Anchor, Point, Scene, Stroke};
@@ -31,14 +31,11 @@ impl Scale {
         }
     }
 
-    /// Places of ticks in `range` (lengths), about `count`, and their labels.
-    fn ticks(self, range: [f64; 2], count: f64) -> Vec<(f64, Label)> {
+    /// About `count` ticks in `range` (lengths), whose labels have `room` points.
+    fn ticks(self, range: [f64; 2], count: f64, room: Room) -> Ticks {
         match self {
-            Self::Even => {
-                let (places, decimals) = ticks(range, count);
-                places.into_iter().map(|place| (place, tick_label(place, decimals))).collect()
-            }
-            Self::Logarithmic => decades(range, count),
+            Self::Even => Ticks::even(range, count, room),
+            Self::Logarithmic => Ticks { labelled: decades(range, count), note: String::new() },
         }
     }
 }
@@ -123,39 +120,38 @@ impl Axes {
         self.draw_above_another(scene, y_title);
         let f = self.frame;
         let below = f.bottom + TICK + 2.0 + CAP_HEIGHT * TICK_SIZE;
-        for (tick, label) in self.x_ticks() {
-            let [x, _] = self.place([tick, 0.0]);
-            scene.text(&label, [x, below], Anchor::Middle, TICK_SIZE);
+        let ticks = self.x_ticks();
+        for (tick, label) in &ticks.labelled {
+            let [x, _] = self.place([*tick, 0.0]);
+            scene.text(label, [x, below], Anchor::Middle, TICK_SIZE);
         }
-        scene.text(
-            x_title,
-            [0.5 * (f.left + f.right), below + 5.0 + CAP_HEIGHT * TEXT_SIZE],
-            Anchor::Middle,
-            TEXT_SIZE,
-        );
+        let at = [0.5 * (f.left + f.right), below + 5.0 + CAP_HEIGHT * TEXT_SIZE];
+        scene.text(&ticks.titled(x_title), at, Anchor::Middle, TEXT_SIZE);
     }
 
     /// The same without what is said of x: that stands below another frame further down.
     pub(crate) fn draw_above_another(&self, scene: &mut Scene, y_title: &Label) {
         let f = self.frame;
         scene.area(&[[f.left, f.top], [f.right, f.top], [f.right, f.bottom], [f.left, f.bottom]], None, Some(FRAME));
-        for (tick, _) in self.x_ticks() {
+        for (tick, _) in self.x_ticks().labelled {
             let [x, _] = self.place([tick, 0.0]);
             scene.line(&[[x, f.bottom], [x, f.bottom + TICK]], FRAME);
         }
         let mut widest = 0.0_f64;
-        for (tick, label) in self.scales[1].ticks(self.y, f.height() / 38.0) {
-            let [_, y] = self.place([0.0, tick]);
+        let ticks = self.scales[1].ticks(self.y, f.height() / 38.0, Room::Beside);
+        for (tick, label) in &ticks.labelled {
+            let [_, y] = self.place([0.0, *tick]);
             scene.line(&[[f.left, y], [f.left - TICK, y]], FRAME);
             widest = widest.max(label.width(TICK_SIZE));
-            scene.text(&label, [f.left - TICK - 2.5, y + 0.5 * CAP_HEIGHT * TICK_SIZE], Anchor::End, TICK_SIZE);
+            scene.text(label, [f.left - TICK - 2.5, y + 0.5 * CAP_HEIGHT * TICK_SIZE], Anchor::End, TICK_SIZE);
         }
         let beside = [f.left - TICK - 2.5 - widest - 6.0, 0.5 * (f.top + f.bottom)];
-        scene.text_in(y_title, beside, Anchor::Middle, TEXT_SIZE, INK, true);
+        scene.text_in(&ticks.titled(y_title), beside, Anchor::Middle, TEXT_SIZE, INK, true);
     }
 
-    fn x_ticks(&self) -> Vec<(f64, Label)> {
-        self.scales[0].ticks(self.x, self.frame.width() / 55.0)
+    fn x_ticks(&self) -> Ticks {
+        let width = self.frame.width();
+        self.scales[0].ticks(self.x, width / 55.0, Room::Below { width })
     }
 }
 
@@ -163,14 +159,107 @@ impl Axes {
 pub(crate) const LEFT: f64 = 44.0;
 pub(crate) const BELOW: f64 = 28.0;
 
-pub(crate) fn tick_label(value: f64, decimals: usize) -> Label {
-    let text = format!("{:.decimals$}", if value == 0.0 { 0.0 } else { value });
-    Label::plain(text.replace('-', "\u{2212}"))
+/// The widest tick label beside a frame, points: what [`LEFT`] leaves beside tick and title.
+const WIDEST: f64 = LEFT - TICK - 2.5 - 6.0 - CAP_HEIGHT * TEXT_SIZE - 0.5;
+/// Between two tick labels below a frame, at the least, points.
+const BETWEEN: f64 = 2.0;
+
+/// Where tick labels stand.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Room {
+    /// One above the other, beside the frame or a bar of colours.
+    Beside,
+    /// In a row of this width, points.
+    Below { width: f64 },
 }
 
-/// Round places in `range`, as near to `count` of them as round steps allow, and the decimals that
-/// they need.
-pub(crate) fn ticks(range: [f64; 2], count: f64) -> (Vec<f64>, usize) {
+/// Ticks with labels that can be told apart and have room.
+#[derive(Debug, Clone)]
+pub(crate) struct Ticks {
+    /// Their places and labels.
+    pub(crate) labelled: Vec<(f64, Label)>,
+    /// What the title has to say of the labels: what is taken off the numbers, and in which power of ten they are.
+    note: String,
+}
+
+impl Ticks {
+    /// Round numbers in `range`, about `count`. Where they have too many digits, a number that all have in common is taken off, and
+    /// they are in a power of ten.
+    pub(crate) fn even(range: [f64; 2], count: f64, room: Room) -> Self {
+        let (places, step) = ticks(range, count);
+        let common = roundest(range[0] - 1e-6 * step, range[1] + 1e-6 * step);
+        let largest = |off: f64| places.iter().map(|place| (place - off).abs()).fold(step, f64::max);
+        // From what needs no words to what needs most.
+        let ways = [(0.0, 0), (0.0, power(largest(0.0))), (common, 0), (common, power(largest(common)))];
+        let labels = |(off, power): (f64, i32)| -> Vec<Label> {
+            let decimals = decimals_of(step, power);
+            let shown = |place: &f64| if decimals > MOST_DECIMALS { None } else { Some(scaled(place - off, power)) };
+            places.iter().filter_map(shown).map(|number| tick_label(number, decimals)).collect()
+        };
+        let fits = |labels: &[Label]| {
+            let widths: Vec<f64> = labels.iter().map(|label| label.width(TICK_SIZE)).collect();
+            match room {
+                Room::Beside => widths.iter().all(|width| *width <= WIDEST),
+                Room::Below { width } => {
+                    let apart = width * step / (range[1] - range[0]);
+                    widths.windows(2).all(|pair| 0.5 * (pair[0] + pair[1]) + BETWEEN <= apart)
+                }
+            }
+        };
+        let all = || ways.into_iter().map(|way| (way, labels(way))).filter(|(_, labels)| labels.len() == places.len());
+        let found = all().find(|(_, labels)| fits(labels)).or_else(|| all().next());
+        let (way, labels) = found.unwrap_or_default();
+        Self { labelled: places.into_iter().zip(labels).collect(), note: note(way) }
+    }
+
+    /// A title that says what the labels are.
+    pub(crate) fn titled(&self, title: &Label) -> Label {
+        title.clone().and(Label::plain(&self.note))
+    }
+}
+
+/// The most decimals of a tick label.
+const MOST_DECIMALS: usize = 12;
+
+fn power(largest: f64) -> i32 {
+    #[expect(clippy::cast_possible_truncation, reason = "an exponent of a finite number")]
+    let power = (1.000_001 * largest).log10().floor() as i32;
+    power
+}
+
+/// A number in units of a power of ten.
+fn scaled(value: f64, power: i32) -> f64 {
+    if power < 0 { value * 10.0_f64.powi(-power) } else { value / 10.0_f64.powi(power) }
+}
+
+/// The decimals of multiples of `step` in units of a power of ten.
+fn decimals_of(step: f64, power: i32) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not below 0")]
+    let decimals = (f64::from(power) - (step * 1.000_001).log10().floor()).max(0.0) as usize;
+    decimals
+}
+
+fn note((off, power): (f64, i32)) -> String {
+    let common = match off {
+        0.0 => String::new(),
+        off => {
+            // As many digits as differ from those of the numbers beside it, and no rounding.
+            let digits = format!("{:.11e}", off.abs()).parse::<f64>().unwrap_or(off.abs());
+            format!(" {} {digits}", if off > 0.0 { '\u{2212}' } else { '+' })
+        }
+    };
+    let unit = if power == 0 { String::new() } else { format!(", in 1e{power}").replace('-', "\u{2212}") };
+    common + &unit
+}
+
+pub(crate) fn tick_label(value: f64, decimals: usize) -> Label {
+    let text = format!("{value:.decimals$}");
+    let is_zero = text.bytes().all(|c| b"-0.".contains(&c));
+    Label::plain(if is_zero { text.trim_start_matches('-') } else { &text }.replace('-', "\u{2212}"))
+}
+
+/// Round places in `range`, as near to `count` of them as round steps allow, and their distance.
+pub(crate) fn ticks(range: [f64; 2], count: f64) -> (Vec<f64>, f64) {
     let count = count.max(3.0);
     let size = 10.0_f64.powf(((range[1] - range[0]) / count).log10().floor());
     let off = |f: &f64| ((range[1] - range[0]) / (f * size) - count).abs();
@@ -182,17 +271,21 @@ pub(crate) fn ticks(range: [f64; 2], count: f64) -> (Vec<f64>, usize) {
         out.push(k * step);
         k += 1.0;
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 12")]
-    let decimals = (-(step * 1.000_001).log10().floor()).clamp(0.0, 12.0) as usize;
-    (out, decimals)
+    (out, step)
 }
 
 /// Round values in a range of logarithms, at their logarithms: powers of ten, as many as have room; where they are few, twice and
 /// five times them; where these are few, values at equal distances.
 fn decades([low, high]: [f64; 2], count: f64) -> Vec<(f64, Label)> {
     if high - low < 0.9 {
-        let (values, decimals) = ticks([low, high].map(|power| 10.0_f64.powf(power)), count);
-        return values.into_iter().map(|value| (value.log10(), tick_label(value, decimals))).collect();
+        let (values, step) = ticks([low, high].map(|power| 10.0_f64.powf(power)), count);
+        let largest = values.iter().copied().fold(step, f64::max);
+        let decimals = decimals_of(step, power(largest));
+        let label = |value: f64| match value {
+            1e-3..1e5 => tick_label(value, decimals_of(step, 0)),
+            value => Label::plain(format!("{value:.decimals$e}").replace('-', "\u{2212}")),
+        };
+        return values.into_iter().map(|value| (value.log10(), label(value))).collect();
     }
     let step = ((high - low) / (1.6 * count.max(3.0))).ceil().max(1.0);
     let factors: &[f64] = if high - low > 2.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
@@ -217,23 +310,46 @@ mod tests {
 
     #[test]
     fn ticks_are_round() {
-        assert_eq!(ticks([0.0, 200.0], 5.0), (vec![0.0, 50.0, 100.0, 150.0, 200.0], 0));
-        assert_eq!(ticks([-0.12, 0.31], 4.0).1, 1);
+        assert_eq!(ticks([0.0, 200.0], 5.0), (vec![0.0, 50.0, 100.0, 150.0, 200.0], 50.0));
+        assert!((ticks([-0.12, 0.31], 4.0).1 - 0.1).abs() < 1e-12);
         assert_eq!(ticks([0.0, 1.0], 5.0).0.len(), 6);
+    }
+
+    /// Labels had up to 12 decimals, which ran over each other and off the page.
+    #[test]
+    fn labels_have_room_and_can_be_told_apart() {
+        let row = Room::Below { width: 396.0 };
+        for (range, room, first, note) in [
+            ([0.0, 200.0], Room::Beside, "0", ""),
+            ([-0.12, 0.31], Room::Beside, "\u{2212}0.1", ""),
+            ([0.0, 4e-9], Room::Beside, "0", ", in 1e\u{2212}9"),
+            ([-3e-13, 1e-13], row, "\u{2212}3", ", in 1e\u{2212}13"),
+            ([0.0, 5e8], Room::Beside, "0", ", in 1e8"),
+            ([245.001, 245.001_04], Room::Beside, "0", " \u{2212} 245.001, in 1e\u{2212}5"),
+            ([-1000.01, -1000.0], Room::Beside, "\u{2212}0.010", " + 1000"),
+            ([1e6, 1e6 + 4.0], Room::Beside, "0", " \u{2212} 1000000"),
+        ] {
+            let ticks = Ticks::even(range, 5.0, room);
+            let texts: Vec<String> = ticks.labelled.iter().map(|(_, label)| label.to_string()).collect();
+            assert_eq!((texts[0].as_str(), ticks.note.as_str()), (first, note), "{range:?}: {texts:?}");
+            assert!(texts.windows(2).all(|pair| pair[0] != pair[1]), "{texts:?}");
+            assert!(ticks.labelled.iter().all(|(_, label)| label.width(TICK_SIZE) <= WIDEST), "{texts:?}");
+        }
     }
 
     #[test]
     fn ticks_of_logarithms_are_powers_of_ten_or_simple_shares() {
         let texts = |range, count| -> Vec<String> {
-            Scale::Logarithmic.ticks(range, count).into_iter().map(|(_, label)| label.to_string()).collect()
+            decades(range, count).into_iter().map(|(_, label)| label.to_string()).collect()
         };
         assert_eq!(texts([1.0, 2.0], 3.0), ["10", "20", "50", "100"]);
         assert_eq!(texts([0.9, 4.1], 3.0), ["10", "100", "1000", "10000"]);
         assert_eq!(texts([-11.2, -2.8], 7.0)[0], "1e\u{2212}11");
         assert_eq!(texts([-12.0, 12.0], 3.0).len(), 5);
-        let places: Vec<f64> = Scale::Logarithmic.ticks([0.0, 1.0], 3.0).into_iter().map(|(place, _)| place).collect();
+        let places: Vec<f64> = decades([0.0, 1.0], 3.0).into_iter().map(|(place, _)| place).collect();
         assert!((places[1] - 2.0_f64.log10()).abs() < 1e-12);
         assert_eq!(texts([150_f64.log10(), 430_f64.log10()], 3.0), ["200", "300", "400"]);
+        assert_eq!(texts([1.5e-9_f64.log10(), 4.3e-9_f64.log10()], 3.0)[0], "2e\u{2212}9");
     }
 
     #[test]

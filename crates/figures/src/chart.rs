@@ -302,13 +302,23 @@ pub(crate) fn frame(
     (scene, axes)
 }
 
-/// A range with some room at its ends, and never an empty one.
-pub(crate) fn padded([low, high]: [f64; 2], fraction: f64) -> [f64; 2] {
+/// A range with some room at its ends. What is one number but for rounding gets a tenth of it to both sides, zero gets 1.
+pub(crate) fn padded(range: [f64; 2], fraction: f64) -> [f64; 2] {
+    padded_beside(range, fraction, 0.0)
+}
+
+/// [`padded`] of a part of numbers whose size is at least `size`: what is nothing beside that is rounding.
+pub(crate) fn padded_beside([low, high]: [f64; 2], fraction: f64, size: f64) -> [f64; 2] {
+    /// Less than this is zero in any unit that is shown.
+    const NOTHING: f64 = 1e-12;
     if !(low.is_finite() && high.is_finite()) {
         return [0.0, 1.0];
     }
-    let size = low.abs().max(high.abs()).max(1e-9);
-    let pad = (fraction * (high - low)).max(if high - low < 1e-6 * size { 0.1 * size } else { 0.0 });
+    let size = low.abs().max(high.abs()).max(size);
+    if size < NOTHING {
+        return [-1.0, 1.0];
+    }
+    let pad = if high - low < 1e-6 * size { 0.1 * size } else { fraction * (high - low) };
     [low - pad, high + pad]
 }
 
@@ -418,7 +428,12 @@ mod tests {
     #[test]
     fn ranges_have_room() {
         assert_eq!(padded([0.0, 10.0], 0.1), [-1.0, 11.0]);
-        assert!(padded([5.0, 5.0], 0.1)[0] < 5.0 && padded([0.0, 0.0], 0.1)[1] > 0.0);
+        assert!(padded([5.0, 5.0], 0.1)[0] < 5.0);
+        assert_eq!(padded([0.0, 0.0], 0.1), [-1.0, 1.0]);
+        assert_eq!(padded([-1e-17, 2e-18], 0.0), [-1.0, 1.0]);
+        let [low, high] = padded([245.0, 245.000_000_01], 0.0);
+        assert!((low - 220.5).abs() < 1e-6 && (high - 269.5).abs() < 1e-6);
+        assert!(padded_beside([-1e-9, 0.0], 0.05, 100.0)[1] > 9.0);
         assert_eq!(padded([f64::INFINITY, f64::NEG_INFINITY], 0.1), [0.0, 1.0]);
     }
 }

@@ -102,7 +102,8 @@ pub fn fit_figure(name: &str, cases: &[Case], fit: &Fit, page: &Page) -> Scene {
         })
         .collect();
     let names: Vec<String> = fit.estimates.iter().map(|one| one.fitted.parameter.to_string()).collect();
-    let title = format!("{name}: fitted to {} load cases", fit.load_cases);
+    let cases = if fit.load_cases == 1 { "load case" } else { "load cases" };
+    let title = format!("{name}: fitted to {} {cases}", fit.load_cases);
     drawn(&title, &shown, &names, &fit.correlation, page)
 }
 

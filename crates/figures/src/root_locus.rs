@@ -3,7 +3,7 @@
 use hydrostat::Mode;
 
 use crate::axes::{Axes, BELOW, LEFT};
-use crate::chart::{Abscissa, padded};
+use crate::chart::{Abscissa, padded_beside};
 use crate::font::Label;
 use crate::legend::{Legend, Mark, Sample};
 use crate::page::{MARGIN, Page};
@@ -47,7 +47,10 @@ pub fn root_locus_figure(found: &[(f64, &[Mode])], over: Option<&Abscissa>, titl
     let heading = page.heading(title, None);
     let top = heading.bottom + legend.height() + 6.0;
     let frame = Rect { left: LEFT, top, right: page.right(), bottom: top + HEIGHT };
-    let axes = Axes::new(frame, padded(reach(0), 0.05), padded(reach(1), 0.06));
+    // A part that is rounding beside the other one is zero.
+    let [growth, frequency] = [reach(0), reach(1)];
+    let size = [growth, frequency].into_iter().flatten().fold(0.0_f64, |size, v| size.max(v.abs()));
+    let axes = Axes::new(frame, padded_beside(growth, 0.05, size), padded_beside(frequency, 0.06, size));
     let says = format!("{}: rates of small motions", page.title_or(title));
     let mut scene = Scene::new(page.width(), frame.bottom + BELOW + MARGIN, says);
     heading.draw(&mut scene);

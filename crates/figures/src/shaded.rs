@@ -1,5 +1,6 @@
 //! Colours for the values of a column.
 
+use crate::arm_figure::kind_words;
 use crate::chart::padded;
 use crate::font::Label;
 use crate::palette::{Color, series, shade};
@@ -114,9 +115,7 @@ impl Shading {
         match (&self.shades, &self.values) {
             (Shades::Words(all), _) => all
                 .iter()
-                .map(|word| {
-                    (word_color(all, word.as_ref()), word.as_deref().unwrap_or(self.nothing()).replace('_', " "))
-                })
+                .map(|word| (word_color(all, word.as_ref()), kind_words(word.as_deref().unwrap_or(self.nothing()))))
                 .collect(),
             (Shades::Range(_), Coloured::Numbers(values)) if values.iter().any(|v| !v.is_finite()) => {
                 vec![(NOTHING, "no equilibrium".to_owned())]

@@ -114,7 +114,7 @@ impl<'a> Nearby<'a> {
         for (_, direction, _) in &arrows {
             taken.add_line(&[from, self.at(axes, &self.arrow_end(direction))]);
         }
-        Surroundings::seen(&configuration.arm, view).draw(scene, &mut taken, axes.frame);
+        Surroundings::seen(&configuration.arm, view, None).draw(scene, &mut taken, axes.frame);
         self.draw_tip(scene, axes, &mut taken, &arrows, configuration.tip().alpha);
     }
 

@@ -1,6 +1,6 @@
 //! Several shapes of one arm in space: their centrelines in three views.
 
-use hydrostat::{Equilibrium, Path, SpatialConfiguration, SpatialEquilibria};
+use hydrostat::{Arm, Equilibrium, Parameter, Path, SpatialConfiguration, SpatialEquilibria};
 
 use crate::axes::{Axes, BELOW};
 use crate::chart::{Abscissa, Look};
@@ -11,6 +11,7 @@ use crate::picked::{Picked, picked};
 use crate::placement::Occupied;
 use crate::scene::{Scene, Stroke};
 use crate::shapes::{legend, line_of, marginal};
+use crate::surroundings::Surroundings;
 use crate::three_views::{ThreeViews, centreline};
 use crate::tip_labels::{TipLabel, draw_tip_labels};
 use crate::view::Vector;
@@ -56,7 +57,8 @@ impl Member {
 pub fn spatial_equilibria_figure(all: &SpatialEquilibria, title: &str, page: &Page) -> Scene {
     let members: Vec<Member> = all.found.iter().enumerate().map(|(k, one)| Member::new(k + 1, one)).collect();
     let says = format!("{}: equilibria in space", page.title_or(title));
-    draw(says, title, &members, Look::Unknown.words(), page)
+    let around = all.found.first().map(|one| (&one.configuration.arm, None));
+    draw(says, title, &members, Look::Unknown.words(), around, page)
 }
 
 /// [`path_shapes_figure`](crate::path_shapes_figure) of an arm in space: centrelines in three views.
@@ -80,6 +82,10 @@ pub fn spatial_path_shapes_figure(
 ) -> Scene {
     let picked = picked(path, over.per_si);
     let count = picked.len();
+    // At one end of the range there may be no stream or no gravity.
+    let acts = |arm: &Arm| arm.stream_in_space() != [0.0; 3] || arm.gravity_in_space() != [0.0; 3];
+    let arms = || picked.iter().map(|one| one.arm);
+    let around = arms().find(|arm| acts(arm)).map(|arm| (arm, Some(path.parameter)));
     let member = |(index, Picked { drawn, value, look, .. }): (usize, Picked<'_, SpatialConfiguration>)| Member {
         points: drawn,
         look,
@@ -88,10 +94,18 @@ pub fn spatial_path_shapes_figure(
     };
     let members: Vec<Member> = picked.into_iter().enumerate().map(member).collect();
     let says = format!("{}: shapes along the path", page.title_or(title));
-    draw(says, title, &members, marginal(path), page)
+    draw(says, title, &members, marginal(path), around, page)
 }
 
-fn draw(says: String, title: &str, members: &[Member], unknown: &str, page: &Page) -> Scene {
+/// `around` is an arm whose stream and gravity are those of all, and what differs from shape to shape.
+fn draw(
+    says: String,
+    title: &str,
+    members: &[Member],
+    unknown: &str,
+    around: Option<(&Arm, Option<Parameter>)>,
+    page: &Page,
+) -> Scene {
     let legend = legend(members.iter().map(|m| m.look), unknown, page);
     let heading = page.heading(title, None);
     let placed = ThreeViews::around(members.iter().flat_map(|m| m.points.iter().copied()), PAD, page)
@@ -114,6 +128,9 @@ fn draw(says: String, title: &str, members: &[Member], unknown: &str, page: &Pag
                 let towards = (before[1] - tip[1]).atan2(tip[0] - before[0]);
                 labels.push(TipLabel { tip, towards, color: *color, label: label.clone() });
             }
+        }
+        if let Some((arm, varied)) = around {
+            Surroundings::seen(arm, view, varied).draw(&mut scene, &mut taken, axes.frame);
         }
         if area(axes) >= largest || members.len() <= LABELS_IN_SMALL_VIEWS {
             draw_tip_labels(&mut scene, &mut taken, axes.frame, &labels);

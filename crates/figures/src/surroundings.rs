@@ -57,8 +57,8 @@ impl Surroundings {
         Self { directions }
     }
 
-    /// Of an arm in space, as `view` shows directions.
-    pub(crate) fn seen(arm: &Arm, view: &View) -> Self {
+    /// Of an arm in space, as `view` shows directions; `varied` is what differs from shape to shape.
+    pub(crate) fn seen(arm: &Arm, view: &View, varied: Option<Parameter>) -> Self {
         let mut directions = Vec::new();
         let mut add = |vector: [f64; 3], color: Color, label: String| {
             let length = dot(&vector, &vector).sqrt();
@@ -67,10 +67,17 @@ impl Surroundings {
                 directions.push(Direction { along: [right, up], out: back > 0.0, color, label: Label::plain(label) });
             }
         };
-        if arm.flow.density > 0.0 {
-            add(arm.stream_in_space(), WATER, format!("stream {} m/s", short(arm.flow.speed)));
+        let turns = |direction: Parameter, part: fn(usize) -> Parameter| {
+            varied == Some(direction) || (0..3).any(|axis| varied == Some(part(axis)))
+        };
+        if arm.flow.density > 0.0 && !turns(Parameter::FlowDirection, Parameter::StreamAlong) {
+            let speed = format!("stream {} m/s", short(arm.flow.speed));
+            let text = if varied == Some(Parameter::FlowSpeed) { "stream".to_owned() } else { speed };
+            add(arm.stream_in_space(), WATER, text);
         }
-        add(arm.gravity_in_space(), GREY, "gravity".to_owned());
+        if !turns(Parameter::GravityDirection, Parameter::GravityAlong) {
+            add(arm.gravity_in_space(), GREY, "gravity".to_owned());
+        }
         Self { directions }
     }
 

@@ -1,6 +1,6 @@
 //! Many rows of a sweep: a quantity as colours over two keys, or where the tip is.
 
-use crate::axes::{Axes, BELOW, LEFT, TEXT_SIZE, TICK_SIZE, tick_label, ticks};
+use crate::axes::{Axes, BELOW, LEFT, Room, TEXT_SIZE, TICK_SIZE, Ticks};
 use crate::chart::{Abscissa, padded};
 use crate::font::{CAP_HEIGHT, Label};
 use crate::legend::{Legend, Mark, Sample};
@@ -221,17 +221,16 @@ fn draw_bar(scene: &mut Scene, frame: Rect, shading: &Shading) {
     scene.picture(bar, Picture { width: 1, height: steps, rgba: colors.collect() });
     scene.area(&corners(bar), None, Some(FRAME));
     let scale = Axes::new(bar, [0.0, 1.0], range);
-    let (places, decimals) = ticks(range, bar.height() / 38.0);
+    let ticks = Ticks::even(range, bar.height() / 38.0, Room::Beside);
     let mut widest = 0.0_f64;
-    for place in places {
-        let [_, y] = scale.at([1.0, place]);
+    for (place, label) in &ticks.labelled {
+        let [_, y] = scale.at([1.0, *place]);
         scene.line(&[[bar.right, y], [bar.right + 3.0, y]], FRAME);
-        let label = tick_label(place, decimals);
         widest = widest.max(label.width(TICK_SIZE));
-        scene.text(&label, [bar.right + 5.5, y + 0.5 * CAP_HEIGHT * TICK_SIZE], Anchor::Start, TICK_SIZE);
+        scene.text(label, [bar.right + 5.5, y + 0.5 * CAP_HEIGHT * TICK_SIZE], Anchor::Start, TICK_SIZE);
     }
     let beside = [bar.right + 5.5 + widest + 6.0 + CAP_HEIGHT * TEXT_SIZE, 0.5 * (top + bottom)];
-    scene.text_in(shading.title(), beside, Anchor::Middle, TEXT_SIZE, INK, true);
+    scene.text_in(&ticks.titled(shading.title()), beside, Anchor::Middle, TEXT_SIZE, INK, true);
 }
 
 fn corners(r: Rect) -> [[f64; 2]; 4] {

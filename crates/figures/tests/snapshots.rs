@@ -5,15 +5,16 @@
 //! within a tenth of a point.
 
 use hydrostat::{
-    Arm, BoundaryOptions, Cable, Gravity, Inputs, Loading, Material, MotionOptions, Options, Parameter, PathOptions,
-    Profile, Simulation, Space, SpatialSolver,
+    Arm, BoundaryOptions, Cable, Gravity, Inputs, Loading, Material, Mode, MotionOptions, Options, Parameter,
+    PathOptions, Profile, Simulation, Space, SpatialSolver,
 };
 use hydrostat_figures::source::{Shown, Study};
 use hydrostat_figures::{
     Abscissa, Coloured, ColouredColumn, KeyValues, LoadingPoint, Measure, MotionFrame, Page, Panel, Quantity, Scale,
     Scene, arm_figure, boundary_figure, curve_figure, equilibria_figure, fit_figure, last_good_note, lines_figure,
     loading_figure, map_figure, motion_figure, over_figure, path_figure, path_shapes_figure, reach_figure,
-    spatial_arm_figure, spatial_strobe_figure, strobe_figure, workspace_figure,
+    root_locus_figure, spatial_arm_figure, spatial_equilibria_figure, spatial_over_figure, spatial_path_figure,
+    spatial_path_shapes_figure, spatial_strobe_figure, spatial_workspace_figure, strobe_figure, workspace_figure,
 };
 use hydrostat_identify::{Case, FitOptions, Fitted, Measurement, fit};
 use insta::comparator::Comparator;
@@ -191,6 +192,71 @@ fn all_equilibria() {
     check("equilibria", &equilibria_figure(&all, "facing", &page()));
     let over = key("flow.speed", "m/s", 1.0, &[]).axis;
     check("over", &over_figure(&[(0.1, &all), (0.2, &all)], &over, Quantity::TipTheta, "facing", &page()));
+}
+
+/// A column that buckles to all sides in a stream from aside.
+fn column_in_space() -> Arm {
+    let mut column = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+    column.density = 1080.0;
+    column.tip.force = [-0.05, 0.0];
+    (column.flow.speed, column.gravity) = (0.02, Some(Gravity::default()));
+    column.space = Some(Space { stream: Some([0.0, 0.0, 1.0]), ..Space::default() });
+    column
+}
+
+#[test]
+fn paths_in_space() {
+    let path = column_in_space().path_in_space(Parameter::TipForce(0), [0.0, -0.1], &PathOptions::default()).unwrap();
+    let over = key("tip.force[0]", "mN", 1e3, &[]).axis;
+    check("spatial_path", &spatial_path_figure(&path, &over, Quantity::TipZ, "pressed", &page()));
+    check("spatial_path_shapes", &spatial_path_shapes_figure(&path, &over, "pressed", &page()));
+}
+
+#[test]
+fn all_equilibria_in_space() {
+    let mut column = column_in_space();
+    column.tip.force = [-0.1, 0.0];
+    let all = column.equilibria_in_space(1e-6).unwrap();
+    check("spatial_equilibria", &spatial_equilibria_figure(&all, "pressed", &page()));
+    let over = key("tip.force[0]", "N", 1.0, &[]).axis;
+    check("spatial_over", &spatial_over_figure(&[(-0.1, &all)], &over, Quantity::TipY, "pressed", &page()));
+}
+
+#[test]
+fn rates() {
+    let mut arm = arm();
+    arm.cables[0].tension = 0.0;
+    arm.dynamics.relaxation_time = 2.7e-3;
+    let of = |speed: f64| {
+        let mut arm = arm.clone();
+        arm.flow.speed = speed;
+        arm.modes(4, 8).unwrap().modes
+    };
+    let all = [0.0, 0.1, 0.2].map(|speed| (speed, of(speed)));
+    let found: Vec<(f64, &[Mode])> = all.iter().map(|(speed, modes)| (*speed, &**modes)).collect();
+    let over = key("flow.speed", "m/s", 1.0, &[]).axis;
+    check("root_locus", &root_locus_figure(&found, Some(&over), "rates", &page()));
+}
+
+/// Numbers that are one but for rounding, and numbers whose labels had a dozen digits.
+#[test]
+fn axes_of_nearly_one_number() {
+    let keys = key("arm.density", "kg/m3", 1.0, &[1000.0, 1080.0, 1200.0]);
+    let curve = |name: &str, values: [f64; 3]| check(name, &curve_figure(&keys, "tip_y_m", &values, "flat", &page()));
+    curve("curve_of_rounding", [0.1, 0.1 + 1e-16, 0.1 - 1e-16]);
+    curve("curve_of_zero", [1e-19, -2e-19, 0.0]);
+    curve("curve_with_offset", [0.1, 0.100_000_3, 0.100_000_9]);
+    let column = ColouredColumn { name: "tip_y_m".to_owned(), values: Coloured::Numbers(vec![1e-11, 3e-11, 2e-11]) };
+    let tips = [[0.2, 1e-11], [0.2, 3e-11], [0.2, 2e-11]];
+    check("workspace_of_one_place", &workspace_figure(&tips, &column, "flat", &page()));
+}
+
+#[test]
+fn tips_in_space() {
+    let numbers = Coloured::Numbers(vec![0.0, 0.1, 0.2, f64::NAN, 0.3]);
+    let column = ColouredColumn { name: "tip_alpha_rad".to_owned(), values: numbers };
+    let tips = [[0.2, 0.0, 0.0], [0.19, 0.03, 0.01], [0.15, 0.08, -0.05], [f64::NAN; 3], [0.1, 0.1, 0.1]];
+    check("spatial_workspace", &spatial_workspace_figure(&tips, &column, "a sweep", &page()));
 }
 
 #[test]

@@ -115,6 +115,15 @@ pub fn csv_writer() -> WriterBuilder {
     builder
 }
 
+/// One row, with its end of line.
+///
+/// ```
+/// assert_eq!(hydrostat_files::csv_row(&["a, b".to_owned(), "c".to_owned()]), "\"a, b\",c\n");
+/// ```
+pub fn csv_row(cells: &[String]) -> String {
+    Rows::new(cells).text()
+}
+
 /// Rows on their way to a text.
 pub(crate) struct Rows(Writer<Vec<u8>>);
 

@@ -53,7 +53,7 @@ pub use arm_file::ArmFile;
 pub use axis::{Axis, AxisError, AxisValue, AxisValues};
 pub use boundary::{BoundaryDocument, boundary_csv};
 pub use commented::commented_arm;
-pub use csv_text::{Dialect, csv_writer, is_missing};
+pub use csv_text::{Dialect, csv_row, csv_writer, is_missing};
 pub use deviations::Deviations;
 pub use digits::number;
 pub use equilibria::{EquilibriaDocument, OverDocument, equilibria_csv, over_csv};
@@ -79,9 +79,9 @@ pub use paths::{
 };
 pub use quantity::{Dimension, QuantityError, STANDARD_GRAVITY, WrongValue};
 pub use reach::{ReachDocument, reach_csv, spatial_reach_csv};
-pub use results::{FailureDocument, Note, SolutionDocument, TOLERANCE_MISSED, json, stations_csv};
+pub use results::{FailureDocument, Note, SolutionDocument, TOLERANCE_MISSED, UNIT_SLIP, json, stations_csv};
 pub use shared_unit::{PartialUnit, shared_unit};
-pub use slips::{Slip, likeliest_slip, unit_slips};
+pub use slips::{Slip, Span, likeliest_slip, slips_beside, slips_of_spans, unit_slips};
 pub use spatial_motions::{
     SPATIAL_MOTION_SHAPE_HEADS, spatial_equilibrium_numbers, spatial_motion_heads, spatial_motion_numbers,
     spatial_motion_shape_lines, spatial_place_numbers,

@@ -4,6 +4,7 @@ use hydrostat::{Arm, Configuration, LoadingSnap, LoadingStep, Pose, SpatialConfi
 use serde::Serialize;
 
 use crate::csv_text::Rows;
+use crate::heads::head_of;
 use crate::results::{SCHEMA, cell, json};
 use crate::state::{AnyTip, State};
 use crate::time_loads::LoadRows;
@@ -163,7 +164,7 @@ fn in_space(configuration: &SpatialConfiguration) -> State<'_> {
 /// The columns of snaps before the place of the tip.
 const SNAPS: [&str; 5] = ["snaps", "snap_share", "snap_distance_m", "snap_angle_rad", "snap_duration_s"];
 
-/// The rows as CSV: loads under their keys, what [`crate::path_csv`] has of an equilibrium, and the snaps since the row
+/// The rows as CSV: loads in SI units, angles in degrees, under their keys with the unit (`cable_0_tension_N`), what [`crate::path_csv`] has of an equilibrium, and the snaps since the row
 /// before: how many, and of the one that goes furthest share, distance, angle, duration and the place of the tip.
 pub fn loading_csv(loads: &LoadRows, rows: &[LoadingRow]) -> String {
     let columns =
@@ -187,7 +188,7 @@ fn written<'a, C, T: Pose + Default, const D: usize>(
     state: impl Fn(&'a C) -> State<'a>,
     place: impl Fn(T) -> [(&'static str, f64); D],
 ) -> String {
-    let mut names = loads.keys.clone();
+    let mut names: Vec<String> = loads.keys.iter().enumerate().map(|(k, key)| head_of(key, loads.unit(k))).collect();
     let places = place(T::default()).map(|(name, _)| name);
     names.extend(columns(&SNAPS.into_iter().chain(places).collect::<Vec<_>>()));
     let mut out = Rows::new(&names);

@@ -6,6 +6,7 @@ use hydrostat::{
 };
 use serde::Serialize;
 
+use crate::csv_text::csv_row;
 use crate::results::{Note, SCHEMA, cell, json};
 use crate::written::Inputs;
 
@@ -79,7 +80,7 @@ pub fn motion_row(at: &Instant) -> String {
 /// Numbers as a line of CSV, with its end of line; what is no number is an empty cell.
 pub fn motion_line(numbers: &[f64]) -> String {
     let cells: Vec<String> = numbers.iter().copied().map(cell).collect();
-    cells.join(",") + "\n"
+    csv_row(&cells)
 }
 
 /// The heads of [`motion_shape_lines`].
@@ -100,7 +101,7 @@ pub const MOTION_EVENT_HEADS: &str = "t_s,event,cable,s_m";
 /// An event as a line of CSV.
 pub fn motion_event_line(event: &EventOut) -> String {
     let cable = event.cable.map_or_else(String::new, |cable| cable.to_string());
-    format!("{},{},{cable},{}\n", cell(event.time), event.kind, event.s.map_or_else(String::new, cell))
+    csv_row(&[cell(event.time), event.kind.to_owned(), cable, event.s.map_or_else(String::new, cell)])
 }
 
 /// An event as documents have it.

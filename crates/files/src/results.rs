@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::csv_text::Rows;
 use crate::others::Others;
+use crate::slips::Slip;
 use crate::written::Inputs;
 
 /// The version of the JSON documents' structure.
@@ -50,6 +51,9 @@ pub struct FailureDocument<'a> {
 /// The kind of the note on an answer that is less accurate than was asked for.
 pub const TOLERANCE_MISSED: &str = "tolerance_missed";
 
+/// The kind of the note on a number of the arm that looks like a slip of the unit.
+pub const UNIT_SLIP: &str = "unit_slip";
+
 /// Something that should be known about an answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Note {
@@ -83,6 +87,12 @@ impl Note {
             note.message = motion.message(length);
         }
         notes
+    }
+}
+
+impl From<&Slip> for Note {
+    fn from(slip: &Slip) -> Self {
+        Self { kind: UNIT_SLIP, message: slip.to_string() }
     }
 }
 

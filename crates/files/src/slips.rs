@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-use hydrostat::{Arm, Cable, Material};
+use hydrostat::{Arm, Cable, Material, Parameter};
 
 use crate::digits::number;
 
@@ -64,6 +64,60 @@ pub fn unit_slips(arm: &Arm) -> Vec<Slip> {
 pub fn likeliest_slip(arm: &Arm) -> Option<Slip> {
     let most = || loads(arm).into_iter().filter(|(turns, ..)| *turns >= DOUBTED).max_by(|a, b| a.0.total_cmp(&b.0));
     unit_slips(arm).into_iter().next().or_else(|| most().map(|(.., slip)| slip))
+}
+
+/// Slips of arms that differ from `base` in what varies, one a key; those of `base` itself are left out.
+pub fn slips_beside(base: &Arm, others: impl IntoIterator<Item = Arm>) -> Vec<Slip> {
+    let own = unit_slips(base);
+    let mut out: Vec<Slip> = Vec::new();
+    for slip in others.into_iter().flat_map(|arm| unit_slips(&arm)) {
+        if own.iter().chain(&out).all(|known| known.key != slip.key) {
+            out.push(slip);
+        }
+    }
+    out
+}
+
+/// What one quantity of an arm runs through.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Span {
+    /// The key, as [`Parameter`] names it.
+    pub key: String,
+    /// The least and the largest value, or both ends of a range, in SI units (rad for angles).
+    pub ends: [f64; 2],
+}
+
+impl Span {
+    /// Of all finite values of a key; `None` where there is none.
+    pub fn of(key: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let finite = values.into_iter().filter(|value| value.is_finite());
+        let ends = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+        (ends[0] <= ends[1]).then(|| Self { key: key.into(), ends })
+    }
+
+    /// `arm` with either end, where it has such a quantity.
+    fn arms(&self, arm: &Arm) -> Vec<Arm> {
+        let Ok(parameter) = self.key.parse::<Parameter>() else { return Vec::new() };
+        let with = |value: &f64| {
+            let mut arm = arm.clone();
+            parameter.set(&mut arm, *value).is_ok().then_some(arm)
+        };
+        self.ends.iter().filter_map(with).collect()
+    }
+}
+
+/// Slips at the ends of what varies, one a key; those of the arm itself are left out.
+///
+/// ```
+/// use hydrostat::Arm;
+/// use hydrostat_files::{Span, slips_of_spans};
+///
+/// let arm = Arm::cone(0.3, 0.010, 0.002, 110e3, 0.5);
+/// let span = Span { key: "material.young".to_owned(), ends: [70.0, 110e3] };
+/// assert_eq!(slips_of_spans(&arm, &[span])[0].to_string(), "material.young = 70 Pa: is it kPa?");
+/// ```
+pub fn slips_of_spans(arm: &Arm, spans: &[Span]) -> Vec<Slip> {
+    slips_beside(arm, spans.iter().flat_map(|span| span.arms(arm)))
 }
 
 fn geometry(arm: &Arm) -> Vec<Slip> {
@@ -240,5 +294,32 @@ mod tests {
         assert_eq!(unit_slips(&many), []);
         assert_eq!(likeliest_slip(&many).unwrap().key, "cable[0].tension");
         assert_eq!(likeliest_slip(&arm("silicone", &[])), None);
+    }
+
+    #[test]
+    fn ends_of_ranges_are_asked_about_once_a_key() {
+        let silicone = arm("silicone", &[]);
+        let span = |key: &str, ends| Span { key: key.to_owned(), ends };
+        let slips = |base: &Arm, spans: &[Span]| -> Vec<String> {
+            slips_of_spans(base, spans).into_iter().map(|slip| slip.key).collect()
+        };
+        for (key, ends) in [
+            ("arm.density", [1.07, 1000.0]),
+            ("arm.length", [245.0, 300.0]),
+            ("tip.moment", [195.0, 200.0]),
+            ("material.young", [70.0, 110e3]),
+            ("cable[0].tension", [0.0, 5000.0]),
+            ("flow.speed", [50.0, 10.0]),
+        ] {
+            assert_eq!(slips(&silicone, &[span(key, ends)]), [key]);
+        }
+        assert!(slips(&silicone, &[span("flow.speed", [0.0, 0.5]), span("cable[0].tension", [0.0, 0.9])]).is_empty());
+        // What the arm has was said of the arm; what it cannot have is refused elsewhere.
+        let soft = arm("silicone", &[("material.young", "70")]);
+        assert!(
+            slips(&soft, &[span("material.young", [60.0, 80.0]), span("cable[7].tension", [0.0, 5000.0])]).is_empty()
+        );
+        assert_eq!(Span::of("flow.speed", [f64::NAN, 2.0, 1.0]), Some(span("flow.speed", [1.0, 2.0])));
+        assert_eq!(Span::of("flow.speed", [f64::NAN]), None);
     }
 }

@@ -11,6 +11,8 @@ use crate::error::shortened;
 use crate::format::{bracketed, dimension_at, nearest};
 use crate::heads::{key_named, readings, unit_of};
 use crate::quantity::{Dimension, WrongValue};
+use crate::shared_unit::{PartialUnit, shared_unit};
+use crate::slips::Span;
 
 /// The most that is read, in bytes.
 const MOST: u64 = 64 << 20;
@@ -117,6 +119,9 @@ pub enum ShapedError {
     /// A part that is no value.
     #[error(transparent)]
     Value(#[from] WrongValue),
+    /// A unit after some numbers of one dimension only, not after the last.
+    #[error(transparent)]
+    Unit(#[from] PartialUnit),
     /// A load that cannot be.
     #[error(transparent)]
     Load(#[from] MotionError),
@@ -124,11 +129,11 @@ pub enum ShapedError {
 
 /// Adds to `inputs` the loads of a CSV file: the column `t_s` (s), and columns with the keys of loads, in SI units and
 /// angles in degrees, or with a unit in the head: `cable_0_tension_mN`, `flow.speed [cm/s]`. Straight lines join the
-/// rows; two rows at one time are a jump. An empty cell is skipped.
+/// rows; two rows at one time are a jump. An empty cell is skipped. Gives what each load runs through.
 ///
 /// # Errors
 /// [`TimeLoadsError`].
-pub fn read_time_loads(path: impl AsRef<Path>, inputs: &mut Inputs) -> Result<(), TimeLoadsError> {
+pub fn read_time_loads(path: impl AsRef<Path>, inputs: &mut Inputs) -> Result<Vec<Span>, TimeLoadsError> {
     let (text, name) = text_of(path.as_ref())?;
     parse_time_loads(&text, &name, inputs)
 }
@@ -150,7 +155,7 @@ pub fn read_time_loads(path: impl AsRef<Path>, inputs: &mut Inputs) -> Result<()
 /// let error = parse_time_loads("t_s,flow.speed\n0,fast\n", "loads.csv", &mut inputs).unwrap_err();
 /// assert_eq!(error.to_string(), "loads.csv:2: column 2, flow.speed: expected a finite number, found \"fast\"");
 /// ```
-pub fn parse_time_loads(text: &str, path: &str, inputs: &mut Inputs) -> Result<(), TimeLoadsError> {
+pub fn parse_time_loads(text: &str, path: &str, inputs: &mut Inputs) -> Result<Vec<Span>, TimeLoadsError> {
     let table = Table::read(text, path)?;
     let path = path.to_owned();
     let Some((time_column, unit)) = table.header.time else {
@@ -174,13 +179,15 @@ pub fn parse_time_loads(text: &str, path: &str, inputs: &mut Inputs) -> Result<(
     if !before.is_finite() {
         return Err(TimeLoadsError::Empty { path });
     }
+    let mut spans = Vec::new();
     for ((_, key, _), rows) in table.header.keys.iter().zip(rows) {
         if !rows.is_empty() {
+            spans.extend(Span::of(key, rows.iter().map(|(_, value)| *value)));
             let set = inputs.set(key, Course::Table(rows));
             set.map_err(|source| TimeLoadsError::Load { path: path.clone(), source })?;
         }
     }
-    Ok(())
+    Ok(spans)
 }
 
 /// Loads in their order, one row after the other.
@@ -212,6 +219,15 @@ impl LoadRows {
         self.keys.iter().position(|own| *own == key)
     }
 
+    /// What each load runs through.
+    pub fn spans(&self) -> Vec<Span> {
+        let of = |(k, key): (usize, &String)| {
+            let dimension = dimension_at(key).unwrap_or(Dimension::Number);
+            Span::of(key, self.rows.iter().map(|(_, values)| dimension.bare(values[k])))
+        };
+        self.keys.iter().enumerate().filter_map(of).collect()
+    }
+
     /// The arm at each row.
     ///
     /// # Errors
@@ -231,7 +247,7 @@ impl LoadRows {
 }
 
 /// Reads loads in their order from a CSV file: columns with the keys of loads, in SI units, angles in degrees. A
-/// column `t_s` is passed over. A cell that is empty keeps the value of the row above, or that of the arm.
+/// column `t_s` is ignored. A cell that is empty keeps the value of the row above, or that of the arm.
 ///
 /// # Errors
 /// [`TimeLoadsError`].
@@ -439,7 +455,8 @@ fn unknown(head: &str) -> String {
 }
 
 /// Adds to `inputs` one load that changes in time: `KEY=ramp:FROM:TO:START:END`, `KEY=step:FROM:TO:AT` or
-/// `KEY=sine:MEAN:AMPLITUDE:PERIOD`, values and times in SI units (angles in degrees) unless they have their own.
+/// `KEY=sine:MEAN:AMPLITUDE:PERIOD`, values and times in SI units (angles in degrees) unless they have their own. A unit after the last
+/// value holds for both values, one after the last time for both times. Gives what the load runs through.
 ///
 /// # Errors
 /// [`ShapedError`].
@@ -449,30 +466,46 @@ fn unknown(head: &str) -> String {
 /// use hydrostat_files::set_shaped;
 ///
 /// let mut inputs = Inputs::default();
-/// set_shaped("cable[0].tension=ramp:0:200 mN:0:0.2 s", &mut inputs).unwrap();
+/// set_shaped("cable[0].tension=ramp:50:200 mN:0:0.2 s", &mut inputs).unwrap();
 /// set_shaped("flow.speed=sine:0.1:0.05:2", &mut inputs).unwrap();
 /// assert!(set_shaped("flow.speed=0:1", &mut inputs).is_err());
 /// ```
-pub fn set_shaped(text: &str, inputs: &mut Inputs) -> Result<(), ShapedError> {
+pub fn set_shaped(text: &str, inputs: &mut Inputs) -> Result<Span, ShapedError> {
     let form = || ShapedError::Form { text: text.to_owned() };
     let (key, shape) = text.split_once('=').ok_or_else(form)?;
     let key = bracketed(key.trim());
     let parts: Vec<&str> = shape.split(':').map(str::trim).collect();
     let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
-    let value = |part: &str| dimension.value_of(&key, part).map(|(value, _)| value);
-    let time = |part: &str| Dimension::Time.value_of(&key, part).map(|(value, _)| value);
-    let course = match parts[..] {
-        ["ramp", from, to, start, end] => Course::ramp(value(from)?, value(to)?, time(start)?, time(end)?),
-        ["step", from, to, at] => Course::step(value(from)?, value(to)?, time(at)?),
-        ["sine", mean, amplitude, period] => Course::Sine {
-            mean: value(mean)?,
-            amplitude: value(amplitude)?,
-            frequency: 1.0 / time(period)?,
-            phase: 0.0,
-        },
+    let (course, ends) = match parts[..] {
+        ["ramp", from, to, start, end] => {
+            let [from, to] = alike(dimension, &key, [from, to])?;
+            let [start, end] = alike(Dimension::Time, &key, [start, end])?;
+            (Course::ramp(from, to, start, end), [from, to])
+        }
+        ["step", from, to, at] => {
+            let [from, to] = alike(dimension, &key, [from, to])?;
+            let [at] = alike(Dimension::Time, &key, [at])?;
+            (Course::step(from, to, at), [from, to])
+        }
+        ["sine", mean, amplitude, period] => {
+            let [mean, amplitude] = alike(dimension, &key, [mean, amplitude])?;
+            let [period] = alike(Dimension::Time, &key, [period])?;
+            let course = Course::Sine { mean, amplitude, frequency: 1.0 / period, phase: 0.0 };
+            (course, [mean - amplitude, mean + amplitude])
+        }
         _ => return Err(form()),
     };
-    Ok(inputs.set(&key, course)?)
+    inputs.set(&key, course)?;
+    Ok(Span { key, ends })
+}
+
+/// Numbers of one dimension in SI units; a unit after the last one holds for all.
+fn alike<const N: usize>(dimension: Dimension, key: &str, parts: [&str; N]) -> Result<[f64; N], ShapedError> {
+    let mut out = [0.0; N];
+    for (out, text) in out.iter_mut().zip(shared_unit(dimension, key, &parts, ":")?) {
+        *out = dimension.value_of(key, &text)?.0;
+    }
+    Ok(out)
 }
 
 #[cfg(test)]
@@ -481,7 +514,7 @@ mod tests {
 
     fn read(text: &str) -> Result<Inputs, String> {
         let mut inputs = Inputs::default();
-        parse_time_loads(text, "loads.csv", &mut inputs).map(|()| inputs).map_err(|error| error.to_string())
+        parse_time_loads(text, "loads.csv", &mut inputs).map(|_| inputs).map_err(|error| error.to_string())
     }
 
     /// Only keys without a unit were read, not the heads that all other tables have.
@@ -514,5 +547,26 @@ mod tests {
             let error = read(&format!("{heads}\n0,0\n")).unwrap_err();
             assert!(error.starts_with(&format!("loads.csv:1: {words}")), "{error}");
         }
+    }
+    /// The first number of `ramp:50:100 mN` was read in newtons.
+    #[test]
+    fn a_unit_after_the_last_number_holds_for_all_of_its_dimension() {
+        let shaped = |text: &str| {
+            let mut inputs = Inputs::default();
+            set_shaped(text, &mut inputs).map(|_| inputs).map_err(|error| error.to_string())
+        };
+        for (shared, each) in [
+            ("cable[0].tension=ramp:50:100 mN:0:0.02", "cable[0].tension=ramp:50 mN:100 mN:0 s:0.02 s"),
+            ("cable[0].tension=sine:50:20 mN:1", "cable[0].tension=sine:50 mN:20 mN:1 s"),
+            ("flow.speed=ramp:5:20 cm/s:100:1000 ms", "flow.speed=ramp:5 cm/s:20 cm/s:100 ms:1000 ms"),
+            ("flow.direction=step:1:2 rad:10 ms", "flow.direction=step:1 rad:2 rad:10 ms"),
+            ("cable[0].tension=ramp:0:0.2 N:0 s:200 ms", "cable[0].tension=ramp:0:0.2:0:0.2"),
+        ] {
+            assert_eq!(shaped(shared).unwrap(), shaped(each).unwrap(), "{shared}");
+        }
+        let error = shaped("flow.speed=ramp:5 cm/s:20:0:1").unwrap_err();
+        assert!(error.contains("\"5:20 cm/s\"") && error.contains("\"5 cm/s:20 m/s\""), "{error}");
+        let error = shaped("flow.speed=ramp:5:20:1 ms:2").unwrap_err();
+        assert!(error.contains("\"1:2 ms\"") && error.contains("\"1 ms:2 s\""), "{error}");
     }
 }

@@ -26,7 +26,7 @@ export function wordsOf(answer, drawing) {
       lines.push("The picture shows the last good shape before this limit, not the requested loads.");
       lines.push(...shape.warnings.map((note) => sentence(note.message)));
     }
-    return { level: "bad", title: `No equilibrium at these loads: ${verdict.kind.replaceAll("_", " ")}`, lines };
+    return { level: "bad", title: `No equilibrium at these loads: ${kindWords(verdict.kind)}`, lines };
   }
   const lines = answer.warnings.map((note) => sentence(note.message));
   if (answer.unmet) {
@@ -40,6 +40,9 @@ export function wordsOf(answer, drawing) {
   if (lines.length > 0) return { level: level === "good" ? "warn" : level, title: `${title}, with ${kindsOf(answer)}`, lines };
   return { level, title, lines };
 }
+
+/** A kind for people. What folds is the surface; `cable_fold` is something else. @param {string} kind */
+const kindWords = (kind) => (kind === "cable_fold" ? "side compressed to zero length" : kind.replaceAll("_", " "));
 
 /** One number, or several in brackets. @param {number | number[]} value @param {(v: number) => string} text */
 const vector = (value, text) => (typeof value === "number" ? text(value) : `(${value.map(text).join(", ")})`);

@@ -3,7 +3,7 @@
 use hydrostat::{Arm, Configuration, Options, PathOptions, ReachOptions, SpatialConfiguration, VerdictKind};
 use hydrostat_figures::{Abscissa, Page, Scene, last_good_note};
 use hydrostat_files::{
-    Dimension, EquilibriaDocument, Inputs, Note, Others, Varied, arm_to_toml, equilibria_csv, shipped,
+    Dimension, EquilibriaDocument, Inputs, Note, Others, Varied, arm_to_toml, equilibria_csv, shipped, unit_slips,
 };
 use serde::Serialize;
 use serde_json::json;
@@ -116,12 +116,17 @@ where
             }
             match request.format {
                 Format::Csv => Ok(Answer::csv(shape.csv())),
-                _ => Ok(Answer::json(&shape.document(&notes))),
+                _ => Ok(Answer::json(&shape.document(&with_slips(arm, notes)))),
             }
         }
         Err(Unsolved::Verdict(failure)) => no_shape::<C>(request, arm, failure, stations, deadline),
         Err(Unsolved::Refused(problem)) => Err(problem),
     }
+}
+
+/// Slips of the unit, as the program warns of them, before what is to be said of the shape.
+pub(crate) fn with_slips(arm: &Arm, notes: Vec<Note>) -> Vec<Note> {
+    unit_slips(arm).iter().map(Note::from).chain(notes).collect()
 }
 
 /// What a drawing says of a shape that is not simply stable.
@@ -164,7 +169,7 @@ where
                 }
             }
             let others = others(arm, C::verdict(&failure).kind, deadline);
-            Ok(Answer::json(&C::failure(&failure, &notes, others)))
+            Ok(Answer::json(&C::failure(&failure, &with_slips(arm, notes), others)))
         }
     }
 }

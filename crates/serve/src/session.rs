@@ -12,6 +12,7 @@ use hydrostat_files::{ArmFile, json};
 use serde::{Deserialize, Serialize};
 use tokio::time::{sleep, timeout};
 
+use crate::answers::with_slips;
 use crate::arm_source::{ArmSource, Settings, arm, overridden};
 use crate::drawing::{Drawing, Silhouette};
 use crate::limits;
@@ -226,7 +227,7 @@ impl Memory {
                 if let (Some(pulled), Some(pull)) = (&mut reply.pulled, &self.pull) {
                     pulled.elsewhere = apart(pull.at, shape.tip(), arm.length);
                 }
-                let notes = shape.notes(tol);
+                let notes = with_slips(arm, shape.notes(tol));
                 shape.resample(count);
                 reply.drawing = Some(shape.drawing());
                 Ok(done(reply, shape.document(&notes)))
@@ -238,7 +239,7 @@ impl Memory {
                     shape.resample(count);
                     reply.drawing = Some(shape.drawing());
                 }
-                Ok(done(reply, C::failure(&failure, &notes, None)))
+                Ok(done(reply, C::failure(&failure, &with_slips(arm, notes), None)))
             }
             Err(Unsolved::Refused(problem)) => Err(problem),
         }

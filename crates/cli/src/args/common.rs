@@ -1,6 +1,7 @@
 //! Arguments of several commands.
 
 use clap::{Args as ClapArgs, ValueEnum};
+use hydrostat_files::{Dimension, shared_unit};
 
 /// What `stable` means wherever it is said.
 pub(super) const STABLE: &str = "\
@@ -43,4 +44,16 @@ pub(super) fn count(text: &str, most: usize) -> Result<usize, String> {
         Ok(n) if (2..=most).contains(&n) => Ok(n),
         _ => Err(format!("expected a whole number from 2 to {most}")),
     }
+}
+
+/// Numbers of one dimension with commas between them, in SI units; a unit after the last one holds for all. `name` is what one of them is
+/// called.
+pub(super) fn list(dimension: Dimension, name: &str, text: &str) -> Result<Vec<f64>, String> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let texts = shared_unit(dimension, name, &parts, ",").map_err(|error| error.to_string())?;
+    let one = |part: &String| match dimension.read(part) {
+        Ok((value, _)) => Ok(value),
+        Err(error) => Err(format!("expected {}, found \"{part}\": {error}", dimension.expected())),
+    };
+    texts.iter().map(one).collect()
 }

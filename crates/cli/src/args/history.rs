@@ -20,13 +20,14 @@ Exit status:
 // A doc comment would take [0] for a link.
 #[derive(Debug, ClapArgs)]
 #[command(long_about = "\
-Follows the arm quasi-statically along loads that rise and fall: each row of the table is the equilibrium reached
-from the row before, along the straight line between their loads. Where that ends in a limit point the arm snaps: its
+Follows the arm quasi-statically along loads that rise and fall: each row of the table is the equilibrium reached \
+from the row before, along the straight line between their loads. Where that ends in a limit point the arm snaps: its \
 motion is followed until it rests, and the way goes on from there. So the answer depends on the way (hysteresis).
 
-The loads file is CSV with columns named as the keys of --vary of `hydrostat path`, such as cable[0].tension,
-flow.speed or arm.base.angle, in SI units, angles in degrees. A column t_s is passed over. An empty cell keeps the
-value of the row above. The first row is reached from the unloaded arm as by `hydrostat solve --after-snap`.")]
+The loads file is CSV with columns named by keys of the arm file that can change over time, such as cable[0].tension, \
+flow.speed or arm.base.angle, in SI units, angles in degrees; a head may have a unit, as in cable_0_tension_mN. A \
+column t_s is ignored. An empty cell keeps the value of the row above. The first row is reached from the unloaded arm \
+as by `hydrostat solve --after-snap`.")]
 #[command(after_help = format!("\
 Examples:
   hydrostat history silicone --input loads.csv --plot loading.svg
@@ -37,7 +38,7 @@ Examples:
 pub(crate) struct HistoryArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
-    /// Loads in their order, CSV
+    /// Loads in their order, CSV; - is standard input
     #[arg(long, value_name = "FILE")]
     pub(crate) input: PathBuf,
     /// Tolerance on the tip position, relative to the arm's length, from 1e-12 to 1e-2

@@ -126,9 +126,7 @@ impl FromStr for Point {
             3 => "X,Y,Z",
             _ => return Err(wrong()),
         };
-        // Several quantities, not the numbers of one: a bare y beside an x with a unit is in m.
-        let shared = shared_unit(Dimension::Length, names, &parts, ",");
-        let texts = shared.unwrap_or_else(|_| parts.iter().map(|part| (*part).to_owned()).collect());
+        let texts = shared_unit(Dimension::Length, names, &parts, ",").map_err(|error| error.to_string())?;
         let values = texts.iter().map(|part| length(part)).collect::<Result<Vec<f64>, _>>()?;
         match values[..] {
             [x, y] => Ok(Self::Plane([x, y])),

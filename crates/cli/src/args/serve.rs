@@ -23,7 +23,7 @@ Examples:
 {EXIT}"))]
 pub(crate) struct ServeArgs {
     /// Arm file, or name of a shipped arm, to start with
-    #[arg(value_name = "ARM", default_value = "paper")]
+    #[arg(value_name = "ARM", default_value = "silicone")]
     pub(crate) arm: String,
     /// Port; 0 takes any free one
     #[arg(long, value_name = "PORT", default_value = "8080")]

@@ -1,12 +1,13 @@
 //! Arguments of `hydrostat simulate`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args as ClapArgs, ValueEnum};
 use hydrostat_files::Dimension;
 
-use super::common::count;
+use super::common::{count, list};
 use super::{ArmArgs, PictureArgs, picture};
+use crate::output;
 
 const EXIT: &str = "\
 Exit status:
@@ -40,7 +41,7 @@ Examples:
 pub(crate) struct SimulateArgs {
     #[command(flatten)]
     pub(crate) arm: ArmArgs,
-    /// Loads over time, CSV with the column t_s
+    /// Loads over time, CSV with the column t_s; - is standard input
     #[arg(long, value_name = "FILE")]
     pub(crate) input: Option<PathBuf>,
     // A doc comment would take [0] for a link.
@@ -106,6 +107,13 @@ pub(crate) struct SimulateArgs {
     pub(crate) picture: PictureArgs,
 }
 
+impl SimulateArgs {
+    /// The file that rows are written to; none where they go to standard output.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.output.as_deref().and_then(output::file)
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MotionFormat {
     Text,
@@ -147,11 +155,10 @@ fn shape_times(text: &str) -> Result<ShapeTimes, String> {
     if let Some(every) = text.strip_prefix("every:") {
         return time(every).map(ShapeTimes::Every);
     }
-    let one = |part: &str| match Dimension::Time.read(part) {
-        Ok((value, _)) if value >= 0.0 => Ok(value),
-        _ => Err(format!("expected times such as 0.1,0.2 or every:50ms, found \"{part}\"")),
-    };
-    let mut times = text.split(',').map(one).collect::<Result<Vec<f64>, String>>()?;
+    let mut times = list(Dimension::Time, "T", text)?;
+    if times.iter().any(|time| *time < 0.0) {
+        return Err(format!("expected times of at least 0, such as 0.1,0.2 or every:50ms, found \"{text}\""));
+    }
     times.sort_by(f64::total_cmp);
     Ok(ShapeTimes::At(times))
 }

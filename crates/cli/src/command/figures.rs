@@ -10,7 +10,7 @@ use crate::args::{FiguresArgs, PageArgs};
 use crate::{output, request};
 
 pub(crate) fn run(args: &FiguresArgs) -> anyhow::Result<()> {
-    let shown = Shown { at_highest: args.at_highest, faster: args.faster.clone() };
+    let shown = Shown { at_highest: args.at_highest, faster: args.faster.0.clone() };
     let arm = request::arm_of(&request::arm_file(&args.arm)?, "`hydrostat figures`")?;
     let read = [request::arm_input(&args.arm)];
     for name in ["fig1a", "fig1b", "fig1c"] {

@@ -12,6 +12,7 @@ use crate::args::{Format, ReachArgs};
 use crate::input;
 use crate::output;
 use crate::progress::Progress;
+use crate::say;
 
 pub(super) fn run(arm: &Arm, path: &Path, args: &ReachArgs) -> anyhow::Result<()> {
     let targets = if input::is_standard(path) {
@@ -34,7 +35,10 @@ pub(super) fn run(arm: &Arm, path: &Path, args: &ReachArgs) -> anyhow::Result<()
     };
     output::put(args.output.as_deref(), &text)?;
     for (index, _) in rows.iter().enumerate().filter(|(_, (_, found))| found.jumped) {
-        eprintln!("warning: on the way to target {} the arm jumped to another branch of its equilibria", index + 1);
+        say::warning(format_args!(
+            "on the way to target {} the arm jumped to another branch of its equilibria",
+            index + 1
+        ));
     }
     let missed: Vec<usize> = (0..rows.len()).filter(|k| !rows[*k].1.reached).collect();
     match missed.first() {

@@ -1,27 +1,32 @@
 //! `hydrostat history`: equilibria along loads that rise and fall.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use hydrostat::{Arm, Configuration, LoadingError, LoadingStep, SpatialConfiguration};
 use hydrostat_figures::{Abscissa, LoadingPoint, loading_figure};
-use hydrostat_files::{LoadRows, LoadingRow, number, read_load_rows};
+use hydrostat_files::{LoadRows, LoadingRow, number, parse_load_rows, read_load_rows};
 
 use super::loaded::Loaded;
 use super::path::check_quantity;
+use super::slip;
 use super::table::{counted, decimals, table};
 use crate::args::{Format, HistoryArgs};
+use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
 
 pub(crate) fn run(args: &HistoryArgs) -> anyhow::Result<()> {
+    input::check_once(&[("ARM", Some(Path::new(&args.arm.file))), ("--input", Some(&args.input))])?;
     let arm = request::arm_in_space(&args.arm)?;
     check_quantity(&arm, args.quantity)?;
-    let inputs = [request::arm_input(&args.arm.file), Some(("--input", args.input.as_path()))];
+    let inputs = [request::arm_input(&args.arm.file), Some(("--input", input::source(&args.input)))];
     let outputs = [("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())];
     request::check_outputs(&inputs, &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
-    let loads = read_load_rows(&args.input)?;
+    let loads = loads(args)?;
+    slip::warn(&arm, &loads.spans());
     if arm.space.is_some() {
         return along::<SpatialConfiguration>(args, &arm, &loads);
     }
@@ -53,6 +58,14 @@ fn along<C: Loaded>(args: &HistoryArgs, arm: &Arm, loads: &LoadRows) -> anyhow::
 
 /// A row of loads with its equilibrium.
 type Row<C> = LoadingRow<C, <C as hydrostat_figures::Posed>::Tip>;
+
+/// The loads, row by row.
+fn loads(args: &HistoryArgs) -> anyhow::Result<LoadRows> {
+    if input::is_standard(&args.input) {
+        return Ok(parse_load_rows(&input::text()?, input::NAME)?);
+    }
+    Ok(read_load_rows(&args.input)?)
+}
 
 /// The rows that were reached, and the index of the one that was not, with why.
 #[allow(clippy::type_complexity, reason = "names of what is there")]

@@ -3,20 +3,23 @@
 use hydrostat::{Arm, SensitivityError};
 use hydrostat_figures::fit_figure;
 use hydrostat_files::{
-    Deviations, IdentificationDocument, arm_to_toml, fitted, measurements_template, number, parse_measurements,
+    Deviations, IdentificationDocument, Span, arm_to_toml, fitted, measurements_template, number, parse_measurements,
     read_measurements, residuals_csv, residuals_csv_with_predictions,
 };
-use hydrostat_identify::{Case, Fit, FitOptions, Prediction, Unknown, fit, predict};
+use hydrostat_identify::{Case, Fit, FitOptions, Fitted, Prediction, Unknown, fit, predict};
 use std::fmt::Write as _;
+use std::path::Path;
 
 use super::NoAnswer;
 use super::misses::{misses_table, predicted_cases};
+use super::slip;
 use super::table::{counted, table};
 use crate::args::{Format, IdentifyArgs};
 use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
+use crate::say;
 
 /// Residuals from which a number is named, in standard deviations.
 const FAR: f64 = 4.0;
@@ -24,9 +27,9 @@ const FAR: f64 = 4.0;
 const MOST_NAMED: usize = 10;
 
 pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
-    if input::is_standard(&args.arm.file) && args.data.as_ref().is_some_and(input::is_standard) {
-        return Err(WrongRequest::InputTwice(["ARM", "DATA"]).into());
-    }
+    let arm_file = Path::new(&args.arm.file);
+    let read = [("ARM", Some(arm_file)), ("DATA", args.data.as_deref()), ("--predict", args.predict.as_deref())];
+    input::check_once(&read)?;
     let file = request::overridden(&args.arm)?;
     let arm = request::arm_anywhere(&file)?;
     // Told before anything is measured.
@@ -37,8 +40,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         [("-o", args.output.as_deref()), ("--fitted", args.fitted.as_deref()), ("--plot", args.plot.as_deref())];
     let inputs = [
         request::arm_input(&args.arm.file),
-        args.data.as_deref().map(|data| ("DATA", data)),
-        args.predict.as_deref().map(|data| ("--predict", data)),
+        args.data.as_deref().map(|data| ("DATA", input::source(data))),
+        args.predict.as_deref().map(|data| ("--predict", input::source(data))),
     ];
     request::check_outputs(&inputs, &outputs)?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
@@ -50,16 +53,16 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         deviations.add(text).map_err(anyhow::Error::msg)?;
     }
     let wanted = fitted(&arm, &args.fit, &args.prior)?;
+    slip::warn(&arm, &starts(&wanted));
     let parameters: Vec<_> = wanted.iter().map(|one| one.parameter).collect();
-    let cases = if input::is_standard(data) {
-        parse_measurements(&input::text()?, input::NAME, &file, &deviations, &parameters)?
-    } else {
-        read_measurements(data, &file, &deviations, &parameters)?
+    let cases_of = |path: &Path| -> anyhow::Result<Vec<Case>> {
+        if input::is_standard(path) {
+            return Ok(parse_measurements(&input::text()?, input::NAME, &file, &deviations, &parameters)?);
+        }
+        Ok(read_measurements(path, &file, &deviations, &parameters)?)
     };
-    let others = match &args.predict {
-        Some(path) => read_measurements(path, &file, &deviations, &parameters)?,
-        None => Vec::new(),
-    };
+    let cases = cases_of(data)?;
+    let others = args.predict.as_deref().map(cases_of).transpose()?.unwrap_or_default();
     if cases.iter().all(|case| case.measurements.is_empty()) {
         return Err(WrongRequest::NothingMeasured(data.clone()).into());
     }
@@ -100,7 +103,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
     if format == Format::Csv {
         for one in &predicted {
             if let Err(trial) = &one.found {
-                eprintln!("warning: load case {} is not predicted: {trial}", others[one.case].name);
+                say::warning(format_args!("load case {} is not predicted: {trial}", others[one.case].name));
             }
         }
     }
@@ -116,6 +119,12 @@ pub(crate) fn run(args: &IdentifyArgs) -> anyhow::Result<()> {
         );
     }
     Err(NoAnswer(words).into())
+}
+
+/// Where the search begins.
+fn starts(wanted: &[Fitted]) -> Vec<Span> {
+    let of = |one: &Fitted| Some(Span { key: one.parameter.parameter()?.to_string(), ends: [one.start; 2] });
+    wanted.iter().filter_map(of).collect()
 }
 
 /// A parameter's value as a user reads it: angles in degrees.

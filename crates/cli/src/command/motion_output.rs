@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use hydrostat::{Arm, MotionEvent, MotionState, MotionStatistics, MotionVerdict, MotionWarning};
 use hydrostat_files::{
-    EventOut, MOTION_EVENT_HEADS, MotionDocument, MotionShape, SavedMotion, WriteError, motion_event_line, motion_line,
-    motion_state_beside, write_whole,
+    EventOut, MOTION_EVENT_HEADS, MotionDocument, MotionShape, SavedMotion, WriteError, csv_row, motion_event_line,
+    motion_line, motion_state_beside, write_whole,
 };
 use hydrostat_sweep::{Column, Data, parquet_bytes};
 
@@ -38,13 +38,19 @@ pub(super) struct Ending {
 /// A table that grows line by line.
 struct Growing {
     path: PathBuf,
-    file: File,
+    /// None of standard output.
+    file: Option<File>,
     bytes: u64,
 }
 
 impl Growing {
     /// A new file, or the first `kept` bytes of the one there is.
-    fn open(path: &Path, kept: u64, heads: &str) -> Result<Self, WriteError> {
+    fn open(path: &Path, kept: u64, heads: &str) -> anyhow::Result<Self> {
+        if output::file(path).is_none() {
+            let mut out = Self { path: path.to_owned(), file: None, bytes: 0 };
+            out.add(heads)?;
+            return Ok(out);
+        }
         let failed = |source| WriteError { path: path.to_owned(), source };
         let kept = if path.exists() { kept } else { 0 };
         let mut file = OpenOptions::new().write(true).create(true).truncate(kept == 0).open(path).map_err(failed)?;
@@ -52,16 +58,22 @@ impl Growing {
             file.set_len(kept).map_err(failed)?;
             file.seek(SeekFrom::End(0)).map_err(failed)?;
         }
-        let mut out = Self { path: path.to_owned(), file, bytes: kept };
+        let mut out = Self { path: path.to_owned(), file: Some(file), bytes: kept };
         if kept == 0 {
-            out.add(&output::line(heads.to_owned()))?;
+            out.add(heads)?;
         }
         Ok(out)
     }
 
-    fn add(&mut self, text: &str) -> Result<(), WriteError> {
+    fn add(&mut self, text: &str) -> anyhow::Result<()> {
         self.bytes += text.len() as u64;
-        self.file.write_all(text.as_bytes()).map_err(|source| WriteError { path: self.path.clone(), source })
+        match &mut self.file {
+            Some(file) => {
+                let written = file.write_all(text.as_bytes());
+                Ok(written.map_err(|source| WriteError { path: self.path.clone(), source })?)
+            }
+            None => Ok(output::print(text)?),
+        }
     }
 }
 
@@ -105,19 +117,20 @@ impl MotionOutput {
     ) -> anyhow::Result<Self> {
         let [rows, shapes, events] = resumed.map_or([0; 3], |saved| saved.written);
         let format = Self::format(args);
-        let table = match (&args.output, format) {
-            (Some(path), MotionFormat::Csv) => Some(Growing::open(path, rows, &heads.join(","))?),
+        let table = match (args.file(), format) {
+            (Some(path), MotionFormat::Csv) => Some(Growing::open(path, rows, &csv_row(&heads))?),
             (None, MotionFormat::Csv) => {
-                output::print(&output::line(heads.join(",")))?;
+                output::print(&csv_row(&heads))?;
                 None
             }
             _ => None,
         };
-        let shape_table = args.shapes_output.as_ref().map(|path| Growing::open(path, shapes, shape_heads));
-        let event_table = args.events.as_ref().map(|path| Growing::open(path, events, MOTION_EVENT_HEADS));
+        let open = |path: &PathBuf, kept: u64, heads: &str| Growing::open(path, kept, &output::line(heads.to_owned()));
+        let shape_table = args.shapes_output.as_ref().map(|path| open(path, shapes, shape_heads));
+        let event_table = args.events.as_ref().map(|path| open(path, events, MOTION_EVENT_HEADS));
         Ok(Self {
             format,
-            path: args.output.clone(),
+            path: args.file().map(Path::to_owned),
             heads,
             table,
             shape_table: shape_table.transpose()?,
@@ -152,7 +165,7 @@ impl MotionOutput {
     }
 
     /// Takes a whole shape, as lines of the table of shapes and as documents have it.
-    pub(super) fn take_shape(&mut self, lines: &str, shape: MotionShape) -> Result<(), WriteError> {
+    pub(super) fn take_shape(&mut self, lines: &str, shape: MotionShape) -> anyhow::Result<()> {
         if let Some(table) = &mut self.shape_table {
             table.add(lines)?;
         }

@@ -10,11 +10,11 @@ use super::motion_output::Told;
 /// Of a motion in the plane; `wall` is what it took, s.
 pub(super) fn in_plane(arm: &Arm, at: &Instant, events: &[EventOut], told: &Told, wall: f64) -> String {
     let mut text = format!(
-        "motion {}\n\nafter  {} s the tip is at ({}, {}) m, turned by {} deg, and moves at {} m/s\n",
+        "motion {}\n\nafter  {} s the tip is at ({}, {}) mm, turned by {} deg, and moves at {} m/s\n",
         arm.name,
         number(at.time),
-        number(at.tip[0]),
-        number(at.tip[1]),
+        number(1e3 * at.tip[0]),
+        number(1e3 * at.tip[1]),
         number(at.tip_theta.to_degrees()),
         number(at.tip_velocity[0].hypot(at.tip_velocity[1]))
     );
@@ -22,7 +22,7 @@ pub(super) fn in_plane(arm: &Arm, at: &Instant, events: &[EventOut], told: &Told
     let base = at.base_reaction;
     let _ = writeln!(
         text,
-        "base   ({}, {}) N and {} N m hold it",
+        "base   reaction: force ({}, {}) N, moment {} N m",
         number(base.force[0]),
         number(base.force[1]),
         number(base.moment)
@@ -37,16 +37,16 @@ pub(super) fn in_space(arm: &Arm, at: &SpatialInstant, events: &[EventOut], told
     let triple = |v: [f64; 3]| format!("({})", v.map(number).join(", "));
     let speed = at.tip_velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
     let mut text = format!(
-        "motion {}\n\nafter  {} s the tip is at {} m, its normal along {}, and moves at {} m/s\n",
+        "motion {}\n\nafter  {} s the tip is at {} mm, its normal along {}, and moves at {} m/s\n",
         arm.name,
         number(at.time),
-        triple([at.tip.x, at.tip.y, at.tip.z]),
+        triple([at.tip.x, at.tip.y, at.tip.z].map(|v| 1e3 * v)),
         triple(at.tip.a),
         number(speed)
     );
     add_cables(arm, &at.cables, &mut text);
     let base = at.base_reaction;
-    let _ = writeln!(text, "base   {} N and {} N m hold it", triple(base.force), triple(base.moment));
+    let _ = writeln!(text, "base   reaction: force {} N, moment {} N m", triple(base.force), triple(base.moment));
     add_energies([at.kinetic_energy, at.strain_energy], &at.works, &mut text);
     add_end(at.time, events, told, wall, &mut text);
     text
@@ -56,8 +56,8 @@ pub(super) fn in_space(arm: &Arm, at: &SpatialInstant, events: &[EventOut], told
 pub(super) fn add_equilibrium(tip: &[f64], [distance, most]: [f64; 2], text: &mut String) {
     let _ = writeln!(
         text,
-        "statics in equilibrium the tip would be at ({}) m, {} of the length away; at most {} on the way",
-        tip.iter().copied().map(number).collect::<Vec<_>>().join(", "),
+        "statics in equilibrium the tip would be at ({}) mm, {} of the length away; at most {} on the way",
+        tip.iter().map(|v| number(1e3 * v)).collect::<Vec<_>>().join(", "),
         number(distance),
         number(most)
     );
@@ -67,7 +67,7 @@ fn add_cables(arm: &Arm, cables: &[CableMotion], text: &mut String) {
     for (cable, own) in arm.cables.iter().zip(cables) {
         let _ = writeln!(
             text,
-            "cable  {}: {} N, {} mm reeled in",
+            "cable  {}: tension {} N, stroke {} mm",
             cable.name,
             number(own.tension),
             number(1e3 * own.stroke)
@@ -85,7 +85,7 @@ fn add_energies([kinetic, strain]: [f64; 2], works: &Works, text: &mut String) {
         text,
         "energy {} J kinetic, {} J of strain\n\
          work   {cables} J by cables, {water} by water, {gravity} by gravity, {loads} by loads, {own_base} by the base, \
-         {volume} by sections that swell; {dissipated} dissipated",
+         {volume} by changes of volume; {dissipated} dissipated",
         number(kinetic),
         number(strain),
     );
@@ -100,13 +100,13 @@ fn add_end(time: f64, events: &[EventOut], told: &Told, wall: f64, text: &mut St
     let statistics = told.statistics;
     let _ = writeln!(
         text,
-        "steps  {} in time, {} taken back, on {} elements, in {} s: {} times as fast as the clock\n\
-         error  about {} m at the tip by the steps",
+        "steps  {} in time, {} rejected, on {} elements, in {} s of computing: {} s of motion per second\n\
+         error  about {} mm at the tip by the steps",
         statistics.steps,
         statistics.rejected,
         statistics.elements,
         number(wall),
         number(time / wall),
-        number(told.estimate)
+        number(1e3 * told.estimate)
     );
 }

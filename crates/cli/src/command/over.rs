@@ -3,9 +3,10 @@
 use hydrostat::Arm;
 use hydrostat_files::Varied;
 
-use super::NoAnswer;
+use super::{NoAnswer, slip};
 use crate::args::Over;
 use crate::request::WrongRequest;
+use crate::say;
 
 /// What is found at a value, or why there is nothing.
 pub(super) type At<T> = (f64, Result<T, String>);
@@ -26,6 +27,7 @@ pub(super) fn at_values<T>(
     Over { varied, count }: Over,
     mut find: impl FnMut(&Arm, &Value) -> anyhow::Result<Result<T, String>>,
 ) -> anyhow::Result<Vec<At<T>>> {
+    slip::warn_of_range(arm, &varied);
     let mut out = Vec::new();
     for (index, value) in varied.values(count).into_iter().enumerate() {
         let at = format!("at {} = {}", varied.parameter, varied.with_unit(value));
@@ -47,7 +49,7 @@ pub(super) fn say_what_is_missing<T>(
 ) -> anyhow::Result<()> {
     for (value, one) in found {
         if let Err(message) = one {
-            eprintln!("warning: at {}: {message}", varied.with_unit(*value));
+            say::warning(format_args!("at {}: {message}", varied.with_unit(*value)));
         }
     }
     if found.iter().any(|(_, one)| one.as_ref().is_ok_and(&has_equilibrium)) {

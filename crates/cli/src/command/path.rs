@@ -10,18 +10,21 @@ use hydrostat_figures::{Abscissa, Quantity};
 use hydrostat_files::{Landing, Varied, end_message, number};
 
 use super::shape::Shape;
+use super::slip;
 use super::table::{decimals, stability_words, table};
 use super::{NoAnswer, wrong_option};
 use crate::args::{Format, PathArgs};
 use crate::output;
 use crate::progress::Progress;
 use crate::request::{self, WrongRequest};
+use crate::say;
 
 pub(crate) fn run(args: &PathArgs) -> anyhow::Result<()> {
     let arm = request::arm_in_space(&args.arm)?;
     let varied = &args.vary;
     varied.parameter.of(&arm).map_err(|e| WrongRequest::Unfit("--vary", e))?;
     check_quantity(&arm, args.quantity)?;
+    slip::warn_of_range(&arm, varied);
     let pictures = [("--plot", args.plot.as_deref()), ("--plot-shapes", args.plot_shapes.as_deref())];
     let outputs = [("-o", args.output.as_deref()), pictures[0], pictures[1]];
     request::check_outputs(&[request::arm_input(&args.arm.file)], &outputs)?;
@@ -247,8 +250,10 @@ fn say_ends<C>(path: &Path<C>, varied: &Varied) -> anyhow::Result<()> {
         match branch.end {
             PathEnd::ReachedEnd => {}
             PathEnd::Limit { .. } if index == 0 => {}
-            PathEnd::MostPoints => eprintln!("note: {what}: {message}; raise it with --max-points"),
-            PathEnd::ReachedStart | PathEnd::Stopped | PathEnd::Limit { .. } => eprintln!("note: {what}: {message}"),
+            PathEnd::MostPoints => say::note(format_args!("{what}: {message}; raise it with --max-points")),
+            PathEnd::ReachedStart | PathEnd::Stopped | PathEnd::Limit { .. } => {
+                say::note(format_args!("{what}: {message}"));
+            }
         }
     }
     match path.branches.first() {

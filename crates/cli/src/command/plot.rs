@@ -27,9 +27,6 @@ pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
     let keys = varied_keys(&args.sweep)?;
     let all = names(&args.sweep)?;
     let pictures = pictures(args, all.iter().any(|name| name == TIP[0]));
-    // A workspace needs no keys, of which there may be as many as cables.
-    let has_map = pictures.iter().any(|(_, _, kind)| matches!(kind, Kind::Map));
-    let over = if has_map || !args.over.is_empty() { over(&keys, &args.over)? } else { Vec::new() };
     let outputs: Vec<_> = pictures.iter().map(|(option, file, _)| (*option, Some(file.as_path()))).collect();
     let beside = note_beside(&args.sweep);
     request::check_outputs(&[Some(("SWEEP", &*args.sweep)), Some(("SWEEP", &*beside))], &outputs)?;
@@ -49,6 +46,9 @@ pub(crate) fn run(args: &PlotArgs) -> anyhow::Result<()> {
     if matches!(&column.values, Coloured::Numbers(values) if !values.iter().any(|value| value.is_finite())) {
         return Err(WrongRequest::NothingToDraw(args.sweep.clone(), Some(quantity)).into());
     }
+    // A workspace needs no keys, of which there may be as many as cables.
+    let has_map = pictures.iter().any(|(_, _, kind)| matches!(kind, Kind::Map));
+    let over = if has_map || !args.over.is_empty() { over(&table, &keys, &args.over)? } else { Vec::new() };
     let name = args.sweep.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let page = args.picture.page();
     let mut written = String::new();
@@ -102,11 +102,17 @@ fn pictures(args: &PlotArgs, has_tips: bool) -> Vec<(&'static str, PathBuf, Kind
     out
 }
 
-/// The keys of the map: those asked for, or the only two, or the only one.
-fn over(keys: &[VariedKey], asked: &[String]) -> Result<Vec<VariedKey>, WrongRequest> {
+/// The keys of the map: those asked for, or the only two whose values are numbers, or the only one.
+fn over(table: &Table, keys: &[VariedKey], asked: &[String]) -> Result<Vec<VariedKey>, WrongRequest> {
     let known = || keys.iter().map(|key| key.name.clone()).collect();
     if asked.is_empty() {
-        return if keys.len() <= 2 { Ok(keys.to_vec()) } else { Err(WrongRequest::Over(known())) };
+        let has_numbers = |key: &&VariedKey| table.numbers(&key.column).is_some();
+        let numbers: Vec<VariedKey> = keys.iter().filter(has_numbers).cloned().collect();
+        return match numbers.len() {
+            0 => Err(WrongRequest::OnlyWords(known())),
+            1 | 2 => Ok(numbers),
+            _ => Err(WrongRequest::Over(known())),
+        };
     }
     let named = |asked: &String| {
         let asked = asked.trim();

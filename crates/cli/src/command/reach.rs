@@ -1,10 +1,13 @@
 //! `hydrostat reach`: the tensions that bring the arm to a place.
 
+use std::path::Path;
+
 use hydrostat::{Arm, Bound, CableState, Reach, Reached, SpatialTarget, Target};
 use hydrostat_figures::{reach_figure, spatial_arm_figure};
 use hydrostat_files::number;
 
 use super::shape::Shape;
+use super::slip;
 use super::table::{distance_cell, stability_words, table};
 use super::targets::{far_off, options};
 use super::{Advised, NoAnswer};
@@ -18,11 +21,10 @@ pub(crate) fn run(args: &ReachArgs) -> anyhow::Result<()> {
     if args.arm.tension.is_some() && args.path.is_none() {
         return Err(WrongRequest::TensionsAreFound.into());
     }
-    if input::is_standard(&args.arm.file) && args.path.as_ref().is_some_and(input::is_standard) {
-        return Err(WrongRequest::InputTwice(["ARM", "--path"]).into());
-    }
+    input::check_once(&[("ARM", Some(Path::new(&args.arm.file))), ("--path", args.path.as_deref())])?;
     let arm = request::arm_in_space(&args.arm)?;
-    let inputs = [request::arm_input(&args.arm.file), args.path.as_deref().map(|path| ("--path", path))];
+    slip::warn_of_bound(&arm, args.max_tension);
+    let inputs = [request::arm_input(&args.arm.file), args.path.as_deref().map(|path| ("--path", input::source(path)))];
     request::check_outputs(&inputs, &[("-o", args.output.as_deref()), ("--plot", args.plot.as_deref())])?;
     request::check_picture(&args.picture, &[("--plot", args.plot.as_deref())])?;
     let (x, y) = match (args.target, &args.path, arm.space.is_some()) {

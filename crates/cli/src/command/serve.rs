@@ -8,6 +8,7 @@ use hydrostat_serve::{Given, Options, Server};
 use crate::args::ServeArgs;
 use crate::output;
 use crate::request;
+use crate::say;
 
 pub(crate) fn run(args: &ServeArgs) -> anyhow::Result<()> {
     let file = request::arm_file(&args.arm)?;
@@ -21,11 +22,11 @@ pub(crate) fn run(args: &ServeArgs) -> anyhow::Result<()> {
         let server = Server::bind(options).await?;
         let page = format!("http://{}/", seen_from_here(server.address()));
         output::print(&format!("{page}\n"))?;
-        eprintln!("the viewer runs until Ctrl-C");
+        say::line("the viewer runs until Ctrl-C");
         if args.open
             && let Err(error) = open::that_detached(&page)
         {
-            eprintln!("note: no browser could be opened ({error}); open {page} by hand");
+            say::note(format_args!("no browser could be opened ({error}); open {page} by hand"));
         }
         Ok(server.run().await?)
     })

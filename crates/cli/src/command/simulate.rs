@@ -1,21 +1,25 @@
 //! `hydrostat simulate`: the arm in motion.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant as Clock};
 
 use hydrostat::{Arm, Inputs, MotionError, MotionOptions, Simulation, SpatialSimulation};
 use hydrostat_figures::{MotionFrame, motion_figure};
-use hydrostat_files::{EventOut, SavedMotion, motion_state_beside, number, read_time_loads, set_shaped};
+use hydrostat_files::{
+    EventOut, SavedMotion, motion_state_beside, number, parse_time_loads, read_time_loads, set_shaped,
+};
 
 use super::motion_output::{Ending, MotionOutput, Told};
 use super::motion_text;
 use super::moving::Moving;
+use super::slip;
 use super::wrong_option;
 use crate::args::{MotionFormat, ShapeTimes, SimulateArgs, StationAt};
 use crate::progress::Progress;
 use crate::request::WrongRequest;
-use crate::{exit, output, request};
+use crate::{exit, input, output, request, say};
 
 /// The most rows of one document, and of whole shapes.
 const MOST_ROWS: f64 = 1e7;
@@ -24,16 +28,17 @@ const MOST_ROWS: f64 = 1e7;
 const KEPT_EVERY: Duration = Duration::from_secs(5);
 
 pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
+    input::check_once(&[("ARM", Some(Path::new(&args.arm.file))), ("--input", args.input.as_deref())])?;
     let arm = request::arm_in_space(&args.arm)?;
     let pictures = [("--plot", args.plot.as_deref()), ("--plot-time", args.plot_time.as_deref())];
-    let state_file = args.output.as_deref().map(motion_state_beside);
+    let state_file = args.file().map(motion_state_beside);
     let from_file = args.from.as_deref().map(|file| {
         let beside = motion_state_beside(file);
         if beside.exists() { beside } else { file.to_owned() }
     });
     let inputs = [
         request::arm_input(&args.arm.file),
-        args.input.as_deref().map(|file| ("--input", file)),
+        args.input.as_deref().map(|file| ("--input", input::source(file))),
         args.from.as_deref().map(|file| ("--from", file)),
         from_file.as_deref().map(|file| ("--from", file)),
     ];
@@ -47,7 +52,7 @@ pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     ];
     request::check_outputs(&inputs, &outputs)?;
     request::check_picture(&args.picture, &pictures)?;
-    let loads = loads(args)?;
+    let loads = loads(args, &arm)?;
     let earlier = args.from.as_deref().map(SavedMotion::read).transpose()?;
     let start = earlier.as_ref().map_or(0.0, |earlier| earlier.state.time);
     let plan = Plan::new(args, &arm, start)?;
@@ -155,7 +160,7 @@ fn finish<M: Moving<D>, const D: usize>(
     is_resumable: bool,
 ) -> anyhow::Result<()> {
     for warning in simulation.told().warnings {
-        eprintln!("warning: {}", warning.message());
+        say::warning(warning.message());
     }
     match outcome {
         Ok(()) => Ok(()),
@@ -188,24 +193,31 @@ impl<const D: usize> Statics<D> {
     }
 }
 
-/// The loads over time.
-fn loads(args: &SimulateArgs) -> anyhow::Result<Inputs> {
+/// The loads over time; those that look like a slip of the unit are named.
+fn loads(args: &SimulateArgs, arm: &Arm) -> anyhow::Result<Inputs> {
     let mut loads = Inputs::default();
-    if let Some(file) = &args.input {
-        read_time_loads(file, &mut loads)?;
-    }
+    let mut spans = match &args.input {
+        Some(file) if input::is_standard(file) => parse_time_loads(&input::text()?, input::NAME, &mut loads)?,
+        Some(file) => read_time_loads(file, &mut loads)?,
+        None => Vec::new(),
+    };
     for text in &args.vary {
-        set_shaped(text, &mut loads).map_err(|error| {
+        let span = set_shaped(text, &mut loads).map_err(|error| {
             let message = format!("--vary {error}");
             anyhow::Error::new(error).context(message)
         })?;
+        spans.push(span);
     }
+    slip::warn(arm, &spans);
     Ok(loads)
 }
 
 /// The interrupted run that is to go on, where there is one.
 fn resumed(args: &SimulateArgs, request: u64) -> anyhow::Result<Option<SavedMotion>> {
     let Some(path) = args.output.as_deref().filter(|_| args.resume) else { return Ok(None) };
+    if args.file().is_none() {
+        return Err(WrongRequest::NotResumable(path.to_owned()).into());
+    }
     if MotionOutput::format(args) != MotionFormat::Csv {
         return Err(WrongRequest::NotResumable(path.to_owned()).into());
     }
@@ -384,7 +396,7 @@ fn follow<M: Moving<D>, const D: usize>(
         if next[1] == Some(time) {
             shape += 1;
             let (lines, own) = simulation.shape(&plan.shape);
-            output.take_shape(&lines, own).map_err(|error| Stop::Output(error.into()))?;
+            output.take_shape(&lines, own).map_err(Stop::Output)?;
         }
         if next[0] != Some(time) {
             continue;

@@ -12,6 +12,7 @@ use super::{Advised, wrong_option};
 use crate::args::{Format, SolveArgs};
 use crate::output;
 use crate::request;
+use crate::say;
 
 pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
     let arm = request::arm_in_space(&args.arm)?;
@@ -56,10 +57,10 @@ fn report_error(args: &SolveArgs, arm: &Arm, error: SolveError) -> anyhow::Resul
             let others = others(arm, args.tol, failure.verdict.kind);
             report_failure(args, *failure.clone(), others)?;
             if let Some(message) = beyond(&failure) {
-                eprintln!("note: {message}");
+                say::note(message);
             }
             if let Some(others) = others {
-                eprintln!("note: {}", others_message(others));
+                say::note(others_message(others));
             }
             let advice = slip(arm, &failure.verdict);
             Err(Advised::with(SolveError::NoEquilibrium(failure), advice))
@@ -93,11 +94,10 @@ fn report(
     output::put(args.output.as_deref(), &text)?;
     for note in notes {
         // A snap within its bounds is known to be harmless.
-        let word = if note.kind == "snap" { "note" } else { "warning" };
-        eprintln!("{word}: {}", note.message);
+        if note.kind == "snap" { say::note(&note.message) } else { say::warning(&note.message) }
     }
     if configuration.stability().map_or(configuration.stable, Stability::is_stable) == Some(false) {
-        eprintln!("warning: this equilibrium is unstable: the slightest disturbance would move the arm away from it");
+        say::warning("this equilibrium is unstable: the slightest disturbance would move the arm away from it");
     }
     Ok(())
 }
@@ -109,7 +109,9 @@ fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium, others: Option<O
             let note = last_good_note(&failure.verdict);
             output::draw(&arm_figure(last_good, Some(&note), &args.picture.page()), plot, &args.picture.page)?;
         }
-        (Some(plot), None) => eprintln!("warning: no shape was found on the way, so {} is not drawn", plot.display()),
+        (Some(plot), None) => {
+            say::warning(format_args!("no shape was found on the way, so {} is not drawn", plot.display()));
+        }
         (None, _) => {}
     }
     if args.format == Format::Json {

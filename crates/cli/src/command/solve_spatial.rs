@@ -16,6 +16,7 @@ use super::{Advised, wrong_option};
 use crate::args::{Format, SolveArgs};
 use crate::output;
 use crate::request;
+use crate::say;
 
 pub(super) fn run(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
     let options = Options { tol: args.tol, snaps: args.snaps.bounds() };
@@ -84,11 +85,10 @@ fn report(
     output::put(args.output.as_deref(), &text)?;
     for note in notes {
         // A snap within its bounds is known to be harmless.
-        let word = if note.kind == "snap" { "note" } else { "warning" };
-        eprintln!("{word}: {}", note.message);
+        if note.kind == "snap" { say::note(&note.message) } else { say::warning(&note.message) }
     }
     if configuration.stability().map_or(configuration.stable, Stability::is_stable) == Some(false) {
-        eprintln!("warning: this equilibrium is unstable: the slightest disturbance would move the arm away from it");
+        say::warning("this equilibrium is unstable: the slightest disturbance would move the arm away from it");
     }
     Ok(())
 }
@@ -97,7 +97,9 @@ fn report(
 fn report_failure(args: &SolveArgs, mut failure: NoSpatialEquilibrium) -> anyhow::Result<()> {
     match (&args.plot, &failure.last_good) {
         (Some(plot), Some(last_good)) => draw(args, plot, last_good, Some(&last_good_note(&failure.verdict)))?,
-        (Some(plot), None) => eprintln!("warning: no shape was found on the way, so {} is not drawn", plot.display()),
+        (Some(plot), None) => {
+            say::warning(format_args!("no shape was found on the way, so {} is not drawn", plot.display()));
+        }
         (None, _) => {}
     }
     if args.format != Format::Json {

@@ -1,14 +1,15 @@
 //! `hydrostat sweep`: an arm over grids and samples of its file's keys.
 
 use anyhow::Context as _;
-use hydrostat::SolveError;
+use hydrostat::{Arm, SolveError};
+use hydrostat_files::{ArmFile, Axis, AxisValue, AxisValues, Span};
 use hydrostat_sweep::{Plan, Sample, Summary, Sweep, SweepError, SweepOptions, note_beside};
 
-use super::{NoAnswer, wrong_option};
+use super::{NoAnswer, slip, wrong_option};
 use crate::args::SweepArgs;
 use crate::rate::{Rate, duration};
 use crate::request::WrongRequest;
-use crate::{exit, output, question, request};
+use crate::{exit, output, question, request, say};
 
 /// Rows from which a sweep is asked about.
 const MANY: u64 = 1_000_000_000;
@@ -16,7 +17,8 @@ const MANY: u64 = 1_000_000_000;
 pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let file = request::overridden(&args.arm)?;
     // Wrong files and likely slips are told as everywhere.
-    request::arm_anywhere(&file)?;
+    let arm = request::arm_anywhere(&file)?;
+    slip::warn_beside(&arm, args.vary.iter().flat_map(|axis| at_ends(&file, axis)));
     let plan =
         Plan::new(args.vary.clone(), args.sample.unwrap_or(Sample::Grid), args.seed).map_err(SweepError::from)?;
     let options = SweepOptions {
@@ -53,17 +55,32 @@ pub(crate) fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let warnings = warnings(&summary);
     if summary.damaged > 0 {
         let parts = if summary.damaged == 1 { "part" } else { "parts" };
-        eprintln!("note: {} {parts} of an earlier run had changed since; solved again", summary.damaged);
+        say::note(format_args!("{} {parts} of an earlier run had changed since; solved again", summary.damaged));
     }
     let words = format!("{}: {rows} rows of {}, {answered} with an equilibrium", args.output.display(), sweep.name());
     if answered == 0 {
         return Err(NoAnswer(format!("{words}: the column `verdict` says why"))).context(words);
     }
-    eprintln!("{words}{}", progress.summary(rows, summary.resumed));
+    say::line(format_args!("{words}{}", progress.summary(rows, summary.resumed)));
     if let Some(warnings) = warnings {
-        eprintln!("note: {warnings}");
+        say::note(warnings);
     }
     Ok(())
+}
+
+/// The arm with the least and with the largest value of a key, where it can have them.
+fn at_ends(file: &ArmFile, axis: &Axis) -> Vec<Arm> {
+    let ends: Vec<f64> = match &axis.values {
+        AxisValues::Even { from, to, .. } | AxisValues::Span { from, to } => vec![*from, *to],
+        AxisValues::List(values) => Span::of(&axis.key, values.iter().copied()).map_or(Vec::new(), |s| s.ends.into()),
+        AxisValues::Words(_) => Vec::new(),
+    };
+    let with = |value: f64| {
+        let mut file = file.clone();
+        file.set(&axis.key, &axis.text(AxisValue::Number(value))).ok()?;
+        file.arm().ok()
+    };
+    ends.into_iter().filter_map(with).collect()
 }
 
 /// What so many rows mean, in words.

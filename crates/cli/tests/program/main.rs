@@ -17,6 +17,7 @@ mod serve;
 mod shell;
 mod slips;
 mod space;
+mod streams;
 mod sweeps;
 mod tables;
 #[cfg(unix)]

@@ -72,6 +72,26 @@ fn inputs_were_replaced_by_outputs() {
     assert_eq!(hydrostat_in(here, &["solve", "my.toml", "-o", "new.txt"]).code, 0);
 }
 
+/// `solve - -o my.toml < my.toml` did the same.
+#[cfg(unix)]
+#[test]
+fn what_standard_input_comes_from_is_an_input() {
+    let directory = place();
+    let here = directory.path();
+    let before = contents(here);
+    for args in [&["solve", "-", "-o", "my.toml"][..], &["path", "-", "--vary", "flow.speed=0:0.1", "-o", "my.toml"]] {
+        let run = std::process::Command::new(env!("CARGO_BIN_EXE_hydrostat"))
+            .args(args)
+            .current_dir(here)
+            .stdin(fs::File::open(here.join("my.toml")).unwrap())
+            .output()
+            .unwrap();
+        let err = String::from_utf8(run.stderr).unwrap();
+        assert!(run.status.code() == Some(2) && err.contains("also read, as ARM"), "{args:?}: {err}");
+        assert!(contents(here) == before, "{args:?}");
+    }
+}
+
 #[test]
 fn figures_sweeps_and_plots_keep_what_they_read() {
     let directory = place();

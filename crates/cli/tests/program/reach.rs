@@ -20,7 +20,7 @@ fn reach<'a>(target: &'a str, more: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn tensions_that_were_solved_with_are_found_again() {
     let [x, y] = tip("0.3,0.1");
-    let target = format!("{} mm,{y}", 1e3 * x);
+    let target = format!("{} mm,{y} m", 1e3 * x);
     let run = solved(&reach(&target, &[]));
     assert!(run.out.starts_with("silicone: 1 solution\n"), "{}", run.out);
     assert!(run.out.lines().any(|line| line.trim_start().starts_with("0.3  ") && line.ends_with("yes")), "{}", run.out);

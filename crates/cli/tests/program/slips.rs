@@ -54,6 +54,44 @@ fn a_torque_in_the_wrong_unit_is_named() {
     assert!(pull.err.contains("warning: cable[0].tension = 200 N, which alone") && pull.code == 3, "{}", pull.err);
 }
 
+/// Only the arm's own numbers were looked at, not those that they are to take.
+#[test]
+fn ranges_and_loads_over_time_are_asked_about() {
+    let directory = directory();
+    let here = directory.path();
+    std::fs::write(here.join("loads.csv"), "t_s,cable[0].tension\n0,0\n1,1000\n").unwrap();
+    std::fs::write(here.join("data.csv"), "s_mm,x_mm,y_mm\n245,244,1\n").unwrap();
+    let wide = ["--set", "cable[0].max_tension=1e5"];
+    let sweep = |range: &'static str| ["sweep", "silicone", "--vary", range, "-o", "out.csv"];
+    for (args, words) in [
+        (&sweep("arm.density=1.07,1000")[..], "arm.density = 1.07 kg/m3: is it g/cm3?"),
+        (&sweep("arm.length=245,300"), "arm.length = 245 m: is it mm?"),
+        (&sweep("tip.moment=195,200"), "tip.moment = 195 N m, which"),
+        (&["path", "silicone", "--vary", "material.young=70:110000"], "material.young = 70 Pa: is it kPa?"),
+        (&[&["path", "silicone", "--vary", "cable.0.tension=0:5000"], &wide[..]].concat(), "cable[0].tension = 5000 N"),
+        (&["equilibria", "silicone", "--over", "material.young=70:100:2"], "material.young = 70 Pa: is it kPa?"),
+        (&["modes", "silicone", "--over", "material.young=70:100:2"], "material.young = 70 Pa: is it kPa?"),
+        (&["history", "silicone", "--input", "loads.csv"], "cable[0].tension = 1000 N, which"),
+        (&["simulate", "silicone", "--input", "loads.csv", "--until", "1e-9"], "cable[0].tension = 1000 N, which"),
+        (
+            &["simulate", "silicone", "--vary", "cable[0].tension=ramp:0:1000:0:1", "--until", "1e-9"],
+            "cable[0].tension = 1000 N, which",
+        ),
+        (
+            &["identify", "silicone", "data.csv", "--fit", "young=70", "--sd", "1 mm"],
+            "material.young = 70 Pa: is it kPa?",
+        ),
+        (&["reach", "silicone", "--target", "0.2,0.05", "--max-tension", "1000"], "--max-tension = 1000 N, which"),
+    ] {
+        let run = hydrostat_in(here, args);
+        let said = format!("warning: {words}");
+        assert_eq!(run.err.matches(&said).count(), 1, "{args:?}: {}", run.err);
+        for file in ["out.csv", "out.csv.json"] {
+            let _ = std::fs::remove_file(here.join(file));
+        }
+    }
+}
+
 #[test]
 fn all_errors_of_a_file_are_told_at_once() {
     let directory = directory();
@@ -168,4 +206,11 @@ fn where_nothing_was_found_the_last_shape_is_told() {
     assert_eq!(run.code, 3, "{}{}", run.out, run.err);
     assert!(run.err.contains("note: in the last shape that was found the tip is turned by "), "{}", run.err);
     assert!(run.err.contains("\ntry: look at the units first: tip.moment = 0.5 N m"), "{}", run.err);
+}
+
+#[test]
+fn where_nothing_was_found_in_space_the_last_shape_is_told() {
+    let run = super::hydrostat(&["solve", "silicone-spatial", "--set", "arm.length=300"]);
+    assert_eq!(run.code, 3, "{}{}", run.out, run.err);
+    assert!(run.err.contains("note: in the last shape that was found the arm bends by "), "{}", run.err);
 }

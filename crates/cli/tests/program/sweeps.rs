@@ -120,6 +120,8 @@ fn outputs_that_are_there_and_plots_that_cannot_be() {
         "--vary",
         "cable[0].tension=0,1",
         "--vary",
+        "arm.density=1000,1080",
+        "--vary",
         "model.volume=none,planar",
     ];
     assert_eq!(hydrostat_in(here, &[&args[..], &["-o", "three.csv"]].concat()).code, 0);
@@ -130,6 +132,23 @@ fn outputs_that_are_there_and_plots_that_cannot_be() {
     assert!(refused(&[&over[..], &["--quantity", "tip_z"]].concat()).contains("expected one of row, flow_speed_m_s"));
     assert!(refused(&[&over[..], &["--map", "nowhere/a.svg"]].concat()).contains("cannot write nowhere/a.svg"));
     assert_eq!(files(here), ["out.csv", "three.csv", "three.csv.json"]);
+}
+
+/// `plot` complained of `--over`, which was not given.
+#[test]
+fn a_sweep_over_a_word_and_a_number_is_drawn_over_the_number() {
+    let directory = directory();
+    let here = directory.path();
+    let words = ["--vary", "model.volume=planar,none"];
+    let sweep = |more: &[&str]| hydrostat_in(here, &[&["sweep", "paper"], &words[..], more].concat()).code;
+    assert_eq!(sweep(&["--vary", "cable[0].tension=0:80:5", "-o", "w.csv"]), 0);
+    let run = hydrostat_in(here, &["plot", "w.csv", "--map", "w.svg", "--svg-text"]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""));
+    let svg = std::fs::read_to_string(here.join("w.svg")).unwrap();
+    assert!(svg.contains("cable[0].tension (N)") && svg.contains("w.csv, model.volume = planar"), "{svg}");
+    assert_eq!(sweep(&["-o", "words.csv"]), 0);
+    let run = hydrostat_in(here, &["plot", "words.csv"]);
+    assert!(run.code == 2 && run.err.contains("the values of model.volume are words"), "{}", run.err);
 }
 
 /// A disk that takes no more: what is written stops at a limit that the shell sets.

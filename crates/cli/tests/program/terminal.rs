@@ -96,3 +96,25 @@ fn long_work_says_where_it_is() {
     // The line is gone at the end.
     assert!(text.ends_with("\r\u{1b}[K"), "{text:?}");
 }
+
+/// Words that say what a line is have a colour where a person reads them, and nowhere else.
+#[test]
+fn errors_and_warnings_have_colours_on_a_terminal() {
+    let said = |args: &[&str], no_color: bool| {
+        let (screen, own) = terminal(100);
+        let mut command = program(args);
+        if no_color {
+            command.env("NO_COLOR", "1");
+        }
+        let child = command.stdout(Stdio::null()).stdin(Stdio::null()).stderr(own).spawn().unwrap();
+        drop(command);
+        shown(child, screen).1
+    };
+    let slip = ["check", "silicone", "--set", "arm.length=300"];
+    let text = said(&slip, false);
+    assert!(text.contains("\u{1b}[") && plain(&text).starts_with("warning: arm.length = 300 m"), "{text:?}");
+    assert!(said(&["solve", "nowhere.toml"], false).starts_with("\u{1b}["));
+    assert!(said(&["solve", "--nothing"], false).contains("\u{1b}["));
+    assert!(!said(&slip, true).contains('\u{1b}'));
+    assert!(!super::solved(&slip).err.contains('\u{1b}'));
+}

@@ -28,6 +28,14 @@ fn a_unit_behind_a_range_was_that_of_its_end_alone() {
     let tensions = solved(&["solve", "silicone", "--tension", "200,100 mN", "--format", "json"]);
     assert_eq!(json(&tensions.out)["inputs"]["cable"][1]["tension"], 0.1);
     assert_eq!(json(&tensions.out)["inputs"]["cable"][0]["tension"], 0.2);
+    let ramp = |shape: &str| {
+        let vary = format!("cable[0].tension={shape}");
+        let motion = ["simulate", "silicone", "--until", "0.02", "--every", "0.01", "--format", "csv", "--vary", &vary];
+        solved(&motion).out
+    };
+    assert_eq!(ramp("ramp:50:100 mN:0:20 ms"), ramp("ramp:0.05:0.1:0:0.02"));
+    let figures = refused(&["figures", "paper", "--faster", "1,2 cm/s", "-o", "figures"]);
+    assert!(figures.contains("0.01") && !figures.contains("invalid float"), "{figures}");
     let reached = solved(&["reach", "silicone", "--target", "182,78 mm", "--max-tension", "0.6 N", "--format", "json"]);
     assert_eq!(json(&reached.out)["reached"], true);
 }
@@ -40,6 +48,13 @@ fn a_unit_behind_the_first_number_alone_has_two_readings() {
         (&["path", "paper", "--vary", "flow.speed=5 cm/s:20"], "5:20 cm/s", "5 cm/s:20 m/s"),
         (&["equilibria", "paper", "--over", "flow.speed=5 cm/s:20:4"], "5:20 cm/s", "5 cm/s:20 m/s"),
         (&["solve", "paper", "--tension", "20 mN,10"], "20,10 mN", "20 mN,10 N"),
+        (&["reach", "paper", "--target", "150 mm,-100"], "150,-100 mm", "150 mm,-100 m"),
+        (&["figures", "--faster", "100 cm/s,2"], "100,2 cm/s", "100 cm/s,2 m/s"),
+        (
+            &["simulate", "silicone", "--until", "1", "--vary", "flow.speed=ramp:5 cm/s:20:0:1"],
+            "5:20 cm/s",
+            "5 cm/s:20 m/s",
+        ),
     ] {
         let message = refused(args);
         assert!(message.contains(&format!("\"{shared}\"")) && message.contains(&format!("\"{each}\"")), "{message}");

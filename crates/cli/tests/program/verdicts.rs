@@ -60,7 +60,7 @@ fn the_plot_shows_the_last_good_shape_and_says_so() {
     let svg = std::fs::read_to_string(directory.path().join("arm.svg")).unwrap();
     assert!(
         svg.contains("Last good shape, at ")
-            && svg.contains(" % of the requested tensions, other loads fully applied (cable fold)"),
+            && svg.contains(" % of the requested tensions, other loads fully applied (side compressed to zero length)"),
         "{}",
         &svg[..400]
     );

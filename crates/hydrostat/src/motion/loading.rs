@@ -12,6 +12,7 @@ use crate::spatial::{SpatialConfiguration, SpatialError, SpatialSolver, SpatialT
 use crate::statics::configuration::{Configuration, Tip};
 use crate::statics::path::loaded::Loaded;
 use crate::statics::path::traced::{Along, Traced};
+use crate::statics::phase::percent;
 use crate::statics::shape::Pose;
 use crate::statics::solve::Solver;
 use crate::statics::verdict::{SolveError, VerdictKind};
@@ -75,7 +76,7 @@ pub enum LoadingError<E = SolveError> {
         reason: &'static str,
     },
     /// The way to the loads ends at a limit of the arm.
-    #[error("{:.4} of the way from the loads before, {}{}", share, kind.phrase(), place(*s))]
+    #[error("{} of the way from the loads before, {}{}", percent(*share), kind.phrase(), place(*s))]
     Limit {
         /// Which limit.
         kind: VerdictKind,
@@ -85,7 +86,7 @@ pub enum LoadingError<E = SolveError> {
         s: Option<f64>,
     },
     /// The arm snaps on the way, and its motion ends or is none.
-    #[error("{share:.4} of the way from the loads before the arm snaps, and its motion is not known: {motion}")]
+    #[error("{} of the way from the loads before the arm snaps, and its motion is not known: {motion}", percent(*share))]
     Motion {
         /// The share of the way from the loads before, 0 to 1.
         share: f64,
@@ -94,8 +95,9 @@ pub enum LoadingError<E = SolveError> {
     },
     /// The arm snaps on the way and does not come to rest.
     #[error(
-        "{share:.4} of the way from the loads before the arm snaps, and does not come to rest: after {time:.3} s its tip \
-         still moves at {speed:.2e} m/s"
+        "{} of the way from the loads before the arm snaps, and does not come to rest: after {time:.3} s its tip \
+         still moves at {speed:.2e} m/s",
+        percent(*share)
     )]
     NoRest {
         /// The share of the way from the loads before, 0 to 1.

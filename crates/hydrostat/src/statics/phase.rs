@@ -41,7 +41,7 @@ impl Phase {
 }
 
 /// A fraction as a percentage with three digits. What is below the whole is not rounded to it.
-fn percent(fraction: f64) -> String {
+pub(crate) fn percent(fraction: f64) -> String {
     let percent = 100.0 * fraction;
     if percent == 0.0 || !percent.is_finite() {
         return format!("{percent} %");
