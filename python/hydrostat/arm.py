@@ -304,7 +304,7 @@ class Arm:
         ValueError
             An argument is invalid; the message names it.
         """
-        pulled = None if tensions is None else _inputs.numbers("tensions", tensions, 1)
+        pulled = None if tensions is None else _inputs.numbers("tensions", _inputs.of_cables(tensions, self.cables), 1)
         speed = None if flow_speed is None else _inputs.number("flow_speed", flow_speed, negative=False)
         reeled = None if strokes is None else _strokes(strokes)
         within = _inputs.number("tol", tol)

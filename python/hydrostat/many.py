@@ -423,7 +423,7 @@ def _given(
     given: dict[str, NDArray[np.float64]] = {}
     names: dict[str, str] = {}
     if tensions is not None:
-        pulled = _inputs.finite("tensions", tensions, negative=False, missing=missing)
+        pulled = _inputs.finite("tensions", _inputs.of_cables(tensions, arm.cables), negative=False, missing=missing)
         if pulled.ndim == 0 or pulled.shape[-1] != count:
             raise ValueError(f"tensions: expected the shape (..., {count}), one a cable, found {pulled.shape}")
         for index in range(count):

@@ -254,10 +254,11 @@ def _values(key: str, values: Values) -> str:
     if isinstance(values, Sequence) and any(isinstance(value, str) for value in values):
         # An array would make texts of the numbers beside texts.
         values = _inputs.texts(f"vary[{key!r}]", key, values)
-    array = np.atleast_1d(np.asarray(values))
+    # What is masked is no number, and what is missing is refused.
+    array = values if isinstance(values, np.ma.MaskedArray) or hasattr(values, "to_numpy") else np.asarray(values)
     if array.dtype.kind in "US" and array.ndim == 1:
-        return ",".join(str(word) for word in array)
-    flat = _inputs.finite(f"vary[{key!r}]", array)
+        return ",".join(str(word) for word in np.asarray(array))
+    flat = np.atleast_1d(_inputs.finite(f"vary[{key!r}]", array))
     if flat.ndim != 1:
         raise ValueError(f"vary[{key!r}]: expected one dimension, found shape {flat.shape}")
     return ",".join(repr(float(number)) for number in flat)
