@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 #: A table of the arm file.
 Table = Mapping[str, Any]
 
-_TABLES = ("name", "arm", "material", "reference", "cable", "flow", "gravity", "tip", "distributed", "model")
+_TABLES = ("name", "arm", "material", "reference", "cable", "flow", "gravity", "tip", "distributed", "model", "dynamics")
 
 
 def arms() -> dict[str, str]:
@@ -48,7 +48,7 @@ class Arm:
         ``young``, ``poisson``, ``shear_factor``, or ``c1``, ``c2``, ``c3``.
     cable : sequence of mapping
         Each with ``name``, ``offset``, ``tension`` or ``stroke``, ``friction``, ``end`` and so on.
-    reference, flow, gravity, tip, distributed, model : mapping
+    reference, flow, gravity, tip, distributed, model, dynamics : mapping
         Further tables; defaults if left out.
     name : str
         A name for people.
@@ -88,6 +88,7 @@ class Arm:
         tip: Table | None = None,
         distributed: Table | None = None,
         model: Table | None = None,
+        dynamics: Table | None = None,
         name: str = "arm",
     ) -> None:
         tables = {
@@ -101,6 +102,7 @@ class Arm:
             "tip": tip,
             "distributed": distributed,
             "model": model,
+            "dynamics": dynamics,
         }
         lines = [f"{key} = {_inputs.toml(key, table)}" for key, table in tables.items() if table is not None]
         self._inner = _native.Arm("\n".join(lines), "arguments")

@@ -172,7 +172,7 @@ def source_figures(
 
 def _rows(dataset: xr.Dataset, count: int | None) -> tuple[list[str], xr.Dataset]:
     """The keys that varied, and the dataset with a row each."""
-    keys = [str(key) for key in dataset.attrs.get("vary", [])]
+    keys = str(dataset.attrs.get("vary", "")).split()
     if count is not None and len(keys) != count:
         raise ValueError(f"dataset: expected a sweep over {count} key(s), found one over {keys}")
     dims = [dim for dim in dataset.dims if dim in keys]

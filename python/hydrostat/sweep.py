@@ -346,7 +346,8 @@ def dataset(
     about: dict[str, Any] = {
         "Conventions": CONVENTIONS,
         "arm": plan.arm.to_toml(),
-        "vary": [key for key, *_ in axes],
+        # One text, because netCDF has no lists of them; no key has a blank.
+        "vary": " ".join(key for key, *_ in axes),
         "tol": plan.tol,
         "snap_distance": plan.snaps[0],
         "snap_angle": plan.snaps[1],

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import json
 import pickle
 import tomllib
 from pathlib import Path
@@ -44,6 +46,18 @@ def test_pickles_keep_what_overrides() -> None:
     # Through the text that both still have: no key of the written arm stands above the closure.
     changed = {"model.closure": "default"}
     assert again.replace(changed) == arm.replace(changed) != arm
+
+
+@needs_checkout
+def test_every_table_of_the_format_is_a_keyword(silicone: hs.Arm) -> None:
+    schema = json.loads((ROOT / "schema" / "arm.schema.json").read_text(encoding="utf-8"))
+    assert set(schema["properties"]) == set(inspect.signature(hs.Arm).parameters)
+    moving = silicone.replace({"dynamics": {"relaxation_time": "2.7 ms"}, "gravity.acceleration": 9.81, "tip.moment": 0.001})
+    tables = moving.to_dict()
+    assert tables["dynamics"]["relaxation_time"] == 0.0027
+    assert hs.Arm.from_dict(tables) == hs.Arm(**tables) == moving
+    # One key of it leaves the others.
+    assert moving.replace({"dynamics": {"inertia": False}}).to_dict()["dynamics"]["relaxation_time"] == 0.0027
 
 
 def test_replacing_leaves_the_arm_alone(silicone: hs.Arm) -> None:
