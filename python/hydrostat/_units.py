@@ -118,9 +118,13 @@ def _some_carry(values: Sequence[object]) -> bool:
     return any(_carries(one) or (isinstance(one, (list, tuple)) and _some_carry(one)) for one in values)
 
 
+def pint_is_known() -> bool:
+    """Whether anything can be a Quantity: none is whose module was never imported."""
+    return "pint" in sys.modules
+
+
 def _is_quantity(value: object) -> bool:
-    # Nothing is one whose module was never imported.
-    return "pint" in sys.modules and hasattr(value, "magnitude") and hasattr(value, "units")
+    return pint_is_known() and hasattr(value, "magnitude") and hasattr(value, "units")
 
 
 def _of_pint(name: str, value: Any, key: str) -> Any:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from hydrostat import _inputs, _memory, _native, _saved
+from hydrostat import _inputs, _memory, _native, _saved, _units
 from hydrostat._progress import Progress
 from hydrostat.arm import Arm, arm_of
 from hydrostat.solution import CONVENTIONS
@@ -260,12 +260,13 @@ def solve_many(
     arm : Arm, str or path
         The arm, or the name or file of one.
     tensions : array_like, shape (..., cables), optional
-        N; the last dimension is the cables' (of a DataArray the one that is called ``cable``, where there is one).
+        N, or with units; the last dimension is the cables' (of a DataArray the one that is called ``cable``, where there is one).
     flow_speed : array_like, optional
-        m/s.
+        m/s, or with units.
     vary : mapping of str to array_like, optional
         Other numbers, by the keys that a path can vary: ``"flow.direction"`` (degrees), ``"cable[0].stroke"`` (m),
-        ``"tip.force[1]"`` (N), ``"material.young"`` (Pa) and so on.
+        ``"tip.force[1]"`` (N), ``"material.young"`` (Pa) and so on. What carries a unit (strings, DataArrays with the attribute
+        ``units``, Quantities of pint) is converted; ``"0:20 cm/s:5"`` is a grid.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
     snap_distance, snap_angle, follow_snaps
@@ -321,6 +322,7 @@ def solve_many(
     arm = arm_of(arm)
     if nan not in ("row", "refuse"):
         raise ValueError(f"nan: expected row or refuse, found {nan!r}")
+    tensions, flow_speed, vary = _without_units(arm, tensions, flow_speed, vary)
     labelled = _labelled(tensions, flow_speed, vary)
     if labelled is not None:
         tensions, flow_speed, vary, like = labelled
@@ -330,6 +332,13 @@ def solve_many(
         many = solve_many(arm, tensions=tensions, flow_speed=flow_speed, vary=vary, **options)
         return many.to_xarray(*like.dims).assign_coords(like.coords)
     cables = arm.cables
+    places = _memory.stations("stations", _inputs.count("stations", stations))
+    keys = [f"cable[{index}].tension" for index in range(len(cables) if tensions is not None else 0)]
+    keys += [*(["flow.speed"] if flow_speed is not None else []), *vary]
+    by = _parameters(arm, keys, gradients)
+    # Columns, answers and what becomes of them: of a row the library holds all twelve fields of its stations.
+    numbers = 2 * len(keys) + 48 + 4 * len(cables) + 15 * places + 2 * len(by) * (4 + len(cables))
+    _require(_rows_of(tensions, [flow_speed, *vary.values()]), numbers)
     given, names = _given(arm, tensions, flow_speed, vary, missing=nan == "row")
     try:
         shape = np.broadcast_shapes(*(values.shape for values in given.values()))
@@ -337,11 +346,7 @@ def solve_many(
         shapes = ", ".join(f"{name} {given[key].shape}" for key, name in names.items())
         raise ValueError(f"shapes do not broadcast: {shapes} (tensions without their last dimension)") from error
     rows = math.prod(shape)
-    places = _memory.stations("stations", _inputs.count("stations", stations))
-    by = _parameters(arm, list(given), gradients)
-    # Columns, answers and what becomes of them: of a row the library holds all twelve fields of its stations.
-    numbers = 2 * len(given) + 48 + 4 * len(cables) + 15 * places + 2 * len(by) * (4 + len(cables))
-    _memory.require(8 * numbers * rows, f"{rows} rows", "take fewer, or write them to a file with `hydrostat.sweep(..., output=...)`")
+    _require(rows, numbers)
     columns = [np.ascontiguousarray(np.broadcast_to(values, shape)).ravel() for values in given.values()]
     with Progress(rows, progress) as bar:
         found = _native.solve_many(
@@ -369,6 +374,33 @@ def solve_many(
         else:
             out[name] = column.reshape(shape + tuple(sizes[dim] for dim in _DIMS.get(name, ())))
     return Many(shape, cables, out, tuple(by), arm.length)
+
+
+def _require(rows: int, numbers: int) -> None:
+    """Raise a `MemoryError` where so many rows of so many numbers do not fit."""
+    _memory.require(8 * numbers * rows, f"{rows} rows", "take fewer, or write them to a file with `hydrostat.sweep(..., output=...)`")
+
+
+def _rows_of(tensions: Any, others: Iterable[Any]) -> int:
+    """How many rows inputs make, by the shapes of those that have one; nothing is copied."""
+    shapes = [np.shape(values) for values in others if hasattr(values, "shape")]
+    shapes += [np.shape(tensions)[:-1]] if hasattr(tensions, "shape") else []
+    try:
+        return math.prod(np.broadcast_shapes(*shapes))
+    except ValueError:
+        # What does not broadcast is refused with its name later.
+        return 0
+
+
+def _without_units(arm: Arm, tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, dict[str, Any]]:
+    """Inputs as numbers in the units of bare ones; texts of `vary` as a sweep takes them."""
+    pulled = _units.plain("tensions", _inputs.of_cables(tensions, arm.cables), _units.TENSION)
+    varied = {}
+    for key, values in _inputs.mapping("vary", vary or {}, '{"flow.direction": [0, 90]}').items():
+        name = f"vary[{key!r}]"
+        several = isinstance(values, str) and (":" in values or "," in values)
+        varied[key] = (_units.grid if several else _units.plain)(name, values, key, arm._inner)
+    return pulled, _units.plain("flow_speed", flow_speed, _units.SPEED), varied
 
 
 def _labelled(tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, Any, xr.DataArray] | None:
@@ -423,7 +455,7 @@ def _given(
     given: dict[str, NDArray[np.float64]] = {}
     names: dict[str, str] = {}
     if tensions is not None:
-        pulled = _inputs.finite("tensions", _inputs.of_cables(tensions, arm.cables), negative=False, missing=missing)
+        pulled = _inputs.finite("tensions", tensions, negative=False, missing=missing)
         if pulled.ndim == 0 or pulled.shape[-1] != count:
             raise ValueError(f"tensions: expected the shape (..., {count}), one a cable, found {pulled.shape}")
         for index in range(count):

@@ -249,7 +249,8 @@ def plot_reach(reach: Reach, ax: Axes | None) -> Axes:
         if target.angle is not None:
             # Across the section that is asked for.
             reached = 0.04 * per_m * (shown[0].solution.arm.length if shown else 0.0)
-            step = reached * np.array([np.cos(target.angle), np.sin(target.angle)])
+            across = np.radians(target.angle)
+            step = reached * np.array([np.cos(across), np.sin(across)])
             ends = per_m * np.array([target.x, target.y]) + np.stack([0.0 * step, step])
             ax.plot(ends[:, 0], ends[:, 1], color=_MARK, linewidth=1.8, zorder=6)
     ax.legend(frameon=False, fontsize=9)

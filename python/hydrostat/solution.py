@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 
-from hydrostat import _inputs, _memory, _native, _saved
+from hydrostat import _inputs, _memory, _native, _saved, _units
 from hydrostat._errors import ModelWarning
 from hydrostat._saved import Origin
 from hydrostat.figures import Figure, arm_figure
@@ -480,9 +480,9 @@ class Solution(Stations):
         """Points of a cable, m, shape (n, 2), at lengths `s` (m) of shape (n,); NaN past its anchor."""
         return np.stack(self._inner.cable_path(cable, places_of(s)), axis=1)
 
-    def layer_speed(self, s: float, y: float) -> float:
+    def layer_speed(self, s: float | str, y: float | str) -> float:
         """Speed of the water along the arm, m/s, at the length `s` (m) and the distance `y` (m) from the windward surface."""
-        return self._inner.layer_speed(_inputs.number("s", s), _inputs.number("y", y))
+        return self._inner.layer_speed(_inputs.number("s", s, key=_units.STROKE), _inputs.number("y", y, key=_units.STROKE))
 
     def to_json(self) -> str:
         """Return the document of ``hydrostat solve --format json``, on one line."""
@@ -747,4 +747,4 @@ def _wrench(force: list[float], moment: float) -> Wrench:
 
 def places_of(s: ArrayLike) -> NDArray[np.float64]:
     """Places along an arm, m, as a vector."""
-    return np.atleast_1d(_inputs.numbers("s", s)).ravel()
+    return np.atleast_1d(_inputs.numbers("s", s, key=_units.STROKE)).ravel()

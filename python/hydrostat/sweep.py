@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union, overload
 
 import numpy as np
 
-from hydrostat import _inputs, _memory, _native
+from hydrostat import _inputs, _memory, _native, _units
 from hydrostat._progress import Progress
 from hydrostat.arm import Arm, arm_of
 from hydrostat.solution import CONVENTIONS
@@ -202,12 +202,14 @@ def sweep(
     ['', '', 'cable_fold', 'cable_fold']
     """
     given = _inputs.mapping("vary", vary, '{"flow.speed": "0:1:26"}')
+    arm = arm_of(arm)
+    given = {key: _without_units(arm, key, values) for key, values in given.items()}
     texts = tuple(f"{key}={_values(key, values)}" for key, values in given.items())
     asked = None if columns is None else _inputs.items("columns", columns, "names, such as ['tip', 'strokes']")
     names = None if asked is None else tuple(_inputs.text("columns", name, "tip") for name in asked)
     _inputs.after_snap(after_snap, snap_distance, snap_angle, follow_snaps)
     plan = Plan(
-        arm_of(arm),
+        arm,
         texts,
         None if sample is None else _inputs.text("sample", sample, "lhs:50"),
         _inputs.count("seed", seed),
@@ -245,6 +247,18 @@ def sweep(
         found = columns_of(plan, (0, native.tiles), threads, bar)
     values = {variable: assembled(found, variable) for variable in variables(native, found)}
     return dataset(plan, given, values, {axis[1]: assembled(found, _key(axis[1], found)) for axis in native.axes})
+
+
+def _without_units(arm: Arm, key: str, values: Values) -> Values:
+    """Values as numbers in the unit of bare ones; strings stay, because a unit behind the last holds for all."""
+    texts = isinstance(values, (list, tuple)) and any(isinstance(value, str) for value in values)
+    if isinstance(values, str) or texts:
+        return values
+    array = np.asarray(values) if isinstance(values, (list, tuple, np.ndarray)) and not _units.pint_is_known() else None
+    if array is not None and array.dtype.kind in "US":
+        return values
+    found: Values = _units.plain(f"vary[{key!r}]", values, key, arm._inner)
+    return found
 
 
 def _values(key: str, values: Values) -> str:

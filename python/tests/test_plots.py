@@ -80,7 +80,7 @@ def test_strains(silicone: hs.Arm) -> None:
 
 
 def test_reach_and_manipulability(silicone: hs.Arm) -> None:
-    found = silicone.reach(hs.Target(0.182, 0.078, angle=1.0), max_tension=0.6)
+    found = silicone.reach(hs.Target(0.182, 0.078, angle="1 rad"), max_tension=0.6)
     ax = found.plot()
     assert len(ax.patches) == max(len(found), 1)
     marks = [line for line in ax.get_lines() if line.get_marker() == "+"]
