@@ -121,7 +121,7 @@ def map_figure(dataset: xr.Dataset, quantity: str = "tip_alpha", title: str = "a
     """A quantity of a sweep as colours over the two keys that varied."""
     keys, flat = _rows(dataset, 2)
     axes = (_axis(dataset, keys[0]), _axis(dataset, keys[1]))
-    values = (_column(flat, keys[0]), _column(flat, keys[1]))
+    values = (_column(flat, _name(keys[0])), _column(flat, _name(keys[1])))
     return Figure(_native.map_figure(axes, values, *_coloured(dataset, flat, quantity), title))
 
 
@@ -141,7 +141,7 @@ def curve_figure(dataset: xr.Dataset, quantity: str = "tip_y", title: str = "a s
     """A quantity of a sweep over the one key that varied."""
     keys, flat = _rows(dataset, 1)
     name = _full_name(dataset, quantity)
-    figure = _native.curve_figure(_axis(dataset, keys[0]), _column(flat, keys[0]), name, _column(flat, quantity), title)
+    figure = _native.curve_figure(_axis(dataset, keys[0]), _column(flat, _name(keys[0])), name, _column(flat, quantity), title)
     return Figure(figure)
 
 
@@ -175,7 +175,8 @@ def _rows(dataset: xr.Dataset, count: int | None) -> tuple[list[str], xr.Dataset
     keys = str(dataset.attrs.get("vary", "")).split()
     if count is not None and len(keys) != count:
         raise ValueError(f"dataset: expected a sweep over {count} key(s), found one over {keys}")
-    dims = [dim for dim in dataset.dims if dim in keys]
+    names = [_name(key) for key in keys]
+    dims = [dim for dim in dataset.dims if dim in names]
     flat = dataset.stack({"__row": dims}).reset_index("__row") if dims else dataset
     return keys, flat
 
@@ -190,7 +191,13 @@ def _column(flat: xr.Dataset, name: str) -> NDArray[np.float64]:
 
 
 def _axis(dataset: xr.Dataset, key: str) -> tuple[str, str, float]:
-    return key, str(dataset[key].attrs.get("units", "")), 1.0
+    return key, str(dataset[_name(key)].attrs.get("units", "")), 1.0
+
+
+def _name(key: str) -> str:
+    from hydrostat.sweep import key_name
+
+    return key_name(key)
 
 
 def _full_name(dataset: xr.Dataset, quantity: str) -> str:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 #: Unit and meaning of what has one.
-_FIELDS = {
+FIELDS = {
     "tip_x": ("m", "tip along e1"),
     "tip_y": ("m", "tip along e2"),
     "tip_theta": ("rad", "rotation of the section at the tip"),
@@ -36,6 +36,16 @@ _FIELDS = {
     "x": ("m", "centreline along e1"),
     "y": ("m", "centreline along e2"),
     "theta": ("rad", "rotation of the section"),
+    "d_tip_x": ("m", "derivative of the tip along e1"),
+    "d_tip_y": ("m", "derivative of the tip along e2"),
+    "d_tip_theta": ("rad", "derivative of the rotation of the section at the tip"),
+    "d_tip_alpha": ("rad", "derivative of the angle alpha at the tip"),
+    "d_stroke": ("m", "derivative of the stroke"),
+    "stability": ("", "stable, unstable or marginal"),
+    "unstable_directions": ("1", "number of directions in which small motions grow"),
+    "warnings": ("", "kinds of the warnings, with blanks between"),
+    "verdict": ("", "why there is no equilibrium; empty where there is one"),
+    "reason": ("", "why there is no equilibrium, in a sentence"),
 }
 #: Dimensions beyond those of the rows.
 _DIMS: dict[str, tuple[str, ...]] = {
@@ -143,7 +153,7 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
 
     def to_xarray(self, *dims: Hashable) -> xr.Dataset:
         """The answers as a dataset over `dims` (``dim_0`` and so on without them), ``cable``, ``station`` (with its
-        place ``s``, m) and ``parameter``. Needs xarray."""
+        place ``s``, m) and ``parameter`` (with its ``unit``). Needs xarray."""
         import xarray as xr
 
         own = dims or tuple(f"dim_{k}" for k in range(len(self.shape)))
@@ -151,15 +161,31 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
             raise ValueError(f"dims: expected {len(self.shape)} names, found {len(own)}")
         variables = {}
         for name, column in self._columns.items():
-            attributes = dict(zip(("units", "long_name"), _FIELDS[name], strict=True)) if name in _FIELDS else {}
-            variables[name] = ((*own, *_DIMS.get(name, ())), column, attributes)
+            variables[name] = ((*own, *_DIMS.get(name, ())), column, self._attributes(name))
         coordinates: dict[str, Any] = {"cable": ("cable", list(self.cables))}
         if self.parameters:
             coordinates["parameter"] = ("parameter", list(self.parameters))
+            coordinates["unit"] = ("parameter", [_unit_of(name) for name in self.parameters])
         if "x" in self._columns:
             places = np.linspace(0.0, self.length, self._columns["x"].shape[-1])
             coordinates["s"] = ("station", places, {"units": "m", "long_name": "length along the undeformed arm"})
         return xr.Dataset(variables, coords=coordinates, attrs={"Conventions": CONVENTIONS, "hydrostat": _native.__version__})
+
+
+    def _attributes(self, name: str) -> dict[str, str]:
+        """What a dataset says of an array; a derivative has a unit where all parameters have the same."""
+        unit, meaning = FIELDS.get(name, ("", ""))
+        if "parameter" in _DIMS.get(name, ()):
+            per = {_unit_of(parameter) for parameter in self.parameters}
+            unit = (f"{unit}/({per.pop()})" if len(per) == 1 else "").replace("/()", "").replace("/(N)", "/N").replace("/(m)", "/m")
+            meaning += ", a unit of the parameter"
+        return {key: words for key, words in (("units", unit), ("long_name", meaning)) if words}
+
+
+def _unit_of(parameter: str) -> str:
+    """The unit that derivatives are by: of SI, angles in radians."""
+    bare = _native.bare_unit(parameter) or ""
+    return "rad" if bare in ("deg", "degrees") else bare
 
 
 def _many(version: int, writer: str, state: tuple[Any, ...]) -> Many:

@@ -15,6 +15,7 @@ import numpy as np
 from hydrostat import _inputs, _memory, _native, _units
 from hydrostat._progress import Progress
 from hydrostat.arm import Arm, arm_of
+from hydrostat.many import FIELDS
 from hydrostat.solution import CONVENTIONS
 
 if TYPE_CHECKING:
@@ -31,6 +32,20 @@ _UNITS = {"Nm": "N m"}
 _NUMBERS = {"plane": 23, "space": 35}
 #: What is held of a station, as columns and put together of them.
 _OF_STATIONS = {"plane": 6, "space": 18}
+#: Meaning of variables that `solve_many` does not have, too.
+_MEANINGS = {
+    "tip_z": "tip along e3",
+    "shape_x": "centreline along e1",
+    "shape_y": "centreline along e2",
+    "shape_z": "centreline along e3",
+    "shape_theta": "rotation of the section",
+    "base_force_z": "base reaction along e3",
+    "fold_s": "where the margin against folding is least, along the undeformed arm",
+    "phase": "loads that were being raised where there is no equilibrium",
+    "verdict_s": "where the limit is met, along the undeformed arm",
+    "snaps": "snaps on the way to the loads",
+}
+_VECTORS = re.compile(r"(?P<of>tip|shape|base)_(?P<which>a|b|c|moment)_(?P<axis>x|y|z)$")
 _ENDINGS = (".parquet", ".csv")
 
 
@@ -179,8 +194,8 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        One dimension per key (``row`` with a sample), with the values as coordinates in their given units; ``reason`` says why
-        the values of a row make no arm (the verdict ``no_arm``). With a
+        One dimension per key (``row`` with a sample), named after it (``flow_speed``, ``cable_0_tension``), with the values as coordinates in
+        their given units; ``reason`` says why the values of a row make no arm (the verdict ``no_arm``). Stations have their place ``s``, m. With a
         client its variables are Dask arrays, whose chunks are in the workers' memory. Needs xarray.
     pathlib.Path
         `output`, if given.
@@ -197,7 +212,7 @@ def sweep(
     >>> import hydrostat as hs
     >>> ds = hs.sweep(hs.Arm.load("silicone"), {"flow.speed": [0.0, 0.1], "cable[0].tension": "0:1.5:4"})
     >>> dict(ds.sizes)
-    {'flow.speed': 2, 'cable[0].tension': 4, 'cable': 2}
+    {'flow_speed': 2, 'cable_0_tension': 4, 'cable': 2}
     >>> ds.verdict.values[0].tolist()
     ['', '', 'cable_fold', 'cable_fold']
     """
@@ -339,24 +354,29 @@ def dataset(
     shape: tuple[int, ...] = (native.rows,)
     dims: tuple[str, ...] = ("row",)
     if grid:
-        dims = tuple(key for key, *_ in axes)
+        dims = tuple(key_name(key) for key, *_ in axes)
         for index, (key, _, unit, per_si) in enumerate(axes):
             own = _shown(vary[key], native.values(index), per_si)
-            coordinates[key] = (key, own, {"units": unit} if unit else {})
-        shape = tuple(len(coordinates[key][1]) for key in dims)
+            coordinates[key_name(key)] = (key_name(key), own, _attributes(key, unit))
+        shape = tuple(len(coordinates[dim][1]) for dim in dims)
     else:
         for key, column, unit, per_si in axes:
             rows = keys[column]
             shown = rows if rows.dtype.kind == "O" or per_si == 1.0 else rows * per_si
-            coordinates[key] = ("row", shown, {"units": unit} if unit else {})
+            coordinates[key_name(key)] = ("row", shown, _attributes(key, unit))
+    if plan.shapes:
+        places = np.linspace(0.0, plan.arm.length, plan.shapes)
+        coordinates["s"] = ("station", places, {"units": "m", "long_name": "length along the undeformed arm"})
     out: dict[str, Any] = {}
     for variable, rows in values.items():
         last = () if variable.dimension is None else (variable.dimension,)
         array = rows.reshape(shape + rows.shape[1:])
-        attributes = {"units": variable.unit or "1", "column": variable.columns[0]} if not variable.words else {}
+        attributes = _attributes(meaning(variable.name), "" if variable.words else variable.unit or "1")
+        if not variable.words:
+            attributes["column"] = variable.columns[0]
         out[variable.name] = ((*dims, *last), array, attributes)
     used = {dim for dims_of, *_ in out.values() for dim in dims_of}
-    kept = {name: value for name, value in coordinates.items() if name != "cable" or "cable" in used}
+    kept = {name: value for name, value in coordinates.items() if value[0] in used or value[0] not in ("cable", "station")}
     about: dict[str, Any] = {
         "Conventions": CONVENTIONS,
         "arm": plan.arm.to_toml(),
@@ -368,6 +388,26 @@ def dataset(
         "hydrostat": _native.__version__,
     }
     return xr.Dataset(out, coords=kept, attrs=about)
+
+
+def key_name(key: str) -> str:
+    """The name of a key in a dataset, as its columns in files begin: ``cable_0_tension`` of ``cable[0].tension``."""
+    return re.sub(r"\W+", "_", key).strip("_")
+
+
+def meaning(name: str) -> str:
+    """What a variable is, for people."""
+    vector = _VECTORS.match(name)
+    if vector is not None:
+        axis = "xyz".index(vector["axis"]) + 1
+        if vector["which"] == "moment":
+            return f"moment of the base reaction about e{axis}"
+        return f"director {vector['which']}{' at the tip' if vector['of'] == 'tip' else ''}, along e{axis}"
+    return FIELDS[name][1] if name in FIELDS else _MEANINGS.get(name, name.replace("_", " "))
+
+
+def _attributes(words: str, unit: str) -> dict[str, str]:
+    return {"long_name": words, **({"units": unit} if unit else {})}
 
 
 def _shown(given: Values, si: NDArray[np.float64] | list[str] | None, per_si: float) -> Any:

@@ -65,5 +65,5 @@ def test_a_sweep_refuses_what_is_masked_or_missing(silicone: hs.Arm, values: Any
 def test_a_sweep_takes_a_column(silicone: hs.Arm, values: Any) -> None:
     pytest.importorskip("xarray")
     found = hs.sweep(silicone, {"flow.speed": values})
-    assert found["flow.speed"].values.tolist() == [0.05, 0.1]
+    assert found["flow_speed"].values.tolist() == [0.05, 0.1]
     assert found.tip_y.values.tolist() == hs.sweep(silicone, {"flow.speed": [0.05, 0.1]}).tip_y.values.tolist()
