@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, Union
 
 import numpy as np
 
@@ -18,6 +18,9 @@ T = TypeVar("T")
 K = TypeVar("K")
 V = TypeVar("V")
 
+#: An array of numbers, or lists in which some have units.
+Numbers = Union["ArrayLike", Sequence[object]]
+
 #: How far the tip may jump, over the length, and turn, rad, at a snap unless something else is asked for.
 SNAPS = (0.01, _native.angle("2 deg"))
 
@@ -26,7 +29,7 @@ _ESCAPES = {ord('"'): '\\"', ord("\\"): "\\\\", **{code: f"\\u{code:04x}" for co
 
 def numbers(
     name: str,
-    value: ArrayLike,
+    value: Numbers,
     dimensions: int | None = None,
     *,
     missing: bool = False,
@@ -72,7 +75,7 @@ def _is_nullable(value: object) -> bool:
 
 def finite(
     name: str,
-    value: ArrayLike,
+    value: Numbers,
     *,
     negative: bool = True,
     missing: bool = False,

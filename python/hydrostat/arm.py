@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from hydrostat.identification import Fit, Keys, Measured, Priors
     from hydrostat.paths import Equilibria, EquilibriumPath
-    from hydrostat.reach import Boundary, Most, Number, Reach, SpatialTargets, Targets
+    from hydrostat.reach import AnyTargets, Boundary, Most, Number, Reach, Targets
     from hydrostat.sensitivity import Sensitivities
 
 #: A table of the arm file.
@@ -258,7 +258,7 @@ class Arm:
     def solve(
         self,
         *,
-        tensions: ArrayLike | None = None,
+        tensions: _inputs.Numbers | None = None,
         strokes: Sequence[float | str | None] | NDArray[Any] | None = None,
         flow_speed: float | str | None = None,
         tol: float = 1e-8,
@@ -389,7 +389,7 @@ class Arm:
 
     def reach(
         self,
-        targets: Targets | SpatialTargets,
+        targets: AnyTargets,
         *,
         by: str = "tensions",
         max_tension: Most | None = None,

@@ -218,9 +218,30 @@ def solve_many(  # pyright: ignore[reportOverlappingOverload]
 def solve_many(
     arm: Arm | str | PathLike[str],
     *,
-    tensions: ArrayLike | None = ...,
+    tensions: _inputs.Numbers | None = ...,
     flow_speed: xr.DataArray,
     vary: Mapping[str, xr.DataArray | float] | None = ...,
+    tol: float = ...,
+    snap_distance: float = ...,
+    snap_angle: float | str = ...,
+    follow_snaps: bool = ...,
+    tile: int = ...,
+    fold_margin: bool = ...,
+    stability: bool = ...,
+    warnings: bool = ...,
+    stations: int = ...,
+    gradients: bool | Sequence[str] = ...,
+    nan: str = ...,
+    threads: int = ...,
+    progress: bool | None = ...,
+) -> xr.Dataset: ...
+@overload
+def solve_many(  # pyright: ignore[reportOverlappingOverload]
+    arm: Arm | str | PathLike[str],
+    *,
+    tensions: _inputs.Numbers | None = ...,
+    flow_speed: ArrayLike | None = ...,
+    vary: Mapping[str, xr.DataArray],
     tol: float = ...,
     snap_distance: float = ...,
     snap_angle: float | str = ...,
@@ -239,8 +260,8 @@ def solve_many(
 def solve_many(
     arm: Arm | str | PathLike[str],
     *,
-    tensions: ArrayLike | None = ...,
-    flow_speed: ArrayLike | None = ...,
+    tensions: _inputs.Numbers | None = ...,
+    flow_speed: _inputs.Numbers | None = ...,
     vary: Mapping[str, ArrayLike] | None = ...,
     tol: float = ...,
     snap_distance: float = ...,
@@ -259,8 +280,8 @@ def solve_many(
 def solve_many(
     arm: Arm | str | PathLike[str],
     *,
-    tensions: ArrayLike | xr.DataArray | None = None,
-    flow_speed: ArrayLike | xr.DataArray | None = None,
+    tensions: _inputs.Numbers | xr.DataArray | None = None,
+    flow_speed: _inputs.Numbers | xr.DataArray | None = None,
     vary: Mapping[str, ArrayLike] | Mapping[str, xr.DataArray | float] | None = None,
     tol: float = 1e-6,
     snap_distance: float = 0.01,
@@ -474,7 +495,7 @@ def _labelled(tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, Any,
 
 
 def _given(
-    arm: Arm, tensions: ArrayLike | None, flow_speed: ArrayLike | None, vary: Mapping[str, ArrayLike] | None, *, missing: bool
+    arm: Arm, tensions: Any, flow_speed: Any, vary: Mapping[str, Any], *, missing: bool
 ) -> tuple[dict[str, NDArray[np.float64]], dict[str, str]]:
     """Values by keys, and the arguments that they come from."""
     count = len(arm.cables)

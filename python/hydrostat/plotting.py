@@ -325,7 +325,7 @@ def animate(
     shapes = list(solutions)
     if not shapes or not all(hasattr(shape, "surfaces") for shape in shapes):
         raise ValueError("solutions: expected at least one solution, and nothing else")
-    if any(hasattr(shape, "z") for shape in shapes):
+    if any(getattr(shape.arm, "is_spatial", False) for shape in shapes):
         raise ValueError('solutions: animations are of arms in the plane, and one of these has `space = "spatial"`')
     target = None if output is None else FilePath(output)
     if target is not None and target.suffix not in (".gif", ".mp4", ".html"):

@@ -96,15 +96,18 @@ class SpatialTarget(_SpatialTarget):
         direction: tuple[float, float, float] | None = None,
         weight: float = 1.0,
     ) -> SpatialTarget:
-        place = (_units.plain(name, value, _units.STROKE) for name, value in (("x", x), ("y", y), ("z", z), ("s", s)))
-        return super().__new__(cls, *place, direction, weight)
+        one, two, three, at = (_units.plain(name, value, _units.STROKE) for name, value in (("x", x), ("y", y), ("z", z), ("s", s)))
+        return super().__new__(cls, one, two, three, at, direction, weight)
 
-
-#: One target of an arm in space, several, or the tip's ``(x, y, z)``, m.
-SpatialTargets = Union[SpatialTarget, Sequence[Number], Sequence[Union[SpatialTarget, Sequence[Number]]], "NDArray[Any]"]
 
 #: One target, several, or the tip's ``(x, y)``, m, a pair, a list or an array of two.
-Targets = Union[Target, Sequence[Number], Sequence[Union[Target, Sequence[Number]]], "NDArray[Any]"]
+Targets = Union[Target, Sequence[Union[Number, Target, Sequence[Number]]], "NDArray[Any]"]
+
+#: The same of an arm in space: ``(x, y, z)``.
+SpatialTargets = Union[SpatialTarget, Sequence[Union[Number, SpatialTarget, Sequence[Number]]], "NDArray[Any]"]
+
+#: Either.
+AnyTargets = Union[Target, SpatialTarget, Sequence[Union[Number, Target, SpatialTarget, Sequence[Number]]], "NDArray[Any]"]
 
 #: The largest tension of all cables, or of each.
 Most = Union[Number, Sequence[Number], "NDArray[Any]"]
@@ -533,7 +536,7 @@ def spatial_targets_of(targets: Any) -> list[SpatialTarget]:
         x, y, z = (_inputs.number(f"targets[{k}]", value, key=_units.STROKE) for k, value in enumerate(targets))
         return [SpatialTarget(x, y, z)]
     return [
-        _checked_in_space(f"targets[{k}]", one if isinstance(one, SpatialTarget) else SpatialTarget(*_placed(f"targets[{k}]", one)))
+        _checked_in_space(f"targets[{k}]", one if isinstance(one, SpatialTarget) else _in_space(f"targets[{k}]", one))
         for k, one in enumerate(given)
     ]
 
@@ -554,6 +557,11 @@ def _several(what: str, targets: Any, count: int) -> list[Any] | None:
     if len(given) != count or any(np.ndim(one) for one in given):
         raise ValueError(f"targets: expected {what}, found {targets!r}")
     return None
+
+
+def _in_space(name: str, place: Sequence[Number]) -> SpatialTarget:
+    x, y, z = _placed(name, place)
+    return SpatialTarget(x, y, z)
 
 
 def _placed(name: str, place: Sequence[Number]) -> list[float]:

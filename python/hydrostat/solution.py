@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -52,12 +53,32 @@ CONVENTIONS = "CF-1.11"
 
 
 class Tip(NamedTuple):
-    """The tip: `x`, `y` in m, `theta`, `alpha` in rad."""
+    """The tip: `x`, `y` in m, `theta`, `alpha` in rad; `z` and the directors `a`, `b`, `c` follow, as those of a `SpatialTip`."""
 
     x: float
     y: float
     theta: float
     alpha: float
+
+    @property
+    def z(self) -> float:
+        """0 m: the arm is in the plane."""
+        return 0.0
+
+    @property
+    def a(self) -> tuple[float, float, float]:
+        """Director normal to the section."""
+        return (math.cos(self.theta), math.sin(self.theta), 0.0)
+
+    @property
+    def b(self) -> tuple[float, float, float]:
+        """Director in the section."""
+        return (-math.sin(self.theta), math.cos(self.theta), 0.0)
+
+    @property
+    def c(self) -> tuple[float, float, float]:
+        """Director in the section, a x b: e3."""
+        return (0.0, 0.0, 1.0)
 
 
 class Wrench(NamedTuple):
@@ -228,6 +249,61 @@ class Stations(Result):
         """Contact moment, N m, shape (n,)."""
         return self._inner.field("m")
 
+    @property
+    def m_c(self) -> NDArray[np.float64]:
+        """Contact moment about c, N m, shape (n,): `m` in the plane."""
+        return self.m
+
+    @property
+    def a(self) -> NDArray[np.float64]:
+        """Director normal to the section, shape (n, 3)."""
+        return _fixed(np.cos(self.theta), np.sin(self.theta), np.zeros(len(self)))
+
+    @property
+    def b(self) -> NDArray[np.float64]:
+        """Director in the section, shape (n, 3)."""
+        return _fixed(-np.sin(self.theta), np.cos(self.theta), np.zeros(len(self)))
+
+    @property
+    def c(self) -> NDArray[np.float64]:
+        """Director in the section, a x b, shape (n, 3): e3 in the plane."""
+        return _fixed(np.zeros(len(self)), np.zeros(len(self)), np.ones(len(self)))
+
+    @property
+    def z(self) -> NDArray[np.float64]:
+        """Centreline along e3, m, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def zeta(self) -> NDArray[np.float64]:
+        """Shear strain along c, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def tau(self) -> NDArray[np.float64]:
+        """Twist, 1/m, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def kappa(self) -> NDArray[np.float64]:
+        """Bending strain about b, 1/m, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def n_c(self) -> NDArray[np.float64]:
+        """Contact force along c, N, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def m_a(self) -> NDArray[np.float64]:
+        """Contact moment about a, N m, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def m_b(self) -> NDArray[np.float64]:
+        """Contact moment about b, N m, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
     def __len__(self) -> int:
         return len(self.s)
 
@@ -263,6 +339,13 @@ class Stations(Result):
         fields = {name: ("s", self._field(name), attributes(self._fields, name)) for name in self._fields}
         coordinate = fields.pop("s")
         return xr.Dataset(fields, coords={"s": coordinate})
+
+
+def _fixed(*components: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Numbers that do not change: one of each station, or components of one."""
+    out = components[0] if len(components) == 1 else np.stack(components, axis=1)
+    out.flags.writeable = False
+    return out
 
 
 def attributes(fields: Mapping[str, tuple[str, str]], name: str) -> dict[str, str]:
@@ -475,6 +558,16 @@ class Solution(Stations):
         """The deformed surface on the left and on the right, m, each of shape (n, 2), at lengths `s` (m) of shape (n,)."""
         left_x, left_y, right_x, right_y = self._inner.surfaces(places_of(s))
         return np.stack([left_x, left_y], axis=1), np.stack([right_x, right_y], axis=1)
+
+    def surface(self, s: ArrayLike | None = None, sides: int = 24) -> NDArray[np.float64]:
+        """Points of the deformed surface of an arm in space; see `SpatialSolution.surface`. In the plane `surfaces` has the two lines.
+
+        Raises
+        ------
+        ValueError
+            The arm is in the plane.
+        """
+        raise ValueError('surface: for arms with `space = "spatial"`, and this one is in the plane; see `surfaces`')
 
     def cable_path(self, cable: int, s: ArrayLike) -> NDArray[np.float64]:
         """Points of a cable, m, shape (n, 2), at lengths `s` (m) of shape (n,); NaN past its anchor."""

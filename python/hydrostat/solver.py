@@ -80,7 +80,7 @@ class Solver:
         """The tensions that were set last, N, shape (cables,). For cables with a commanded stroke, see `solution`."""
         return np.array(self._inner.tensions)
 
-    def set_tensions(self, tensions: ArrayLike) -> None:
+    def set_tensions(self, tensions: _inputs.Numbers) -> None:
         """Set all tensions, N, or with units, shape (cables,)."""
         self._inner.set_tensions(_inputs.numbers("tensions", tensions, 1, key=_units.TENSION))
 

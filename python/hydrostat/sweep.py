@@ -19,12 +19,13 @@ from hydrostat.many import FIELDS
 from hydrostat.solution import CONVENTIONS
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
     from distributed import Client
     from numpy.typing import NDArray
 
 #: Values of a key: a grid ``"0:1:26"``, a range to draw from ``"0:1"``, a list with commas, an array, or one value.
-Values = Union[str, float, Sequence[float], Sequence[str], "NDArray[np.generic]"]
+Values = Union[str, float, Sequence[Union[float, str]], "NDArray[np.generic]", "pd.Series[Any]", "xr.DataArray"]
 
 _COLUMN = re.compile(r"(?P<name>.+?)(_(?P<index>\d+))?(_(?P<unit>m|rad|N|Nm|s))?$")
 _UNITS = {"Nm": "N m"}
@@ -284,7 +285,7 @@ def _values(key: str, values: Values) -> str:
         # An array would make texts of the numbers beside texts.
         values = _inputs.texts(f"vary[{key!r}]", key, values)
     # What is masked is no number, and what is missing is refused.
-    array = values if isinstance(values, np.ma.MaskedArray) or hasattr(values, "to_numpy") else np.asarray(values)
+    array: Any = values if isinstance(values, np.ma.MaskedArray) or hasattr(values, "to_numpy") else np.asarray(values)
     if array.dtype.kind in "US" and array.ndim == 1:
         return ",".join(str(word) for word in np.asarray(array))
     flat = np.atleast_1d(_inputs.finite(f"vary[{key!r}]", array))

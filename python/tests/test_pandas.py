@@ -51,7 +51,7 @@ def test_columns_with_the_names_of_the_cables_are_theirs(silicone: hs.Arm) -> No
 @pytest.mark.parametrize(
     "values",
     [
-        np.ma.array([0.1, 0.2], mask=[0, 1]),
+        np.ma.array([0.1, 0.2], mask=[False, True]),
         pd.Series([0.1, None], dtype="Float64"),
         pd.Series([0.1, None]),
     ],

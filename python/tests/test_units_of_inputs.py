@@ -21,7 +21,7 @@ def test_strings_with_units(silicone: hs.Arm) -> None:
     assert silicone.solve(tensions=np.array(["0.1 N", "0 N"]), flow_speed="0.1 m/s") == want
     assert silicone.solve(tensions=("0.1 N", "0 N"), flow_speed=np.str_("10 cm/s")) == want
     assert silicone.solve(strokes=["12 mm", None]) == silicone.solve(strokes=[0.012, None])
-    assert want.at("10 cm") == want.at(0.1) and want.at(["10 cm", 0.2]) == want.at([0.1, 0.2])
+    assert want.at("10 cm") == want.at(0.1) and want.at(["10 cm", "20 cm"]) == want.at([0.1, 0.2])
     solver = hs.Solver(silicone)
     solver.set_tensions(["100 mN", 0])
     solver.set_flow_speed("10 cm/s")
@@ -46,7 +46,8 @@ def test_texts_of_a_sweep_in_solve_many(silicone: hs.Arm) -> None:
 
 def test_targets_with_units_and_degrees(silicone: hs.Arm) -> None:
     plain = silicone.reach((0.182, 0.078), max_tension=0.6)
-    for targets in (("182 mm", "78 mm"), ["18.2 cm", 0.078], [(0.182, 0.078)], np.array([[0.182, 0.078]]), hs.Target("182 mm", "78 mm")):
+    several: list[Any] = [("182 mm", "78 mm"), ["18.2 cm", 0.078], [(0.182, 0.078)], np.array([[0.182, 0.078]]), hs.Target("182 mm", "78 mm")]
+    for targets in several:
         assert silicone.reach(targets, max_tension="600 mN") == plain
     turn = float(np.degrees(plain[0].solution.tip.theta))
     for angle in (turn, f"{turn!r} deg", f"{float(np.radians(turn))!r} rad"):
@@ -64,7 +65,7 @@ def test_targets_in_space_with_units() -> None:
     arm = hs.Arm.load("silicone-spatial")
     tip: Any = arm.solve(tensions=[0.1, 0.05, 0]).tip
     plain = arm.reach((tip.x, tip.y, tip.z), max_tension=0.3, find_all=False)
-    place = [f"{1e3 * value!r} mm" for value in (tip.x, tip.y, tip.z)]
+    place: Any = [f"{1e3 * value!r} mm" for value in (tip.x, tip.y, tip.z)]
     for targets in (place, [tuple(place)], hs.SpatialTarget(*place)):
         found = arm.reach(targets, max_tension="0.3 N", find_all=False)
         assert found[0].tensions == pytest.approx(plain[0].tensions, abs=1e-6)
@@ -91,7 +92,7 @@ WRONG: list[tuple[Callable[[hs.Arm], object], str]] = [
     (lambda arm: hs.Target("1 N", 0.1), "^x: expected a length"),
     (lambda arm: hs.Target(0.1, 0.1, angle="1 mm"), "^angle: expected an angle"),
     (lambda arm: arm.reach(("1 N", 0.1)), r"^targets\[0\]: expected a length"),
-    (lambda arm: arm.reach("0.1 m"), "^targets: expected targets"),  # type: ignore[arg-type]
+    (lambda arm: arm.reach("0.1 m"), "^targets: expected targets"),
     (lambda arm: hs.solve_many(arm, flow_speed=xr.DataArray([1.0], dims="v", attrs={"units": "N"})), "^flow_speed: units: expected a speed"),
     (lambda arm: hs.solve_many(arm, flow_speed=xr.DataArray([1.0], dims="v", attrs={"units": "1"})), "^flow_speed: expected numbers in m/s"),
 ]
