@@ -12,7 +12,7 @@ import numpy as np
 
 from hydrostat import _inputs, _native, _units
 from hydrostat._saved import Origin
-from hydrostat.solution import Solution, solution_of, warn
+from hydrostat.solution import Solution, solution_of, warn, warn_of_all
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -224,7 +224,8 @@ class Arm:
         ----------
         changes : mapping, optional
             Values by the dotted keys of the arm file, such as ``{"cable[0].friction": 0.1, "model.volume": "none"}``. A table's
-            other keys stay as they are: ``{"flow": {"speed": 0.1}}`` is ``{"flow.speed": 0.1}``.
+            other keys stay as they are: ``{"flow": {"speed": 0.1}}`` is ``{"flow.speed": 0.1}``, and so with a list of tables for all
+            cables.
         tensions : sequence of float or str, or ndarray, optional
             One per cable, N, or with a unit; strokes are then no longer commanded.
         strokes : sequence of float, str or None, or ndarray, optional
@@ -241,7 +242,7 @@ class Arm:
         """
         given: dict[str, object] = {}
         for key, value in _inputs.mapping("changes", changes or {}, '{"flow.speed": 0.1}').items():
-            given |= _dotted(str(key), value)
+            given |= self._of_cables(value) if key == "cable" else _dotted(str(key), value)
         for name, values, key in (("tensions", tensions, "tension"), ("strokes", strokes, "stroke")):
             if values is None:
                 continue
@@ -254,6 +255,16 @@ class Arm:
         if flow_direction is not None:
             given["flow.direction"] = flow_direction
         return Arm._of(self._inner.replaced([("replace", key, _inputs.toml(key, value)) for key, value in given.items()]))
+
+    def _of_cables(self, tables: object) -> dict[str, object]:
+        """Changes of the list of cables: of each its own, or new cables, which all have an offset."""
+        each = _inputs.items("changes['cable']", tables, "tables, one a cable")  # type: ignore[arg-type, var-annotated]
+        if len(each) == len(self.cables):
+            return {key: item for i, table in enumerate(each) for key, item in _dotted(f"cable[{i}]", table).items()}
+        if all(isinstance(table, Mapping) and "offset" in table for table in each):
+            return {"cable": each}
+        words = 'one alone is changed by {"cable[0]": {...}}, and new cables have an `offset`'
+        raise ValueError(f"changes['cable']: the arm has {len(self.cables)} cables, {len(each)} tables were given; {words}")
 
     def solve(
         self,
@@ -361,7 +372,9 @@ class Arm:
         step = _inputs.number("longest", longest)
         points = _inputs.count("most", most)
         asked = (vary, _inputs.number("tol", tol), step, points, branches)
-        return EquilibriumPath(_native.path(self._inner, *asked), self._origin("path", asked))
+        found = EquilibriumPath(_native.path(self._inner, *asked), self._origin("path", asked))
+        warn_of_all((solution for branch in found.branches for solution in branch), 2)
+        return found
 
     def equilibria(self, *, tol: float = 1e-8, time_limit: float | str | None = None) -> Equilibria:
         """Find all equilibria under the arm's loads, each with its stability, whether `solve` gives them or not.
@@ -385,7 +398,9 @@ class Arm:
 
         within = _inputs.number("tol", tol)
         limit = None if time_limit is None else _inputs.number("time_limit", time_limit, key=_units.TIME)
-        return Equilibria(_native.equilibria(self._inner, within, limit), self._origin("equilibria", (within, None)))
+        found = Equilibria(_native.equilibria(self._inner, within, limit), self._origin("equilibria", (within, None)))
+        warn_of_all(found, 2)
+        return found
 
     def reach(
         self,
@@ -449,11 +464,13 @@ class Arm:
         if self.is_spatial:
             there = spatial_targets_of(targets)
             places = [((one.x, one.y, one.z), one.s, one.direction, one.weight) for one in there]
-            found = _native.reach(arm._inner, places, *options)
-            return Reach(found, tuple(there), arm._origin("reach", (places, *options)))
-        wanted = targets_of(cast("Targets", targets))
-        asked = (goals_of(wanted), *options)
-        return Reach(_native.reach(arm._inner, *asked), tuple(wanted), arm._origin("reach", asked))
+            found = Reach(_native.reach(arm._inner, places, *options), tuple(there), arm._origin("reach", (places, *options)))
+        else:
+            wanted = targets_of(cast("Targets", targets))
+            asked = (goals_of(wanted), *options)
+            found = Reach(_native.reach(arm._inner, *asked), tuple(wanted), arm._origin("reach", asked))
+        warn_of_all((one.solution for one in found), 2)
+        return found
 
     def reachable(self, *, max_tension: Most | None = None, spacing: float = 0.01, tol: float = 1e-7) -> Boundary:
         """Trace the boundary of the workspace: of the places that the tip reaches with tensions from 0 to their largest.

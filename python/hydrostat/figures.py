@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path as FilePath
@@ -59,11 +60,11 @@ class Figure:
             For another ending.
         """
         target = FilePath(path)
-        if target.suffix == ".svg":
+        if target.suffix.lower() == ".svg":
             target.write_text(self.svg(), encoding="utf-8")
-        elif target.suffix == ".pdf":
+        elif target.suffix.lower() == ".pdf":
             target.write_bytes(self.pdf())
-        elif target.suffix == ".png":
+        elif target.suffix.lower() == ".png":
             target.write_bytes(self.png())
         else:
             raise ValueError(f"path: expected a name that ends in .svg, .pdf or .png, found {target.name!r}")
@@ -84,9 +85,10 @@ def path_figure(path: EquilibriumPath, quantity: str = "tip.y", title: str | Non
     Parameters
     ----------
     quantity : str
-        ``"tip.x"``, ``"tip.y"``, ``"tip.theta"``, ``"tip.alpha"`` or ``"stroke[0]"`` and so on.
+        ``"tip.x"``, ``"tip.y"``, ``"tip.z"`` (in space), ``"tip.theta"`` (in the plane), ``"tip.alpha"`` or ``"stroke[0]"`` and so on, or
+        the same as names of Python, ``"tip_x"``, ``"stroke_0"``.
     """
-    return Figure(path._inner.figure(quantity, title or f"equilibria over {path.parameter}"))
+    return Figure(path._inner.figure(_dotted(quantity), title or f"equilibria over {path.parameter}"))
 
 
 def path_shapes_figure(path: EquilibriumPath, title: str | None = None) -> Figure:
@@ -114,7 +116,14 @@ def over_figure(
         As in `path_figure`.
     """
     found = [(float(value), _saved.live(all_of._inner)) for value, all_of in searches.items()]
-    return Figure(_native.over_figure(found, (name, unit, 1.0), quantity, title))
+    return Figure(_native.over_figure(found, (name, unit, 1.0), _dotted(quantity), title))
+
+
+def _dotted(quantity: str) -> str:
+    """A quantity of a path as the program names it."""
+    if not isinstance(quantity, str):
+        raise ValueError(f"quantity: expected a name such as 'tip.x', found {quantity!r}")
+    return re.sub(r"^(tip)_(\w+)$", r"\1.\2", re.sub(r"^([a-z]+)_(\d+)$", r"\1[\2]", quantity))
 
 
 def map_figure(dataset: xr.Dataset, quantity: str = "tip_alpha", title: str = "a sweep") -> Figure:

@@ -16,6 +16,7 @@ from hydrostat.arm import Arm, arm_of
 from hydrostat.solution import CONVENTIONS
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
@@ -148,8 +149,89 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         """Why there is no equilibrium, in a sentence; of `shape`."""
         return self._columns["reason"].astype(np.str_)
 
+    @property
+    def tension(self) -> NDArray[np.float64]:
+        """The tension of each cable at the base, N, of `shape` and (cables,)."""
+        return self._number("tension")
+
+    @property
+    def base_force_x(self) -> NDArray[np.float64]:
+        """N, of `shape`."""
+        return self._number("base_force_x")
+
+    @property
+    def base_force_y(self) -> NDArray[np.float64]:
+        """N, of `shape`."""
+        return self._number("base_force_y")
+
+    @property
+    def base_moment(self) -> NDArray[np.float64]:
+        """N m, of `shape`."""
+        return self._number("base_moment")
+
+    @property
+    def error_estimate(self) -> NDArray[np.float64]:
+        """Estimated error of the tip, m, of `shape`."""
+        return self._number("error_estimate")
+
+    @property
+    def load_fraction(self) -> NDArray[np.float64]:
+        """The share of the loads at which a row without an equilibrium ends, of `shape`."""
+        return self._number("load_fraction")
+
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """Centreline along e1, m, of `shape` and (stations,), with `stations`."""
+        return self._number("x")
+
+    @property
+    def y(self) -> NDArray[np.float64]:
+        """Centreline along e2, m, of `shape` and (stations,), with `stations`."""
+        return self._number("y")
+
+    @property
+    def theta(self) -> NDArray[np.float64]:
+        """Rotation of the section, rad, of `shape` and (stations,), with `stations`."""
+        return self._number("theta")
+
+    @property
+    def fold_margin(self) -> NDArray[np.float64]:
+        """Margin of the surface against folding, of `shape`, with `fold_margin`."""
+        return self._number("fold_margin")
+
+    @property
+    def stability(self) -> NDArray[np.str_]:
+        """``"stable"`` and so on, of `shape`, with `stability`."""
+        return self._column("stability").astype(np.str_)
+
+    @property
+    def warnings(self) -> NDArray[np.str_]:
+        """The kinds of the warnings of each row, with blanks between, of `shape`."""
+        return self._column("warnings").astype(np.str_)
+
     def _number(self, name: str) -> NDArray[np.float64]:
-        return self._columns[name].astype(np.float64, copy=False)
+        return self._column(name).astype(np.float64, copy=False)
+
+    def _column(self, name: str) -> NDArray[np.generic]:
+        if name not in self._columns:
+            option = "stations" if name in ("x", "y", "theta") else name
+            raise AttributeError(f"{name}: these rows have none; `solve_many` has the option `{option}`")
+        return self._columns[name]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row for each, in the order of `shape`, whose places are the index where it has several dimensions; a column for each cable
+        (``stroke_0``), station and parameter. Needs pandas."""
+        import pandas as pd
+
+        columns: dict[str, NDArray[np.generic]] = {}
+        for name, column in self._columns.items():
+            last = column.shape[len(self.shape) :]
+            flat = column.reshape(-1, *last)
+            for place in np.ndindex(*last):
+                columns["_".join([name, *map(str, place)])] = flat[(slice(None), *place)]
+        names = [f"dim_{k}" for k in range(len(self.shape))]
+        places = pd.MultiIndex.from_product([range(size) for size in self.shape], names=names) if len(self.shape) > 1 else None
+        return pd.DataFrame(columns, index=places)
 
     def to_xarray(self, *dims: Hashable) -> xr.Dataset:
         """The answers as a dataset over `dims` (``dim_0`` and so on without them), ``cable``, ``station`` (with its
@@ -477,6 +559,11 @@ def _labelled(tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, Any,
         cables = "cable" if "cable" in pulled.dims else pulled.dims[-1]
         arrays["tensions"] = pulled.transpose(..., cables)
     rows = [array.isel({cables: 0}, drop=True) if name == "tensions" else array for name, array in arrays.items()]
+    try:
+        xarray.align(*rows, join="exact")
+    except ValueError as error:
+        words = "give them the same, or `xarray.align` them first"
+        raise ValueError(f"{', '.join(arrays)}: expected the same coordinates along the same dimensions; {words} ({error})") from error
     like = xarray.broadcast(*rows)[0]
     taken = {"cable", "station", "parameter"} & set(like.dims)
     if taken:

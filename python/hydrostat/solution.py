@@ -654,7 +654,8 @@ class Solution(Stations):
         label : str, optional
             For the legend.
         unit : str, optional
-            ``"mm"``, ``"cm"`` or ``"m"``; by default that of earlier drawings on these axes, or mm.
+            ``"mm"``, ``"cm"`` or ``"m"``; by default that of earlier drawings on these axes, or that of their label, or mm. Earlier
+            drawings in another one are converted.
 
         Returns
         -------
@@ -664,7 +665,7 @@ class Solution(Stations):
         Raises
         ------
         ValueError
-            The unit differs from that of earlier drawings on these axes.
+            The unit is none of these, or what is on these axes cannot be converted to it.
         """
         from hydrostat.plotting import plot_shape
 
@@ -737,16 +738,24 @@ _WARNINGS = {
 
 def warn(solution: Solution, depth: int) -> Solution:
     """Raise a Python warning for each kind of note on an answer, of the caller `depth` calls up."""
-    if _ignored():
-        return solution
-    for note in solution.warnings:
-        if note.kind == "snap":
+    if not _ignored():
+        _raise([note.kind for note in solution.warnings], "`Solution.warnings` has the numbers", depth + 1)
+    return solution
+
+
+def warn_of_all(solutions: Iterable[Solution], depth: int) -> None:
+    """The same for several answers, once for each kind."""
+    if not _ignored():
+        kinds = [note.kind for solution in solutions for note in solution.warnings]
+        _raise(list(dict.fromkeys(kinds)), "`warnings` of the solutions has the numbers", depth + 1)
+
+
+def _raise(kinds: list[str], where: str, depth: int) -> None:
+    for kind in kinds:
+        if kind == "snap":
             # Within the bounds that were asked for.
             continue
-        words = _WARNINGS.get(note.kind, "see its message")
-        text = f"{note.kind}: {words}; `Solution.warnings` has the numbers"
-        warnings.warn(ModelWarning(text, note.kind), stacklevel=depth + 1)
-    return solution
+        warnings.warn(ModelWarning(f"{kind}: {_WARNINGS.get(kind, 'see its message')}; {where}", kind), stacklevel=depth + 1)
 
 
 def _ignored() -> bool:

@@ -98,7 +98,7 @@ class Solver:
 
     def resolve(self) -> Solution:
         """Solve from the last shape (warm start), or from the unloaded arm if the arm moved too far."""
-        return solution_of(self._inner.resolve())
+        return warn(solution_of(self._inner.resolve()), 2)
 
     def update(self) -> Answer:
         """Solve as `resolve` does, and return the tip only."""
@@ -110,7 +110,7 @@ class Solver:
 
     def solution(self) -> Solution:
         """The full solution of the last `update`."""
-        return solution_of(self._inner.configuration())
+        return warn(solution_of(self._inner.configuration()), 2)
 
     def sensitivities(
         self, parameters: Sequence[str] | None = None, *, stations: ArrayLike = (), method: str = "best"

@@ -80,6 +80,15 @@ def test_a_table_kept_none_of_its_other_keys(silicone: hs.Arm) -> None:
     assert arm.replace({"arm": {"radius": ends}}) == arm.replace({"arm.radius": ends})
 
 
+def test_a_list_of_one_dropped_the_other_cables(silicone: hs.Arm) -> None:
+    both = silicone.replace({"cable": [{"tension": 0.1}, {"tension": "50 mN"}]})
+    assert both == silicone.replace(tensions=[0.1, 0.05])
+    with pytest.raises(ValueError, match=r"^changes\['cable'\]: the arm has 2 cables, 1 tables were given; .*cable\[0\]"):
+        silicone.replace({"cable": [{"tension": 0.1}]})
+    three = [{"name": name, "offset": 0.002} for name in "abc"]
+    assert silicone.replace({"cable": three}).cables == ("a", "b", "c")
+
+
 @given(
     points=st.lists(st.floats(0.002, 0.02), min_size=2, max_size=8),
     name=st.text(st.characters(exclude_categories=["Cs"]), max_size=20),

@@ -152,6 +152,8 @@ TYPES: list[tuple[Callable[[hs.Arm], object], str]] = [
     (lambda _: hs.sweep(None, {"flow.speed": [0.1]}), "^arm: expected an Arm"),  # type: ignore[call-overload]
     (lambda arm: hs.Solver(arm._inner), "^arm: expected an Arm"),  # type: ignore[arg-type]
     (lambda arm: arm.sensitivities([1]), "^parameters: expected text"),  # type: ignore[list-item]
+    (lambda arm: hs.solve_many(arm, progress="yes"), "^progress: expected True, False or None, found 'yes'"),  # type: ignore[call-overload]
+    (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, progress=1), "^progress: expected True, False or None, found 1"),  # type: ignore[call-overload]
 ]
 
 
@@ -170,6 +172,14 @@ def test_calls(silicone: hs.Arm, call: Callable[[hs.Arm], object], words: str) -
 def test_modules_say_what_was_meant(silicone: hs.Arm) -> None:
     with pytest.raises(TypeError, match=r"^hydrostat.reach is a module; expected a call of `hydrostat.Arm.reach"):
         hs.reach((0.1, 0.1))  # type: ignore[operator]
+    for name in ("figures", "spatial"):
+        with pytest.raises(TypeError, match=rf"^hydrostat.{name} is a module; expected a call of `hydrostat.*figure|Arm.solve"):
+            getattr(hs, name)(1)
+    for name in ("solve", "path", "equilibria", "identify"):
+        with pytest.raises(AttributeError, match=rf"^module 'hydrostat' has no attribute '{name}'; expected `hydrostat.Arm.{name}`"):
+            getattr(hs, name)
+    with pytest.raises(AttributeError, match=r"^module 'hydrostat' has no attribute 'sole'$"):
+        hs.sole  # type: ignore[attr-defined]  # noqa: B018
     assert not {"many", "reach", "paths", "cluster"} & set(dir(hs))
     assert set(hs.__all__) == set(dir(hs)) and all(hasattr(hs, name) for name in hs.__all__)
 

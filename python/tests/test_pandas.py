@@ -67,3 +67,41 @@ def test_a_sweep_takes_a_column(silicone: hs.Arm, values: Any) -> None:
     found = hs.sweep(silicone, {"flow.speed": values})
     assert found["flow_speed"].values.tolist() == [0.05, 0.1]
     assert found.tip_y.values.tolist() == hs.sweep(silicone, {"flow.speed": [0.05, 0.1]}).tip_y.values.tolist()
+
+
+def test_rows_as_a_table(silicone: hs.Arm) -> None:
+    many = hs.solve_many(silicone, tensions=PULLS, flow_speed=[[0.0], [0.1]], stations=3, gradients=True)
+    table = many.to_pandas()
+    assert len(table) == 4 and list(table.index.names) == ["dim_0", "dim_1"]
+    assert table.tip_y.tolist() == many.tip_y.ravel().tolist() and table.stroke_1[0, 1] == many.stroke[0, 1, 1]
+    assert table.x_2[1, 0] == many.x[1, 0, 2] and table.d_stroke_0_1[0, 0] == many["d_stroke"][0, 0, 0, 1]
+    alone = hs.solve_many(silicone, tensions=[0.1, 0.0]).to_pandas()
+    assert len(alone) == 1 and alone.verdict.tolist() == [""]
+    assert hs.solve_many(silicone, tensions=PULLS).to_pandas().index.tolist() == [0, 1]
+
+
+def test_all_columns_are_attributes(silicone: hs.Arm) -> None:
+    many = hs.solve_many(silicone, tensions=PULLS, stations=3, fold_margin=True, stability=True)
+    for name in many:
+        assert getattr(many, name).tolist() == many[name].tolist() or name == "load_fraction"
+    bare = hs.solve_many(silicone, tensions=PULLS, warnings=False)
+    for name, option in {"x": "stations", "warnings": "warnings", "stability": "stability", "fold_margin": "fold_margin"}.items():
+        with pytest.raises(AttributeError, match=f"^{name}: these rows have none; .*`{option}`"):
+            getattr(bare, name)
+
+
+def test_dataarrays_with_other_coordinates_were_joined(silicone: hs.Arm) -> None:
+    xr = pytest.importorskip("xarray")
+    speed = xr.DataArray([0.0, 0.1], dims="v", coords={"v": [0, 1]})
+    turn = xr.DataArray([0.0, 90.0], dims="v", coords={"v": [1, 2]})
+    with pytest.raises(ValueError, match=r"^flow_speed, vary\['flow.direction'\]: expected the same coordinates"):
+        hs.solve_many(silicone, flow_speed=speed, vary={"flow.direction": turn})
+
+
+def test_a_column_that_is_the_index_too(silicone: hs.Arm) -> None:
+    tips = [silicone.solve(tensions=[pull, 0]).tip for pull in (0.1, 0.2, 0.3)]
+    columns = {"case": list("abc"), "cable[0].tension [N]": [0.1, 0.2, 0.3], "x [m]": [t.x for t in tips], "y [m]": [t.y for t in tips]}
+    table = pd.DataFrame(columns)
+    want = silicone.identify(table, "young", sd="1 mm", cross_validate=False)
+    for drop in (False, True):
+        assert silicone.identify(table.set_index("case", drop=drop), "young", sd="1 mm", cross_validate=False).values == want.values
