@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 #: A CSV file; or columns by their heads, as a mapping of sequences or a pandas DataFrame.
-Measured = Union[str, PathLike[str], Mapping[str, Iterable[object]], "pd.DataFrame"]
+Measured = Union[str, PathLike[str], Mapping[str, object], "pd.DataFrame"]
 #: A number as the arm file reads it.
 Number = Union[float, str]
 #: Start, or start, lower and upper bound, None for what is left to the program.
