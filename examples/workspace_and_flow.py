@@ -60,7 +60,7 @@ ds = hs.sweep(arm, {"flow.speed": "0:0.5:21", "cable[0].tension": "0:1:26"})
 fig, (map_ax, curves) = plt.subplots(1, 2, figsize=(11.4, 4.0), width_ratios=(1.0, 1.5), layout="constrained")
 turned = np.degrees(ds.tip_theta)
 filled = map_ax.contourf(
-    ds["cable[0].tension"], ds["flow.speed"], np.ma.masked_invalid(turned.values), levels=20, cmap="cividis"
+    ds.cable_0_tension, ds.flow_speed, np.ma.masked_invalid(turned.values), levels=20, cmap="cividis"
 )
 map_ax.set_facecolor("#e9e4da")
 map_ax.text(0.98, 0.25, "folded", rotation=90, ha="center", va="center", color="#7a4b2a")
@@ -68,7 +68,7 @@ fig.colorbar(filled, ax=map_ax, label="the tip's turn (deg)")
 map_ax.set_xlabel("tension of the left cable (N)")
 map_ax.set_ylabel("speed of the stream (m/s)")
 for speed in (0.0, 0.1, 0.2, 0.3, 0.5):
-    row = ds.sel({"flow.speed": speed}, method="nearest")
+    row = ds.sel(flow_speed=speed, method="nearest")
     color = plt.colormaps["viridis"](speed / 0.55)
     curves.plot(1e3 * row.tip_x, 1e3 * row.tip_y, "-", color=color, linewidth=1.7, label=f"{speed:g} m/s")
 curves.set_aspect("equal")

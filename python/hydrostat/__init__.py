@@ -18,6 +18,7 @@ as in the file: bare angles in degrees, strings with units.
 cable_fold 0.6288 0.245
 """
 
+import typing as _typing
 from sys import modules as _modules
 from types import ModuleType as _ModuleType
 
@@ -201,6 +202,7 @@ class _Module(_ModuleType):
 #: What stands for modules of the same name.
 _MEANT = {
     "arm": "`hydrostat.Arm(...)` or `hydrostat.Arm.load(...)`",
+    "figures": "`hydrostat.arm_figure(...)`, `hydrostat.path_figure(...)` and so on",
     "identification": "`hydrostat.Arm.identify(...)`",
     "many": "`hydrostat.solve_many(...)`",
     "motion": "`hydrostat.simulate(...)` or `hydrostat.Simulation(...)`",
@@ -209,10 +211,26 @@ _MEANT = {
     "sensitivity": "`hydrostat.Arm.sensitivities(...)`",
     "solution": "`hydrostat.Arm.solve(...)`",
     "solver": "`hydrostat.Solver(...)`",
+    "spatial": "`hydrostat.Arm.solve(...)` of an arm in space",
 }
+
+#: What stands for functions that this module does not have.
+_METHODS = ("equilibria", "identify", "measurements_template", "path", "reachable", "replace", "sensitivities", "solve", "to_dict", "to_toml")
+_EXTRAS = ("gym", "jax", "torch", "widget")
 
 for _name in _MEANT:
     _modules[f"{__name__}.{_name}"].__class__ = _Module
+
+
+if not _typing.TYPE_CHECKING:
+    # A type checker would take it that every name exists.
+    def __getattr__(name: str) -> object:
+        words = f"module 'hydrostat' has no attribute {name!r}"
+        if name in _METHODS:
+            words += f"; expected `hydrostat.Arm.{name}`, of an arm: `hydrostat.Arm.load(...).{name}(...)`"
+        elif name in _EXTRAS:
+            words += f"; `import hydrostat.{name}` first"
+        raise AttributeError(words, name=name)
 
 
 def __dir__() -> list[str]:

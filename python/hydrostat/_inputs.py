@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, Union
 
 import numpy as np
 
-from hydrostat import _native
+from hydrostat import _native, _units
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -18,14 +18,29 @@ T = TypeVar("T")
 K = TypeVar("K")
 V = TypeVar("V")
 
+#: An array of numbers, or lists in which some have units.
+Numbers = Union["ArrayLike", Sequence[object]]
+
 #: How far the tip may jump, over the length, and turn, rad, at a snap unless something else is asked for.
 SNAPS = (0.01, _native.angle("2 deg"))
 
 _ESCAPES = {ord('"'): '\\"', ord("\\"): "\\\\", **{code: f"\\u{code:04x}" for code in [*range(32), 127]}}
 
 
-def numbers(name: str, value: ArrayLike, dimensions: int | None = None, *, missing: bool = False) -> NDArray[np.float64]:
-    """Real numbers, contiguous, with so many dimensions. What is masked, or NA in pandas, is NaN where `missing` allows it."""
+def numbers(
+    name: str,
+    value: Numbers,
+    dimensions: int | None = None,
+    *,
+    missing: bool = False,
+    key: str | None = None,
+    arm: _native.Arm | None = None,
+) -> NDArray[np.float64]:
+    """Real numbers, contiguous, with so many dimensions. What is masked, or NA in pandas, is NaN where `missing` allows it.
+
+    Of what carries a unit, the numbers in the unit of a bare number at `key` of the arm file (of `arm`, if it is its own)."""
+    if key is not None:
+        value = _units.plain(name, value, key, arm)
     if _is_nullable(value):
         value = value.to_numpy(dtype=np.float64, na_value=np.nan)  # type: ignore[union-attr]
     elif isinstance(value, np.ma.MaskedArray) and value.dtype.kind in "iuf":
@@ -53,13 +68,22 @@ def _is_nullable(value: object) -> bool:
     """Whether these are numbers of pandas, some of which may be NA."""
     if isinstance(value, np.ndarray) or not hasattr(value, "to_numpy"):
         return False
-    kinds = getattr(value, "dtypes", None) if getattr(value, "ndim", 1) == 2 else [getattr(value, "dtype", None)]
-    return all(not isinstance(kind, np.dtype) and getattr(kind, "kind", "O") in "iuf" for kind in kinds or [None])
+    kinds = list(getattr(value, "dtypes", ())) if getattr(value, "ndim", 1) == 2 else [getattr(value, "dtype", None)]
+    known = all(getattr(kind, "kind", "O") in "iuf" for kind in kinds)
+    return known and any(not isinstance(kind, np.dtype) for kind in kinds)
 
 
-def finite(name: str, value: ArrayLike, *, negative: bool = True, missing: bool = False) -> NDArray[np.float64]:
+def finite(
+    name: str,
+    value: Numbers,
+    *,
+    negative: bool = True,
+    missing: bool = False,
+    key: str | None = None,
+    arm: _native.Arm | None = None,
+) -> NDArray[np.float64]:
     """Finite real numbers of any shape, none below zero unless `negative`; NaN among them where `missing` allows it."""
-    array = numbers(name, value, missing=missing)
+    array = numbers(name, value, missing=missing, key=key, arm=arm)
     wrong = ~np.isfinite(array) if negative else ~(np.isfinite(array) & (array >= 0.0))
     if missing:
         wrong &= ~np.isnan(array)
@@ -70,8 +94,10 @@ def finite(name: str, value: ArrayLike, *, negative: bool = True, missing: bool 
     return array
 
 
-def number(name: str, value: float, *, negative: bool = True) -> float:
-    """One finite number, not below zero unless `negative`."""
+def number(name: str, value: float | str, *, negative: bool = True, key: str | None = None) -> float:
+    """One finite number, not below zero unless `negative`; with `key` also what carries a unit, see `numbers`."""
+    if key is not None:
+        value = _units.plain(name, value, key)
     try:
         out = float(value)
     except (TypeError, ValueError) as error:
@@ -169,3 +195,13 @@ def toml(name: str, value: object) -> str:
     if isinstance(value, Sequence):
         return "[" + ", ".join(toml(f"{name}[{index}]", item) for index, item in enumerate(value)) + "]"
     raise ValueError(f"{name}: expected a number, a string, a list or a mapping, found {type(value).__name__}")
+
+
+def of_cables(value: Any, cables: tuple[str, ...]) -> Any:
+    """A table or row of pandas whose labels are the cables' names, in the order of the cables; anything else as it is."""
+    if isinstance(value, (np.ndarray, list, tuple)) or not hasattr(value, "to_numpy") or not hasattr(value, "loc"):
+        return value
+    labels = getattr(value, "columns", None) if getattr(value, "ndim", 0) == 2 else getattr(value, "index", None)
+    if labels is None or list(labels) == list(cables) or sorted(map(str, labels)) != sorted(cables):
+        return value
+    return value[list(cables)]

@@ -6,8 +6,19 @@ import sys
 import time
 from types import TracebackType
 
+import numpy as np
+
 _WIDTH = 30
 _PAUSE = 0.2
+
+
+def is_shown(progress: bool | None) -> bool:
+    """Whether to show how far the work is: on a terminal by default."""
+    if progress is None:
+        return sys.stderr.isatty()
+    if not isinstance(progress, (bool, np.bool_)):
+        raise TypeError(f"progress: expected True, False or None, found {progress!r}")
+    return bool(progress)
 
 
 class Progress:
@@ -15,7 +26,7 @@ class Progress:
 
     def __init__(self, rows: int, shown: bool | None) -> None:
         self._rows = rows
-        self.shown = sys.stderr.isatty() if shown is None else shown
+        self.shown = is_shown(shown)
         self._start = time.monotonic()
         self._said = 0.0
         self.done = 0
@@ -51,7 +62,7 @@ class Line:
     """A line that shows the last message; drawn when `shown` is true, or on a terminal when it is None."""
 
     def __init__(self, shown: bool | None) -> None:
-        self.shown = sys.stderr.isatty() if shown is None else shown
+        self.shown = is_shown(shown)
 
     def __call__(self, words: str) -> None:
         """Says how far the work is."""

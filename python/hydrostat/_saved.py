@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 #: The version of what pickles and files hold. Others are refused by name.
-FORMAT = 2
+FORMAT = 3
 
 #: How far (over the length) a tip that was made again may be from the one that was saved and still be of the same shape.
 _SAME = 1e-6

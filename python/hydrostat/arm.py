@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from hydrostat import _inputs, _native
+from hydrostat import _inputs, _native, _units
 from hydrostat._saved import Origin
-from hydrostat.solution import Solution, solution_of, warn
+from hydrostat.solution import Solution, solution_of, warn, warn_of_all
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from hydrostat.identification import Fit, Keys, Measured, Priors
     from hydrostat.paths import Equilibria, EquilibriumPath
-    from hydrostat.reach import Boundary, Reach, SpatialTargets, Targets
+    from hydrostat.reach import AnyTargets, Boundary, Most, Number, Reach, Targets
     from hydrostat.sensitivity import Sensitivities
 
 #: A table of the arm file.
 Table = Mapping[str, Any]
 
-_TABLES = ("name", "arm", "material", "reference", "cable", "flow", "gravity", "tip", "distributed", "model")
+_TABLES = ("name", "arm", "material", "reference", "cable", "flow", "gravity", "tip", "distributed", "model", "dynamics")
 
 
 def arms() -> dict[str, str]:
@@ -48,7 +48,7 @@ class Arm:
         ``young``, ``poisson``, ``shear_factor``, or ``c1``, ``c2``, ``c3``.
     cable : sequence of mapping
         Each with ``name``, ``offset``, ``tension`` or ``stroke``, ``friction``, ``end`` and so on.
-    reference, flow, gravity, tip, distributed, model : mapping
+    reference, flow, gravity, tip, distributed, model, dynamics : mapping
         Further tables; defaults if left out.
     name : str
         A name for people.
@@ -88,6 +88,7 @@ class Arm:
         tip: Table | None = None,
         distributed: Table | None = None,
         model: Table | None = None,
+        dynamics: Table | None = None,
         name: str = "arm",
     ) -> None:
         tables = {
@@ -101,6 +102,7 @@ class Arm:
             "tip": tip,
             "distributed": distributed,
             "model": model,
+            "dynamics": dynamics,
         }
         lines = [f"{key} = {_inputs.toml(key, table)}" for key, table in tables.items() if table is not None]
         self._inner = _native.Arm("\n".join(lines), "arguments")
@@ -222,7 +224,8 @@ class Arm:
         ----------
         changes : mapping, optional
             Values by the dotted keys of the arm file, such as ``{"cable[0].friction": 0.1, "model.volume": "none"}``. A table's
-            other keys stay as they are: ``{"flow": {"speed": 0.1}}`` is ``{"flow.speed": 0.1}``.
+            other keys stay as they are: ``{"flow": {"speed": 0.1}}`` is ``{"flow.speed": 0.1}``, and so with a list of tables for all
+            cables.
         tensions : sequence of float or str, or ndarray, optional
             One per cable, N, or with a unit; strokes are then no longer commanded.
         strokes : sequence of float, str or None, or ndarray, optional
@@ -239,7 +242,7 @@ class Arm:
         """
         given: dict[str, object] = {}
         for key, value in _inputs.mapping("changes", changes or {}, '{"flow.speed": 0.1}').items():
-            given |= _dotted(str(key), value)
+            given |= self._of_cables(value) if key == "cable" else _dotted(str(key), value)
         for name, values, key in (("tensions", tensions, "tension"), ("strokes", strokes, "stroke")):
             if values is None:
                 continue
@@ -253,12 +256,22 @@ class Arm:
             given["flow.direction"] = flow_direction
         return Arm._of(self._inner.replaced([("replace", key, _inputs.toml(key, value)) for key, value in given.items()]))
 
+    def _of_cables(self, tables: object) -> dict[str, object]:
+        """Changes of the list of cables: of each its own, or new cables, which all have an offset."""
+        each = _inputs.items("changes['cable']", tables, "tables, one a cable")  # type: ignore[arg-type, var-annotated]
+        if len(each) == len(self.cables):
+            return {key: item for i, table in enumerate(each) for key, item in _dotted(f"cable[{i}]", table).items()}
+        if all(isinstance(table, Mapping) and "offset" in table for table in each):
+            return {"cable": each}
+        words = 'one alone is changed by {"cable[0]": {...}}, and new cables have an `offset`'
+        raise ValueError(f"changes['cable']: the arm has {len(self.cables)} cables, {len(each)} tables were given; {words}")
+
     def solve(
         self,
         *,
-        tensions: ArrayLike | None = None,
-        strokes: Sequence[float | None] | NDArray[Any] | None = None,
-        flow_speed: float | None = None,
+        tensions: _inputs.Numbers | None = None,
+        strokes: Sequence[float | str | None] | NDArray[Any] | None = None,
+        flow_speed: float | str | None = None,
         tol: float = 1e-8,
         snap_distance: float = 0.01,
         snap_angle: float | str = 2.0,
@@ -273,11 +286,11 @@ class Arm:
         Parameters
         ----------
         tensions : array_like, shape (cables,), optional
-            N, in place of the arm's.
-        strokes : sequence of float or None, optional
-            Stroke of each cable (reeled in), m, in place of its tension; None leaves a cable as it is.
-        flow_speed : float, optional
-            m/s, in place of the arm's.
+            N, or strings with units, in place of the arm's.
+        strokes : sequence of float, str or None, optional
+            Stroke of each cable (reeled in), m, or with a unit, in place of its tension; None leaves a cable as it is.
+        flow_speed : float or str, optional
+            m/s, or with a unit, in place of the arm's.
         tol : float
             Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
         snap_distance : float
@@ -304,8 +317,8 @@ class Arm:
         ValueError
             An argument is invalid; the message names it.
         """
-        pulled = None if tensions is None else _inputs.numbers("tensions", tensions, 1)
-        speed = None if flow_speed is None else _inputs.number("flow_speed", flow_speed, negative=False)
+        pulled = None if tensions is None else _inputs.numbers("tensions", _inputs.of_cables(tensions, self.cables), 1, key=_units.TENSION)
+        speed = None if flow_speed is None else _inputs.number("flow_speed", flow_speed, negative=False, key=_units.SPEED)
         reeled = None if strokes is None else _strokes(strokes)
         within = _inputs.number("tol", tol)
         _inputs.after_snap(after_snap, snap_distance, snap_angle, follow_snaps)
@@ -359,9 +372,11 @@ class Arm:
         step = _inputs.number("longest", longest)
         points = _inputs.count("most", most)
         asked = (vary, _inputs.number("tol", tol), step, points, branches)
-        return EquilibriumPath(_native.path(self._inner, *asked), self._origin("path", asked))
+        found = EquilibriumPath(_native.path(self._inner, *asked), self._origin("path", asked))
+        warn_of_all((solution for branch in found.branches for solution in branch), 2)
+        return found
 
-    def equilibria(self, *, tol: float = 1e-8, time_limit: float | None = None) -> Equilibria:
+    def equilibria(self, *, tol: float = 1e-8, time_limit: float | str | None = None) -> Equilibria:
         """Find all equilibria under the arm's loads, each with its stability, whether `solve` gives them or not.
 
         Ctrl-C interrupts it.
@@ -370,8 +385,8 @@ class Arm:
         ----------
         tol : float
             Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-3].
-        time_limit : float, optional
-            Seconds after which the search stops and returns what it has found.
+        time_limit : float or str, optional
+            Seconds, or with a unit, after which the search stops and returns what it has found.
 
         Returns
         -------
@@ -382,16 +397,18 @@ class Arm:
         from hydrostat.paths import Equilibria
 
         within = _inputs.number("tol", tol)
-        limit = None if time_limit is None else _inputs.number("time_limit", time_limit)
-        return Equilibria(_native.equilibria(self._inner, within, limit), self._origin("equilibria", (within, None)))
+        limit = None if time_limit is None else _inputs.number("time_limit", time_limit, key=_units.TIME)
+        found = Equilibria(_native.equilibria(self._inner, within, limit), self._origin("equilibria", (within, None)))
+        warn_of_all(found, 2)
+        return found
 
     def reach(
         self,
-        targets: Targets | SpatialTargets,
+        targets: AnyTargets,
         *,
         by: str = "tensions",
-        max_tension: float | None = None,
-        max_stroke: float | None = None,
+        max_tension: Most | None = None,
+        max_stroke: Number | None = None,
         tol: float = 1e-8,
         find_all: bool = True,
     ) -> Reach:
@@ -404,14 +421,15 @@ class Arm:
         Parameters
         ----------
         targets : Target, sequence of Target, or (x, y)
-            Targets for places of the arm, m and rad; (x, y) is a target for the tip. Of an arm in space `SpatialTarget` and (x, y, z).
+            Targets for places of the arm, m and degrees, or with units; (x, y) is a target for the tip. Of an arm in space `SpatialTarget`
+            and (x, y, z).
         by : str
             ``"tensions"``, or ``"strokes"``: then the strokes that belong to the tensions are commanded, and stability is that with
             cable lengths held.
-        max_tension : float, optional
-            The largest tension of every cable, N; a smaller one of the cable itself holds.
-        max_stroke : float, optional
-            The largest stroke of every taut cable, m: how much can be reeled in.
+        max_tension : float, str or sequence, optional
+            The largest tension of every cable, N, or with a unit, or of each cable; a smaller one of the cable itself holds.
+        max_stroke : float or str, optional
+            The largest stroke of every taut cable, m, or with a unit: how much can be reeled in.
         tol : float
             Tolerance on the distance to a target, relative to the arm's length, in [1e-10, 1e-2].
         find_all : bool
@@ -437,28 +455,30 @@ class Arm:
         >>> round(tip.x, 6), round(tip.y, 6)
         (0.182, 0.078)
         """
-        from hydrostat.reach import Reach, most_of, spatial_targets_of, targets_of
+        from hydrostat.reach import Reach, bounded, goals_of, spatial_targets_of, targets_of
 
-        most = most_of(max_tension, max_stroke)
+        arm, most = bounded(self, max_tension, max_stroke)
         if by not in ("tensions", "strokes"):
             raise ValueError(f"by: expected tensions or strokes, found {by!r}")
         options = (most, _inputs.number("tol", tol), find_all, by == "strokes")
         if self.is_spatial:
             there = spatial_targets_of(targets)
             places = [((one.x, one.y, one.z), one.s, one.direction, one.weight) for one in there]
-            found = _native.reach(self._inner, places, *options)
-            return Reach(found, tuple(there), self._origin("reach", (places, *options)))
-        goals = targets_of(cast("Targets", targets))
-        asked = (goals, *options)
-        return Reach(_native.reach(self._inner, *asked), tuple(goals), self._origin("reach", asked))
+            found = Reach(_native.reach(arm._inner, places, *options), tuple(there), arm._origin("reach", (places, *options)))
+        else:
+            wanted = targets_of(cast("Targets", targets))
+            asked = (goals_of(wanted), *options)
+            found = Reach(_native.reach(arm._inner, *asked), tuple(wanted), arm._origin("reach", asked))
+        warn_of_all((one.solution for one in found), 2)
+        return found
 
-    def reachable(self, *, max_tension: float | None = None, spacing: float = 0.01, tol: float = 1e-7) -> Boundary:
+    def reachable(self, *, max_tension: Most | None = None, spacing: float = 0.01, tol: float = 1e-7) -> Boundary:
         """Trace the boundary of the workspace: of the places that the tip reaches with tensions from 0 to their largest.
 
         Parameters
         ----------
-        max_tension : float, optional
-            The largest tension of every cable, N; a smaller one of the cable itself holds.
+        max_tension : float, str or sequence, optional
+            The largest tension of every cable, N, or with a unit, or of each cable; a smaller one of the cable itself holds.
         spacing : float
             Distance between points, relative to the arm's length, in [1e-3, 0.1].
         tol : float
@@ -471,11 +491,11 @@ class Arm:
         >>> [piece.kind for piece in boundary]
         ['edge', 'edge', 'edge', 'edge']
         """
-        from hydrostat.reach import Boundary
+        from hydrostat.reach import Boundary, bounded
 
-        most = None if max_tension is None else _inputs.number("max_tension", max_tension)
+        arm, (most, _) = bounded(self, max_tension, None)
         asked = (most, _inputs.number("spacing", spacing), _inputs.number("tol", tol))
-        return Boundary(_native.reachable(self._inner, *asked), self._origin("reachable", asked))
+        return Boundary(_native.reachable(arm._inner, *asked), arm._origin("reachable", asked))
 
     def sensitivities(
         self,
@@ -601,6 +621,6 @@ def _dotted(key: str, value: object) -> dict[str, object]:
     return out
 
 
-def _strokes(strokes: Sequence[float | None] | NDArray[Any]) -> list[float | None]:
+def _strokes(strokes: Sequence[float | str | None] | NDArray[Any]) -> list[float | None]:
     each = _inputs.items("strokes", strokes, "numbers, one a cable")
-    return [None if stroke is None else _inputs.number(f"strokes[{i}]", stroke) for i, stroke in enumerate(each)]
+    return [None if one is None else _inputs.number(f"strokes[{i}]", one, key=_units.STROKE) for i, one in enumerate(each)]

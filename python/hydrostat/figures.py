@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path as FilePath
@@ -59,11 +60,11 @@ class Figure:
             For another ending.
         """
         target = FilePath(path)
-        if target.suffix == ".svg":
+        if target.suffix.lower() == ".svg":
             target.write_text(self.svg(), encoding="utf-8")
-        elif target.suffix == ".pdf":
+        elif target.suffix.lower() == ".pdf":
             target.write_bytes(self.pdf())
-        elif target.suffix == ".png":
+        elif target.suffix.lower() == ".png":
             target.write_bytes(self.png())
         else:
             raise ValueError(f"path: expected a name that ends in .svg, .pdf or .png, found {target.name!r}")
@@ -84,9 +85,10 @@ def path_figure(path: EquilibriumPath, quantity: str = "tip.y", title: str | Non
     Parameters
     ----------
     quantity : str
-        ``"tip.x"``, ``"tip.y"``, ``"tip.theta"``, ``"tip.alpha"`` or ``"stroke[0]"`` and so on.
+        ``"tip.x"``, ``"tip.y"``, ``"tip.z"`` (in space), ``"tip.theta"`` (in the plane), ``"tip.alpha"`` or ``"stroke[0]"`` and so on, or
+        the same as names of Python, ``"tip_x"``, ``"stroke_0"``.
     """
-    return Figure(path._inner.figure(quantity, title or f"equilibria over {path.parameter}"))
+    return Figure(path._inner.figure(_dotted(quantity), title or f"equilibria over {path.parameter}"))
 
 
 def path_shapes_figure(path: EquilibriumPath, title: str | None = None) -> Figure:
@@ -114,14 +116,21 @@ def over_figure(
         As in `path_figure`.
     """
     found = [(float(value), _saved.live(all_of._inner)) for value, all_of in searches.items()]
-    return Figure(_native.over_figure(found, (name, unit, 1.0), quantity, title))
+    return Figure(_native.over_figure(found, (name, unit, 1.0), _dotted(quantity), title))
+
+
+def _dotted(quantity: str) -> str:
+    """A quantity of a path as the program names it."""
+    if not isinstance(quantity, str):
+        raise ValueError(f"quantity: expected a name such as 'tip.x', found {quantity!r}")
+    return re.sub(r"^(tip)_(\w+)$", r"\1.\2", re.sub(r"^([a-z]+)_(\d+)$", r"\1[\2]", quantity))
 
 
 def map_figure(dataset: xr.Dataset, quantity: str = "tip_alpha", title: str = "a sweep") -> Figure:
     """A quantity of a sweep as colours over the two keys that varied."""
     keys, flat = _rows(dataset, 2)
     axes = (_axis(dataset, keys[0]), _axis(dataset, keys[1]))
-    values = (_column(flat, keys[0]), _column(flat, keys[1]))
+    values = (_column(flat, _name(keys[0])), _column(flat, _name(keys[1])))
     return Figure(_native.map_figure(axes, values, *_coloured(dataset, flat, quantity), title))
 
 
@@ -141,7 +150,7 @@ def curve_figure(dataset: xr.Dataset, quantity: str = "tip_y", title: str = "a s
     """A quantity of a sweep over the one key that varied."""
     keys, flat = _rows(dataset, 1)
     name = _full_name(dataset, quantity)
-    figure = _native.curve_figure(_axis(dataset, keys[0]), _column(flat, keys[0]), name, _column(flat, quantity), title)
+    figure = _native.curve_figure(_axis(dataset, keys[0]), _column(flat, _name(keys[0])), name, _column(flat, quantity), title)
     return Figure(figure)
 
 
@@ -172,10 +181,11 @@ def source_figures(
 
 def _rows(dataset: xr.Dataset, count: int | None) -> tuple[list[str], xr.Dataset]:
     """The keys that varied, and the dataset with a row each."""
-    keys = [str(key) for key in dataset.attrs.get("vary", [])]
+    keys = str(dataset.attrs.get("vary", "")).split()
     if count is not None and len(keys) != count:
         raise ValueError(f"dataset: expected a sweep over {count} key(s), found one over {keys}")
-    dims = [dim for dim in dataset.dims if dim in keys]
+    names = [_name(key) for key in keys]
+    dims = [dim for dim in dataset.dims if dim in names]
     flat = dataset.stack({"__row": dims}).reset_index("__row") if dims else dataset
     return keys, flat
 
@@ -190,7 +200,13 @@ def _column(flat: xr.Dataset, name: str) -> NDArray[np.float64]:
 
 
 def _axis(dataset: xr.Dataset, key: str) -> tuple[str, str, float]:
-    return key, str(dataset[key].attrs.get("units", "")), 1.0
+    return key, str(dataset[_name(key)].attrs.get("units", "")), 1.0
+
+
+def _name(key: str) -> str:
+    from hydrostat.sweep import key_name
+
+    return key_name(key)
 
 
 def _full_name(dataset: xr.Dataset, quantity: str) -> str:

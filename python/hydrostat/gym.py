@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import gymnasium
 from gymnasium.spaces import Box
-from hydrostat import _inputs
+from hydrostat import _inputs, _units
 from hydrostat._errors import MotionError, NoEquilibriumError
 from hydrostat.arm import Arm, arm_of
 from hydrostat.many import solve_many
@@ -38,15 +38,15 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
     ----------
     arm : Arm, str or path
         The arm, or the name or file of one; its own loads act, too.
-    max_tension : float
-        The most tension of each cable, N.
-    flow_speed : tuple of float
+    max_tension : float or str
+        The most tension of each cable, N, or a string with a unit, as with the speeds and the time below.
+    flow_speed : tuple of float or str
         The least and the most speed of the stream, m/s, drawn anew at every reset.
     steps : int
         Steps of an episode, at the end of which it is truncated.
     period : int
         Steps in which the target goes round once.
-    time_step : float, optional
+    time_step : float or str, optional
         Seconds a step takes: the arm then moves with its ``[dynamics]``, as `hydrostat.Simulation` has it, and the tensions change along
         straight lines within a step. Without it each step is an equilibrium.
 
@@ -68,19 +68,20 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
         self,
         arm: Arm | str | PathLike[str] = "silicone",
         *,
-        max_tension: float = 0.3,
-        flow_speed: tuple[float, float] = (0.0, 0.02),
+        max_tension: float | str = 0.3,
+        flow_speed: tuple[float | str, float | str] = (0.0, 0.02),
         steps: int = 200,
         period: int = 100,
-        time_step: float | None = None,
+        time_step: float | str | None = None,
     ) -> None:
         self._arm = arm_of(arm)
-        self._most = _inputs.number("max_tension", max_tension, negative=False)
+        self._most = _inputs.number("max_tension", max_tension, negative=False, key=_units.TENSION)
         low, high = _inputs.items("flow_speed", flow_speed, "two speeds, the least and the most")
-        self._speeds = (_inputs.number("flow_speed", low, negative=False), _inputs.number("flow_speed", high, negative=False))
+        slow, fast = (_inputs.number("flow_speed", speed, negative=False, key=_units.SPEED) for speed in (low, high))
+        self._speeds = (slow, fast)
         self._steps = _inputs.count("steps", steps)
         self._period = max(_inputs.count("period", period), 1)
-        self._time_step = None if time_step is None else _inputs.number("time_step", time_step, negative=False)
+        self._time_step = None if time_step is None else _inputs.number("time_step", time_step, negative=False, key=_units.TIME)
         if self._time_step == 0.0:
             raise ValueError("time_step: expected a time above 0, s")
         self._moving: Simulation | None = None

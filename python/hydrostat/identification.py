@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 #: A CSV file; or columns by their heads, as a mapping of sequences or a pandas DataFrame.
-Measured = Union[str, PathLike[str], Mapping[str, Iterable[object]], "pd.DataFrame"]
+Measured = Union[str, PathLike[str], Mapping[str, object], "pd.DataFrame"]
 #: A number as the arm file reads it.
 Number = Union[float, str]
 #: Start, or start, lower and upper bound, None for what is left to the program.
@@ -141,9 +141,9 @@ class Fit(Result):
         Whether residuals agree with the standard deviations.
     chi_square : float
         Sum of the squares of all residuals.
-    freedom : int
+    dof : int
         Degrees of freedom.
-    spread : float
+    scale : float
         The factor on standard deviations; 1 unless `rescale` was asked for.
     cross_validation : tuple of LeftOut
         Cross-validation of every load case; empty for one case, or if not requested.
@@ -164,8 +164,8 @@ class Fit(Result):
         self.verdict: tuple[str, ...] = tuple(found["verdict"])
         self.misfit: str | None = found["misfit"]
         self.chi_square: float = found["chi_square"]
-        self.freedom: int = found["freedom"]
-        self.spread: float = found["spread"]
+        self.dof: int = found["freedom"]
+        self.scale: float = found["spread"]
         self.cross_validation = tuple(
             LeftOut(one["case"], one["within"], one["predicted"], _array(one["shifts"]), one["message"])
             for one in found["cross_validation"]
@@ -173,6 +173,16 @@ class Fit(Result):
         self.converged: bool = found["converged"]
         self.rounds: int = found["rounds"]
         self.evaluations: int = found["evaluations"]
+
+    @property
+    def freedom(self) -> int:
+        """`dof`, under the name of version 0.1, kept for a version."""
+        return self.dof
+
+    @property
+    def spread(self) -> float:
+        """`scale`, under the name of version 0.1, kept for a version."""
+        return self.scale
 
     @cached_property
     def arm(self) -> Arm:
@@ -307,7 +317,7 @@ def _table(data: Measured) -> tuple[str | None, str]:
         return str(path), ""
     columns: dict[str, list[object]] = {}
     frame: Any = data
-    named = [name for name in getattr(getattr(data, "index", None), "names", ()) if name is not None]
+    named = [name for name in getattr(getattr(data, "index", None), "names", ()) if name is not None and name not in frame]
     if named and hasattr(data, "reset_index"):
         # An index with a name is a column like the others.
         frame = frame.reset_index(level=named)

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from hydrostat import _inputs, _memory, _native, _saved
+from hydrostat import _inputs, _memory, _native, _saved, _units
 from hydrostat._progress import Progress
 from hydrostat.arm import Arm, arm_of
 from hydrostat.solution import CONVENTIONS
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
 #: Unit and meaning of what has one.
-_FIELDS = {
+FIELDS = {
     "tip_x": ("m", "tip along e1"),
     "tip_y": ("m", "tip along e2"),
     "tip_theta": ("rad", "rotation of the section at the tip"),
@@ -36,6 +37,16 @@ _FIELDS = {
     "x": ("m", "centreline along e1"),
     "y": ("m", "centreline along e2"),
     "theta": ("rad", "rotation of the section"),
+    "d_tip_x": ("m", "derivative of the tip along e1"),
+    "d_tip_y": ("m", "derivative of the tip along e2"),
+    "d_tip_theta": ("rad", "derivative of the rotation of the section at the tip"),
+    "d_tip_alpha": ("rad", "derivative of the angle alpha at the tip"),
+    "d_stroke": ("m", "derivative of the stroke"),
+    "stability": ("", "stable, unstable or marginal"),
+    "unstable_directions": ("1", "number of directions in which small motions grow"),
+    "warnings": ("", "kinds of the warnings, with blanks between"),
+    "verdict": ("", "why there is no equilibrium; empty where there is one"),
+    "reason": ("", "why there is no equilibrium, in a sentence"),
 }
 #: Dimensions beyond those of the rows.
 _DIMS: dict[str, tuple[str, ...]] = {
@@ -138,12 +149,93 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         """Why there is no equilibrium, in a sentence; of `shape`."""
         return self._columns["reason"].astype(np.str_)
 
+    @property
+    def tension(self) -> NDArray[np.float64]:
+        """The tension of each cable at the base, N, of `shape` and (cables,)."""
+        return self._number("tension")
+
+    @property
+    def base_force_x(self) -> NDArray[np.float64]:
+        """N, of `shape`."""
+        return self._number("base_force_x")
+
+    @property
+    def base_force_y(self) -> NDArray[np.float64]:
+        """N, of `shape`."""
+        return self._number("base_force_y")
+
+    @property
+    def base_moment(self) -> NDArray[np.float64]:
+        """N m, of `shape`."""
+        return self._number("base_moment")
+
+    @property
+    def error_estimate(self) -> NDArray[np.float64]:
+        """Estimated error of the tip, m, of `shape`."""
+        return self._number("error_estimate")
+
+    @property
+    def load_fraction(self) -> NDArray[np.float64]:
+        """The share of the loads at which a row without an equilibrium ends, of `shape`."""
+        return self._number("load_fraction")
+
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """Centreline along e1, m, of `shape` and (stations,), with `stations`."""
+        return self._number("x")
+
+    @property
+    def y(self) -> NDArray[np.float64]:
+        """Centreline along e2, m, of `shape` and (stations,), with `stations`."""
+        return self._number("y")
+
+    @property
+    def theta(self) -> NDArray[np.float64]:
+        """Rotation of the section, rad, of `shape` and (stations,), with `stations`."""
+        return self._number("theta")
+
+    @property
+    def fold_margin(self) -> NDArray[np.float64]:
+        """Margin of the surface against folding, of `shape`, with `fold_margin`."""
+        return self._number("fold_margin")
+
+    @property
+    def stability(self) -> NDArray[np.str_]:
+        """``"stable"`` and so on, of `shape`, with `stability`."""
+        return self._column("stability").astype(np.str_)
+
+    @property
+    def warnings(self) -> NDArray[np.str_]:
+        """The kinds of the warnings of each row, with blanks between, of `shape`."""
+        return self._column("warnings").astype(np.str_)
+
     def _number(self, name: str) -> NDArray[np.float64]:
-        return self._columns[name].astype(np.float64, copy=False)
+        return self._column(name).astype(np.float64, copy=False)
+
+    def _column(self, name: str) -> NDArray[np.generic]:
+        if name not in self._columns:
+            option = "stations" if name in ("x", "y", "theta") else name
+            raise AttributeError(f"{name}: these rows have none; `solve_many` has the option `{option}`")
+        return self._columns[name]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row for each, in the order of `shape`, whose places are the index where it has several dimensions; a column for each cable
+        (``stroke_0``), station and parameter. Needs pandas."""
+        import pandas as pd
+
+        columns: dict[str, NDArray[np.generic]] = {}
+        for name, column in self._columns.items():
+            last = column.shape[len(self.shape) :]
+            flat = column.reshape(-1, *last)
+            for place in np.ndindex(*last):
+                columns["_".join([name, *map(str, place)])] = flat[(slice(None), *place)]
+        names = [f"dim_{k}" for k in range(len(self.shape))]
+        places = pd.MultiIndex.from_product([range(size) for size in self.shape], names=names) if len(self.shape) > 1 else None
+        return pd.DataFrame(columns, index=places)
 
     def to_xarray(self, *dims: Hashable) -> xr.Dataset:
         """The answers as a dataset over `dims` (``dim_0`` and so on without them), ``cable``, ``station`` (with its
-        place ``s``, m) and ``parameter``. Needs xarray."""
+        place ``s``, m) and ``parameter`` (with its ``unit``). Needs xarray."""
         import xarray as xr
 
         own = dims or tuple(f"dim_{k}" for k in range(len(self.shape)))
@@ -151,15 +243,31 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
             raise ValueError(f"dims: expected {len(self.shape)} names, found {len(own)}")
         variables = {}
         for name, column in self._columns.items():
-            attributes = dict(zip(("units", "long_name"), _FIELDS[name], strict=True)) if name in _FIELDS else {}
-            variables[name] = ((*own, *_DIMS.get(name, ())), column, attributes)
+            variables[name] = ((*own, *_DIMS.get(name, ())), column, self._attributes(name))
         coordinates: dict[str, Any] = {"cable": ("cable", list(self.cables))}
         if self.parameters:
             coordinates["parameter"] = ("parameter", list(self.parameters))
+            coordinates["unit"] = ("parameter", [_unit_of(name) for name in self.parameters])
         if "x" in self._columns:
             places = np.linspace(0.0, self.length, self._columns["x"].shape[-1])
             coordinates["s"] = ("station", places, {"units": "m", "long_name": "length along the undeformed arm"})
         return xr.Dataset(variables, coords=coordinates, attrs={"Conventions": CONVENTIONS, "hydrostat": _native.__version__})
+
+
+    def _attributes(self, name: str) -> dict[str, str]:
+        """What a dataset says of an array; a derivative has a unit where all parameters have the same."""
+        unit, meaning = FIELDS.get(name, ("", ""))
+        if "parameter" in _DIMS.get(name, ()):
+            per = {_unit_of(parameter) for parameter in self.parameters}
+            unit = (f"{unit}/({per.pop()})" if len(per) == 1 else "").replace("/()", "").replace("/(N)", "/N").replace("/(m)", "/m")
+            meaning += ", a unit of the parameter"
+        return {key: words for key, words in (("units", unit), ("long_name", meaning)) if words}
+
+
+def _unit_of(parameter: str) -> str:
+    """The unit that derivatives are by: of SI, angles in radians."""
+    bare = _native.bare_unit(parameter) or ""
+    return "rad" if bare in ("deg", "degrees") else bare
 
 
 def _many(version: int, writer: str, state: tuple[Any, ...]) -> Many:
@@ -192,9 +300,30 @@ def solve_many(  # pyright: ignore[reportOverlappingOverload]
 def solve_many(
     arm: Arm | str | PathLike[str],
     *,
-    tensions: ArrayLike | None = ...,
+    tensions: _inputs.Numbers | None = ...,
     flow_speed: xr.DataArray,
     vary: Mapping[str, xr.DataArray | float] | None = ...,
+    tol: float = ...,
+    snap_distance: float = ...,
+    snap_angle: float | str = ...,
+    follow_snaps: bool = ...,
+    tile: int = ...,
+    fold_margin: bool = ...,
+    stability: bool = ...,
+    warnings: bool = ...,
+    stations: int = ...,
+    gradients: bool | Sequence[str] = ...,
+    nan: str = ...,
+    threads: int = ...,
+    progress: bool | None = ...,
+) -> xr.Dataset: ...
+@overload
+def solve_many(  # pyright: ignore[reportOverlappingOverload]
+    arm: Arm | str | PathLike[str],
+    *,
+    tensions: _inputs.Numbers | None = ...,
+    flow_speed: ArrayLike | None = ...,
+    vary: Mapping[str, xr.DataArray],
     tol: float = ...,
     snap_distance: float = ...,
     snap_angle: float | str = ...,
@@ -213,8 +342,8 @@ def solve_many(
 def solve_many(
     arm: Arm | str | PathLike[str],
     *,
-    tensions: ArrayLike | None = ...,
-    flow_speed: ArrayLike | None = ...,
+    tensions: _inputs.Numbers | None = ...,
+    flow_speed: _inputs.Numbers | None = ...,
     vary: Mapping[str, ArrayLike] | None = ...,
     tol: float = ...,
     snap_distance: float = ...,
@@ -233,8 +362,8 @@ def solve_many(
 def solve_many(
     arm: Arm | str | PathLike[str],
     *,
-    tensions: ArrayLike | xr.DataArray | None = None,
-    flow_speed: ArrayLike | xr.DataArray | None = None,
+    tensions: _inputs.Numbers | xr.DataArray | None = None,
+    flow_speed: _inputs.Numbers | xr.DataArray | None = None,
     vary: Mapping[str, ArrayLike] | Mapping[str, xr.DataArray | float] | None = None,
     tol: float = 1e-6,
     snap_distance: float = 0.01,
@@ -260,12 +389,13 @@ def solve_many(
     arm : Arm, str or path
         The arm, or the name or file of one.
     tensions : array_like, shape (..., cables), optional
-        N; the last dimension is the cables' (of a DataArray the one that is called ``cable``, where there is one).
+        N, or with units; the last dimension is the cables' (of a DataArray the one that is called ``cable``, where there is one).
     flow_speed : array_like, optional
-        m/s.
+        m/s, or with units.
     vary : mapping of str to array_like, optional
         Other numbers, by the keys that a path can vary: ``"flow.direction"`` (degrees), ``"cable[0].stroke"`` (m),
-        ``"tip.force[1]"`` (N), ``"material.young"`` (Pa) and so on.
+        ``"tip.force[1]"`` (N), ``"material.young"`` (Pa) and so on. What carries a unit (strings, DataArrays with the attribute
+        ``units``, Quantities of pint) is converted; ``"0:20 cm/s:5"`` is a grid.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-12, 1e-2].
     snap_distance, snap_angle, follow_snaps
@@ -321,6 +451,7 @@ def solve_many(
     arm = arm_of(arm)
     if nan not in ("row", "refuse"):
         raise ValueError(f"nan: expected row or refuse, found {nan!r}")
+    tensions, flow_speed, vary = _without_units(arm, tensions, flow_speed, vary)
     labelled = _labelled(tensions, flow_speed, vary)
     if labelled is not None:
         tensions, flow_speed, vary, like = labelled
@@ -330,6 +461,13 @@ def solve_many(
         many = solve_many(arm, tensions=tensions, flow_speed=flow_speed, vary=vary, **options)
         return many.to_xarray(*like.dims).assign_coords(like.coords)
     cables = arm.cables
+    places = _memory.stations("stations", _inputs.count("stations", stations))
+    keys = [f"cable[{index}].tension" for index in range(len(cables) if tensions is not None else 0)]
+    keys += [*(["flow.speed"] if flow_speed is not None else []), *vary]
+    by = _parameters(arm, keys, gradients)
+    # Columns, answers and what becomes of them: of a row the library holds all twelve fields of its stations.
+    numbers = 2 * len(keys) + 48 + 4 * len(cables) + 15 * places + 2 * len(by) * (4 + len(cables))
+    _require(_rows_of(tensions, [flow_speed, *vary.values()]), numbers)
     given, names = _given(arm, tensions, flow_speed, vary, missing=nan == "row")
     try:
         shape = np.broadcast_shapes(*(values.shape for values in given.values()))
@@ -337,11 +475,7 @@ def solve_many(
         shapes = ", ".join(f"{name} {given[key].shape}" for key, name in names.items())
         raise ValueError(f"shapes do not broadcast: {shapes} (tensions without their last dimension)") from error
     rows = math.prod(shape)
-    places = _memory.stations("stations", _inputs.count("stations", stations))
-    by = _parameters(arm, list(given), gradients)
-    # Columns, answers and what becomes of them: of a row the library holds all twelve fields of its stations.
-    numbers = 2 * len(given) + 48 + 4 * len(cables) + 15 * places + 2 * len(by) * (4 + len(cables))
-    _memory.require(8 * numbers * rows, f"{rows} rows", "take fewer, or write them to a file with `hydrostat.sweep(..., output=...)`")
+    _require(rows, numbers)
     columns = [np.ascontiguousarray(np.broadcast_to(values, shape)).ravel() for values in given.values()]
     with Progress(rows, progress) as bar:
         found = _native.solve_many(
@@ -371,6 +505,33 @@ def solve_many(
     return Many(shape, cables, out, tuple(by), arm.length)
 
 
+def _require(rows: int, numbers: int) -> None:
+    """Raise a `MemoryError` where so many rows of so many numbers do not fit."""
+    _memory.require(8 * numbers * rows, f"{rows} rows", "take fewer, or write them to a file with `hydrostat.sweep(..., output=...)`")
+
+
+def _rows_of(tensions: Any, others: Iterable[Any]) -> int:
+    """How many rows inputs make, by the shapes of those that have one; nothing is copied."""
+    shapes = [np.shape(values) for values in others if hasattr(values, "shape")]
+    shapes += [np.shape(tensions)[:-1]] if hasattr(tensions, "shape") else []
+    try:
+        return math.prod(np.broadcast_shapes(*shapes))
+    except ValueError:
+        # What does not broadcast is refused with its name later.
+        return 0
+
+
+def _without_units(arm: Arm, tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, dict[str, Any]]:
+    """Inputs as numbers in the units of bare ones; texts of `vary` as a sweep takes them."""
+    pulled = _units.plain("tensions", _inputs.of_cables(tensions, arm.cables), _units.TENSION)
+    varied = {}
+    for key, values in _inputs.mapping("vary", vary or {}, '{"flow.direction": [0, 90]}').items():
+        name = f"vary[{key!r}]"
+        several = isinstance(values, str) and (":" in values or "," in values)
+        varied[key] = (_units.grid if several else _units.plain)(name, values, key, arm._inner)
+    return pulled, _units.plain("flow_speed", flow_speed, _units.SPEED), varied
+
+
 def _labelled(tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, Any, xr.DataArray] | None:
     """Inputs as arrays of one shape, and one with all dimensions and coordinates, where some are DataArrays."""
     named = {"tensions": tensions, "flow_speed": flow_speed}
@@ -398,6 +559,11 @@ def _labelled(tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, Any,
         cables = "cable" if "cable" in pulled.dims else pulled.dims[-1]
         arrays["tensions"] = pulled.transpose(..., cables)
     rows = [array.isel({cables: 0}, drop=True) if name == "tensions" else array for name, array in arrays.items()]
+    try:
+        xarray.align(*rows, join="exact")
+    except ValueError as error:
+        words = "give them the same, or `xarray.align` them first"
+        raise ValueError(f"{', '.join(arrays)}: expected the same coordinates along the same dimensions; {words} ({error})") from error
     like = xarray.broadcast(*rows)[0]
     taken = {"cable", "station", "parameter"} & set(like.dims)
     if taken:
@@ -416,7 +582,7 @@ def _labelled(tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, Any,
 
 
 def _given(
-    arm: Arm, tensions: ArrayLike | None, flow_speed: ArrayLike | None, vary: Mapping[str, ArrayLike] | None, *, missing: bool
+    arm: Arm, tensions: Any, flow_speed: Any, vary: Mapping[str, Any], *, missing: bool
 ) -> tuple[dict[str, NDArray[np.float64]], dict[str, str]]:
     """Values by keys, and the arguments that they come from."""
     count = len(arm.cables)

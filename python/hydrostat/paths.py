@@ -193,7 +193,7 @@ class EquilibriumPath(Result):
         return path_shapes_figure(self, title)
 
     def plot(self, quantity: str = "tip_y", ax: Axes | None = None) -> Axes:
-        """Draw ``tip_x``, ``tip_y``, ``tip_z``, ``tip_theta`` or ``tip_alpha`` over the parameter: stable solid, others dashed. Needs
+        """Draw ``tip_x``, ``tip_y``, ``tip_z``, ``tip_theta`` (in the plane) or ``tip_alpha``, or ``tip.x`` and so on, over the parameter: stable solid, others dashed. Needs
         matplotlib."""
         from hydrostat.plotting import plot_path
 

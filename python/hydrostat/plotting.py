@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path as FilePath
@@ -9,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
+
+from hydrostat import _inputs
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
@@ -48,15 +51,40 @@ UNITS = {"mm": 1e3, "cm": 1e2, "m": 1.0}
 _DRAWN: WeakKeyDictionary[Axes, str] = WeakKeyDictionary()
 
 
+_UNIT = re.compile(r"[(\[](mm|cm|m)[)\]]\s*$")
+
+
 def unit_of(ax: Axes, unit: str | None) -> str:
-    """The unit of an axis: what was drawn there before decides."""
+    """The unit of an axis: what was drawn there before decides, or what its label says; another one converts it."""
     if unit is not None and unit not in UNITS:
         raise ValueError(f"unit: expected one of {', '.join(UNITS)}, found {unit!r}")
-    drawn = _DRAWN.get(ax)
+    labelled = _UNIT.search(ax.get_xlabel())
+    drawn = _DRAWN.get(ax) or (labelled[1] if labelled else None)
     if drawn is not None and unit not in (None, drawn):
-        raise ValueError(f"unit: these axes are in {drawn}; expected that or none, found {unit!r}")
+        _convert(ax, UNITS[unit] / UNITS[drawn])
+        drawn = unit
     _DRAWN[ax] = drawn or unit or "mm"
     return _DRAWN[ax]
+
+
+def _convert(ax: Axes, factor: float) -> None:
+    """Draw what is on an axis in another unit."""
+    from matplotlib.patches import Polygon
+    from matplotlib.text import Annotation
+
+    if ax.name == "3d" or ax.collections or ax.images:
+        raise ValueError("unit: these axes have another one, and what is on them cannot be converted; expected that or none")
+    for line in ax.lines:
+        if line.get_transform() == ax.transData:
+            line.set_data(*(factor * np.asarray(values) for values in line.get_data()))
+    for patch in ax.patches:
+        if isinstance(patch, Polygon):
+            patch.set_xy(factor * np.asarray(patch.get_xy()))
+    for text in ax.texts:
+        if isinstance(text, Annotation) and text.xycoords == "data":
+            text.xy = (factor * text.xy[0], factor * text.xy[1])
+    ax.relim()
+    ax.autoscale_view()
 
 
 def plot_shape(
@@ -181,14 +209,14 @@ _QUANTITIES = {
 
 def plot_path(path: EquilibriumPath, quantity: str, ax: Axes | None) -> Axes:
     """See `Path.plot`."""
-    other = "tip_theta" if path._inner.in_space else "tip_z"
-    known = [name for name in _QUANTITIES if name != other]
-    if quantity not in known:
+    known = [name for name in _QUANTITIES if not (path._inner.in_space and name == "tip_theta")]
+    name = quantity.replace("tip.", "tip_") if isinstance(quantity, str) else ""
+    if name not in known:
         raise ValueError(f"quantity: expected one of {', '.join(known)}, found {quantity!r}")
     ax = _new_axes(ax)
-    factor, words = _QUANTITIES[quantity]
+    factor, words = _QUANTITIES[name]
     for branch in path.branches:
-        values = factor * getattr(branch, quantity)
+        values = factor * getattr(branch, name)
         stable = np.array([state == "stable" for state in branch.stability])
         # A piece between two points is stable where its points are; events are marginal and belong to both sides.
         event = np.zeros(len(branch), dtype=bool)
@@ -249,7 +277,8 @@ def plot_reach(reach: Reach, ax: Axes | None) -> Axes:
         if target.angle is not None:
             # Across the section that is asked for.
             reached = 0.04 * per_m * (shown[0].solution.arm.length if shown else 0.0)
-            step = reached * np.array([np.cos(target.angle), np.sin(target.angle)])
+            across = np.radians(target.angle)
+            step = reached * np.array([np.cos(across), np.sin(across)])
             ends = per_m * np.array([target.x, target.y]) + np.stack([0.0 * step, step])
             ax.plot(ends[:, 0], ends[:, 1], color=_MARK, linewidth=1.8, zorder=6)
     ax.legend(frameon=False, fontsize=9)
@@ -321,15 +350,21 @@ def animate(
     import matplotlib.pyplot as plt
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
-    shapes = list(solutions)
+    if hasattr(solutions, "surfaces"):
+        raise ValueError("solutions: expected a list of solutions, found one; `Solution.plot` draws it")
+    shapes = list(_inputs.items("solutions", solutions, "solutions"))
     in_space = bool(shapes) and all(hasattr(shape, "surface") for shape in shapes)
     if not shapes or not (in_space or all(hasattr(shape, "surfaces") and not hasattr(shape, "z") for shape in shapes)):
         raise ValueError("solutions: expected at least one solution, and nothing else, all in the plane or all in space")
     target = None if output is None else FilePath(output)
-    if target is not None and target.suffix not in (".gif", ".mp4", ".html"):
+    ending = "" if target is None else target.suffix.lower()
+    if target is not None and ending not in (".gif", ".mp4", ".html"):
         raise ValueError(f"output: expected a name that ends in .gif, .mp4 or .html, found {target.name!r}")
-    if not fps > 0.0:
-        raise ValueError(f"fps: expected a number above zero, found {fps}")
+    if ending == ".mp4" and not FFMpegWriter.isAvailable():
+        raise FileNotFoundError("output: .mp4 needs the program ffmpeg, which is not there; .gif and .html need none")
+    if isinstance(fps, str) or not _inputs.number("fps", fps) > 0.0:
+        raise ValueError(f"fps: expected a number above zero, found {fps!r}")
+    fps = float(fps)
     in_3d: dict[str, Any] = {"subplot_kw": {"projection": "3d"}} if in_space else {}
     figure, ax = plt.subplots(figsize=(6.4, 5.2 if in_space else 4.2), layout="constrained", **in_3d)
     per_m = UNITS[unit_of(ax, unit)]
@@ -358,10 +393,10 @@ def animate(
     if target is None:
         return moving
     try:
-        if target.suffix == ".html":
+        if ending == ".html":
             target.write_text(moving.to_jshtml(fps=max(round(fps), 1)), encoding="utf-8")
         else:
-            writer = PillowWriter if target.suffix == ".gif" else FFMpegWriter
+            writer = PillowWriter if ending == ".gif" else FFMpegWriter
             moving.save(target, writer=writer(fps=max(round(fps), 1)))
     finally:
         plt.close(figure)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union, cast, overload
 
 import numpy as np
 
-from hydrostat import _inputs, _native, _saved
+from hydrostat import _inputs, _native, _saved, _units
 from hydrostat._saved import Origin
 from hydrostat.arm import Arm, arm_of
 from hydrostat.figures import Figure
@@ -20,23 +20,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+#: A number, or a string with a unit.
+Number = Union[float, str]
 
 
-class Target(NamedTuple):
-    """A target for one place of the arm.
-
-    Attributes
-    ----------
-    x, y : float
-        The target, m.
-    s : float or None
-        The place of the arm, m along it; None for the tip.
-    angle : float or None
-        Angle of the section from e1, rad, if it matters. In distances, one radian counts as one length of the arm.
-    weight : float
-        Weight of its distance among several targets.
-    """
-
+class _Target(NamedTuple):
     x: float
     y: float
     s: float | None = None
@@ -44,21 +32,36 @@ class Target(NamedTuple):
     weight: float = 1.0
 
 
-class SpatialTarget(NamedTuple):
-    """A target for one place of an arm in space.
+class Target(_Target):
+    """A target for one place of the arm.
 
     Attributes
     ----------
-    x, y, z : float
-        The target, m.
+    x, y : float
+        The target, m, or a string with a unit.
     s : float or None
-        The place of the arm, m along it; None for the tip.
-    direction : tuple of float or None
-        Direction of the section's normal a, of any length, if it matters. In distances, one radian counts as one length of the arm.
+        The place of the arm, m along it, or a string with a unit; None for the tip.
+    angle : float or None
+        Angle of the section from e1, degrees, or a string with a unit, if it matters. In distances, one radian counts as one length
+        of the arm.
     weight : float
         Weight of its distance among several targets.
+
+    Examples
+    --------
+    >>> import hydrostat as hs
+    >>> hs.Target("182 mm", 0.078, angle="0.5 rad").x
+    0.182
     """
 
+    __slots__ = ()
+
+    def __new__(cls, x: Number, y: Number, s: Number | None = None, angle: Number | None = None, weight: float = 1.0) -> Target:
+        along, across = _units.plain("x", x, _units.STROKE), _units.plain("y", y, _units.STROKE)
+        return super().__new__(cls, along, across, _units.plain("s", s, _units.STROKE), _units.plain("angle", angle, _units.ANGLE), weight)
+
+
+class _SpatialTarget(NamedTuple):
     x: float
     y: float
     z: float
@@ -67,11 +70,47 @@ class SpatialTarget(NamedTuple):
     weight: float = 1.0
 
 
-#: One target of an arm in space, several, or the tip's ``(x, y, z)``, m.
-SpatialTargets = Union[SpatialTarget, tuple[float, float, float], Sequence[SpatialTarget], "NDArray[Any]"]
+class SpatialTarget(_SpatialTarget):
+    """A target for one place of an arm in space.
 
-#: One target, several, or the tip's ``(x, y)``, m, a pair or an array of two.
-Targets = Union[Target, tuple[float, float], Sequence[Target], "NDArray[Any]"]
+    Attributes
+    ----------
+    x, y, z : float
+        The target, m, or a string with a unit.
+    s : float or None
+        The place of the arm, m along it, or a string with a unit; None for the tip.
+    direction : tuple of float or None
+        Direction of the section's normal a, of any length, if it matters. In distances, one radian counts as one length of the arm.
+    weight : float
+        Weight of its distance among several targets.
+    """
+
+    __slots__ = ()
+
+    def __new__(
+        cls,
+        x: Number,
+        y: Number,
+        z: Number,
+        s: Number | None = None,
+        direction: tuple[float, float, float] | None = None,
+        weight: float = 1.0,
+    ) -> SpatialTarget:
+        one, two, three, at = (_units.plain(name, value, _units.STROKE) for name, value in (("x", x), ("y", y), ("z", z), ("s", s)))
+        return super().__new__(cls, one, two, three, at, direction, weight)
+
+
+#: One target, several, or the tip's ``(x, y)``, m, a pair, a list or an array of two.
+Targets = Union[Target, Sequence[Union[Number, Target, Sequence[Number]]], "NDArray[Any]"]
+
+#: The same of an arm in space: ``(x, y, z)``.
+SpatialTargets = Union[SpatialTarget, Sequence[Union[Number, SpatialTarget, Sequence[Number]]], "NDArray[Any]"]
+
+#: Either.
+AnyTargets = Union[Target, SpatialTarget, Sequence[Union[Number, Target, SpatialTarget, Sequence[Number]]], "NDArray[Any]"]
+
+#: The largest tension of all cables, or of each.
+Most = Union[Number, Sequence[Number], "NDArray[Any]"]
 
 
 class Bound(NamedTuple):
@@ -348,9 +387,9 @@ class Follower:
     arm : Arm, str or path
         The arm, or the name or file of one.
     targets : Target, sequence of Target, or (x, y)
-        The first targets, m and rad.
-    max_tension : float, optional
-        The largest tension of every cable, N; a smaller `max_tension` of the cable itself holds.
+        The first targets, m and degrees, or with units.
+    max_tension : float, str or sequence, optional
+        The largest tension of every cable, N, or of each; a smaller `max_tension` of the cable itself holds.
     max_stroke : float, optional
         The largest stroke of every taut cable, m: how much can be reeled in.
     tol : float
@@ -381,13 +420,13 @@ class Follower:
         arm: Arm | str | PathLike[str],
         targets: Targets,
         *,
-        max_tension: float | None = None,
-        max_stroke: float | None = None,
+        max_tension: Most | None = None,
+        max_stroke: Number | None = None,
         tol: float = 1e-8,
     ) -> None:
-        most = most_of(max_tension, max_stroke)
-        goals, within = targets_of(targets), _inputs.number("tol", tol)
-        self._inner = _native.Follower(arm_of(arm)._inner, goals, most, within, True)
+        own, most = bounded(arm_of(arm), max_tension, max_stroke)
+        goals, within = goals_of(targets_of(targets)), _inputs.number("tol", tol)
+        self._inner = _native.Follower(own._inner, goals, most, within, True)
 
     def __copy__(self) -> Follower:
         out = Follower.__new__(Follower)
@@ -405,11 +444,10 @@ class Follower:
         Parameters
         ----------
         targets : Target, sequence of Target, or (x, y)
-            m and rad.
+            m and degrees, or with units.
         """
-        tensions, tip, distance, reached, jumped, solves = self._inner.follow(targets_of(targets))
+        tensions, tip, distance, reached, jumped, solves = self._inner.follow(goals_of(targets_of(targets)))
         return Followed(tensions, Tip(*tip), distance, reached, jumped, solves)
-
 
     @property
     def tensions(self) -> NDArray[np.float64]:
@@ -431,57 +469,103 @@ class Follower:
         """
         return Solution(self._inner.solution())
 
-    def set_flow_speed(self, flow_speed: float) -> None:
-        """Set another speed of the stream, m/s. The tensions stay, the shape changes; the next targets are followed from there.
+    def set_flow_speed(self, flow_speed: Number) -> None:
+        """Set another speed of the stream, m/s, or with a unit. The tensions stay, the shape changes; the next targets are followed from there.
 
         Raises
         ------
         NoEquilibriumError
             The arm has no equilibrium in that stream; nothing changes.
         """
-        self._inner.set_flow_speed(_inputs.number("flow_speed", flow_speed, negative=False))
+        self._inner.set_flow_speed(_inputs.number("flow_speed", flow_speed, negative=False, key=_units.SPEED))
 
-    def set_bounds(self, *, max_tension: float | None = None, max_stroke: float | None = None) -> None:
-        """Set other bounds, N and m, at the present shape; None leaves the cables' own bounds only."""
+    def set_bounds(self, *, max_tension: Number | None = None, max_stroke: Number | None = None) -> None:
+        """Set other bounds, N and m, or with units, at the present shape; None leaves the cables' own bounds only."""
         self._inner.set_bounds(most_of(max_tension, max_stroke))
 
 
-def most_of(max_tension: float | None, max_stroke: float | None) -> tuple[float | None, float | None]:
+def most_of(max_tension: Number | None, max_stroke: Number | None) -> tuple[float | None, float | None]:
     """Bounds as numbers; what is wrong is a `ValueError`."""
-    given = (("max_tension", max_tension), ("max_stroke", max_stroke))
-    tension, stroke = (None if value is None else _inputs.number(name, value) for name, value in given)
+    given = (("max_tension", max_tension, _units.TENSION), ("max_stroke", max_stroke, _units.STROKE))
+    tension, stroke = (None if value is None else _inputs.number(name, value, key=key) for name, value, key in given)
     return tension, stroke
 
 
+def bounded(arm: Arm, max_tension: Most | None, max_stroke: Number | None) -> tuple[Arm, tuple[float | None, float | None]]:
+    """The arm whose cables have bounds of their own, where one is given for each, and the bounds of all cables."""
+    if max_tension is None or isinstance(max_tension, str) or np.ndim(max_tension) == 0:
+        return arm, most_of(cast("Number | None", max_tension), max_stroke)
+    given = _inputs.finite("max_tension", max_tension, negative=False, key=_units.TENSION)
+    if given.shape != (len(arm.cables),):
+        raise ValueError(f"max_tension: expected one number, or one for each of {len(arm.cables)} cables, found shape {given.shape}")
+    tables = arm.to_dict().get("cable", [])
+    own = [float(table.get("max_tension", np.inf)) for table in tables]
+    changes = {f"cable[{k}].max_tension": min(float(most), own[k]) for k, most in enumerate(given)}
+    # Its own tensions, which do not count, may be above.
+    pulls = [min(float(table.get("tension", 0.0)), most) for table, most in zip(tables, changes.values(), strict=True)]
+    held = {f"cable[{k}].tension": pull for k, pull in enumerate(pulls) if "tension" in tables[k]}
+    return arm.replace({**held, **changes}), most_of(None, max_stroke)
+
+
 def targets_of(targets: Targets) -> list[Target]:
-    """Targets as a list; what is wrong is a `ValueError`."""
+    """Targets as a list, angles in degrees; what is wrong is a `ValueError`."""
     if isinstance(targets, Target):
         return [_checked("targets", targets)]
-    try:
-        given: list[Any] = list(targets)
-    except TypeError as error:
-        raise ValueError(f"targets: expected targets or (x, y), found {targets!r}") from error
-    if given and all(isinstance(target, Target) for target in given):
-        return [_checked(f"targets[{k}]", target) for k, target in enumerate(given)]
-    if len(given) != 2:
-        raise ValueError(f"targets: expected targets or (x, y), found {targets!r}")
-    return [Target(_inputs.number("targets[0]", given[0]), _inputs.number("targets[1]", given[1]))]
+    given = _several("targets or (x, y)", targets, 2)
+    if given is None:
+        x, y = (_inputs.number(f"targets[{k}]", value, key=_units.STROKE) for k, value in enumerate(cast("Sequence[Number]", targets)))
+        return [Target(x, y)]
+    return [
+        _checked(f"targets[{k}]", one if isinstance(one, Target) else Target(*_placed(f"targets[{k}]", one))) for k, one in enumerate(given)
+    ]
+
+
+def goals_of(targets: list[Target]) -> list[tuple[float, float, float | None, float | None, float]]:
+    """Targets as the extension module takes them, angles in radians."""
+    return [
+        (one.x, one.y, one.s, None if one.angle is None else _native.angle(repr(one.angle)), one.weight) for one in targets
+    ]
 
 
 def spatial_targets_of(targets: Any) -> list[SpatialTarget]:
     """Targets of an arm in space as a list; what is wrong is a `ValueError`."""
     if isinstance(targets, SpatialTarget):
         return [_checked_in_space("targets", targets)]
+    given = _several("SpatialTarget or (x, y, z) of an arm in space", targets, 3)
+    if given is None:
+        x, y, z = (_inputs.number(f"targets[{k}]", value, key=_units.STROKE) for k, value in enumerate(targets))
+        return [SpatialTarget(x, y, z)]
+    return [
+        _checked_in_space(f"targets[{k}]", one if isinstance(one, SpatialTarget) else _in_space(f"targets[{k}]", one))
+        for k, one in enumerate(given)
+    ]
+
+
+def _several(what: str, targets: Any, count: int) -> list[Any] | None:
+    """Several targets, each one or a place of `count` numbers; None where `targets` is one place."""
     try:
-        given: list[Any] = list(targets)
+        given: list[Any] = [] if isinstance(targets, str) else list(targets)
     except TypeError as error:
-        raise ValueError(f"targets: expected targets or (x, y, z), found {targets!r}") from error
-    if given and all(isinstance(target, SpatialTarget) for target in given):
-        return [_checked_in_space(f"targets[{k}]", target) for k, target in enumerate(given)]
-    if len(given) != 3:
-        raise ValueError(f"targets: expected SpatialTarget or (x, y, z) of an arm in space, found {targets!r}")
-    x, y, z = (_inputs.number(f"targets[{k}]", value) for k, value in enumerate(given))
-    return [SpatialTarget(x, y, z)]
+        raise ValueError(f"targets: expected {what}, found {targets!r}") from error
+    kind = Target if count == 2 else SpatialTarget
+
+    def is_place(one: Any) -> bool:
+        return isinstance(one, (list, tuple, np.ndarray)) and not isinstance(one, (Target, SpatialTarget)) and len(one) == count
+
+    if given and all(isinstance(one, kind) or is_place(one) for one in given):
+        return given
+    if len(given) != count or any(np.ndim(one) for one in given):
+        raise ValueError(f"targets: expected {what}, found {targets!r}")
+    return None
+
+
+def _in_space(name: str, place: Sequence[Number]) -> SpatialTarget:
+    x, y, z = _placed(name, place)
+    return SpatialTarget(x, y, z)
+
+
+def _placed(name: str, place: Sequence[Number]) -> list[float]:
+    return [_inputs.number(f"{name}[{k}]", value, key=_units.STROKE) for k, value in enumerate(place)]
 
 
 def _checked_in_space(name: str, target: SpatialTarget) -> SpatialTarget:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 
-from hydrostat import _inputs, _memory, _native, _saved
+from hydrostat import _inputs, _memory, _native, _saved, _units
 from hydrostat._errors import ModelWarning
 from hydrostat._saved import Origin
 from hydrostat.figures import Figure, arm_figure
@@ -52,12 +53,32 @@ CONVENTIONS = "CF-1.11"
 
 
 class Tip(NamedTuple):
-    """The tip: `x`, `y` in m, `theta`, `alpha` in rad."""
+    """The tip: `x`, `y` in m, `theta`, `alpha` in rad; `z` and the directors `a`, `b`, `c` follow, as those of a `SpatialTip`."""
 
     x: float
     y: float
     theta: float
     alpha: float
+
+    @property
+    def z(self) -> float:
+        """0 m: the arm is in the plane."""
+        return 0.0
+
+    @property
+    def a(self) -> tuple[float, float, float]:
+        """Director normal to the section."""
+        return (math.cos(self.theta), math.sin(self.theta), 0.0)
+
+    @property
+    def b(self) -> tuple[float, float, float]:
+        """Director in the section."""
+        return (-math.sin(self.theta), math.cos(self.theta), 0.0)
+
+    @property
+    def c(self) -> tuple[float, float, float]:
+        """Director in the section, a x b: e3."""
+        return (0.0, 0.0, 1.0)
 
 
 class Wrench(NamedTuple):
@@ -228,6 +249,61 @@ class Stations(Result):
         """Contact moment, N m, shape (n,)."""
         return self._inner.field("m")
 
+    @property
+    def m_c(self) -> NDArray[np.float64]:
+        """Contact moment about c, N m, shape (n,): `m` in the plane."""
+        return self.m
+
+    @property
+    def a(self) -> NDArray[np.float64]:
+        """Director normal to the section, shape (n, 3)."""
+        return _fixed(np.cos(self.theta), np.sin(self.theta), np.zeros(len(self)))
+
+    @property
+    def b(self) -> NDArray[np.float64]:
+        """Director in the section, shape (n, 3)."""
+        return _fixed(-np.sin(self.theta), np.cos(self.theta), np.zeros(len(self)))
+
+    @property
+    def c(self) -> NDArray[np.float64]:
+        """Director in the section, a x b, shape (n, 3): e3 in the plane."""
+        return _fixed(np.zeros(len(self)), np.zeros(len(self)), np.ones(len(self)))
+
+    @property
+    def z(self) -> NDArray[np.float64]:
+        """Centreline along e3, m, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def zeta(self) -> NDArray[np.float64]:
+        """Shear strain along c, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def tau(self) -> NDArray[np.float64]:
+        """Twist, 1/m, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def kappa(self) -> NDArray[np.float64]:
+        """Bending strain about b, 1/m, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def n_c(self) -> NDArray[np.float64]:
+        """Contact force along c, N, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def m_a(self) -> NDArray[np.float64]:
+        """Contact moment about a, N m, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
+    @property
+    def m_b(self) -> NDArray[np.float64]:
+        """Contact moment about b, N m, shape (n,): 0 in the plane."""
+        return _fixed(np.zeros(len(self)))
+
     def __len__(self) -> int:
         return len(self.s)
 
@@ -263,6 +339,13 @@ class Stations(Result):
         fields = {name: ("s", self._field(name), attributes(self._fields, name)) for name in self._fields}
         coordinate = fields.pop("s")
         return xr.Dataset(fields, coords={"s": coordinate})
+
+
+def _fixed(*components: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Numbers that do not change: one of each station, or components of one."""
+    out = components[0] if len(components) == 1 else np.stack(components, axis=1)
+    out.flags.writeable = False
+    return out
 
 
 def attributes(fields: Mapping[str, tuple[str, str]], name: str) -> dict[str, str]:
@@ -476,13 +559,23 @@ class Solution(Stations):
         left_x, left_y, right_x, right_y = self._inner.surfaces(places_of(s))
         return np.stack([left_x, left_y], axis=1), np.stack([right_x, right_y], axis=1)
 
+    def surface(self, s: ArrayLike | None = None, sides: int = 24) -> NDArray[np.float64]:
+        """Points of the deformed surface of an arm in space; see `SpatialSolution.surface`. In the plane `surfaces` has the two lines.
+
+        Raises
+        ------
+        ValueError
+            The arm is in the plane.
+        """
+        raise ValueError('surface: for arms with `space = "spatial"`, and this one is in the plane; see `surfaces`')
+
     def cable_path(self, cable: int, s: ArrayLike) -> NDArray[np.float64]:
         """Points of a cable, m, shape (n, 2), at lengths `s` (m) of shape (n,); NaN past its anchor."""
         return np.stack(self._inner.cable_path(cable, places_of(s)), axis=1)
 
-    def layer_speed(self, s: float, y: float) -> float:
+    def layer_speed(self, s: float | str, y: float | str) -> float:
         """Speed of the water along the arm, m/s, at the length `s` (m) and the distance `y` (m) from the windward surface."""
-        return self._inner.layer_speed(_inputs.number("s", s), _inputs.number("y", y))
+        return self._inner.layer_speed(_inputs.number("s", s, key=_units.STROKE), _inputs.number("y", y, key=_units.STROKE))
 
     def to_json(self) -> str:
         """Return the document of ``hydrostat solve --format json``, on one line."""
@@ -561,7 +654,8 @@ class Solution(Stations):
         label : str, optional
             For the legend.
         unit : str, optional
-            ``"mm"``, ``"cm"`` or ``"m"``; by default that of earlier drawings on these axes, or mm.
+            ``"mm"``, ``"cm"`` or ``"m"``; by default that of earlier drawings on these axes, or that of their label, or mm. Earlier
+            drawings in another one are converted.
 
         Returns
         -------
@@ -571,7 +665,7 @@ class Solution(Stations):
         Raises
         ------
         ValueError
-            The unit differs from that of earlier drawings on these axes.
+            The unit is none of these, or what is on these axes cannot be converted to it.
         """
         from hydrostat.plotting import plot_shape
 
@@ -644,16 +738,24 @@ _WARNINGS = {
 
 def warn(solution: Solution, depth: int) -> Solution:
     """Raise a Python warning for each kind of note on an answer, of the caller `depth` calls up."""
-    if _ignored():
-        return solution
-    for note in solution.warnings:
-        if note.kind == "snap":
+    if not _ignored():
+        _raise([note.kind for note in solution.warnings], "`Solution.warnings` has the numbers", depth + 1)
+    return solution
+
+
+def warn_of_all(solutions: Iterable[Solution], depth: int) -> None:
+    """The same for several answers, once for each kind."""
+    if not _ignored():
+        kinds = [note.kind for solution in solutions for note in solution.warnings]
+        _raise(list(dict.fromkeys(kinds)), "`warnings` of the solutions has the numbers", depth + 1)
+
+
+def _raise(kinds: list[str], where: str, depth: int) -> None:
+    for kind in kinds:
+        if kind == "snap":
             # Within the bounds that were asked for.
             continue
-        words = _WARNINGS.get(note.kind, "see its message")
-        text = f"{note.kind}: {words}; `Solution.warnings` has the numbers"
-        warnings.warn(ModelWarning(text, note.kind), stacklevel=depth + 1)
-    return solution
+        warnings.warn(ModelWarning(f"{kind}: {_WARNINGS.get(kind, 'see its message')}; {where}", kind), stacklevel=depth + 1)
 
 
 def _ignored() -> bool:
@@ -747,4 +849,4 @@ def _wrench(force: list[float], moment: float) -> Wrench:
 
 def places_of(s: ArrayLike) -> NDArray[np.float64]:
     """Places along an arm, m, as a vector."""
-    return np.atleast_1d(_inputs.numbers("s", s)).ravel()
+    return np.atleast_1d(_inputs.numbers("s", s, key=_units.STROKE)).ravel()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
-from hydrostat import _inputs, _native
+from hydrostat import _inputs, _native, _units
 from hydrostat.arm import Arm, arm_of
 from hydrostat.solution import Solution, Tip, solution_of, warn
 from hydrostat.spatial import SpatialTip
@@ -80,17 +80,17 @@ class Solver:
         """The tensions that were set last, N, shape (cables,). For cables with a commanded stroke, see `solution`."""
         return np.array(self._inner.tensions)
 
-    def set_tensions(self, tensions: ArrayLike) -> None:
-        """Set all tensions, N, shape (cables,)."""
-        self._inner.set_tensions(_inputs.numbers("tensions", tensions, 1))
+    def set_tensions(self, tensions: _inputs.Numbers) -> None:
+        """Set all tensions, N, or with units, shape (cables,)."""
+        self._inner.set_tensions(_inputs.numbers("tensions", tensions, 1, key=_units.TENSION))
 
-    def set_stroke(self, cable: int, stroke: float) -> None:
-        """Command the stroke of a cable, m, positive when reeled in, in place of its tension."""
-        self._inner.set_stroke(_inputs.count("cable", cable), _inputs.number("stroke", stroke))
+    def set_stroke(self, cable: int, stroke: float | str) -> None:
+        """Command the stroke of a cable, m, or with a unit, positive when reeled in, in place of its tension."""
+        self._inner.set_stroke(_inputs.count("cable", cable), _inputs.number("stroke", stroke, key=_units.STROKE))
 
-    def set_flow_speed(self, flow_speed: float) -> None:
-        """Set the speed of the stream, m/s."""
-        self._inner.set_flow_speed(_inputs.number("flow_speed", flow_speed, negative=False))
+    def set_flow_speed(self, flow_speed: float | str) -> None:
+        """Set the speed of the stream, m/s, or with a unit."""
+        self._inner.set_flow_speed(_inputs.number("flow_speed", flow_speed, negative=False, key=_units.SPEED))
 
     def solve(self) -> Solution:
         """Solve from the unloaded arm."""
@@ -98,7 +98,7 @@ class Solver:
 
     def resolve(self) -> Solution:
         """Solve from the last shape (warm start), or from the unloaded arm if the arm moved too far."""
-        return solution_of(self._inner.resolve())
+        return warn(solution_of(self._inner.resolve()), 2)
 
     def update(self) -> Answer:
         """Solve as `resolve` does, and return the tip only."""
@@ -110,7 +110,7 @@ class Solver:
 
     def solution(self) -> Solution:
         """The full solution of the last `update`."""
-        return solution_of(self._inner.configuration())
+        return warn(solution_of(self._inner.configuration()), 2)
 
     def sensitivities(
         self, parameters: Sequence[str] | None = None, *, stations: ArrayLike = (), method: str = "best"
@@ -149,7 +149,7 @@ class Solver:
         from hydrostat.sensitivity import Sensitivities, SpatialSensitivities
 
         names = None if parameters is None else _names(parameters)
-        places = np.atleast_1d(_inputs.finite("stations", stations))
+        places = np.atleast_1d(_inputs.finite("stations", stations, key=_units.STROKE))
         if places.ndim != 1:
             raise ValueError(f"stations: expected one dimension, found shape {places.shape}")
         if isinstance(self._inner, _native.SpatialSolver):
@@ -215,7 +215,7 @@ class Solver:
         >>> gradient.shape
         (2,)
         """
-        places = np.atleast_1d(_inputs.finite("stations", stations))
+        places = np.atleast_1d(_inputs.finite("stations", stations, key=_units.STROKE))
         if places.ndim != 1:
             raise ValueError(f"stations: expected one dimension, found shape {places.shape}")
         turns = _inputs.finite("turn", turn)

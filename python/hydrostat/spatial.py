@@ -312,7 +312,7 @@ class SpatialSolution(_InSpace, Solution):
         """Only in the plane; in space `surface`."""
         _only_in_plane("surfaces", "surface")
 
-    def layer_speed(self, s: float, y: float) -> NoReturn:
+    def layer_speed(self, s: float | str, y: float | str) -> NoReturn:
         """Only in the plane: a surface in space has no windward side."""
         _only_in_plane("layer_speed", "docs/model.md, the arm in space")
 

@@ -12,18 +12,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union, overload
 
 import numpy as np
 
-from hydrostat import _inputs, _memory, _native
+from hydrostat import _inputs, _memory, _native, _units
 from hydrostat._progress import Progress
 from hydrostat.arm import Arm, arm_of
+from hydrostat.many import FIELDS
 from hydrostat.solution import CONVENTIONS
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
     from distributed import Client
     from numpy.typing import NDArray
 
 #: Values of a key: a grid ``"0:1:26"``, a range to draw from ``"0:1"``, a list with commas, an array, or one value.
-Values = Union[str, float, Sequence[float], Sequence[str], "NDArray[np.generic]"]
+Values = Union[str, float, Sequence[Union[float, str]], "NDArray[np.generic]", "pd.Series[Any]", "xr.DataArray"]
 
 _COLUMN = re.compile(r"(?P<name>.+?)(_(?P<index>\d+))?(_(?P<unit>m|rad|N|Nm|s))?$")
 _UNITS = {"Nm": "N m"}
@@ -31,6 +33,20 @@ _UNITS = {"Nm": "N m"}
 _NUMBERS = {"plane": 23, "space": 35}
 #: What is held of a station, as columns and put together of them.
 _OF_STATIONS = {"plane": 6, "space": 18}
+#: Meaning of variables that `solve_many` does not have, too.
+_MEANINGS = {
+    "tip_z": "tip along e3",
+    "shape_x": "centreline along e1",
+    "shape_y": "centreline along e2",
+    "shape_z": "centreline along e3",
+    "shape_theta": "rotation of the section",
+    "base_force_z": "base reaction along e3",
+    "fold_s": "where the margin against folding is least, along the undeformed arm",
+    "phase": "loads that were being raised where there is no equilibrium",
+    "verdict_s": "where the limit is met, along the undeformed arm",
+    "snaps": "snaps on the way to the loads",
+}
+_VECTORS = re.compile(r"(?P<of>tip|shape|base)_(?P<which>a|b|c|moment)_(?P<axis>x|y|z)$")
 _ENDINGS = (".parquet", ".csv")
 
 
@@ -179,8 +195,8 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        One dimension per key (``row`` with a sample), with the values as coordinates in their given units; ``reason`` says why
-        the values of a row make no arm (the verdict ``no_arm``). With a
+        One dimension per key (``row`` with a sample), named after it (``flow_speed``, ``cable_0_tension``), with the values as coordinates in
+        their given units; ``reason`` says why the values of a row make no arm (the verdict ``no_arm``). Stations have their place ``s``, m. With a
         client its variables are Dask arrays, whose chunks are in the workers' memory. Needs xarray.
     pathlib.Path
         `output`, if given.
@@ -197,17 +213,19 @@ def sweep(
     >>> import hydrostat as hs
     >>> ds = hs.sweep(hs.Arm.load("silicone"), {"flow.speed": [0.0, 0.1], "cable[0].tension": "0:1.5:4"})
     >>> dict(ds.sizes)
-    {'flow.speed': 2, 'cable[0].tension': 4, 'cable': 2}
+    {'flow_speed': 2, 'cable_0_tension': 4, 'cable': 2}
     >>> ds.verdict.values[0].tolist()
     ['', '', 'cable_fold', 'cable_fold']
     """
     given = _inputs.mapping("vary", vary, '{"flow.speed": "0:1:26"}')
+    arm = arm_of(arm)
+    given = {key: _without_units(arm, key, values) for key, values in given.items()}
     texts = tuple(f"{key}={_values(key, values)}" for key, values in given.items())
     asked = None if columns is None else _inputs.items("columns", columns, "names, such as ['tip', 'strokes']")
     names = None if asked is None else tuple(_inputs.text("columns", name, "tip") for name in asked)
     _inputs.after_snap(after_snap, snap_distance, snap_angle, follow_snaps)
     plan = Plan(
-        arm_of(arm),
+        arm,
         texts,
         None if sample is None else _inputs.text("sample", sample, "lhs:50"),
         _inputs.count("seed", seed),
@@ -247,6 +265,18 @@ def sweep(
     return dataset(plan, given, values, {axis[1]: assembled(found, _key(axis[1], found)) for axis in native.axes})
 
 
+def _without_units(arm: Arm, key: str, values: Values) -> Values:
+    """Values as numbers in the unit of bare ones; strings stay, because a unit behind the last holds for all."""
+    texts = isinstance(values, (list, tuple)) and any(isinstance(value, str) for value in values)
+    if isinstance(values, str) or texts:
+        return values
+    array = np.asarray(values) if isinstance(values, (list, tuple, np.ndarray)) and not _units.pint_is_known() else None
+    if array is not None and array.dtype.kind in "US":
+        return values
+    found: Values = _units.plain(f"vary[{key!r}]", values, key, arm._inner)
+    return found
+
+
 def _values(key: str, values: Values) -> str:
     """The values of a key as the command line takes them."""
     if isinstance(values, str):
@@ -254,10 +284,11 @@ def _values(key: str, values: Values) -> str:
     if isinstance(values, Sequence) and any(isinstance(value, str) for value in values):
         # An array would make texts of the numbers beside texts.
         values = _inputs.texts(f"vary[{key!r}]", key, values)
-    array = np.atleast_1d(np.asarray(values))
+    # What is masked is no number, and what is missing is refused.
+    array: Any = values if isinstance(values, np.ma.MaskedArray) or hasattr(values, "to_numpy") else np.asarray(values)
     if array.dtype.kind in "US" and array.ndim == 1:
-        return ",".join(str(word) for word in array)
-    flat = _inputs.finite(f"vary[{key!r}]", array)
+        return ",".join(str(word) for word in np.asarray(array))
+    flat = np.atleast_1d(_inputs.finite(f"vary[{key!r}]", array))
     if flat.ndim != 1:
         raise ValueError(f"vary[{key!r}]: expected one dimension, found shape {flat.shape}")
     return ",".join(repr(float(number)) for number in flat)
@@ -324,34 +355,60 @@ def dataset(
     shape: tuple[int, ...] = (native.rows,)
     dims: tuple[str, ...] = ("row",)
     if grid:
-        dims = tuple(key for key, *_ in axes)
+        dims = tuple(key_name(key) for key, *_ in axes)
         for index, (key, _, unit, per_si) in enumerate(axes):
             own = _shown(vary[key], native.values(index), per_si)
-            coordinates[key] = (key, own, {"units": unit} if unit else {})
-        shape = tuple(len(coordinates[key][1]) for key in dims)
+            coordinates[key_name(key)] = (key_name(key), own, _attributes(key, unit))
+        shape = tuple(len(coordinates[dim][1]) for dim in dims)
     else:
         for key, column, unit, per_si in axes:
             rows = keys[column]
             shown = rows if rows.dtype.kind == "O" or per_si == 1.0 else rows * per_si
-            coordinates[key] = ("row", shown, {"units": unit} if unit else {})
+            coordinates[key_name(key)] = ("row", shown, _attributes(key, unit))
+    if plan.shapes:
+        places = np.linspace(0.0, plan.arm.length, plan.shapes)
+        coordinates["s"] = ("station", places, {"units": "m", "long_name": "length along the undeformed arm"})
     out: dict[str, Any] = {}
     for variable, rows in values.items():
         last = () if variable.dimension is None else (variable.dimension,)
         array = rows.reshape(shape + rows.shape[1:])
-        attributes = {"units": variable.unit or "1", "column": variable.columns[0]} if not variable.words else {}
+        attributes = _attributes(meaning(variable.name), "" if variable.words else variable.unit or "1")
+        if not variable.words:
+            attributes["column"] = variable.columns[0]
         out[variable.name] = ((*dims, *last), array, attributes)
     used = {dim for dims_of, *_ in out.values() for dim in dims_of}
-    kept = {name: value for name, value in coordinates.items() if name != "cable" or "cable" in used}
+    kept = {name: value for name, value in coordinates.items() if value[0] in used or value[0] not in ("cable", "station")}
     about: dict[str, Any] = {
         "Conventions": CONVENTIONS,
         "arm": plan.arm.to_toml(),
-        "vary": [key for key, *_ in axes],
+        # One text, because netCDF has no lists of them; no key has a blank.
+        "vary": " ".join(key for key, *_ in axes),
         "tol": plan.tol,
         "snap_distance": plan.snaps[0],
         "snap_angle": plan.snaps[1],
         "hydrostat": _native.__version__,
     }
     return xr.Dataset(out, coords=kept, attrs=about)
+
+
+def key_name(key: str) -> str:
+    """The name of a key in a dataset, as its columns in files begin: ``cable_0_tension`` of ``cable[0].tension``."""
+    return re.sub(r"\W+", "_", key).strip("_")
+
+
+def meaning(name: str) -> str:
+    """What a variable is, for people."""
+    vector = _VECTORS.match(name)
+    if vector is not None:
+        axis = "xyz".index(vector["axis"]) + 1
+        if vector["which"] == "moment":
+            return f"moment of the base reaction about e{axis}"
+        return f"director {vector['which']}{' at the tip' if vector['of'] == 'tip' else ''}, along e{axis}"
+    return FIELDS[name][1] if name in FIELDS else _MEANINGS.get(name, name.replace("_", " "))
+
+
+def _attributes(words: str, unit: str) -> dict[str, str]:
+    return {"long_name": words, **({"units": unit} if unit else {})}
 
 
 def _shown(given: Values, si: NDArray[np.float64] | list[str] | None, per_si: float) -> Any:

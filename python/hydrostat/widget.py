@@ -8,7 +8,7 @@ from os import PathLike
 from typing import Any
 
 import ipywidgets
-from hydrostat import _inputs
+from hydrostat import _inputs, _units
 from hydrostat._errors import ModelWarning, NoEquilibriumError
 from hydrostat.arm import Arm, arm_of
 from hydrostat.solution import Solution
@@ -61,17 +61,17 @@ class Explorer(ipywidgets.VBox):  # type: ignore[misc]
         self._words.value = "<br>".join(words)
 
 
-def explore(arm: Arm | str | PathLike[str], *, max_tension: float | None = None, max_speed: float = 0.2) -> Explorer:
+def explore(arm: Arm | str | PathLike[str], *, max_tension: float | str | None = None, max_speed: float | str = 0.2) -> Explorer:
     """Show an arm under sliders: one tension per cable, speed and direction of the stream. The other loads of the arm act, too.
 
     Parameters
     ----------
     arm : Arm, str or path
         The arm, or the name or file of one.
-    max_tension : float, optional
-        The end of the tensions' sliders, N; by default each cable's own `max_tension`.
-    max_speed : float
-        The end of the speed's slider, m/s.
+    max_tension : float or str, optional
+        The end of the tensions' sliders, N, or with a unit; by default each cable's own `max_tension`.
+    max_speed : float or str
+        The end of the speed's slider, m/s, or with a unit.
 
     Returns
     -------
@@ -86,14 +86,14 @@ def explore(arm: Arm | str | PathLike[str], *, max_tension: float | None = None,
     0.0
     """
     arm = arm_of(arm)
-    speed = _inputs.number("max_speed", max_speed, negative=False)
+    speed = _inputs.number("max_speed", max_speed, negative=False, key=_units.SPEED)
     tables = arm.to_dict().get("cable", [])
     most = []
     for name, table in zip(arm.cables, tables, strict=True):
         own = table.get("max_tension")
         if max_tension is None and own is None:
             raise ValueError(f"max_tension: expected a number, because the cable {name!r} has none of its own")
-        given = float("inf") if max_tension is None else _inputs.number("max_tension", max_tension, negative=False)
+        given = float("inf") if max_tension is None else _inputs.number("max_tension", max_tension, negative=False, key=_units.TENSION)
         most.append(min(given, float("inf") if own is None else float(own)))
     return Explorer(arm, most, speed)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import json
 import pickle
 import tomllib
 from pathlib import Path
@@ -46,6 +48,18 @@ def test_pickles_keep_what_overrides() -> None:
     assert again.replace(changed) == arm.replace(changed) != arm
 
 
+@needs_checkout
+def test_every_table_of_the_format_is_a_keyword(silicone: hs.Arm) -> None:
+    schema = json.loads((ROOT / "schema" / "arm.schema.json").read_text(encoding="utf-8"))
+    assert set(schema["properties"]) == set(inspect.signature(hs.Arm).parameters)
+    moving = silicone.replace({"dynamics": {"relaxation_time": "2.7 ms"}, "gravity.acceleration": 9.81, "tip.moment": 0.001})
+    tables = moving.to_dict()
+    assert tables["dynamics"]["relaxation_time"] == 0.0027
+    assert hs.Arm.from_dict(tables) == hs.Arm(**tables) == moving
+    # One key of it leaves the others.
+    assert moving.replace({"dynamics": {"inertia": False}}).to_dict()["dynamics"]["relaxation_time"] == 0.0027
+
+
 def test_replacing_leaves_the_arm_alone(silicone: hs.Arm) -> None:
     before = silicone.to_toml()
     other = silicone.replace({"arm.radius.tip": "3 mm"}, tensions=[0.1, 0.0], flow_speed="5 cm/s", flow_direction=90)
@@ -64,6 +78,15 @@ def test_a_table_kept_none_of_its_other_keys(silicone: hs.Arm) -> None:
     # What stands for one number or profile is taken whole.
     ends = {"base": 0.009, "tip": 0.002}
     assert arm.replace({"arm": {"radius": ends}}) == arm.replace({"arm.radius": ends})
+
+
+def test_a_list_of_one_dropped_the_other_cables(silicone: hs.Arm) -> None:
+    both = silicone.replace({"cable": [{"tension": 0.1}, {"tension": "50 mN"}]})
+    assert both == silicone.replace(tensions=[0.1, 0.05])
+    with pytest.raises(ValueError, match=r"^changes\['cable'\]: the arm has 2 cables, 1 tables were given; .*cable\[0\]"):
+        silicone.replace({"cable": [{"tension": 0.1}]})
+    three = [{"name": name, "offset": 0.002} for name in "abc"]
+    assert silicone.replace({"cable": three}).cables == ("a", "b", "c")
 
 
 @given(

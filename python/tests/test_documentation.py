@@ -7,6 +7,7 @@ import shlex
 import subprocess
 import sys
 import textwrap
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -58,3 +59,15 @@ def test_readme_shows_what_python_prints() -> None:
     for code, shown in pairs:
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=120)
         assert done.stdout == shown, done.stderr
+
+
+def test_the_package_says_where_it_is(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_bytes((ROOT / "pyproject.toml").read_bytes())
+    command = [str(ROOT / ".ci" / "project-urls"), "https://example.org/a/b", "v1.2.3"]
+    assert subprocess.run(command, cwd=tmp_path, check=False).returncode == 0
+    project = tomllib.loads((tmp_path / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert project["urls"]["Source"] == "https://example.org/a/b" and project["name"] == "hydrostat"
+    for place in ("Documentation", "Changelog"):
+        path = project["urls"][place].removeprefix("https://example.org/a/b/blob/v1.2.3/")
+        assert (ROOT / path).is_file()
+    assert subprocess.run(command, cwd=tmp_path, check=False, capture_output=True).returncode == 1

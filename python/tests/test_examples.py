@@ -15,7 +15,9 @@ from conftest import ROOT, needs_checkout
 pytestmark = needs_checkout
 
 #: How many pictures each shows.
-PICTURES = {"design": 4, "first_steps": 9, "motion": 4, "workspace_and_flow": 4, "readings": 6}
+PICTURES = {"design": 4, "first_steps": 9, "motion": 4, "network": 2, "policy": 1, "workspace_and_flow": 4, "readings": 6}
+#: What some need that `./test` does not install; without it they are skipped.
+NEEDS = {"network": "jax", "policy": "gymnasium"}
 
 
 def test_every_example_is_run() -> None:
@@ -24,6 +26,7 @@ def test_every_example_is_run() -> None:
 
 @pytest.mark.parametrize("name", sorted(PICTURES))
 def test_example(name: str) -> None:
+    pytest.importorskip(NEEDS.get(name, "hydrostat"))
     notebook = jupytext.read(ROOT / "examples" / f"{name}.py")
     nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
     outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
@@ -34,6 +37,7 @@ def test_example(name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(PICTURES))
 def test_an_example_says_which_warnings_it_lets_be(tmp_path: Path, name: str) -> None:
+    pytest.importorskip(NEEDS.get(name, "hydrostat"))
     command = [sys.executable, "-W", "error", str(ROOT / "examples" / f"{name}.py")]
     own = {**os.environ, "MPLBACKEND": "Agg"}
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300, cwd=tmp_path, env=own)

@@ -124,7 +124,7 @@ def test_an_index_with_a_name_was_no_column(silicone: hs.Arm) -> None:
 
 def test_residuals_that_are_nothing_were_as_large_as_stated(silicone: hs.Arm) -> None:
     fit = silicone.identify(tips(silicone), "young=90 kPa", sd="1 mm")
-    assert fit.chi_square < 1e-6 and fit.freedom == 5
+    assert fit.chi_square < 1e-6 and fit.dof == fit.freedom == 5 and fit.scale == fit.spread == 1.0
     assert fit.misfit is not None and "far smaller than the standard deviations predict" in fit.misfit
 
 

@@ -22,7 +22,7 @@ BAD_TENSIONS: list[tuple[Any, str]] = [
     ([np.nan, 0.0], r"\[0\]: expected a finite number"),
     ([0.0, np.inf], r"\[1\]: expected a finite number"),
     ([0.0, -0.1], r"\[1\]: expected a number that is not negative"),
-    (["1", "2"], "dtype <U1"),
+    (["1", "2"], r"\[0\]: expected a number, or a string with a unit, found '1'"),
     ([1j, 0], "dtype complex128"),
     ([True, False], "dtype bool"),
     ([None, 0], "dtype object"),
@@ -61,7 +61,8 @@ def test_no_speed_that_is_none(silicone: hs.Arm, number: float) -> None:
 
 
 CALLS: list[tuple[Callable[[hs.Arm], object], str]] = [
-    (lambda arm: arm.solve(flow_speed="fast"), "^flow_speed: expected a number"),  # type: ignore[arg-type]
+    (lambda arm: arm.solve(flow_speed="fast"), "^flow_speed: expected a speed .*does not start with a number"),
+    (lambda arm: arm.solve(flow_speed=[0.1]), "^flow_speed: expected a number"),  # type: ignore[arg-type]
     (lambda arm: arm.solve(tol=0.1), "`tol`"),
     (lambda arm: arm.solve(tol=float("nan")), "^tol"),
     (lambda arm: arm.solve(strokes=[0.01]), "^strokes.*1 strokes were given"),
@@ -151,6 +152,8 @@ TYPES: list[tuple[Callable[[hs.Arm], object], str]] = [
     (lambda _: hs.sweep(None, {"flow.speed": [0.1]}), "^arm: expected an Arm"),  # type: ignore[call-overload]
     (lambda arm: hs.Solver(arm._inner), "^arm: expected an Arm"),  # type: ignore[arg-type]
     (lambda arm: arm.sensitivities([1]), "^parameters: expected text"),  # type: ignore[list-item]
+    (lambda arm: hs.solve_many(arm, progress="yes"), "^progress: expected True, False or None, found 'yes'"),  # type: ignore[call-overload]
+    (lambda arm: hs.sweep(arm, {"flow.speed": [0.1]}, progress=1), "^progress: expected True, False or None, found 1"),  # type: ignore[call-overload]
 ]
 
 
@@ -169,6 +172,14 @@ def test_calls(silicone: hs.Arm, call: Callable[[hs.Arm], object], words: str) -
 def test_modules_say_what_was_meant(silicone: hs.Arm) -> None:
     with pytest.raises(TypeError, match=r"^hydrostat.reach is a module; expected a call of `hydrostat.Arm.reach"):
         hs.reach((0.1, 0.1))  # type: ignore[operator]
+    for name in ("figures", "spatial"):
+        with pytest.raises(TypeError, match=rf"^hydrostat.{name} is a module; expected a call of `hydrostat.*figure|Arm.solve"):
+            getattr(hs, name)(1)
+    for name in ("solve", "path", "equilibria", "identify"):
+        with pytest.raises(AttributeError, match=rf"^module 'hydrostat' has no attribute '{name}'; expected `hydrostat.Arm.{name}`"):
+            getattr(hs, name)
+    with pytest.raises(AttributeError, match=r"^module 'hydrostat' has no attribute 'sole'$"):
+        hs.sole  # type: ignore[attr-defined]  # noqa: B018
     assert not {"many", "reach", "paths", "cluster"} & set(dir(hs))
     assert set(hs.__all__) == set(dir(hs)) and all(hasattr(hs, name) for name in hs.__all__)
 
@@ -229,7 +240,7 @@ def test_a_unit_behind_a_range_was_that_of_its_end_alone(silicone: hs.Arm) -> No
     given: list[Any] = ["5:20 cm/s:2", "5,20 cm/s", ["5", "20 cm/s"], ["5 cm/s", "20 cm/s"], [0.05, "20 cm/s"]]
     for values in given:
         found = hs.sweep(silicone, {"flow.speed": values}, columns=["tip"])
-        assert found["flow.speed"].values.tolist() == pytest.approx([5.0, 20.0], rel=1e-12) or values == [0.05, "20 cm/s"]
+        assert found["flow_speed"].values.tolist() == pytest.approx([5.0, 20.0], rel=1e-12) or values == [0.05, "20 cm/s"]
         alone = hs.sweep(silicone, {"flow.speed": [0.05, 0.2]}, columns=["tip"])
         assert found.tip_y.values.tolist() == alone.tip_y.values.tolist()
     assert silicone.path("flow.speed", "5", "20 cm/s").range == (5.0, 20.0)

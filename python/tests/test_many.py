@@ -178,3 +178,17 @@ def test_data_arrays_give_a_dataset_with_their_dimensions(silicone: hs.Arm) -> N
         hs.solve_many(silicone, tensions=tensions, flow_speed=[0.0, 0.1])
     with pytest.raises(ValueError, match="^dims: 'station' is a dimension of the answers"):
         hs.solve_many(silicone, flow_speed=speed.rename(speed="station"))
+
+
+def test_memory_is_refused_before_anything_is_copied(silicone: hs.Arm) -> None:
+    import tracemalloc
+
+    tensions = np.broadcast_to([0.1, 0.0], (10**11, 2))
+    tracemalloc.start()
+    try:
+        for options in ({}, {"gradients": True}, {"flow_speed": 0.1, "vary": {"tip.moment": "1 mN m"}}):
+            with pytest.raises(MemoryError, match="^100000000000 rows take about"):
+                hs.solve_many(silicone, tensions=tensions, **options)
+        assert tracemalloc.get_traced_memory()[1] < 2**22
+    finally:
+        tracemalloc.stop()

@@ -108,3 +108,16 @@ def test_the_source_figure() -> None:
         hs.source_figures(hs.Arm.load("paper"), faster=[0.2])
     _, claims = hs.source_figures(hs.Arm.load("paper-statements"), at_highest=True, faster=[1.0])
     assert [finding for _, finding, _ in claims[:8]] == ["holds"] * 8
+
+
+def test_names_of_quantities_in_both_spellings(facing: hs.Arm) -> None:
+    pytest.importorskip("matplotlib")
+    path = facing.path("cable[0].tension", 0.0, 0.05)
+    for quantity in ("tip.x", "tip.y", "tip.theta", "tip.alpha", "stroke[0]"):
+        spelled = quantity.replace(".", "_").replace("[", "_").replace("]", "")
+        assert path.figure(quantity).svg() == path.figure(spelled).svg()
+        if quantity.startswith("tip"):
+            drawn, again = (path.plot(name).get_lines()[0].get_xydata() for name in (quantity, spelled))
+            assert np.array_equal(np.asarray(drawn), np.asarray(again))
+    with pytest.raises(ValueError, match="^quantity: expected one of tip_x, tip_y, tip_z, tip_theta, tip_alpha, found 'tip.w'"):
+        path.plot("tip.w")

@@ -45,8 +45,6 @@ def test_units_of_axes(silicone: hs.Arm) -> None:
     solution.plot(ax, sections=0, cables=False)
     first, second = (np.asarray(patch.get_xy()) for patch in ax.patches if isinstance(patch, Polygon))
     assert np.allclose(first, second) and np.abs(first).max() < silicone.length * 1.1
-    with pytest.raises(ValueError, match="^unit: these axes are in m"):
-        solution.plot(ax, unit="mm")
     with pytest.raises(ValueError, match="^unit: expected one of mm, cm, m"):
         solution.plot(unit="inch")
     reach = silicone.reach((0.182, 0.078), max_tension=0.6)
@@ -79,8 +77,51 @@ def test_strains(silicone: hs.Arm) -> None:
     plt.close("all")
 
 
+def test_another_unit_converts_what_is_drawn(silicone: hs.Arm) -> None:
+    solution = silicone.solve(tensions=[0.2, 0.0], flow_speed=0.02)
+    ax, alone = solution.plot(), solution.plot(unit="m")
+    solution.plot(ax, unit="m")
+    assert ax.get_xlabel() == "x (m)" and ax.get_xlim() == pytest.approx(alone.get_xlim())
+    first, second = (np.asarray(patch.get_xy()) for patch in ax.patches if isinstance(patch, Polygon))
+    assert np.allclose(first, second, rtol=1e-12)
+    half = len(ax.lines) // 2
+    assert all(np.allclose(a.get_xydata(), b.get_xydata(), equal_nan=True) for a, b in zip(ax.lines[:half], ax.lines[half:], strict=True))
+    scattered = plt.subplots()[1]
+    scattered.scatter([0.1], [0.1])
+    scattered.set_xlabel("x (m)")
+    with pytest.raises(ValueError, match="^unit: these axes have another one"):
+        solution.plot(scattered, unit="mm")
+    plt.close("all")
+
+
+def test_the_label_of_an_axis_says_its_unit(silicone: hs.Arm) -> None:
+    """An axis that was labelled by others was drawn on in mm, and labelled anew."""
+    ax = plt.subplots()[1]
+    ax.plot([0.0, 0.2], [0.0, 0.1])
+    ax.set_xlabel("x (m)")
+    silicone.solve(tensions=[0.2, 0.0]).plot(ax)
+    assert ax.get_xlabel() == "x (m)" and np.abs(np.asarray(ax.patches[0].get_xy())).max() < 1.0  # type: ignore[attr-defined]
+    plt.close("all")
+
+
+def test_animations_say_what_they_need(silicone: hs.Arm, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("PIL")
+    solution = silicone.solve(tensions=[0.2, 0.0])
+    assert hs.animate([solution], tmp_path / "film.GIF", sections=0) == tmp_path / "film.GIF"
+    with pytest.raises(ValueError, match="^solutions: expected a list of solutions, found one"):
+        hs.animate(solution)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="^fps: expected a number above zero, found '20'"):
+        hs.animate([solution], tmp_path / "film.gif", fps="20")  # type: ignore[arg-type]
+    with monkeypatch.context() as patched:
+        patched.setattr("matplotlib.animation.FFMpegWriter.isAvailable", lambda: False)
+        with pytest.raises(FileNotFoundError, match="^output: .mp4 needs the program ffmpeg"):
+            hs.animate([solution], tmp_path / "film.mp4")
+    assert solution.figure().save(tmp_path / "shape.SVG").read_text(encoding="utf-8").startswith("<svg")
+    plt.close("all")
+
+
 def test_reach_and_manipulability(silicone: hs.Arm) -> None:
-    found = silicone.reach(hs.Target(0.182, 0.078, angle=1.0), max_tension=0.6)
+    found = silicone.reach(hs.Target(0.182, 0.078, angle="1 rad"), max_tension=0.6)
     ax = found.plot()
     assert len(ax.patches) == max(len(found), 1)
     marks = [line for line in ax.get_lines() if line.get_marker() == "+"]
@@ -103,7 +144,7 @@ def test_paths_and_equilibria(facing: hs.Arm) -> None:
     unstable = np.array([state == "unstable" for state in path.branches[0].stability])
     assert np.isnan(solid[unstable, 1]).all() and len(events) == 4
     with pytest.raises(ValueError, match="quantity"):
-        path.plot("tip_z")
+        path.plot("tip_w")
     ax = facing.equilibria().plot()
     assert len(ax.patches) == 5
     plt.close("all")

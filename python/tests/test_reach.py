@@ -50,7 +50,7 @@ def test_several_targets(silicone: hs.Arm) -> None:
     middle = shape.at(0.15)
     goals = [
         hs.Target(shape.tip.x, shape.tip.y),
-        hs.Target(float(middle.x[0]), float(middle.y[0]), s=0.15, angle=float(middle.theta[0]), weight=2.0),
+        hs.Target(float(middle.x[0]), float(middle.y[0]), s=0.15, angle=float(np.degrees(middle.theta[0])), weight=2.0),
     ]
     found = silicone.reach(goals, max_tension=0.9)
     assert np.allclose(found[0].tensions, [0.3, 0.1], rtol=0, atol=1e-6)

@@ -70,14 +70,14 @@ def test_paths_and_equilibria(program: Program, facing: hs.Arm) -> None:
 
 
 @pytest.mark.parametrize(
-    ("target", "more"), [((0.182, 0.078), {}), ((0.3, 0.0), {"tol": 1e-6}), ((0.2, 0.08), {"angle": 0.9, "s": 0.22})]
+    ("target", "more"), [((0.182, 0.078), {}), ((0.3, 0.0), {"tol": 1e-6}), ((0.2, 0.08), {"angle": 51.5, "s": 0.22})]
 )
 def test_reach(program: Program, silicone: hs.Arm, target: tuple[float, float], more: dict[str, float]) -> None:
     words = ["reach", "silicone", "--target", f"{target[0]},{target[1]}", "--max-tension", "0.6"]
     tol = more.pop("tol", 1e-8)
     words += ["--tol", repr(tol)]
     if more:
-        words += ["--angle", f"{more['angle']} rad", "--station", repr(more["s"])]
+        words += ["--angle", f"{more['angle']} deg", "--station", repr(more["s"])]
     found = silicone.reach(hs.Target(*target, **more), max_tension=0.6, tol=tol)
     status, text = program(*words, "--format", "json")
     assert status == (0 if found else 3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -66,3 +67,26 @@ def test_points_joined_by_straight_lines() -> None:
     assert arm.to_dict()["arm"]["radius"] == radius
     cubic = hs.Arm(arm={"length": 0.2, "radius": radius["points"]}, material={"young": 1e5}, tip={"force": [0.0, 1e-3]})
     assert abs(arm.solve().tip.y - cubic.solve().tip.y) > 1e-5
+
+
+@pytest.mark.parametrize(
+    ("vary", "options"),
+    [
+        ({"flow.speed": [0.0, 0.1]}, {}),
+        ({"flow.speed": [0.0, 0.1], "cable[0].tension": "0:1.5:3"}, {"shapes": 3}),
+        ({"flow.speed": "0:0.1", "model.volume": "planar,none"}, {"sample": "lhs:4"}),
+    ],
+)
+def test_a_sweep_could_not_be_written_as_netcdf(tmp_path: Path, silicone: hs.Arm, vary: Any, options: Any) -> None:
+    xr = pytest.importorskip("xarray")
+    pytest.importorskip("scipy")
+    found = hs.sweep(silicone, vary, **options)
+    found.to_netcdf(tmp_path / "sweep.nc", engine="scipy")
+    with xr.open_dataset(tmp_path / "sweep.nc", engine="scipy") as again:
+        for name in found.variables:
+            assert found[name].values.tolist() == again[name].values.tolist() or found[name].dtype.kind == "f", name
+            if found[name].dtype.kind == "f":
+                assert found[name].values.tobytes() == again[name].values.astype(found[name].dtype).tobytes(), name
+        assert again.attrs["vary"].split() == list(vary) and hs.Arm.from_toml(again.attrs["arm"]) == silicone
+        if len(vary) == 2 and not options.get("sample"):
+            assert hs.map_figure(again, "tip_y").svg() == hs.map_figure(found, "tip_y").svg()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 import warnings
+from collections.abc import Callable
 
 import pytest
 
@@ -40,6 +41,30 @@ def test_warnings_can_be_errors_and_can_be_let_be(silicone: hs.Arm) -> None:
     dataset = bent.to_xarray()
     assert dataset.warnings.dims == ("warning",) and dataset.warning.values.tolist() == ["tangential_load"]
     assert "warnings" not in repr(silicone.solve())
+
+
+@pytest.mark.parametrize("call", ["resolve", "solution", "path", "equilibria", "reach"])
+def test_whoever_gives_solutions_warns_once_a_kind(silicone: hs.Arm, call: str) -> None:
+    arm = silicone.replace(flow_speed=0.1, tensions=[0.2, 0.0])
+    solver = hs.Solver(arm)
+    solver.update()
+    tip = arm.replace(flow_speed=0.1).solve().tip
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        calls: dict[str, Callable[[], object]] = {
+            "resolve": solver.resolve,
+            "solution": solver.solution,
+            "path": lambda: arm.path("cable[0].tension", 0.0, 0.2),
+            "equilibria": arm.equilibria,
+            "reach": lambda: arm.reach((tip.x, tip.y), max_tension=0.6),
+        }
+        calls[call]()
+    kinds = [warning.message.kind for warning in caught if isinstance(warning.message, hs.ModelWarning)]
+    assert "tangential_load" in kinds and len(kinds) == len(set(kinds)) == len(caught)
+    assert caught[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        silicone.path("cable[0].tension", 0.0, 0.1)
 
 
 def test_who_ignores_them_is_spared_the_search(silicone: hs.Arm) -> None:
