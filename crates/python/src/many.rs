@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hydrostat::parameter::names;
-use hydrostat::{NoRow, Options, Parameter, PoseChange, Row, SensitivityOptions, SolveError, Solver, Tile, Wanted};
+use hydrostat::{ArmError, NoRow, Options, Parameter, PoseChange, Row, SensitivityOptions, SolveError, Solver, Tile, Wanted};
 use hydrostat_files::Dimension;
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyRuntimeError;
@@ -73,6 +73,10 @@ pub(crate) fn solve_many<'py>(
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    if arm.given.space.is_some() {
+        let what = "`solve_many` (`sweep` takes all arms)";
+        return Err(wrong(ArmError::OnlyInPlane { what }));
+    }
     let mut varied: Vec<(Parameter, Vec<f64>)> = Vec::new();
     for (key, column) in keys.iter().zip(&columns) {
         let parameter: Parameter = key.parse().map_err(wrong)?;
