@@ -62,4 +62,4 @@ def test_documents_and_pictures() -> None:
     with pytest.raises(ValueError, match="elements"):
         hs.modes(arm, elements=100)
     with pytest.raises(hs.NoEquilibriumError):
-        hs.modes(arm.replace(tensions=[5, 0]))
+        hs.modes(arm.replace(tensions=[1.4, 0]))

@@ -18,10 +18,10 @@ const COLUMNS: usize = 2;
 const GAP: f64 = 14.0;
 /// Above a frame, for its title.
 const ABOVE: f64 = 14.0;
-const HEIGHT: f64 = 130.0;
+const HEIGHT: f64 = 108.0;
 /// How far the arm moves, over its length, and turns, rad: whichever is reached first.
 const MOVED: f64 = 0.15;
-const TURNED: f64 = 0.5;
+const TURNED: f64 = 1.5;
 /// Phases of one period.
 const PHASES: usize = 12;
 /// From the middle to the eye, and its distance over the length.
@@ -48,7 +48,7 @@ pub fn mode_shapes_figure<T>(arm: &Arm, modes: &Modes<T>, title: &str, page: &Pa
     legend.add(Sample::Line(largest()), Label::plain("largest displacement"));
     legend.add(Sample::Line(pale()), Label::plain("phases of a period"));
     let heading = page.heading(title, None);
-    let top = heading.bottom + legend.height() + 6.0;
+    let top = heading.bottom + legend.height() + 12.0;
     let count = modes.modes.len().min(MOST);
     let rows = count.div_ceil(COLUMNS);
     let width = (page.right() - MARGIN - GAP) / COLUMNS as f64;
