@@ -32,7 +32,8 @@
 //! given one by one: memory does not grow with the run. A step that fails is halved; if it cannot be done the run
 //! ends with a [`MotionVerdict`] that names time and limit, after all before it was given.
 //!
-//! **Eigenmodes** (`modes`, `small_motions`, `mode_shapes`) are those of the same equations, linearised about an equilibrium.
+//! **Eigenmodes** (`modes`, `small_motions`, `mode_shapes`) are those of the same equations, linearised about
+//! an equilibrium.
 
 mod after_snap;
 mod along;

@@ -111,9 +111,9 @@ fn fields<P: Vibrates<S, L, C>, const S: usize, const L: usize, const C: usize>(
     if moving.arm().dynamics.relaxation_time > 0.0 { C + L } else { C }
 }
 
-/// The changes (complex) of the coordinates at the stages, station by station, and at the nodes, with a motion that goes
-/// as exp(rate t) (1/s) and has the eigenvector `own`: the response to what it adds at the stations, so that it is known
-/// as well between them.
+/// The changes (complex) of the coordinates at the stages, station by station, and at the nodes, with a motion that
+/// goes as exp(rate t) (1/s) and has the eigenvector `own`: the response to what it adds at the stations, so that it is
+/// known as well between them.
 pub(super) fn changes<P: Vibrates<S, L, C>, const S: usize, const L: usize, const C: usize>(
     settling: &Settling<P, S, L>,
     rate: Complex<f64>,

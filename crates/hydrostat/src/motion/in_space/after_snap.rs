@@ -136,8 +136,8 @@ impl Lands for Engine {
 }
 
 impl SpatialConfiguration {
-    /// Lets this shape go, at rest, under the loads of `arm`, as [`Configuration::let_go`](crate::Configuration::let_go)
-    /// does in the plane. Cables have tensions.
+    /// Lets this shape go, at rest, under the loads of `arm`, as
+    /// [`Configuration::let_go`](crate::Configuration::let_go) does in the plane. Cables have tensions.
     ///
     /// # Errors
     /// [`Restless`].
