@@ -43,7 +43,7 @@ fn place(at: &SpatialInstant) -> [f64; 3] {
     [at.tip.x, at.tip.y, at.tip.z]
 }
 
-/// By how much the frequency of `of` is off that of a first mode whose fraction of it swings `per` rows a period: how far
+/// By how much the frequency of `of` is off that of a first mode that swings once in `per` rows: how far
 /// its phase drifts over ten periods.
 fn frequency_off(rows: &[SpatialInstant], per: usize, omega: f64, of: impl Fn(&SpatialInstant) -> f64) -> f64 {
     let count = 4 * per;

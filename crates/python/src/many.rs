@@ -3,7 +3,9 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hydrostat::parameter::names;
-use hydrostat::{ArmError, NoRow, Options, Parameter, PoseChange, Row, SensitivityOptions, SolveError, Solver, Tile, Wanted};
+use hydrostat::{
+    ArmError, NoRow, Options, Parameter, PoseChange, Row, SensitivityOptions, SolveError, Solver, Tile, Wanted,
+};
 use hydrostat_files::Dimension;
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyRuntimeError;

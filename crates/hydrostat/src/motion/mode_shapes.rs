@@ -42,8 +42,8 @@ pub struct ModeStation {
 /// The shape of a mode at the places of [`Modes::sections`](crate::Modes::sections): where displacement and turn have
 /// the amplitudes u, the motion is Re(u exp(lambda t)). Its size is such that the largest of |displacement| and radius
 /// times |turn| is 1 m, its phase such that the largest displacement, or turn where turns are larger, is real and
-/// positive along the axis on which it is largest. Of two modes of one rate, as a round arm has them in space, the one moves
-/// along one axis and the other along another where both move most.
+/// positive along the axis on which it is largest. Of two modes of one rate, as a round arm has them in space, the one
+/// moves along one axis and the other along another where both move most.
 pub type ModeShape = Vec<ModeStation>;
 
 type Amplitude = [[Complex<f64>; 3]; 2];
