@@ -339,7 +339,8 @@ fn streams_from_all_sides_are_solved_or_have_a_verdict() {
 }
 
 /// Where the tangential part of the stream changes its sign, its load jumps under `resultant`. Nodes stood within
-/// 2e-7 L of that place at a tolerance of 1e-8, as they do at kinks: the tip was off by 1.5e-8 L, the estimate was 6e-10.
+/// 2e-7 L of that place at a tolerance of 1e-8, as they do at kinks: the tip was off by 1.5e-8 L, and the estimate was
+/// 6e-10 L.
 #[test]
 fn nodes_stood_as_near_to_jumps_of_the_load_as_to_kinks() {
     let mut arm = Arm::cone(0.25, 0.002, 0.0011, 2.7e6, 0.5);
