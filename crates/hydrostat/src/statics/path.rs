@@ -19,7 +19,9 @@ mod turns;
 
 pub use circle::{Equilibria, Equilibrium};
 pub(crate) use limits::name_limit;
-pub(crate) use load_stepping::{Stopped, follow, follow_on, follow_range, follow_strokes};
+pub(crate) use load_stepping::{
+    AWAY, BESIDE, Stopped, apart, follow, follow_on, follow_range, follow_strokes, has_not_begun,
+};
 pub(crate) use points::has_a_path;
 pub use points::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub(crate) use step_control::{LOOSE, PathSummary, StepControl};
