@@ -130,11 +130,7 @@ impl std::fmt::Display for WrongRequest {
                 write!(f, "--over: expected one or two different keys of those that were varied, {}", keys.join(", "))
             }
             Self::Words(key) => write!(f, "--over: the values of {key} are words, and an axis needs numbers"),
-            Self::OnlyWords(keys) => write!(
-                f,
-                "the values of {} are words, and the axes of a map need numbers; --workspace FILE draws the tips alone",
-                keys.join(", ")
-            ),
+            Self::OnlyWords(keys) => f.write_str(&only_words(keys)),
             Self::Peers(path, why) => write!(f, "--peers {}: {why}", path.display()),
             Self::Unbounded(cable) => {
                 write!(
@@ -205,6 +201,11 @@ fn unknown_arm(name: &str) -> String {
     let shipped: Vec<&str> = shipped_names().collect();
     let hint = nearest(name).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     format!("`{name}` is neither a file nor an arm that ships with the program ({}){hint}", shipped.join(", "))
+}
+
+fn only_words(keys: &[String]) -> String {
+    let keys = keys.join(", ");
+    format!("the values of {keys} are words, and the axes of a map need numbers; --workspace FILE draws the tips alone")
 }
 
 fn coordinates(in_space: bool) -> &'static str {
