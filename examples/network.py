@@ -103,7 +103,8 @@ for step in range(1, 151):
 # %% [markdown]
 # ## What it has learned
 #
-# `Arm.reach` solves the same question for one place, exactly, from several starts; the network answers at once, and misses by a little. A solve with its tensions says by how much.
+# `Arm.reach` solves the same question for one place, exactly, from several starts, and gives the answer of least effort first; the network answers at once, and
+# misses by a little, most at the edge of what it has learned from. A solve with its tensions says by how much.
 
 # %%
 after = np.asarray(off(weights, unseen))

@@ -3,8 +3,8 @@
 An arm is a Cosserat rod, in a plane or in space: it bends, shears and stretches, and in space it twists. Its section widens under compression, so that the
 volume is kept. Cables, a stream, weight and buoyancy act on it.
 
-SI units throughout, results in radians. Numbers given at a key of the arm file (`Arm`, `Arm.replace`, `Arm.path`, `sweep`) are read
-as in the file: bare angles in degrees, strings with units.
+Results are in SI units and radians. What is given is a number in SI units, an angle in degrees, or what carries a unit: strings, as in the arm
+file (``"10 cm/s"``), DataArrays with the attribute ``units``, and Quantities of pint.
 
 >>> import hydrostat as hs
 >>> arm = hs.Arm.load("silicone")

@@ -1,7 +1,7 @@
 //! One arm in space, again and again as its loads change.
 
 use hydrostat::{
-    Arm as Given, ArmError, Options, SensitivityError, SensitivityOptions, SpatialConfiguration, SpatialError,
+    Arm as Given, Options, SensitivityError, SensitivityOptions, SolveError, SpatialConfiguration, SpatialError,
     SpatialPoseChange,
 };
 use numpy::{PyArray1, PyReadonlyArray1};
@@ -39,16 +39,28 @@ impl SpatialSolver {
         self.solver.arm().cables.iter().map(|cable| cable.tension).collect()
     }
 
-    fn set_tensions(&mut self, tensions: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+    /// Strokes are then no longer commanded.
+    fn set_tensions(&mut self, py: Python<'_>, tensions: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         let tensions = finite("tensions", &tensions, false)?;
+        if self.solver.arm().cables.iter().any(|cable| cable.stroke.is_some()) {
+            let mut arm = self.solver.arm().clone();
+            arm.set_tensions(&tensions).map_err(|error| wrong(format!("tensions: {error}")))?;
+            *self = Self::of(py, &arm, self.options)?;
+            return Ok(());
+        }
         self.solver.set_tensions(&tensions).map_err(|error| wrong(format!("tensions: {error}")))
     }
 
-    #[expect(clippy::unused_self, reason = "a method of both solvers")]
-    fn set_stroke(&mut self, cable: usize, stroke: f64) -> PyResult<()> {
-        let _ = stroke;
-        let why = "is not solved yet (give the tension)";
-        Err(wrong(ArmError::NotInSpace { key: format!("cable[{cable}].stroke"), why }))
+    /// The next solve begins with the unloaded arm.
+    fn set_stroke(&mut self, py: Python<'_>, cable: usize, stroke: f64) -> PyResult<()> {
+        let mut arm = self.solver.arm().clone();
+        let Some(own) = arm.cables.get_mut(cable) else {
+            let expected = "the index of one of the arm's cables";
+            return Err(wrong(SolveError::Option { option: "cable", value: cable as f64, expected }));
+        };
+        own.stroke = Some(stroke);
+        *self = Self::of(py, &arm, self.options)?;
+        Ok(())
     }
 
     /// The next solve begins with the unloaded arm.
