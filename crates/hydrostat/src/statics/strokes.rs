@@ -262,7 +262,7 @@ mod tests {
                     other.solve_tensions().unwrap();
                     let pace = StepControl { longest: 0.1, straightness: 0.99, most: 2000, accuracy: 1e-6 };
                     other.engine.equations.hold_strokes();
-                    other.follow_strokes_from_here(pace).unwrap();
+                    other.follow_strokes_from_here(pace).map_err(|stopped| stopped.verdict).unwrap();
                     other.engine.settle(1e-9, First::Warm).unwrap();
                     let two = other.read(1e-9, PathSummary::default()).unwrap();
                     both += 1;
