@@ -120,8 +120,14 @@ def test_a_solver_goes_on(arm: hs.Arm) -> None:
     other = copy.copy(solver)
     other.set_flow_speed(0.0)
     assert other.resolve().tip.z < tip.z
-    with pytest.raises(ValueError, match='`space = "spatial"`'):
-        solver.set_stroke(0, 0.01)
+    solver.set_stroke(0, 0.004)
+    held = solver.solve()
+    assert held.cables[0].stroke == pytest.approx(0.004, abs=1e-9) and held.cables[0].tension > 0
+    assert held.tip.y == pytest.approx(arm.solve(strokes=[0.004, None, None]).tip.y, abs=1e-9)
+    solver.set_tensions([0.11, 0.05, 0])
+    assert solver.solve().tip.y == pytest.approx(tip.y, abs=1e-8)
+    with pytest.raises(ValueError, match="index"):
+        solver.set_stroke(7, 0.01)
 
 
 def test_derivatives_are_those_of_differences(arm: hs.Arm) -> None:

@@ -266,8 +266,10 @@ pub(crate) fn ticks(range: [f64; 2], count: f64) -> (Vec<f64>, f64) {
     let factor = [1.0, 2.0, 5.0, 10.0].into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(1.0);
     let step = factor * size;
     let mut out = Vec::new();
-    let mut k = (range[0] / step - 1e-9).ceil();
-    while k * step <= range[1] + 1e-9 * step && out.len() < 100 {
+    // Far from zero, rounding moves the ends by more steps.
+    let beside = |end: f64| 1e-9 + 4.0 * f64::EPSILON * (end / step).abs();
+    let mut k = (range[0] / step - beside(range[0])).ceil();
+    while k * step <= range[1] + beside(range[1]) * step && out.len() < 100 {
         out.push(k * step);
         k += 1.0;
     }

@@ -199,12 +199,12 @@ impl ArmFile {
                 break;
             }
         }
-        let mut all: Vec<Fault> = values.into_faults().into_iter().chain(refused).take(MOST_FAULTS).collect();
-        all.sort_by_key(|fault| match fault.origin {
+        refused.sort_by_key(|fault| match fault.origin {
             Origin::Text(at) => (0, at),
             Origin::Setting(index) => (1, index),
         });
-        all.into_iter().map(|fault| self.error(fault)).collect()
+        let all = values.into_faults().into_iter().chain(refused).take(MOST_FAULTS);
+        all.map(|fault| self.error(fault)).collect()
     }
 
     fn built(&self, values: &Values) -> Arm {

@@ -6,7 +6,8 @@ use std::f64::consts::PI;
 use hydrostat::VerdictKind::{self, CableFold, LimitPoint, LoadJump, NoSectionSolution, SectionCrushed};
 use hydrostat::cases::{column_buckling_load, inextensible_arm};
 use hydrostat::{
-    Arm, Cable, Configuration, NoEquilibrium, Options, Phase, Profile, Readings, SolveError, Solver, Volume,
+    Arm, Cable, Configuration, NoEquilibrium, Options, Parameter, PathOptions, Phase, Profile, Readings, SolveError,
+    Solver, SpatialSolver, Volume,
 };
 use hydrostat_files::{ArmFile, shipped};
 
@@ -222,4 +223,29 @@ fn nothing_was_last_good_where_tensions_did_not_start() {
         "{reached}: {}",
         no.verdict.message()
     );
+}
+
+/// Slack, the arm lies in the stream, and the signs of tiny angles decide which way the load goes. Tensions did not get
+/// off: the plane had a limit point at 0 % of them, space no equilibrium. A path over the speed at whole tensions does
+/// not pass that shape.
+#[test]
+fn tensions_did_not_start_on_a_slack_arm_that_lies_in_the_stream() {
+    let mut arm = ArmFile::parse(shipped::get("octopus").unwrap(), "octopus").unwrap().arm().unwrap();
+    arm.set_tensions(&[0.016, 0.0]).unwrap();
+    arm.flow.speed = 0.5;
+    for (degrees, in_space) in [(58.0_f64, false), (60.0, false), (62.0, false), (90.0, true), (150.0, true)] {
+        arm.flow.direction = degrees.to_radians();
+        let path = arm.path(Parameter::FlowSpeed, [0.0, 0.5], &PathOptions::default()).unwrap();
+        let last = path.branches[0].points.last().unwrap();
+        assert_eq!(last.value, 0.5, "{degrees} deg");
+        let expected = last.configuration.tip();
+        let off = |x: f64, y: f64| (x - expected.x).hypot(y - expected.y) / arm.length;
+        let plane = arm.solve().unwrap_or_else(|error| panic!("{degrees} deg: {error}")).tip();
+        assert!(off(plane.x, plane.y) < 1e-5, "{degrees} deg: {:e}", off(plane.x, plane.y));
+        if in_space {
+            let mut solver = SpatialSolver::new(&arm, Options::default()).unwrap();
+            let space = solver.solve().unwrap_or_else(|error| panic!("{degrees} deg in space: {error}")).tip();
+            assert!(off(space.x, space.y) < 1e-5, "{degrees} deg in space: {:e}", off(space.x, space.y));
+        }
+    }
 }

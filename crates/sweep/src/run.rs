@@ -409,7 +409,8 @@ impl Sweep {
             let asked = arm.as_ref().map_or(f64::INFINITY, |arm| self.options.tol * arm.length);
             let answer = arm.map_err(NoAnswer::Arm).and_then(|arm| self.answer(arm, &mut solver));
             solved.push((row, Answered { answer, asked }));
-            if !row_done(row) {
+            // A tile that is done is kept.
+            if !row_done(row) && (solved.len() as u64) < rows.end - rows.start {
                 return None;
             }
         }

@@ -150,6 +150,13 @@ fn write_the_guide_anew() {
     }
 }
 
+/// What a heading of a page is linked by.
+fn anchor_of(line: &str) -> Option<String> {
+    let heading = line.strip_prefix('#')?.trim_start_matches('#').trim().to_lowercase();
+    let kept = heading.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    Some(kept.map(|c| if c == ' ' { '-' } else { c }).collect())
+}
+
 #[test]
 fn every_chapter_is_listed_and_every_link_leads_somewhere() {
     let summary = fs::read_to_string(pages().join("SUMMARY.md")).unwrap();
@@ -158,7 +165,13 @@ fn every_chapter_is_listed_and_every_link_leads_somewhere() {
         assert!(name == "SUMMARY.md" || summary.contains(&format!("({name})")), "{name} is not in SUMMARY.md");
         let text = fs::read_to_string(&chapter).unwrap();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
-            assert!(link.starts_with("http") || pages().join(link).exists(), "{name}: {link}");
+            let (page, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let page = if page.is_empty() { name } else { page };
+            assert!(link.starts_with("http") || pages().join(page).exists(), "{name}: {link}");
+            if !link.starts_with("http") && !anchor.is_empty() {
+                let text = fs::read_to_string(pages().join(page)).unwrap();
+                assert!(text.lines().filter_map(anchor_of).any(|own| own == anchor), "{name}: {link}");
+            }
         }
     }
 }

@@ -46,14 +46,19 @@ impl<E: Loaded> From<Verdict> for Stopped<E> {
 
 /// Fractions of the tensions at which a path begins that cannot leave a slack arm: where that lies in the stream, the
 /// signs of tiny angles decide which way the load goes, and rounding decides these.
-pub(crate) const AWAY: [f64; 4] = [1e-5, 1e-4, 1e-3, 1e-2];
+pub(crate) const AWAY: [f64; 7] = [1e-9, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
 /// How far (over L) the tip may be from its place on the slack arm there: as far as snaps go that are followed.
 pub(crate) const BESIDE: f64 = 0.01;
 
-/// Whether a path ends where it began, without a limit that has a name.
+/// Whether a path ends where it began, without a limit that has a name, or turns back before anything pulls.
 pub(crate) fn has_not_begun(verdict: &Verdict) -> bool {
-    verdict.kind == VerdictKind::NotFound && verdict.load_fraction < AWAY[0] && verdict.spent.is_none()
+    let ends = match verdict.kind {
+        VerdictKind::NotFound => verdict.load_fraction < 1e-5,
+        VerdictKind::LimitPoint => verdict.load_fraction == 0.0,
+        _ => false,
+    };
+    ends && verdict.spent.is_none()
 }
 
 /// The distance between two places.
