@@ -26,14 +26,15 @@ pub(super) fn not_found(time: f64, step: f64, failure: Option<SectionFailure>, a
     MotionError::Ended(MotionVerdict { kind, time, s: failure.map(|f| f.s * arm.length), step })
 }
 
-/// Elements for a tolerance. In water, kinks of the drag bound what a mesh can do, not modes.
+/// Elements for a tolerance. In water, kinks of the drag that move over the mesh bound what it can do, not modes: a
+/// silicone arm that is let go in still water is off by 1.7e-4 L on 12 elements, by 2.6e-5 on 20 and by 1.5e-5 on 32.
 pub(super) fn fair_elements(arm: &Arm, tol: f64) -> usize {
     let count = if tol >= 5e-4 {
         8
     } else if tol >= 5e-5 {
-        12
-    } else {
         20
+    } else {
+        32
     };
     if arm.flow.density == 0.0 { 8.min(count) } else { count }
 }
