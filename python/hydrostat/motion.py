@@ -287,6 +287,8 @@ def motion_figures(motion: xr.Dataset, *, shapes: int = 24, title: str | None = 
 class MovingShape:
     """An arm at one time of a motion, as `hydrostat.animate` draws it: its width is that of the unloaded arm."""
 
+    is_spatial = False
+
     def __init__(self, s: NDArray[np.float64], half_width: NDArray[np.float64], x: ArrayLike, y: ArrayLike, theta: ArrayLike) -> None:
         self.s = s
         self._half_width = half_width
@@ -321,6 +323,8 @@ class MovingShape:
 
 class MovingShapeInSpace:
     """An arm in space at one time of a motion, as `hydrostat.animate` draws it, with the width of the unloaded arm."""
+
+    is_spatial = True
 
     def __init__(self, s: NDArray[np.float64], half_width: NDArray[np.float64], *fields: ArrayLike) -> None:
         self.s = s

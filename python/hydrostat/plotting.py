@@ -350,11 +350,12 @@ def animate(
     import matplotlib.pyplot as plt
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
-    if hasattr(solutions, "surfaces"):
+    if hasattr(solutions, "arm"):
         raise ValueError("solutions: expected a list of solutions, found one; `Solution.plot` draws it")
     shapes = list(_inputs.items("solutions", solutions, "solutions"))
-    in_space = bool(shapes) and all(hasattr(shape, "surface") for shape in shapes)
-    if not shapes or not (in_space or all(hasattr(shape, "surfaces") and not hasattr(shape, "z") for shape in shapes)):
+    kinds = {getattr(getattr(shape, "arm", None), "is_spatial", None) for shape in shapes}
+    in_space = kinds == {True}
+    if not in_space and kinds != {False}:
         raise ValueError("solutions: expected at least one solution, and nothing else, all in the plane or all in space")
     target = None if output is None else FilePath(output)
     ending = "" if target is None else target.suffix.lower()
