@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union, cast
 
 import numpy as np
 
-from hydrostat import _inputs, _native
+from hydrostat import _inputs, _native, _units
 from hydrostat._errors import MotionError
 from hydrostat.arm import Arm, arm_of
 from hydrostat.figures import Figure
@@ -211,8 +211,8 @@ def simulate(
     arm: Arm | str | PathLike[str],
     inputs: Mapping[str, Course] | pd.DataFrame | None = None,
     *,
-    until: float,
-    every: float | None = None,
+    until: float | str,
+    every: float | str | None = None,
     tol: float = 1e-4,
     elements: int | None = None,
 ) -> xr.Dataset:
@@ -226,10 +226,10 @@ def simulate(
         Keys of the arm file with what they are over time, SI units, angles in degrees: a number; a function of the time in s, which is
         sampled until a smooth line through the samples is within 1e-5 of its range; or rows ``[time, value]`` joined by straight lines,
         where two rows at one time are a jump. Or a table with a column ``t_s`` and one for each key.
-    until : float
-        End, s.
-    every : float, optional
-        Time between rows, s; a hundredth of the whole if not given.
+    until : float or str
+        End, s, or with a unit: ``"200 ms"``.
+    every : float or str, optional
+        Time between rows, s, or with a unit; a hundredth of the whole if not given.
     tol : float
         Tolerance on the tip position, relative to the arm's length, in [1e-9, 1e-2].
     elements : int, optional
@@ -255,8 +255,8 @@ def simulate(
     (5, 0.2)
     """
     own = arm_of(arm)
-    end = _inputs.number("until", until, negative=False)
-    apart = 0.01 * end if every is None else _inputs.number("every", every, negative=False)
+    end = _inputs.number("until", until, negative=False, key=_units.TIME)
+    apart = 0.01 * end if every is None else _inputs.number("every", every, negative=False, key=_units.TIME)
     if not (end > 0.0 and apart > 0.0):
         raise ValueError("until, every: expected times above 0")
     courses = [_course(key, course, end) for key, course in _keyed(inputs)]

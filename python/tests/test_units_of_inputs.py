@@ -158,3 +158,12 @@ def test_widgets_take_units() -> None:
     from hydrostat.widget import explore
 
     assert explore("silicone", max_tension="300 mN", max_speed="20 cm/s").solution is not None
+
+
+def test_times_of_a_motion_carry_units(silicone: hs.Arm) -> None:
+    loads = {"cable[0].tension": np.array([[0.0, 0.0], [0.05, 0.05]])}
+    want = hs.simulate(silicone, loads, until=0.1, every=0.05, tol=1e-3)
+    found = hs.simulate(silicone, loads, until="100 ms", every="0.05 s", tol=1e-3)
+    assert list(found.time) == list(want.time) and found.tip_x.values[-1] == want.tip_x.values[-1]
+    with pytest.raises(ValueError, match="^until: "):
+        hs.simulate(silicone, loads, until="100 mm")
