@@ -642,6 +642,15 @@ def test_drag_coefficients_are_asked_for_as_on_the_command_line(watched: Watched
     agree(page, solved("paper", *overrides(page)))
 
 
+def test_drag_coefficients_of_the_file_were_not_shown(watched: Watched) -> None:
+    page = watched.open("#arm=silicone&flow.speed=0.1&flow.direction=90")
+    page.locator('select[data-key="flow.law"]').select_option("quadratic-drag")
+    expect(page.locator('[data-box="flow.cn"]')).to_have_value("2.5")
+    expect(page.locator('[data-box="flow.ct"]')).to_have_value("0.005")
+    settle(page)
+    agree(page, solved("silicone", *overrides(page)))
+
+
 def test_an_arm_that_passes_through_itself_is_called_that(watched: Watched, tmp_path: Path) -> None:
     page = watched.open()
     file = tmp_path / "coil.toml"

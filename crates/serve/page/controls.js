@@ -272,6 +272,21 @@ export class Controls {
     return row;
   }
 
+  /**
+   * Takes the coefficients of quadratic drag from a shape that has them: the arm's file may give them beside another law.
+   * @param {Inputs} inputs
+   */
+  learn(inputs) {
+    for (const name of /** @type {const} */ (["cn", "ct"])) {
+      const key = `flow.${name}`;
+      const [shown, value] = [this.ranges.get(key), inputs.flow[name]];
+      if (shown === undefined || shown.range.value !== undefined || value === undefined || this.state.set.has(key)) continue;
+      shown.range.value = value;
+      shown.slider.max = String(Math.max(Number(shown.slider.max), roundUp(2 * value)));
+      this.refresh();
+    }
+  }
+
   /** Shows the values of the state. */
   refresh() {
     for (const mode of this.modes) mode();

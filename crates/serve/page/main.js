@@ -252,6 +252,7 @@ function answered(reply) {
   view.show({ shape, drawing, body: bodyOf(shape, drawing), asked: answer.converged });
   tabulate(numbersOf(shape));
   along.show(shape, pins);
+  controls.learn(shape.inputs);
   legend(shape);
 }
 

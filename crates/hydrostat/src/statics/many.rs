@@ -30,7 +30,7 @@ pub struct Wanted {
     pub strokes: bool,
     /// How far the surface is from folding: reads the whole configuration.
     pub fold_margin: bool,
-    /// Stability, one to two milliseconds.
+    /// Stability, two to three milliseconds.
     pub stability: bool,
     /// What should be known about the answer: reads the whole configuration.
     pub warnings: bool,

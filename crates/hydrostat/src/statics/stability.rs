@@ -130,7 +130,7 @@ impl Configuration {
     ///
     /// Taut cables whose stroke is commanded hold their lengths, whichever way the arm moves.
     ///
-    /// Computed when asked for, in one to two milliseconds. `None` with [`Support::UnstrainedBase`], whose arm is
+    /// Computed when asked for, in two to three milliseconds. `None` with [`Support::UnstrainedBase`], whose arm is
     /// no equilibrium at the tip, with friction of cables, whose tensions would change along them as the arm moves, in
     /// a way that depends on which way each place slides, and where the number of growing motions does not settle as
     /// they are resolved more finely.
