@@ -182,9 +182,8 @@ pub fn parse_time_loads(text: &str, path: &str, inputs: &mut Inputs) -> Result<V
     let mut spans = Vec::new();
     for ((_, key, _), rows) in table.header.keys.iter().zip(rows) {
         if !rows.is_empty() {
-            spans.extend(Span::of(key, rows.iter().map(|(_, value)| *value)));
-            let set = inputs.set(key, Course::Table(rows));
-            set.map_err(|source| TimeLoadsError::Load { path: path.clone(), source })?;
+            let set = set(inputs, key, Course::Table(rows));
+            spans.extend(set.map_err(|source| TimeLoadsError::Load { path: path.clone(), source })?);
         }
     }
     Ok(spans)
@@ -476,27 +475,32 @@ pub fn set_shaped(text: &str, inputs: &mut Inputs) -> Result<Span, ShapedError> 
     let key = bracketed(key.trim());
     let parts: Vec<&str> = shape.split(':').map(str::trim).collect();
     let dimension = dimension_at(&key).unwrap_or(Dimension::Number);
-    let (course, ends) = match parts[..] {
+    let course = match parts[..] {
         ["ramp", from, to, start, end] => {
             let [from, to] = alike(dimension, &key, [from, to])?;
             let [start, end] = alike(Dimension::Time, &key, [start, end])?;
-            (Course::ramp(from, to, start, end), [from, to])
+            Course::ramp(from, to, start, end)
         }
         ["step", from, to, at] => {
             let [from, to] = alike(dimension, &key, [from, to])?;
             let [at] = alike(Dimension::Time, &key, [at])?;
-            (Course::step(from, to, at), [from, to])
+            Course::step(from, to, at)
         }
         ["sine", mean, amplitude, period] => {
             let [mean, amplitude] = alike(dimension, &key, [mean, amplitude])?;
             let [period] = alike(Dimension::Time, &key, [period])?;
-            let course = Course::Sine { mean, amplitude, frequency: 1.0 / period, phase: 0.0 };
-            (course, [mean - amplitude, mean + amplitude])
+            Course::Sine { mean, amplitude, frequency: 1.0 / period, phase: 0.0 }
         }
         _ => return Err(form()),
     };
-    inputs.set(&key, course)?;
-    Ok(Span { key, ends })
+    set(inputs, &key, course)?.ok_or_else(form)
+}
+
+/// Sets the course of a load, and gives what it runs through.
+fn set(inputs: &mut Inputs, key: &str, course: Course) -> Result<Option<Span>, MotionError> {
+    let span = Span::of(key, course.values());
+    inputs.set(key, course)?;
+    Ok(span)
 }
 
 /// Numbers of one dimension in SI units; a unit after the last one holds for all.

@@ -4,3 +4,8 @@ pub(crate) mod dispatch;
 pub(crate) mod elimination;
 pub(crate) mod rounds;
 pub(crate) mod sincos;
+
+/// The distance between two places.
+pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |sum: f64, (a, b)| sum.hypot(a - b))
+}

@@ -55,10 +55,46 @@ pub(crate) fn moving(arm: &Arm, from: Option<&MotionState>) -> Result<Box<dyn Mo
     })
 }
 
+/// What both kinds of motion are asked for alike.
+macro_rules! alike {
+    () => {
+        fn move_on(
+            &mut self,
+            dt: f64,
+            loads: &[(&str, f64)],
+            go_on: &mut dyn FnMut() -> bool,
+        ) -> Result<(), MotionError> {
+            self.step_to_while(dt, loads, go_on).map(drop)
+        }
+
+        fn copy(&self) -> Box<dyn Moving> {
+            Box::new(self.clone())
+        }
+
+        fn state(&self) -> MotionState {
+            self.state()
+        }
+
+        fn events(&self) -> &[MotionEvent] {
+            self.events()
+        }
+
+        fn warnings(&self) -> Vec<MotionWarning> {
+            self.warnings()
+        }
+
+        fn error_estimate(&self) -> f64 {
+            self.error_estimate()
+        }
+
+        fn statistics(&self) -> MotionStatistics {
+            self.statistics()
+        }
+    };
+}
+
 impl Moving for Simulation {
-    fn move_on(&mut self, dt: f64, loads: &[(&str, f64)], go_on: &mut dyn FnMut() -> bool) -> Result<(), MotionError> {
-        self.step_to_while(dt, loads, go_on).map(drop)
-    }
+    alike!();
 
     fn now(&mut self) -> Now {
         let at = self.now();
@@ -74,40 +110,14 @@ impl Moving for Simulation {
         }
     }
 
-    fn copy(&self) -> Box<dyn Moving> {
-        Box::new(self.clone())
-    }
-
-    fn state(&self) -> MotionState {
-        self.state()
-    }
-
     fn shape(&self, places: &[f64]) -> (MotionShape, Vec<f64>) {
         let stations: Vec<MotionStation> = places.iter().map(|s| self.station(*s)).collect();
         (MotionShape::in_plane(self.time(), &stations), stations.iter().map(|at| at.nu).collect())
     }
-
-    fn events(&self) -> &[MotionEvent] {
-        self.events()
-    }
-
-    fn warnings(&self) -> Vec<MotionWarning> {
-        self.warnings()
-    }
-
-    fn error_estimate(&self) -> f64 {
-        self.error_estimate()
-    }
-
-    fn statistics(&self) -> MotionStatistics {
-        self.statistics()
-    }
 }
 
 impl Moving for SpatialSimulation {
-    fn move_on(&mut self, dt: f64, loads: &[(&str, f64)], go_on: &mut dyn FnMut() -> bool) -> Result<(), MotionError> {
-        self.step_to_while(dt, loads, go_on).map(drop)
-    }
+    alike!();
 
     fn now(&mut self) -> Now {
         let at = self.now();
@@ -122,32 +132,8 @@ impl Moving for SpatialSimulation {
         }
     }
 
-    fn copy(&self) -> Box<dyn Moving> {
-        Box::new(self.clone())
-    }
-
-    fn state(&self) -> MotionState {
-        self.state()
-    }
-
     fn shape(&self, places: &[f64]) -> (MotionShape, Vec<f64>) {
         let stations: Vec<SpatialMotionStation> = places.iter().map(|s| self.station(*s)).collect();
         (MotionShape::in_space(self.time(), &stations), stations.iter().map(|at| at.strains[0]).collect())
-    }
-
-    fn events(&self) -> &[MotionEvent] {
-        self.events()
-    }
-
-    fn warnings(&self) -> Vec<MotionWarning> {
-        self.warnings()
-    }
-
-    fn error_estimate(&self) -> f64 {
-        self.error_estimate()
-    }
-
-    fn statistics(&self) -> MotionStatistics {
-        self.statistics()
     }
 }

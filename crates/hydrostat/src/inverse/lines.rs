@@ -17,6 +17,7 @@ use nalgebra::DMatrix;
 use super::effort::dot;
 use super::reaching::Reaching;
 use super::search::{Search, State};
+use crate::numerics::distance;
 use crate::numerics::elimination::solved;
 
 /// The turn of the tip, rad, that a step aims at: below what makes a warm solve start anew.
@@ -179,10 +180,10 @@ impl<S: Reaching> Line<'_, S> {
                 break;
             }
             let turned = next.state.solver.turned(&here.state.solver);
-            let moved = apart(&next.state.rest, &here.state.rest);
+            let moved = distance(&next.state.rest, &here.state.rest);
             let fit = (TURN / turned.max(1e-12)).min(0.5 * MOVED / moved.max(1e-12));
             let reached = self.fractions(&next.state);
-            let round = count > 5 && apart(&reached, &begun) < 0.7 * apart(&reached, &fractions);
+            let round = count > 5 && distance(&reached, &begun) < 0.7 * distance(&reached, &fractions);
             size = (size * fit.clamp(0.3, 2.0)).min(LONGEST);
             before = Some(offset);
             here = next;
@@ -226,7 +227,7 @@ impl<S: Reaching> Line<'_, S> {
             solver.pull(&tensions)?;
             solver.settle()?;
             let rest = self.search.rest(&solver);
-            if apart(&rest, &here.state.rest) > MOVED {
+            if distance(&rest, &here.state.rest) > MOVED {
                 return None;
             }
             let off: Vec<f64> = self.across.iter().map(|a| -dot(a, &rest)).collect();
@@ -247,10 +248,6 @@ impl<S: Reaching> Line<'_, S> {
         let straight = dot(&tangent, &here.tangent) > STRAIGHT || length < 10.0 * SHORTEST;
         straight.then_some((Point { state, columns, tangent }, stop.is_some()))
     }
-}
-
-fn apart(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).fold(0.0, |m: f64, (a, b)| m.hypot(a - b))
 }
 
 /// Unit vectors normal to a unit vector and to each other: the rows but the first of the reflection that takes it to an

@@ -142,7 +142,13 @@ impl Course {
     }
 
     /// Values that it comes to, among them the largest and the smallest.
-    fn values(&self) -> Vec<f64> {
+    ///
+    /// ```
+    /// use hydrostat::Course;
+    ///
+    /// assert_eq!(Course::ramp(0.1, 0.3, 0.0, 2.0).values(), [0.1, 0.3]);
+    /// ```
+    pub fn values(&self) -> Vec<f64> {
         match self {
             Self::Table(rows) => rows.iter().map(|(_, v)| *v).collect(),
             // Between its points is no value beyond theirs.
@@ -181,7 +187,7 @@ impl Driven {
 
     fn read(key: &str) -> Option<Self> {
         let base = BASE_PLACE.iter().position(|own| *own == key).map(Self::Base);
-        base.or_else(|| Parameter::from_str(key).ok().filter(|p| moves(*p)).map(Self::Of))
+        base.or_else(|| Parameter::from_str(key).ok().filter(|p| p.may_be_led()).map(Self::Of))
     }
 
     fn is_of_base(self) -> bool {
@@ -196,28 +202,6 @@ impl Driven {
     fn is_of_stream(self) -> bool {
         matches!(self, Self::Of(Parameter::FlowSpeed | Parameter::FlowDirection | Parameter::StreamAlong(_)))
     }
-}
-
-/// Whether it may change in time.
-fn moves(parameter: Parameter) -> bool {
-    matches!(
-        parameter,
-        Parameter::Tension(_)
-            | Parameter::Stroke(_)
-            | Parameter::FlowSpeed
-            | Parameter::FlowDirection
-            | Parameter::GravityAcceleration
-            | Parameter::GravityDirection
-            | Parameter::StreamAlong(_)
-            | Parameter::GravityAlong(_)
-            | Parameter::TipForce(_)
-            | Parameter::TipMoment
-            | Parameter::TipMomentAbout(_)
-            | Parameter::TipFollower(_)
-            | Parameter::BaseAngle
-            | Parameter::BaseAlong(_)
-            | Parameter::SectionAlong(_)
-    )
 }
 
 /// Loads and base of an arm as functions of time; what is not among them stays as the arm has it.

@@ -4,7 +4,7 @@ use super::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
 use super::in_space::SpatialSnapMotion;
 use super::landing::{Lands, PAST};
 use crate::rod::arm::{Arm, ArmError};
-use crate::rod::parameter::Parameter;
+use crate::rod::parameter::{IN_SPACE, PLAIN, Parameter};
 use crate::spatial::engine::Engine as SpatialEngine;
 use crate::spatial::{SpatialConfiguration, SpatialError, SpatialSolver};
 use crate::statics::configuration::Configuration;
@@ -163,35 +163,7 @@ impl Ranged for SpatialSolver {
 /// The loads that may change.
 fn loads(cables: usize) -> impl Iterator<Item = Parameter> {
     let of_cables = (0..cables).flat_map(|c| [Parameter::Tension(c), Parameter::Stroke(c)]);
-    of_cables.chain([
-        Parameter::FlowSpeed,
-        Parameter::FlowDirection,
-        Parameter::GravityAcceleration,
-        Parameter::GravityDirection,
-        Parameter::TipForce(0),
-        Parameter::TipForce(1),
-        Parameter::TipMoment,
-        Parameter::TipFollower(0),
-        Parameter::TipFollower(1),
-        Parameter::BaseAngle,
-        // Of an arm in space.
-        Parameter::StreamAlong(0),
-        Parameter::StreamAlong(1),
-        Parameter::StreamAlong(2),
-        Parameter::GravityAlong(0),
-        Parameter::GravityAlong(1),
-        Parameter::GravityAlong(2),
-        Parameter::TipForce(2),
-        Parameter::TipMomentAbout(0),
-        Parameter::TipMomentAbout(1),
-        Parameter::TipFollower(2),
-        Parameter::BaseAlong(0),
-        Parameter::BaseAlong(1),
-        Parameter::BaseAlong(2),
-        Parameter::SectionAlong(0),
-        Parameter::SectionAlong(1),
-        Parameter::SectionAlong(2),
-    ])
+    of_cables.chain(PLAIN.into_iter().chain(IN_SPACE).filter(|parameter| parameter.may_be_led()))
 }
 
 /// What changes from one arm to another of the same kind.

@@ -274,6 +274,30 @@ pub(crate) const PLAIN: [Parameter; 21] = [
     Parameter::DragTangential,
 ];
 
+impl Parameter {
+    /// Whether it may change while an arm moves, or is led along its loads: loads, and how the base stands.
+    pub(crate) const fn may_be_led(self) -> bool {
+        matches!(
+            self,
+            Self::Tension(_)
+                | Self::Stroke(_)
+                | Self::FlowSpeed
+                | Self::FlowDirection
+                | Self::GravityAcceleration
+                | Self::GravityDirection
+                | Self::StreamAlong(_)
+                | Self::GravityAlong(_)
+                | Self::TipForce(_)
+                | Self::TipMoment
+                | Self::TipMomentAbout(_)
+                | Self::TipFollower(_)
+                | Self::BaseAngle
+                | Self::BaseAlong(_)
+                | Self::SectionAlong(_)
+        )
+    }
+}
+
 /// The keys of the place of the base, along e1, e2 and e3.
 pub const BASE_PLACE: [&str; 3] = ["arm.base.x", "arm.base.y", "arm.base.z"];
 

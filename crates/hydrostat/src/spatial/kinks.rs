@@ -12,7 +12,7 @@ use super::engine::Engine;
 use super::equations::M;
 use super::loads::Tangent;
 use super::rotation::{Vector, dot};
-use crate::statics::engine::at_jumps;
+use crate::statics::engine::{at_jumps, end_beside, zero_beside};
 
 /// How close (over L) nodes are kept to the kinks of the load at a tolerance: closer than in the plane, so that what
 /// the estimate does not see is less.
@@ -132,29 +132,14 @@ impl Engine {
     /// The place of a change of sign of U_t, given where the polynomial through its values `own` at the stages of
     /// element `i` has it: near a node, that polynomial is moved to U_t there, as in the plane.
     fn sharpened(&self, place: f64, i: usize, own: &[f64; M]) -> f64 {
-        const NEAR_NODE: f64 = 0.3;
-        let (mesh, gauss) = (&self.solution.mesh, &self.system.gauss);
-        let (start, h) = (mesh.nodes()[i], mesh.step(i));
-        let end = if place - start > 0.5 * h { 1.0 } else { 0.0 };
-        let node = if end == 1.0 { i + 1 } else { i };
-        if ((place - start) / h - end).abs() > NEAR_NODE || node == 0 || node == mesh.elements() {
-            return place;
-        }
+        let mesh = &self.solution.mesh;
+        let Some(end) = end_beside(mesh, i, place) else { return place };
         let Ok(section) = self.section_in(i, end) else { return place };
-        let water = &self.equations.water;
-        let speed = dot(&water.stream, &water.stream).sqrt();
-        let at_node = dot(&section.directors.to_body(&water.stream), &Tangent::of(&section.strain).t) / speed;
-        let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
-        let off = at_node - weigh(&gauss.cardinals(end));
-        let mut x = end;
-        for _ in 0..4 {
-            let moved = (weigh(&gauss.cardinals(x)) + off) / weigh(&gauss.slopes(x));
-            x -= moved;
-            if moved.abs() * h < 1e-12 {
-                break;
-            }
-        }
-        if (x - end).abs() < NEAR_NODE { start + h * x } else { place }
+        let stream = &self.equations.water.stream;
+        let speed = dot(stream, stream).sqrt();
+        let at_node = dot(&section.directors.to_body(stream), &Tangent::of(&section.strain).t) / speed;
+        let x = zero_beside(&self.system.gauss, own, (end, at_node), mesh.step(i));
+        x.map_or(place, |x| mesh.nodes()[i] + mesh.step(i) * x)
     }
 
     /// Moves nodes onto the kinks at the present solution, where no pinned node is within `resolution`; whether any

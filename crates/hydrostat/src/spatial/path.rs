@@ -13,7 +13,7 @@ use super::tip::SpatialTip;
 use crate::numerics::rounds::{correct, linearise};
 use crate::statics::engine::{Trouble, roughly};
 use crate::statics::limit::limit_at;
-use crate::statics::path::{AWAY, BESIDE, apart, has_not_begun};
+use crate::statics::path::follow_tensions;
 use crate::statics::shape::Pose as _;
 use crate::statics::snap::{self, SnapBounds};
 use crate::statics::verdict::{Phase, Verdict, VerdictKind};
@@ -156,42 +156,13 @@ fn follow_phases(
             engine.equations.set_phase(phase, 1.0);
             continue;
         }
-        let slack = (engine.state(), engine.tip);
-        let outcome = Ramp { engine, phase, scale: 1.0, trouble: None, travelled, bounds }.follow(start);
-        match outcome {
-            Err(verdict) if phase == Phase::Tension && has_not_begun(&verdict) => {
-                follow_from_beside(engine, &slack, verdict, bounds, travelled)?;
-            }
-            outcome => outcome?,
-        }
+        let mut ramp = |engine: &mut Engine, from: Option<f64>| {
+            let mut ramp = Ramp { engine, phase, scale: 1.0, trouble: None, travelled: &mut *travelled, bounds };
+            ramp.follow(from.unwrap_or(start))
+        };
+        if phase == Phase::Tension { follow_tensions(engine, ramp) } else { ramp(engine, None) }?;
     }
     Ok(())
-}
-
-/// Follows the tensions from a small fraction of them, given the slack arm with the place of its tip, and the verdict
-/// of a path that could not leave it; as in the plane.
-fn follow_from_beside(
-    engine: &mut Engine,
-    (slack, place): &(State, Vector<f64>),
-    verdict: Verdict,
-    bounds: SnapBounds,
-    travelled: &mut Travelled,
-) -> Result<(), Verdict> {
-    let phase = Phase::Tension;
-    let stuck = engine.state();
-    for from in AWAY {
-        engine.restore(slack);
-        engine.equations.set_phase(phase, from);
-        if roughly(engine.iterate(1e-6, 14, None)).is_err() || apart(engine.tip, *place) > BESIDE {
-            continue;
-        }
-        let ahead = Ramp { engine, phase, scale: 1.0, trouble: None, travelled, bounds }.follow(from);
-        if ahead.as_ref().err().is_none_or(|verdict| verdict.load_fraction > 2.0 * from) {
-            return ahead;
-        }
-    }
-    engine.restore(&stuck);
-    Err(verdict)
 }
 
 /// A verdict at `s`, m.

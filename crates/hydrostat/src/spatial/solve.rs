@@ -4,7 +4,7 @@ use super::configuration::SpatialConfiguration;
 use super::engine::{Engine, State};
 use super::equations::Guess;
 use super::path::{SpatialSnap, Stopped, Travelled, follow, follow_on, verdict};
-use super::rotation::dot;
+use crate::numerics::distance;
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::engine::{Trouble, WORK};
 use crate::statics::path::{LOOSE, PathSummary, StepControl, Stopped as RangeStopped, follow_range};
@@ -340,9 +340,4 @@ impl Engine {
         }
         out
     }
-}
-
-fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    let d = [0, 1, 2].map(|k| a[k] - b[k]);
-    dot(&d, &d).sqrt()
 }

@@ -1,6 +1,7 @@
 //! Continuation: along the loads, over a parameter, round the angle of the base; followed by arclength so that no fold
 //! is stepped over unseen.
 
+mod beside;
 mod circle;
 mod contact;
 mod events;
@@ -17,11 +18,10 @@ mod trace;
 pub(crate) mod traced;
 mod turns;
 
+pub(crate) use beside::follow_tensions;
 pub use circle::{Equilibria, Equilibrium};
 pub(crate) use limits::name_limit;
-pub(crate) use load_stepping::{
-    AWAY, BESIDE, Stopped, apart, follow, follow_on, follow_range, follow_strokes, has_not_begun,
-};
+pub(crate) use load_stepping::{Stopped, follow, follow_on, follow_range, follow_strokes};
 pub(crate) use points::has_a_path;
 pub use points::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub(crate) use step_control::{LOOSE, PathSummary, StepControl};

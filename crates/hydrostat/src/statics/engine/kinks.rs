@@ -1,5 +1,7 @@
 //! Kinks of the load, and nodes that follow them.
 
+use hydrostat_bvp::{Gauss, Mesh};
+
 use super::discrete::Engine;
 use crate::statics::dimensions::M;
 use crate::statics::friction::merged;
@@ -21,6 +23,32 @@ pub(crate) fn at_jumps(tolerance: f64) -> f64 {
 /// Kinks that nodes are placed on. An arm with more winds through the stream so often that no mesh of any use resolves
 /// it, and a node for each would take gigabytes: the estimate then says what that costs.
 const MOST: usize = 500;
+
+/// How near to a node (over the element) what is there moves the place of a kink.
+const NEAR_NODE: f64 = 0.3;
+
+/// The end (0 or 1) of element `i` that `place` (over L) is beside, if it is an inner node of the mesh.
+pub(crate) fn end_beside(mesh: &Mesh, i: usize, place: f64) -> Option<f64> {
+    let x = (place - mesh.nodes()[i]) / mesh.step(i);
+    let (end, is_outer) = if x > 0.5 { (1.0, i + 1 == mesh.elements()) } else { (0.0, i == 0) };
+    ((x - end).abs() <= NEAR_NODE && !is_outer).then_some(end)
+}
+
+/// Where, in an element of length `step` (over L), the polynomial through its values `own` at the stages changes its
+/// sign beside an end, moved to the value that it has at that; `None` where that is not near.
+pub(crate) fn zero_beside(gauss: &Gauss<M>, own: &[f64; M], (end, at_end): (f64, f64), step: f64) -> Option<f64> {
+    let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
+    let off = at_end - weigh(&gauss.cardinals(end));
+    let mut x = end;
+    for _ in 0..4 {
+        let moved = (weigh(&gauss.cardinals(x)) + off) / weigh(&gauss.slopes(x));
+        x -= moved;
+        if moved.abs() * step < 1e-12 {
+            break;
+        }
+    }
+    ((x - end).abs() < NEAR_NODE).then_some(x)
+}
 
 impl Engine {
     /// Places inside (0, 1) where the load of the stream has a kink: where a switch changes sign.
@@ -112,27 +140,13 @@ impl Engine {
     /// polynomial is moved to what the switch is there, because nodes are as good as the tip and the ends of
     /// polynomials are not. A kink that a node misses is invisible to the estimate.
     fn sharpened(&self, place: f64, i: usize, switch: usize) -> f64 {
-        const NEAR_NODE: f64 = 0.3;
-        let (mesh, gauss) = (&self.solution.mesh, &self.system.gauss);
-        let (start, h) = (mesh.nodes()[i], mesh.step(i));
-        let at_end = place - start > 0.5 * h;
-        let (node, end) = if at_end { (i + 1, 1.0) } else { (i, 0.0) };
-        if ((place - start) / h - end).abs() > NEAR_NODE || node == 0 || node == mesh.elements() {
-            return place;
-        }
-        let Ok(at_node) = self.beside_node(node, at_end) else { return place };
+        let mesh = &self.solution.mesh;
+        let Some(end) = end_beside(mesh, i, place) else { return place };
+        let at_end = end == 1.0;
+        let Ok(at_node) = self.beside_node(if at_end { i + 1 } else { i }, at_end) else { return place };
         let own: [f64; M] = std::array::from_fn(|j| self.switch(i, j, switch));
-        let weigh = |c: &[f64; M]| -> f64 { (0..M).map(|j| c[j] * own[j]).sum() };
-        let off = at_node.switches[switch] - weigh(&gauss.cardinals(end));
-        let mut x = end;
-        for _ in 0..4 {
-            let moved = (weigh(&gauss.cardinals(x)) + off) / weigh(&gauss.slopes(x));
-            x -= moved;
-            if moved.abs() * h < 1e-12 {
-                break;
-            }
-        }
-        if (x - end).abs() < NEAR_NODE { start + h * x } else { place }
+        let x = zero_beside(&self.system.gauss, &own, (end, at_node.switches[switch]), mesh.step(i));
+        x.map_or(place, |x| mesh.nodes()[i] + mesh.step(i) * x)
     }
 
     /// Moves nodes onto `kinks` that no pinned node is within `tolerance` of; whether any moved.

@@ -1,6 +1,7 @@
 //! The path that defines the answer: from the unloaded arm, loads first, then tensions (section 7 of
 //! `docs/model.md`).
 
+use super::beside::follow_tensions;
 use super::contact::Contact;
 use super::loaded::Loaded;
 use super::step_control::{LOOSE, MEET, PathSummary, START, StepControl};
@@ -42,28 +43,6 @@ impl<E: Loaded> From<Verdict> for Stopped<E> {
     fn from(verdict: Verdict) -> Self {
         Self { verdict, snaps: Vec::new(), after_snap: None, at_full_loads: None }
     }
-}
-
-/// Fractions of the tensions at which a path begins that cannot leave a slack arm: where that lies in the stream, the
-/// signs of tiny angles decide which way the load goes, and rounding decides these.
-pub(crate) const AWAY: [f64; 7] = [1e-9, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
-
-/// How far (over L) the tip may be from its place on the slack arm there: as far as snaps go that are followed.
-pub(crate) const BESIDE: f64 = 0.01;
-
-/// Whether a path ends where it began, without a limit that has a name, or turns back before anything pulls.
-pub(crate) fn has_not_begun(verdict: &Verdict) -> bool {
-    let ends = match verdict.kind {
-        VerdictKind::NotFound => verdict.load_fraction < 1e-5,
-        VerdictKind::LimitPoint => verdict.load_fraction == 0.0,
-        _ => false,
-    };
-    ends && verdict.spent.is_none()
-}
-
-/// The distance between two places.
-pub(crate) fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
 /// A snap that goes too far, after which the path is followed for what lies beyond.
@@ -195,26 +174,10 @@ impl<E: Loaded> Way<E> {
 
     /// One phase of the path.
     fn along(&mut self, engine: &mut E, phase: Phase, control: StepControl) -> Result<(), Verdict> {
-        let (slack, place) = (engine.state(), engine.tip_place());
-        let outcome = self.along_from(engine, phase, None, control);
-        let Err(verdict) = &outcome else { return outcome };
-        if phase != Phase::Tension || engine.is_in_a_hurry() || !has_not_begun(verdict) {
-            return outcome;
+        if phase != Phase::Tension || engine.is_in_a_hurry() {
+            return self.along_from(engine, phase, None, control);
         }
-        let stuck = engine.state();
-        for from in AWAY {
-            engine.restore(&slack);
-            engine.set(Along::Phase(phase), from);
-            if roughly(engine.newton(1e-6, 12)).is_err() || apart(engine.tip_place(), place) > BESIDE {
-                continue;
-            }
-            let ahead = self.along_from(engine, phase, Some(from), control);
-            if ahead.as_ref().err().is_none_or(|verdict| verdict.load_fraction > 2.0 * from) {
-                return ahead;
-            }
-        }
-        engine.restore(&stuck);
-        outcome
+        follow_tensions(engine, |engine, from| self.along_from(engine, phase, from, control))
     }
 
     /// The rest of a phase, from the engine's equilibrium at a fraction of it where there is one.

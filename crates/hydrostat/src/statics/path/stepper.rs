@@ -31,8 +31,8 @@ pub(super) struct Point<E: Traced> {
     pub(super) tensions: Vec<f64>,
     /// How far each commanded cable is from what it cannot pass: the tension of a taut one, the slack of a slack one.
     pub(super) margins: Vec<f64>,
-    /// The fraction's part of the unit tangent, positive where the load rises along the path: `rise`
-    /// times `response` is the rest.
+    /// The fraction's part of the unit tangent, positive where the load rises along the path:
+    /// `dlambda_ds` times `response` is the rest.
     pub(super) dlambda_ds: f64,
     /// Whether the determinant says which way is on: not where rounding alone can turn its sign.
     pub(super) oriented: bool,
