@@ -14,6 +14,8 @@ from hydrostat import _native, _units
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from hydrostat.arm import Arm
+
 T = TypeVar("T")
 K = TypeVar("K")
 V = TypeVar("V")
@@ -197,10 +199,11 @@ def toml(name: str, value: object) -> str:
     raise ValueError(f"{name}: expected a number, a string, a list or a mapping, found {type(value).__name__}")
 
 
-def of_cables(value: Any, cables: tuple[str, ...]) -> Any:
+def of_cables(value: Any, arm: Arm) -> Any:
     """A table or row of pandas whose labels are the cables' names, in the order of the cables; anything else as it is."""
     if isinstance(value, (np.ndarray, list, tuple)) or not hasattr(value, "to_numpy") or not hasattr(value, "loc"):
         return value
+    cables = arm.cables
     labels = getattr(value, "columns", None) if getattr(value, "ndim", 0) == 2 else getattr(value, "index", None)
     if labels is None or list(labels) == list(cables) or sorted(map(str, labels)) != sorted(cables):
         return value

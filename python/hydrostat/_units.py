@@ -19,6 +19,8 @@ from hydrostat import _native
 #: A key of the arm file for each unit that arguments have.
 TENSION, STROKE, SPEED, TIME, ANGLE = "cable[0].tension", "cable[0].stroke", "flow.speed", "dynamics.relaxation_time", "flow.direction"
 
+#: Types that carry no unit: lists of them are the rule, and are seen at once.
+_BARE = {int, float}
 _NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 #: Spellings of pint and of the CF conventions, word by word.
 _WORDS = {
@@ -45,6 +47,8 @@ def plain(name: str, value: Any, key: str, arm: _native.Arm | None = None) -> An
     `arm` has that key; without it the key is one of those above.
     """
     if value is None or isinstance(value, (int, float)) or type(value) is np.ndarray and value.dtype.kind in "iufbc":
+        return value
+    if type(value) in (list, tuple) and _BARE.issuperset(map(type, value)):
         return value
     if isinstance(value, (str, np.str_)):
         return number(name, str(value), key, arm)

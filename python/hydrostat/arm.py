@@ -317,7 +317,7 @@ class Arm:
         ValueError
             An argument is invalid; the message names it.
         """
-        pulled = None if tensions is None else _inputs.numbers("tensions", _inputs.of_cables(tensions, self.cables), 1, key=_units.TENSION)
+        pulled = None if tensions is None else _inputs.numbers("tensions", _inputs.of_cables(tensions, self), 1, key=_units.TENSION)
         speed = None if flow_speed is None else _inputs.number("flow_speed", flow_speed, negative=False, key=_units.SPEED)
         reeled = None if strokes is None else _strokes(strokes)
         within = _inputs.number("tol", tol)

@@ -523,7 +523,7 @@ def _rows_of(tensions: Any, others: Iterable[Any]) -> int:
 
 def _without_units(arm: Arm, tensions: Any, flow_speed: Any, vary: Any) -> tuple[Any, Any, dict[str, Any]]:
     """Inputs as numbers in the units of bare ones; texts of `vary` as a sweep takes them."""
-    pulled = _units.plain("tensions", _inputs.of_cables(tensions, arm.cables), _units.TENSION)
+    pulled = _units.plain("tensions", _inputs.of_cables(tensions, arm), _units.TENSION)
     varied = {}
     for key, values in _inputs.mapping("vary", vary or {}, '{"flow.direction": [0, 90]}').items():
         name = f"vary[{key!r}]"
