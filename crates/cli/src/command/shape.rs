@@ -50,6 +50,27 @@ pub(super) trait Shape: Sized {
     fn shapes(path: &Path<Self>, over: &Abscissa, title: &str, page: &Page) -> Scene;
 }
 
+/// What both kinds of shapes are asked for alike.
+macro_rules! alike {
+    () => {
+        fn cables(&self) -> &[CableState] {
+            &self.cables
+        }
+
+        fn with_landings<'a>(document: PathDocument<'a>, landings: &[Landing<Self>]) -> PathDocument<'a> {
+            document.with_landings(landings)
+        }
+
+        fn arm(&self) -> &Arm {
+            &self.arm
+        }
+
+        fn let_go(&self, arm: &Arm, tol: f64) -> Result<Rest<Self>, Restless> {
+            self.let_go(arm, tol)
+        }
+    };
+}
+
 impl Shape for Configuration {
     type Error = SolveError;
     type Place = Station;
@@ -72,9 +93,7 @@ impl Shape for Configuration {
         reach_csv(cables, found)
     }
 
-    fn cables(&self) -> &[CableState] {
-        &self.cables
-    }
+    alike!();
 
     fn path(
         arm: &Arm,
@@ -92,18 +111,6 @@ impl Shape for Configuration {
 
     fn csv(path: &Path, varied: &Varied, landings: Option<&[Landing]>) -> String {
         landings.map_or_else(|| path_csv(path, varied), |landings| path_csv_with_landings(path, varied, landings))
-    }
-
-    fn with_landings<'a>(document: PathDocument<'a>, landings: &[Landing<Self>]) -> PathDocument<'a> {
-        document.with_landings(landings)
-    }
-
-    fn arm(&self) -> &Arm {
-        &self.arm
-    }
-
-    fn let_go(&self, arm: &Arm, tol: f64) -> Result<Rest<Self>, Restless> {
-        self.let_go(arm, tol)
     }
 
     fn tip_words(&self) -> String {
@@ -142,9 +149,7 @@ impl Shape for SpatialConfiguration {
         spatial_reach_csv(cables, found)
     }
 
-    fn cables(&self) -> &[CableState] {
-        &self.cables
-    }
+    alike!();
 
     fn path(
         arm: &Arm,
@@ -163,18 +168,6 @@ impl Shape for SpatialConfiguration {
     fn csv(path: &Path<Self>, varied: &Varied, landings: Option<&[Landing<Self>]>) -> String {
         let with = |landings| spatial_path_csv_with_landings(path, varied, landings);
         landings.map_or_else(|| spatial_path_csv(path, varied), with)
-    }
-
-    fn with_landings<'a>(document: PathDocument<'a>, landings: &[Landing<Self>]) -> PathDocument<'a> {
-        document.with_landings(landings)
-    }
-
-    fn arm(&self) -> &Arm {
-        &self.arm
-    }
-
-    fn let_go(&self, arm: &Arm, tol: f64) -> Result<Rest<Self>, Restless> {
-        self.let_go(arm, tol)
     }
 
     fn tip_words(&self) -> String {
