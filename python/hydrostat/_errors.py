@@ -228,8 +228,8 @@ def no_equilibrium(
     advice: str,
     last_good: _native.Solution | _native.SpatialSolution | None,
     snaps: list[Any],
-    after_snap: _native.Solution | None,
-    at_full_loads: _native.Solution | None,
+    after_snap: _native.Solution | _native.SpatialSolution | None,
+    at_full_loads: _native.Solution | _native.SpatialSolution | None,
 ) -> NoEquilibriumError:
     """The exception of a verdict; called by the extension module."""
     from hydrostat.solution import solution_of, snaps_of

@@ -49,7 +49,8 @@ pub(crate) fn arm_in_space(args: &ArmArgs) -> anyhow::Result<Arm> {
 pub(crate) fn arm_of(file: &ArmFile, command: &'static str) -> anyhow::Result<Arm> {
     let arm = arm_anywhere(file)?;
     if arm.space.is_some() {
-        return Err(SolveError::Arm(ArmError::OnlyInPlane { what: command }).into());
+        let planar: SolveError = ArmError::OnlyInPlane { what: command }.into();
+        return Err(planar.into());
     }
     Ok(arm)
 }

@@ -4,7 +4,7 @@
 //! finite is `null` in JSON and an empty field in CSV.
 
 use hydrostat::{
-    AfterSnap, CableState, Configuration, NoEquilibrium, Snap, SnapMotion, Stability, Stations, Statistics, Tip,
+    AfterSnap, CableState, Configuration, NoEquilibrium, Pose, Snap, SnapMotion, Stability, Stations, Statistics, Tip,
     Verdict, Warning, Wrench,
 };
 use serde::Serialize;
@@ -162,11 +162,11 @@ pub(crate) struct StatisticsOut {
 
 /// A snap, with the phase and load fraction at which the arm leaves its path.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct SnapOut {
+pub(crate) struct SnapOut<T = TipOut> {
     phase: &'static str,
     load_fraction: f64,
-    before: TipOut,
-    after: TipOut,
+    before: T,
+    after: T,
     /// m
     distance: f64,
     /// rad
@@ -184,16 +184,16 @@ struct SnapMotionOut {
     lands_elsewhere: Option<bool>,
 }
 
-impl SnapOut {
-    fn of_motion(motion: &SnapMotion, length: f64) -> Self {
+impl<T> SnapOut<T> {
+    pub(crate) fn of_motion<P: Pose + Into<T>>(motion: &SnapMotion<P>, length: f64) -> Self {
         let lands_elsewhere = motion.on_curve.map(|_| motion.lands_elsewhere(length));
         let followed = SnapMotionOut { duration: motion.duration, lands_elsewhere };
         Self { motion: Some(followed), ..Self::from(&motion.snap) }
     }
 }
 
-impl From<&Snap> for SnapOut {
-    fn from(snap: &Snap) -> Self {
+impl<P: Pose + Into<T>, T> From<&Snap<P>> for SnapOut<T> {
+    fn from(snap: &Snap<P>) -> Self {
         Self {
             phase: snap.phase.name(),
             load_fraction: snap.load_fraction,

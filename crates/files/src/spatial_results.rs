@@ -1,13 +1,13 @@
 //! Results of arms in space as JSON and CSV: the documents of arms in the plane, with three components and directors.
 
 use hydrostat::{
-    AfterSnap, NoSpatialEquilibrium, SpatialConfiguration, SpatialSnap, SpatialSnapMotion, SpatialStations, SpatialTip,
-    SpatialWrench, Verdict,
+    AfterSnap, NoSpatialEquilibrium, SpatialConfiguration, SpatialSnapMotion, SpatialStations, SpatialTip,
+    SpatialWrench,
 };
 use serde::Serialize;
 
 use crate::csv_text::Rows;
-use crate::results::{CableOut, Note, SCHEMA, StatisticsOut, TOLERANCE_MISSED, VerdictHead, cell, json};
+use crate::results::{CableOut, Note, SCHEMA, SnapOut, StatisticsOut, TOLERANCE_MISSED, VerdictHead, cell, json};
 use crate::written::Inputs;
 
 /// The document of an equilibrium in space.
@@ -18,7 +18,7 @@ pub struct SpatialSolutionDocument<'a> {
     converged: bool,
     stable: Option<bool>,
     warnings: &'a [Note],
-    snaps: Vec<SnapOut>,
+    snaps: Vec<SnapOut<TipOut>>,
     tip: TipOut,
     stations: StationsOut<'a>,
     cables: Vec<CableOut<'a>>,
@@ -37,7 +37,7 @@ pub struct SpatialFailureDocument<'a> {
     schema: u32,
     version: &'static str,
     converged: bool,
-    verdict: VerdictOut,
+    verdict: VerdictOut<'a>,
     last_good: Option<SpatialSolutionDocument<'a>>,
 }
 
@@ -108,25 +108,12 @@ struct WrenchOut {
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct SnapOut {
-    phase: &'static str,
-    load_fraction: f64,
-    before: TipOut,
-    after: TipOut,
-    /// m
-    distance: f64,
-    /// rad
-    angle: f64,
-    /// s, only where the motion after the snap was followed.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    duration: Option<f64>,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct VerdictOut {
+struct VerdictOut<'a> {
     #[serde(flatten)]
     head: VerdictHead,
-    snaps: Vec<SnapOut>,
+    snaps: Vec<SnapOut<TipOut>>,
+    after_snap: Option<SpatialSolutionDocument<'a>>,
+    at_full_loads: Option<SpatialSolutionDocument<'a>>,
 }
 
 impl From<SpatialTip> for TipOut {
@@ -141,26 +128,12 @@ impl From<SpatialWrench> for WrenchOut {
     }
 }
 
-impl From<&SpatialSnap> for SnapOut {
-    fn from(snap: &SpatialSnap) -> Self {
-        Self {
-            phase: snap.phase.name(),
-            load_fraction: snap.load_fraction,
-            before: snap.before.into(),
-            after: snap.after.into(),
-            distance: snap.distance(),
-            angle: snap.angle(),
-            duration: None,
-        }
-    }
-}
-
 impl Note {
     /// The notes on a shape in space after snaps whose motions were followed.
-    pub fn after_snap_in_space(found: &AfterSnap<SpatialConfiguration, SpatialSnapMotion>, tol: f64) -> Vec<Self> {
+    pub fn after_snap_in_space(found: &AfterSnap<SpatialConfiguration, SpatialTip>, tol: f64) -> Vec<Self> {
         let mut notes = Self::all_in_space(&found.configuration, tol);
         for (note, motion) in notes.iter_mut().filter(|note| note.kind == "snap").zip(&found.snaps) {
-            note.message = motion.message();
+            note.message = motion.message(found.configuration.arm.length);
         }
         notes
     }
@@ -226,10 +199,8 @@ impl<'a> SpatialSolutionDocument<'a> {
     }
 
     /// With what is known of the motions after its snaps.
-    pub fn with_motions(mut self, motions: &[SpatialSnapMotion]) -> Self {
-        let own =
-            |motion: &SpatialSnapMotion| SnapOut { duration: Some(motion.duration), ..SnapOut::from(&motion.snap) };
-        self.snaps = motions.iter().map(own).collect();
+    pub fn with_motions(mut self, motions: &[SpatialSnapMotion], length: f64) -> Self {
+        self.snaps = motions.iter().map(|motion| SnapOut::of_motion(motion, length)).collect();
         self
     }
 
@@ -242,12 +213,18 @@ impl<'a> SpatialSolutionDocument<'a> {
 impl<'a> SpatialFailureDocument<'a> {
     /// Of a verdict, with the notes on its last good configuration (not used if there is none).
     pub fn new(failure: &'a NoSpatialEquilibrium, notes: &'a [Note]) -> Self {
-        let verdict: &Verdict = &failure.verdict;
+        let shape = |c: &'a SpatialConfiguration| SpatialSolutionDocument::new(c, &[]);
+        let verdict = VerdictOut {
+            head: (&failure.verdict).into(),
+            snaps: failure.snaps.iter().map(SnapOut::from).collect(),
+            after_snap: failure.after_snap.as_ref().map(shape),
+            at_full_loads: failure.at_full_loads.as_ref().map(shape),
+        };
         Self {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             converged: false,
-            verdict: VerdictOut { head: verdict.into(), snaps: failure.snaps.iter().map(SnapOut::from).collect() },
+            verdict,
             last_good: failure.last_good.as_ref().map(|c| SpatialSolutionDocument::new(c, notes)),
         }
     }

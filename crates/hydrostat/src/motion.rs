@@ -74,12 +74,10 @@ mod tableau;
 mod warning;
 mod works;
 
-pub use self::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
+pub use self::after_snap::{AfterSnap, AfterSnapError, SnapMotion, SpatialSnapMotion};
 pub use self::error::{MotionError, MotionVerdict, MotionVerdictKind};
 pub use self::event::{MotionEvent, MotionEventKind};
-pub use self::in_space::{
-    SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation, SpatialSnapMotion,
-};
+pub use self::in_space::{SpatialInstant, SpatialMotionStation, SpatialQuasiStatic, SpatialSimulation};
 pub use self::inputs::{Course, Inputs};
 pub use self::landing::Rest;
 pub use self::loading::{Loading, LoadingError, LoadingSnap, LoadingStep};

@@ -18,7 +18,6 @@ mod lengths;
 mod loaded;
 pub(crate) mod loads;
 mod mesh;
-pub(crate) mod path;
 mod paths;
 mod place;
 mod places;
@@ -38,8 +37,7 @@ mod varied;
 
 pub use self::configuration::{SpatialConfiguration, SpatialStation, SpatialStations, SpatialWrench};
 pub use self::equilibria::SpatialEquilibria;
-pub use self::path::SpatialSnap;
 pub use self::sensitivity::{Ellipsoid, SpatialPoseChange};
 pub(crate) use self::sensitivity::{Quantity, turn_between};
 pub use self::solve::{NoSpatialEquilibrium, SpatialError, SpatialSolver};
-pub use self::tip::SpatialTip;
+pub use self::tip::{SpatialSnap, SpatialTip};

@@ -2,8 +2,8 @@
 //! the verdict's fields.
 
 use hydrostat::{
-    Configuration, MotionError, NoEquilibrium, Options, PathError, ReachError, SensitivityError, SnapBounds,
-    SolveError, SpatialError, Verdict,
+    MotionError, NoEquilibrium, Options, PathError, ReachError, SensitivityError, Snap, SnapBounds, SolveError,
+    SpatialError,
 };
 use hydrostat_files::MeasurementsError;
 use hydrostat_identify::{IdentifyError, Trial};
@@ -20,16 +20,15 @@ pub(crate) use crate::wrong::{file_error, wrong};
 
 /// What a solve ends with.
 pub(crate) fn solve_error(py: Python<'_>, error: SolveError, options: Options) -> PyErr {
-    match error {
-        SolveError::NoEquilibrium(no) => no_equilibrium(py, *no, options),
-        other => wrong(other),
-    }
+    let SolveError::NoEquilibrium(no) = error else { return wrong(error) };
+    let shape = |found, options| Ok(Py::new(py, Solution::new(found, options))?.into_any());
+    no_equilibrium(py, *no, options, shape, snaps)
 }
 
 /// What a path or a search for equilibria ends with.
 pub(crate) fn path_error(py: Python<'_>, error: PathError, options: Options) -> PyErr {
     match error {
-        PathError::Start { source: SolveError::NoEquilibrium(no), .. } => no_equilibrium(py, *no, options),
+        PathError::Start { source: source @ SolveError::NoEquilibrium(_), .. } => solve_error(py, source, options),
         other => wrong(other),
     }
 }
@@ -159,46 +158,29 @@ pub(crate) fn sweep_error(error: SweepError) -> PyErr {
 /// What a solve in space ends with.
 pub(crate) fn spatial_error(py: Python<'_>, error: SpatialError, options: Options) -> PyErr {
     let SpatialError::NoEquilibrium(no) = error else { return wrong(error) };
-    let last_good = no.last_good.map(|configuration| Py::new(py, SpatialSolution::new(configuration, options)));
-    match last_good.transpose() {
-        Ok(shape) => {
-            verdict_error(py, &no.verdict, shape, spatial_solution::snaps(&no.snaps), None::<Py<Solution>>, None)
-        }
-        Err(error) => error,
-    }
-}
-
-fn no_equilibrium(py: Python<'_>, no: NoEquilibrium, options: Options) -> PyErr {
-    let shape = |found: Option<Configuration>, options| -> PyResult<Option<Py<Solution>>> {
-        found.map(|configuration| Py::new(py, Solution::new(configuration, options))).transpose()
-    };
-    // Beyond the snap are shapes that a solve has which follows every one.
-    let followed = Options { snaps: SnapBounds::NONE, ..options };
-    let shapes = || -> PyResult<_> {
-        Ok((shape(no.last_good, options)?, shape(no.after_snap, followed)?, shape(no.at_full_loads, followed)?))
-    };
-    match shapes() {
-        Ok((last_good, after_snap, at_full_loads)) => {
-            verdict_error(py, &no.verdict, last_good, snaps(&no.snaps), after_snap, at_full_loads)
-        }
-        Err(error) => error,
-    }
+    let shape = |found, options| Ok(Py::new(py, SpatialSolution::new(found, options))?.into_any());
+    no_equilibrium(py, *no, options, shape, spatial_solution::snaps)
 }
 
 /// `hydrostat.NoEquilibriumError` with the shapes that are known.
-fn verdict_error<'py, G, S>(
+fn no_equilibrium<'py, C, T, S: IntoPyObject<'py>>(
     py: Python<'py>,
-    verdict: &Verdict,
-    last_good: Option<G>,
-    snaps: S,
-    after_snap: Option<Py<Solution>>,
-    at_full_loads: Option<Py<Solution>>,
-) -> PyErr
-where
-    G: IntoPyObject<'py>,
-    S: IntoPyObject<'py>,
-{
+    no: NoEquilibrium<C, T>,
+    options: Options,
+    solution: impl Fn(C, Options) -> PyResult<Py<PyAny>>,
+    snaps: impl Fn(&[Snap<T>]) -> S,
+) -> PyErr {
     static NO_EQUILIBRIUM: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let NoEquilibrium { verdict, last_good, snaps: all, after_snap, at_full_loads } = no;
+    let shape = |found: Option<C>, options| found.map(|configuration| solution(configuration, options)).transpose();
+    // Beyond the snap are shapes that a solve has which follows every one.
+    let followed = Options { snaps: SnapBounds::NONE, ..options };
+    let shapes =
+        || Ok::<_, PyErr>((shape(last_good, options)?, shape(after_snap, followed)?, shape(at_full_loads, followed)?));
+    let (last_good, after_snap, at_full_loads) = match shapes() {
+        Ok(shapes) => shapes,
+        Err(error) => return error,
+    };
     let fields = (
         verdict.kind.name(),
         verdict.phase.name(),
@@ -208,7 +190,7 @@ where
         verdict.message(),
         verdict.advice(),
         last_good,
-        snaps,
+        snaps(&all),
         after_snap,
         at_full_loads,
     );

@@ -99,7 +99,8 @@ pub(crate) fn solve_many<'py>(
     // Options are looked at whatever the rows.
     let start = Tile::new(options, wanted).map_err(wrong)?;
     if tile == 0 {
-        return Err(wrong(SolveError::Option { option: "tile", value: 0.0, expected: "at least 1" }));
+        let none: SolveError = SolveError::Option { option: "tile", value: 0.0, expected: "at least 1" };
+        return Err(wrong(none));
     }
     let done = AtomicU64::new(0);
     let answers = interruptible(

@@ -22,7 +22,7 @@ type Point = [f64; 3];
 pub(crate) type TipFields = (f64, f64, f64, Point, Point, Point, f64);
 
 /// Phase, load fraction, the tip before and after, distance and angle; where its motion was followed, the duration, and
-/// whether the motion lands elsewhere than the curve leads on to, which is not known in space.
+/// whether the motion lands elsewhere than the curve leads on to.
 pub(crate) type SnapFields = (&'static str, f64, TipFields, TipFields, f64, f64, Option<f64>, Option<bool>);
 
 /// A configuration in space and the options that it was asked for with.
@@ -62,12 +62,12 @@ pub(crate) fn tip(tip: SpatialTip) -> TipFields {
 
 /// What Python's `Snap` is made of.
 pub(crate) fn snaps(all: &[SpatialSnap]) -> Vec<SnapFields> {
-    all.iter().map(|snap| snap_fields(snap, None)).collect()
+    all.iter().map(|snap| snap_fields(snap, None, None)).collect()
 }
 
-fn snap_fields(s: &SpatialSnap, duration: Option<f64>) -> SnapFields {
+fn snap_fields(s: &SpatialSnap, duration: Option<f64>, elsewhere: Option<bool>) -> SnapFields {
     let (before, after) = (tip(s.before), tip(s.after));
-    (s.phase.name(), s.load_fraction, before, after, s.distance(), s.angle(), duration, None)
+    (s.phase.name(), s.load_fraction, before, after, s.distance(), s.angle(), duration, elsewhere)
 }
 
 fn wrench(wrench: SpatialWrench) -> (Point, Point) {
@@ -80,7 +80,7 @@ impl SpatialSolution {
     }
 
     /// A shape after snaps whose motions were followed.
-    pub(crate) fn after_snap(found: AfterSnap<SpatialConfiguration, SpatialSnapMotion>, options: Options) -> Self {
+    pub(crate) fn after_snap(found: AfterSnap<SpatialConfiguration, SpatialTip>, options: Options) -> Self {
         Self { configuration: found.configuration, options, motions: found.snaps }
     }
 }
@@ -116,7 +116,12 @@ impl SpatialSolution {
         if self.motions.is_empty() {
             return snaps(&self.configuration.snaps);
         }
-        self.motions.iter().map(|motion| snap_fields(&motion.snap, Some(motion.duration))).collect()
+        let length = self.configuration.arm.length;
+        let fields = |motion: &SpatialSnapMotion| {
+            let elsewhere = motion.on_curve.map(|_| motion.lands_elsewhere(length));
+            snap_fields(&motion.snap, Some(motion.duration), elsewhere)
+        };
+        self.motions.iter().map(fields).collect()
     }
 
     /// The arm with the loads that are balanced.
@@ -243,7 +248,10 @@ impl SpatialSolution {
     fn to_json(&self) -> String {
         let notes = Note::all_in_space(&self.configuration, self.options.tol);
         let document = SpatialSolutionDocument::new(&self.configuration, &notes);
-        if self.motions.is_empty() { document.to_json() } else { document.with_motions(&self.motions).to_json() }
+        if self.motions.is_empty() {
+            return document.to_json();
+        }
+        document.with_motions(&self.motions, self.configuration.arm.length).to_json()
     }
 
     /// The stations as CSV.

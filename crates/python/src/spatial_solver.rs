@@ -1,8 +1,7 @@
 //! One arm in space, again and again as its loads change.
 
 use hydrostat::{
-    Arm as Given, Options, SensitivityError, SensitivityOptions, SolveError, SpatialConfiguration, SpatialError,
-    SpatialPoseChange,
+    Arm as Given, Options, SensitivityError, SensitivityOptions, SpatialConfiguration, SpatialError, SpatialPoseChange,
 };
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -56,7 +55,7 @@ impl SpatialSolver {
         let mut arm = self.solver.arm().clone();
         let Some(own) = arm.cables.get_mut(cable) else {
             let expected = "the index of one of the arm's cables";
-            return Err(wrong(SolveError::Option { option: "cable", value: cable as f64, expected }));
+            return Err(wrong(SpatialError::Option { option: "cable", value: cable as f64, expected }));
         };
         own.stroke = Some(stroke);
         *self = Self::of(py, &arm, self.options)?;

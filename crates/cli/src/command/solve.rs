@@ -1,7 +1,8 @@
 //! `hydrostat solve`: one arm.
 
 use hydrostat::{
-    AfterSnapError, Arm, Configuration, NoEquilibrium, Options, SnapMotion, SolveError, Solver, Stability, VerdictKind,
+    AfterSnapError, Arm, Configuration, NoEquilibrium, Options, Pose, SnapMotion, SolveError, Solver, Stability,
+    VerdictKind,
 };
 use hydrostat_figures::{arm_figure, last_good_note};
 use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, stations_csv};
@@ -56,7 +57,11 @@ fn report_error(args: &SolveArgs, arm: &Arm, error: SolveError) -> anyhow::Resul
         SolveError::NoEquilibrium(failure) => {
             let others = others(arm, args.tol, failure.verdict.kind);
             report_failure(args, *failure.clone(), others)?;
-            if let Some(message) = beyond(&failure) {
+            let place = |shape: &Configuration| {
+                let tip = shape.tip();
+                format!("x {:.4} mm, y {:.4} mm", 1e3 * tip.x, 1e3 * tip.y)
+            };
+            if let Some(message) = beyond(&failure, place) {
                 say::note(message);
             }
             if let Some(others) = others {
@@ -125,20 +130,6 @@ fn report_failure(args: &SolveArgs, mut failure: NoEquilibrium, others: Option<O
         output::put(args.output.as_deref(), &text)?;
     }
     Ok(())
-}
-
-/// What lies beyond the snap that was refused.
-fn beyond(failure: &NoEquilibrium) -> Option<String> {
-    let (snap, _) = (failure.snaps.last()?, failure.after_snap.as_ref()?);
-    let leads = match &failure.at_full_loads {
-        Some(shape) => {
-            let tip = shape.tip();
-            let place = format!("x {:.4} mm, y {:.4} mm", 1e3 * tip.x, 1e3 * tip.y);
-            format!("the path continues to the full loads, with the tip at {place}; --follow-snaps gives that shape")
-        }
-        None => "the path does not continue to the full loads".to_owned(),
-    };
-    Some(format!("{}; {leads}", snap.message()))
 }
 
 /// The equilibria that the path does not lead to, where it turns back: looked for with no finer tolerance than a count needs.

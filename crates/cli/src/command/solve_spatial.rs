@@ -11,7 +11,7 @@ use hydrostat_figures::{last_good_note, spatial_arm_figure};
 use hydrostat_files::{Note, SpatialFailureDocument, SpatialSolutionDocument, number, spatial_stations_csv};
 
 use super::slip::slip;
-use super::summary::{cable_rows, signed, stability_in_words, work};
+use super::summary::{beyond, cable_rows, signed, stability_in_words, work};
 use super::{Advised, wrong_option};
 use crate::args::{Format, SolveArgs};
 use crate::output;
@@ -55,6 +55,13 @@ fn report_error(args: &SolveArgs, arm: &Arm, error: SpatialError) -> anyhow::Res
     match error {
         SpatialError::NoEquilibrium(failure) => {
             report_failure(args, *failure.clone())?;
+            let place = |shape: &SpatialConfiguration| {
+                let tip = shape.tip();
+                format!("x {:.4} mm, y {:.4} mm, z {:.4} mm", 1e3 * tip.x, 1e3 * tip.y, 1e3 * tip.z)
+            };
+            if let Some(message) = beyond(&failure, place) {
+                say::note(message);
+            }
             let advice = slip(arm, &failure.verdict);
             Err(Advised::with(SpatialError::NoEquilibrium(failure), advice))
         }
@@ -78,7 +85,8 @@ fn report(
         Format::Csv => spatial_stations_csv(&configuration.stations),
         Format::Json => {
             let document = SpatialSolutionDocument::new(&configuration, notes);
-            let document = if motions.is_empty() { document } else { document.with_motions(motions) };
+            let length = configuration.arm.length;
+            let document = if motions.is_empty() { document } else { document.with_motions(motions, length) };
             output::line(document.to_json())
         }
     };

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{CableState, Configuration, Stability, Statistics, Wrench};
+use hydrostat::{CableState, Configuration, NoEquilibrium, Pose, Stability, Statistics, Wrench};
 use hydrostat_files::number;
 
 use super::table::{counted, decimals};
@@ -24,6 +24,19 @@ pub(super) fn stability_in_words(counted: Option<Stability>, known: Option<bool>
         (None, Some(false)) => Some("UNSTABLE".to_owned()),
         (None, _) => None,
     }
+}
+
+/// What lies beyond the snap that was refused.
+pub(super) fn beyond<C, T: Pose>(failure: &NoEquilibrium<C, T>, place: impl Fn(&C) -> String) -> Option<String> {
+    let (snap, _) = (failure.snaps.last()?, failure.after_snap.as_ref()?);
+    let leads = match &failure.at_full_loads {
+        Some(shape) => {
+            let place = place(shape);
+            format!("the path continues to the full loads, with the tip at {place}; --follow-snaps gives that shape")
+        }
+        None => "the path does not continue to the full loads".to_owned(),
+    };
+    Some(format!("{}; {leads}", snap.message()))
 }
 
 pub(super) fn summary(c: &Configuration) -> String {

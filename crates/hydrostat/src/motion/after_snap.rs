@@ -2,28 +2,32 @@
 //! rests, and the path goes on from there.
 
 use super::error::MotionError;
-use super::landing::{Landed, MOST_SNAPS, PAST, Rest, elsewhere, land};
+use super::landing::{Landed, Lands, MOST_SNAPS, PAST, Rest, elsewhere, land};
+use super::ranged::{EVERY_SNAP, ErrorOf, Ranged, ShapeOf, TipOf};
 use super::resting::Restless;
 use crate::rod::arm::Arm;
+use crate::spatial::{SpatialConfiguration, SpatialError, SpatialSolver, SpatialTip};
 use crate::statics::configuration::{Configuration, Tip};
-use crate::statics::snap::{Snap, SnapBounds};
+use crate::statics::path::traced::{Along, Traced as _};
+use crate::statics::shape::Pose;
+use crate::statics::snap::Snap;
 use crate::statics::solve::{Options, Solver};
 use crate::statics::verdict::{NoEquilibrium, Phase, SolveError, VerdictKind};
 
-/// A snap whose motion was followed until the arm rested.
+/// A snap whose motion was followed until the arm rested, in the plane or, with [`SpatialTip`], in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SnapMotion {
+pub struct SnapMotion<T = Tip> {
     /// At which load, from where, and where the arm rests.
-    pub snap: Snap,
+    pub snap: Snap<T>,
     /// How long it takes from rest at the limit point, with the loads 0.1 % of the whole past it, until the arm stays
     /// within 0.002 L of the shape in which it rests, s.
     pub duration: f64,
     /// The tip where the curve of equilibria leads on to at the same loads, which is where
     /// [`crate::Options::snaps`] without bounds lands; `None` where it does not lead on.
-    pub on_curve: Option<Tip>,
+    pub on_curve: Option<T>,
 }
 
-impl SnapMotion {
+impl<T: Pose> SnapMotion<T> {
     /// Whether the motion lands elsewhere than where the curve leads on to, for an arm of this length (m).
     ///
     /// ```
@@ -50,13 +54,16 @@ impl SnapMotion {
     }
 }
 
+/// A snap in space whose motion was followed until the arm rested.
+pub type SpatialSnapMotion = SnapMotion<SpatialTip>;
+
 /// The equilibrium in which an arm rests whose loads grow slowly, after all snaps on its way.
 #[derive(Debug, Clone)]
-pub struct AfterSnap<C = Configuration, S = SnapMotion> {
+pub struct AfterSnap<C = Configuration, T = Tip> {
     /// The shape at the whole loads.
     pub configuration: C,
     /// The snaps on the way, in their order; none where the arm does not snap.
-    pub snaps: Vec<S>,
+    pub snaps: Vec<SnapMotion<T>>,
 }
 
 /// Why there is no shape after a snap.
@@ -126,47 +133,72 @@ impl Arm {
     /// # Errors
     /// [`AfterSnapError`]. Arms that need no motion need nothing to damp it.
     pub fn solve_after_snap(&self, tol: f64) -> Result<AfterSnap, AfterSnapError> {
-        let snaps = SnapBounds { distance: 0.0, angle: 0.0 };
-        let mut solver = Solver::new(self, Options { tol, snaps }).map_err(AfterSnapError::Solve)?;
-        let mut motions: Vec<SnapMotion> = Vec::new();
-        let mut solved = solver.solve();
-        loop {
-            let before = |own: &mut Vec<Snap>| drop(own.splice(0..0, motions.iter().map(|motion| motion.snap)));
-            match solved {
-                Ok(mut configuration) => {
-                    before(&mut configuration.snaps);
-                    return Ok(AfterSnap { configuration, snaps: motions });
-                }
-                Err(SolveError::NoEquilibrium(no)) if snaps_at(&no) && motions.len() < MOST_SNAPS => {
-                    let (motion, past) = follow(&mut solver, &no, tol)?;
-                    motions.push(motion);
-                    solved = solver.solve_on((no.verdict.phase, past));
-                }
-                Err(SolveError::NoEquilibrium(mut no)) => {
-                    before(&mut no.snaps);
-                    return Err(AfterSnapError::Solve(SolveError::NoEquilibrium(no)));
-                }
-                Err(error) => return Err(AfterSnapError::Solve(error)),
+        solve_after_snap::<Solver>(self, tol)
+    }
+
+    /// The equilibrium in space in which this arm rests after its loads have grown slowly from nothing, whatever snaps
+    /// it makes on the way, as [`Arm::solve_after_snap`] has it in the plane. Cables have tensions: commanded strokes
+    /// are refused where the arm snaps.
+    ///
+    /// # Errors
+    /// [`AfterSnapError`]. Arms that need no motion need nothing to damp it.
+    pub fn solve_after_snap_in_space(
+        &self,
+        tol: f64,
+    ) -> Result<AfterSnap<SpatialConfiguration, SpatialTip>, AfterSnapError<SpatialError>> {
+        solve_after_snap::<SpatialSolver>(self, tol)
+    }
+}
+
+/// What a solver finds after snaps.
+pub(super) type AfterSnapOf<S> = AfterSnap<ShapeOf<S>, TipOf<S>>;
+
+/// The equilibrium at the whole loads of `arm`, with the motion from every limit point on the way.
+pub(super) fn solve_after_snap<S: Ranged>(arm: &Arm, tol: f64) -> Result<AfterSnapOf<S>, AfterSnapError<ErrorOf<S>>> {
+    let mut solver = S::new(arm, Options { tol, snaps: EVERY_SNAP }).map_err(AfterSnapError::Solve)?;
+    let mut motions: Vec<SnapMotion<TipOf<S>>> = Vec::new();
+    let mut solved = solver.solve();
+    loop {
+        let before = |own: &mut Vec<Snap<TipOf<S>>>| drop(own.splice(0..0, motions.iter().map(|motion| motion.snap)));
+        match solved {
+            Ok(mut configuration) => {
+                before(S::Engine::snaps_of(&mut configuration));
+                return Ok(AfterSnap { configuration, snaps: motions });
             }
+            Err(SolveError::NoEquilibrium(no)) if snaps_at(&no) && motions.len() < MOST_SNAPS => {
+                let (motion, past) = follow(&mut solver, &no, tol)?;
+                motions.push(motion);
+                solved = solver.solve_on((no.verdict.phase, past));
+            }
+            Err(SolveError::NoEquilibrium(mut no)) => {
+                before(&mut no.snaps);
+                return Err(AfterSnapError::Solve(SolveError::NoEquilibrium(no)));
+            }
+            Err(error) => return Err(AfterSnapError::Solve(error)),
         }
     }
 }
 
 /// Whether a motion begins where the path ended.
-fn snaps_at(no: &NoEquilibrium) -> bool {
+fn snaps_at<C, T>(no: &NoEquilibrium<C, T>) -> bool {
     no.verdict.kind == VerdictKind::LimitPoint && no.last_good.is_some()
 }
 
 /// The motion from the limit point at which the path ended, with the fraction of the loads that it was at. The solver's
 /// engine is left where the arm rests.
-fn follow(solver: &mut Solver, no: &NoEquilibrium, tol: f64) -> Result<(SnapMotion, f64), AfterSnapError> {
+#[allow(clippy::type_complexity, reason = "names of what is there")]
+fn follow<S: Ranged>(
+    solver: &mut S,
+    no: &NoEquilibrium<ShapeOf<S>, TipOf<S>>,
+    tol: f64,
+) -> Result<(SnapMotion<TipOf<S>>, f64), AfterSnapError<ErrorOf<S>>> {
     let (phase, load_fraction) = (no.verdict.phase, no.verdict.load_fraction);
     let past = (load_fraction + PAST).min(1.0);
     let engine = solver.engine_mut();
     let (last_good, after_snap) = (no.last_good.as_ref(), no.after_snap.as_ref());
-    let landed = land(engine, last_good, after_snap, tol, |engine| engine.set_phase(phase, past));
+    let landed = land(engine, last_good, after_snap, tol, |engine| engine.set(Along::Phase(phase), past));
     let Landed { before, rest: Rest { configuration, time }, on_curve } =
         landed.map_err(|restless| AfterSnapError::of(restless, phase, load_fraction))?;
-    let snap = Snap { phase, load_fraction, before, after: configuration.tip() };
+    let snap = Snap { phase, load_fraction, before, after: S::Engine::tip_of(&configuration) };
     Ok((SnapMotion { snap, duration: time, on_curve }, past))
 }

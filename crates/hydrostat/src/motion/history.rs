@@ -303,7 +303,7 @@ fn quintic_second(x: f64) -> [f64; 6] {
 }
 
 /// Weights of value and rate at the start and the end.
-fn cubic(x: f64) -> [f64; 4] {
+pub(super) fn cubic(x: f64) -> [f64; 4] {
     let (x2, x3) = (x * x, x.powi(3));
     [1.0 - 3.0 * x2 + 2.0 * x3, x - 2.0 * x2 + x3, 3.0 * x2 - 2.0 * x3, x3 - x2]
 }

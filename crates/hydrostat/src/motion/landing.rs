@@ -7,6 +7,7 @@ use crate::statics::configuration::Configuration;
 use crate::statics::path::loaded::Loaded;
 use crate::statics::refinement::First;
 use crate::statics::shape::Pose;
+use crate::statics::snap::Snap;
 
 /// The share of the loads by which they are past the limit point while the arm moves.
 pub(super) const PAST: f64 = 1e-3;
@@ -32,6 +33,8 @@ pub(super) trait Lands: Loaded {
     fn take(&mut self, shape: &Self::Shape);
     /// The tip of a configuration.
     fn tip_of(shape: &Self::Shape) -> Self::Tip;
+    /// The snaps on the way to a configuration.
+    fn snaps_of(shape: &mut Self::Shape) -> &mut Vec<Snap<Self::Tip>>;
     /// Refuses arms that cannot move or whose motion never ends.
     fn can_rest(&self) -> Result<(), MotionError>;
     /// Lets the shape go under the loads that the equations have, and leaves the engine at the equilibrium in which the

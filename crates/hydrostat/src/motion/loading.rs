@@ -1,21 +1,19 @@
 //! Quasi-static loading: equilibria along any sequence of loads, each reached from the one before, with the snaps on
 //! the way. An arm that snaps one way at one load snaps back at another: the answer depends on the way.
 
-use super::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
+use super::after_snap::{AfterSnap, AfterSnapError, AfterSnapOf, solve_after_snap};
 use super::error::MotionError;
-use super::in_space::SpatialSnapMotion;
-use super::landing::{Landed, MOST_SNAPS, Rest, elsewhere, land};
-use super::ranged::{Ended, Ranged, lowest, past, ways};
+use super::landing::{Landed, Lands as _, MOST_SNAPS, Rest, elsewhere, land};
+use super::ranged::{ErrorOf, Ranged, ShapeOf, TipOf, lowest, past, ways};
 use super::resting::Restless;
 use crate::rod::arm::{Arm, ArmError};
 use crate::spatial::{SpatialConfiguration, SpatialError, SpatialSolver, SpatialTip};
 use crate::statics::configuration::{Configuration, Tip};
-use crate::statics::path::loaded::Loaded;
-use crate::statics::path::traced::{Along, Traced};
+use crate::statics::path::traced::{Along, Traced as _};
 use crate::statics::phase::percent;
 use crate::statics::shape::Pose;
 use crate::statics::solve::Solver;
-use crate::statics::verdict::{SolveError, VerdictKind};
+use crate::statics::verdict::{SolveError, Verdict, VerdictKind};
 
 /// A snap on the way from one sequence of loads to the next: in the plane, or with [`SpatialTip`] in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -142,18 +140,15 @@ pub struct Loading<S = Solver> {
     tol: f64,
 }
 
-/// The first equilibrium.
-pub(super) type First<S> = AfterSnap<<<S as Ranged>::Engine as Traced>::Shape, <S as Ranged>::Motion>;
-
 /// An equilibrium on the way.
-pub(super) type Step<S> = LoadingStep<<<S as Ranged>::Engine as Traced>::Shape, <<S as Ranged>::Engine as Loaded>::Tip>;
+pub(super) type Step<S> = LoadingStep<ShapeOf<S>, TipOf<S>>;
 
 impl Loading {
     /// The arm at its first loads, where [`Arm::solve_after_snap`] has it, to a tip error of `tol` L.
     ///
     /// # Errors
     /// [`LoadingError::Start`], and [`LoadingError::Unsupported`] with friction of cables or an unstrained base.
-    pub fn start(arm: &Arm, tol: f64) -> Result<(Self, AfterSnap<Configuration, SnapMotion>), LoadingError> {
+    pub fn start(arm: &Arm, tol: f64) -> Result<(Self, AfterSnap), LoadingError> {
         begin(arm, tol)
     }
 
@@ -183,7 +178,7 @@ impl Loading<SpatialSolver> {
     pub fn start_in_space(
         arm: &Arm,
         tol: f64,
-    ) -> Result<(Self, AfterSnap<SpatialConfiguration, SpatialSnapMotion>), LoadingError<SpatialError>> {
+    ) -> Result<(Self, AfterSnap<SpatialConfiguration, SpatialTip>), LoadingError<SpatialError>> {
         let mut arm = arm.clone();
         arm.space.get_or_insert_default();
         begin(&arm, tol)
@@ -210,7 +205,7 @@ impl Loading<SpatialSolver> {
 }
 
 #[allow(clippy::type_complexity, reason = "names of what is there")]
-fn begin<S: Ranged>(arm: &Arm, tol: f64) -> Result<(Loading<S>, First<S>), LoadingError<S::Error>> {
+fn begin<S: Ranged>(arm: &Arm, tol: f64) -> Result<(Loading<S>, AfterSnapOf<S>), LoadingError<ErrorOf<S>>> {
     if let Some(i) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
         let reason = "cables with friction stick as they turn back, which loading leaves out";
         return Err(LoadingError::Unsupported { key: format!("cable[{i}].friction"), reason });
@@ -219,12 +214,12 @@ fn begin<S: Ranged>(arm: &Arm, tol: f64) -> Result<(Loading<S>, First<S>), Loadi
         let reason = "only a clamped arm has equilibria that follow its loads";
         return Err(LoadingError::Unsupported { key: "model.support".to_owned(), reason });
     }
-    let first = S::first(arm, tol).map_err(LoadingError::Start)?;
+    let first = solve_after_snap::<S>(arm, tol).map_err(LoadingError::Start)?;
     let solver = S::at(arm, &first.configuration, tol).map_err(|e| LoadingError::Start(AfterSnapError::Solve(e)))?;
     Ok((Loading { solver, tol }, first))
 }
 
-fn go_on<S: Ranged>(loading: &mut Loading<S>, arm: &Arm) -> Result<Step<S>, LoadingError<S::Error>> {
+fn go_on<S: Ranged>(loading: &mut Loading<S>, arm: &Arm) -> Result<Step<S>, LoadingError<ErrorOf<S>>> {
     arm.check()?;
     let kept = loading.solver.clone();
     let outcome = follow(loading, arm);
@@ -234,7 +229,7 @@ fn go_on<S: Ranged>(loading: &mut Loading<S>, arm: &Arm) -> Result<Step<S>, Load
     outcome
 }
 
-fn follow<S: Ranged>(loading: &mut Loading<S>, arm: &Arm) -> Result<Step<S>, LoadingError<S::Error>> {
+fn follow<S: Ranged>(loading: &mut Loading<S>, arm: &Arm) -> Result<Step<S>, LoadingError<ErrorOf<S>>> {
     let Loading { solver, tol } = loading;
     let ways = ways(solver.arm(), arm).map_err(|(key, reason)| LoadingError::Unsupported { key, reason })?;
     let (past, lowest) = (past(&ways), lowest(&ways));
@@ -247,46 +242,40 @@ fn follow<S: Ranged>(loading: &mut Loading<S>, arm: &Arm) -> Result<Step<S>, Loa
     }
     solver.vary_together(ways);
     loop {
-        let ended = match solver.along_range([from, lowest]) {
+        match solver.along_range([from, lowest]) {
             Ok(configuration) => return Ok(LoadingStep { configuration, snaps }),
-            Err(error) => S::ended(error),
-        };
-        match ended {
-            Ok(Ended { verdict, last_good, after_snap })
-                if verdict.kind == VerdictKind::LimitPoint && snaps.len() < MOST_SNAPS =>
+            Err(SolveError::NoEquilibrium(no))
+                if no.verdict.kind == VerdictKind::LimitPoint && snaps.len() < MOST_SNAPS =>
             {
-                let share = verdict.load_fraction;
+                let share = no.verdict.load_fraction;
                 from = (share + past).min(1.0);
                 let engine = solver.engine_mut();
                 let set = |engine: &mut S::Engine| engine.set(Along::Range, from);
-                let landed = land(engine, last_good.as_ref(), after_snap.as_ref(), *tol, set);
+                let landed = land(engine, no.last_good.as_ref(), no.after_snap.as_ref(), *tol, set);
                 let Landed { before, rest: Rest { configuration, time }, on_curve } =
                     landed.map_err(|restless| match restless {
                         Restless::Motion(motion) => LoadingError::Motion { share, motion },
                         Restless::Moving { time, speed } => LoadingError::NoRest { share, time, speed },
                     })?;
-                let after = <S::Engine as super::landing::Lands>::tip_of(&configuration);
+                let after = S::Engine::tip_of(&configuration);
                 snaps.push(LoadingSnap { share, before, after, duration: time, on_curve });
                 if from == 1.0 {
                     return Ok(LoadingStep { configuration, snaps });
                 }
             }
-            Ok(Ended { verdict, .. }) => return Err(at_limit(verdict.kind, verdict.load_fraction, verdict.s)),
-            Err(error) => {
-                return Err(error.map_or_else(|| at_limit(VerdictKind::NotFound, from, None), LoadingError::Arm));
-            }
+            Err(error) => return Err(limit::<S>(error, from)),
         }
     }
 }
 
 /// An error of the statics in terms of the way.
-fn limit<S: Ranged>(error: S::Error, from: f64) -> LoadingError<S::Error> {
-    match S::ended(error) {
-        Ok(Ended { verdict, .. }) => at_limit(verdict.kind, verdict.load_fraction, verdict.s),
-        Err(error) => error.map_or_else(|| at_limit(VerdictKind::NotFound, from, None), LoadingError::Arm),
+fn limit<S: Ranged>(error: ErrorOf<S>, from: f64) -> LoadingError<ErrorOf<S>> {
+    match error {
+        SolveError::NoEquilibrium(no) => {
+            let Verdict { kind, load_fraction: share, s, .. } = no.verdict;
+            LoadingError::Limit { kind, share, s }
+        }
+        SolveError::Arm(error) => LoadingError::Arm(error),
+        SolveError::Option { .. } => LoadingError::Limit { kind: VerdictKind::NotFound, share: from, s: None },
     }
-}
-
-fn at_limit<E>(kind: VerdictKind, share: f64, s: Option<f64>) -> LoadingError<E> {
-    LoadingError::Limit { kind, share, s }
 }

@@ -1,162 +1,108 @@
 //! Solvers that follow an arm along a line from one sequence of loads to another, and which loads these may be.
 
-use super::after_snap::{AfterSnap, AfterSnapError, SnapMotion};
-use super::in_space::SpatialSnapMotion;
 use super::landing::{Lands, PAST};
-use crate::rod::arm::{Arm, ArmError};
+use crate::rod::arm::Arm;
 use crate::rod::parameter::{IN_SPACE, PLAIN, Parameter};
+use crate::spatial::SpatialSolver;
 use crate::spatial::engine::Engine as SpatialEngine;
-use crate::spatial::{SpatialConfiguration, SpatialError, SpatialSolver};
-use crate::statics::configuration::Configuration;
 use crate::statics::engine::Engine;
 use crate::statics::equations::Change;
+use crate::statics::path::loaded::Loaded;
 use crate::statics::path::traced::Traced;
 use crate::statics::snap::SnapBounds;
 use crate::statics::solve::{Options, Solver};
-use crate::statics::verdict::{NoEquilibrium, SolveError, Verdict};
+use crate::statics::verdict::{Phase, SolveError};
 
-/// Where a range ends that is not followed to its end.
-pub(super) struct Ended<C> {
-    pub(super) verdict: Verdict,
-    pub(super) last_good: Option<C>,
-    /// Where the curve leads on to at a limit point.
-    pub(super) after_snap: Option<C>,
-}
+/// The shapes of a solver, their tips, and why there is none.
+pub(super) type ShapeOf<S> = <<S as Ranged>::Engine as Traced>::Shape;
+pub(super) type TipOf<S> = <<S as Ranged>::Engine as Loaded>::Tip;
+pub(super) type ErrorOf<S> = SolveError<ShapeOf<S>, TipOf<S>>;
 
-/// The shapes of a solver.
-type ShapeOf<S> = <<S as Ranged>::Engine as Traced>::Shape;
+/// Every snap ends a path: its motion is followed.
+pub(super) const EVERY_SNAP: SnapBounds = SnapBounds { distance: 0.0, angle: 0.0 };
 
 /// A solver in the plane or in space.
 pub(super) trait Ranged: Clone {
     type Engine: Lands;
-    type Error;
-    type Motion;
 
-    /// The arm at its first loads.
-    #[allow(clippy::type_complexity, reason = "names of what is there")]
-    fn first(arm: &Arm, tol: f64) -> Result<AfterSnap<ShapeOf<Self>, Self::Motion>, AfterSnapError<Self::Error>>;
-    /// A solver that holds a configuration of `arm`.
-    fn at(arm: &Arm, configuration: &ShapeOf<Self>, tol: f64) -> Result<Self, Self::Error>;
+    fn new(arm: &Arm, options: Options) -> Result<Self, ErrorOf<Self>>;
     fn arm(&self) -> &Arm;
     fn engine_mut(&mut self) -> &mut Self::Engine;
     fn take_place_of_base(&mut self, arm: &Arm);
     /// Lets several parameters run together, from where they are.
     fn vary_together(&mut self, ways: Vec<Change>);
+    /// The equilibrium of the arm, from nothing.
+    fn solve(&mut self) -> Result<ShapeOf<Self>, ErrorOf<Self>>;
+    /// Follows the path on to whole loads from the engine's equilibrium at a fraction of a phase.
+    fn solve_on(&mut self, from: (Phase, f64)) -> Result<ShapeOf<Self>, ErrorOf<Self>>;
     /// The engine's equilibrium, read again.
-    fn resettle(&mut self) -> Result<ShapeOf<Self>, Self::Error>;
+    fn resettle(&mut self) -> Result<ShapeOf<Self>, ErrorOf<Self>>;
     /// Follows the range from the engine's equilibrium at a share of it, behind a limit point down to a lowest one.
-    fn along_range(&mut self, from: [f64; 2]) -> Result<ShapeOf<Self>, Self::Error>;
-    /// What an error says of the range, else whether it says something of the arm.
-    fn ended(error: Self::Error) -> Result<Ended<ShapeOf<Self>>, Option<ArmError>>;
+    fn along_range(&mut self, from: [f64; 2]) -> Result<ShapeOf<Self>, ErrorOf<Self>>;
+
+    /// A solver that holds a configuration of `arm`.
+    fn at(arm: &Arm, configuration: &ShapeOf<Self>, tol: f64) -> Result<Self, ErrorOf<Self>> {
+        let mut solver = Self::new(arm, Options { tol, snaps: EVERY_SNAP })?;
+        solver.engine_mut().take(configuration);
+        Ok(solver)
+    }
 }
 
-/// Every snap is followed by its motion.
-fn options(tol: f64) -> Options {
-    Options { tol, snaps: SnapBounds { distance: 0.0, angle: 0.0 } }
+/// What both solvers have under the same names.
+macro_rules! alike {
+    () => {
+        fn new(arm: &Arm, options: Options) -> Result<Self, ErrorOf<Self>> {
+            Self::new(arm, options)
+        }
+
+        fn arm(&self) -> &Arm {
+            self.arm()
+        }
+
+        fn engine_mut(&mut self) -> &mut Self::Engine {
+            self.engine_mut()
+        }
+
+        fn vary_together(&mut self, ways: Vec<Change>) {
+            self.engine_mut().equations.vary_together(ways);
+        }
+
+        fn solve(&mut self) -> Result<ShapeOf<Self>, ErrorOf<Self>> {
+            self.solve()
+        }
+
+        fn solve_on(&mut self, from: (Phase, f64)) -> Result<ShapeOf<Self>, ErrorOf<Self>> {
+            self.solve_on(from)
+        }
+
+        fn resettle(&mut self) -> Result<ShapeOf<Self>, ErrorOf<Self>> {
+            self.resettle()
+        }
+
+        fn along_range(&mut self, from: [f64; 2]) -> Result<ShapeOf<Self>, ErrorOf<Self>> {
+            self.solve_along_range(from)
+        }
+    };
 }
 
 impl Ranged for Solver {
     type Engine = Engine;
-    type Error = SolveError;
-    type Motion = SnapMotion;
 
-    fn first(arm: &Arm, tol: f64) -> Result<AfterSnap, AfterSnapError> {
-        arm.solve_after_snap(tol)
-    }
-
-    fn at(arm: &Arm, configuration: &Configuration, tol: f64) -> Result<Self, SolveError> {
-        let mut solver = Self::new(arm, options(tol))?;
-        solver.engine_mut().take(configuration);
-        Ok(solver)
-    }
-
-    fn arm(&self) -> &Arm {
-        self.arm()
-    }
-
-    fn engine_mut(&mut self) -> &mut Engine {
-        self.engine_mut()
-    }
+    alike!();
 
     fn take_place_of_base(&mut self, arm: &Arm) {
         let own = &mut self.engine_mut().equations.arm.base;
         (own.x, own.y) = (arm.base.x, arm.base.y);
     }
-
-    fn vary_together(&mut self, ways: Vec<Change>) {
-        self.engine_mut().equations.vary_together(ways);
-    }
-
-    fn resettle(&mut self) -> Result<Configuration, SolveError> {
-        self.resettle()
-    }
-
-    fn along_range(&mut self, from: [f64; 2]) -> Result<Configuration, SolveError> {
-        self.solve_along_range(from)
-    }
-
-    fn ended(error: SolveError) -> Result<Ended<Configuration>, Option<ArmError>> {
-        match error {
-            SolveError::NoEquilibrium(no) => {
-                let NoEquilibrium { verdict, last_good, after_snap, .. } = *no;
-                Ok(Ended { verdict, last_good, after_snap })
-            }
-            SolveError::Arm(error) => Err(Some(error)),
-            SolveError::Option { .. } => Err(None),
-        }
-    }
 }
 
 impl Ranged for SpatialSolver {
     type Engine = SpatialEngine;
-    type Error = SpatialError;
-    type Motion = SpatialSnapMotion;
 
-    fn first(
-        arm: &Arm,
-        tol: f64,
-    ) -> Result<AfterSnap<SpatialConfiguration, SpatialSnapMotion>, AfterSnapError<SpatialError>> {
-        arm.solve_after_snap_in_space(tol)
-    }
-
-    fn at(arm: &Arm, configuration: &SpatialConfiguration, tol: f64) -> Result<Self, SpatialError> {
-        let mut solver = Self::new(arm, options(tol))?;
-        solver.engine_mut().take(configuration);
-        Ok(solver)
-    }
-
-    fn arm(&self) -> &Arm {
-        self.arm()
-    }
-
-    fn engine_mut(&mut self) -> &mut SpatialEngine {
-        self.engine_mut()
-    }
+    alike!();
 
     fn take_place_of_base(&mut self, arm: &Arm) {
         self.engine_mut().equations.take_place_of_base(arm);
-    }
-
-    fn vary_together(&mut self, ways: Vec<Change>) {
-        self.engine_mut().equations.vary_together(ways);
-    }
-
-    fn resettle(&mut self) -> Result<SpatialConfiguration, SpatialError> {
-        self.resettle()
-    }
-
-    fn along_range(&mut self, from: [f64; 2]) -> Result<SpatialConfiguration, SpatialError> {
-        self.solve_along_range(from)
-    }
-
-    fn ended(error: SpatialError) -> Result<Ended<SpatialConfiguration>, Option<ArmError>> {
-        match error {
-            SpatialError::NoEquilibrium(no) => {
-                Ok(Ended { verdict: no.verdict, last_good: no.last_good, after_snap: no.after_snap })
-            }
-            SpatialError::Arm(error) => Err(Some(error)),
-            SpatialError::Option { .. } => Err(None),
-        }
     }
 }
 

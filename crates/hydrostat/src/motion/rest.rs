@@ -17,6 +17,7 @@ use crate::statics::configuration::{Configuration, Tip};
 use crate::statics::dimensions::{Guess, L};
 use crate::statics::engine::Engine;
 use crate::statics::refinement::{First, Refinable as _};
+use crate::statics::snap::Snap;
 use crate::statics::stability::Stability;
 
 impl Configuration {
@@ -81,6 +82,10 @@ impl Lands for Engine {
 
     fn tip_of(shape: &Configuration) -> Tip {
         shape.tip()
+    }
+
+    fn snaps_of(shape: &mut Configuration) -> &mut Vec<Snap> {
+        &mut shape.snaps
     }
 
     fn can_rest(&self) -> Result<(), MotionError> {

@@ -5,7 +5,7 @@
 //! [`NEAR`] of a stable one.
 
 use super::error::MotionError;
-use super::history::{Snapshot, between};
+use super::history::{Snapshot, cubic};
 use super::settling::Moves;
 use super::stepper::Stepper;
 use crate::rod::arm::Arm;
@@ -53,39 +53,62 @@ pub(super) struct Candidate<C> {
     configuration: Box<C>,
     /// x, y, z over L at the nodes of the motion's mesh; z is 0 in the plane.
     places: Vec<[f64; 3]>,
-    /// Step and time (s) since when the arm is within [`NEAR`].
-    since: Option<(usize, f64)>,
 }
 
 impl<C> Candidate<C> {
     /// One at these places, where the arm `at` may come to rest.
     pub(super) fn near(configuration: C, places: Vec<[f64; 3]>, at: &Snapshot) -> Option<Self> {
-        let found = Self { configuration: Box::new(configuration), places, since: None };
-        (found.distance(at) < FAR).then_some(found)
+        let own: Vec<[f64; 3]> = (0..places.len()).map(|i| at.node_place(i)[0]).collect();
+        (apart(&own, &places) < FAR).then(|| Self { configuration: Box::new(configuration), places })
+    }
+}
+
+/// Where the nodes of an arm were after each step.
+#[derive(Default)]
+struct Track {
+    /// s.
+    times: Vec<f64>,
+    /// x, y, z over L.
+    places: Vec<Vec<[f64; 3]>>,
+    /// Their rates, 1/s.
+    rates: Vec<Vec<[f64; 3]>>,
+}
+
+impl Track {
+    fn note(&mut self, time: f64, at: &Snapshot) {
+        let (places, rates) = (0..at.layout.nodes).map(|i| at.node_place(i)).map(|[place, rate]| (place, rate)).unzip();
+        self.times.push(time);
+        self.places.push(places);
+        self.rates.push(rates);
     }
 
-    /// How far the arm is from it, over L.
-    fn distance(&self, at: &Snapshot) -> f64 {
-        let off = |(i, place): (usize, &[f64; 3])| {
-            let [own, _] = at.node_place(i);
-            length([0, 1, 2].map(|k| own[k] - place[k]))
-        };
-        self.places.iter().enumerate().map(off).fold(0.0, f64::max)
+    /// How far the arm is now from `places`, over L.
+    fn distance(&self, places: &[[f64; 3]]) -> f64 {
+        self.places.last().map_or(f64::INFINITY, |own| apart(own, places))
     }
 
-    /// When in the last step the arm came within [`NEAR`].
-    fn entry<P: Moves<S, L>, const S: usize, const L: usize>(&self, stepper: &Stepper<P, S, L>) -> f64 {
-        let mut at = stepper.before.clone();
-        if self.distance(&at) <= NEAR {
-            return stepper.time - stepper.step;
-        }
+    /// The time (s) at which the arm came within [`NEAR`] of `places` to stay until now, and its step; `None` where it
+    /// is not there now.
+    fn entry(&self, places: &[[f64; 3]]) -> Option<(usize, f64)> {
+        let outside = self.places.iter().rposition(|own| apart(own, places) > NEAR);
+        let Some(before) = outside else { return self.times.first().map(|time| (0, *time)) };
+        let step = self.times.get(before + 1)? - self.times[before];
         let (mut outside, mut inside) = (0.0, 1.0);
         for _ in 0..30 {
             let middle = 0.5 * (outside + inside);
-            between(&stepper.before, &stepper.now, stepper.step, middle, &mut at);
-            if self.distance(&at) <= NEAR { inside = middle } else { outside = middle }
+            if apart(&self.between(before, step, middle), places) <= NEAR { inside = middle } else { outside = middle }
         }
-        stepper.time - (1.0 - inside) * stepper.step
+        Some((before + 1, self.times[before] + inside * step))
+    }
+
+    /// Places at the fraction `x` of the step (s) after step `k`, by cubic interpolation.
+    fn between(&self, k: usize, step: f64, x: f64) -> Vec<[f64; 3]> {
+        let w = cubic(x);
+        let nodes = self.places[k].iter().zip(&self.rates[k]).zip(self.places[k + 1].iter().zip(&self.rates[k + 1]));
+        let place = |((p, u), (q, v)): ((&[f64; 3], &[f64; 3]), (&[f64; 3], &[f64; 3]))| {
+            [0, 1, 2].map(|a| w[0] * p[a] + w[1] * step * u[a] + w[2] * q[a] + w[3] * step * v[a])
+        };
+        nodes.map(place).collect()
     }
 }
 
@@ -97,25 +120,19 @@ pub(super) fn come_to_rest<P: Moves<S, L>, C, const S: usize, const L: usize>(
 ) -> Result<(C, f64), Restless> {
     let (mut next_look, mut fastest) = (FIRST_LOOK, 0.0_f64);
     let mut found: Option<Candidate<C>> = None;
+    let mut track = Track::default();
+    track.note(stepper.time, &stepper.now);
     while stepper.steps + stepper.rejected < MOST_STEPS {
         stepper.advance(stepper.time + 1e6).map_err(Restless::Motion)?;
+        track.note(stepper.time, &stepper.now);
         let speed = speed(&stepper.now);
         fastest = fastest.max(speed);
-        if let Some(at) = &mut found {
-            let off = at.distance(&stepper.now);
-            if off > FAR {
-                found = None;
-            } else if off > NEAR {
-                at.since = None;
-            } else if at.since.is_none() {
-                at.since = Some((stepper.steps, at.entry(&stepper)));
-            }
-        }
-        match found {
-            Some(Candidate { since: Some((step, time)), configuration, .. }) if stepper.steps >= step + STEADY => {
-                return Ok((*configuration, time));
-            }
-            other => found = other,
+        found = found.filter(|at| track.distance(&at.places) <= FAR);
+        if let Some((step, time)) = found.as_ref().and_then(|at| track.entry(&at.places))
+            && stepper.steps >= step + STEADY
+            && let Some(at) = found.take()
+        {
+            return Ok((*at.configuration, time));
         }
         if found.is_none() && stepper.steps >= next_look && speed <= SLOW * fastest {
             next_look = stepper.steps + FIRST_LOOK.max(stepper.steps / 8);
@@ -134,6 +151,11 @@ pub(super) fn is_damped(arm: &Arm) -> Result<(), MotionError> {
         return Err(MotionError::Unsupported { key: "dynamics.relaxation_time".to_owned(), reason });
     }
     Ok(())
+}
+
+/// The largest distance of places of the same nodes, over L.
+fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| length([0, 1, 2].map(|k| a[k] - b[k]))).fold(0.0, f64::max)
 }
 
 /// The largest speed of the centreline, over L.

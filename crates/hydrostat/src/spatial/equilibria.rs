@@ -204,9 +204,7 @@ impl Search<'_> {
         for (turns, axis) in STARTS {
             let options = Options { snaps: SnapBounds::NONE, ..Options::default() };
             let mut solver = SpatialSolver::new(arm, options).map_err(failed)?;
-            let equations = &mut solver.engine.equations;
-            equations.turn_base(self.axes[axis]);
-            equations.set_range_fraction(turns);
+            solver.engine.equations.stand_turned(self.axes[axis], turns);
             if let Err(error) = solver.solve() {
                 if !matches!(error, SpatialError::NoEquilibrium(_)) {
                     return Err(failed(error));
@@ -217,10 +215,11 @@ impl Search<'_> {
             let mut engine = solver.engine;
             engine.allowed = usize::MAX;
             if turns == 0.0 {
-                engine.equations.hold();
                 self.keep(&mut engine);
             } else {
                 self.axis = axis;
+                engine.equations.turn_base(self.axes[axis]);
+                engine.equations.set_range_fraction(turns);
                 for side in [1.0, -1.0] {
                     curves.push(follow_turns(&mut engine.clone(), side, &mut |met| self.meet(met)));
                 }

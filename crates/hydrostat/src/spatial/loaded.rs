@@ -2,15 +2,30 @@
 
 use super::engine::Engine;
 use super::equations::Guess;
-use super::path::SpatialSnap;
 use super::tip::SpatialTip;
+use crate::statics::engine::Trouble;
 use crate::statics::path::loaded::Loaded;
 use crate::statics::phase::Phase;
 
 impl Loaded for Engine {
     type Tip = SpatialTip;
-    type Snap = SpatialSnap;
     type Guess = Guess;
+
+    fn acts_in(&self, phase: Phase) -> bool {
+        match phase {
+            Phase::Loads => self.equations.has_loads(),
+            Phase::Tension => self.equations.has_tension(),
+            Phase::Stroke | Phase::Friction => false,
+        }
+    }
+
+    fn start_unloaded(&mut self) {
+        self.start_unloaded(8);
+    }
+
+    fn hurry(&mut self, hurry: bool) {
+        self.in_a_hurry = hurry;
+    }
 
     fn guess(&self) -> Guess {
         self.solution.clone()
@@ -28,12 +43,11 @@ impl Loaded for Engine {
         self.tip
     }
 
-    fn snap(phase: Phase, load_fraction: f64, before: SpatialTip, after: SpatialTip) -> SpatialSnap {
-        SpatialSnap { phase, load_fraction, before, after }
-    }
-
-    fn jump(snap: &SpatialSnap) -> [f64; 2] {
-        [snap.distance(), snap.angle()]
+    fn measure(&mut self) -> Result<(), Trouble> {
+        self.linearise()?;
+        self.system.quadratures(&mut self.spans);
+        self.tip = self.system.totals();
+        Ok(())
     }
 
     fn spent(&self) -> Option<usize> {

@@ -3,59 +3,35 @@
 use super::configuration::SpatialConfiguration;
 use super::engine::{Engine, State};
 use super::equations::Guess;
-use super::path::{SpatialSnap, Stopped, Travelled, follow, follow_on, verdict};
+use super::tip::{SpatialSnap, SpatialTip};
 use crate::numerics::distance;
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::engine::{Trouble, WORK};
-use crate::statics::path::{LOOSE, PathSummary, StepControl, Stopped as RangeStopped, follow_range};
+use crate::statics::path::loaded::Loaded as _;
+use crate::statics::path::{
+    PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium, no_equilibrium_in_range,
+};
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::solve::Options;
-use crate::statics::verdict::{Phase, Verdict, VerdictKind};
+use crate::statics::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
+
+/// How far (over L) the tip may move when the end of a path is made accurate.
+const MOVED: f64 = 0.05;
 
 /// Why a solve in space gives no configuration at the loads asked for.
-#[derive(Debug, Clone, thiserror::Error)]
-pub enum SpatialError {
-    /// The numbers do not make an arm.
-    #[error(transparent)]
-    Arm(#[from] ArmError),
-    /// An option out of range.
-    #[error("`{option}` must be {expected}, found {value}")]
-    Option {
-        /// Which option.
-        option: &'static str,
-        /// What it is.
-        value: f64,
-        /// What it may be.
-        expected: &'static str,
-    },
-    /// There is no such equilibrium, or it was not found.
-    #[error("{}", .0.verdict.message())]
-    NoEquilibrium(Box<NoSpatialEquilibrium>),
-}
+pub type SpatialError = SolveError<SpatialConfiguration, SpatialTip>;
 
-impl From<crate::statics::verdict::SolveError> for SpatialError {
-    fn from(error: crate::statics::verdict::SolveError) -> Self {
-        use crate::statics::verdict::SolveError;
+/// A verdict with the last configuration before it, in space.
+pub type NoSpatialEquilibrium = NoEquilibrium<SpatialConfiguration, SpatialTip>;
+
+impl From<SolveError> for SpatialError {
+    fn from(error: SolveError) -> Self {
         match error {
             SolveError::Arm(error) => Self::Arm(error),
             SolveError::Option { option, value, expected } => Self::Option { option, value, expected },
             SolveError::NoEquilibrium(_) => Self::Arm(ArmError::OnlyInPlane { what: "a planar solve" }),
         }
     }
-}
-
-/// A verdict with the last configuration before it.
-#[derive(Debug, Clone)]
-pub struct NoSpatialEquilibrium {
-    /// Why.
-    pub verdict: Verdict,
-    /// The last good solution on the way, its `arm` carrying the loads that it balances.
-    pub last_good: Option<SpatialConfiguration>,
-    /// The snaps that the arm makes on the way.
-    pub snaps: Vec<SpatialSnap>,
-    /// With the verdict [`VerdictKind::LimitPoint`]: the shape that the arm snaps to, at the loads of the limit point,
-    /// where the path was followed to it.
-    pub after_snap: Option<SpatialConfiguration>,
 }
 
 /// Solves one arm in space, again and again as its tensions change.
@@ -129,7 +105,7 @@ impl SpatialSolver {
             .and_then(|()| engine.settle(tol, First::Fair));
         if let Ok(estimate) = direct
             && !self.engine.needs_continuation()
-            && let Ok(configuration) = self.read(estimate, Travelled::default())
+            && let Ok(configuration) = self.read(estimate, PathSummary::default())
         {
             self.settled = true;
             self.sign = 1.0;
@@ -188,7 +164,7 @@ impl SpatialSolver {
         if self.engine.system.determinant().sign != self.sign || distance(&before, &self.engine.tip) >= 0.2 {
             return None;
         }
-        let configuration = self.read(estimate, Travelled::default()).ok()?;
+        let configuration = self.read(estimate, PathSummary::default()).ok()?;
         (self.settled, self.solved) = (true, true);
         Some(configuration)
     }
@@ -200,110 +176,98 @@ impl SpatialSolver {
 
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
     pub(crate) fn solve_along_the_path(&mut self) -> Result<SpatialConfiguration, SpatialError> {
-        let travelled = follow(&mut self.engine, self.options.snaps);
+        let travelled = follow(&mut self.engine, StepControl::BRISK, self.options.snaps);
         self.end_of_path(travelled)
     }
 
     /// Follows the path on to whole loads from the engine's equilibrium at a fraction of a phase.
     pub(crate) fn solve_on(&mut self, from: (Phase, f64)) -> Result<SpatialConfiguration, SpatialError> {
-        (self.settled, self.solved) = (false, false);
-        self.engine.reset_statistics();
-        self.engine.allowed = WORK;
-        let travelled = follow_on(&mut self.engine, from, self.options.snaps);
-        self.end_of_path(travelled)
+        self.begin_anew();
+        let travelled = follow_on(&mut self.engine, from, StepControl::BRISK, self.options.snaps);
+        let solved = self.end_of_path(travelled);
+        self.engine.allowed = usize::MAX;
+        solved
     }
 
     /// The engine's equilibrium, read again.
     pub(crate) fn resettle(&mut self) -> Result<SpatialConfiguration, SpatialError> {
         let settled = self.engine.settle(self.options.tol, First::Warm);
         if let Ok(estimate) = settled
-            && let Ok(configuration) = self.read(estimate, Travelled::default())
+            && let Ok(configuration) = self.read(estimate, PathSummary::default())
         {
             return Ok(configuration);
         }
-        Err(self.last_verdict(Vec::new()))
+        Err(self.last_verdict(Phase::Tension, Vec::new()))
     }
 
-    /// Follows the engine's range to its end, from the engine's equilibrium at a share of it, behind a limit point down
-    /// to a lowest one.
+    /// Follows the engine's range to its end, from the engine's equilibrium at a fraction of it, behind a limit point
+    /// down to a lowest one.
     pub(crate) fn solve_along_range(&mut self, from: [f64; 2]) -> Result<SpatialConfiguration, SpatialError> {
-        (self.settled, self.solved) = (false, false);
-        self.engine.reset_statistics();
-        self.engine.allowed = WORK;
+        self.begin_anew();
         let travelled = follow_range(&mut self.engine, from, StepControl::BRISK, self.options.snaps);
         let solved = match travelled {
-            Ok(PathSummary { steps, bifurcations, snaps, .. }) => {
-                self.end_of_path(Ok(Travelled { steps, crossings: bifurcations, snaps }))
-            }
-            Err(RangeStopped { verdict, snaps, after_snap, .. }) => {
-                let last_good = self.read(LOOSE, Travelled::default()).ok();
-                let after_snap = after_snap.and_then(|state| self.read_state(&state));
-                let no = NoSpatialEquilibrium { verdict, last_good, snaps, after_snap };
-                Err(SpatialError::NoEquilibrium(Box::new(no)))
+            Ok(travelled) => self.end_of_path(Ok(travelled)),
+            Err(stopped) => {
+                let no = no_equilibrium_in_range(&mut self.engine, stopped, self.options.tol);
+                Err(SpatialError::NoEquilibrium(no.into()))
             }
         };
         self.engine.allowed = usize::MAX;
         solved
     }
 
-    /// The shape of a state that the path came through.
-    fn read_state(&mut self, state: &State) -> Option<SpatialConfiguration> {
-        self.engine.restore(state);
-        let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
-        self.read(estimate, Travelled::default()).ok()
+    fn begin_anew(&mut self) {
+        (self.settled, self.solved) = (false, false);
+        self.engine.reset_statistics();
+        self.engine.allowed = WORK;
     }
 
     /// The answer at the end of a path, which the engine is at.
-    fn end_of_path(&mut self, travelled: Result<Travelled, Stopped>) -> Result<SpatialConfiguration, SpatialError> {
+    fn end_of_path(
+        &mut self,
+        travelled: Result<PathSummary<SpatialTip>, Stopped<Engine>>,
+    ) -> Result<SpatialConfiguration, SpatialError> {
         let travelled = match travelled {
             Ok(travelled) => travelled,
-            Err(stopped) => return Err(self.no_equilibrium(stopped.verdict, stopped.snaps)),
+            Err(stopped) => return Err(self.no_equilibrium(stopped)),
         };
         let before = self.engine.tip;
         let settled = self.engine.settle(self.options.tol, First::Rough);
         let moved = distance(&before, &self.engine.tip);
-        let (crossings, snaps) = (travelled.crossings, travelled.snaps.clone());
-        match settled {
-            Ok(estimate) if moved < 0.05 => match self.read(estimate, travelled) {
-                Ok(mut configuration) => {
-                    let sign = self.engine.system.determinant().sign;
-                    if sign < 0.0 {
-                        configuration.stable = Some(false);
-                    }
-                    self.settled = crossings == 0 && snaps.is_empty();
-                    self.sign = sign;
-                    Ok(configuration)
-                }
-                Err(_) => Err(self.last_verdict(snaps)),
-            },
-            _ => Err(self.last_verdict(snaps)),
+        let (bifurcations, snaps) = (travelled.bifurcations, travelled.snaps.clone());
+        if let Ok(estimate) = settled
+            && moved < MOVED
+            && let Ok(mut configuration) = self.read(estimate, travelled)
+        {
+            let sign = self.engine.system.determinant().sign;
+            if sign < 0.0 {
+                configuration.stable = Some(false);
+            }
+            self.settled = bifurcations == 0 && snaps.is_empty();
+            self.sign = sign;
+            return Ok(configuration);
         }
+        Err(self.last_verdict(Phase::Tension, snaps))
     }
 
-    /// Nothing could be made of the end of the path.
-    fn last_verdict(&mut self, snaps: Vec<SpatialSnap>) -> SpatialError {
-        let verdict = verdict(&self.engine, VerdictKind::NotFound, Phase::Tension, 1.0, None);
-        SpatialError::NoEquilibrium(Box::new(NoSpatialEquilibrium {
-            verdict,
-            last_good: None,
-            snaps,
-            after_snap: None,
-        }))
+    /// Nothing could be made of the end of the path of a phase.
+    pub(super) fn last_verdict(&mut self, phase: Phase, snaps: Vec<SpatialSnap>) -> SpatialError {
+        let (residual, spent) = (self.engine.last, self.engine.spent());
+        let verdict = Verdict { kind: VerdictKind::NotFound, phase, load_fraction: 1.0, s: None, residual, spent };
+        self.no_equilibrium(Stopped { snaps, ..verdict.into() })
     }
 
-    /// The verdict with the engine's shape, the last good one.
-    pub(super) fn no_equilibrium(&mut self, verdict: Verdict, snaps: Vec<SpatialSnap>) -> SpatialError {
+    /// The verdict with the last good shape, which the engine holds.
+    pub(super) fn no_equilibrium(&mut self, stopped: Stopped<Engine>) -> SpatialError {
         self.engine.allowed = usize::MAX;
-        let state: State = self.engine.state();
-        let estimate = self.engine.settle(self.options.tol, First::Warm).unwrap_or_else(|_| {
-            self.engine.restore(&state);
-            super::mesh::LOOSE
-        });
-        let last_good = self.read(estimate, Travelled::default()).ok();
-        SpatialError::NoEquilibrium(Box::new(NoSpatialEquilibrium { verdict, last_good, snaps, after_snap: None }))
+        SpatialError::NoEquilibrium(no_equilibrium(&mut self.engine, stopped, self.options.tol).into())
     }
 
-    pub(super) fn read(&mut self, estimate: f64, travelled: Travelled) -> Result<SpatialConfiguration, Trouble> {
+    pub(super) fn read(
+        &mut self,
+        estimate: f64,
+        travelled: PathSummary<SpatialTip>,
+    ) -> Result<SpatialConfiguration, Trouble> {
         let statistics = self.engine.statistics(travelled.steps);
         let length = self.engine.equations.units.length;
         let mut read = SpatialConfiguration::read(&mut self.engine, estimate * length, statistics)?;

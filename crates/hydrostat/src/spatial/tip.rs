@@ -2,6 +2,7 @@
 
 use super::rotation::dot;
 use crate::statics::shape::Pose;
+use crate::statics::snap::Snap;
 
 /// The tip of an arm in space.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -21,6 +22,10 @@ pub struct SpatialTip {
     /// Angle between section normal and centreline tangent, rad, in [0, pi].
     pub alpha: f64,
 }
+
+/// A jump of an arm in space from a limit point to the next stable part of the same curve at the same loads. Its angle
+/// is that of the rotation between both tip sections.
+pub type SpatialSnap = Snap<SpatialTip>;
 
 impl Pose for SpatialTip {
     fn distance_to(&self, other: &Self) -> f64 {

@@ -4,12 +4,12 @@ use hydrostat_bvp::{Correction, Determinant, LANES, Mesh, each};
 
 use super::configuration::SpatialConfiguration;
 use super::engine::{Engine, State, turn_of};
-use super::equations::{L, M, N, Q};
-use super::path::{largest_way, name_limit};
+use super::equations::{Guess, L, M, N, Q};
 use super::rotation::dot;
 use crate::statics::border::NewtonStep;
 use crate::statics::engine::Trouble;
 use crate::statics::equations::StrokeControl;
+use crate::statics::limit::limit_at;
 use crate::statics::path::traced::{Along, Traced, Turn};
 use crate::statics::phase::Phase;
 use crate::statics::stability::Stability;
@@ -45,7 +45,7 @@ impl Traced for Engine {
     }
 
     fn largest_turn_since(&self, before: &Vec<[f64; N]>) -> f64 {
-        largest_way(before, &self.solution)
+        largest_turn_between(before, &self.solution)
     }
 
     fn turns(&self, change: &Self::Change) -> Vec<Turn> {
@@ -150,7 +150,16 @@ impl Traced for Engine {
     }
 
     fn name_limit(&mut self, trouble: Option<&Trouble>) -> (VerdictKind, Option<f64>) {
-        name_limit(self, trouble)
+        let mut near = self.nearest_limits();
+        let failed = trouble.and_then(Trouble::failed_section);
+        if let Some(failure) = &failed {
+            near.note_failure(failure);
+        }
+        let (kind, s) = match limit_at(near, self.equations.volume) {
+            Some((kind, s)) => (kind, Some(s)),
+            None => (VerdictKind::NotFound, failed.map(|f| f.s)),
+        };
+        (kind, s.map(|s| s * self.equations.units.length))
     }
 
     fn held(&self) -> Option<&StrokeControl> {
@@ -191,4 +200,16 @@ impl Traced for Engine {
     fn stability(shape: &SpatialConfiguration) -> Option<Stability> {
         shape.stability()
     }
+}
+
+/// The largest turn (rad) of a node from where it was; 0 on another mesh.
+pub(super) fn largest_turn_between(before: &[[f64; N]], solution: &Guess) -> f64 {
+    if before.len() != solution.nodes.len() {
+        return 0.0;
+    }
+    let turns = before.iter().zip(&solution.nodes).map(|(old, new)| {
+        let by = turn_of(old, &each(|k| new[k] - old[k]));
+        dot(&by, &by).sqrt()
+    });
+    turns.fold(0.0, f64::max)
 }

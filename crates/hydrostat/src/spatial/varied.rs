@@ -43,6 +43,15 @@ impl Equations {
         self.set_range_fraction(0.0);
     }
 
+    /// Turns the base about `axis` by a number of turns, where it stays while loads rise.
+    pub(super) fn stand_turned(&mut self, axis: Vector<f64>, turns: f64) {
+        self.turn_base(axis);
+        self.set_range_fraction(turns);
+        let base = self.base;
+        self.hold();
+        self.base = base;
+    }
+
     /// Lets nothing vary: the base is where the arm has it.
     pub(super) fn hold(&mut self) {
         self.turning = None;

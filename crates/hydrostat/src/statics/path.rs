@@ -8,6 +8,7 @@ mod events;
 mod limits;
 mod load_stepping;
 pub(crate) mod loaded;
+mod no_equilibrium;
 mod points;
 mod range;
 #[cfg(test)]
@@ -18,10 +19,10 @@ mod trace;
 pub(crate) mod traced;
 mod turns;
 
-pub(crate) use beside::follow_tensions;
 pub use circle::{Equilibria, Equilibrium};
 pub(crate) use limits::name_limit;
 pub(crate) use load_stepping::{Stopped, follow, follow_on, follow_range, follow_strokes};
+pub(crate) use no_equilibrium::{no_equilibrium, no_equilibrium_in_range};
 pub(crate) use points::has_a_path;
 pub use points::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
 pub(crate) use step_control::{LOOSE, PathSummary, StepControl};

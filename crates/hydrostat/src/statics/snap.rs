@@ -1,10 +1,11 @@
 //! Snaps: jumps that an arm makes as its loads grow slowly, where its path of equilibria turns back and then leads on
 //! (section 7 of `docs/model.md`).
 
-use crate::statics::shape::{Pose as _, Tip};
+use crate::statics::shape::{Pose, Tip};
 use crate::statics::verdict::Phase;
 
-/// A jump from a limit point of the path to the next stable part of the same curve at the same loads.
+/// A jump from a limit point of the path to the next stable part of the same curve at the same loads, in the plane or,
+/// with [`crate::SpatialTip`], in space.
 ///
 /// ```
 /// use hydrostat::{Phase, Snap, Tip};
@@ -14,18 +15,18 @@ use crate::statics::verdict::Phase;
 /// assert!((snap.distance() - 0.03).abs() < 1e-12 && snap.angle() == 0.2);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Snap {
+pub struct Snap<T = Tip> {
     /// In which phase of loading.
     pub phase: Phase,
     /// The fraction of the phase's loads at the limit point, 0 to 1.
     pub load_fraction: f64,
     /// The tip at the limit point.
-    pub before: Tip,
+    pub before: T,
     /// The tip where the arm lands.
-    pub after: Tip,
+    pub after: T,
 }
 
-impl Snap {
+impl<T: Pose> Snap<T> {
     /// How far the tip jumps, m.
     pub fn distance(&self) -> f64 {
         self.before.distance_to(&self.after)
@@ -38,14 +39,10 @@ impl Snap {
 
     /// What happens, in a phrase with its numbers.
     pub fn message(&self) -> String {
-        message(self.phase, self.load_fraction, self.distance(), self.angle())
+        let (millimetres, degrees) = (1e3 * self.distance(), self.angle().to_degrees());
+        let load = self.phase.load_at(self.load_fraction);
+        format!("the arm snaps at {load}: its tip jumps by {millimetres:.3} mm and turns by {degrees:.3} deg")
     }
-}
-
-/// What happens at a snap that moves the tip by a distance (m) and turns it by an angle (rad).
-pub(crate) fn message(phase: Phase, load_fraction: f64, distance: f64, angle: f64) -> String {
-    let (load, millimetres, degrees) = (phase.load_at(load_fraction), 1e3 * distance, angle.to_degrees());
-    format!("the arm snaps at {load}: its tip jumps by {millimetres:.3} mm and turns by {degrees:.3} deg")
 }
 
 /// How far the tip of an arm may jump at a snap on the way to its loads for the shape after it to be an answer. An arm
@@ -71,12 +68,7 @@ impl SnapBounds {
     pub const NONE: Self = Self { distance: f64::INFINITY, angle: f64::INFINITY };
 
     /// Whether a snap of an arm of this length (m) is within the bounds.
-    pub fn allow(&self, snap: &Snap, length: f64) -> bool {
-        self.hold(snap.distance(), snap.angle(), length)
-    }
-
-    /// Whether a distance (m) and an angle (rad) are within the bounds for an arm of this length (m).
-    pub(crate) fn hold(&self, distance: f64, angle: f64, length: f64) -> bool {
-        distance <= self.distance * length && angle <= self.angle
+    pub fn allow<T: Pose>(&self, snap: &Snap<T>, length: f64) -> bool {
+        snap.distance() <= self.distance * length && snap.angle() <= self.angle
     }
 }

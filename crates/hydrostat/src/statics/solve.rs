@@ -2,12 +2,14 @@
 
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::configuration::{Configuration, Statistics, Tip};
-use crate::statics::engine::{Engine, State, Trouble, WORK};
-use crate::statics::path::{LOOSE, PathSummary, StepControl, Stopped, follow, follow_on, follow_range};
+use crate::statics::engine::{Engine, Trouble, WORK};
+use crate::statics::path::{
+    LOOSE, PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium, no_equilibrium_in_range,
+};
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::snap::SnapBounds;
 use crate::statics::stability::Stability;
-use crate::statics::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
+use crate::statics::verdict::{Phase, SolveError, Verdict, VerdictKind};
 
 /// Tips (over L) that are this near belong to the same shape on two meshes.
 pub(crate) const SAME: f64 = 1e-6;
@@ -381,18 +383,15 @@ impl Solver {
         self.forget();
         self.engine.allow(WORK);
         let travelled = follow_range(&mut self.engine, from, StepControl::BRISK, self.options.snaps);
-        let solved =
-            travelled.map_err(|at| self.stopped_in_range(at)).and_then(|travelled| self.end_of_path(travelled));
+        let solved = match travelled {
+            Ok(travelled) => self.end_of_path(travelled),
+            Err(at) => {
+                let no = no_equilibrium_in_range(&mut self.engine, at, self.options.tol);
+                Err(SolveError::NoEquilibrium(no.into()))
+            }
+        };
         self.engine.lift_limit();
         solved
-    }
-
-    /// The verdict on a range that was not followed to its end, with the last good point, which the engine holds.
-    fn stopped_in_range(&mut self, stopped: Stopped) -> SolveError {
-        let Stopped { verdict, snaps, after_snap, at_full_loads } = stopped;
-        let last_good = self.engine.measure().ok().and_then(|()| self.read(LOOSE, PathSummary::default()).ok());
-        let [after_snap, at_full_loads] = [after_snap, at_full_loads].map(|state| self.read_state(state?.as_ref()));
-        SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good, snaps, after_snap, at_full_loads }))
     }
 
     /// The answer at the end of a path, which the engine is at.
@@ -448,40 +447,7 @@ impl Solver {
 
     /// The verdict with the last good point, which the engine holds, settled and read.
     pub(crate) fn no_equilibrium(&mut self, stopped: impl Into<Stopped>) -> SolveError {
-        let Stopped { verdict, snaps, after_snap, at_full_loads } = stopped.into();
-        let kept = self.engine.state();
-        // Right at a limit the tangent is singular, and a finer mesh, or a place between stations, may
-        // already be past it.
-        let mut last_good = None;
-        for back in [1e-9, 1e-5, 1e-4, 1e-3, 5e-3] {
-            self.engine.restore(&kept);
-            // Friction is that of the shape, whose turns belong to it.
-            if verdict.phase != Phase::Friction {
-                self.engine.set_phase(verdict.phase, verdict.load_fraction * (1.0 - back));
-            }
-            let settled = self.engine.settle(self.options.tol.max(1e-6), First::Warm);
-            let moved = (self.engine.tip[0] - kept.tip[0]).hypot(self.engine.tip[1] - kept.tip[1]);
-            // Where sections give way, arms are many times as long as they were.
-            let size = kept.tip[0].hypot(kept.tip[1]).max(1.0);
-            last_good =
-                settled.ok().filter(|_| moved < 0.05 * size).and_then(|e| self.read(e, PathSummary::default()).ok());
-            if last_good.is_some() {
-                break;
-            }
-        }
-        if last_good.is_none() {
-            self.engine.restore(&kept);
-            last_good = self.engine.measure().ok().and_then(|()| self.read(LOOSE, PathSummary::default()).ok());
-        }
-        let [after_snap, at_full_loads] = [after_snap, at_full_loads].map(|state| self.read_state(state?.as_ref()));
-        SolveError::NoEquilibrium(Box::new(NoEquilibrium { verdict, last_good, snaps, after_snap, at_full_loads }))
-    }
-
-    /// The shape of a state that the path came through.
-    fn read_state(&mut self, state: &State) -> Option<Configuration> {
-        self.engine.restore(state);
-        let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
-        self.read(estimate, PathSummary::default()).ok()
+        SolveError::NoEquilibrium(no_equilibrium(&mut self.engine, stopped.into(), self.options.tol).into())
     }
 
     pub(crate) fn read(&mut self, estimate: f64, travelled: PathSummary) -> Result<Configuration, Trouble> {

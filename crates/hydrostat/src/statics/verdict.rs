@@ -1,6 +1,6 @@
 //! Why there is no answer, with numbers.
 
-use crate::statics::configuration::Configuration;
+use crate::statics::configuration::{Configuration, Tip};
 use crate::statics::snap::Snap;
 
 pub use crate::statics::phase::Phase;
@@ -128,9 +128,9 @@ impl Verdict {
     }
 }
 
-/// Why a solve gives no configuration at the requested loads.
+/// Why a solve gives no configuration at the requested loads, in the plane or in space.
 #[derive(Debug, Clone, thiserror::Error)]
-pub enum SolveError {
+pub enum SolveError<C = Configuration, T = Tip> {
     /// The numbers do not make an arm.
     #[error(transparent)]
     Arm(#[from] crate::rod::arm::ArmError),
@@ -146,24 +146,24 @@ pub enum SolveError {
     },
     /// There is no such equilibrium, or it was not found.
     #[error("{}", .0.verdict.message())]
-    NoEquilibrium(Box<NoEquilibrium>),
+    NoEquilibrium(Box<NoEquilibrium<C, T>>),
 }
 
 /// A verdict with the last configuration before it.
 #[derive(Debug, Clone)]
-pub struct NoEquilibrium {
+pub struct NoEquilibrium<C = Configuration, T = Tip> {
     /// Why.
     pub verdict: Verdict,
     /// The last good solution on the way, its `arm` carrying the loads that it balances.
     /// `None` only when not even the first step off the unloaded arm could be solved, or where a section at its limit,
     /// at an end of the arm, lets no shape be read out.
-    pub last_good: Option<Configuration>,
+    pub last_good: Option<C>,
     /// The snaps that the arm makes on the way, the last of them the one that goes too far where the verdict is
     /// [`VerdictKind::LimitPoint`] and the path leads on beyond it.
-    pub snaps: Vec<Snap>,
+    pub snaps: Vec<Snap<T>>,
     /// With such a verdict: the shape that the arm snaps to, at the loads of the limit point.
-    pub after_snap: Option<Configuration>,
+    pub after_snap: Option<C>,
     /// With such a verdict: the shape at the full loads, if the path continues to them. [`crate::Options::snaps`]
     /// without bounds gives it as an answer.
-    pub at_full_loads: Option<Configuration>,
+    pub at_full_loads: Option<C>,
 }

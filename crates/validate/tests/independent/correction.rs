@@ -68,11 +68,20 @@ struct Newton<'a, 'b> {
 
 /// The equilibrium beside an answer, on as many elements as it takes to know it well against the answer's own estimate.
 pub(crate) fn equilibrium_beside(model: &Model, solved: &Configuration) -> Result<Correction, NoCorrection> {
+    equilibrium_near(model, solved, solved)
+}
+
+/// [`equilibrium_beside`], looked for from the shape of another answer.
+pub(crate) fn equilibrium_near(
+    model: &Model,
+    from: &Configuration,
+    solved: &Configuration,
+) -> Result<Correction, NoCorrection> {
     let points = Points::new(POINTS);
     let tip = solved.tip();
-    let mut out = correct(&mut Shape::read(model, &points, solved, 1))?;
+    let mut out = correct(&mut Shape::read(model, &points, from, 1))?;
     for parts in [2, 4] {
-        let finer = correct(&mut Shape::read(model, &points, solved, parts))?;
+        let finer = correct(&mut Shape::read(model, &points, from, parts))?;
         let by = (finer.tip[0] - out.tip[0]).hypot(finer.tip[1] - out.tip[1]);
         out = Correction { doubt: finer.doubt.max(by), ..finer };
         let off = (out.tip[0] - tip.x).hypot(out.tip[1] - tip.y);

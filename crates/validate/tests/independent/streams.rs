@@ -4,12 +4,13 @@ use hydrostat::{Arm, Configuration, FlowLaw, LayerMean, Options, SolveError, Sol
 use hydrostat_files::ArmFile;
 use rayon::prelude::*;
 
-use crate::correction::correct;
+use crate::correction::equilibrium_near;
 use crate::mechanics::Model;
-use crate::polynomials::Points;
-use crate::shape::{POINTS, Shape};
 
 const SPEEDS: i32 = 200;
+
+/// What the equilibrium followed here may be off by beside what is known of it, over L.
+const FINE: f64 = 1e-8;
 
 /// From 0.001 to 2 m/s, evenly by order of magnitude.
 fn speed(k: i32) -> f64 {
@@ -44,8 +45,7 @@ fn wrong(rod: &Arm) -> Vec<String> {
     };
     let solved: Vec<Result<Configuration, SolveError>> =
         (0..SPEEDS).into_par_iter().map(|k| Solver::new(&at(k), Options::default())?.solve()).collect();
-    let points = Points::new(POINTS);
-    let (mut out, mut not_followed) = (Vec::new(), 0);
+    let (mut out, mut not_followed, mut doubted) = (Vec::new(), 0, 0);
     for (k, answer) in (0..SPEEDS).zip(&solved) {
         let name = format!("{}, {:.5} m/s", rod.name, speed(k));
         match answer {
@@ -60,12 +60,16 @@ fn wrong(rod: &Arm) -> Vec<String> {
                     out.push(format!("{name}: {moved:.3} L from the tip at the speed before"));
                 }
                 let model = Model::new(&own.arm);
-                match correct(&mut Shape::read(&model, &points, before, 1)) {
+                match equilibrium_near(&model, before, own) {
                     Ok(beside) => {
                         let off = (beside.tip[0] - tip.x).hypot(beside.tip[1] - tip.y);
-                        if off > 3.0 * own.error_estimate + 1e-5 * rod.length {
-                            out.push(format!("{name}: {:.1e} L from the equilibrium followed here", off / rod.length));
+                        if off > 3.0 * own.error_estimate + 2.0 * beside.doubt + FINE * rod.length {
+                            let [off, doubt] = [off, beside.doubt].map(|metres| metres / rod.length);
+                            out.push(format!(
+                                "{name}: {off:.1e} L from the equilibrium followed here, known to {doubt:.1e} L"
+                            ));
                         }
+                        doubted += usize::from(beside.doubt > 1e-5 * rod.length);
                     }
                     // The kinks move too far from speed to speed.
                     Err(_) => not_followed += 1,
@@ -80,6 +84,7 @@ fn wrong(rod: &Arm) -> Vec<String> {
         }
     }
     assert!(not_followed < SPEEDS / 5, "{}: {not_followed} were not followed", rod.name);
+    assert!(doubted < 10, "{}: {doubted} are known to no more than 1e-5 L", rod.name);
     out
 }
 
@@ -135,13 +140,11 @@ fn a_blade_bends_steadily_with_the_speed_by_the_momentum_law() {
 }
 
 #[test]
-#[ignore = "none is refused; 3 of 1600 are 1.9e-5 to 2.3e-5 L from the equilibrium followed here, by 1e-5 allowed"]
 fn rods_bend_steadily_with_the_speed() {
     none_wrong(&rods());
 }
 
 #[test]
-#[ignore = "none is refused; 11 of 800 are 1.1e-5 to 3.5e-3 L from the equilibrium followed here, by 1e-5 allowed"]
 fn rods_bend_steadily_with_the_speed_by_the_other_mean() {
     let rods: Vec<Arm> = rods()
         .into_iter()

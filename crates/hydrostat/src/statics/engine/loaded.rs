@@ -1,16 +1,31 @@
 //! The engine of the plane, as paths lead to the loads of its arm.
 
 use super::discrete::Engine;
+use super::trouble::Trouble;
 use crate::statics::dimensions::Guess;
 use crate::statics::path::loaded::Loaded;
 use crate::statics::phase::Phase;
 use crate::statics::shape::Tip;
-use crate::statics::snap::Snap;
 
 impl Loaded for Engine {
     type Tip = Tip;
-    type Snap = Snap;
     type Guess = Guess;
+
+    fn acts_in(&self, phase: Phase) -> bool {
+        match phase {
+            Phase::Loads => self.equations.has_loads(),
+            Phase::Tension => self.equations.has_tension(),
+            Phase::Stroke | Phase::Friction => false,
+        }
+    }
+
+    fn start_unloaded(&mut self) {
+        self.start_unloaded(10);
+    }
+
+    fn hurry(&mut self, hurry: bool) {
+        self.in_a_hurry = hurry;
+    }
 
     fn guess(&self) -> Guess {
         self.solution.clone()
@@ -29,12 +44,8 @@ impl Loaded for Engine {
         [x, y, 0.0]
     }
 
-    fn snap(phase: Phase, load_fraction: f64, before: Tip, after: Tip) -> Snap {
-        Snap { phase, load_fraction, before, after }
-    }
-
-    fn jump(snap: &Snap) -> [f64; 2] {
-        [snap.distance(), snap.angle()]
+    fn measure(&mut self) -> Result<(), Trouble> {
+        self.measure().map_err(Trouble::Section)
     }
 
     fn spent(&self) -> Option<usize> {

@@ -9,7 +9,7 @@ use super::stepper::{Fraction, Point, StepOutcome, Stepper};
 use super::traced::Along;
 use crate::statics::engine::{Engine, Trouble, roughly};
 use crate::statics::refinement::First;
-use crate::statics::snap::SnapBounds;
+use crate::statics::snap::{Snap, SnapBounds};
 use crate::statics::stability::Stability;
 use crate::statics::verdict::{Phase, Verdict, VerdictKind};
 
@@ -32,7 +32,7 @@ const SHARP_STEP: f64 = 1e-3;
 pub(crate) struct Stopped<E: Loaded = Engine> {
     pub(crate) verdict: Verdict,
     /// The snaps on the way, with the one that is refused.
-    pub(crate) snaps: Vec<E::Snap>,
+    pub(crate) snaps: Vec<Snap<E::Tip>>,
     /// Where the arm lands after the refused snap.
     pub(crate) after_snap: Option<Box<E::State>>,
     /// The end of the path beyond that snap, at whole loads.
@@ -54,70 +54,72 @@ struct Refused<E: Loaded> {
 }
 
 /// Follows both phases to whole loads, or to a verdict, with the engine at the last good point.
-pub(crate) fn follow(engine: &mut Engine, control: StepControl, bounds: SnapBounds) -> Result<PathSummary, Stopped> {
-    let mut outcome = follow_at(engine, control, bounds, control.accuracy >= LOOSE);
+pub(crate) fn follow<E: Loaded>(
+    engine: &mut E,
+    control: StepControl,
+    bounds: SnapBounds,
+) -> Result<PathSummary<E::Tip>, Stopped<E>> {
+    let hurry = control.accuracy >= LOOSE;
+    let mut outcome = follow_at(engine, control, bounds, hurry);
     if let Err(Stopped { verdict, .. }) = &outcome
-        && engine.in_a_hurry
+        && hurry
         && verdict.spent.is_none()
         && (verdict.kind == VerdictKind::NotFound || verdict.load_fraction < HASTE)
     {
         // Nothing that has physics behind it: it may be the haste.
         outcome = follow_at(engine, control, bounds, false);
     }
-    engine.in_a_hurry = false;
+    engine.hurry(false);
     outcome
 }
 
 /// [`follow`], in a hurry or with care.
-fn follow_at(
-    engine: &mut Engine,
+fn follow_at<E: Loaded>(
+    engine: &mut E,
     mut control: StepControl,
     bounds: SnapBounds,
     hurry: bool,
-) -> Result<PathSummary, Stopped> {
+) -> Result<PathSummary<E::Tip>, Stopped<E>> {
     if hurry {
         control.longest *= 1.5;
     }
     let mut way = Way::new(bounds);
-    engine.in_a_hurry = hurry;
-    engine.set_phase(Phase::Loads, START);
-    engine.start_unloaded(10);
+    engine.hurry(hurry);
+    engine.set(Along::Phase(Phase::Loads), START);
+    engine.start_unloaded();
     for phase in [Phase::Loads, Phase::Tension] {
-        let moves = match phase {
-            Phase::Loads => engine.equations.has_loads(),
-            Phase::Tension => engine.equations.has_tension(),
-            Phase::Stroke | Phase::Friction => false,
-        };
-        if moves && let Err(verdict) = way.along(engine, phase, control) {
+        if engine.acts_in(phase)
+            && let Err(verdict) = way.along(engine, phase, control)
+        {
             return Err(way.stopped(engine, verdict));
         }
-        engine.set_phase(phase, 1.0);
+        engine.set(Along::Phase(phase), 1.0);
     }
     way.whole(engine)
 }
 
 /// Follows the path on to whole loads, or to a verdict, from the engine's equilibrium at the fraction `from` of
 /// `phase`.
-pub(crate) fn follow_on(
-    engine: &mut Engine,
+pub(crate) fn follow_on<E: Loaded>(
+    engine: &mut E,
     (phase, from): (Phase, f64),
     control: StepControl,
     bounds: SnapBounds,
-) -> Result<PathSummary, Stopped> {
+) -> Result<PathSummary<E::Tip>, Stopped<E>> {
     let mut way = Way::new(bounds);
     if from < 1.0 {
         let outcome = way.along_from(engine, phase, Some(from), control);
-        engine.equations.let_cables_switch(true);
+        engine.let_cables_switch(true);
         if let Err(verdict) = outcome {
             return Err(way.stopped(engine, verdict));
         }
     }
-    engine.set_phase(phase, 1.0);
-    if phase == Phase::Loads && engine.equations.has_tension() {
+    engine.set(Along::Phase(phase), 1.0);
+    if phase == Phase::Loads && engine.acts_in(Phase::Tension) {
         if let Err(verdict) = way.along(engine, Phase::Tension, control) {
             return Err(way.stopped(engine, verdict));
         }
-        engine.set_phase(Phase::Tension, 1.0);
+        engine.set(Along::Phase(Phase::Tension), 1.0);
     }
     way.whole(engine)
 }
@@ -130,7 +132,7 @@ pub(crate) fn follow_range<E: Loaded>(
     [from, lowest]: [f64; 2],
     control: StepControl,
     bounds: SnapBounds,
-) -> Result<PathSummary<E::Snap>, Stopped<E>> {
+) -> Result<PathSummary<E::Tip>, Stopped<E>> {
     let mut way = Way::new(bounds);
     let stepper = Stepper::new(engine, Along::Range, [f64::NEG_INFINITY, 1.0]);
     let outcome = Ramp { stepper, phase: Phase::Tension, from: Some(from), lowest, way: &mut way, turned_back: None }
@@ -144,26 +146,25 @@ pub(crate) fn follow_range<E: Loaded>(
 }
 
 /// Follows the strokes to those commanded, or to a verdict, from the engine's equilibrium without them.
-pub(crate) fn follow_strokes(
-    engine: &mut Engine,
+pub(crate) fn follow_strokes<E: Loaded>(
+    engine: &mut E,
     control: StepControl,
     bounds: SnapBounds,
-) -> Result<PathSummary, Stopped> {
-    let phase = Phase::Stroke;
+) -> Result<PathSummary<E::Tip>, Stopped<E>> {
     let mut way = Way::new(bounds);
-    let outcome = way.along(engine, phase, control);
-    engine.equations.let_cables_switch(true);
+    let outcome = way.along(engine, Phase::Stroke, control);
+    engine.let_cables_switch(true);
     if let Err(verdict) = outcome {
         return Err(way.stopped(engine, verdict));
     }
-    engine.set_phase(phase, 1.0);
+    engine.set(Along::Phase(Phase::Stroke), 1.0);
     way.whole(engine)
 }
 
 /// What the path has met so far.
 struct Way<E: Loaded> {
     bounds: SnapBounds,
-    travelled: PathSummary<E::Snap>,
+    travelled: PathSummary<E::Tip>,
     refused: Option<Refused<E>>,
 }
 
@@ -193,7 +194,7 @@ impl<E: Loaded> Way<E> {
     }
 
     /// The end of the path at whole loads.
-    fn whole(self, engine: &mut E) -> Result<PathSummary<E::Snap>, Stopped<E>> {
+    fn whole(self, engine: &mut E) -> Result<PathSummary<E::Tip>, Stopped<E>> {
         let Some(refused) = self.refused else { return Ok(self.travelled) };
         let end = engine.state();
         engine.restore(&refused.before);
@@ -374,8 +375,7 @@ impl<E: Loaded> Ramp<'_, '_, E> {
         if self.way.refused.is_some() {
             return true;
         }
-        let [distance, angle] = E::jump(&snap);
-        let holds = self.way.bounds.hold(distance, angle, self.stepper.engine.arm().length);
+        let holds = self.way.bounds.allow(&snap, self.stepper.engine.arm().length);
         self.way.travelled.snaps.push(snap);
         if !holds {
             let verdict = self.end(VerdictKind::LimitPoint, limit.fraction, None);
@@ -385,13 +385,14 @@ impl<E: Loaded> Ramp<'_, '_, E> {
     }
 
     /// The snap from a limit point to the engine's shape, and whether that is stable.
-    fn landing(&mut self, limit: &TurnedBack<E>) -> Option<(E::Snap, bool)> {
+    fn landing(&mut self, limit: &TurnedBack<E>) -> Option<(Snap<E::Tip>, bool)> {
         let engine = &mut *self.stepper.engine;
         let estimate = engine.settle(SHARP_TOLERANCE, First::Warm).ok()?;
         let (before, after) = (limit.tip?, engine.tip()?);
         let read = engine.read(estimate)?;
         let stable = matches!(E::stability(&read), Some(Stability::Stable) | None);
-        Some((E::snap(self.phase, limit.fraction, before, after), stable))
+        let snap = Snap { phase: self.phase, load_fraction: limit.fraction, before, after };
+        Some((snap, stable))
     }
 
     /// Why a path that turned back has not come past the limit point again; the engine is at that.

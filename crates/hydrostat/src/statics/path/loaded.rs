@@ -1,6 +1,7 @@
 //! What paths to the loads of an arm ask of an engine beside what all paths ask for.
 
 use super::traced::Traced;
+use crate::statics::engine::Trouble;
 use crate::statics::phase::Phase;
 use crate::statics::shape::Pose;
 
@@ -8,20 +9,23 @@ use crate::statics::shape::Pose;
 pub(crate) trait Loaded: Traced {
     /// Where the tip is.
     type Tip: Pose;
-    /// A jump from a limit point.
-    type Snap: Clone;
     /// The unknowns of a solution.
     type Guess: Clone;
 
+    /// Whether something acts in a phase of loading.
+    fn acts_in(&self, phase: Phase) -> bool;
+    /// Takes the shape of the unloaded arm.
+    fn start_unloaded(&mut self);
+    /// Says whether a path only has to lead to its end.
+    fn hurry(&mut self, hurry: bool);
     fn guess(&self) -> Self::Guess;
     fn take_guess(&mut self, guess: &Self::Guess);
     /// The tip at the solution; `None` where the section there is at its limit.
     fn tip(&self) -> Option<Self::Tip>;
     /// The place of the tip from the base at the last round, over L.
     fn tip_place(&self) -> [f64; 3];
-    fn snap(phase: Phase, load_fraction: f64, before: Self::Tip, after: Self::Tip) -> Self::Snap;
-    /// How far (m) the tip jumps, and by how much (rad) it turns.
-    fn jump(snap: &Self::Snap) -> [f64; 2];
+    /// Finds the place of the tip, and what leads to it, of a solution that Newton left on another mesh.
+    fn measure(&mut self) -> Result<(), Trouble>;
     /// The work that was done, where none is left to be done.
     fn spent(&self) -> Option<usize>;
     /// Whether the arm may lie in the stream with angles whose signs decide where it goes.

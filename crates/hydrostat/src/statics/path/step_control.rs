@@ -1,5 +1,6 @@
 //! How finely paths are followed, and what they meet.
 
+use crate::statics::shape::Tip;
 use crate::statics::snap::Snap;
 
 /// Fractions start here rather than at zero, where a tangent by the fraction is not defined. What an arm
@@ -48,17 +49,17 @@ impl StepControl {
 
 /// What a path met.
 #[derive(Debug, Clone)]
-pub(crate) struct PathSummary<S = Snap> {
+pub(crate) struct PathSummary<T = Tip> {
     pub(crate) steps: usize,
     /// Times the determinant changed sign while the load went on rising: bifurcations passed since the last snap.
     pub(crate) bifurcations: usize,
     /// The snaps that the arm makes on its way.
-    pub(crate) snaps: Vec<S>,
+    pub(crate) snaps: Vec<Snap<T>>,
     /// Whether it ended on a branch that nothing but the load moves along.
     pub(crate) symmetric: bool,
 }
 
-impl<S> Default for PathSummary<S> {
+impl<T> Default for PathSummary<T> {
     fn default() -> Self {
         Self { steps: 0, bifurcations: 0, snaps: Vec::new(), symmetric: false }
     }

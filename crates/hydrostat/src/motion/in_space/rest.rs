@@ -1,112 +1,20 @@
-//! What comes after a snap in space, see [`crate::motion::after_snap`].
+//! Where an arm in space comes to rest that is let go, see [`crate::motion::landing`].
 
 use hydrostat_bvp::{Lanes, Real, Solution, Stage, each};
 
 use super::equations::{S, Shape, Spatial, SpatialMoving};
 use super::start::with_places;
-use crate::motion::after_snap::{AfterSnap, AfterSnapError};
 use crate::motion::error::MotionError;
 use crate::motion::inputs::Inputs;
-use crate::motion::landing::{Lands, MOST_SNAPS, PAST, Rest};
+use crate::motion::landing::{Lands, Rest};
 use crate::motion::resting::{self, Candidate, ELEMENTS, Restless, TOLERANCE, is_damped};
 use crate::motion::start::{check, force_unit, mesh_at};
 use crate::motion::stepper::Stepper;
 use crate::rod::arm::Arm;
 use crate::spatial::engine::Engine;
 use crate::spatial::equations::{FORCE, Guess, L, N};
-use crate::spatial::path::slide_to_limit;
-use crate::spatial::{
-    NoSpatialEquilibrium, SpatialConfiguration, SpatialError, SpatialSnap, SpatialSolver, SpatialTip,
-};
-use crate::statics::snap::SnapBounds;
-use crate::statics::solve::Options;
+use crate::spatial::{SpatialConfiguration, SpatialSnap, SpatialTip};
 use crate::statics::stability::Stability;
-use crate::statics::verdict::VerdictKind;
-
-/// A snap in space whose motion was followed until the arm rested.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SpatialSnapMotion {
-    /// At which load, from where, and where the arm rests.
-    pub snap: SpatialSnap,
-    /// How long it takes, s, see [`SnapMotion::duration`](crate::SnapMotion::duration).
-    pub duration: f64,
-}
-
-impl SpatialSnapMotion {
-    /// What happens, in a phrase with its numbers.
-    pub fn message(&self) -> String {
-        format!("{}; it rests after {:.3} s", self.snap.message(), self.duration)
-    }
-}
-
-impl Arm {
-    /// The equilibrium in space in which this arm rests after its loads have grown slowly from nothing, whatever snaps
-    /// it makes on the way, as [`Arm::solve_after_snap`] has it in the plane. Cables have tensions: commanded strokes
-    /// are refused where the arm snaps.
-    ///
-    /// # Errors
-    /// [`AfterSnapError`]. Arms that need no motion need nothing to damp it.
-    pub fn solve_after_snap_in_space(
-        &self,
-        tol: f64,
-    ) -> Result<AfterSnap<SpatialConfiguration, SpatialSnapMotion>, AfterSnapError<SpatialError>> {
-        let snaps = SnapBounds { distance: 0.0, angle: 0.0 };
-        let mut solver = SpatialSolver::new(self, Options { tol, snaps }).map_err(AfterSnapError::Solve)?;
-        let mut motions: Vec<SpatialSnapMotion> = Vec::new();
-        let mut solved = solver.solve();
-        loop {
-            let before = |own: &mut Vec<SpatialSnap>| drop(own.splice(0..0, motions.iter().map(|motion| motion.snap)));
-            match solved {
-                Ok(mut configuration) => {
-                    before(&mut configuration.snaps);
-                    return Ok(AfterSnap { configuration, snaps: motions });
-                }
-                Err(SpatialError::NoEquilibrium(no)) if snaps_at(&no) && motions.len() < MOST_SNAPS => {
-                    let (motion, past) = follow(&mut solver, &no, tol)?;
-                    motions.push(motion);
-                    solved = solver.solve_on((no.verdict.phase, past));
-                }
-                Err(SpatialError::NoEquilibrium(mut no)) => {
-                    before(&mut no.snaps);
-                    return Err(AfterSnapError::Solve(SpatialError::NoEquilibrium(no)));
-                }
-                Err(error) => return Err(AfterSnapError::Solve(error)),
-            }
-        }
-    }
-}
-
-/// Whether a motion begins where the path ended.
-fn snaps_at(no: &NoSpatialEquilibrium) -> bool {
-    no.verdict.kind == VerdictKind::LimitPoint && no.last_good.is_some()
-}
-
-/// The motion from the limit point at which the path ended, with the fraction of the loads that it was at. The solver's
-/// engine is left where the arm rests.
-fn follow(
-    solver: &mut SpatialSolver,
-    no: &NoSpatialEquilibrium,
-    tol: f64,
-) -> Result<(SpatialSnapMotion, f64), AfterSnapError<SpatialError>> {
-    let phase = no.verdict.phase;
-    let Some(last_good) = &no.last_good else {
-        return Err(AfterSnapError::Solve(SpatialError::NoEquilibrium(Box::new(no.clone()))));
-    };
-    let engine = solver.engine_mut();
-    engine.take_shape_of(last_good);
-    let limit = slide_to_limit(engine, phase).and_then(|fraction| Some((fraction, engine.read_tip()?)));
-    if limit.is_none() {
-        engine.take_shape_of(last_good);
-    }
-    let (load_fraction, before) = limit.unwrap_or((no.verdict.load_fraction, last_good.tip()));
-    let of = |restless| AfterSnapError::of(restless, phase, load_fraction);
-    let past = (load_fraction + PAST).min(1.0);
-    engine.equations.set_phase(phase, past);
-    engine.can_rest().map_err(|error| of(Restless::Motion(error)))?;
-    let Rest { configuration, time: duration } = engine.come_to_rest(tol).map_err(of)?;
-    let snap = SpatialSnap { phase, load_fraction, before, after: configuration.tip() };
-    Ok((SpatialSnapMotion { snap, duration }, past))
-}
 
 impl Lands for Engine {
     fn take(&mut self, shape: &SpatialConfiguration) {
@@ -115,6 +23,10 @@ impl Lands for Engine {
 
     fn tip_of(shape: &SpatialConfiguration) -> SpatialTip {
         shape.tip()
+    }
+
+    fn snaps_of(shape: &mut SpatialConfiguration) -> &mut Vec<SpatialSnap> {
+        &mut shape.snaps
     }
 
     fn can_rest(&self) -> Result<(), MotionError> {
