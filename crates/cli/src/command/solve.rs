@@ -1,14 +1,13 @@
 //! `hydrostat solve`: one arm.
 
 use hydrostat::{
-    AfterSnapError, Arm, Configuration, NoEquilibrium, Options, Pose, SnapMotion, SolveError, Solver, Stability,
-    VerdictKind,
+    AfterSnapError, Arm, Configuration, NoEquilibrium, Options, SnapMotion, SolveError, Solver, Stability, VerdictKind,
 };
 use hydrostat_figures::{arm_figure, last_good_note};
 use hydrostat_files::{FailureDocument, Note, Others, SolutionDocument, stations_csv};
 
 use super::slip::slip;
-use super::summary::summary;
+use super::summary::{beyond, summary};
 use super::{Advised, wrong_option};
 use crate::args::{Format, SolveArgs};
 use crate::output;

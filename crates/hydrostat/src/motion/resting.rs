@@ -103,12 +103,12 @@ impl Track {
 
     /// Places at the fraction `x` of the step (s) after step `k`, by cubic interpolation.
     fn between(&self, k: usize, step: f64, x: f64) -> Vec<[f64; 3]> {
-        let w = cubic(x);
-        let nodes = self.places[k].iter().zip(&self.rates[k]).zip(self.places[k + 1].iter().zip(&self.rates[k + 1]));
-        let place = |((p, u), (q, v)): ((&[f64; 3], &[f64; 3]), (&[f64; 3], &[f64; 3]))| {
-            [0, 1, 2].map(|a| w[0] * p[a] + w[1] * step * u[a] + w[2] * q[a] + w[3] * step * v[a])
+        let [p, u, q, v] = cubic(x);
+        let node = |i: usize| {
+            let [from, to] = [k, k + 1].map(|at| (self.places[at][i], self.rates[at][i]));
+            [0, 1, 2].map(|a| p * from.0[a] + q * to.0[a] + step * (u * from.1[a] + v * to.1[a]))
         };
-        nodes.map(place).collect()
+        (0..self.places[k].len()).map(node).collect()
     }
 }
 
