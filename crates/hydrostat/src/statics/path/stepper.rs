@@ -16,6 +16,10 @@ pub(super) const MOVED: f64 = 0.15;
 /// anybody can see.
 const FINE_SCALE: f64 = 0.01;
 
+/// The clearance of determinants below which the mesh of a path may have decided their sign. The tail of a rod that
+/// lies in the stream is free to turn, to first order, and its determinant is next to nothing, of either sign.
+const BY_MESH: f64 = 1e-5;
+
 /// Corrections (rad) after which, but for second order, nothing is left to correct.
 const CLOSE: f64 = 3e-5;
 
@@ -253,7 +257,7 @@ impl<'e, E: Traced> Stepper<'e, E> {
             return Err(Trouble::Singular);
         }
         let determinant = self.engine.determinant();
-        let known = determinant.known_sign();
+        let known = determinant.known_sign().filter(|_| determinant.clearance > BY_MESH);
         let dlambda_ds = self.orientation * known.unwrap_or(1.0) / norm;
         let (state, response) = (self.engine.state(), self.round.response.clone());
         let (tensions, margins) = (self.round.tension[1].clone(), self.margins());
