@@ -8,7 +8,7 @@ use crate::statics::path::loaded::Loaded;
 use crate::statics::refinement::First;
 use crate::statics::shape::Pose;
 
-/// The share of the loads by which they are past the limit point while the arm moves.
+/// The fraction of the loads by which they are past the limit point while the arm moves.
 pub(super) const PAST: f64 = 1e-3;
 
 /// The most snaps on one way.
