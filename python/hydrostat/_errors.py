@@ -179,7 +179,8 @@ class MotionError(RuntimeError):
     Attributes
     ----------
     kind : str
-        ``"cable_fold"``, ``"section_crushed"``, ``"no_section_solution"``, ``"not_found"``, ``"too_many_steps"`` or ``"no_rest"``.
+        ``"cable_fold"``, ``"section_crushed"``, ``"no_section_solution"``, ``"short_waves"``, ``"not_found"``, ``"too_many_steps"`` or
+        ``"no_rest"``.
     time : float
         Up to when the motion is known, s; NaN after a snap.
     where : float or None

@@ -31,8 +31,8 @@ class HistorySnap:
         The row, from 0, on the way to which the arm snaps.
     loads : dict of str to float
         The loads at which it snaps.
-    share : float
-        The share of the way from the row before, 0 to 1.
+    fraction : float
+        The fraction of the way from the row before, 0 to 1.
     before, after : Tip
         The tip, m and rad, before the snap and where the arm rests; of an arm in space a `SpatialTip`.
     distance, angle : float
@@ -45,7 +45,7 @@ class HistorySnap:
 
     row: int
     loads: dict[str, float]
-    share: float
+    fraction: float
     before: Tip
     after: Tip
     distance: float
@@ -70,9 +70,9 @@ class History(Sequence[Solution]):
         self.keys = tuple(native.keys)
         self.snaps = tuple(
             HistorySnap(
-                row, dict(zip(self.keys, loads, strict=True)), share, tip_of(*before), tip_of(*after), distance, angle, duration, elsewhere
+                row, dict(zip(self.keys, loads, strict=True)), fraction, tip_of(*before), tip_of(*after), distance, angle, duration, elsewhere
             )
-            for row, loads, share, before, after, distance, angle, duration, elsewhere in native.snaps
+            for row, loads, fraction, before, after, distance, angle, duration, elsewhere in native.snaps
         )
 
     def __len__(self) -> int:

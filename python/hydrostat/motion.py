@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 #: Columns that are functions of cables, and what they are called.
 _OF_CABLES = {"stroke": ("m", "length reeled in"), "tension": ("N", "tension at the base")}
 
-#: What the other columns are called and mean; others keep their heads.
+#: What the other columns are called and mean.
 _COLUMNS = {
     "tip_x_m": ("tip_x", "m", "place of the tip"),
     "tip_y_m": ("tip_y", "m", "place of the tip"),
@@ -37,6 +37,20 @@ _COLUMNS = {
     "tip_alpha_rad": ("tip_alpha", "rad", "angle between the normal of the tip section and the centreline"),
     "kinetic_energy_J": ("kinetic_energy", "J", "kinetic energy of the arm"),
     "strain_energy_J": ("strain_energy", "J", "energy of strain"),
+    "base_force_x_N": ("base_force_x", "N", "base reaction along e1"),
+    "base_force_y_N": ("base_force_y", "N", "base reaction along e2"),
+    "base_force_z_N": ("base_force_z", "N", "base reaction along e3"),
+    "base_moment_Nm": ("base_moment", "N m", "base reaction, about the base"),
+    "base_moment_x_Nm": ("base_moment_x", "N m", "base reaction about e1, about the base"),
+    "base_moment_y_Nm": ("base_moment_y", "N m", "base reaction about e2, about the base"),
+    "base_moment_z_Nm": ("base_moment_z", "N m", "base reaction about e3, about the base"),
+    "cable_work_J": ("cable_work", "J", "work of the cables since the start"),
+    "water_work_J": ("water_work", "J", "work of the water since the start"),
+    "gravity_work_J": ("gravity_work", "J", "work of gravity since the start"),
+    "load_work_J": ("load_work", "J", "work of loads on the tip and along the arm since the start"),
+    "base_work_J": ("base_work", "J", "work of the base since the start"),
+    "volume_work_J": ("volume_work", "J", "work beside all loads where sections swell, since the start"),
+    "dissipated_J": ("dissipated", "J", "energy dissipated by the material since the start"),
 }
 
 #: What there is at a node, with how many components: in the plane, and in space.
@@ -463,7 +477,7 @@ def _dataset(arm: Arm, native: _native.Simulation, rows: NDArray[np.float64], sh
         director = np.stack([at.pop(f"tip_{name}_{axis}") for axis in "xyz"], axis=1)
         data[f"tip_{name}"] = (("time", "axis"), director, {"units": "1", "long_name": "director of the tip section"})
     for name, values in at.items():
-        short, unit, meaning = _COLUMNS.get(name, (name, "", name))
+        short, unit, meaning = _COLUMNS[name]
         data[short] = ("time", values, {"units": unit, "long_name": meaning})
     for name, values, about in _at_nodes(native, shapes, len(table)):
         data[name] = (("time", "node", "axis")[: values.ndim], values, about)

@@ -50,6 +50,26 @@ def test_angles_of_inputs_are_in_degrees(arm: hs.Arm) -> None:
     assert turned.theta[0, 0].item() == pytest.approx(math.radians(30), abs=1e-9)
 
 
+def test_loads_along_the_arm_change_in_time(arm: hs.Arm) -> None:
+    damped = arm.replace({"dynamics.relaxation_time": "0.3 s"})
+    motion = hs.simulate(damped, {"distributed.force[1]": [[0, 0], [2, 0.01]], "distributed.couple": 1e-5}, until=12, every=12)
+    still = arm.replace({"distributed.force": [0.0, 0.01], "distributed.couple": 1e-5}).solve().tip
+    assert [motion.tip_x[-1].item(), motion.tip_y[-1].item()] == pytest.approx([still.x, still.y], abs=1e-3 * arm.length)
+    assert float(motion.load_work[-1]) > 0.0
+
+
+def test_tension_and_stroke_of_one_cable_are_refused(arm: hs.Arm) -> None:
+    with pytest.raises(ValueError, match=r"`cable\[0\]\.stroke`: `cable\[0\]\.tension` is given as well"):
+        hs.simulate(arm, {"cable[0].tension": 0.1, "cable[0].stroke": 0.01}, until=0.1)
+
+
+def test_variables_were_named_with_units(arm: hs.Arm) -> None:
+    motion = hs.simulate(arm, until=0.1, every=0.1, tol=1e-3)
+    for name, unit in {"base_force_x": "N", "base_moment": "N m", "cable_work": "J", "dissipated": "J"}.items():
+        assert motion[name].attrs["units"] == unit
+    assert not [name for name in motion.data_vars if str(name).endswith(("_N", "_Nm", "_J", "_m", "_rad"))]
+
+
 def test_steps_are_a_run_in_pieces(arm: hs.Arm) -> None:
     sim = hs.Simulation(arm, tol=1e-5)
     steps = [sim.step(0.05, tensions=[pull, 0]) for pull in (0.05, 0.1, 0.1, 0.0)]

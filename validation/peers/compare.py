@@ -57,9 +57,9 @@ def enter_venv(directory):
     os.execve(python, [str(python), *sys.argv], {**os.environ, **one})
 
 
-def built(profile):
+def built(profile, example="timing"):
     """The timing program, built."""
-    build = ["cargo", "build", "--profile", profile, "-p", "hydrostat", "--example", "timing", "--message-format=json"]
+    build = ["cargo", "build", "--profile", profile, "-p", "hydrostat", "--example", example, "--message-format=json"]
     lines = subprocess.run(build, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
     found = [json.loads(line).get("executable") for line in lines]
     return next(path for path in found if path)

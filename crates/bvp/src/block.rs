@@ -134,13 +134,20 @@ pub(crate) fn inverse<const N: usize>(m: &Block<N>, smallest: f64) -> Option<Blo
 /// to one size, by powers of two, and `smallest` is over that.
 pub(crate) fn balanced_inverse<const N: usize>(m: &Block<N>, smallest: f64) -> Option<Block<N>> {
     let (mut rows, mut columns) = ([1.0; N], [1.0; N]);
-    let power = |size: f64| if size > 0.0 && size.is_finite() { (-0.5 * size.log2()).round().exp2() } else { 1.0 };
     for _ in 0..4 {
+        let mut changed = false;
         for a in 0..N {
-            rows[a] *= power((0..N).fold(0.0_f64, |most, c| most.max((rows[a] * m[a][c] * columns[c]).abs())));
+            let power = levelling((0..N).fold(0.0_f64, |most, c| most.max((rows[a] * m[a][c] * columns[c]).abs())));
+            rows[a] *= power;
+            changed |= power != 1.0;
         }
         for c in 0..N {
-            columns[c] *= power((0..N).fold(0.0_f64, |most, a| most.max((rows[a] * m[a][c] * columns[c]).abs())));
+            let power = levelling((0..N).fold(0.0_f64, |most, a| most.max((rows[a] * m[a][c] * columns[c]).abs())));
+            columns[c] *= power;
+            changed |= power != 1.0;
+        }
+        if !changed {
+            break;
         }
     }
     let mut scaled = *m;
@@ -156,6 +163,16 @@ pub(crate) fn balanced_inverse<const N: usize>(m: &Block<N>, smallest: f64) -> O
         }
     }
     Some(out)
+}
+
+/// The power of two by whose square a size comes to [1, 4), read from its exponent; 1 for zero and what is no number.
+fn levelling(size: f64) -> f64 {
+    if !(size > 0.0 && size.is_finite()) {
+        return 1.0;
+    }
+    // Exponents are stored with 1023 more: 1023 - floor((stored - 1023)/2).
+    let stored = size.to_bits() >> 52;
+    f64::from_bits((1535 - ((stored + 1) >> 1)) << 52)
 }
 
 /// A pivot below this fraction of what stands under it would lose digits.
@@ -310,4 +327,35 @@ fn inverse_with_pivoting<const N: usize>(mut m: Block<N>, smallest: f64) -> Opti
         }
     }
     Some(inv)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levelling_brings_sizes_to_one_and_four_and_no_further() {
+        for size in [1e-300, 3e-7, 0.25, 0.99, 1.0, 3.99, 4.0, 7.0, 1e12, 1e300] {
+            let level = levelling(size);
+            let levelled = level * size * level;
+            assert!((1.0..4.0).contains(&levelled), "{size}: {levelled}");
+            assert_eq!(level.log2().fract(), 0.0, "{size}: {level} is no power of two");
+        }
+        assert_eq!([0.0, f64::NAN, f64::INFINITY].map(levelling), [1.0; 3]);
+    }
+
+    #[test]
+    fn a_matrix_of_very_different_sizes_is_inverted_to_rounding() {
+        let (rows, columns) = ([1e-9, 1.0, 1e7], [1e5, 1e-8, 1.0]);
+        let plain = [[2.0, 1.0, 0.5], [1.0, -3.0, 1.0], [0.5, 1.0, 4.0]];
+        let m: Block<3> = std::array::from_fn(|a| std::array::from_fn(|c| rows[a] * plain[a][c] * columns[c]));
+        let inverse = balanced_inverse(&m, 1e-10).unwrap();
+        for a in 0..3 {
+            for c in 0..3 {
+                let product: f64 = (0..3).map(|k| m[a][k] * inverse[k][c]).sum();
+                let wanted = if a == c { 1.0 } else { 0.0 };
+                assert!((product - wanted).abs() * rows[c] / rows[a] < 1e-13, "{a}, {c}: {product}");
+            }
+        }
+    }
 }

@@ -342,7 +342,7 @@ fn loading() {
     for pair in angles.windows(2) {
         arm.base.angle = pair[1].to_radians();
         let step = loading.go_to(&arm).unwrap();
-        let snaps = step.snaps.iter().map(|snap| (pair[0] + snap.share * (pair[1] - pair[0]), *snap)).collect();
+        let snaps = step.snaps.iter().map(|snap| (pair[0] + snap.fraction * (pair[1] - pair[0]), *snap)).collect();
         steps.push((pair[1], step.configuration, snaps));
     }
     let mut points = vec![LoadingPoint { value: angles[0], configuration: &first.configuration, snaps: Vec::new() }];

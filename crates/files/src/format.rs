@@ -331,7 +331,8 @@ pub(crate) fn is_key(key: &str) -> bool {
             Some(Table(inner)) if depth == 0 => keys = inner,
             Some(Tables(inner)) if depth <= 1 => keys = inner,
             Some(Table(_) | Tables(_)) | None => return false,
-            // At most a point of a table, and its place or value.
+            // At most a component, a point of a table, and its place or value.
+            Some(ProfilePair(_) | AxialProfile(_)) => return depth <= 3,
             Some(_) => return depth <= 2,
         }
     }

@@ -118,11 +118,9 @@ fn key_in(keys: &[Key], text: &str) -> Option<String> {
                 Some(format!("{}[{}].{}", key.name, number(index)?, key_in(inner, rest)?))
             }
             Kind::Pair(_) | Kind::Direction => Some(format!("{}[{}]", key.name, number(rest?)?)),
-            Kind::Profile(_) | Kind::Offset(_) | Kind::AxialProfile(_) => in_profile(key.name.to_owned(), rest),
-            Kind::ProfilePair(_) => {
-                let (index, rest) = rest?.split_once('_').map_or((rest?, None), |(index, rest)| (index, Some(rest)));
-                in_profile(format!("{}[{}]", key.name, number(index)?), rest)
-            }
+            Kind::Profile(_) | Kind::Offset(_) => in_profile(key.name.to_owned(), rest),
+            Kind::AxialProfile(_) => in_profile(key.name.to_owned(), rest).or_else(|| in_component(key.name, rest?)),
+            Kind::ProfilePair(_) => in_component(key.name, rest?),
         }
     })
 }
@@ -137,6 +135,12 @@ fn in_profile(key: String, rest: Option<&str>) -> Option<String> {
             Some(format!("{key}[{}][{}]", number(point)?, number(part)?))
         }
     }
+}
+
+/// The same behind the index of one of two or three profiles.
+fn in_component(key: &str, rest: &str) -> Option<String> {
+    let (index, rest) = rest.split_once('_').map_or((rest, None), |(index, rest)| (index, Some(rest)));
+    in_profile(format!("{key}[{}]", number(index)?), rest)
 }
 
 fn number(text: &str) -> Option<usize> {
@@ -157,10 +161,16 @@ mod tests {
                 Kind::Table(inner) => self::keys(inner, &here, out),
                 Kind::Tables(inner) => self::keys(inner, &format!("{here}[12]"), out),
                 Kind::Pair(_) | Kind::Direction => out.push(format!("{here}[1]")),
-                Kind::Profile(_) | Kind::Offset(_) | Kind::AxialProfile(_) => {
-                    out.extend(["", ".base", ".tip", "[3][0]", "[3][1]"].map(|end| format!("{here}{end}")));
+                Kind::Profile(_) | Kind::Offset(_) | Kind::AxialProfile(_) | Kind::ProfilePair(_) => {
+                    let alone = ["", ".base", ".tip", "[3][0]", "[3][1]"];
+                    let of_components = ["[0]", "[1].tip", "[1][2][1]"];
+                    let ends = match key.kind {
+                        Kind::AxialProfile(_) => [&alone[..], &of_components].concat(),
+                        Kind::ProfilePair(_) => of_components.to_vec(),
+                        _ => alone.to_vec(),
+                    };
+                    out.extend(ends.into_iter().map(|end| format!("{here}{end}")));
                 }
-                Kind::ProfilePair(_) => out.extend(["[0]", "[1].tip", "[1][2][1]"].map(|end| format!("{here}{end}"))),
             }
         }
     }

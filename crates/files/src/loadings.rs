@@ -47,7 +47,7 @@ impl<C, T: Pose> LoadingRow<C, T> {
     pub fn new(before: Option<&[f64]>, loads: Vec<f64>, step: LoadingStep<C, T>) -> Self {
         let at = |snap: &LoadingSnap<T>| {
             let before = before.unwrap_or(&loads);
-            before.iter().zip(&loads).map(|(from, to)| from + snap.share * (to - from)).collect()
+            before.iter().zip(&loads).map(|(from, to)| from + snap.fraction * (to - from)).collect()
         };
         let snaps = step.snaps.iter().map(|snap| RowSnap { loads: at(snap), snap: *snap }).collect();
         Self { loads, step, snaps }
@@ -80,7 +80,7 @@ struct RowOut<'a> {
 #[derive(Debug, Clone, Serialize)]
 struct SnapOut<'a> {
     loads: &'a [f64],
-    share: f64,
+    fraction: f64,
     before: AnyTip,
     after: AnyTip,
     /// m
@@ -94,10 +94,10 @@ struct SnapOut<'a> {
 
 impl<'a> SnapOut<'a> {
     fn new<T: Pose + Into<AnyTip>>(row: &'a RowSnap<T>, length: f64) -> Self {
-        let LoadingSnap { share, before, after, duration, .. } = row.snap;
+        let LoadingSnap { fraction, before, after, duration, .. } = row.snap;
         Self {
             loads: &row.loads,
-            share,
+            fraction,
             before: before.into(),
             after: after.into(),
             distance: row.snap.distance(),
@@ -162,10 +162,10 @@ fn in_space(configuration: &SpatialConfiguration) -> State<'_> {
 }
 
 /// The columns of snaps before the place of the tip.
-const SNAPS: [&str; 5] = ["snaps", "snap_share", "snap_distance_m", "snap_angle_rad", "snap_duration_s"];
+const SNAPS: [&str; 5] = ["snaps", "snap_fraction", "snap_distance_m", "snap_angle_rad", "snap_duration_s"];
 
 /// The rows as CSV: loads in SI units, angles in degrees, under their keys with the unit (`cable_0_tension_N`), what [`crate::path_csv`] has of an equilibrium, and the snaps since the row
-/// before: how many, and of the one that goes furthest share, distance, angle, duration and the place of the tip.
+/// before: how many, and of the one that goes furthest fraction, distance, angle, duration and the place of the tip.
 pub fn loading_csv(loads: &LoadRows, rows: &[LoadingRow]) -> String {
     let columns =
         |more: &[&str]| State::columns(rows.first().map_or(0, |row| row.step.configuration.cables.len()), more);
@@ -198,7 +198,7 @@ fn written<'a, C, T: Pose + Default, const D: usize>(
         let mut more = vec![row.snaps.len().to_string()];
         match furthest {
             Some(snap) => {
-                more.extend([snap.share, snap.distance(), snap.angle(), snap.duration].map(cell));
+                more.extend([snap.fraction, snap.distance(), snap.angle(), snap.duration].map(cell));
                 more.extend(place(snap.before).map(|(_, value)| cell(value)));
             }
             None => more.extend(vec![String::new(); SNAPS.len() - 1 + D]),

@@ -536,6 +536,36 @@ mod tests {
     }
 
     #[test]
+    fn loads_along_the_arm_are_read_by_key_and_by_head() {
+        let plain =
+            read("t_s,distributed.force[1].tip,distributed.couple[0],distributed.couple\n0,0,0,0\n1,2,3,4\n").unwrap();
+        for heads in [
+            "t_s,distributed_force_1_tip_N_m,distributed_couple_0_N,distributed_couple_N",
+            "t_s,distributed.force.1.tip,distributed.couple.0,distributed.couple[2]",
+        ] {
+            assert_eq!(read(&format!("{heads}\n0,0,0,0\n1,2,3,4\n")).unwrap(), plain, "{heads}");
+        }
+        let mut shaped = Inputs::default();
+        set_shaped("distributed.force[1]=ramp:0:50 mN/m:0:1", &mut shaped).unwrap();
+        assert_eq!(read("t_s,distributed.force[1]\n0,0\n1,0.05\n").unwrap(), shaped);
+    }
+
+    /// The tension was ignored.
+    #[test]
+    fn tension_and_stroke_of_one_cable_are_refused_in_a_file_and_beside_it() {
+        let error = read("t_s,cable[0].tension,cable[0].stroke\n0,0,0\n").unwrap_err();
+        assert!(error.starts_with("loads.csv: `cable[0].stroke`: `cable[0].tension` is given as well"), "{error}");
+        let mut inputs = read("t_s,cable[0].tension\n0,0\n").unwrap();
+        let error = set_shaped("cable[0].stroke=ramp:0:1 mm:0:1", &mut inputs).unwrap_err().to_string();
+        assert!(error.contains("`cable[0].stroke`: `cable[0].tension` is given as well"), "{error}");
+        let rows = parse_load_rows("cable[0].tension,cable[0].stroke\n0,0\n", "loads.csv").unwrap();
+        let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
+        arm.cables.push(hydrostat::Cable::new("left", 0.001));
+        let error = rows.arms(&arm).unwrap_err().to_string();
+        assert!(error.starts_with("loads.csv:2: `cable[0].stroke`: `cable[0].tension` is given as well"), "{error}");
+    }
+
+    #[test]
     fn heads_that_are_none_get_a_hint() {
         for (heads, words) in [
             ("time,flow.speed", "column 1: `time` cannot change over time; did you mean `t_s`?"),

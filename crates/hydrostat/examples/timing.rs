@@ -17,7 +17,7 @@ use std::error::Error;
 
 use arms::pulled;
 use clock::{Times, timed};
-use hydrostat::{Options, Solver, Tip};
+use hydrostat::{Options, SolveError, Solver, Tip};
 use serde_json::{Value, json};
 
 type Failure = Box<dyn Error>;
@@ -35,7 +35,8 @@ fn main() -> Result<(), Failure> {
         return Err("REPEATS: at least one".into());
     }
 
-    let (cold, tip) = timed(repeats, (), |()| Ok(()), |()| Ok(Solver::new(&arm, options)?.solve()?.tip()))?;
+    let (cold, tip) =
+        timed::<_, _, SolveError>(repeats, (), |()| Ok(()), |()| Ok(Solver::new(&arm, options)?.solve()?.tip()))?;
     let mut report = json!({
         "arm": arm.name,
         "length": arm.length,
@@ -50,11 +51,11 @@ fn main() -> Result<(), Failure> {
             solver.set_tensions(&less)?;
             solver.update().map(|_| ())
         };
-        let (warm, warm_tip) = timed(repeats, Solver::new(&arm, options)?, back, |solver| {
+        let (warm, warm_tip) = timed::<_, _, SolveError>(repeats, Solver::new(&arm, options)?, back, |solver| {
             solver.set_tensions(&tensions)?;
             Ok(solver.resolve()?.tip())
         })?;
-        let (update, update_tip) = timed(repeats, Solver::new(&arm, options)?, back, |solver| {
+        let (update, update_tip) = timed::<_, _, SolveError>(repeats, Solver::new(&arm, options)?, back, |solver| {
             solver.set_tensions(&tensions)?;
             Ok(solver.update()?.tip)
         })?;

@@ -56,6 +56,7 @@ mod modes_in_plane;
 mod options;
 mod places;
 mod powers;
+mod pulls;
 mod quasi_static;
 mod ranged;
 mod relaxation;

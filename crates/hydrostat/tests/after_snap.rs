@@ -108,12 +108,12 @@ fn a_column_under_a_dead_load_snaps_to_its_mirror_image() {
     arm.tip.force[1] = 0.5 * ei;
     let path = arm.path(Parameter::TipForce(1), [0.5 * ei, -0.5 * ei], &PathOptions::default()).unwrap();
     let limit = path.branches[0].points.iter().find(|p| p.event.is_some()).unwrap().value;
-    assert!((over.snaps[0].share - (0.5 - limit / ei)).abs() < 1e-5, "{:?} {limit}", over.snaps[0]);
+    assert!((over.snaps[0].fraction - (0.5 - limit / ei)).abs() < 1e-5, "{:?} {limit}", over.snaps[0]);
     assert!(over.snaps[0].before.y > 0.0 && over.snaps[0].after.y < 0.0, "{:?}", over.snaps[0]);
     arm.tip.force[1] = 0.5 * ei;
     let back = loading.go_to(&arm).unwrap();
     assert_eq!(back.snaps.len(), 1);
-    assert!((back.snaps[0].share - over.snaps[0].share).abs() < 1e-5, "both ways alike");
+    assert!((back.snaps[0].fraction - over.snaps[0].fraction).abs() < 1e-5, "both ways alike");
     // Without viscosity nothing stops it in a vacuum.
     arm.dynamics.relaxation_time = 0.0;
     let (mut loading, _) = Loading::start(&arm, 1e-8).unwrap();
@@ -147,7 +147,7 @@ fn limit_points_up_and_down_are_those_of_the_path() {
                 let before = from + (to - from) * f64::from(k - 1) / f64::from(cuts);
                 arm.base.angle = from + (to - from) * f64::from(k) / f64::from(cuts);
                 let step = loading.go_to(&arm).unwrap();
-                met.extend(step.snaps.iter().map(|snap| before + snap.share * (arm.base.angle - before)));
+                met.extend(step.snaps.iter().map(|snap| before + snap.fraction * (arm.base.angle - before)));
                 // The curve leads on through angles that are not those between the rows.
                 let along = |snap: &LoadingSnap| snap.on_curve.is_some() && !snap.lands_elsewhere(arm.length);
                 assert!(step.snaps.iter().all(along), "{:?}", step.snaps);

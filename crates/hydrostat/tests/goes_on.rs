@@ -134,6 +134,33 @@ fn a_cable_that_is_paid_out_fast_goes_slack_and_becomes_taut_again_at_known_time
     assert_eq!(events, others);
 }
 
+/// They were the ends of the steps that saw them: 0.2307 and 0.3518 s here.
+#[test]
+fn times_at_which_a_cable_becomes_slack_or_taut_were_late() {
+    let mut arm = silicone();
+    arm.flow.speed = 0.0;
+    let stroke = Course::Sine { mean: 0.006, amplitude: 0.006, frequency: 2.5, phase: 0.0 };
+    let events = |options: MotionOptions| {
+        let loads = inputs(&[("cable[0].stroke", stroke.clone())]);
+        let mut simulation = Simulation::new(&arm, loads, MotionOptions { elements: Some(12), ..options }).unwrap();
+        simulation.advance_to(0.4).unwrap();
+        simulation.events().to_vec()
+    };
+    // Equal steps, which no event shortens.
+    let fine = events(MotionOptions { step: Some(5e-4), ..MotionOptions::default() });
+    let kinds = [MotionEventKind::Slack(0), MotionEventKind::Taut(0)];
+    for tol in [1e-3, 1e-4] {
+        let found = events(MotionOptions { tol, ..MotionOptions::default() });
+        assert!(found.len() == 2 && fine.len() == 2, "{tol}: {found:?} {fine:?}");
+        for ((found, fine), kind) in found.iter().zip(&fine).zip(kinds) {
+            assert!(found.kind == kind && fine.kind == kind, "{tol}: {found:?} {fine:?}");
+            let off = found.time - fine.time;
+            // Three of the four are within 1e-4 s, one is 3.0e-4 s late.
+            assert!(off.abs() < 3.5e-4, "{tol}: {off:.1e} s, {found:?} {fine:?}");
+        }
+    }
+}
+
 #[test]
 fn a_surface_that_folds_is_an_event_before_the_cable_folds_the_arm() {
     let arm = silicone();

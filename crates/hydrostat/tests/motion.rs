@@ -7,7 +7,7 @@ mod moving;
 use std::f64::consts::PI;
 
 use hydrostat::{
-    Arm, Cable, Course, FlowLaw, Gravity, Inputs, Instant, Join, Material, MotionError, MotionOptions,
+    Arm, Cable, Course, Dynamics, FlowLaw, Gravity, Inputs, Instant, Join, Material, MotionError, MotionOptions,
     MotionVerdictKind, Profile, Simulation, Volume,
 };
 use moving::{in_plane as motion, inputs, options};
@@ -420,6 +420,40 @@ fn a_pull_that_folds_the_tip_ends_the_motion_with_time_and_place() {
     // The statics fold at 0.95 N.
     assert!((0.25..0.5).contains(&verdict.time) && known <= verdict.time, "{verdict:?}");
     assert!(verdict.s.is_some_and(|s| s > 0.2), "{verdict:?}");
+}
+
+/// It ended in `no_section_solution`, which is no limit of the arm: neither a relaxation time of 10 us nor sections
+/// that do not swell end there, nor does the same arm on fewer elements.
+#[test]
+fn short_waves_that_grow_without_relaxation_time_were_called_a_limit_of_the_arm() {
+    let mut arm = silicone();
+    arm.dynamics.relaxation_time = 0.0;
+    let end = |arm: &Arm, elements: Option<usize>| {
+        let let_go = inputs(&[("cable[0].tension", Course::ramp(0.2, 0.0, 0.0, 0.05))]);
+        let options = MotionOptions { elements, ..options(1e-8) };
+        Simulation::new(arm, let_go, options).unwrap().advance_to(1e-3)
+    };
+    let Err(MotionError::Ended(verdict)) = end(&arm, None) else { panic!("short waves grow") };
+    assert_eq!(verdict.kind, MotionVerdictKind::ShortWaves);
+    assert!(verdict.message().contains("set `dynamics.relaxation_time`"), "{}", verdict.message());
+    end(&arm, Some(8)).unwrap();
+    let damped = Arm { dynamics: Dynamics { relaxation_time: 1e-5, ..arm.dynamics }, ..arm.clone() };
+    end(&damped, None).unwrap();
+    arm.readings.volume = Volume::None;
+    end(&arm, None).unwrap();
+}
+
+/// A tension that was led paid the cable out, and a stroke that was led did nothing.
+#[test]
+fn a_cable_is_not_led_by_its_tension_and_by_its_stroke_in_one_run() {
+    let mut arm = silicone();
+    arm.cables[0].stroke = Some(0.005);
+    let mut simulation = Simulation::new(&arm, Inputs::default(), options(1e-3)).unwrap();
+    for (key, other) in [("cable[0].tension", "cable[0].stroke"), ("cable[1].stroke", "cable[1].tension")] {
+        let error = simulation.step_to(0.01, &[(key, 0.01)]).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("`{key}`: the cable is led by `{other}` in this run")), "{error}");
+    }
+    simulation.step_to(0.01, &[("cable[0].stroke", 0.0051), ("cable[1].tension", 0.01)]).unwrap();
 }
 
 #[test]

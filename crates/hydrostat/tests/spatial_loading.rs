@@ -30,7 +30,7 @@ fn an_arm_in_a_plane_snaps_there_as_in_the_plane() {
         let (there, own) = (plane.go_to(&flat).unwrap(), space.go_to(&arm).unwrap());
         assert_eq!((there.snaps.len(), own.snaps.len()), (1, 1));
         let (a, b) = (there.snaps[0], own.snaps[0]);
-        assert!((a.share - b.share).abs() < 1e-5, "{} {}", a.share, b.share);
+        assert!((a.fraction - b.fraction).abs() < 1e-5, "{} {}", a.fraction, b.fraction);
         assert!((a.duration - b.duration).abs() < 0.02 * a.duration, "{} {}", a.duration, b.duration);
         assert!((a.distance() - b.distance()).abs() < 1e-3 * arm.length, "{} {}", a.distance(), b.distance());
         let (a, b) = (there.configuration.tip(), own.configuration.tip());

@@ -46,7 +46,7 @@ pub(crate) struct History {
     tol: f64,
 }
 
-/// Index of its row, the loads, share, tips before and after, distance, angle, duration, and, where the curve leads on,
+/// Index of its row, the loads, fraction, tips before and after, distance, angle, duration, and, where the curve leads on,
 /// whether the motion lands elsewhere.
 type RowSnapFields = (usize, Vec<f64>, f64, Py<PyAny>, Py<PyAny>, f64, f64, f64, Option<bool>);
 
@@ -142,10 +142,10 @@ fn snaps<C, T: hydrostat::Pose>(
     let mut out = Vec::new();
     for (k, row) in rows.iter().enumerate() {
         for RowSnap { loads, snap } in &row.snaps {
-            let LoadingSnap { share, before, after, duration, on_curve } = *snap;
+            let LoadingSnap { fraction, before, after, duration, on_curve } = *snap;
             let elsewhere = on_curve.map(|_| snap.lands_elsewhere(length));
             let sizes = (snap.distance(), snap.angle());
-            out.push((k, loads.clone(), share, tip(before)?, tip(after)?, sizes.0, sizes.1, duration, elsewhere));
+            out.push((k, loads.clone(), fraction, tip(before)?, tip(after)?, sizes.0, sizes.1, duration, elsewhere));
         }
     }
     Ok(out)

@@ -2,8 +2,6 @@
 
 use std::time::Instant;
 
-use hydrostat::SolveError;
-
 /// Rounds before the first that is timed, which fill caches and let the clock rise.
 const WARM_UP: usize = 5;
 
@@ -19,13 +17,13 @@ impl Times {
 }
 
 /// Times `solve` so many times, at least once. Before each, `back` brings `state` to its start, untimed. The last answer comes along.
-pub(crate) fn timed<S, A>(
+pub(crate) fn timed<S, A, E>(
     repeats: usize,
     mut state: S,
-    back: impl Fn(&mut S) -> Result<(), SolveError>,
-    solve: impl Fn(&mut S) -> Result<A, SolveError>,
-) -> Result<(Times, A), SolveError> {
-    let mut round = || -> Result<(f64, A), SolveError> {
+    back: impl Fn(&mut S) -> Result<(), E>,
+    solve: impl Fn(&mut S) -> Result<A, E>,
+) -> Result<(Times, A), E> {
+    let mut round = || -> Result<(f64, A), E> {
         back(&mut state)?;
         let clock = Instant::now();
         let answer = solve(&mut state)?;

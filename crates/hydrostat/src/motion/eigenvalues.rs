@@ -91,13 +91,13 @@ fn solved(mut matrix: DMatrix<Complex<f64>>, mut right: DVector<Complex<f64>>, b
             matrix[(j, j)] = little;
         }
         for i in j + 1..=last {
-            let share = matrix[(i, j)] / matrix[(j, j)];
+            let factor = matrix[(i, j)] / matrix[(j, j)];
             for k in j..n {
                 let own = matrix[(j, k)];
-                matrix[(i, k)] -= share * own;
+                matrix[(i, k)] -= factor * own;
             }
             let own = right[j];
-            right[i] -= share * own;
+            right[i] -= factor * own;
         }
     }
     for i in (0..n).rev() {

@@ -14,6 +14,10 @@ pub enum MotionVerdictKind {
     SectionCrushed,
     /// The section law has no strains that carry the contact force.
     NoSectionSolution,
+    /// The same where cables pull on sections that swell and the material has no relaxation time. Waves as short as the
+    /// elements grow there, the faster the shorter they are, once steps are short enough to follow them. So it says of
+    /// the mesh and the tolerance, not of a limit of the arm.
+    ShortWaves,
     /// Steps became too short, and no physical limit was identified.
     NotFound,
     /// The run took as many steps as one may.
@@ -27,6 +31,7 @@ impl MotionVerdictKind {
             Self::CableFold => "cable_fold",
             Self::SectionCrushed => "section_crushed",
             Self::NoSectionSolution => "no_section_solution",
+            Self::ShortWaves => "short_waves",
             Self::NotFound => "not_found",
             Self::TooManySteps => "too_many_steps",
         }
@@ -38,6 +43,10 @@ impl MotionVerdictKind {
             Self::CableFold => "a cable compresses its side of the arm to zero length",
             Self::SectionCrushed => "net compression crushes the section",
             Self::NoSectionSolution => "no section strains carry the contact force",
+            Self::ShortWaves => {
+                "waves as short as the elements grow, as they may where cables pull and the material has no relaxation \
+                 time (set `dynamics.relaxation_time`, or a larger tolerance),"
+            }
             Self::NotFound => "no step could be solved, and no physical limit was identified",
             Self::TooManySteps => "the run took as many steps as one may",
         }

@@ -239,7 +239,7 @@ fn node_of<const C: usize>(layout: Layout, list: &[Lanes], i: usize) -> [f64; C]
     })
 }
 
-/// The motion at the share `x` of a step of length `h`: quintic where there are second rates, else cubic (Hermite).
+/// The motion at the fraction `x` of a step of length `h`: quintic where there are second rates, else cubic (Hermite).
 pub(super) fn between(from: &Snapshot, to: &Snapshot, h: f64, x: f64, out: &mut Snapshot) {
     out.clone_from(from);
     let quintic = quintic(x);

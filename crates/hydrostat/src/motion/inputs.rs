@@ -199,6 +199,21 @@ impl Driven {
         }
     }
 
+    /// Why an arm cannot be led by both: one of them would stand for the other.
+    fn excludes(self, other: Self) -> Option<&'static str> {
+        const CABLE: &str = "a cable is led by its tension or by its stroke";
+        const DIRECTION: &str = "a direction is led by its angle or by its parts";
+        let (Self::Of(own), Self::Of(other)) = (self, other) else { return None };
+        let one_way = |own: Parameter, other: Parameter| match (own, other) {
+            (Parameter::Tension(c), Parameter::Stroke(k)) if c == k => Some(CABLE),
+            (Parameter::FlowDirection, Parameter::StreamAlong(_))
+            | (Parameter::GravityDirection, Parameter::GravityAlong(_))
+            | (Parameter::BaseAngle, Parameter::BaseAlong(_)) => Some(DIRECTION),
+            _ => None,
+        };
+        one_way(own, other).or_else(|| one_way(other, own))
+    }
+
     fn is_of_stream(self) -> bool {
         matches!(self, Self::Of(Parameter::FlowSpeed | Parameter::FlowDirection | Parameter::StreamAlong(_)))
     }
@@ -212,7 +227,9 @@ impl Driven {
 /// let mut inputs = Inputs::default();
 /// inputs.set("cable[0].tension", Course::ramp(0.0, 0.2, 0.0, 0.2))?; // N over s
 /// inputs.set("flow.speed", Course::constant(0.1))?;
+/// inputs.set("distributed.force[1]", Course::step(0.0, 0.5, 0.1))?; // N/m, the same all along
 /// assert!(inputs.set("arm.length", Course::constant(0.1)).is_err());
+/// assert!(inputs.set("cable[0].stroke", Course::constant(0.01)).is_err(), "its tension is given");
 /// # Ok::<(), hydrostat::MotionError>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -231,8 +248,13 @@ impl Inputs {
     /// Sets the course of the quantity `key`, which has the name and the unit that [`Parameter`] gives it; also
     /// `arm.base.x`, `arm.base.y` and, in space, `arm.base.z`, m.
     ///
+    /// A load along the arm is led by the numbers that its profile has in the arm: `distributed.force[1]` is the force
+    /// (N/m) all along where the arm has one value or none, `distributed.force[1].base` and `.tip` are the ends of a
+    /// linear profile, `distributed.force[1][0][1]` is the value at the first point of a table.
+    ///
     /// # Errors
-    /// [`MotionError::Course`] when no such quantity may change in time, or the course is none.
+    /// [`MotionError::Course`] when no such quantity may change in time, when the course is none, or when a quantity
+    /// that excludes it is led: the tension and the stroke of one cable, the angle and the parts of one direction.
     pub fn set(&mut self, key: &str, course: Course) -> Result<(), MotionError> {
         let wrong = |reason: String| MotionError::Course { key: key.to_owned(), reason };
         let Some(driven) = Driven::read(key) else {
@@ -242,6 +264,10 @@ impl Inputs {
             )));
         };
         course.check().map_err(wrong)?;
+        let other = self.courses.iter().find_map(|(other, _)| Some((other, driven.excludes(*other)?)));
+        if let Some((other, why)) = other {
+            return Err(wrong(format!("`{other}` is given as well, and {why}")));
+        }
         if let (true, Course::Table(rows)) = (driven.is_of_base(), &course)
             && let Some(pair) = rows.windows(2).find(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1)
         {
@@ -288,6 +314,17 @@ impl Inputs {
     /// Leads the quantity `key` from its value in `arm` at the first time to `value` at the second one, and keeps it
     /// there.
     pub(super) fn lead(&mut self, key: &str, value: f64, arm: &Arm, [start, end]: [f64; 2]) -> Result<(), MotionError> {
+        let other = match Driven::read(key) {
+            Some(Driven::Of(Parameter::Tension(c))) => Some((c, true, Parameter::Stroke(c))),
+            Some(Driven::Of(Parameter::Stroke(c))) => Some((c, false, Parameter::Tension(c))),
+            _ => None,
+        };
+        if let Some((c, commanded, other)) = other
+            && arm.cables.get(c).is_some_and(|cable| cable.stroke.is_some() == commanded)
+        {
+            let reason = format!("the cable is led by `{other}` in this run, which cannot change on the way");
+            return Err(MotionError::Course { key: key.to_owned(), reason });
+        }
         let now = match Driven::read(key) {
             Some(Driven::Of(parameter)) => parameter.of(arm)?,
             Some(Driven::Base(axis)) => arm.base_place(axis).unwrap_or_default(),
@@ -368,6 +405,34 @@ impl Inputs {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The tension was silently ignored.
+    #[test]
+    fn tension_and_stroke_of_one_cable_are_refused() {
+        let both = |first: &str, second: &str| {
+            let mut inputs = Inputs::default();
+            inputs.set(first, Course::constant(0.01)).unwrap();
+            inputs.set(second, Course::constant(0.01)).map_err(|error| error.to_string())
+        };
+        let words = "`cable[0].stroke`: `cable[0].tension` is given as well, and a cable is led by its tension or by its stroke";
+        assert_eq!(both("cable[0].tension", "cable[0].stroke").unwrap_err(), words);
+        for (first, second) in [
+            ("cable[0].stroke", "cable[0].tension"),
+            ("flow.direction", "flow.direction[2]"),
+            ("gravity.direction[0]", "gravity.direction"),
+            ("arm.base.direction[1]", "arm.base.angle"),
+        ] {
+            let error = both(first, second).unwrap_err();
+            assert!(error.starts_with(&format!("`{second}`: `{first}` is given as well")), "{error}");
+        }
+        for (first, second) in [
+            ("cable[0].tension", "cable[1].stroke"),
+            ("cable[0].tension", "cable[0].tension"),
+            ("flow.direction", "gravity.direction[1]"),
+        ] {
+            both(first, second).unwrap();
+        }
+    }
 
     #[test]
     fn corners_and_jumps_are_met() {

@@ -9,7 +9,7 @@ use crate::statics::refinement::First;
 use crate::statics::shape::Pose;
 use crate::statics::snap::Snap;
 
-/// The share of the loads by which they are past the limit point while the arm moves.
+/// The fraction of the loads by which they are past the limit point while the arm moves.
 pub(super) const PAST: f64 = 1e-3;
 
 /// The most snaps on one way.

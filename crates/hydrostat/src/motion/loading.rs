@@ -18,8 +18,8 @@ use crate::statics::verdict::{SolveError, Verdict, VerdictKind};
 /// A snap on the way from one sequence of loads to the next: in the plane, or with [`SpatialTip`] in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoadingSnap<T = Tip> {
-    /// The share of the way from the loads before at the limit point, 0 to 1.
-    pub share: f64,
+    /// The fraction of the way from the loads before at the limit point, 0 to 1.
+    pub fraction: f64,
     /// The tip there.
     pub before: T,
     /// The tip where the arm rests.
@@ -74,20 +74,20 @@ pub enum LoadingError<E = SolveError> {
         reason: &'static str,
     },
     /// The way to the loads ends at a limit of the arm.
-    #[error("{} of the way from the loads before, {}{}", percent(*share), kind.phrase(), place(*s))]
+    #[error("{} of the way from the loads before, {}{}", percent(*fraction), kind.phrase(), place(*s))]
     Limit {
         /// Which limit.
         kind: VerdictKind,
-        /// The share of the way from the loads before, 0 to 1.
-        share: f64,
+        /// The fraction of the way from the loads before, 0 to 1.
+        fraction: f64,
         /// Where along the arm (m), if the limit is local.
         s: Option<f64>,
     },
     /// The arm snaps on the way, and its motion ends or is none.
-    #[error("{} of the way from the loads before the arm snaps, and its motion is not known: {motion}", percent(*share))]
+    #[error("{} of the way from the loads before the arm snaps, and its motion is not known: {motion}", percent(*fraction))]
     Motion {
-        /// The share of the way from the loads before, 0 to 1.
-        share: f64,
+        /// The fraction of the way from the loads before, 0 to 1.
+        fraction: f64,
         /// Why.
         motion: MotionError,
     },
@@ -95,11 +95,11 @@ pub enum LoadingError<E = SolveError> {
     #[error(
         "{} of the way from the loads before the arm snaps, and does not come to rest: after {time:.3} s its tip \
          still moves at {speed:.2e} m/s",
-        percent(*share)
+        percent(*fraction)
     )]
     NoRest {
-        /// The share of the way from the loads before, 0 to 1.
-        share: f64,
+        /// The fraction of the way from the loads before, 0 to 1.
+        fraction: f64,
         /// For how long the motion was followed, s.
         time: f64,
         /// The speed of the tip then, m/s.
@@ -247,18 +247,18 @@ fn follow<S: Ranged>(loading: &mut Loading<S>, arm: &Arm) -> Result<Step<S>, Loa
             Err(SolveError::NoEquilibrium(no))
                 if no.verdict.kind == VerdictKind::LimitPoint && snaps.len() < MOST_SNAPS =>
             {
-                let share = no.verdict.load_fraction;
-                from = (share + past).min(1.0);
+                let fraction = no.verdict.load_fraction;
+                from = (fraction + past).min(1.0);
                 let engine = solver.engine_mut();
                 let set = |engine: &mut S::Engine| engine.set(Along::Range, from);
                 let landed = land(engine, no.last_good.as_ref(), no.after_snap.as_ref(), *tol, set);
                 let Landed { before, rest: Rest { configuration, time }, on_curve } =
                     landed.map_err(|restless| match restless {
-                        Restless::Motion(motion) => LoadingError::Motion { share, motion },
-                        Restless::Moving { time, speed } => LoadingError::NoRest { share, time, speed },
+                        Restless::Motion(motion) => LoadingError::Motion { fraction, motion },
+                        Restless::Moving { time, speed } => LoadingError::NoRest { fraction, time, speed },
                     })?;
                 let after = S::Engine::tip_of(&configuration);
-                snaps.push(LoadingSnap { share, before, after, duration: time, on_curve });
+                snaps.push(LoadingSnap { fraction, before, after, duration: time, on_curve });
                 if from == 1.0 {
                     return Ok(LoadingStep { configuration, snaps });
                 }
@@ -272,10 +272,10 @@ fn follow<S: Ranged>(loading: &mut Loading<S>, arm: &Arm) -> Result<Step<S>, Loa
 fn limit<S: Ranged>(error: ErrorOf<S>, from: f64) -> LoadingError<ErrorOf<S>> {
     match error {
         SolveError::NoEquilibrium(no) => {
-            let Verdict { kind, load_fraction: share, s, .. } = no.verdict;
-            LoadingError::Limit { kind, share, s }
+            let Verdict { kind, load_fraction: fraction, s, .. } = no.verdict;
+            LoadingError::Limit { kind, fraction, s }
         }
         SolveError::Arm(error) => LoadingError::Arm(error),
-        SolveError::Option { .. } => LoadingError::Limit { kind: VerdictKind::NotFound, share: from, s: None },
+        SolveError::Option { .. } => LoadingError::Limit { kind: VerdictKind::NotFound, fraction: from, s: None },
     }
 }

@@ -1,6 +1,6 @@
 //! One small motion about an equilibrium.
 
-/// Real parts below this share of a rate are what rounding leaves of none.
+/// Real parts below this fraction of a rate are what rounding leaves of none.
 pub(super) const NOTHING: f64 = 1e-7;
 
 /// One motion about an equilibrium: a real rate, or a conjugate pair of them.

@@ -13,7 +13,7 @@ use crate::statics::dimensions::M;
 /// Equally spaced places along the arm at which shapes are given.
 const PLACES: usize = 51;
 
-/// Rates within this share of each other are those of twins.
+/// Rates within this fraction of each other are those of twins.
 pub(super) const TWINS: f64 = 1e-6;
 
 /// What two shapes of twins have to differ by, over their sizes, to be told apart by their displacements at a place.

@@ -9,7 +9,7 @@ use super::settling::Settling;
 use super::small_motions::{Vibrates, rates, spectrum};
 use crate::rod::arm::Arm;
 
-/// Rates within this share of -1/t_v are left out: they gather there without end, and are no motion of the arm but
+/// Rates within this fraction of -1/t_v are left out: they gather there without end, and are no motion of the arm but
 /// its material that relaxes.
 const RELAXATION: f64 = 0.02;
 

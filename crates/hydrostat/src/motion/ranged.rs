@@ -37,7 +37,7 @@ pub(super) trait Ranged: Clone {
     fn solve_on(&mut self, from: (Phase, f64)) -> Result<ShapeOf<Self>, ErrorOf<Self>>;
     /// The engine's equilibrium, read again.
     fn resettle(&mut self) -> Result<ShapeOf<Self>, ErrorOf<Self>>;
-    /// Follows the range from the engine's equilibrium at a share of it, behind a limit point down to a lowest one.
+    /// Follows the range from the engine's equilibrium at a fraction of it, behind a limit point down to a lowest one.
     fn along_range(&mut self, from: [f64; 2]) -> Result<ShapeOf<Self>, ErrorOf<Self>>;
 
     /// A solver that holds a configuration of `arm`.
@@ -106,17 +106,18 @@ impl Ranged for SpatialSolver {
     }
 }
 
-/// The loads that may change.
-fn loads(cables: usize) -> impl Iterator<Item = Parameter> {
+/// The loads of an arm that may change, those of its first `cables` cables.
+fn loads(arm: &Arm, cables: usize) -> impl Iterator<Item = Parameter> {
     let of_cables = (0..cables).flat_map(|c| [Parameter::Tension(c), Parameter::Stroke(c)]);
-    of_cables.chain(PLAIN.into_iter().chain(IN_SPACE).filter(|parameter| parameter.may_be_led()))
+    let plain = PLAIN.into_iter().chain(IN_SPACE).filter(|parameter| parameter.may_be_led());
+    of_cables.chain(plain).chain(Parameter::of_distributed(arm))
 }
 
 /// What changes from one arm to another of the same kind.
 pub(super) fn ways(own: &Arm, arm: &Arm) -> Result<Vec<Change>, (String, &'static str)> {
     let mut moved = own.clone();
     let mut out = Vec::new();
-    for parameter in loads(arm.cables.len().min(own.cables.len())) {
+    for parameter in loads(own, arm.cables.len().min(own.cables.len())) {
         let commanded = |c: usize| own.cables[c].stroke.is_some();
         let acts = match parameter {
             Parameter::Tension(c) => !commanded(c),
@@ -154,13 +155,13 @@ pub(super) fn ways(own: &Arm, arm: &Arm) -> Result<Vec<Change>, (String, &'stati
     } else {
         "arm"
     };
-    let reason =
-        "only tensions or strokes of the same cables, stream, gravity, loads on the tip and the base may change";
+    let reason = "only tensions or strokes of the same cables, stream, gravity, loads on the tip and along the arm, and \
+                  the base may change";
     Err((key.to_owned(), reason))
 }
 
-/// The share of the way, at most 0, down to which the curve behind a limit point is followed: there the first load that
-/// is not negative is nothing.
+/// The fraction of the way, at most 0, down to which the curve behind a limit point is followed: there the first load
+/// that is not negative is nothing.
 pub(super) fn lowest(ways: &[Change]) -> f64 {
     /// How many ways back is far enough.
     const FAR: f64 = -100.0;
@@ -173,7 +174,7 @@ pub(super) fn lowest(ways: &[Change]) -> f64 {
     ways.iter().map(own).fold(FAR, f64::max).min(0.0)
 }
 
-/// The share of the way by which loads are past a limit point while the arm moves: [`PAST`] of the largest load that
+/// The fraction of the way by which loads are past a limit point while the arm moves: [`PAST`] of the largest load that
 /// changes, so that it does not hang on how finely the way is cut.
 pub(super) fn past(ways: &[Change]) -> f64 {
     let own = |way: &Change| {

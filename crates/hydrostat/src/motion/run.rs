@@ -75,7 +75,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Run<P, S, L> {
     /// What was done on the arm since the start.
     pub(super) fn works(&self) -> Works {
         let stepper = &self.stepper;
-        stepper.ledger.works_at(stepper.share_at(self.time), stepper.step).in_units_of(self.energy())
+        stepper.ledger.works_at(stepper.fraction_at(self.time), stepper.step).in_units_of(self.energy())
     }
 
     /// What should be known about the motion until now.
@@ -91,10 +91,10 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Run<P, S, L> {
         let energy = units.force * units.length;
         let (next, running) = stepper.next_step();
         let at_end = self.time == stepper.time;
-        let [works, powers] = stepper.ledger.at(stepper.share_at(self.time), stepper.step);
+        let [works, powers] = stepper.ledger.at(stepper.fraction_at(self.time), stepper.step);
         let mut tensions = vec![0.0; stepper.arm().cables.len()];
         for &cable in settling.held_cables() {
-            tensions[cable] = stepper.tension_at(cable, self.time);
+            tensions[cable] = stepper.pulls.tension_at(cable, self.time);
         }
         let contact = |node: usize| {
             let carried = settling.moving.carried_at(solution, node);
@@ -172,7 +172,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Run<P, S, L> {
         if stepper.time == time || stepper.step == 0.0 {
             self.asked.clone_from(&stepper.now);
         } else {
-            let x = stepper.share_at(time);
+            let x = stepper.fraction_at(time);
             between(&stepper.before, &stepper.now, stepper.step, x, &mut self.asked);
         }
         self.time = time;

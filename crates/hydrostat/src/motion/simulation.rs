@@ -259,7 +259,7 @@ impl Simulation {
             .map(|c| {
                 let [now, reference] = statics.cable_lengths(c, at);
                 let tension = match arm.cables[c].stroke {
-                    Some(_) => stepper.tension_at(c, self.run.time),
+                    Some(_) => stepper.pulls.tension_at(c, self.run.time),
                     None => arm.cables[c].tension,
                 };
                 CableMotion { tension, stroke: (reference - now) * units.length }

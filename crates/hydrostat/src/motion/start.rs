@@ -4,7 +4,7 @@ use hydrostat_bvp::Mesh;
 
 use super::error::{MotionError, MotionVerdict, MotionVerdictKind};
 use crate::rod::arm::Arm;
-use crate::rod::readings::Support;
+use crate::rod::readings::{Support, Volume};
 use crate::statics::equations::{Margins, SectionFailure};
 use crate::statics::limit::limit_at;
 use crate::statics::refinement::{Refinable, graded};
@@ -20,10 +20,18 @@ pub(super) fn not_found(time: f64, step: f64, failure: Option<SectionFailure>, a
     let kind = match near.and_then(|near| limit_at(near, arm.readings.volume)) {
         Some((VerdictKind::CableFold, _)) => MotionVerdictKind::CableFold,
         Some((VerdictKind::SectionCrushed, _)) => MotionVerdictKind::SectionCrushed,
+        Some((VerdictKind::NoSectionSolution, _)) if has_short_waves(arm) => MotionVerdictKind::ShortWaves,
         Some((VerdictKind::NoSectionSolution, _)) => MotionVerdictKind::NoSectionSolution,
         _ => MotionVerdictKind::NotFound,
     };
     MotionError::Ended(MotionVerdict { kind, time, s: failure.map(|f| f.s * arm.length), step })
+}
+
+/// Whether the equations let short waves grow: a cable's pull has beta' in it where sections swell, which couples shear
+/// and stretch by one derivative more than the stiffness has, and only a relaxation time damps by two.
+fn has_short_waves(arm: &Arm) -> bool {
+    let pulls = arm.cables.iter().any(|cable| cable.tension > 0.0 || cable.stroke.is_some());
+    pulls && arm.readings.volume != Volume::None && arm.dynamics.inertia && arm.dynamics.relaxation_time == 0.0
 }
 
 /// Elements for a tolerance. In water, kinks of the drag that move over the mesh bound what it can do, not modes: a
@@ -45,8 +53,8 @@ pub(super) fn mesh(arm: &Arm, elements: usize) -> Mesh {
     graded(arm, &breaks, elements)
 }
 
-/// Kinks nearer to each other than this share of a mean element have one node: the mesh stays while kinks move, and an
-/// element much shorter than its neighbours leaves beta' there to rounding.
+/// Kinks nearer to each other than this fraction of a mean element have one node: the mesh stays while kinks move, and
+/// an element much shorter than its neighbours leaves beta' there to rounding.
 const APART: f64 = 0.2;
 
 /// A mesh with nodes on the kinks that the stream's load has at the shape of the engine.

@@ -17,6 +17,7 @@ use super::error::{MotionError, MotionVerdict, MotionVerdictKind};
 use super::event::{MotionEvent, MotionEventKind};
 use super::history::{Snapshot, between};
 use super::inputs::Inputs;
+use super::pulls::{Pull, Pulls};
 use super::settling::{Moves, Settling, Unsolved};
 use super::start::not_found;
 use super::state::MotionState;
@@ -36,8 +37,9 @@ const SHARE: f64 = 0.003;
 /// the silicone arm is released, at any tolerance.
 const UNRESOLVED: f64 = 0.02;
 
-/// To how much of the time in which the arm swings it is known when cables become slack or taut.
-const EVENT: f64 = 1e-4;
+/// How short steps become in which cables become slack or taut, over the time in which the arm swings: motion has a
+/// corner there, and the time itself is known better, from the line through the last tensions or slacks.
+const EVENT: f64 = 1e-5;
 
 /// Events whose time is looked for within a step, and that are kept, in one run.
 const LOCATED: usize = 1000;
@@ -68,9 +70,9 @@ pub(super) struct Stepper<P: Moves<S, L>, const S: usize, const L: usize> {
     stages: Vec<Snapshot>,
     kept: Solution<S, M, L>,
     kept_scales: [f64; S],
-    kept_tensions: (Vec<f64>, Vec<bool>),
-    /// Tensions (N) through the last step, with their times.
-    pub(super) tensions: Vec<(f64, Vec<f64>)>,
+    kept_pull: Pull,
+    /// What cables do through the last step.
+    pub(super) pulls: Pulls,
     /// Works, and what the base carries.
     pub(super) ledger: Ledger,
     /// What happened, the first [`EVENTS`] times.
@@ -155,12 +157,12 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         let most = RUNNING.c.len();
         let energy = settling.moving.energies(&settling.system, &now).iter().sum();
         let [tip, _] = now.node_place(now.layout.nodes - 1);
-        let tensions = settling.tensions();
+        let pull = settling.pull(time);
         Self {
             kept: settling.solution.clone(),
             kept_scales: [1.0; S],
-            tensions: vec![(time, tensions.0.clone())],
-            kept_tensions: tensions,
+            pulls: Pulls::new(pull.clone()),
+            kept_pull: pull,
             ledger: Ledger::new(time, settling.moving.carried_at(&settling.solution, 0), energy, works),
             events: Vec::new(),
             folded: settling.moving.fold_margin(&now)[0] <= 0.0,
@@ -259,7 +261,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         self.rejected += 1;
         self.next = next;
         self.settling.restore(&self.kept, &self.kept_scales, self.time);
-        self.settling.take_tensions(&self.kept_tensions);
+        self.settling.take_pull(&self.kept_pull);
     }
 
     fn accept(&mut self, h: f64, corner: f64, to_corner: bool, tip_error: f64) {
@@ -279,9 +281,10 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
             self.reached[1][k] = self.reached[1][k].max(place);
         }
         self.kept.clone_from(&self.settling.solution);
-        let tensions = std::mem::replace(&mut self.kept_tensions, self.settling.tensions());
+        self.kept_pull = self.settling.pull(self.time);
         self.kept_scales = *self.settling.moving.scales();
-        self.note_events(&tensions.1);
+        self.note_events();
+        self.pulls.accept(!to_corner);
         self.running = true;
         if to_corner && self.inputs.jumps_at(self.time) {
             self.running = false;
@@ -293,21 +296,24 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         }
     }
 
-    /// A shorter step, where cables became slack or taut in the one of length `h` and it is not known well when.
+    /// A shorter step, to just before the first cable became slack or taut in the one of length `h`.
     fn before_event(&self, h: f64) -> Option<f64> {
-        let changed = self.settling.tensions().1 != self.kept_tensions.1;
-        let known = h <= EVENT * self.settling.moving.time_unit() || self.events.len() >= LOCATED;
-        (changed && !known && self.fixed.is_none()).then_some(0.5 * h)
+        let short = EVENT * self.settling.moving.time_unit();
+        if h <= short || self.events.len() >= LOCATED || self.fixed.is_some() {
+            return None;
+        }
+        let first = self.pulls.changes().into_iter().map(|(_, time, _)| time).min_by(f64::total_cmp)?;
+        Some((first - self.time - 0.5 * short).clamp(0.5 * short, 0.5 * h))
     }
 
-    /// Notes what happened in the last step, before which the cables were taut as `taut` says.
-    fn note_events(&mut self, taut: &[bool]) {
-        let held = self.settling.held_cables().to_vec();
-        for ((cable, before), now) in held.into_iter().zip(taut).zip(self.kept_tensions.1.clone()) {
-            if *before != now {
-                let kind = if now { MotionEventKind::Taut(cable) } else { MotionEventKind::Slack(cable) };
-                self.note(MotionEvent { time: self.time, kind });
-            }
+    /// Notes what happened in the last step.
+    fn note_events(&mut self) {
+        let mut changes = self.pulls.changes();
+        changes.sort_by(|a, b| a.1.total_cmp(&b.1));
+        for (index, time, taut) in changes {
+            let cable = self.settling.held_cables()[index];
+            let kind = if taut { MotionEventKind::Taut(cable) } else { MotionEventKind::Slack(cable) };
+            self.note(MotionEvent { time, kind });
         }
         let folded = self.settling.moving.fold_margin(&self.now)[0] <= 0.0;
         if folded != self.folded {
@@ -351,7 +357,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         self.ledger.start(self.time, tableau.explicit_first);
         let holds = !self.settling.held_cables().is_empty();
         if holds {
-            self.tensions = vec![(self.time, self.kept_tensions.0.clone())];
+            self.pulls.start(&self.kept_pull);
         }
         for i in first..tableau.c.len() {
             let time = self.time + tableau.c[i] * h;
@@ -376,7 +382,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
             let powers = settling.moving.powers(&settling.system, own, base);
             self.ledger.take(Reading { time, powers, base });
             if holds {
-                self.tensions.push((time, self.settling.tensions().0));
+                self.pulls.take(self.settling.pull(time));
             }
         }
         Ok(self.errors(tableau, h))
@@ -438,19 +444,8 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Stepper<P, S, L> {
         not_found(self.time, h, failure, &self.arm)
     }
 
-    /// The tension of a held cable (N) at `time` in the last step, by straight lines between its stages.
-    pub(super) fn tension_at(&self, cable: usize, time: f64) -> f64 {
-        let before = self.tensions.iter().filter(|(t, _)| *t <= time).max_by(|a, b| a.0.total_cmp(&b.0));
-        let after = self.tensions.iter().filter(|(t, _)| *t >= time).min_by(|a, b| a.0.total_cmp(&b.0));
-        match (before, after) {
-            (Some((t, v)), Some((u, w))) if u > t => v[cable] + (w[cable] - v[cable]) * (time - t) / (u - t),
-            (Some((_, v)), _) | (None, Some((_, v))) => v[cable],
-            (None, None) => 0.0,
-        }
-    }
-
-    /// The share of the last step that is over at `time`: 1 before the first one.
-    pub(super) fn share_at(&self, time: f64) -> f64 {
+    /// The fraction of the last step that is over at `time`: 1 before the first one.
+    pub(super) fn fraction_at(&self, time: f64) -> f64 {
         if self.step == 0.0 { 1.0 } else { 1.0 - (self.time - time) / self.step }
     }
 

@@ -4,6 +4,7 @@
 use hydrostat_bvp::Correction;
 
 use super::border::Border;
+use super::pulls::Pull;
 use super::settling::{Moves, Settling, Unsolved};
 use crate::numerics::rounds::respond;
 use crate::statics::border::{UnitPull, add_pulls, meeting};
@@ -17,14 +18,19 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         self.moving.held().map_or(&[], |held| &held.cables)
     }
 
-    /// Tensions (N) of all cables at the last solve, and which held ones are taut.
-    pub(super) fn tensions(&self) -> (Vec<f64>, Vec<bool>) {
-        let taut = self.moving.held().map_or_else(Vec::new, |held| held.taut.clone());
-        (self.moving.arm().cables.iter().map(|cable| cable.tension).collect(), taut)
+    /// What cables did in the last solve, which was at `time`.
+    pub(super) fn pull(&self, time: f64) -> Pull {
+        let tensions: Vec<f64> = self.moving.arm().cables.iter().map(|cable| cable.tension).collect();
+        let Some(held) = self.moving.held() else { return Pull { time, tensions, ..Pull::default() } };
+        let margin = |(index, cable): (usize, &usize)| {
+            if held.taut[index] { tensions[*cable] } else { self.border.slack.get(index).copied().unwrap_or(0.0) }
+        };
+        let margins = held.cables.iter().enumerate().map(margin).collect();
+        Pull { time, taut: held.taut.clone(), margins, tensions }
     }
 
     /// Takes the tensions of held cables back.
-    pub(super) fn take_tensions(&mut self, (tensions, taut): &(Vec<f64>, Vec<bool>)) {
+    pub(super) fn take_pull(&mut self, Pull { tensions, taut, .. }: &Pull) {
         let Some(held) = self.moving.held_mut() else { return };
         held.taut.clone_from(taut);
         for cable in held.cables.clone() {

@@ -129,13 +129,13 @@ impl Ledger {
         [self.gap, self.largest]
     }
 
-    /// Works and powers at the share `x` of the last step, of length `h`.
+    /// Works and powers at the fraction `x` of the last step, of length `h`.
     pub(super) fn at(&self, x: f64, h: f64) -> [[f64; WORKS]; 2] {
         let powers = std::array::from_fn(|k| self.powers[0][k] * (1.0 - x) + self.powers[1][k] * x);
         [self.works_in_units(x, h), powers]
     }
 
-    /// The works at the share `x` of the last step, of length `h`: the cubic through works and powers at its ends.
+    /// The works at the fraction `x` of the last step, of length `h`: the cubic through works and powers at its ends.
     pub(super) fn works_at(&self, x: f64, h: f64) -> Works {
         Works::of(self.works_in_units(x, h))
     }

@@ -54,6 +54,11 @@ pub enum Parameter {
     TipMomentAbout(usize),
     /// Follower force on the tip along a (0) or b (1), in space c (2), N.
     TipFollower(usize),
+    /// Dead force along the arm, per metre of undeformed length, along e1 (0), e2 (1) or, in space, e3 (2), N/m: one of
+    /// the numbers that its profile is given by.
+    DistributedForce(usize, Point),
+    /// Dead couple along the arm about e3 (2), in space also about e1 (0) and e2 (1), N m/m: the same.
+    DistributedCouple(usize, Point),
     /// Angle of the base from e1, rad.
     BaseAngle,
     /// The part of the direction of a at the base along e1 (0), e2 (1) or e3 (2), of an arm in space.
@@ -224,11 +229,23 @@ pub fn names() -> Vec<String> {
     let angle = [Parameter::CableAngle(0, Point::Whole)];
     let curvatures = Curvature::ALL.map(|curvature| Parameter::Reference(curvature, Point::Whole));
     let in_space = IN_SPACE.into_iter().chain(angle);
-    let all = of_cables.chain(PLAIN).chain(geometry).chain(curvatures).chain(in_space);
+    let along = distributed().map(|own| own(Point::Whole));
+    let all = of_cables.chain(PLAIN).chain(geometry).chain(curvatures).chain(along).chain(in_space);
     all.map(|parameter| parameter.to_string()).collect()
 }
 
-/// What an arm in space has beside an arm in the plane, but the cables' angles.
+/// The loads along the arm, of a point of their profiles.
+fn distributed() -> impl Iterator<Item = impl Fn(Point) -> Parameter> {
+    let couples = [2, 0, 1].map(|axis| (true, axis));
+    let all = [0, 1, 2].map(|axis| (false, axis)).into_iter().chain(couples);
+    all.map(|(couple, axis)| {
+        move |point| {
+            if couple { Parameter::DistributedCouple(axis, point) } else { Parameter::DistributedForce(axis, point) }
+        }
+    })
+}
+
+/// What an arm in space has beside an arm in the plane, but the cables' angles and the loads along the arm.
 pub(crate) const IN_SPACE: [Parameter; 17] = [
     Parameter::StreamAlong(0),
     Parameter::StreamAlong(1),
@@ -249,7 +266,7 @@ pub(crate) const IN_SPACE: [Parameter; 17] = [
     Parameter::Coefficient(3),
 ];
 
-/// All of an arm in the plane but the cables' and the geometry's.
+/// All of an arm in the plane but the cables', the geometry's and the loads along the arm.
 pub(crate) const PLAIN: [Parameter; 21] = [
     Parameter::FlowSpeed,
     Parameter::FlowDirection,
@@ -275,6 +292,15 @@ pub(crate) const PLAIN: [Parameter; 21] = [
 ];
 
 impl Parameter {
+    /// The numbers that the loads along `arm` are given by.
+    pub(crate) fn of_distributed(arm: &Arm) -> Vec<Self> {
+        let points = |own: Self| match own.profile(arm) {
+            Ok(Some((profile, _))) => profile.points(),
+            _ => Vec::new(),
+        };
+        distributed().flat_map(|own| points(own(Point::Whole)).into_iter().map(own).collect::<Vec<_>>()).collect()
+    }
+
     /// Whether it may change while an arm moves, or is led along its loads: loads, and how the base stands.
     pub(crate) const fn may_be_led(self) -> bool {
         matches!(
@@ -291,12 +317,17 @@ impl Parameter {
                 | Self::TipMoment
                 | Self::TipMomentAbout(_)
                 | Self::TipFollower(_)
+                | Self::DistributedForce(..)
+                | Self::DistributedCouple(..)
                 | Self::BaseAngle
                 | Self::BaseAlong(_)
                 | Self::SectionAlong(_)
         )
     }
 }
+
+/// The indices of a component along or about an axis.
+const AXES: [&str; 3] = ["[0]", "[1]", "[2]"];
 
 /// The keys of the place of the base, along e1, e2 and e3.
 pub const BASE_PLACE: [&str; 3] = ["arm.base.x", "arm.base.y", "arm.base.z"];
@@ -357,6 +388,9 @@ impl fmt::Display for Parameter {
             Self::TipMoment => f.write_str("tip.moment"),
             Self::TipMomentAbout(k) => write!(f, "tip.moment[{k}]"),
             Self::TipFollower(k) => write!(f, "tip.follower[{k}]"),
+            Self::DistributedForce(k, point) => write!(f, "distributed.force[{k}]{point}"),
+            Self::DistributedCouple(2.., point) => write!(f, "distributed.couple{point}"),
+            Self::DistributedCouple(k, point) => write!(f, "distributed.couple[{k}]{point}"),
             Self::BaseAngle => f.write_str("arm.base.angle"),
             Self::Length => f.write_str("arm.length"),
             Self::BaseAlong(k) => write!(f, "arm.base.direction[{k}]"),
@@ -401,6 +435,20 @@ impl FromStr for Parameter {
         if let Some(found) = Curvature::ALL.into_iter().find_map(read) {
             return Ok(found);
         }
+        if let Some(rest) = name.strip_prefix("distributed.force") {
+            let along = |k: usize| Some(Self::DistributedForce(k, Point::read(rest.strip_prefix(AXES[k])?)?));
+            if let Some(found) = (0..3).find_map(along) {
+                return Ok(found);
+            }
+        }
+        if let Some(rest) = name.strip_prefix("distributed.couple") {
+            // `[0][1]` is a value of a table about e3, `[0]` the couple about e1.
+            let about = |k: usize| Some(Self::DistributedCouple(k, Point::read(rest.strip_prefix(AXES[k])?)?));
+            let about_e3 = || Point::read(rest).map(|point| Self::DistributedCouple(2, point));
+            if let Some(found) = about_e3().or_else(|| (0..3).find_map(about)) {
+                return Ok(found);
+            }
+        }
         if name == "tip.moment[2]" {
             return Ok(Self::TipMoment);
         }
@@ -420,6 +468,8 @@ impl Parameter {
             Self::GravityAcceleration => "m/s2",
             Self::Stroke(_) | Self::Offset(..) | Self::Radius(_) | Self::Length => "m",
             Self::TipMoment | Self::TipMomentAbout(_) => "N m",
+            Self::DistributedForce(..) => "N/m",
+            Self::DistributedCouple(..) => "N m/m",
             Self::Young | Self::Coefficient(_) => "Pa",
             Self::Reference(..) => "1/m",
             Self::Poisson
@@ -466,6 +516,7 @@ impl Parameter {
                 Self::Offset(c, _) => arm.cables[c].offset = moved,
                 Self::CableAngle(c, _) => arm.cables[c].angle = moved,
                 Self::Reference(curvature, _) => curvature.set(arm, moved),
+                Self::DistributedForce(..) | Self::DistributedCouple(..) => self.set_distributed(arm, moved),
                 _ => arm.radius = moved,
             }
             return Ok(());
@@ -484,6 +535,16 @@ impl Parameter {
                 None => Err(Unfit::Cable { key: self.to_string(), cables: arm.cables.len() }),
             },
             Self::Radius(point) => Ok(Some((&arm.radius, point))),
+            Self::DistributedForce(k @ ..2, point) => Ok(Some((&arm.distributed.force[k], point))),
+            Self::DistributedCouple(2.., point) => Ok(Some((&arm.distributed.couple, point))),
+            Self::DistributedForce(_, point) => match &arm.space {
+                Some(space) => Ok(Some((&space.force, point))),
+                None => Err(self.in_plane()),
+            },
+            Self::DistributedCouple(k, point) => match &arm.space {
+                Some(space) => Ok(Some((&space.couple[k], point))),
+                None => Err(self.in_plane()),
+            },
             Self::Reference(curvature, point) => match curvature.of(arm) {
                 Some(profile) => Ok(Some((profile, point))),
                 None => Err(self.in_plane()),
@@ -492,11 +553,24 @@ impl Parameter {
         }
     }
 
+    /// Sets the profile of a load along the arm, which the arm was checked to have.
+    fn set_distributed(self, arm: &mut Arm, profile: Profile) {
+        match (self, &mut arm.space) {
+            (Self::DistributedForce(k @ ..2, _), _) => arm.distributed.force[k] = profile,
+            (Self::DistributedCouple(2.., _), _) => arm.distributed.couple = profile,
+            (Self::DistributedForce(..), Some(space)) => space.force = profile,
+            (Self::DistributedCouple(k, _), Some(space)) => space.couple[k] = profile,
+            _ => {}
+        }
+    }
+
     fn no_point(self, profile: &Profile) -> Unfit {
         let of = |point: Point| match self {
             Self::Offset(c, _) => Self::Offset(c, point).to_string(),
             Self::CableAngle(c, _) => Self::CableAngle(c, point).to_string(),
             Self::Reference(curvature, _) => Self::Reference(curvature, point).to_string(),
+            Self::DistributedForce(k, _) => Self::DistributedForce(k, point).to_string(),
+            Self::DistributedCouple(k, _) => Self::DistributedCouple(k, point).to_string(),
             _ => Self::Radius(point).to_string(),
         };
         let names: Vec<String> = profile.points().into_iter().map(of).collect();
@@ -542,7 +616,12 @@ impl Parameter {
                 }
             }
             // Not by itself: the slopes of a table go with it.
-            Self::Offset(..) | Self::CableAngle(..) | Self::Radius(_) | Self::Reference(..) => {
+            Self::Offset(..)
+            | Self::CableAngle(..)
+            | Self::Radius(_)
+            | Self::Reference(..)
+            | Self::DistributedForce(..)
+            | Self::DistributedCouple(..) => {
                 return Err(Unfit::Point { key: self.to_string(), expected: String::new() });
             }
             Self::FlowSpeed => &mut arm.flow.speed,
@@ -635,7 +714,7 @@ impl Parameter {
     /// A change of it that counts for the arm, in its unit, given the unit of force of the equations (N).
     pub(crate) fn scale(self, arm: &Arm, force: f64) -> f64 {
         let least = match self {
-            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) => force,
+            Self::Tension(_) | Self::TipForce(_) | Self::TipFollower(_) | Self::DistributedCouple(..) => force,
             Self::Stroke(_) => arm.length,
             Self::Offset(..) | Self::Radius(_) => 1e-3 * arm.length,
             Self::Reference(..) => 1.0 / arm.length,
@@ -643,6 +722,7 @@ impl Parameter {
             Self::FlowDensity | Self::Density => 1000.0,
             Self::GravityAcceleration => 10.0,
             Self::TipMoment | Self::TipMomentAbout(_) => force * arm.length,
+            Self::DistributedForce(..) => force / arm.length,
             Self::FlowDirection | Self::GravityDirection | Self::BaseAngle | Self::CableAngle(..) => return 1.0,
             Self::StreamAlong(_) | Self::GravityAlong(_) | Self::BaseAlong(_) | Self::SectionAlong(_) => {
                 self.length_of_direction(arm).unwrap_or(1.0)
@@ -662,6 +742,8 @@ impl Parameter {
                 | Self::CableAngle(..)
                 | Self::Radius(_)
                 | Self::Reference(..)
+                | Self::DistributedForce(..)
+                | Self::DistributedCouple(..)
                 | Self::Length
                 | Self::FlowDensity
                 | Self::GravityAcceleration
@@ -714,11 +796,22 @@ mod tests {
             Parameter::Reference(Curvature::Mu, Point::Whole),
             Parameter::Reference(Curvature::Kappa, Point::Tip),
             Parameter::Reference(Curvature::Tau, Point::Knot(2)),
+            Parameter::DistributedForce(0, Point::Whole),
+            Parameter::DistributedForce(2, Point::Knot(1)),
+            Parameter::DistributedCouple(0, Point::Whole),
+            Parameter::DistributedCouple(1, Point::Knot(2)),
+            Parameter::DistributedCouple(2, Point::Whole),
+            Parameter::DistributedCouple(2, Point::Tip),
+            Parameter::DistributedCouple(2, Point::Knot(0)),
         ]) {
             assert_eq!(parameter.to_string().parse(), Ok(parameter));
         }
+        assert_eq!("distributed.couple[2].base".parse(), Ok(Parameter::DistributedCouple(2, Point::Base)));
         for wrong in [
             "",
+            "distributed.force",
+            "distributed.force[3]",
+            "distributed.couple[0][0]",
             "cable.tension",
             "cable[].tension",
             "cable[-1].tension",
@@ -741,7 +834,9 @@ mod tests {
         let others = [Parameter::Tension(0), Parameter::Stroke(0), Parameter::Offset(0, Point::Whole)];
         let radii = [Point::Base, Point::Tip].map(Parameter::Radius);
         let bent = [Parameter::Reference(Curvature::Mu, Point::Whole)];
-        for (k, parameter) in PLAIN.into_iter().chain(others).chain(radii).chain(bent).enumerate() {
+        let along = [0, 1].map(|k| Parameter::DistributedForce(k, Point::Whole));
+        let along = along.into_iter().chain([Parameter::DistributedCouple(2, Point::Whole)]);
+        for (k, parameter) in PLAIN.into_iter().chain(others).chain(radii).chain(bent).chain(along).enumerate() {
             let arm = if matches!(parameter, Parameter::Coefficient(_)) { &mut given } else { &mut arm };
             if parameter == Parameter::Coefficient(2) {
                 assert!(matches!(parameter.of(arm), Err(Unfit::Profile { .. })));
@@ -751,7 +846,9 @@ mod tests {
             assert_eq!(parameter.of(arm), Ok(k as f64));
         }
         let curvatures = [Curvature::Tau, Curvature::Kappa].map(|own| Parameter::Reference(own, Point::Whole));
-        let in_space = || IN_SPACE.into_iter().chain(curvatures).chain([Parameter::CableAngle(0, Point::Whole)]);
+        let couples = [0, 1].map(|k| Parameter::DistributedCouple(k, Point::Whole));
+        let out_of_plane = [Parameter::CableAngle(0, Point::Whole), Parameter::DistributedForce(2, Point::Whole)];
+        let in_space = || IN_SPACE.into_iter().chain(curvatures).chain(couples).chain(out_of_plane);
         for parameter in in_space() {
             assert!(matches!(parameter.of(&arm), Err(Unfit::InPlane { .. })), "{parameter}");
         }

@@ -90,7 +90,7 @@ pub struct Ellipse {
 
 impl Parameter {
     /// All parameters that `arm` can be differentiated by: strokes of the cables that are commanded, tensions of the
-    /// others.
+    /// others; of the loads along the arm those that it has, as others are asked for by name.
     ///
     /// ```
     /// use hydrostat::{Arm, Cable, Parameter};
@@ -116,7 +116,9 @@ impl Parameter {
         let curvatures = Curvature::ALL.into_iter().filter_map(|own| Some((own, own.of(arm)?)));
         let curvatures =
             curvatures.flat_map(|(own, profile)| profile.points().into_iter().map(move |p| Self::Reference(own, p)));
-        cables.chain(plain).chain(offsets).chain(angles).chain(radii).chain(curvatures).collect()
+        let has = |own: &Self| matches!(own.profile(arm), Ok(Some((profile, _))) if !profile.is_zero());
+        let along = Self::of_distributed(arm).into_iter().filter(has);
+        cables.chain(plain).chain(offsets).chain(angles).chain(radii).chain(curvatures).chain(along).collect()
     }
 }
 

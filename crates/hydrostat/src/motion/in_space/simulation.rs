@@ -236,13 +236,13 @@ impl SpatialSimulation {
         let (at, settling) = (&self.run.asked, &self.run.stepper.settling);
         let (mesh, gauss) = (&settling.solution.mesh, &settling.system.gauss);
         let length = settling.moving.statics.units.length;
-        let share = (s / length).clamp(0.0, 1.0);
-        let element = mesh.element_of(share).min(mesh.elements() - 1);
-        let x = (share - mesh.nodes()[element]) / mesh.step(element);
+        let fraction = (s / length).clamp(0.0, 1.0);
+        let element = mesh.element_of(fraction).min(mesh.elements() - 1);
+        let x = (fraction - mesh.nodes()[element]) / mesh.step(element);
         let (stages, ends) = gauss.cardinals_with_ends(x);
         let strain_weights = gauss.cardinals(x);
         let groups = Groups { elements: mesh.elements(), stages: M };
-        let mut out = SpatialMotionStation { s: share * length, ..SpatialMotionStation::default() };
+        let mut out = SpatialMotionStation { s: fraction * length, ..SpatialMotionStation::default() };
         let mut q = [0.0; 4];
         let mut add = |weight: f64, own: [f64; 4], place: [f64; 3], velocity: [f64; 3], omega: [f64; 3]| {
             q = each(|k| q[k] + weight * own[k]);
@@ -287,7 +287,7 @@ impl SpatialSimulation {
         let energy = units.force * units.length;
         let cables = arm.cables.iter().enumerate().map(|(c, cable)| {
             let [now, reference] = statics.cable_lengths(c, at);
-            let tension = if cable.stroke.is_some() { stepper.tension_at(c, run.time) } else { cable.tension };
+            let tension = if cable.stroke.is_some() { stepper.pulls.tension_at(c, run.time) } else { cable.tension };
             CableMotion { tension, stroke: (reference - now) * units.length }
         });
         let cables = cables.collect();
