@@ -4,13 +4,12 @@ use hydrostat::{Arm, Configuration, FlowLaw, LayerMean, Options, SolveError, Sol
 use hydrostat_files::ArmFile;
 use rayon::prelude::*;
 
-use crate::correction::equilibrium_near;
+use crate::correction::{Correction, correct, equilibrium_near};
 use crate::mechanics::Model;
+use crate::polynomials::Points;
+use crate::shape::{POINTS, Shape};
 
 const SPEEDS: i32 = 200;
-
-/// What the equilibrium followed here may be off by beside what is known of it, over L.
-const FINE: f64 = 1e-8;
 
 /// From 0.001 to 2 m/s, evenly by order of magnitude.
 fn speed(k: i32) -> f64 {
@@ -45,6 +44,7 @@ fn wrong(rod: &Arm) -> Vec<String> {
     };
     let solved: Vec<Result<Configuration, SolveError>> =
         (0..SPEEDS).into_par_iter().map(|k| Solver::new(&at(k), Options::default())?.solve()).collect();
+    let points = Points::new(POINTS);
     let (mut out, mut not_followed, mut doubted) = (Vec::new(), 0, 0);
     for (k, answer) in (0..SPEEDS).zip(&solved) {
         let name = format!("{}, {:.5} m/s", rod.name, speed(k));
@@ -60,14 +60,19 @@ fn wrong(rod: &Arm) -> Vec<String> {
                     out.push(format!("{name}: {moved:.3} L from the tip at the speed before"));
                 }
                 let model = Model::new(&own.arm);
-                match equilibrium_near(&model, before, own) {
+                let off = |beside: &Correction| (beside.tip[0] - tip.x).hypot(beside.tip[1] - tip.y);
+                let allowed = 3.0 * own.error_estimate + 1e-5 * rod.length;
+                // Elements that end where those of the speed before did may be too long for kinks that have moved.
+                let coarse = correct(&mut Shape::read(&model, &points, before, 1));
+                let beside = match coarse {
+                    Ok(beside) if off(&beside) <= allowed => Ok(beside),
+                    _ => equilibrium_near(&model, before, own),
+                };
+                match beside {
                     Ok(beside) => {
-                        let off = (beside.tip[0] - tip.x).hypot(beside.tip[1] - tip.y);
-                        if off > 3.0 * own.error_estimate + 2.0 * beside.doubt + FINE * rod.length {
-                            let [off, doubt] = [off, beside.doubt].map(|metres| metres / rod.length);
-                            out.push(format!(
-                                "{name}: {off:.1e} L from the equilibrium followed here, known to {doubt:.1e} L"
-                            ));
+                        if off(&beside) > allowed + 2.0 * beside.doubt {
+                            let [off, doubt] = [off(&beside), beside.doubt].map(|metres| metres / rod.length);
+                            out.push(format!("{name}: {off:.1e} L from the equilibrium here, known to {doubt:.1e} L"));
                         }
                         doubted += usize::from(beside.doubt > 1e-5 * rod.length);
                     }
