@@ -26,8 +26,10 @@ FIELDS = {
     "tip_y": ("m", "tip along e2"),
     "tip_theta": ("rad", "rotation of the section at the tip"),
     "tip_alpha": ("rad", "angle from the section's normal to the centreline's tangent at the tip"),
+    "tip_z": ("m", "tip along e3"),
     "base_force_x": ("N", "base reaction along e1"),
     "base_force_y": ("N", "base reaction along e2"),
+    "base_force_z": ("N", "base reaction along e3"),
     "base_moment": ("N m", "moment of the base reaction"),
     "error_estimate": ("m", "estimated error of the tip"),
     "tension": ("N", "tension at the base"),
@@ -36,9 +38,11 @@ FIELDS = {
     "load_fraction": ("1", "share of the loads where there is no equilibrium"),
     "x": ("m", "centreline along e1"),
     "y": ("m", "centreline along e2"),
+    "z": ("m", "centreline along e3"),
     "theta": ("rad", "rotation of the section"),
     "d_tip_x": ("m", "derivative of the tip along e1"),
     "d_tip_y": ("m", "derivative of the tip along e2"),
+    "d_tip_z": ("m", "derivative of the tip along e3"),
     "d_tip_theta": ("rad", "derivative of the rotation of the section at the tip"),
     "d_tip_alpha": ("rad", "derivative of the angle alpha at the tip"),
     "d_stroke": ("m", "derivative of the stroke"),
@@ -48,11 +52,22 @@ FIELDS = {
     "verdict": ("", "why there is no equilibrium; empty where there is one"),
     "reason": ("", "why there is no equilibrium, in a sentence"),
 }
+for _k, _axis in enumerate("xyz", 1):
+    FIELDS[f"base_moment_{_axis}"] = ("N m", f"moment of the base reaction about e{_k}")
+    FIELDS[f"d_tip_turn_{_axis}"] = ("rad", f"derivative of the turn of the section at the tip about e{_k}")
+    for _director in "abc":
+        FIELDS[f"tip_{_director}_{_axis}"] = ("1", f"director {_director} at the tip, along e{_k}")
+        FIELDS[f"{_director}_{_axis}"] = ("1", f"director {_director}, along e{_k}")
+#: Columns of stations.
+_OF_STATIONS = ("x", "y", "z", "theta", *(f"{director}_{axis}" for director in "ab" for axis in "xyz"))
+#: Columns of rows of arms in the plane only, and in space only.
+_ONLY_IN_PLANE = ("tip_theta", "base_moment", "theta")
+_ONLY_IN_SPACE = ("z", *(name for name in FIELDS if name[-2:] in ("_x", "_y", "_z") and name[:-2] not in ("tip", "base_force")), "tip_z", "base_force_z")
 #: Dimensions beyond those of the rows.
 _DIMS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("tension", "stroke"), ("cable",)),
-    **dict.fromkeys(("x", "y", "theta"), ("station",)),
-    **dict.fromkeys(("d_tip_x", "d_tip_y", "d_tip_theta", "d_tip_alpha"), ("parameter",)),
+    **dict.fromkeys(_OF_STATIONS, ("station",)),
+    **dict.fromkeys((name for name in FIELDS if name.startswith("d_tip_")), ("parameter",)),
     "d_stroke": ("cable", "parameter"),
 }
 
@@ -65,6 +80,11 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
     ``x``, ``y``, ``theta`` one more, a station each. Rows without an equilibrium have NaN, and the verdict's kind in ``verdict``, which is
     the empty string elsewhere (``no_arm`` where the row's numbers make none, ``not_a_number`` where one is NaN); ``reason`` says it in a
     sentence. ``warnings`` has the kinds of `Solution.warnings` with blanks between, as in a sweep.
+
+    Arms in space have ``tip_z``, the directors at the tip by component (``tip_a_x`` and so on; `tip_a`, `tip_b`, `tip_c` put them together),
+    ``base_force_z`` and ``base_moment_x`` to ``base_moment_z`` in place of ``tip_theta`` and ``base_moment``; their stations have ``z`` and
+    the components of `a` and `b` in place of ``theta``; derivatives of the tip are ``d_tip_x`` to ``d_tip_z`` and the turns about e1, e2, e3,
+    ``d_tip_turn_x`` to ``d_tip_turn_z`` (rad).
 
     With `gradients`, ``d_tip_x``, ``d_tip_y``, ``d_tip_theta`` and ``d_tip_alpha`` have one more dimension, and ``d_stroke`` two, a cable
     and a parameter: derivatives by `parameters`, a unit of each (SI, angles in radians); NaN at a limit point.
@@ -125,8 +145,28 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         return self._number("tip_y")
 
     @property
+    def tip_z(self) -> NDArray[np.float64]:
+        """m, of `shape`, in space."""
+        return self._number("tip_z")
+
+    @property
+    def tip_a(self) -> NDArray[np.float64]:
+        """Director normal to the section at the tip, of `shape` and (3,), in space."""
+        return self._vector("tip_a")
+
+    @property
+    def tip_b(self) -> NDArray[np.float64]:
+        """Director in the section at the tip, of `shape` and (3,), in space."""
+        return self._vector("tip_b")
+
+    @property
+    def tip_c(self) -> NDArray[np.float64]:
+        """Director in the section at the tip, a x b, of `shape` and (3,), in space."""
+        return self._vector("tip_c")
+
+    @property
     def tip_theta(self) -> NDArray[np.float64]:
-        """rad, of `shape`."""
+        """rad, of `shape`, in the plane."""
         return self._number("tip_theta")
 
     @property
@@ -165,9 +205,29 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         return self._number("base_force_y")
 
     @property
+    def base_force_z(self) -> NDArray[np.float64]:
+        """N, of `shape`, in space."""
+        return self._number("base_force_z")
+
+    @property
     def base_moment(self) -> NDArray[np.float64]:
-        """N m, of `shape`."""
+        """N m, of `shape`, in the plane."""
         return self._number("base_moment")
+
+    @property
+    def base_moment_x(self) -> NDArray[np.float64]:
+        """N m, of `shape`, in space."""
+        return self._number("base_moment_x")
+
+    @property
+    def base_moment_y(self) -> NDArray[np.float64]:
+        """N m, of `shape`, in space."""
+        return self._number("base_moment_y")
+
+    @property
+    def base_moment_z(self) -> NDArray[np.float64]:
+        """N m, of `shape`, in space."""
+        return self._number("base_moment_z")
 
     @property
     def error_estimate(self) -> NDArray[np.float64]:
@@ -190,8 +250,23 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
         return self._number("y")
 
     @property
+    def z(self) -> NDArray[np.float64]:
+        """Centreline along e3, m, of `shape` and (stations,), with `stations`, in space."""
+        return self._number("z")
+
+    @property
+    def a(self) -> NDArray[np.float64]:
+        """Director normal to the section, of `shape` and (stations, 3), with `stations`, in space."""
+        return self._vector("a")
+
+    @property
+    def b(self) -> NDArray[np.float64]:
+        """Director in the section, of `shape` and (stations, 3), with `stations`, in space."""
+        return self._vector("b")
+
+    @property
     def theta(self) -> NDArray[np.float64]:
-        """Rotation of the section, rad, of `shape` and (stations,), with `stations`."""
+        """Rotation of the section, rad, of `shape` and (stations,), with `stations`, in the plane."""
         return self._number("theta")
 
     @property
@@ -212,9 +287,15 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
     def _number(self, name: str) -> NDArray[np.float64]:
         return self._column(name).astype(np.float64, copy=False)
 
+    def _vector(self, name: str) -> NDArray[np.float64]:
+        return np.stack([self._number(f"{name}_{axis}") for axis in "xyz"], axis=-1)
+
     def _column(self, name: str) -> NDArray[np.generic]:
         if name not in self._columns:
-            option = "stations" if name in ("x", "y", "theta") else name
+            in_space = "tip_z" in self._columns
+            if name in (_ONLY_IN_PLANE if in_space else _ONLY_IN_SPACE):
+                raise AttributeError(f"{name}: only for arms in {'the plane' if in_space else 'space'}")
+            option = "stations" if name in _OF_STATIONS else name
             raise AttributeError(f"{name}: these rows have none; `solve_many` has the option `{option}`")
         return self._columns[name]
 
@@ -465,8 +546,9 @@ def solve_many(
     keys = [f"cable[{index}].tension" for index in range(len(cables) if tensions is not None else 0)]
     keys += [*(["flow.speed"] if flow_speed is not None else []), *vary]
     by = _parameters(arm, keys, gradients)
-    # Columns, answers and what becomes of them: of a row the library holds all twelve fields of its stations.
-    numbers = 2 * len(keys) + 48 + 4 * len(cables) + 15 * places + 2 * len(by) * (4 + len(cables))
+    # Columns, answers and what becomes of them: of a row the library holds all fields of its stations.
+    of_row, of_station, of_tip = (72, 36, 6) if arm.is_spatial else (48, 15, 4)
+    numbers = 2 * len(keys) + of_row + 4 * len(cables) + of_station * places + 2 * len(by) * (of_tip + len(cables))
     _require(_rows_of(tensions, [flow_speed, *vary.values()]), numbers)
     given, names = _given(arm, tensions, flow_speed, vary, missing=nan == "row")
     try:

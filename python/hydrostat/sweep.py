@@ -35,18 +35,11 @@ _NUMBERS = {"plane": 23, "space": 35}
 _OF_STATIONS = {"plane": 6, "space": 18}
 #: Meaning of variables that `solve_many` does not have, too.
 _MEANINGS = {
-    "tip_z": "tip along e3",
-    "shape_x": "centreline along e1",
-    "shape_y": "centreline along e2",
-    "shape_z": "centreline along e3",
-    "shape_theta": "rotation of the section",
-    "base_force_z": "base reaction along e3",
     "fold_s": "where the margin against folding is least, along the undeformed arm",
     "phase": "loads that were being raised where there is no equilibrium",
     "verdict_s": "where the limit is met, along the undeformed arm",
     "snaps": "snaps on the way to the loads",
 }
-_VECTORS = re.compile(r"(?P<of>tip|shape|base)_(?P<which>a|b|c|moment)_(?P<axis>x|y|z)$")
 _ENDINGS = (".parquet", ".csv")
 
 
@@ -398,12 +391,7 @@ def key_name(key: str) -> str:
 
 def meaning(name: str) -> str:
     """What a variable is, for people."""
-    vector = _VECTORS.match(name)
-    if vector is not None:
-        axis = "xyz".index(vector["axis"]) + 1
-        if vector["which"] == "moment":
-            return f"moment of the base reaction about e{axis}"
-        return f"director {vector['which']}{' at the tip' if vector['of'] == 'tip' else ''}, along e{axis}"
+    name = name.removeprefix("shape_")
     return FIELDS[name][1] if name in FIELDS else _MEANINGS.get(name, name.replace("_", " "))
 
 

@@ -192,3 +192,56 @@ def test_memory_is_refused_before_anything_is_copied(silicone: hs.Arm) -> None:
         assert tracemalloc.get_traced_memory()[1] < 2**22
     finally:
         tracemalloc.stop()
+
+
+def test_rows_in_space_are_their_own_solves() -> None:
+    arm = hs.Arm.load("silicone-spatial").replace({"flow.speed": 0.05, "flow.direction": [0, 1, 0]})
+    pulls = np.array([[0.1, 0.05, 0.0], [0.2, 0.0, 0.1], [1.4, 0.0, 0.0], [0.0, 0.3, 0.0]])
+    upwards = np.array([[-0.5], [0.8]])
+    many = hs.solve_many(
+        arm, tensions=pulls, vary={"flow.direction[2]": upwards}, tol=TIGHT, stations=4, stability=True, fold_margin=True
+    )
+    assert many.shape == (2, 4) and many.stroke.shape == (2, 4, 3) and many.tip_a.shape == (2, 4, 3)
+    assert many.verdict.tolist() == [["", "", "cable_fold", ""]] * 2
+    assert np.isnan(many.tip_z[:, 2]).all() and np.isnan(many.z[:, 2]).all()
+    for i, k in [(0, 0), (0, 3), (1, 1), (1, 3)]:
+        alone = arm.replace({"flow.direction": [0.0, 1.0, upwards[i, 0]]}).solve(tensions=pulls[k], tol=TIGHT)
+        tip, reaction = alone.tip, alone.base_reaction
+        found = [many.tip_x[i, k], many.tip_y[i, k], many.tip_z[i, k]]
+        assert found == pytest.approx([tip.x, tip.y, tip.z], abs=1e-9 * arm.length)
+        assert many.tip_a[i, k] == pytest.approx(tip.a, abs=1e-7) and many.tip_c[i, k] == pytest.approx(tip.c, abs=1e-7)
+        assert many.base_force_z[i, k] == pytest.approx(reaction.force[2], abs=1e-9)
+        assert many.base_moment_x[i, k] == pytest.approx(reaction.moment[0], abs=1e-9)
+        assert many.stroke[i, k] == pytest.approx([cable.stroke for cable in alone.cables], abs=1e-8)
+        stations = alone.resampled(4)
+        assert many.z[i, k] == pytest.approx(stations.z, abs=1e-8) and many.b[i, k] == pytest.approx(stations.b, abs=1e-5)
+        assert many.fold_margin[i, k] == pytest.approx(alone.fold_margin.value, abs=0.02) and many.stability[i, k] == "stable"
+    # The order of the rows changes no answer, and a sweep has columns of the same names.
+    back = hs.solve_many(arm, tensions=pulls[::-1], vary={"flow.direction[2]": upwards[::-1]}, tol=TIGHT)
+    assert np.allclose(back.tip_z[::-1, ::-1], many.tip_z, rtol=0, atol=1e-9 * arm.length, equal_nan=True)
+    dataset = many.to_xarray("up", "pull")
+    assert dataset.b_x.dims == ("up", "pull", "station") and dataset.tip_z.attrs["units"] == "m"
+    swept = hs.sweep(arm, {"flow.direction[2]": [-0.5, 0.8]}, columns=["tip", "alpha", "base"], tol=TIGHT)
+    assert {name for name in swept.data_vars if name.startswith(("tip", "base"))} <= set(dataset.data_vars)
+    assert {name: swept[name].attrs["long_name"] for name in ("tip_c_y", "base_moment_z")} == {
+        "tip_c_y": "director c at the tip, along e2",
+        "base_moment_z": "moment of the base reaction about e3",
+    }
+    with pytest.raises(AttributeError, match="^tip_theta: only for arms in the plane"):
+        _ = many.tip_theta
+    with pytest.raises(AttributeError, match="^tip_z: only for arms in space"):
+        _ = hs.solve_many("silicone").tip_z
+
+
+def test_gradients_in_space_are_those_of_the_solver() -> None:
+    arm = hs.Arm.load("silicone-spatial").replace({"flow.speed": 0.05, "flow.direction": [0, 0, 1]})
+    names = ["cable[0].tension", "flow.direction[1]", "material.young"]
+    pulls = np.array([[0.1, 0.05, 0.0], [0.3, 0.0, 0.1]])
+    many = hs.solve_many(arm, tensions=pulls, gradients=names, tol=TIGHT)
+    assert many["d_stroke"].shape == (2, 3, 3) and "d_tip_theta" not in many
+    for k in range(2):
+        found: Any = arm.replace(tensions=pulls[k]).sensitivities(names, tol=TIGHT)
+        size = np.abs(found.jacobian()).max(axis=0)
+        for name in ("x", "y", "z", "turn_x", "turn_y", "turn_z"):
+            assert (np.abs(many[f"d_tip_{name}"][k] - getattr(found.tip, name)) <= 1e-6 * size).all(), name
+        assert (np.abs(many["d_stroke"][k] - found.strokes) <= 1e-6 * size).all()

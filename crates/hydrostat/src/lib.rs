@@ -177,7 +177,8 @@ pub use snap::{Snap, SnapBounds};
 pub use solve::{Answer, Options, Solver};
 pub use spatial::{
     Ellipsoid, NoSpatialEquilibrium, SpatialConfiguration, SpatialEquilibria, SpatialError, SpatialPoseChange,
-    SpatialSnap, SpatialSolver, SpatialStation, SpatialStations, SpatialTip, SpatialWrench,
+    SpatialRow, SpatialSnap, SpatialSolver, SpatialStation, SpatialStations, SpatialTile, SpatialTip, SpatialWrench,
+    solve_many_in_space,
 };
 pub use stability::{Growth, Stability};
 pub use statics::shape::Pose;

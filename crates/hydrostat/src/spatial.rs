@@ -17,6 +17,7 @@ mod kinks;
 mod lengths;
 mod loaded;
 pub(crate) mod loads;
+pub(crate) mod many;
 mod mesh;
 mod paths;
 mod place;
@@ -37,6 +38,7 @@ mod varied;
 
 pub use self::configuration::{SpatialConfiguration, SpatialStation, SpatialStations, SpatialWrench};
 pub use self::equilibria::SpatialEquilibria;
+pub use self::many::{SpatialRow, SpatialTile, solve_many_in_space};
 pub use self::sensitivity::{Ellipsoid, SpatialPoseChange};
 pub(crate) use self::sensitivity::{Quantity, turn_between};
 pub use self::solve::{NoSpatialEquilibrium, SpatialError, SpatialSolver};

@@ -13,7 +13,7 @@ pub(crate) mod limit;
 pub mod many;
 pub mod path;
 pub(crate) mod phase;
-mod prediction;
+pub(crate) mod prediction;
 pub(crate) mod refinement;
 pub mod sensitivity;
 pub(crate) mod shape;

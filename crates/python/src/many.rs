@@ -4,7 +4,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hydrostat::parameter::names;
 use hydrostat::{
-    ArmError, NoRow, Options, Parameter, PoseChange, Row, SensitivityOptions, SolveError, Solver, Tile, Wanted,
+    FoldMargin, NoRow, Options, Parameter, Pose as _, PoseChange, Row, SensitivityOptions, SolveError, Solver,
+    SpatialPoseChange, SpatialRow, SpatialSolver, SpatialTile, SpatialTip, Stability, Tile, Wanted, Warning,
 };
 use hydrostat_files::Dimension;
 use numpy::PyReadonlyArray1;
@@ -26,14 +27,50 @@ const BLOCK: usize = 1 << 17;
 /// The word for a row whose numbers are none.
 const NOT_A_NUMBER: &str = "not_a_number";
 
-/// The derivatives of a row: of x, y, theta and alpha at the tip, then of each cable's stroke, by the parameters asked for.
+/// The derivatives of a row: of what [`Rows::DERIVATIVES`] names, then of each cable's stroke, by the parameters asked for.
 type Gradients = Vec<Vec<f64>>;
 
 /// What a row is answered with.
-enum Answer {
+enum Answer<R> {
     /// With the kinds of its warnings.
-    Row(Box<Row>, Option<Gradients>, String),
+    Row(Box<R>, Option<Gradients>, String),
     No(NoRow),
+}
+
+/// What solves rows one after the other, in the plane or in space.
+trait Rows: Clone + Sync {
+    type Row: Send + Sync;
+    type Solver;
+    /// The columns that every row has, a number each.
+    const FIELDS: &'static [&'static str];
+    /// The columns of stations, where they are asked for, a number a station each.
+    const STATIONS: &'static [&'static str];
+    /// The columns of derivatives of the tip.
+    const DERIVATIVES: &'static [&'static str];
+
+    fn solve(&mut self, arm: &hydrostat::Arm) -> Result<Self::Row, NoRow>;
+    /// The number of a row in the column [`Rows::FIELDS`]`[column]`.
+    fn field(row: &Self::Row, column: usize) -> f64;
+    /// The numbers of a row in the column [`Rows::STATIONS`]`[column]`.
+    fn stations(row: &Self::Row, column: usize) -> Vec<f64>;
+    fn common(row: &Self::Row) -> Common<'_>;
+    /// Derivatives about the shape of a row, by a solver that may have those about another row before.
+    fn gradients(
+        request: &Request<'_>,
+        kept: &mut Option<Self::Solver>,
+        arm: &hydrostat::Arm,
+        found: &Self::Row,
+    ) -> Option<Gradients>;
+}
+
+/// What rows in the plane and in space have in common.
+struct Common<'a> {
+    error_estimate: f64,
+    tensions: &'a [f64],
+    strokes: &'a [f64],
+    fold_margin: Option<FoldMargin>,
+    stability: Option<Stability>,
+    warnings: &'a [Warning],
 }
 
 /// What is varied, and what is asked.
@@ -75,10 +112,6 @@ pub(crate) fn solve_many<'py>(
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    if arm.given.space.is_some() {
-        let what = "`solve_many` (`sweep` takes all arms)";
-        return Err(wrong(ArmError::OnlyInPlane { what }));
-    }
     let mut varied: Vec<(Parameter, Vec<f64>)> = Vec::new();
     for (key, column) in keys.iter().zip(&columns) {
         let parameter: Parameter = key.parse().map_err(wrong)?;
@@ -97,30 +130,46 @@ pub(crate) fn solve_many<'py>(
     let options = options(tol, snaps);
     let request = Request { base: &arm.given, varied, options, tile, wanted, gradients };
     // Options are looked at whatever the rows.
-    let start = Tile::new(options, wanted).map_err(wrong)?;
     if tile == 0 {
         let none: SolveError = SolveError::Option { option: "tile", value: 0.0, expected: "at least 1" };
         return Err(wrong(none));
     }
-    let done = AtomicU64::new(0);
-    let answers = interruptible(
-        py,
-        |py| say(py, progress.as_ref(), done.load(Ordering::Relaxed)),
-        |stop| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-            Ok(pool.install(|| request.answers(&start, rows, &done, stop)))
-        },
-    )?;
-    let answers = answers.map_err(|error: rayon::ThreadPoolBuildError| PyRuntimeError::new_err(error.to_string()))?;
-    say(py, progress.as_ref(), rows as u64)?;
-    request.columns_of(py, &answers)
+    if arm.given.space.is_some() {
+        let start = SpatialTile::new(options, wanted).map_err(wrong)?;
+        return request.solve(py, &start, rows, threads, progress.as_ref());
+    }
+    let start = Tile::new(options, wanted).map_err(wrong)?;
+    request.solve(py, &start, rows, threads, progress.as_ref())
 }
 
 impl Request<'_> {
+    fn solve<'py, S: Rows>(
+        &self,
+        py: Python<'py>,
+        start: &S,
+        rows: usize,
+        threads: usize,
+        progress: Option<&Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let done = AtomicU64::new(0);
+        let answers = interruptible(
+            py,
+            |py| say(py, progress, done.load(Ordering::Relaxed)),
+            |stop| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+                Ok(pool.install(|| self.answers(start, rows, &done, stop)))
+            },
+        )?;
+        let answers =
+            answers.map_err(|error: rayon::ThreadPoolBuildError| PyRuntimeError::new_err(error.to_string()))?;
+        say(py, progress, rows as u64)?;
+        self.columns_of::<S>(py, &answers)
+    }
+
     /// The answers of all rows; `None` of those with NaN.
-    fn answers(&self, start: &Tile, rows: usize, done: &AtomicU64, stop: &AtomicBool) -> Answers {
+    fn answers<S: Rows>(&self, start: &S, rows: usize, done: &AtomicU64, stop: &AtomicBool) -> Answers<S::Row> {
         let mut out = Answers { solved: Vec::new(), places: Vec::with_capacity(rows) };
-        let tile = |rows: &[usize]| -> Vec<Answer> {
+        let tile = |rows: &[usize]| -> Vec<Answer<S::Row>> {
             let mut tile = start.clone();
             let mut differentiated = None;
             let mut arm = self.base.clone();
@@ -135,9 +184,12 @@ impl Request<'_> {
                 }
                 out.push(match tile.solve(&arm) {
                     Ok(found) => {
-                        let gradients = self.gradients(&mut differentiated, &arm, &found);
+                        let asked = !self.gradients.is_empty();
+                        let gradients =
+                            if asked { S::gradients(self, &mut differentiated, &arm, &found) } else { None };
                         let kinds = if self.wanted.warnings {
-                            hydrostat_sweep::warning_kinds(&found, self.options.tol * arm.length)
+                            let Common { warnings, error_estimate, .. } = S::common(&found);
+                            hydrostat_sweep::warning_kinds(warnings, error_estimate, self.options.tol * arm.length)
                         } else {
                             String::new()
                         };
@@ -155,7 +207,7 @@ impl Request<'_> {
             from = block.end;
             let order = order(&self.varied, block.clone());
             done.fetch_add((block.len() - order.solved.len()) as u64, Ordering::Relaxed);
-            let solved: Vec<Vec<Answer>> = order.solved.par_chunks(self.tile).map(tile).collect();
+            let solved: Vec<Vec<Answer<S::Row>>> = order.solved.par_chunks(self.tile).map(tile).collect();
             let before = out.solved.len();
             out.solved.extend(solved.into_iter().flatten());
             out.places.extend(order.places.into_iter().map(|place| place.map(|place| before + place)));
@@ -163,96 +215,67 @@ impl Request<'_> {
         out
     }
 
-    /// Derivatives about the shape of a row that was found, where there are any.
-    fn gradients(&self, kept: &mut Option<Solver>, arm: &hydrostat::Arm, found: &Row) -> Option<Gradients> {
-        if self.gradients.is_empty() {
-            return None;
-        }
-        let near = |tip: hydrostat::Tip| {
-            (tip.x - found.tip.x).hypot(tip.y - found.tip.y) <= (1e-6 + 10.0 * self.options.tol) * arm.length
-        };
-        // From the row before where that leads to the shape that the row has.
-        let warm = kept
-            .as_mut()
-            .is_some_and(|solver| solver.set_arm(arm).is_ok() && solver.update().is_ok_and(|answer| near(answer.tip)));
-        if !warm {
-            let mut solver = Solver::new(arm, self.options).ok()?;
-            solver.solve().ok()?;
-            *kept = Some(solver);
-        }
-        let found = kept.as_mut()?.sensitivities_with(&self.gradients, &SensitivityOptions::default()).ok()?;
-        let of = |part: fn(&PoseChange) -> f64| -> Vec<f64> { found.tip.iter().map(part).collect() };
-        let mut out = vec![of(|tip| tip.x), of(|tip| tip.y), of(|tip| tip.theta), of(|tip| tip.alpha)];
-        out.extend(found.strokes);
-        Some(out)
+    /// How far from a row's tip (m) that of a solver may be for its derivatives to be the row's.
+    fn near(&self, arm: &hydrostat::Arm) -> f64 {
+        (1e-6 + 10.0 * self.options.tol) * arm.length
     }
 
-    fn columns_of<'py>(&self, py: Python<'py>, answers: &Answers) -> PyResult<Bound<'py, PyDict>> {
+    fn columns_of<'py, S: Rows>(&self, py: Python<'py>, answers: &Answers<S::Row>) -> PyResult<Bound<'py, PyDict>> {
         let out = PyDict::new(py);
         let cables = self.base.cables.len();
         let wanted = self.wanted;
-        let numbers =
-            |of: &dyn Fn(&Row) -> f64| -> Vec<f64> { answers.rows().map(|row| row.map_or(f64::NAN, of)).collect() };
         let put = |name: &str, values: Vec<f64>| out.set_item(name, given(py, values));
-        put("tip_x", numbers(&|row| row.tip.x))?;
-        put("tip_y", numbers(&|row| row.tip.y))?;
-        put("tip_theta", numbers(&|row| row.tip.theta))?;
-        put("tip_alpha", numbers(&|row| row.tip.alpha))?;
-        put("base_force_x", numbers(&|row| row.base_reaction.force[0]))?;
-        put("base_force_y", numbers(&|row| row.base_reaction.force[1]))?;
-        put("base_moment", numbers(&|row| row.base_reaction.moment))?;
-        put("error_estimate", numbers(&|row| row.error_estimate))?;
-        let flat = |count: usize, of: &dyn Fn(&Row) -> &[f64]| -> Vec<f64> {
-            let mut cells = Vec::with_capacity(count * answers.places.len());
-            for (k, row) in answers.rows().enumerate() {
-                cells.extend_from_slice(row.map_or(&[][..], of));
-                cells.resize((k + 1) * count, f64::NAN);
-            }
-            cells
+        for (column, name) in S::FIELDS.iter().enumerate() {
+            put(name, answers.cells(1, |row, cells| cells.push(S::field(row, column))))?;
+        }
+        let common = |count: usize, of: &dyn Fn(Common<'_>, &mut Vec<f64>)| {
+            answers.cells(count, |row, cells| of(S::common(row), cells))
         };
-        put("tension", flat(cables, &|row| &row.tensions))?;
+        put("error_estimate", common(1, &|row, cells| cells.push(row.error_estimate)))?;
+        put("tension", common(cables, &|row, cells| cells.extend_from_slice(row.tensions)))?;
         if wanted.strokes {
-            put("stroke", flat(cables, &|row| &row.strokes))?;
+            put("stroke", common(cables, &|row, cells| cells.extend_from_slice(row.strokes)))?;
         }
         if wanted.fold_margin {
-            put("fold_margin", numbers(&|row| row.fold_margin.map_or(f64::NAN, |fold| fold.value)))?;
+            put("fold_margin", common(1, &|row, cells| cells.extend(row.fold_margin.map(|fold| fold.value))))?;
         }
         if wanted.stations >= 2 {
-            put("x", flat(wanted.stations, &|row| &row.stations.x))?;
-            put("y", flat(wanted.stations, &|row| &row.stations.y))?;
-            put("theta", flat(wanted.stations, &|row| &row.stations.theta))?;
+            for (column, name) in S::STATIONS.iter().enumerate() {
+                put(name, answers.cells(wanted.stations, |row, cells| cells.extend(S::stations(row, column))))?;
+            }
         }
         if !self.gradients.is_empty() {
-            for (k, name) in ["d_tip_x", "d_tip_y", "d_tip_theta", "d_tip_alpha"].into_iter().enumerate() {
+            for (k, name) in S::DERIVATIVES.iter().enumerate() {
                 put(name, answers.derivatives(k, 1, self.gradients.len()))?;
             }
-            put("d_stroke", answers.derivatives(4, cables, self.gradients.len()))?;
+            put("d_stroke", answers.derivatives(S::DERIVATIVES.len(), cables, self.gradients.len()))?;
         }
         if wanted.stability {
-            let state = |row: Option<&Row>| row.and_then(|row| words(row.stability).0).unwrap_or_default();
+            let state =
+                |row: Option<&S::Row>| row.and_then(|row| words(S::common(row).stability).0).unwrap_or_default();
             out.set_item("stability", answers.rows().map(state).collect::<Vec<_>>())?;
         }
         if wanted.warnings {
-            let words = |answer: Option<&'_ Answer>| match answer {
+            let words = |answer: Option<&'_ Answer<S::Row>>| match answer {
                 Some(Answer::Row(_, _, kinds)) => kinds.clone(),
                 _ => String::new(),
             };
             out.set_item("warnings", answers.all().map(words).collect::<Vec<_>>())?;
         }
-        let verdict = |answer: Option<&Answer>| match answer {
+        let verdict = |answer: Option<&Answer<S::Row>>| match answer {
             None => NOT_A_NUMBER,
             Some(Answer::Row(..)) => "",
             Some(Answer::No(NoRow::Verdict(verdict))) => verdict.kind.name(),
             Some(Answer::No(NoRow::Arm(_))) => hydrostat_sweep::NO_ARM,
         };
         out.set_item("verdict", answers.all().map(verdict).collect::<Vec<_>>())?;
-        let reason = |answer: (usize, Option<&Answer>)| match answer {
+        let reason = |answer: (usize, Option<&Answer<S::Row>>)| match answer {
             (row, None) => self.not_a_number(row),
             (_, Some(Answer::Row(..))) => String::new(),
             (_, Some(Answer::No(no))) => no.to_string(),
         };
         out.set_item("reason", answers.all().enumerate().map(reason).collect::<Vec<_>>())?;
-        let fraction = |answer: Option<&Answer>| match answer {
+        let fraction = |answer: Option<&Answer<S::Row>>| match answer {
             Some(Answer::No(NoRow::Verdict(verdict))) => verdict.load_fraction,
             _ => f64::NAN,
         };
@@ -266,18 +289,159 @@ impl Request<'_> {
     }
 }
 
+impl Rows for Tile {
+    type Row = Row;
+    type Solver = Solver;
+    const FIELDS: &'static [&'static str] =
+        &["tip_x", "tip_y", "tip_theta", "tip_alpha", "base_force_x", "base_force_y", "base_moment"];
+    const STATIONS: &'static [&'static str] = &["x", "y", "theta"];
+    const DERIVATIVES: &'static [&'static str] = &["d_tip_x", "d_tip_y", "d_tip_theta", "d_tip_alpha"];
+
+    fn solve(&mut self, arm: &hydrostat::Arm) -> Result<Row, NoRow> {
+        Self::solve(self, arm)
+    }
+
+    fn field(row: &Row, column: usize) -> f64 {
+        let (tip, base) = (row.tip, row.base_reaction);
+        [tip.x, tip.y, tip.theta, tip.alpha, base.force[0], base.force[1], base.moment][column]
+    }
+
+    fn stations(row: &Row, column: usize) -> Vec<f64> {
+        [&row.stations.x, &row.stations.y, &row.stations.theta][column].clone()
+    }
+
+    fn common(row: &Row) -> Common<'_> {
+        Common {
+            error_estimate: row.error_estimate,
+            tensions: &row.tensions,
+            strokes: &row.strokes,
+            fold_margin: row.fold_margin,
+            stability: row.stability,
+            warnings: &row.warnings,
+        }
+    }
+
+    fn gradients(
+        request: &Request<'_>,
+        kept: &mut Option<Solver>,
+        arm: &hydrostat::Arm,
+        found: &Row,
+    ) -> Option<Gradients> {
+        let near = |tip: hydrostat::Tip| (tip.x - found.tip.x).hypot(tip.y - found.tip.y) <= request.near(arm);
+        // From the row before where that leads to the shape that the row has.
+        let warm = kept
+            .as_mut()
+            .is_some_and(|solver| solver.set_arm(arm).is_ok() && solver.update().is_ok_and(|answer| near(answer.tip)));
+        if !warm {
+            let mut solver = Solver::new(arm, request.options).ok()?;
+            solver.solve().ok()?;
+            *kept = Some(solver);
+        }
+        let found = kept.as_mut()?.sensitivities_with(&request.gradients, &SensitivityOptions::default()).ok()?;
+        let of = |part: fn(&PoseChange) -> f64| -> Vec<f64> { found.tip.iter().map(part).collect() };
+        let mut out = vec![of(|tip| tip.x), of(|tip| tip.y), of(|tip| tip.theta), of(|tip| tip.alpha)];
+        out.extend(found.strokes);
+        Some(out)
+    }
+}
+
+impl Rows for SpatialTile {
+    type Row = SpatialRow;
+    type Solver = SpatialSolver;
+    #[rustfmt::skip]
+    const FIELDS: &'static [&'static str] = &[
+        "tip_x", "tip_y", "tip_z",
+        "tip_a_x", "tip_a_y", "tip_a_z", "tip_b_x", "tip_b_y", "tip_b_z", "tip_c_x", "tip_c_y", "tip_c_z",
+        "tip_alpha",
+        "base_force_x", "base_force_y", "base_force_z", "base_moment_x", "base_moment_y", "base_moment_z",
+    ];
+    const STATIONS: &'static [&'static str] = &["x", "y", "z", "a_x", "a_y", "a_z", "b_x", "b_y", "b_z"];
+    const DERIVATIVES: &'static [&'static str] =
+        &["d_tip_x", "d_tip_y", "d_tip_z", "d_tip_turn_x", "d_tip_turn_y", "d_tip_turn_z"];
+
+    fn solve(&mut self, arm: &hydrostat::Arm) -> Result<SpatialRow, NoRow> {
+        Self::solve(self, arm)
+    }
+
+    fn field(row: &SpatialRow, column: usize) -> f64 {
+        let SpatialTip { x, y, z, a, b, c, alpha } = row.tip;
+        match column {
+            0..12 => [[x, y, z], a, b, c][column / 3][column % 3],
+            12 => alpha,
+            13..16 => row.base_reaction.force[column - 13],
+            _ => row.base_reaction.moment[column - 16],
+        }
+    }
+
+    fn stations(row: &SpatialRow, column: usize) -> Vec<f64> {
+        let at = &row.stations;
+        match column {
+            0..3 => [&at.x, &at.y, &at.z][column].clone(),
+            _ => [&at.a, &at.b][column / 3 - 1].iter().map(|director| director[column % 3]).collect(),
+        }
+    }
+
+    fn common(row: &SpatialRow) -> Common<'_> {
+        Common {
+            error_estimate: row.error_estimate,
+            tensions: &row.tensions,
+            strokes: &row.strokes,
+            fold_margin: row.fold_margin,
+            stability: row.stability,
+            warnings: &row.warnings,
+        }
+    }
+
+    fn gradients(
+        request: &Request<'_>,
+        kept: &mut Option<SpatialSolver>,
+        arm: &hydrostat::Arm,
+        found: &SpatialRow,
+    ) -> Option<Gradients> {
+        // From the row before where only tensions differ and that leads to the shape that the row has.
+        let tensions: Vec<f64> = arm.cables.iter().map(|cable| cable.tension).collect();
+        let warm = kept.as_mut().is_some_and(|solver| {
+            solver.set_tensions(&tensions).is_ok()
+                && solver.arm() == arm
+                && solver.resolve().is_ok_and(|shape| shape.tip().distance_to(&found.tip) <= request.near(arm))
+        });
+        if !warm {
+            let mut solver = SpatialSolver::new(arm, request.options).ok()?;
+            solver.solve().ok()?;
+            *kept = Some(solver);
+        }
+        let found = kept.as_mut()?.sensitivities_with(&request.gradients, &SensitivityOptions::default()).ok()?;
+        let part = |k: usize| move |c: &SpatialPoseChange| if k < 3 { c.place[k] } else { c.turn[k - 3] };
+        let mut out: Gradients = (0..6).map(|k| found.tip.iter().map(part(k)).collect()).collect();
+        out.extend(found.strokes);
+        Some(out)
+    }
+}
+
 /// Answers of the rows that were solved, and the place of each row's among them.
-struct Answers {
-    solved: Vec<Answer>,
+struct Answers<R> {
+    solved: Vec<Answer<R>>,
     places: Vec<Option<usize>>,
 }
 
-impl Answers {
-    fn all(&self) -> impl Iterator<Item = Option<&Answer>> {
+impl<R> Answers<R> {
+    fn all(&self) -> impl Iterator<Item = Option<&Answer<R>>> {
         self.places.iter().map(|place| place.and_then(|place| self.solved.get(place)))
     }
 
-    fn rows(&self) -> impl Iterator<Item = Option<&Row>> {
+    /// `count` numbers of every row; NaN where it has none.
+    fn cells(&self, count: usize, add: impl Fn(&R, &mut Vec<f64>)) -> Vec<f64> {
+        let mut cells = Vec::with_capacity(count * self.places.len());
+        for (k, row) in self.rows().enumerate() {
+            if let Some(row) = row {
+                add(row, &mut cells);
+            }
+            cells.resize((k + 1) * count, f64::NAN);
+        }
+        cells
+    }
+
+    fn rows(&self) -> impl Iterator<Item = Option<&R>> {
         self.all().map(|answer| match answer {
             Some(Answer::Row(row, ..)) => Some(row.as_ref()),
             _ => None,

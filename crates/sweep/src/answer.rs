@@ -1,8 +1,8 @@
 //! What became of a row, in the plane or in space.
 
 use hydrostat::{
-    AfterSnapError, Arm, FoldMargin, MotionError, Options, Row, Snap, SolveError, SpatialConfiguration, SpatialError,
-    SpatialSnap, SpatialSolver, SpatialTip, SpatialWrench, Stability, Verdict, Wanted, Warning,
+    AfterSnapError, Arm, FoldMargin, MotionError, NoRow, Options, Row, Snap, SolveError, SpatialError, SpatialRow,
+    SpatialSnap, SpatialTile, SpatialTip, Stability, Tile, Verdict, Wanted, Warning,
 };
 
 /// Why a row has no answer.
@@ -14,67 +14,46 @@ pub(crate) enum NoAnswer {
     Arm(String),
 }
 
-/// The answer of a row.
-#[derive(Debug, Clone)]
-pub(crate) enum AnyRow {
-    /// Of an arm in the plane.
-    Plane(Row),
-    /// Of an arm in space.
-    Space(SpatialRow),
-}
-
-/// What is kept of an arm in space.
-#[derive(Debug, Clone)]
-pub(crate) struct SpatialRow {
-    tip: SpatialTip,
-    base_reaction: SpatialWrench,
-    error_estimate: f64,
-    tensions: Vec<f64>,
-    strokes: Vec<f64>,
-    fold_margin: FoldMargin,
-    stability: Option<Stability>,
-    warnings: Vec<Warning>,
-    snaps: Vec<SpatialSnap>,
-    /// How long they take, s, where their motion was followed.
-    snap_durations: Vec<f64>,
-    /// Place and directors a and b at each station; empty unless asked for.
-    shape: Vec<[f64; 9]>,
-}
-
-impl SpatialRow {
-    fn of(configuration: &SpatialConfiguration, wanted: Wanted) -> Self {
-        let cables = &configuration.cables;
-        Self {
-            tip: configuration.tip(),
-            base_reaction: configuration.base_reaction,
-            error_estimate: configuration.error_estimate,
-            tensions: cables.iter().map(|cable| cable.tension).collect(),
-            strokes: cables.iter().map(|cable| cable.stroke).collect(),
-            fold_margin: configuration.fold_margin(),
-            stability: if wanted.stability { configuration.stability() } else { None },
-            warnings: if wanted.warnings { configuration.warnings() } else { Vec::new() },
-            snaps: configuration.snaps.clone(),
-            snap_durations: Vec::new(),
-            shape: if wanted.stations < 2 { Vec::new() } else { shape(configuration, wanted.stations) },
+impl From<NoRow> for NoAnswer {
+    fn from(no: NoRow) -> Self {
+        match no {
+            NoRow::Verdict(verdict) => Self::Verdict(verdict),
+            NoRow::Arm(error) => Self::Arm(error.to_string()),
         }
     }
 }
 
-fn shape(configuration: &SpatialConfiguration, count: usize) -> Vec<[f64; 9]> {
-    let stations = configuration.resampled(count);
-    let at = |k: usize| {
-        let (a, b) = (stations.a[k], stations.b[k]);
-        [stations.x[k], stations.y[k], stations.z[k], a[0], a[1], a[2], b[0], b[1], b[2]]
-    };
-    (0..stations.len()).map(at).collect()
+/// The answer of a row.
+#[derive(Debug, Clone)]
+pub(crate) enum AnyRow {
+    /// Of an arm in the plane.
+    Plane(Box<Row>),
+    /// Of an arm in space.
+    Space(Box<SpatialRow>),
 }
 
-/// Solves a row in space by itself: it does not depend on the rows before.
-pub(crate) fn solve_in_space(arm: &Arm, options: Options, wanted: Wanted) -> Result<AnyRow, NoAnswer> {
-    match SpatialSolver::new(arm, options).and_then(|mut solver| solver.solve()) {
-        Ok(configuration) => Ok(AnyRow::Space(SpatialRow::of(&configuration, wanted))),
-        Err(SpatialError::NoEquilibrium(no)) => Err(NoAnswer::Verdict(no.verdict)),
-        Err(error) => Err(NoAnswer::Arm(error.to_string())),
+impl From<Row> for AnyRow {
+    fn from(row: Row) -> Self {
+        Self::Plane(Box::new(row))
+    }
+}
+
+impl From<SpatialRow> for AnyRow {
+    fn from(row: SpatialRow) -> Self {
+        Self::Space(Box::new(row))
+    }
+}
+
+/// What solves the rows of a tile, of arms in the plane and in space.
+#[derive(Debug, Clone)]
+pub(crate) struct Tiles {
+    pub(crate) plane: Tile,
+    pub(crate) space: SpatialTile,
+}
+
+impl Tiles {
+    pub(crate) fn new(options: Options, wanted: Wanted) -> Result<Self, SolveError> {
+        Ok(Self { plane: Tile::new(options, wanted)?, space: SpatialTile::new(options, wanted)? })
     }
 }
 
@@ -83,7 +62,7 @@ pub(crate) fn solve_after_snap(arm: &Arm, tol: f64, wanted: Wanted, verdict: Ver
     match arm.solve_after_snap(tol) {
         Ok(found) => {
             let snap_durations = found.snaps.iter().map(|motion| motion.duration).collect();
-            Ok(AnyRow::Plane(Row { snap_durations, ..Row::new(&found.configuration, wanted) }))
+            Ok(Row { snap_durations, ..Row::new(&found.configuration, wanted) }.into())
         }
         Err(AfterSnapError::Solve(SolveError::NoEquilibrium(no))) => Err(NoAnswer::Verdict(no.verdict)),
         Err(error) => Err(no_rest(&error, verdict)),
@@ -100,7 +79,7 @@ pub(crate) fn solve_after_snap_in_space(
     match arm.solve_after_snap_in_space(tol) {
         Ok(found) => {
             let snap_durations = found.snaps.iter().map(|motion| motion.duration).collect();
-            Ok(AnyRow::Space(SpatialRow { snap_durations, ..SpatialRow::of(&found.configuration, wanted) }))
+            Ok(SpatialRow { snap_durations, ..SpatialRow::new(&found.configuration, wanted) }.into())
         }
         Err(AfterSnapError::Solve(SpatialError::NoEquilibrium(no))) => Err(NoAnswer::Verdict(no.verdict)),
         Err(error) => Err(no_rest(&error, verdict)),
@@ -161,7 +140,7 @@ impl AnyRow {
     pub(crate) fn fold_margin(&self) -> Option<FoldMargin> {
         match self {
             Self::Plane(row) => row.fold_margin,
-            Self::Space(row) => Some(row.fold_margin),
+            Self::Space(row) => row.fold_margin,
         }
     }
 
@@ -182,7 +161,7 @@ impl AnyRow {
     /// Place of the tip and its angle, or in space its directors, in the order of their columns.
     pub(crate) fn tip(&self) -> Vec<f64> {
         match self {
-            Self::Plane(Row { tip, .. }) => vec![tip.x, tip.y, tip.theta],
+            Self::Plane(row) => vec![row.tip.x, row.tip.y, row.tip.theta],
             Self::Space(row) => {
                 let SpatialTip { x, y, z, a, b, c, .. } = row.tip;
                 [[x, y, z], a, b, c].concat()
@@ -200,7 +179,10 @@ impl AnyRow {
     /// Force and moment at the base.
     pub(crate) fn base(&self) -> Vec<f64> {
         match self {
-            Self::Plane(Row { base_reaction: base, .. }) => vec![base.force[0], base.force[1], base.moment],
+            Self::Plane(row) => {
+                let base = row.base_reaction;
+                vec![base.force[0], base.force[1], base.moment]
+            }
             Self::Space(row) => [row.base_reaction.force, row.base_reaction.moment].concat(),
         }
     }
@@ -208,8 +190,18 @@ impl AnyRow {
     /// A field of the stations, by its place among the columns of a shape.
     pub(crate) fn shape(&self, field: usize, station: usize) -> Option<f64> {
         match self {
-            Self::Plane(Row { stations: s, .. }) => [&s.x, &s.y, &s.theta].get(field)?.get(station).copied(),
-            Self::Space(row) => row.shape.get(station)?.get(field).copied(),
+            Self::Plane(row) => {
+                let s = &row.stations;
+                [&s.x, &s.y, &s.theta].get(field)?.get(station).copied()
+            }
+            Self::Space(row) => {
+                let s = &row.stations;
+                if let Some(places) = [&s.x, &s.y, &s.z].get(field) {
+                    return places.get(station).copied();
+                }
+                let director = [&s.a, &s.b].get(field / 3 - 1)?.get(station)?;
+                Some(director[field % 3])
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use hydrostat::{Arm, Row, Stability, Wanted, Warning};
+use hydrostat::{Arm, Stability, Wanted, Warning};
 use hydrostat_files::{Axis, AxisValue, TOLERANCE_MISSED};
 
 use crate::answer::{AnyRow, NoAnswer};
@@ -138,13 +138,15 @@ pub(crate) struct Answered {
 /// The column of warnings.
 pub(crate) const WARNINGS: &str = "warnings";
 
-/// The kinds of the warnings of a row with blanks between, each once, as the column of warnings has them. `asked` is the error of the tip that was
-/// asked for, m.
-pub fn kinds(row: &Row, asked: f64) -> String {
-    kinds_of(&row.warnings, row.error_estimate, asked)
-}
-
-fn kinds_of(warnings: &[Warning], error_estimate: f64, asked: f64) -> String {
+/// The kinds of the warnings of a row with blanks between, each once, as the column of warnings has them. Of the errors of the tip (m) one
+/// is that of the row, the other was asked for.
+///
+/// ```
+/// let sealed = hydrostat::Warning::SealedCavity;
+/// let kinds = hydrostat_sweep::warning_kinds(&[sealed.clone(), sealed], 1e-6, 1e-8);
+/// assert_eq!(kinds, "sealed_cavity tolerance_missed");
+/// ```
+pub fn kinds(warnings: &[Warning], error_estimate: f64, asked: f64) -> String {
     let mut out: Vec<&str> = warnings.iter().map(Warning::kind).collect();
     out.dedup();
     if error_estimate > asked {
@@ -303,7 +305,7 @@ impl Layout {
                     cells.numbers(snaps.map_or([None; 4], |(_, of)| of));
                 }
                 Output::Warnings => {
-                    let kinds = found.map(|row| kinds_of(row.warnings(), row.error_estimate(), *asked));
+                    let kinds = found.map(|row| kinds(row.warnings(), row.error_estimate(), *asked));
                     cells.text(kinds.filter(|kinds| !kinds.is_empty()).as_deref());
                 }
                 Output::Verdict => {

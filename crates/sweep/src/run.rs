@@ -5,12 +5,12 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use hydrostat::{Arm, NoRow, Options, SnapBounds, Tile, VerdictKind};
+use hydrostat::{Arm, NoRow, Options, SnapBounds, VerdictKind};
 use hydrostat_files::{ArmFile, arm_to_toml, write_whole, write_whole_with};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::answer::{AnyRow, NoAnswer, solve_after_snap, solve_after_snap_in_space, solve_in_space};
+use crate::answer::{AnyRow, NoAnswer, Tiles, solve_after_snap, solve_after_snap_in_space};
 use crate::arms::{Arms, Last};
 use crate::column::{Answer, Answered, Column, Data, Layout, Output, WARNINGS};
 use crate::error::{SweepError, parquet_error};
@@ -95,7 +95,7 @@ pub struct Sweep {
     plan: Plan,
     arms: Arms,
     layout: Layout,
-    start: Tile,
+    start: Tiles,
     tiles: Range<u64>,
     /// The rows of these tiles that are wanted: all but where there are more shards than tiles.
     rows: Range<u64>,
@@ -146,7 +146,7 @@ impl Sweep {
         let every = SnapBounds { distance: 0.0, angle: 0.0 };
         let snaps = if options.after_snap { every } else { options.snaps };
         let each = Options { tol: options.tol, snaps };
-        let start = Tile::new(each, layout.wanted())?;
+        let start = Tiles::new(each, layout.wanted())?;
         let (tiles, rows) = match options.shard {
             None => (0..plan.tiles(), 0..plan.rows()),
             Some(shard) => tiles_and_rows(&plan, shard)?,
@@ -420,25 +420,23 @@ impl Sweep {
 }
 
 impl Sweep {
-    /// What becomes of a row; `solver` has solved the one before.
-    fn answer(&self, arm: &Arm, solver: &mut Tile) -> Answer {
-        match (arm.space.is_some(), self.layout.is_spatial()) {
-            (true, true) => match solve_in_space(arm, self.options, self.layout.wanted()) {
-                Err(NoAnswer::Verdict(verdict)) if self.after_snap && verdict.kind == VerdictKind::LimitPoint => {
-                    solve_after_snap_in_space(arm, self.options.tol, self.layout.wanted(), verdict)
-                }
-                found => found,
-            },
-            (false, false) => match solver.solve(arm) {
-                Ok(row) => Ok(AnyRow::Plane(row)),
-                Err(NoRow::Verdict(verdict)) if self.after_snap && verdict.kind == VerdictKind::LimitPoint => {
-                    solve_after_snap(arm, self.options.tol, self.layout.wanted(), verdict)
-                }
-                Err(NoRow::Verdict(verdict)) => Err(NoAnswer::Verdict(verdict)),
-                Err(NoRow::Arm(error)) => Err(NoAnswer::Arm(error.to_string())),
-            },
+    /// What becomes of a row; `tiles` have solved the one before.
+    fn answer(&self, arm: &Arm, tiles: &mut Tiles) -> Answer {
+        let in_space = arm.space.is_some();
+        if in_space != self.layout.is_spatial() {
             // Their columns differ.
-            _ => Err(NoAnswer::Arm("`arm.space`: expected the same in all rows; give it in the arm file".to_owned())),
+            return Err(NoAnswer::Arm(
+                "`arm.space`: expected the same in all rows; give it in the arm file".to_owned(),
+            ));
+        }
+        let found =
+            if in_space { tiles.space.solve(arm).map(AnyRow::from) } else { tiles.plane.solve(arm).map(AnyRow::from) };
+        match found {
+            Err(NoRow::Verdict(verdict)) if self.after_snap && verdict.kind == VerdictKind::LimitPoint => {
+                let after_snap = if in_space { solve_after_snap_in_space } else { solve_after_snap };
+                after_snap(arm, self.options.tol, self.layout.wanted(), verdict)
+            }
+            found => Ok(found?),
         }
     }
 }

@@ -279,7 +279,10 @@ impl Arm {
             && self.cavity == other.cavity
             && self.reference == other.reference
             && self.readings == other.readings
-            && self.space == other.space
+            && match (&self.space, &other.space) {
+                (Some(own), Some(other)) => own.is_laid_out_as(other),
+                (own, other) => own == other,
+            }
             && self.cables.len() == other.cables.len()
             && self
                 .cables

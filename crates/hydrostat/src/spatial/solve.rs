@@ -6,7 +6,7 @@ use super::equations::Guess;
 use super::tip::{SpatialSnap, SpatialTip};
 use crate::numerics::distance;
 use crate::rod::arm::{Arm, ArmError};
-use crate::statics::engine::{Trouble, WORK};
+use crate::statics::engine::{Trouble, WORK, led_on};
 use crate::statics::path::loaded::Loaded as _;
 use crate::statics::path::{
     PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium, no_equilibrium_in_range,
@@ -133,10 +133,15 @@ impl SpatialSolver {
         for (new, own) in arm.cables.iter_mut().zip(&self.arm().cables).filter(|(new, _)| new.stroke.is_some()) {
             new.tension = own.tension;
         }
-        self.engine.equations.set_loads(&arm);
-        self.engine.check_equations.set_loads(&arm);
-        self.solved = false;
+        self.take_loads(&arm);
         Ok(())
+    }
+
+    /// [`SpatialSolver::set_loads`] of an arm that was checked and commands no strokes.
+    pub(super) fn take_loads(&mut self, arm: &Arm) {
+        self.engine.equations.set_loads(arm);
+        self.engine.check_equations.set_loads(arm);
+        self.solved = false;
     }
 
     /// Solves again from the last configuration, after a small change of tensions; falls back to
@@ -153,6 +158,15 @@ impl SpatialSolver {
 
     /// A few rounds from the last configuration; `None` where that is no way to the answer.
     pub(crate) fn resolve_warm(&mut self) -> Option<SpatialConfiguration> {
+        let estimate = self.settle_warm()?;
+        self.settled = false;
+        let configuration = self.read(estimate, PathSummary::default()).ok()?;
+        (self.settled, self.solved) = (true, true);
+        Some(configuration)
+    }
+
+    /// The rounds of [`SpatialSolver::resolve_warm`]: the estimated error, over L.
+    pub(super) fn settle_warm(&mut self) -> Option<f64> {
         if !self.settled {
             return None;
         }
@@ -161,12 +175,9 @@ impl SpatialSolver {
         self.engine.allowed = WORK;
         let before = self.engine.tip;
         let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
-        if self.engine.system.determinant().sign != self.sign || distance(&before, &self.engine.tip) >= 0.2 {
-            return None;
-        }
-        let configuration = self.read(estimate, PathSummary::default()).ok()?;
-        (self.settled, self.solved) = (true, true);
-        Some(configuration)
+        let stays = self.engine.system.determinant().sign == self.sign && distance(&before, &self.engine.tip) < 0.2;
+        self.settled = stays;
+        stays.then_some(estimate)
     }
 
     /// Solves for the present tensions where that was not done yet.
@@ -281,6 +292,17 @@ impl Engine {
     pub(crate) fn take_shape_of(&mut self, configuration: &SpatialConfiguration) {
         *self = configuration.engine().clone();
         self.allowed = usize::MAX;
+    }
+
+    /// Moves the solution on by each factor times its way from that solution before, one after the other, and nodes on
+    /// kinks with it. Left as it is where one of them does not correspond node by node.
+    pub(super) fn lead_on(&mut self, steps: &[(&Guess, f64)]) {
+        let Some(next) = led_on(&self.solution, steps) else { return };
+        let moved = next.mesh != self.solution.mesh;
+        self.solution = next;
+        if moved {
+            self.equations.place_on(&self.system.gauss, &self.solution);
+        }
     }
 
     /// The equilibrium under the engine's loads near a shape, if `accepted` makes something of it: else the engine

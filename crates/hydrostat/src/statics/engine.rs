@@ -19,6 +19,7 @@ mod watch;
 mod wrap_angles;
 
 pub(crate) use self::budget::WORK;
+pub(crate) use self::carry_over::led_on;
 pub(crate) use self::discrete::{Engine, response_change, shift_by_tangential_load};
 pub(crate) use self::held::pull_taut;
 pub(crate) use self::kinks::{at_jumps, end_beside, zero_beside};

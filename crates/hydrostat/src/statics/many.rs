@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use crate::rod::arm::{Arm, ArmError, Flow};
+use crate::rod::arm::{Arm, ArmError, Flow, Space};
 use crate::rod::readings::Support;
 use crate::statics::configuration::{Configuration, FoldMargin, Stations, Tip, Warning, Wrench};
 use crate::statics::engine::{Engine, Guess};
@@ -20,7 +20,7 @@ use crate::statics::stability::Stability;
 use crate::statics::verdict::{Phase, SolveError, Verdict};
 
 /// A tip that turns further (rad) from one row to the next has left what a small change does.
-const FARTHEST: f64 = 0.5;
+pub(crate) const FARTHEST: f64 = 0.5;
 
 /// What is asked of every row beyond tip, base reaction and error estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -159,8 +159,7 @@ impl Tile {
         };
         let mut solver = Solver::new(arm, self.options).map_err(no_row)?;
         let configuration = solver.solve().map_err(no_row)?;
-        let follows = arm.readings.support == Support::Clamped && !arm.has_friction() && !arm.is_commanded();
-        self.solver = follows.then_some(solver);
+        self.solver = may_be_followed(arm).then_some(solver);
         Ok(self.row(&configuration))
     }
 
@@ -251,24 +250,51 @@ impl Row {
 }
 
 /// The numbers that [`differ_in_loads`] lets differ.
-fn loads(arm: &Arm) -> Vec<f64> {
+pub(crate) fn loads(arm: &Arm) -> Vec<f64> {
     let Flow { speed, direction, density, .. } = arm.flow;
     let gravity = arm.gravity.map_or([0.0; 2], |gravity| [gravity.acceleration, gravity.direction]);
     let [fx, fy] = arm.tip.force;
     let [fa, fb] = arm.tip.follower;
     let others = [speed, direction, density, gravity[0], gravity[1], fx, fy, fa, fb, arm.tip.moment];
-    others.into_iter().chain(arm.cables.iter().map(|cable| cable.tension)).collect()
+    let in_space = arm.space.iter().flat_map(Space::loads);
+    others.into_iter().chain(in_space).chain(arm.cables.iter().map(|cable| cable.tension)).collect()
+}
+
+/// Whether the next row may start from this arm's shape: no friction and no strokes, whose answers hang on the way to
+/// them.
+pub(crate) fn may_be_followed(arm: &Arm) -> bool {
+    arm.readings.support == Support::Clamped && !arm.has_friction() && !arm.is_commanded()
 }
 
 /// Whether an arm differs from another in what a solver takes between two solves.
-fn differ_in_loads(a: &Arm, b: &Arm) -> bool {
+pub(crate) fn differ_in_loads(a: &Arm, b: &Arm) -> bool {
     a.has_geometry_of(b)
         && a.base == b.base
         && a.density == b.density
         && a.material == b.material
         && a.distributed == b.distributed
+        && a.space.iter().zip(&b.space).all(|(a, b)| a.is_loaded_along_as(b))
         && a.cables.iter().chain(&b.cables).all(|cable| cable.friction == 0.0)
         && b.cables.iter().all(|cable| cable.stroke.is_none())
+}
+
+/// The rows of `arms`, `tile` of them at a time on the threads of rayon's current pool, each tile one after the other
+/// by a copy of `start`.
+pub(crate) fn in_tiles<S: Clone + Sync, R: Send>(
+    arms: &[Arm],
+    tile: usize,
+    start: &S,
+    solve: impl Fn(&mut S, &Arm) -> R + Sync,
+) -> Result<Vec<R>, SolveError> {
+    if tile == 0 {
+        return Err(SolveError::Option { option: "tile", value: 0.0, expected: "at least 1" });
+    }
+    let tiles = arms.par_chunks(tile).map(|arms| -> Vec<R> {
+        let mut solver = start.clone();
+        arms.iter().map(|arm| solve(&mut solver, arm)).collect()
+    });
+    let tiles: Vec<Vec<R>> = tiles.collect();
+    Ok(tiles.into_iter().flatten().collect())
 }
 
 /// Solves all `arms`, on the threads of rayon's current pool. The rows are the same to the last bit whatever their
@@ -294,14 +320,6 @@ fn differ_in_loads(a: &Arm, b: &Arm) -> bool {
 /// # Errors
 /// [`SolveError::Option`]: a tolerance out of range, tiles without rows. What is wrong with a row is in its place.
 pub fn solve_many(arms: &[Arm], options: &ManyOptions) -> Result<Vec<Result<Row, NoRow>>, SolveError> {
-    if options.tile == 0 {
-        return Err(SolveError::Option { option: "tile", value: 0.0, expected: "at least 1" });
-    }
     let start = Tile::new(Options { tol: options.tol, snaps: options.snaps }, options.wanted)?;
-    let tile = |arms: &[Arm]| -> Vec<Result<Row, NoRow>> {
-        let mut tile = start.clone();
-        arms.iter().map(|arm| tile.solve(arm)).collect()
-    };
-    let tiles: Vec<_> = arms.par_chunks(options.tile).map(tile).collect();
-    Ok(tiles.into_iter().flatten().collect())
+    in_tiles(arms, options.tile, &start, Tile::solve)
 }

@@ -98,6 +98,25 @@ impl Space {
         .chain(self.c4.iter().map(|c4| ("material.c4", c4)))
     }
 
+    /// The loads that are numbers: directions of stream and gravity, and what acts on the tip.
+    pub(crate) fn loads(&self) -> impl Iterator<Item = f64> {
+        let directions = [self.stream, self.gravity].into_iter().flat_map(Option::unwrap_or_default);
+        directions.chain([self.tip_force, self.tip_follower]).chain(self.tip_moment)
+    }
+
+    /// Whether the same loads act along both.
+    pub(crate) fn is_loaded_along_as(&self, other: &Self) -> bool {
+        (&self.force, &self.couple) == (&other.force, &other.couple)
+    }
+
+    /// Whether both are alike but for their loads.
+    pub(super) fn is_laid_out_as(&self, other: &Self) -> bool {
+        let Self { stream, gravity, tip_force, tip_follower, tip_moment, .. } = *other;
+        let (force, couple) = (other.force.clone(), other.couple.clone());
+        let loaded = Self { stream, gravity, tip_force, tip_follower, tip_moment, force, couple, ..self.clone() };
+        *other == loaded
+    }
+
     /// Takes the loads away.
     pub(super) fn unload(&mut self) {
         (self.tip_force, self.tip_follower, self.tip_moment) = (0.0, 0.0, [0.0; 2]);

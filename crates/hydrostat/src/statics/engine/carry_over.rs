@@ -1,6 +1,6 @@
 //! A solution carried over to another mesh.
 
-use hydrostat_bvp::{Collocation, Mesh, Side};
+use hydrostat_bvp::{Collocation, Mesh, Side, Solution};
 
 use super::discrete::Engine;
 use crate::statics::dimensions::{Guess, L, M, N, Q};
@@ -48,18 +48,27 @@ impl Engine {
     /// Moves the solution on by each factor times its way from that solution before, one after the other, and nodes on
     /// kinks with it. Left as it is where one of them does not correspond node by node.
     pub(crate) fn lead_on(&mut self, steps: &[(&Guess, f64)]) {
-        let mut next = self.solution.clone();
-        for (before, fraction) in steps {
-            let Some(mesh) = next.mesh.extrapolated(&before.mesh, *fraction) else { return };
-            if !next.extrapolate(before, *fraction) {
-                return;
-            }
-            next.mesh = mesh;
-        }
+        let Some(next) = led_on(&self.solution, steps) else { return };
         let moved = next.mesh != self.solution.mesh;
         self.solution = next;
         if moved {
             self.equations.place_on(&self.system.gauss, &self.solution);
         }
     }
+}
+
+/// A solution moved on as [`Engine::lead_on`] does.
+pub(crate) fn led_on<const N: usize, const M: usize, const L: usize>(
+    solution: &Solution<N, M, L>,
+    steps: &[(&Solution<N, M, L>, f64)],
+) -> Option<Solution<N, M, L>> {
+    let mut next = solution.clone();
+    for (before, fraction) in steps {
+        let mesh = next.mesh.extrapolated(&before.mesh, *fraction)?;
+        if !next.extrapolate(before, *fraction) {
+            return None;
+        }
+        next.mesh = mesh;
+    }
+    Some(next)
 }
