@@ -62,7 +62,7 @@ for _k, _axis in enumerate("xyz", 1):
 _OF_STATIONS = ("x", "y", "z", "theta", *(f"{director}_{axis}" for director in "ab" for axis in "xyz"))
 #: Columns of rows of arms in the plane only, and in space only.
 _ONLY_IN_PLANE = ("tip_theta", "base_moment", "theta")
-_ONLY_IN_SPACE = ("z", *(name for name in FIELDS if name[-2:] in ("_x", "_y", "_z") and name[:-2] not in ("tip", "base_force")), "tip_z", "base_force_z")
+_ONLY_IN_SPACE = ("z", *(name for name in FIELDS if name[-2:] in ("_x", "_y", "_z") and name[:-2] not in ("tip", "base_force", "d_tip")), "tip_z", "base_force_z", "d_tip_z")
 #: Dimensions beyond those of the rows.
 _DIMS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("tension", "stroke"), ("cable",)),
