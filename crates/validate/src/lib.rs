@@ -1,6 +1,6 @@
 //! The evidence for Hydrostat: every check that supports a claim of it, run again, and written as one report.
 //!
-//! [`run`] solves the problems whose answers are known, measures orders of convergence, holds error estimates against true
+//! [`run`] solves the problems whose answers are known, in the plane and in space, measures orders of convergence, holds error estimates against true
 //! errors, adds up the loads of whole arms and of their parts, solves a grid of arms, remakes what the source says about
 //! its figure, compares the readings of the source, follows a flexible blade into fast streams, fits a built arm to measured poses, and puts the numbers of other
 //! programs beside its own. What comes out is a [`Report`]: sections of tables, each of which says where its reference
@@ -26,6 +26,7 @@ pub mod estimate;
 mod exact;
 pub mod grid;
 mod html;
+mod in_space;
 mod loads;
 mod markdown;
 mod numbers;
@@ -51,6 +52,7 @@ pub fn run(scope: Scope, peers: &PeersFile, listener: &dyn Listener) -> Report {
     type Part<'a> = (&'a str, Box<dyn Fn() -> Section + 'a>);
     let parts: Vec<Part<'_>> = vec![
         ("exact answers", Box::new(|| exact::section(&cases::all()))),
+        ("arms in space", Box::new(|| in_space::section(&cases::all()))),
         ("orders of convergence", Box::new(convergence::section)),
         ("error estimates", Box::new(move || estimate::section(scope, listener))),
         ("balances", Box::new(move || balance::section(scope, listener))),
