@@ -52,9 +52,14 @@ pub(crate) const SERIES: [Color; 7] = [
     rgb(60, 60, 60),
 ];
 
-/// The colour of member `index` of a series.
+/// The colour of member `index` of a series: behind the last colour they come again, darker and then paler.
 pub(crate) fn series(index: usize) -> Color {
-    SERIES[index % SERIES.len()]
+    let own = SERIES[index % SERIES.len()];
+    match index / SERIES.len() % 3 {
+        0 => own,
+        1 => own.towards(rgb(0, 0, 0), 0.5),
+        _ => own.towards(PAPER, 0.5),
+    }
 }
 
 /// The colour of step `index` of `count` ordered ones: from pale to dark, through blue and purple,
@@ -94,4 +99,21 @@ pub(crate) fn shade(fraction: f64) -> Color {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the stops")]
     let at = (place.floor() as usize).min(STOPS.len() - 2);
     STOPS[at].towards(STOPS[at + 1], place - at as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Load cases 1 and 8 of a fit had one colour.
+    #[test]
+    fn members_of_a_series_of_twenty_one_have_colours_of_their_own() {
+        let colours: Vec<[u8; 3]> = (0..21).map(|index| series(index).rgb).collect();
+        for (i, one) in colours.iter().enumerate() {
+            for other in &colours[..i] {
+                let apart: u32 = one.iter().zip(other).map(|(a, b)| u32::from(a.abs_diff(*b))).sum();
+                assert!(apart > 40, "{one:?} and {other:?}");
+            }
+        }
+    }
 }
