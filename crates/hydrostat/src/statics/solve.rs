@@ -4,7 +4,8 @@ use crate::rod::arm::{Arm, ArmError};
 use crate::statics::configuration::{Configuration, Statistics, Tip};
 use crate::statics::engine::{Engine, Trouble, WORK};
 use crate::statics::path::{
-    LOOSE, PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium, no_equilibrium_in_range,
+    BY_MESH, LOOSE, PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium,
+    no_equilibrium_in_range,
 };
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::snap::SnapBounds;
@@ -397,13 +398,16 @@ impl Solver {
     /// The answer at the end of a path, which the engine is at.
     fn end_of_path(&mut self, travelled: PathSummary) -> Result<Configuration, SolveError> {
         let before = self.engine.tip;
-        let sign = self.engine.system.determinant().sign;
+        let determinant = self.engine.system.determinant();
+        let sign = determinant.sign;
         let settled = self.engine.settle(self.options.tol, First::Rough);
         let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
         // A coarse mesh can be exact for the shape, of a straight arm above all, and not for the determinant.
         let mut same = self.engine.system.determinant().sign == sign || travelled.symmetric || moved < SAME;
+        // Nor does a sign that the mesh of the path may have decided.
+        same |= determinant.clearance <= BY_MESH && moved < 10.0 * LOOSE;
         let sign = self.engine.system.determinant().sign;
-        let mut odd = sign < 0.0;
+        let mut odd = sign < 0.0 && self.engine.sure_sign().is_some();
         if !same && settled.is_ok() && moved < 10.0 * LOOSE && self.engine.sure_sign().is_none() {
             // What a mesh decides decides nothing; the tip is where the path has it, as well as that is known.
             (same, odd) = (true, false);

@@ -10,6 +10,10 @@ pub(super) const START: f64 = 1e-7;
 /// Error of the tip over L that is kept along the path.
 pub(crate) const LOOSE: f64 = 1e-4;
 
+/// The clearance of determinants below which the mesh of a path may have decided their sign. The tail of a rod that
+/// lies in the stream is free to turn, to first order, and its determinant is next to nothing, of either sign.
+pub(crate) const BY_MESH: f64 = 1e-5;
+
 /// Largest turn a unit of load (rad) on a branch that nothing but the load moves along: rounding.
 pub(super) const SYMMETRIC: f64 = 1e-10;
 

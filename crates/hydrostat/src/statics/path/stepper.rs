@@ -4,7 +4,7 @@
 use hydrostat_bvp::Mesh;
 use hydrostat_bvp::continuation::location::bordered;
 
-use super::step_control::{CORNER, EVEN, FINEST, LOOSE, MANY, SYMMETRIC, StepControl};
+use super::step_control::{BY_MESH, CORNER, EVEN, FINEST, LOOSE, MANY, SYMMETRIC, StepControl};
 use super::traced::{Along, Traced, Turn};
 use crate::statics::border::NewtonStep;
 use crate::statics::engine::{HOP, Trouble, roughly};
@@ -15,10 +15,6 @@ pub(super) const MOVED: f64 = 0.15;
 /// The least turn of sections (rad) that counts as much as the whole load: arms that turn less are straight, as far as
 /// anybody can see.
 const FINE_SCALE: f64 = 0.01;
-
-/// The clearance of determinants below which the mesh of a path may have decided their sign. The tail of a rod that
-/// lies in the stream is free to turn, to first order, and its determinant is next to nothing, of either sign.
-const BY_MESH: f64 = 1e-5;
 
 /// Corrections (rad) after which, but for second order, nothing is left to correct.
 const CLOSE: f64 = 3e-5;
