@@ -88,7 +88,7 @@ def test_a_snap_is_followed_by_its_motion() -> None:
     sol = against.solve(after_snap=True)
     assert isinstance(sol, hs.SpatialSolution)
     (snap,) = sol.snaps
-    assert snap.phase == "loads" and snap.duration is not None and snap.duration > 1 and snap.lands_elsewhere is None
+    assert snap.phase == "loads" and snap.duration is not None and snap.duration > 1 and snap.lands_elsewhere is False
     assert '"duration":' in sol.to_json() and isinstance(snap.after, hs.SpatialTip)
     assert pickle.loads(pickle.dumps(sol)).snaps == sol.snaps
     in_plane = against.replace({"arm.space": "planar"}).solve(after_snap=True)
