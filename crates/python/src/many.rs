@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hydrostat::parameter::names;
 use hydrostat::{
-    FoldMargin, NoRow, Options, Parameter, Pose as _, PoseChange, Row, SensitivityOptions, SolveError, Solver,
-    SpatialPoseChange, SpatialRow, SpatialSolver, SpatialTile, SpatialTip, Stability, Tile, Wanted, Warning,
+    NoRow, Options, Parameter, Pose as _, PoseChange, Row, SensitivityOptions, SolveError, Solver, SpatialPoseChange,
+    SpatialRow, SpatialSolver, SpatialStations, SpatialTile, SpatialTip, SpatialWrench, Stations, Tile, Wanted, Wrench,
 };
 use hydrostat_files::Dimension;
 use numpy::PyReadonlyArray1;
@@ -37,9 +37,14 @@ enum Answer<R> {
     No(NoRow),
 }
 
+/// The rows of what solves them.
+type RowOf<S> = Row<<S as Rows>::Tip, <S as Rows>::Wrench, <S as Rows>::Stations>;
+
 /// What solves rows one after the other, in the plane or in space.
 trait Rows: Clone + Sync {
-    type Row: Send + Sync;
+    type Tip: Send + Sync;
+    type Wrench: Send + Sync;
+    type Stations: Send + Sync;
     type Solver;
     /// The columns that every row has, a number each.
     const FIELDS: &'static [&'static str];
@@ -48,29 +53,18 @@ trait Rows: Clone + Sync {
     /// The columns of derivatives of the tip.
     const DERIVATIVES: &'static [&'static str];
 
-    fn solve(&mut self, arm: &hydrostat::Arm) -> Result<Self::Row, NoRow>;
+    fn solve(&mut self, arm: &hydrostat::Arm) -> Result<RowOf<Self>, NoRow>;
     /// The number of a row in the column [`Rows::FIELDS`]`[column]`.
-    fn field(row: &Self::Row, column: usize) -> f64;
+    fn field(row: &RowOf<Self>, column: usize) -> f64;
     /// The numbers of a row in the column [`Rows::STATIONS`]`[column]`.
-    fn stations(row: &Self::Row, column: usize) -> Vec<f64>;
-    fn common(row: &Self::Row) -> Common<'_>;
+    fn stations(row: &RowOf<Self>, column: usize) -> Vec<f64>;
     /// Derivatives about the shape of a row, by a solver that may have those about another row before.
     fn gradients(
         request: &Request<'_>,
         kept: &mut Option<Self::Solver>,
         arm: &hydrostat::Arm,
-        found: &Self::Row,
+        found: &RowOf<Self>,
     ) -> Option<Gradients>;
-}
-
-/// What rows in the plane and in space have in common.
-struct Common<'a> {
-    error_estimate: f64,
-    tensions: &'a [f64],
-    strokes: &'a [f64],
-    fold_margin: Option<FoldMargin>,
-    stability: Option<Stability>,
-    warnings: &'a [Warning],
 }
 
 /// What is varied, and what is asked.
@@ -167,9 +161,9 @@ impl Request<'_> {
     }
 
     /// The answers of all rows; `None` of those with NaN.
-    fn answers<S: Rows>(&self, start: &S, rows: usize, done: &AtomicU64, stop: &AtomicBool) -> Answers<S::Row> {
+    fn answers<S: Rows>(&self, start: &S, rows: usize, done: &AtomicU64, stop: &AtomicBool) -> Answers<RowOf<S>> {
         let mut out = Answers { solved: Vec::new(), places: Vec::with_capacity(rows) };
-        let tile = |rows: &[usize]| -> Vec<Answer<S::Row>> {
+        let tile = |rows: &[usize]| -> Vec<Answer<RowOf<S>>> {
             let mut tile = start.clone();
             let mut differentiated = None;
             let mut arm = self.base.clone();
@@ -188,8 +182,8 @@ impl Request<'_> {
                         let gradients =
                             if asked { S::gradients(self, &mut differentiated, &arm, &found) } else { None };
                         let kinds = if self.wanted.warnings {
-                            let Common { warnings, error_estimate, .. } = S::common(&found);
-                            hydrostat_sweep::warning_kinds(warnings, error_estimate, self.options.tol * arm.length)
+                            let asked = self.options.tol * arm.length;
+                            hydrostat_sweep::warning_kinds(&found.warnings, found.error_estimate, asked)
                         } else {
                             String::new()
                         };
@@ -207,7 +201,7 @@ impl Request<'_> {
             from = block.end;
             let order = order(&self.varied, block.clone());
             done.fetch_add((block.len() - order.solved.len()) as u64, Ordering::Relaxed);
-            let solved: Vec<Vec<Answer<S::Row>>> = order.solved.par_chunks(self.tile).map(tile).collect();
+            let solved: Vec<Vec<Answer<RowOf<S>>>> = order.solved.par_chunks(self.tile).map(tile).collect();
             let before = out.solved.len();
             out.solved.extend(solved.into_iter().flatten());
             out.places.extend(order.places.into_iter().map(|place| place.map(|place| before + place)));
@@ -220,7 +214,7 @@ impl Request<'_> {
         (1e-6 + 10.0 * self.options.tol) * arm.length
     }
 
-    fn columns_of<'py, S: Rows>(&self, py: Python<'py>, answers: &Answers<S::Row>) -> PyResult<Bound<'py, PyDict>> {
+    fn columns_of<'py, S: Rows>(&self, py: Python<'py>, answers: &Answers<RowOf<S>>) -> PyResult<Bound<'py, PyDict>> {
         let out = PyDict::new(py);
         let cables = self.base.cables.len();
         let wanted = self.wanted;
@@ -228,16 +222,13 @@ impl Request<'_> {
         for (column, name) in S::FIELDS.iter().enumerate() {
             put(name, answers.cells(1, |row, cells| cells.push(S::field(row, column))))?;
         }
-        let common = |count: usize, of: &dyn Fn(Common<'_>, &mut Vec<f64>)| {
-            answers.cells(count, |row, cells| of(S::common(row), cells))
-        };
-        put("error_estimate", common(1, &|row, cells| cells.push(row.error_estimate)))?;
-        put("tension", common(cables, &|row, cells| cells.extend_from_slice(row.tensions)))?;
+        put("error_estimate", answers.cells(1, |row, cells| cells.push(row.error_estimate)))?;
+        put("tension", answers.cells(cables, |row, cells| cells.extend_from_slice(&row.tensions)))?;
         if wanted.strokes {
-            put("stroke", common(cables, &|row, cells| cells.extend_from_slice(row.strokes)))?;
+            put("stroke", answers.cells(cables, |row, cells| cells.extend_from_slice(&row.strokes)))?;
         }
         if wanted.fold_margin {
-            put("fold_margin", common(1, &|row, cells| cells.extend(row.fold_margin.map(|fold| fold.value))))?;
+            put("fold_margin", answers.cells(1, |row, cells| cells.extend(row.fold_margin.map(|fold| fold.value))))?;
         }
         if wanted.stations >= 2 {
             for (column, name) in S::STATIONS.iter().enumerate() {
@@ -251,31 +242,30 @@ impl Request<'_> {
             put("d_stroke", answers.derivatives(S::DERIVATIVES.len(), cables, self.gradients.len()))?;
         }
         if wanted.stability {
-            let state =
-                |row: Option<&S::Row>| row.and_then(|row| words(S::common(row).stability).0).unwrap_or_default();
+            let state = |row: Option<&RowOf<S>>| row.and_then(|row| words(row.stability).0).unwrap_or_default();
             out.set_item("stability", answers.rows().map(state).collect::<Vec<_>>())?;
         }
         if wanted.warnings {
-            let words = |answer: Option<&'_ Answer<S::Row>>| match answer {
+            let words = |answer: Option<&'_ Answer<RowOf<S>>>| match answer {
                 Some(Answer::Row(_, _, kinds)) => kinds.clone(),
                 _ => String::new(),
             };
             out.set_item("warnings", answers.all().map(words).collect::<Vec<_>>())?;
         }
-        let verdict = |answer: Option<&Answer<S::Row>>| match answer {
+        let verdict = |answer: Option<&Answer<RowOf<S>>>| match answer {
             None => NOT_A_NUMBER,
             Some(Answer::Row(..)) => "",
             Some(Answer::No(NoRow::Verdict(verdict))) => verdict.kind.name(),
             Some(Answer::No(NoRow::Arm(_))) => hydrostat_sweep::NO_ARM,
         };
         out.set_item("verdict", answers.all().map(verdict).collect::<Vec<_>>())?;
-        let reason = |answer: (usize, Option<&Answer<S::Row>>)| match answer {
+        let reason = |answer: (usize, Option<&Answer<RowOf<S>>>)| match answer {
             (row, None) => self.not_a_number(row),
             (_, Some(Answer::Row(..))) => String::new(),
             (_, Some(Answer::No(no))) => no.to_string(),
         };
         out.set_item("reason", answers.all().enumerate().map(reason).collect::<Vec<_>>())?;
-        let fraction = |answer: Option<&Answer<S::Row>>| match answer {
+        let fraction = |answer: Option<&Answer<RowOf<S>>>| match answer {
             Some(Answer::No(NoRow::Verdict(verdict))) => verdict.load_fraction,
             _ => f64::NAN,
         };
@@ -290,7 +280,9 @@ impl Request<'_> {
 }
 
 impl Rows for Tile {
-    type Row = Row;
+    type Tip = hydrostat::Tip;
+    type Wrench = Wrench;
+    type Stations = Stations;
     type Solver = Solver;
     const FIELDS: &'static [&'static str] =
         &["tip_x", "tip_y", "tip_theta", "tip_alpha", "base_force_x", "base_force_y", "base_moment"];
@@ -308,17 +300,6 @@ impl Rows for Tile {
 
     fn stations(row: &Row, column: usize) -> Vec<f64> {
         [&row.stations.x, &row.stations.y, &row.stations.theta][column].clone()
-    }
-
-    fn common(row: &Row) -> Common<'_> {
-        Common {
-            error_estimate: row.error_estimate,
-            tensions: &row.tensions,
-            strokes: &row.strokes,
-            fold_margin: row.fold_margin,
-            stability: row.stability,
-            warnings: &row.warnings,
-        }
     }
 
     fn gradients(
@@ -346,7 +327,9 @@ impl Rows for Tile {
 }
 
 impl Rows for SpatialTile {
-    type Row = SpatialRow;
+    type Tip = SpatialTip;
+    type Wrench = SpatialWrench;
+    type Stations = SpatialStations;
     type Solver = SpatialSolver;
     #[rustfmt::skip]
     const FIELDS: &'static [&'static str] = &[
@@ -378,17 +361,6 @@ impl Rows for SpatialTile {
         match column {
             0..3 => [&at.x, &at.y, &at.z][column].clone(),
             _ => [&at.a, &at.b][column / 3 - 1].iter().map(|director| director[column % 3]).collect(),
-        }
-    }
-
-    fn common(row: &SpatialRow) -> Common<'_> {
-        Common {
-            error_estimate: row.error_estimate,
-            tensions: &row.tensions,
-            strokes: &row.strokes,
-            fold_margin: row.fold_margin,
-            stability: row.stability,
-            warnings: &row.warnings,
         }
     }
 

@@ -79,7 +79,7 @@ pub(crate) fn solve_after_snap_in_space(
     match arm.solve_after_snap_in_space(tol) {
         Ok(found) => {
             let snap_durations = found.snaps.iter().map(|motion| motion.duration).collect();
-            Ok(SpatialRow { snap_durations, ..SpatialRow::new(&found.configuration, wanted) }.into())
+            Ok(SpatialRow { snap_durations, ..SpatialRow::in_space(&found.configuration, wanted) }.into())
         }
         Err(AfterSnapError::Solve(SpatialError::NoEquilibrium(no))) => Err(NoAnswer::Verdict(no.verdict)),
         Err(error) => Err(no_rest(&error, verdict)),

@@ -5,18 +5,17 @@ use super::equations::Guess;
 use super::tip::SpatialTip;
 use crate::statics::engine::Trouble;
 use crate::statics::path::loaded::Loaded;
-use crate::statics::phase::Phase;
 
 impl Loaded for Engine {
     type Tip = SpatialTip;
     type Guess = Guess;
 
-    fn acts_in(&self, phase: Phase) -> bool {
-        match phase {
-            Phase::Loads => self.equations.has_loads(),
-            Phase::Tension => self.equations.has_tension(),
-            Phase::Stroke | Phase::Friction => false,
-        }
+    fn has_loads(&self) -> bool {
+        self.equations.has_loads()
+    }
+
+    fn has_tension(&self) -> bool {
+        self.equations.has_tension()
     }
 
     fn start_unloaded(&mut self) {

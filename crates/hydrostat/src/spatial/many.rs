@@ -2,44 +2,20 @@
 
 use super::configuration::{SpatialConfiguration, SpatialStations, SpatialWrench};
 use super::equations::Guess;
-use super::solve::{SpatialError, SpatialSolver};
-use super::tip::{SpatialSnap, SpatialTip};
+use super::solve::SpatialSolver;
+use super::tip::SpatialTip;
 use crate::rod::arm::Arm;
-use crate::statics::configuration::{FoldMargin, Warning};
-use crate::statics::many::{FARTHEST, ManyOptions, NoRow, Wanted, differ_in_loads, in_tiles, loads, may_be_followed};
+use crate::statics::many::{
+    FARTHEST, ManyOptions, NoRow, Row, Wanted, differ_in_loads, in_tiles, loads, may_be_followed, no_row, row_of,
+};
 use crate::statics::path::PathSummary;
 use crate::statics::prediction::Recent;
 use crate::statics::shape::Pose as _;
 use crate::statics::solve::Options;
-use crate::statics::stability::Stability;
 use crate::statics::verdict::SolveError;
 
-/// The answer of one row in space; [`crate::Row`] is that in the plane.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpatialRow {
-    /// Where the tip is.
-    pub tip: SpatialTip,
-    /// What support and cable anchors exert on the arm at the base.
-    pub base_reaction: SpatialWrench,
-    /// Estimated error of the tip position, m.
-    pub error_estimate: f64,
-    /// Tension of each cable at the base, N.
-    pub tensions: Vec<f64>,
-    /// How far each cable is reeled in, m; empty unless asked for.
-    pub strokes: Vec<f64>,
-    /// How far the surface is from folding, if asked for.
-    pub fold_margin: Option<FoldMargin>,
-    /// `None` where it was not asked for or is not established.
-    pub stability: Option<Stability>,
-    /// What should be known about the answer; empty unless asked for.
-    pub warnings: Vec<Warning>,
-    /// The snaps that the arm makes as its loads grow from nothing to these.
-    pub snaps: Vec<SpatialSnap>,
-    /// How long each of them takes, s, where their motions were followed; else empty.
-    pub snap_durations: Vec<f64>,
-    /// Empty unless asked for.
-    pub stations: SpatialStations,
-}
+/// The answer of one row in space.
+pub type SpatialRow = Row<SpatialTip, SpatialWrench, SpatialStations>;
 
 impl SpatialRow {
     /// What is wanted of a configuration.
@@ -49,26 +25,12 @@ impl SpatialRow {
     ///
     /// let arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
     /// let shape = SpatialSolver::new(&arm, Options::default())?.solve()?;
-    /// let row = SpatialRow::new(&shape, Wanted { fold_margin: true, ..Wanted::default() });
+    /// let row = SpatialRow::in_space(&shape, Wanted { fold_margin: true, ..Wanted::default() });
     /// assert_eq!((row.tip, row.fold_margin.is_some()), (shape.tip(), true));
     /// # Ok::<(), hydrostat::SpatialError>(())
     /// ```
-    pub fn new(configuration: &SpatialConfiguration, wanted: Wanted) -> Self {
-        let Wanted { strokes, fold_margin, stability, warnings, stations } = wanted;
-        let cables = &configuration.cables;
-        Self {
-            tip: configuration.tip(),
-            base_reaction: configuration.base_reaction,
-            error_estimate: configuration.error_estimate,
-            tensions: cables.iter().map(|cable| cable.tension).collect(),
-            strokes: if strokes { cables.iter().map(|cable| cable.stroke).collect() } else { Vec::new() },
-            fold_margin: fold_margin.then(|| configuration.fold_margin()),
-            stability: if stability { configuration.stability() } else { None },
-            warnings: if warnings { configuration.warnings() } else { Vec::new() },
-            snaps: configuration.snaps.clone(),
-            snap_durations: Vec::new(),
-            stations: if stations < 2 { SpatialStations::default() } else { configuration.resampled(stations) },
-        }
+    pub fn in_space(configuration: &SpatialConfiguration, wanted: Wanted) -> Self {
+        row_of!(configuration, wanted)
     }
 }
 
@@ -131,15 +93,10 @@ impl SpatialTile {
 
     fn cold(&mut self, arm: &Arm) -> Result<SpatialRow, NoRow> {
         self.before.clear();
-        let no_row = |error| match error {
-            SpatialError::Arm(error) => NoRow::Arm(error),
-            SpatialError::NoEquilibrium(no) => NoRow::Verdict(no.verdict),
-            SpatialError::Option { .. } => unreachable!("the tolerance was checked"),
-        };
         let mut solver = SpatialSolver::new(arm, self.options).map_err(no_row)?;
         let configuration = solver.solve().map_err(no_row)?;
         self.solver = may_be_followed(arm).then_some(solver);
-        Ok(SpatialRow::new(&configuration, self.wanted))
+        Ok(SpatialRow::in_space(&configuration, self.wanted))
     }
 
     /// From the last row: `None` unless the answer is surely that of the row's own ramp.
@@ -156,7 +113,7 @@ impl SpatialTile {
         if solver.engine.needs_continuation() || before.turn_to(&tip) > FARTHEST {
             return None;
         }
-        Some(SpatialRow::new(&solver.read(estimate, PathSummary::default()).ok()?, self.wanted))
+        Some(SpatialRow::in_space(&solver.read(estimate, PathSummary::default()).ok()?, self.wanted))
     }
 }
 

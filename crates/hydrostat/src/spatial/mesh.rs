@@ -8,12 +8,8 @@ use super::lengths::hold_lengths;
 use super::rotation::dot;
 use crate::numerics::rounds::{correct, linearise};
 use crate::rod::arm::Arm;
-use crate::statics::engine::{Trouble, roughly};
+use crate::statics::engine::Trouble;
 use crate::statics::refinement::{Refinable, unseen};
-
-/// Error of the tip over L that is kept along a path, and most elements there.
-pub(super) const LOOSE: f64 = 1e-4;
-const MANY: usize = 200;
 
 /// What the comparison with one more stage is multiplied by to be the estimate: where the load has kinks nearby, one
 /// stage more takes away as little as two thirds of the error.
@@ -130,18 +126,5 @@ impl Engine {
         let (total, d) = (self.check.totals(), self.check_correction.total);
         let off = [0, 1, 2].map(|k| total[k] + d[k] - self.tip[k]);
         Ok(SAFE * dot(&off, &off).sqrt())
-    }
-
-    /// Refines the mesh at the present loads where the tip's error is above what a path keeps.
-    pub(super) fn keep_accuracy(&mut self) -> Result<(), Trouble> {
-        for _ in 0..4 {
-            let Ok(estimate) = self.estimate(LOOSE, Some(LOOSE)) else { break };
-            if estimate <= LOOSE {
-                return Ok(());
-            }
-            self.refine(0.1 * LOOSE, MANY, 1e-3);
-            roughly(self.iterate(1e-6, 9, None))?;
-        }
-        Ok(())
     }
 }

@@ -30,21 +30,23 @@ impl SpatialSolver {
         }
         let mut snaps = slack.snaps;
         let start = engine.state();
-        let travelled = if engine.reel_at_once().is_ok() {
-            PathSummary::default()
+        let mut steps = slack.statistics.load_steps;
+        let settled = if let Ok(estimate) = engine.reel_at_once(self.options.tol) {
+            Ok(estimate)
         } else {
             engine.restore(&start);
             match follow_strokes(engine, StepControl::BRISK, self.options.snaps) {
-                Ok(travelled) => travelled,
+                Ok(mut travelled) => {
+                    steps += travelled.steps;
+                    snaps.append(&mut travelled.snaps);
+                }
                 Err(mut stopped) => {
                     snaps.append(&mut stopped.snaps);
                     return Err(self.no_equilibrium(Stopped { snaps, ..stopped }));
                 }
             }
+            self.engine.settle(self.options.tol, First::Rough)
         };
-        let steps = slack.statistics.load_steps + travelled.steps;
-        snaps.extend(travelled.snaps);
-        let settled = self.engine.settle(self.options.tol, First::Rough);
         let travelled = PathSummary { steps, snaps: snaps.clone(), ..PathSummary::default() };
         let Ok(mut configuration) = settled.and_then(|estimate| self.read(estimate, travelled)) else {
             return Err(self.last_verdict(Phase::Stroke, snaps));
@@ -57,25 +59,24 @@ impl SpatialSolver {
 }
 
 impl Engine {
-    /// Reels in all strokes in one step, where that leads to a shape that no load pushes hard against.
-    fn reel_at_once(&mut self) -> Result<(), Trouble> {
-        let before = self.solution.clone();
+    /// Reels in all strokes in one step, where that leads to a shape that no load pushes hard against: the estimated
+    /// error of the tip over L.
+    fn reel_at_once(&mut self, tol: f64) -> Result<f64, Trouble> {
+        let before = self.solution.nodes.clone();
         if let Some(held) = &mut self.held {
             held.fraction = 1.0;
         }
         self.damped = false;
         self.iterate(1e-6, 9, None)?;
-        let turned = largest_turn_between(&before.nodes, &self.solution);
+        let turned = largest_turn_between(&before, &self.solution);
         if self.damped || turned > LONGEST {
             return Err(Trouble::Stalled(turned));
         }
-        self.keep_accuracy()?;
+        let estimate = self.settle(tol, First::Rough)?;
         self.ends_fine()?;
-        self.linearise()?;
-        self.find_border()?;
         if self.needs_continuation() || self.determinant().known_sign() != Some(1.0) {
             return Err(Trouble::Singular);
         }
-        Ok(())
+        Ok(estimate)
     }
 }

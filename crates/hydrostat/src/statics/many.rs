@@ -58,13 +58,13 @@ impl Default for ManyOptions {
     }
 }
 
-/// The answer of one row.
+/// The answer of one row, in the plane or, as [`crate::SpatialRow`], in space.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct Row<T = Tip, W = Wrench, S = Stations> {
     /// Where the tip is.
-    pub tip: Tip,
+    pub tip: T,
     /// What support and cable anchors exert on the arm at the base.
-    pub base_reaction: Wrench,
+    pub base_reaction: W,
     /// Estimated error of the tip position, m.
     pub error_estimate: f64,
     /// Tension of each cable at the base, N.
@@ -78,12 +78,34 @@ pub struct Row {
     /// What should be known about the answer; empty unless asked for.
     pub warnings: Vec<Warning>,
     /// The snaps that the arm makes as its loads grow from nothing to these.
-    pub snaps: Vec<Snap>,
+    pub snaps: Vec<Snap<T>>,
     /// How long each of them takes, s, where their motions were followed; else empty.
     pub snap_durations: Vec<f64>,
     /// Empty unless asked for.
-    pub stations: Stations,
+    pub stations: S,
 }
+
+/// The row of what is wanted of a configuration, in the plane or in space.
+macro_rules! row_of {
+    ($configuration:expr, $wanted:expr) => {{
+        let (configuration, wanted): (_, $crate::statics::many::Wanted) = ($configuration, $wanted);
+        let cables = &configuration.cables;
+        Self {
+            tip: configuration.tip(),
+            base_reaction: configuration.base_reaction,
+            error_estimate: configuration.error_estimate,
+            tensions: cables.iter().map(|cable| cable.tension).collect(),
+            strokes: if wanted.strokes { cables.iter().map(|cable| cable.stroke).collect() } else { Vec::new() },
+            fold_margin: wanted.fold_margin.then(|| configuration.fold_margin()),
+            stability: if wanted.stability { configuration.stability() } else { None },
+            warnings: if wanted.warnings { configuration.warnings() } else { Vec::new() },
+            snaps: configuration.snaps.clone(),
+            snap_durations: Vec::new(),
+            stations: if wanted.stations < 2 { Default::default() } else { configuration.resampled(wanted.stations) },
+        }
+    }};
+}
+pub(crate) use row_of;
 
 /// Why a row has no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -94,6 +116,15 @@ pub enum NoRow {
     /// There is no such equilibrium, or none was found.
     #[error("{}", .0.message())]
     Verdict(Verdict),
+}
+
+/// Why a row has no answer whose options were checked.
+pub(crate) fn no_row<C, T>(error: SolveError<C, T>) -> NoRow {
+    match error {
+        SolveError::Arm(error) => NoRow::Arm(error),
+        SolveError::NoEquilibrium(no) => NoRow::Verdict(no.verdict),
+        SolveError::Option { .. } => unreachable!("the tolerance was checked"),
+    }
 }
 
 /// Rows that are solved one after the other.
@@ -152,11 +183,6 @@ impl Tile {
 
     fn cold(&mut self, arm: &Arm) -> Result<Row, NoRow> {
         self.before.clear();
-        let no_row = |error| match error {
-            SolveError::Arm(error) => NoRow::Arm(error),
-            SolveError::NoEquilibrium(no) => NoRow::Verdict(no.verdict),
-            SolveError::Option { .. } => unreachable!("the tolerance was checked"),
-        };
         let mut solver = Solver::new(arm, self.options).map_err(no_row)?;
         let configuration = solver.solve().map_err(no_row)?;
         self.solver = may_be_followed(arm).then_some(solver);
@@ -231,21 +257,7 @@ impl Row {
     /// # Ok::<(), hydrostat::SolveError>(())
     /// ```
     pub fn new(configuration: &Configuration, wanted: Wanted) -> Self {
-        let Wanted { strokes, fold_margin, stability, warnings, stations } = wanted;
-        let cables = &configuration.cables;
-        Self {
-            tip: configuration.tip(),
-            base_reaction: configuration.base_reaction,
-            error_estimate: configuration.error_estimate,
-            tensions: cables.iter().map(|cable| cable.tension).collect(),
-            strokes: if strokes { cables.iter().map(|cable| cable.stroke).collect() } else { Vec::new() },
-            fold_margin: fold_margin.then(|| configuration.fold_margin()),
-            stability: if stability { configuration.stability() } else { None },
-            warnings: if warnings { configuration.warnings() } else { Vec::new() },
-            snaps: configuration.snaps.clone(),
-            snap_durations: Vec::new(),
-            stations: if stations < 2 { Stations::default() } else { configuration.resampled(stations) },
-        }
+        row_of!(configuration, wanted)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The direct solve, else the path; verdicts.
 
+use crate::numerics::distance;
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::configuration::{Configuration, Statistics, Tip};
 use crate::statics::engine::{Engine, Trouble, WORK};
@@ -398,20 +399,18 @@ impl Solver {
     /// The answer at the end of a path, which the engine is at.
     fn end_of_path(&mut self, travelled: PathSummary) -> Result<Configuration, SolveError> {
         let before = self.engine.tip;
-        let determinant = self.engine.system.determinant();
-        let sign = determinant.sign;
+        let on_path = self.engine.system.determinant();
         let settled = self.engine.settle(self.options.tol, First::Rough);
-        let moved = (self.engine.tip[0] - before[0]).hypot(self.engine.tip[1] - before[1]);
-        // A coarse mesh can be exact for the shape, of a straight arm above all, and not for the determinant.
-        let mut same = self.engine.system.determinant().sign == sign || travelled.symmetric || moved < SAME;
-        // Nor does a sign that the mesh of the path may have decided.
-        same |= determinant.clearance <= BY_MESH && moved < 10.0 * LOOSE;
+        let moved = distance(&self.engine.tip, &before);
+        let near = moved < 10.0 * LOOSE;
         let sign = self.engine.system.determinant().sign;
-        let mut odd = sign < 0.0 && self.engine.sure_sign().is_some();
-        if !same && settled.is_ok() && moved < 10.0 * LOOSE && self.engine.sure_sign().is_none() {
-            // What a mesh decides decides nothing; the tip is where the path has it, as well as that is known.
-            (same, odd) = (true, false);
-        }
+        // A coarse mesh can be exact for the shape, of a straight arm above all, and not for the determinant.
+        let mut same = sign == on_path.sign || travelled.symmetric || moved < SAME;
+        // What a mesh decides decides nothing: that of the path, or that of the answer.
+        same |= near && on_path.clearance <= BY_MESH;
+        let unsure = (sign < 0.0 || !same) && settled.is_ok() && self.engine.sure_sign().is_none();
+        same |= near && unsure;
+        let odd = sign < 0.0 && !unsure;
         match settled {
             Ok(estimate) if moved < 0.05 && same => {
                 let bifurcations = travelled.bifurcations;

@@ -4,19 +4,18 @@ use super::discrete::Engine;
 use super::trouble::Trouble;
 use crate::statics::dimensions::Guess;
 use crate::statics::path::loaded::Loaded;
-use crate::statics::phase::Phase;
 use crate::statics::shape::Tip;
 
 impl Loaded for Engine {
     type Tip = Tip;
     type Guess = Guess;
 
-    fn acts_in(&self, phase: Phase) -> bool {
-        match phase {
-            Phase::Loads => self.equations.has_loads(),
-            Phase::Tension => self.equations.has_tension(),
-            Phase::Stroke | Phase::Friction => false,
-        }
+    fn has_loads(&self) -> bool {
+        self.equations.has_loads()
+    }
+
+    fn has_tension(&self) -> bool {
+        self.equations.has_tension()
     }
 
     fn start_unloaded(&mut self) {

@@ -87,10 +87,8 @@ fn follow_at<E: Loaded>(
     engine.hurry(hurry);
     engine.set(Along::Phase(Phase::Loads), START);
     engine.start_unloaded();
-    for phase in [Phase::Loads, Phase::Tension] {
-        if engine.acts_in(phase)
-            && let Err(verdict) = way.along(engine, phase, control)
-        {
+    for (phase, acts) in [(Phase::Loads, engine.has_loads()), (Phase::Tension, engine.has_tension())] {
+        if acts && let Err(verdict) = way.along(engine, phase, control) {
             return Err(way.stopped(engine, verdict));
         }
         engine.set(Along::Phase(phase), 1.0);
@@ -115,7 +113,7 @@ pub(crate) fn follow_on<E: Loaded>(
         }
     }
     engine.set(Along::Phase(phase), 1.0);
-    if phase == Phase::Loads && engine.acts_in(Phase::Tension) {
+    if phase == Phase::Loads && engine.has_tension() {
         if let Err(verdict) = way.along(engine, Phase::Tension, control) {
             return Err(way.stopped(engine, verdict));
         }

@@ -2,7 +2,6 @@
 
 use super::traced::Traced;
 use crate::statics::engine::Trouble;
-use crate::statics::phase::Phase;
 use crate::statics::shape::Pose;
 
 /// One arm's equations with the loads that a path leads to.
@@ -12,8 +11,10 @@ pub(crate) trait Loaded: Traced {
     /// The unknowns of a solution.
     type Guess: Clone;
 
-    /// Whether something acts in a phase of loading.
-    fn acts_in(&self, phase: Phase) -> bool;
+    /// Whether anything but cables acts.
+    fn has_loads(&self) -> bool;
+    /// Whether a cable is pulled.
+    fn has_tension(&self) -> bool;
     /// Takes the shape of the unloaded arm.
     fn start_unloaded(&mut self);
     /// Says whether a path only has to lead to its end.
