@@ -35,7 +35,7 @@ FIELDS = {
     "tension": ("N", "tension at the base"),
     "stroke": ("m", "stroke, positive when reeled in"),
     "fold_margin": ("1", "margin of the surface against folding"),
-    "load_fraction": ("1", "share of the loads where there is no equilibrium"),
+    "load_fraction": ("1", "fraction of the loads where there is no equilibrium"),
     "x": ("m", "centreline along e1"),
     "y": ("m", "centreline along e2"),
     "z": ("m", "centreline along e3"),
@@ -52,17 +52,19 @@ FIELDS = {
     "verdict": ("", "why there is no equilibrium; empty where there is one"),
     "reason": ("", "why there is no equilibrium, in a sentence"),
 }
+_IN_SPACE: dict[str, tuple[str, str]] = {}
 for _k, _axis in enumerate("xyz", 1):
-    FIELDS[f"base_moment_{_axis}"] = ("N m", f"moment of the base reaction about e{_k}")
-    FIELDS[f"d_tip_turn_{_axis}"] = ("rad", f"derivative of the turn of the section at the tip about e{_k}")
+    _IN_SPACE[f"base_moment_{_axis}"] = ("N m", f"moment of the base reaction about e{_k}")
+    _IN_SPACE[f"d_tip_turn_{_axis}"] = ("rad", f"derivative of the turn of the section at the tip about e{_k}")
     for _director in "abc":
-        FIELDS[f"tip_{_director}_{_axis}"] = ("1", f"director {_director} at the tip, along e{_k}")
-        FIELDS[f"{_director}_{_axis}"] = ("1", f"director {_director}, along e{_k}")
+        _IN_SPACE[f"tip_{_director}_{_axis}"] = ("1", f"director {_director} at the tip, along e{_k}")
+        _IN_SPACE[f"{_director}_{_axis}"] = ("1", f"director {_director}, along e{_k}")
+FIELDS |= _IN_SPACE
 #: Columns of stations.
 _OF_STATIONS = ("x", "y", "z", "theta", *(f"{director}_{axis}" for director in "ab" for axis in "xyz"))
 #: Columns of rows of arms in the plane only, and in space only.
 _ONLY_IN_PLANE = ("tip_theta", "base_moment", "theta")
-_ONLY_IN_SPACE = ("z", *(name for name in FIELDS if name[-2:] in ("_x", "_y", "_z") and name[:-2] not in ("tip", "base_force", "d_tip")), "tip_z", "base_force_z", "d_tip_z")
+_ONLY_IN_SPACE = ("z", "tip_z", "base_force_z", "d_tip_z", *_IN_SPACE)
 #: Dimensions beyond those of the rows.
 _DIMS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("tension", "stroke"), ("cable",)),
@@ -236,7 +238,7 @@ class Many(Mapping[str, "NDArray[np.generic]"]):
 
     @property
     def load_fraction(self) -> NDArray[np.float64]:
-        """The share of the loads at which a row without an equilibrium ends, of `shape`."""
+        """The fraction of the loads at which a row without an equilibrium ends, of `shape`."""
         return self._number("load_fraction")
 
     @property
