@@ -73,6 +73,32 @@ fn an_arm_that_bends_little_has_one() {
     assert_eq!(all.sum_of_signs, Some(1));
 }
 
+/// A column above its critical load: the straight shape, and one shape for the circle of those that are buckled.
+#[test]
+fn a_circle_of_shapes_is_one() {
+    let mut arm = Arm::cone(0.2, 0.005, 0.005, 1e5, 0.25);
+    arm.tip.force[0] = -0.0045;
+    let plane = arm.equilibria(1e-8).unwrap();
+    let space = all(&in_space(&arm));
+    assert!(space.circles && !all_circles(&leaning(175.0)));
+    assert_eq!((plane.found.len(), space.found.len()), (3, 2));
+    for one in &plane.found {
+        let own = one.configuration.tip();
+        let off = |[x, y, z]: [f64; 3]| (own.x - x).hypot(own.y.abs() - y.hypot(z));
+        let near = space.found.iter().map(|other| off(tip(&other.configuration))).fold(f64::INFINITY, f64::min);
+        assert!(near < 1e-7 * arm.length, "{near}");
+    }
+    let states: Vec<_> = space.found.iter().map(|one| one.stability).collect();
+    assert!(
+        states.contains(&Some(Stability::Unstable(2))) && states.contains(&Some(Stability::Marginal)),
+        "{states:?}"
+    );
+}
+
+fn all_circles(arm: &Arm) -> bool {
+    in_space(arm).equilibria_in_space_while(1e-8, |_| false).unwrap().circles
+}
+
 #[test]
 fn a_search_ends_where_it_is_told_to() {
     let arm = in_space(&leaning(175.0));

@@ -48,6 +48,36 @@ fn a_column_buckles_in_two_directions_at_once() {
     assert_eq!(branch.end, PathEnd::ReachedEnd);
 }
 
+/// How far the tip is from the axis of the base, and along it, m.
+fn off_axis(shape: &SpatialConfiguration) -> [f64; 2] {
+    let [x, y, z] = tip(shape);
+    [y.hypot(z), x]
+}
+
+/// What buckles may lie in any plane through the axis: the turn about it costs nothing, and must not be taken for a
+/// limit point.
+#[test]
+fn branches_of_a_column_have_no_limit_points_on_their_circles() {
+    let (arm, load) = column();
+    let options = PathOptions { branches: true, ..PathOptions::default() };
+    let range = [0.0, -1.4 * load];
+    let path = arm.path_in_space(Parameter::TipForce(0), range, &options).unwrap_or_else(|error| panic!("{error}"));
+    let plane = arm.path(Parameter::TipForce(0), range, &options).unwrap();
+    assert_eq!(path.branches.len(), plane.branches.len());
+    for branch in &path.branches[1..] {
+        assert!(values(branch, Event::LimitPoint).is_empty() && values(branch, Event::Bifurcation).is_empty());
+        assert_eq!(branch.end, PathEnd::ReachedEnd);
+        let last = &branch.points[branch.points.len() - 1];
+        let own = plane.branches[1].points.last().unwrap();
+        assert_eq!(own.value, last.value);
+        let there = own.configuration.tip();
+        let [off, along] = off_axis(&last.configuration);
+        assert!((off - there.y.abs()).abs() < 2e-6 * arm.length, "{off} for {}", there.y);
+        assert!((along - there.x).abs() < 2e-6 * arm.length, "{along} for {}", there.x);
+        assert!(branch.points.len() < 100, "{}", branch.points.len());
+    }
+}
+
 #[test]
 fn points_of_a_path_are_solves() {
     let arm = three_cables();

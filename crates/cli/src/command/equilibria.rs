@@ -110,6 +110,9 @@ impl EquilibriaIn for SpatialEquilibria {
         } else {
             format!("there may be others: {followed}")
         };
+        if self.circles {
+            out.push_str(",\narm and loads are alike on all sides of the axis: a bent shape stands for all that are turned about it");
+        }
         let mut ends: Vec<String> = self.curves.iter().flatten().map(|end| curve_message(*end)).collect();
         ends.sort();
         ends.dedup();

@@ -3,12 +3,13 @@
 use std::sync::LazyLock;
 
 use hydrostat_bvp::{
-    Collocation, Correction, Determinant, Forcing, Gauss, Lanes, LinearisationError, Resampling, Solution, each,
+    Collocation, Correction, Determinant, Forcing, Gauss, Lanes, LinearisationError, Resampling, Solution,
 };
 
 use super::equations::{Equations, Guess, K, L, M, N, Q};
 use super::lengths::HeldRound;
-use super::rotation::{Vector, dot, turn};
+use super::neutral::without_neutral;
+use super::rotation::{Vector, dot, turn_of};
 use crate::numerics::rounds::{correct, linearise, respond};
 use crate::rod::arm::Arm;
 use crate::rod::readings::Support;
@@ -260,6 +261,7 @@ impl Engine {
             }
             round += 1;
             correct(&mut self.system, &self.solution, &mut self.correction);
+            without_neutral(&self.equations, &self.system, &self.solution, &mut self.correction);
             lengths = self.hold_lengths()?;
             let size = largest_turn(&self.solution, &self.correction);
             if !size.is_finite() {
@@ -347,10 +349,4 @@ pub(super) fn largest_turn(solution: &Guess, correction: &Correction<N, M, Q, L>
         largest = f64::max(largest, size);
     }
     largest
-}
-
-/// The turn (rad, about the directors) that a change of the state is.
-pub(super) fn turn_of(z: &[f64; N], dz: &[f64; N]) -> Vector<f64> {
-    let turns = turn(&each::<f64, 4>(|k| z[k]));
-    each(|a| (0..4).map(|k| turns[a][k] * dz[k]).sum())
 }

@@ -4,12 +4,14 @@
 //! the base are a manifold of three dimensions, that of the rotations of the tip, and the map from the rotation of the
 //! tip to that of the base has the degree of the unloaded arm's, one: the signs of its determinant at all equilibria of
 //! one base sum to one, as long as every section has strains on the way. That tells of some lists that one is
-//! missing; no list is known to be complete.
+//! missing; no list is known to be complete. Newton's method that is kept away from what is known
+//! (`deflation`) looks for shapes that no curve led to.
 
 use std::f64::consts::PI;
 
 use super::configuration::SpatialConfiguration;
 use super::engine::Engine;
+use super::equations::Guess;
 use super::rotation::{Vector, cross, dot, sum, times};
 use super::solve::{SpatialError, SpatialSolver};
 use super::tip::SpatialTip;
@@ -39,7 +41,15 @@ const ALIKE: f64 = 1e-3;
 /// Two shapes whose tips are turned by less from each other (sine) are one: the rotation of the tip gives the arm.
 const SAME: f64 = 1e-5;
 
-/// Most equilibria: those of arms that are symmetric about an axis are circles of them.
+/// Most searches by deflation, and how far from each shape that is known they begin, in parts of its way from the
+/// unloaded arm.
+const DEFLATIONS: usize = 40;
+const ASIDE: [f64; 2] = [-0.5, 0.5];
+
+/// Work of one of these searches, in evaluations of a station.
+const DEFLATION_WORK: usize = 200_000;
+
+/// Most equilibria.
 const MOST: usize = 60;
 
 /// The equilibria of an arm in space that were found under its loads. There may be others.
@@ -55,6 +65,9 @@ pub struct SpatialEquilibria {
     /// The sum of the signs of the determinants at the equilibria found, where all are known. It is one for all
     /// equilibria of an arm whose sections have strains at every rotation of the base.
     pub sum_of_signs: Option<i64>,
+    /// Whether the arm and what acts on it are alike on all sides of the axis of the base: then each shape that leaves
+    /// the axis stands for the circle of those that are turned from it about the axis, and is marginal at best.
+    pub circles: bool,
 }
 
 impl SpatialEquilibria {
@@ -122,7 +135,9 @@ impl Arm {
         let mut curves = Vec::new();
         search.start(&arm, &mut curves)?;
         search.follow_all(&arm, &mut curves);
+        search.deflate_all(&arm, &mut curves);
         let sum_of_signs = search.sum_of_signs();
+        let circles = Engine::new(&arm).equations.axis_of_symmetry().is_some();
         let mut found: Vec<_> = search.found.into_iter().map(|found| found.shape).collect();
         let place = |one: &Equilibrium<SpatialConfiguration>| {
             let tip = one.configuration.tip();
@@ -132,7 +147,7 @@ impl Arm {
             let (p, q) = (place(p), place(q));
             p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])).then(p[2].total_cmp(&q[2]))
         });
-        Ok(SpatialEquilibria { found, curves, steps: search.steps, sum_of_signs })
+        Ok(SpatialEquilibria { found, curves, steps: search.steps, sum_of_signs, circles })
     }
 }
 
@@ -262,6 +277,50 @@ impl Search<'_> {
         }
     }
 
+    /// Searches by deflation for shapes that no curve led to, from the unloaded arm and from beside the shapes that are
+    /// known, and follows the curves from what is new. Not where shapes are circles: keeping away from one shape of a
+    /// circle leads to its next.
+    fn deflate_all(&mut self, arm: &Arm, curves: &mut Vec<Option<PathEnd>>) {
+        let Some(first) = self.found.first() else { return };
+        if first.engine.equations.axis_of_symmetry().is_some() || curves.last() == Some(&Some(PathEnd::Stopped)) {
+            return;
+        }
+        let mut starts = vec![(0, -1.0)];
+        let mut known = 0;
+        let mut next = 0;
+        while next < starts.len().min(DEFLATIONS) && self.found.len() < MOST {
+            starts.extend((known..self.found.len()).flat_map(|k| ASIDE.map(|aside| (k, aside))));
+            known = self.found.len();
+            let start = starts[next];
+            next += 1;
+            if self.another(start) {
+                self.follow_all(arm, curves);
+                if curves.last() == Some(&Some(PathEnd::Stopped)) {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Looks for a shape by deflation, from a known one that is moved by a part of its way from the unloaded arm (to
+    /// the unloaded arm itself by -1); whether one was found that is new.
+    fn another(&mut self, (index, aside): (usize, f64)) -> bool {
+        let known = self.found.len();
+        let mut engine = self.found[index].engine.clone();
+        engine.allowed = engine.work() + DEFLATION_WORK;
+        let mut start = engine.solution.clone();
+        engine.start_unloaded_on(start.mesh.clone());
+        if aside > -1.0 && start.extrapolate(&engine.solution, aside) {
+            engine.solution = start;
+        }
+        let found: Vec<&Guess> = self.found.iter().map(|found| &found.engine.solution).collect();
+        if engine.near_another(&found).is_err() {
+            return false;
+        }
+        engine.allowed = usize::MAX;
+        self.keep(&mut engine) == Some(known)
+    }
+
     /// The sum of the signs of the determinants, where all are known.
     fn sum_of_signs(&self) -> Option<i64> {
         self.found.iter().map(|found| found.sign).sum()
@@ -285,6 +344,7 @@ impl Search<'_> {
         engine.linearise().ok()?;
         let sign = engine.determinant().known_sign().map(|sign| if sign > 0.0 { 1 } else { -1 });
         let tip = engine.read_tip()?;
+        let tip = engine.equations.axis_of_symmetry().map_or(tip, |axis| in_one_half_plane(&tip, &axis));
         if let Some(index) = self.found.iter().position(|found| is_same(&found.tip, &tip)) {
             return Some(index);
         }
@@ -316,6 +376,30 @@ impl Search<'_> {
     }
 }
 
+/// The directors of a tip whose arm is turned about its axis, with the section about its own a, until what leaves the
+/// axis does so to the same side: all shapes of a circle have the same.
+fn in_one_half_plane(tip: &SpatialTip, axis: &Vector<f64>) -> SpatialTip {
+    let across = |v: &Vector<f64>| sum(v, &times(-dot(v, axis), axis));
+    let off = across(&tip.a);
+    let size = dot(&off, &off).sqrt();
+    // Where the tip is along the axis its sections are alike.
+    if size < SAME {
+        return *tip;
+    }
+    let side = across(&if axis[0].abs() < 0.5 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] });
+    let side = times(1.0 / dot(&side, &side).sqrt(), &side);
+    let off = times(1.0 / size, &off);
+    let (cos, sin) = (dot(&off, &side), dot(&cross(&off, &side), axis));
+    let turned = |v: &Vector<f64>| {
+        let along = times((1.0 - cos) * dot(v, axis), axis);
+        sum(&sum(&times(cos, v), &times(sin, &cross(axis, v))), &along)
+    };
+    // Q b, where the section turns back about a by the same angle.
+    let b = sum(&times(cos, &tip.b), &times(-sin, &tip.c));
+    let c = sum(&times(sin, &tip.b), &times(cos, &tip.c));
+    SpatialTip { a: turned(&tip.a), b: turned(&b), c: turned(&c), ..*tip }
+}
+
 /// Whether two tips have the same rotation.
 fn is_same(p: &SpatialTip, q: &SpatialTip) -> bool {
     let off = cross(&p.a, &q.a);
@@ -323,5 +407,45 @@ fn is_same(p: &SpatialTip, q: &SpatialTip) -> bool {
     along && dot(&off, &off).sqrt() < SAME && {
         let other = cross(&p.b, &q.b);
         dot(&other, &other).sqrt() < SAME
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From the shape that the unloaded arm comes to, without any curve, an arm against the stream is led to others of
+    /// those that the plane is known to have.
+    #[test]
+    fn deflation_leads_to_shapes_that_no_path_was_followed_to() {
+        let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+        arm.flow.speed = 0.2;
+        arm.flow.direction = 175.0_f64.to_radians();
+        let planar = arm.equilibria(1e-8).unwrap();
+        assert!(planar.complete && planar.found.len() >= 3);
+        arm.space.get_or_insert_default();
+        let go_on = &mut |_: usize| true;
+        let axes = first_axes(&arm);
+        let mut search = Search { tol: 1e-8, found: Vec::new(), axes, known: Vec::new(), axis: 0, steps: 0, go_on };
+        search.start(&arm, &mut Vec::new()).unwrap();
+        assert_eq!((search.found.len(), search.steps), (1, 0));
+        let mut tries = 0;
+        for start in [(0, -1.0), (0, -0.5), (0, 0.5), (1, -0.5), (1, 0.5), (2, -0.5), (2, 0.5)] {
+            if start.0 < search.found.len() {
+                search.another(start);
+                tries += 1;
+            }
+        }
+        let of_plane = |found: &Candidate| {
+            let tip = found.shape.configuration.tip();
+            let apart = planar.found.iter().map(|one| {
+                let own = one.configuration.tip();
+                (own.x - tip.x).hypot(own.y - tip.y).hypot(tip.z)
+            });
+            apart.fold(f64::INFINITY, f64::min) < 1e-6 * arm.length
+        };
+        let met = search.found.iter().filter(|found| of_plane(found)).count();
+        println!("{} found in {tries} tries, {met} of the plane's {}", search.found.len(), planar.found.len());
+        assert!(search.found.len() >= 2 && met >= 2, "{} found, {met} of the plane's", search.found.len());
     }
 }

@@ -6,6 +6,7 @@ use super::cable_paths::StageData;
 use super::engine::Engine;
 use super::equations::{L, M, N, Q};
 use super::lengths::{HeldRound, hold_lengths, pull_taut};
+use super::neutral::{is_on_a_circle, without_neutral};
 use crate::numerics::rounds::correct;
 use crate::statics::border::{NewtonStep, border};
 use crate::statics::engine::Trouble;
@@ -32,10 +33,12 @@ impl Engine {
         }
     }
 
-    /// Sign and size of the determinant of shape and unknown tensions together, at the last linearisation.
+    /// Sign and size of the determinant of shape and unknown tensions together, at the last linearisation. On a circle
+    /// of equal shapes its sign decides nothing.
     pub(super) fn determinant(&self) -> Determinant {
         let shape = self.system.determinant();
-        self.border.map_or(shape, |border| shape.times(border))
+        let whole = self.border.map_or(shape, |border| shape.times(border));
+        if is_on_a_circle(&self.equations, &self.solution) { Determinant { clearance: 0.0, ..whole } } else { whole }
     }
 
     /// Holds the lengths of taut cables in the present correction, if any are commanded.
@@ -98,8 +101,10 @@ impl Engine {
             self.linearise()?;
         }
         correct(&mut self.system, &self.solution, &mut round.rest);
+        without_neutral(&self.equations, &self.system, &self.solution, &mut round.rest);
         if parameter {
             self.response(&mut round.response)?;
+            without_neutral(&self.equations, &self.system, &self.solution, &mut round.response);
         } else {
             round.response.clone_from(&round.rest);
             round.response.scale(0.0);

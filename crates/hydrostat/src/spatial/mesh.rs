@@ -5,6 +5,7 @@ use hydrostat_bvp::Mesh;
 use super::engine::{Engine, METHODS, State};
 use super::kinks::kink_resolution;
 use super::lengths::hold_lengths;
+use super::neutral::without_neutral;
 use super::rotation::dot;
 use crate::numerics::rounds::{correct, linearise};
 use crate::rod::arm::Arm;
@@ -120,6 +121,7 @@ impl Engine {
         linearise(&mut self.check, &self.check_equations, &self.finer)?;
         self.rounds += 1;
         correct(&mut self.check, &self.finer, &mut self.check_correction);
+        without_neutral(&self.check_equations, &self.check, &self.finer, &mut self.check_correction);
         if let Some(held) = &self.held {
             hold_lengths(&self.check_equations, &self.check, &self.finer, held, &mut self.check_correction)?;
         }

@@ -101,6 +101,12 @@ pub(crate) fn turn<R: Real>(q: &[R; 4]) -> [[R; 4]; 3] {
     [[-(f * x), f * w, f * z, -(f * y)], [-(f * y), -(f * z), f * w, f * x], [-(f * z), f * y, -(f * x), f * w]]
 }
 
+/// The turn (rad, about the directors) that a change of a state is, which begins with q.
+pub(crate) fn turn_of<const N: usize>(z: &[f64; N], dz: &[f64; N]) -> Vector<f64> {
+    let turns = turn(&each::<f64, 4>(|k| z[k]));
+    each(|a| (0..4).map(|k| turns[a][k] * dz[k]).sum())
+}
+
 /// q' = 1/2 q (0, u), u in the directors.
 #[inline(always)]
 pub(crate) fn spin<R: Real>(q: &[R; 4], u: &Vector<R>) -> [R; 4] {

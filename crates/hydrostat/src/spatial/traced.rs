@@ -3,9 +3,9 @@
 use hydrostat_bvp::{Correction, Determinant, LANES, Mesh, each};
 
 use super::configuration::SpatialConfiguration;
-use super::engine::{Engine, State, turn_of};
+use super::engine::{Engine, State};
 use super::equations::{Guess, L, M, N, Q};
-use super::rotation::dot;
+use super::rotation::{dot, turn_of};
 use crate::statics::border::NewtonStep;
 use crate::statics::engine::Trouble;
 use crate::statics::equations::StrokeControl;
