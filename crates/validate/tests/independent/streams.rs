@@ -144,6 +144,25 @@ fn a_blade_bends_steadily_with_the_speed_by_the_momentum_law() {
     assert!(refused.is_empty(), "refused at {refused:?} m/s");
 }
 
+/// Its tail lies in the stream, whose load across it has no slope there: next to nothing holds the tail, and signs of
+/// determinants say little.
+#[test]
+fn a_blade_that_the_stream_pulls_to_twice_its_length_is_solved_at_every_speed() {
+    let mut arm = blade();
+    arm.flow.law = FlowLaw::Momentum;
+    arm.readings.volume = Volume::None;
+    none_wrong(&[arm.clone()]);
+    let refused: Vec<f64> = (0..SPEEDS)
+        .map(speed)
+        .filter(|speed| {
+            let mut arm = arm.clone();
+            arm.flow.speed = *speed;
+            arm.solve().is_err()
+        })
+        .collect();
+    assert!(refused.is_empty(), "refused at {refused:?} m/s");
+}
+
 #[test]
 fn rods_bend_steadily_with_the_speed() {
     none_wrong(&rods());

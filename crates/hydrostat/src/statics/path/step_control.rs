@@ -12,7 +12,7 @@ pub(crate) const LOOSE: f64 = 1e-4;
 
 /// The clearance of determinants below which the mesh of a path may have decided their sign. The tail of a rod that
 /// lies in the stream is free to turn, to first order, and its determinant is next to nothing, of either sign.
-pub(crate) const BY_MESH: f64 = 1e-5;
+pub(crate) const BY_MESH: f64 = 1e-3;
 
 /// Largest turn a unit of load (rad) on a branch that nothing but the load moves along: rounding.
 pub(super) const SYMMETRIC: f64 = 1e-10;
@@ -48,7 +48,7 @@ pub(crate) struct StepControl {
 }
 
 impl StepControl {
-    pub(crate) const BRISK: Self = Self { longest: 0.4, straightness: 0.94, most: 300, accuracy: LOOSE };
+    pub(crate) const BRISK: Self = Self { longest: 0.4, straightness: 0.94, most: 1000, accuracy: LOOSE };
 }
 
 /// What a path met.
