@@ -274,7 +274,7 @@ impl Model {
     /// Force in space and couple per reference length: sections 5 and 6, and what the user adds.
     pub(crate) fn load(&self, place: &Place, theta: f64, e: Strains, beta_slope: f64) -> [f64; 3] {
         let stream = self.stream_load(place, theta, e, beta_slope);
-        let weight = self.hydrostatics(place, theta, e);
+        let weight = self.hydrostatics(place, theta, e, beta_slope);
         let force = [0, 1].map(|k| stream[k] + weight[k] + place.force[k]);
         [force[0], force[1], place.couple]
     }
@@ -346,14 +346,20 @@ impl Model {
         out
     }
 
-    fn hydrostatics(&self, place: &Place, theta: f64, e: Strains) -> Pair {
+    fn hydrostatics(&self, place: &Place, theta: f64, e: Strains, beta_slope: f64) -> Pair {
         let fraction = displaced(&self.arm, e[0]);
         let whole = [0, 1].map(|k| place.weight[k] - fraction * place.buoyancy[k]);
         if self.arm.readings.hydrostatics == Hydrostatics::Archimedes {
             return whole;
         }
-        let w = left_of(unit(theta, e[0], e[1]));
-        w.map(|own| own * dot(whole, w))
+        // Along the normals of the surface that the stream acts on.
+        let mut out = [0.0; 2];
+        for (u, _, fraction) in self.surfaces(place, theta, e, beta_slope) {
+            let w = left_of(u);
+            let across = fraction * dot(whole, w);
+            out = [out[0] + across * w[0], out[1] + across * w[1]];
+        }
+        out
     }
 
     /// Where one of these changes its sign, the load of the stream has a kink or a jump: speeds over the stream's.
