@@ -220,6 +220,7 @@ impl<E: Traced> Stepper<'_, E> {
                 dlambda_ds: side * MODE,
                 oriented: true,
                 size: 0.0,
+                clearance: 0.0,
                 error: at.error,
             };
             let mut fraction = self.predict(&from, distance);

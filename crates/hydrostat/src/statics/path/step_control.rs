@@ -12,7 +12,10 @@ pub(crate) const LOOSE: f64 = 1e-4;
 
 /// The clearance of determinants below which the mesh of a path may have decided their sign. The tail of a rod that
 /// lies in the stream is free to turn, to first order, and its determinant is next to nothing, of either sign.
-pub(crate) const BY_MESH: f64 = 1e-3;
+pub(crate) const BY_MESH: f64 = 1e-5;
+
+/// The clearance below which a sign that would turn a path back has to be the same on halves of the elements.
+pub(super) const DOUBTFUL: f64 = 1e-3;
 
 /// Largest turn a unit of load (rad) on a branch that nothing but the load moves along: rounding.
 pub(super) const SYMMETRIC: f64 = 1e-10;

@@ -4,7 +4,7 @@
 use hydrostat_bvp::Mesh;
 use hydrostat_bvp::continuation::location::bordered;
 
-use super::step_control::{BY_MESH, CORNER, EVEN, FINEST, LOOSE, MANY, SYMMETRIC, StepControl};
+use super::step_control::{BY_MESH, CORNER, DOUBTFUL, EVEN, FINEST, LOOSE, MANY, SYMMETRIC, StepControl};
 use super::traced::{Along, Traced, Turn};
 use crate::statics::border::NewtonStep;
 use crate::statics::engine::{HOP, Trouble, roughly};
@@ -36,8 +36,9 @@ pub(super) struct Point<E: Traced> {
     pub(super) dlambda_ds: f64,
     /// Whether the determinant says which way is on: not where rounding alone can turn its sign.
     pub(super) oriented: bool,
-    /// Natural logarithm of the size of the determinant.
+    /// Natural logarithm of the size of the determinant, and what it is the difference of.
     pub(super) size: f64,
+    pub(super) clearance: f64,
     /// Estimated error of the tip over L.
     pub(super) error: f64,
 }
@@ -257,8 +258,9 @@ impl<'e, E: Traced> Stepper<'e, E> {
         let dlambda_ds = self.orientation * known.unwrap_or(1.0) / norm;
         let (state, response) = (self.engine.state(), self.round.response.clone());
         let (tensions, margins) = (self.round.tension[1].clone(), self.margins());
-        let (oriented, size) = (known.is_some(), determinant.log);
-        Ok(Point { state, fraction, response, turns, tensions, margins, dlambda_ds, oriented, size, error: self.error })
+        let (oriented, size, clearance) = (known.is_some(), determinant.log, determinant.clearance);
+        let error = self.error;
+        Ok(Point { state, fraction, response, turns, tensions, margins, dlambda_ds, oriented, size, clearance, error })
     }
 
     /// Moves the solution from `here` along its tangent.
@@ -375,8 +377,11 @@ impl<'e, E: Traced> Stepper<'e, E> {
         let fraction = fraction.value();
         let mut next = if self.current { self.point_of_round(fraction)? } else { self.point(fraction)? };
         let mut cosine = self.cosine(here, &next);
+        if cosine < 0.0 && next.oriented && next.clearance < DOUBTFUL {
+            next.oriented = self.is_oriented_on_halves(&next)?;
+        }
         if cosine < 0.0 && !(here.oriented && next.oriented) {
-            // Rounding may have turned the sign: the path goes straight on.
+            // Rounding, or the mesh, may have turned the sign: the path goes straight on.
             (cosine, next.dlambda_ds) = (-cosine, -next.dlambda_ds);
             if next.oriented {
                 self.orientation = -self.orientation;
@@ -401,6 +406,18 @@ impl<'e, E: Traced> Stepper<'e, E> {
             return Err(Trouble::Stalled(cosine - 2.0));
         }
         Ok((next, StepOutcome::Regular))
+    }
+
+    /// Whether the determinant's sign at a point, which the engine is at, is the same on halves of the elements.
+    fn is_oriented_on_halves(&mut self, point: &Point<E>) -> Result<bool, Trouble> {
+        let sign = self.orientation * point.dlambda_ds.signum();
+        self.engine.move_to(self.engine.mesh().cut(2));
+        let there = roughly(self.engine.newton(1e-6 * self.scale, 9))
+            .and_then(|()| self.linearise())
+            .map(|()| self.engine.determinant().known_sign());
+        self.engine.restore(&point.state);
+        self.linearise()?;
+        Ok(there.is_ok_and(|there| there == Some(sign)))
     }
 
     /// How far the secant slope dlambda/ds from `a` to `b` is from the mean of the slopes at both, relative to the
