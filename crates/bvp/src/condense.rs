@@ -145,6 +145,39 @@ impl<const N: usize, const M: usize> Closure<N, M> {
             right: blank,
         }
     }
+
+    /// What the closure slopes differ by from those of the polynomial through the values.
+    #[inline(always)]
+    fn take_defects<const FUSED: bool>(
+        &mut self,
+        inverse_h: Lanes,
+        d: &[[Lanes; POINTS]; POINTS],
+        values: &[Lanes; POINTS],
+        slopes: &[Lanes; POINTS],
+    ) {
+        let slope = |m: usize| {
+            let start = d[m][M + 1] * values[M + 1];
+            inverse_h * (0..M + 1).fold(start, |sum, l| sum.plus::<FUSED>(d[m][l], values[l]))
+        };
+        for m in 0..M + 1 {
+            self.defect[m] = slope(m) - slopes[m];
+        }
+        self.other_slope = slope(M + 1);
+    }
+
+    /// The same for the sides of a group's own ends.
+    #[inline(always)]
+    pub(crate) fn retake_defects<const FUSED: bool>(
+        &mut self,
+        h: Lanes,
+        gauss: &Gauss<M>,
+        sides: [Side; LANES],
+        values: &[Lanes; POINTS],
+        slopes: &[Lanes; POINTS],
+    ) {
+        let inverse_h = Lanes::of(1.0) / h;
+        self.take_defects::<FUSED>(inverse_h, &differentiation(gauss, sides), values, slopes);
+    }
 }
 
 /// The maps of an element, see the module.
@@ -210,6 +243,29 @@ pub(crate) fn eliminate<const FUSED: bool, const N: usize, const M: usize>(
     Ok(())
 }
 
+/// Differentiation at the points of a closure on elements of length one.
+#[inline(always)]
+fn differentiation<const M: usize>(gauss: &Gauss<M>, sides: [Side; LANES]) -> [[Lanes; POINTS]; POINTS] {
+    let mut d = [[Lanes::of(0.0); POINTS]; POINTS];
+    if sides == [sides[0]; LANES] {
+        let table = &gauss.closure[sides[0].index()];
+        for m in 0..M + 2 {
+            for l in 0..M + 2 {
+                d[m][l] = Lanes::of(table[m][l]);
+            }
+        }
+    } else {
+        let right = Lanes(sides.map(Side::place));
+        for m in 0..M + 2 {
+            for l in 0..M + 2 {
+                let [on_left, on_right] = [gauss.closure[0][m][l], gauss.closure[1][m][l]];
+                d[m][l] = Lanes::of(on_left) + right * Lanes::of(on_right - on_left);
+            }
+        }
+    }
+    d
+}
+
 /// [`assemble`] with a closure variable: `own` is the own end, `values` w at the points including the one taken over, `slopes` w'
 /// at stages and own end. `product` is multiplied by the determinant of the points; else the lane where these have no closure.
 #[inline(always)]
@@ -239,23 +295,7 @@ pub(crate) fn assemble_closed<const FUSED: bool, const N: usize, const M: usize,
     (gradients[M], reaches[M]) = (own.value_gradient, inverse_h * own.reach);
     let right = Lanes(sides.map(Side::place));
     closure.right = right;
-    // Differentiation on an element of length one.
-    let mut d = [[zero; POINTS]; POINTS];
-    if sides == [sides[0]; LANES] {
-        let table = &gauss.closure[sides[0].index()];
-        for m in 0..M + 2 {
-            for l in 0..M + 2 {
-                d[m][l] = Lanes::of(table[m][l]);
-            }
-        }
-    } else {
-        for m in 0..M + 2 {
-            for l in 0..M + 2 {
-                let [on_left, on_right] = [gauss.closure[0][m][l], gauss.closure[1][m][l]];
-                d[m][l] = Lanes::of(on_left) + right * Lanes::of(on_right - on_left);
-            }
-        }
-    }
+    let d = differentiation::<M>(gauss, sides);
     // P by elimination in order; the matrix is near one, or its largest entries stand on the diagonal.
     let mut p = [[zero; POINTS]; POINTS];
     for m in 0..M + 1 {
@@ -266,13 +306,7 @@ pub(crate) fn assemble_closed<const FUSED: bool, const N: usize, const M: usize,
     }
     invert_points::<FUSED, M>(&mut p, product)?;
     closure.own = p[M];
-    for m in 0..M + 1 {
-        let mut defect = d[m][M + 1] * values[M + 1];
-        for l in 0..M + 1 {
-            defect = defect.plus::<FUSED>(d[m][l], values[l]);
-        }
-        closure.defect[m] = inverse_h * defect - slopes[m];
-    }
+    closure.take_defects::<FUSED>(inverse_h, &d, values, slopes);
     for m in 0..M + 1 {
         for l in 0..M + 1 {
             let mut sum = d[m][0] * p[0][l];
@@ -294,7 +328,6 @@ pub(crate) fn assemble_closed<const FUSED: bool, const N: usize, const M: usize,
         closure.omega[m] = omega;
     }
     let (mut own_by_taken, mut other_by_taken) = (zero, inverse_h * d[M + 1][M + 1]);
-    let mut other_slope = d[M + 1][M + 1] * values[M + 1];
     for m in 0..M + 1 {
         let mut other = zero;
         for k in 0..M + 1 {
@@ -304,10 +337,8 @@ pub(crate) fn assemble_closed<const FUSED: bool, const N: usize, const M: usize,
         closure.other[m] = other;
         own_by_taken = own_by_taken.plus::<FUSED>(p[M][m], taken[m]);
         other_by_taken = other_by_taken.plus::<FUSED>(other, taken[m]);
-        other_slope = other_slope.plus::<FUSED>(d[M + 1][m], values[m]);
     }
     (closure.own_by_taken, closure.other_by_taken) = (own_by_taken, other_by_taken);
-    closure.other_slope = inverse_h * other_slope;
 
     // Integrals up to stages and own end.
     let end = right;

@@ -62,10 +62,56 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
         Ok(())
     }
 
+    /// Evaluates, and keeps the factors of the last linearisation, on the same mesh with the same own ends: [`Collocation::newton`] gives the
+    /// simplified correction then, new residual and old factors.
+    ///
+    /// # Errors
+    /// Those of the problem.
+    #[inline(always)]
+    pub fn simplify<P: Problem<N, Q, L>, const FUSED: bool>(
+        &mut self,
+        problem: &P,
+        solution: &Solution<N, M, L>,
+    ) -> Result<(), P::Failure> {
+        self.evaluate::<P, FUSED>(problem, solution)?;
+        if const { L > 0 } && self.directions.is_closed() {
+            for g in 0..self.groups.count() {
+                let (values, slopes) = self.closure_at(g);
+                let (h, sides) = (self.steps[g], self.directions.ends[g].sides);
+                self.condensed.closures[g].retake_defects::<FUSED>(h, &self.gauss, sides, &values, &slopes);
+            }
+            for closing in &mut self.closings {
+                let slope = self.condensed.closures[closing.element / LANES].other_slope;
+                let own = self.end_stations[closing.block].closure_slope.0[closing.lane];
+                closing.defect = slope.0[closing.element % LANES] - own;
+            }
+        }
+        self.take_conditions(problem, solution);
+        Ok(())
+    }
+
+    /// The closure variable at the points of a group, and its slopes at stages and own end.
+    #[inline(always)]
+    fn closure_at(&self, g: usize) -> ([Lanes; POINTS], [Lanes; POINTS]) {
+        let zero = Lanes::of(0.0);
+        let (mut values, mut slopes) = ([zero; POINTS], [zero; POINTS]);
+        for j in 0..M {
+            values[j] = self.locals[g * M + j].inner.value;
+            slopes[j] = self.stations[g * M + j].closure_slope;
+        }
+        values[M] = self.ends[g].value;
+        slopes[M] = self.end_stations[g].closure_slope;
+        for lane in 0..LANES {
+            let (block, from) = self.directions.end_taken(self.groups.element(g, lane));
+            values[M + 1].0[lane] = self.ends[block].value.0[from];
+        }
+        (values, slopes)
+    }
+
     /// The conditions at both ends of a solution, their residuals put into the right side.
     ///
     /// After it, and an evaluation at the solution, [`Collocation::newton`] gives the simplified correction: new residual, old factors. (Without a
-    /// closure variable: the old factors of one do not fit its new equations.)
+    /// closure variable: [`Collocation::simplify`] has its defects.)
     #[inline(always)]
     pub(crate) fn take_conditions<P: Problem<N, Q, L>>(
         &mut self,
@@ -98,19 +144,7 @@ impl<const N: usize, const M: usize, const Q: usize, const L: usize> Collocation
 
     #[inline(always)]
     fn assemble_closed<const FUSED: bool>(&mut self, g: usize, product: &mut Lanes) -> Result<(), usize> {
-        let groups = self.groups;
-        let zero = Lanes::of(0.0);
-        let (mut values, mut slopes) = ([zero; POINTS], [zero; POINTS]);
-        for j in 0..M {
-            values[j] = self.locals[g * M + j].inner.value;
-            slopes[j] = self.stations[g * M + j].closure_slope;
-        }
-        values[M] = self.ends[g].value;
-        slopes[M] = self.end_stations[g].closure_slope;
-        for lane in 0..LANES {
-            let (block, from) = self.directions.end_taken(groups.element(g, lane));
-            values[M + 1].0[lane] = self.ends[block].value.0[from];
-        }
+        let (values, slopes) = self.closure_at(g);
         let locals = &self.locals[g * M..(g + 1) * M];
         let (mut group, Some(closure)) = self.condensed.group_mut(g) else { return Err(0) };
         assemble_closed::<FUSED, N, M, Q, L>(

@@ -11,7 +11,7 @@ use super::error::MotionError;
 use super::history::{History, Layout, Snapshot};
 use super::inputs::Inputs;
 use super::works::{Carried, WORKS};
-use crate::numerics::rounds::{correct, linearise, respond};
+use crate::numerics::rounds::{correct, linearise, respond, simplify};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{M, Units};
 use crate::statics::engine::wanted_side;
@@ -28,6 +28,9 @@ const THROUGH: usize = 3;
 
 /// What strokes may be off by, over L.
 const STROKES: f64 = 1e-9;
+
+/// What rounds with kept factors leave of the correction before, at most: else new factors are worth their cost.
+const SLOW: f64 = 0.1;
 
 /// Changes of the set of taut cables that one solve may make.
 const SWITCHES: usize = 12;
@@ -209,6 +212,11 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         linearise(&mut self.system, &self.moving, &self.solution)
     }
 
+    /// Evaluates at the present solution, and keeps the factors of the last linearisation.
+    fn simplify(&mut self) -> Result<(), LinearisationError<SectionFailure>> {
+        simplify(&mut self.system, &self.moving, &self.solution).map_err(LinearisationError::Slopes)
+    }
+
     /// The response of the solution at the last linearisation to changes of the equations.
     pub(super) fn respond(&self, change: &Forcing<S, 0, L>, out: &mut Correction<S, M, 0, L>) {
         respond(&self.system, change, out);
@@ -290,8 +298,10 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         let (mut applied, mut halvings, mut turns, mut switches) = (0.0, 0, 0, 0);
         let mut before = f64::INFINITY;
         let mut round = 0;
+        let mut keeps = false;
         while round < MOST {
-            match self.linearise() {
+            let linearised = if keeps { self.simplify() } else { self.linearise() };
+            match linearised {
                 Ok(()) => {}
                 Err(LinearisationError::Slopes(failure)) => {
                     if applied == 0.0 || halvings == 6 {
@@ -299,6 +309,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
                     }
                     applied *= 0.5;
                     halvings += 1;
+                    keeps = false;
                     self.solution.add(&self.correction, -applied);
                     self.add_tensions(-applied);
                     continue;
@@ -309,6 +320,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             if turns < TURNS && self.choose_sides() {
                 turns += 1;
                 applied = 0.0;
+                keeps = false;
                 continue;
             }
             round += 1;
@@ -327,12 +339,16 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             if switches < SWITCHES && self.switch_taut(size) {
                 switches += 1;
                 round -= 1;
+                keeps = false;
                 continue;
             }
-            // Rounds fall with the square of their size, and no faster than the last one did. The drag's square, and
-            // its kinks, count by what a round changes of the velocity.
+            // Rounds fall with the square of their size, and no faster than the last one did, which is all that is
+            // known of rounds with kept factors. The drag's square, and its kinks, count by what a round changes of the
+            // velocity.
             let of_drag = if before == f64::INFINITY { (0.5_f64).min(moved * self.moving.drag_change()) } else { 0.0 };
-            let rate = if applied < 1.0 { 1.0 } else { (size / before).min(1.0).max(size).max(of_drag) };
+            let last = (size / before).min(1.0);
+            let rate = if applied < 1.0 { 1.0 } else { last.max(size).max(of_drag) };
+            keeps = applied == 1.0 && last < SLOW;
             before = size;
             if moved.max(0.1 * angle) * rate <= tolerance && applied == 1.0 && off * rate <= STROKES {
                 return Ok(());

@@ -36,6 +36,22 @@ impl<P: Problem<N, Q, L>, const N: usize, const S: usize, const Q: usize, const 
     }
 }
 
+struct Simplify<'a, P, const N: usize, const S: usize, const Q: usize, const L: usize>(
+    &'a mut Collocation<N, S, Q, L>,
+    &'a P,
+    &'a Solution<N, S, L>,
+);
+
+impl<P: Problem<N, Q, L>, const N: usize, const S: usize, const Q: usize, const L: usize> Work
+    for Simplify<'_, P, N, S, Q, L>
+{
+    type Output = Result<(), P::Failure>;
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Self::Output {
+        self.0.simplify::<_, FUSED>(self.1, self.2)
+    }
+}
+
 struct Correct<'a, const N: usize, const S: usize, const Q: usize, const L: usize>(
     &'a mut Collocation<N, S, Q, L>,
     &'a Solution<N, S, L>,
@@ -82,6 +98,16 @@ pub(crate) fn linearise<P: Problem<N, Q, L>, const N: usize, const S: usize, con
     solution: &Solution<N, S, L>,
 ) -> Result<(), LinearisationError<P::Failure>> {
     dispatch(Linearise(system, problem, solution))
+}
+
+/// [`Collocation::simplify`].
+#[inline(never)]
+pub(crate) fn simplify<P: Problem<N, Q, L>, const N: usize, const S: usize, const Q: usize, const L: usize>(
+    system: &mut Collocation<N, S, Q, L>,
+    problem: &P,
+    solution: &Solution<N, S, L>,
+) -> Result<(), P::Failure> {
+    dispatch(Simplify(system, problem, solution))
 }
 
 /// [`Collocation::newton`].

@@ -129,3 +129,37 @@ pub(super) fn add_to_spans(spans: &mut [[f64; Q]], changes: &[[f64; Q]]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::rounds::simplify;
+    use crate::rod::arm::{Arm, Cable};
+    use crate::rod::profile::Profile;
+
+    /// With kept factors rounds fall by one ratio and end where Newton's do, beta' of its polynomials included.
+    #[test]
+    fn rounds_with_kept_factors_end_at_the_solution() {
+        let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+        arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.2));
+        arm.flow.speed = 0.1;
+        let mut engine = Engine::new(&arm);
+        engine.start_from_cables(8).unwrap();
+        engine.newton(1e-10, 20).unwrap();
+        assert!(engine.solution.directions.is_closed(), "the closure has a part in this");
+        engine.change_loads(|arm| arm.cables[0].tension = 0.21);
+        engine.linearise().unwrap();
+        let mut sizes = Vec::new();
+        for _ in 0..8 {
+            correct(&mut engine.system, &engine.solution, &mut engine.correction);
+            sizes.push(engine.correction.largest(0).max(engine.correction.largest_inner()));
+            engine.solution.add(&engine.correction, 1.0);
+            simplify(&mut engine.system, &engine.equations, &engine.solution).unwrap();
+        }
+        assert!((2..6).all(|k| sizes[k] < 0.1 * sizes[k - 1] || sizes[k] < 1e-11), "{sizes:?}");
+        engine.linearise().unwrap();
+        correct(&mut engine.system, &engine.solution, &mut engine.correction);
+        let left = engine.correction.largest(0).max(engine.correction.largest_inner());
+        assert!(left < 1e-11, "{left:e} after {sizes:?}");
+    }
+}
