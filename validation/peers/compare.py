@@ -20,7 +20,9 @@ INSIDE = "HYDROSTAT_PEERS_INSIDE"
 
 TENSION, SPEED = 40.0, 0.5
 FINE, PLAIN = 1e-8, 1e-3
-GOALS = {"cold": 500.0, "warm": 900.0, "rod": 2000.0}
+GOALS = {"cold": 500.0, "warm": 900.0, "rod": 2000.0, "space": 50.0, "plane": 6.0}
+# The arm in space: tensions in N, speed of the stream in m/s.
+PULLS, STREAM = (0.1, 0.05, 0.0), 0.1
 # Solves of each kind in a batch.
 OURS, SCIPY = 100, 5
 
@@ -29,7 +31,12 @@ def main():
     options = arguments()
     enter_venv(options.venv)
     program = built(options.profile)
-    report = {"paper": paper(program, options.batches), "cantilever": cantilever(program, options.batches)}
+    report = {
+        "paper": paper(program, options.batches),
+        "cantilever": cantilever(program, options.batches),
+        "space": space(program, options.batches),
+        "plane": space_and_plane(program, options.batches),
+    }
     if options.json:
         Path(options.json).write_text(json.dumps(report, indent=1) + "\n")
 
@@ -71,7 +78,7 @@ def ours(program, arm, tensions, speed, tol, repeats):
 
 
 def tip_of(report, key="tip"):
-    return [report[key]["x"] / report["length"], report[key]["y"] / report["length"]]
+    return [report[key][axis] / report["length"] for axis in ("x", "y", "z") if axis in report[key]]
 
 
 def error(tip, exact):
@@ -104,6 +111,57 @@ def paper(program, batches):
             alone = row("ours warm, the tip alone", pooled(mine, "update"), error(tip_of(mine[0], "update_tip"), exact))
             rows.append(beside(alone, rows[-2], GOALS[name]))
     show(f"paper, T1 = {TENSION:g} N, {SPEED:g} m/s, to {FINE:g} L", rows)
+    return rows
+
+
+def space(program, batches):
+    """Three cables and a stream in space: cold and warm."""
+    import scipy_space as peer
+
+    tensions = ",".join(map(str, PULLS))
+    with tempfile.TemporaryDirectory() as folder:
+        arm = str(Path(folder) / "space.toml")
+        Path(arm).write_text(peer.arm_file())
+        exact = tip_of(ours(program, arm, tensions, STREAM, 1e-12, 1))
+        best = {name: peer.tuned(PULLS, STREAM, exact, FINE, warm=name == "warm") for name in ("cold", "warm")}
+        theirs, mine = {"cold": [], "warm": []}, []
+        for _ in range(batches):
+            mine.append(ours(program, arm, tensions, STREAM, FINE, OURS))
+            for name, one in best.items():
+                theirs[name] += [one.solve() for _ in range(2)]
+    rows = []
+    for name, one in best.items():
+        print(f"solve_bvp in space, {name}: {one}")
+        times = [took for took, _ in theirs[name]]
+        rows.append(row(f"solve_bvp {name}", quartiles(times), max(error(tip, exact) for _, tip in theirs[name])))
+        key = "tip" if name == "cold" else "warm_tip"
+        own = row(f"ours {name}", pooled(mine, name), error(tip_of(mine[0], key), exact))
+        rows.append(beside(own, rows[-1], GOALS["space"]))
+    show(f"in space, T = {tensions} N, {STREAM:g} m/s, to {FINE:g} L", rows)
+    return rows
+
+
+def space_and_plane(program, batches):
+    """`silicone` by the solver of the plane and by that of space, and the arm with three cables; ratios are over the plane."""
+    planar = (ROOT / "crates/files/arms/silicone.toml").read_text()
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        turned = str(Path(folder) / "silicone.toml")
+        Path(turned).write_text(planar.replace("[arm]\n", '[arm]\nspace = "spatial"\n', 1))
+        arms = [("in the plane", "silicone", "0.1,0"), ("the same in space", turned, "0.1,0")]
+        arms.append(("three cables in space", "silicone-spatial", ",".join(map(str, PULLS))))
+        times = {name: [] for name, _, _ in arms}
+        for _ in range(batches):
+            for name, arm, tensions in arms:
+                times[name].append(ours(program, arm, tensions, STREAM, FINE, OURS))
+    for kind in ("cold", "warm"):
+        first = None
+        for name, _, _ in arms:
+            own = row(f"{kind}, {name}", pooled(times[name], kind), 0.0)
+            first = first or own
+            ratio = {"ratio": own["median"] / first["median"], "goal": GOALS["plane"]} if own is not first else {}
+            rows.append({**own, **ratio})
+    show(f"silicone in space and in the plane, {STREAM:g} m/s, to {FINE:g} L", rows)
     return rows
 
 
@@ -165,10 +223,10 @@ def beside(own, other, goal):
 
 
 def show(title, rows):
-    print(f"\n{title}\n{'':26}{'lower':>10}{'median us':>12}{'upper':>10}{'error/L':>10}{'ratio':>8}{'goal':>7}")
+    print(f"\n{title}\n{'':30}{'lower':>10}{'median us':>12}{'upper':>10}{'error/L':>10}{'ratio':>8}{'goal':>7}")
     for r in rows:
-        line = f"{r['name']:26}{r['lower_quartile']:10.0f}{r['median']:12.0f}{r['upper_quartile']:10.0f}"
-        print(line + f"{r['error']:10.1e}" + (f"{r['ratio']:8.0f}{r['goal']:7.0f}" if "ratio" in r else ""), flush=True)
+        line = f"{r['name']:30}{r['lower_quartile']:10.0f}{r['median']:12.0f}{r['upper_quartile']:10.0f}"
+        print(line + f"{r['error']:10.1e}" + (f"{r['ratio']:8.1f}{r['goal']:7.0f}" if "ratio" in r else ""), flush=True)
 
 
 if __name__ == "__main__":

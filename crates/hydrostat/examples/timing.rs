@@ -6,7 +6,7 @@
 //!
 //! - `cold`: `Solver::new` and `solve`.
 //! - `warm`: `set_tensions` and `resolve`, from the answer at 1 % less tension.
-//! - `update`: `set_tensions` and `update` from there: the tip alone.
+//! - `update`: `set_tensions` and `update` from there: the tip alone (in the plane).
 
 #[path = "common/arms.rs"]
 mod arms;
@@ -17,7 +17,7 @@ use std::error::Error;
 
 use arms::pulled;
 use clock::{Times, timed};
-use hydrostat::{Options, SolveError, Solver, Tip};
+use hydrostat::{Arm, Options, SolveError, Solver, SpatialError, SpatialSolver, Tip};
 use serde_json::{Value, json};
 
 type Failure = Box<dyn Error>;
@@ -35,28 +35,36 @@ fn main() -> Result<(), Failure> {
         return Err("REPEATS: at least one".into());
     }
 
+    let solves = if arm.space.is_some() { in_space } else { in_plane };
+    let mut report = solves(&arm, &tensions, options, repeats)?;
+    report["arm"] = json!(arm.name);
+    report["length"] = json!(arm.length);
+    report["tol"] = json!(options.tol);
+    report["repeats"] = json!(repeats);
+    println!("{report}");
+    Ok(())
+}
+
+/// Tensions 1 % below these, if there are any.
+fn less(tensions: &[f64]) -> Option<Vec<f64>> {
+    tensions.iter().any(|t| *t > 0.0).then(|| tensions.iter().map(|t| 0.99 * t).collect())
+}
+
+fn in_plane(arm: &Arm, tensions: &[f64], options: Options, repeats: usize) -> Result<Value, Failure> {
     let (cold, tip) =
-        timed::<_, _, SolveError>(repeats, (), |()| Ok(()), |()| Ok(Solver::new(&arm, options)?.solve()?.tip()))?;
-    let mut report = json!({
-        "arm": arm.name,
-        "length": arm.length,
-        "tol": options.tol,
-        "repeats": repeats,
-        "cold": times(&cold),
-        "tip": position(&tip),
-    });
-    if tensions.iter().any(|t| *t > 0.0) {
-        let less: Vec<f64> = tensions.iter().map(|t| 0.99 * t).collect();
+        timed::<_, _, SolveError>(repeats, (), |()| Ok(()), |()| Ok(Solver::new(arm, options)?.solve()?.tip()))?;
+    let mut report = json!({ "cold": times(&cold), "tip": position(&tip) });
+    if let Some(less) = less(tensions) {
         let back = |solver: &mut Solver| {
             solver.set_tensions(&less)?;
             solver.update().map(|_| ())
         };
-        let (warm, warm_tip) = timed::<_, _, SolveError>(repeats, Solver::new(&arm, options)?, back, |solver| {
-            solver.set_tensions(&tensions)?;
+        let (warm, warm_tip) = timed::<_, _, SolveError>(repeats, Solver::new(arm, options)?, back, |solver| {
+            solver.set_tensions(tensions)?;
             Ok(solver.resolve()?.tip())
         })?;
-        let (update, update_tip) = timed::<_, _, SolveError>(repeats, Solver::new(&arm, options)?, back, |solver| {
-            solver.set_tensions(&tensions)?;
+        let (update, update_tip) = timed::<_, _, SolveError>(repeats, Solver::new(arm, options)?, back, |solver| {
+            solver.set_tensions(tensions)?;
             Ok(solver.update()?.tip)
         })?;
         report["warm"] = times(&warm);
@@ -64,8 +72,30 @@ fn main() -> Result<(), Failure> {
         report["warm_tip"] = position(&warm_tip);
         report["update_tip"] = position(&update_tip);
     }
-    println!("{report}");
-    Ok(())
+    Ok(report)
+}
+
+fn in_space(arm: &Arm, tensions: &[f64], options: Options, repeats: usize) -> Result<Value, Failure> {
+    let (cold, tip) = timed::<_, _, SpatialError>(
+        repeats,
+        (),
+        |()| Ok(()),
+        |()| Ok(SpatialSolver::new(arm, options)?.solve()?.tip()),
+    )?;
+    let mut report = json!({ "cold": times(&cold), "tip": { "x": tip.x, "y": tip.y, "z": tip.z } });
+    if let Some(less) = less(tensions) {
+        let back = |solver: &mut SpatialSolver| {
+            solver.set_tensions(&less)?;
+            solver.resolve().map(|_| ())
+        };
+        let (warm, tip) = timed::<_, _, SpatialError>(repeats, SpatialSolver::new(arm, options)?, back, |solver| {
+            solver.set_tensions(tensions)?;
+            Ok(solver.resolve()?.tip())
+        })?;
+        report["warm"] = times(&warm);
+        report["warm_tip"] = json!({ "x": tip.x, "y": tip.y, "z": tip.z });
+    }
+    Ok(report)
 }
 
 fn numbers(list: &str) -> Result<Vec<f64>, Failure> {
