@@ -187,7 +187,12 @@ pub(super) struct Settling<P: Moves<S, L>, const S: usize, const L: usize> {
     /// The last solves, the latest last, with their times.
     past: Vec<(f64, Solution<S, M, L>)>,
     spare: Solution<S, M, L>,
-    /// Linearisations so far, and solves.
+    /// d rate / d value (1/s) of the solves, and of the factors that there are.
+    rate: f64,
+    factors: Option<f64>,
+    /// What rounds with kept factors left of the correction before, the last time.
+    contraction: f64,
+    /// Rounds so far, and solves.
     pub(super) rounds: usize,
     pub(super) solves: usize,
 }
@@ -202,6 +207,9 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             border: Border::default(),
             past: Vec::new(),
             spare: Solution::default(),
+            rate: 0.0,
+            factors: None,
+            contraction: 1.0,
             rounds: 0,
             solves: 0,
         }
@@ -209,7 +217,11 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
 
     /// Linearises at the present solution.
     pub(super) fn linearise(&mut self) -> Result<(), LinearisationError<SectionFailure>> {
-        linearise(&mut self.system, &self.moving, &self.solution)
+        self.factors = None;
+        self.contraction = 1.0;
+        linearise(&mut self.system, &self.moving, &self.solution)?;
+        self.factors = Some(self.rate);
+        Ok(())
     }
 
     /// Evaluates at the present solution, and keeps the factors of the last linearisation.
@@ -230,6 +242,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         self.match_closure();
         self.moving.place_on(&self.system.gauss, &self.solution);
         self.past.clear();
+        self.factors = None;
     }
 
     /// Gives the solution a closure where the equations have one.
@@ -250,6 +263,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
     pub(super) fn set_rate(&mut self, cv: f64) {
         let wanted = (self.moving.mass().sqrt() * cv).sqrt().clamp(1.0, 1e9);
         let scales = P::sizes(wanted.log2().round().exp2());
+        self.rate = cv;
         let before = *self.moving.scales();
         self.moving.set_rate(cv, scales);
         if before != scales {
@@ -269,6 +283,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         self.solution.clone_from(solution);
         rescale(&mut self.solution, &std::array::from_fn(|a| scales[a] / self.moving.scales()[a]));
         self.past.retain(|(t, _)| *t <= time);
+        self.factors = None;
         self.moving.place_ends(&self.solution);
     }
 
@@ -280,6 +295,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         match self.iterate(tolerance) {
             Ok(()) => {}
             Err(_) if extrapolated => {
+                self.factors = None;
                 // From where it was last.
                 if let Some((_, last)) = self.past.last() {
                     self.solution.clone_from(last);
@@ -298,7 +314,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         let (mut applied, mut halvings, mut turns, mut switches) = (0.0, 0, 0, 0);
         let mut before = f64::INFINITY;
         let mut round = 0;
-        let mut keeps = false;
+        let mut keeps = self.factors == Some(self.rate);
         while round < MOST {
             let linearised = if keeps { self.simplify() } else { self.linearise() };
             match linearised {
@@ -345,10 +361,17 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             // Rounds fall with the square of their size, and no faster than the last one did, which is all that is
             // known of rounds with kept factors. The drag's square, and its kinks, count by what a round changes of the
             // velocity.
-            let of_drag = if before == f64::INFINITY { (0.5_f64).min(moved * self.moving.drag_change()) } else { 0.0 };
             let last = (size / before).min(1.0);
-            let rate = if applied < 1.0 { 1.0 } else { last.max(size).max(of_drag) };
-            keeps = applied == 1.0 && last < SLOW;
+            let rate = if applied < 1.0 {
+                1.0
+            } else if keeps {
+                self.contraction = if before == f64::INFINITY { self.contraction } else { last };
+                self.contraction
+            } else {
+                let of_drag = if before == f64::INFINITY { moved * self.moving.drag_change() } else { 0.0 };
+                last.max(size).max(of_drag.min(0.5))
+            };
+            keeps = applied == 1.0 && (before == f64::INFINITY || last < SLOW);
             before = size;
             if moved.max(0.1 * angle) * rate <= tolerance && applied == 1.0 && off * rate <= STROKES {
                 return Ok(());
@@ -373,6 +396,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         spare.with_sides(&self.system.gauss, side, |s| moving.jumps_at(s), &mut self.solution);
         self.moving.place_ends(&self.solution);
         self.moving.set_end_rates(&self.system.gauss);
+        self.factors = None;
         true
     }
 
