@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, cast
 import numpy as np
 
 from hydrostat import _inputs, _memory, _native, _saved
-from hydrostat.solution import Snap, Solution, Stations, Tip, Wrench, attributes, places_of, snaps_of
+from hydrostat.solution import Snap, Solution, Stations, Tip, attributes, places_of, snaps_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -258,13 +258,13 @@ class SpatialSolution(_InSpace, Solution):
         return snaps_of(self._inner.snaps, tip_of)
 
     @property
-    def base_reaction(self) -> Wrench:
-        """Force and moment of the support and the cable anchors on the arm at the base, N and N m: a `SpatialWrench`."""
+    def base_reaction(self) -> SpatialWrench:  # type: ignore[override]
+        """Force and moment of the support and the cable anchors on the arm at the base, N and N m."""
         return _wrench(self._inner.base_reaction)
 
     @property
-    def unmet(self) -> Wrench | None:
-        """With ``support = "unstrained-base"``, the unbalanced force and moment at the tip: a `SpatialWrench`."""
+    def unmet(self) -> SpatialWrench | None:  # type: ignore[override]
+        """With ``support = "unstrained-base"``, the unbalanced force and moment at the tip."""
         unmet = self._inner.unmet
         return None if unmet is None else _wrench(unmet)
 
@@ -369,6 +369,6 @@ class SpatialSolution(_InSpace, Solution):
         return plot_strains_in_space(self, label=label, figure=figure)
 
 
-def _wrench(fields: tuple[Any, Any]) -> Wrench:
+def _wrench(fields: tuple[Any, Any]) -> SpatialWrench:
     force, moment = fields
-    return cast("Wrench", SpatialWrench(_vector(force), _vector(moment)))
+    return SpatialWrench(_vector(force), _vector(moment))

@@ -97,7 +97,7 @@ impl Simulation {
         self.run.statistics()
     }
 
-    /// The error of the tip, m: three times the sum of the embedded errors of all steps, of the method of order 3 inside
+    /// The error of the tip, m: three times the sum of the embedded errors of all steps, of the method of order 3 in
     /// that of order 4, so that it says too much where the motion is smooth; after a jump that is not resolved (see
     /// [`Simulation::warnings`]) two hundredths of the way of the tip besides. The mesh's error is not in it.
     pub fn error_estimate(&self) -> f64 {

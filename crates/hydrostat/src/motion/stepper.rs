@@ -33,8 +33,8 @@ const MOST_STEPS: usize = 1_000_000;
 /// What a step's embedded error may be over the tolerance of the tip: errors of steps add up.
 const SHARE: f64 = 0.003;
 
-/// The error of the tip over the sum of the steps' embedded ones. With relaxation times of 0.3 to 10 ms and tolerances of
-/// 1e-2 to 1e-4 the largest error in a release of the silicone arm's cable was 0.6 to 5 times the sum.
+/// The error of the tip over the sum of the steps' embedded ones. With relaxation times of 0.3 to 10 ms and tolerances
+/// of 1e-2 to 1e-4 the largest error in a release of the silicone arm's cable was 0.6 to 5 times the sum.
 const PROPAGATED: f64 = 3.0;
 
 /// What unresolved waves of a jump move the tip by, over its way until then, as measured: 0.3 to 1.7 % where a cable of
