@@ -187,11 +187,8 @@ pub(super) struct Settling<P: Moves<S, L>, const S: usize, const L: usize> {
     /// The last solves, the latest last, with their times.
     past: Vec<(f64, Solution<S, M, L>)>,
     spare: Solution<S, M, L>,
-    /// d rate / d value (1/s) of the solves, and of the factors that there are.
-    rate: f64,
-    factors: Option<f64>,
-    /// What rounds with kept factors left of the correction before, the last time.
-    contraction: f64,
+    /// Whether the factors of the system are of this step and of these own ends.
+    factors: bool,
     /// Rounds so far, and solves.
     pub(super) rounds: usize,
     pub(super) solves: usize,
@@ -207,9 +204,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             border: Border::default(),
             past: Vec::new(),
             spare: Solution::default(),
-            rate: 0.0,
-            factors: None,
-            contraction: 1.0,
+            factors: false,
             rounds: 0,
             solves: 0,
         }
@@ -217,10 +212,9 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
 
     /// Linearises at the present solution.
     pub(super) fn linearise(&mut self) -> Result<(), LinearisationError<SectionFailure>> {
-        self.factors = None;
-        self.contraction = 1.0;
+        self.factors = false;
         linearise(&mut self.system, &self.moving, &self.solution)?;
-        self.factors = Some(self.rate);
+        self.factors = true;
         Ok(())
     }
 
@@ -242,7 +236,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         self.match_closure();
         self.moving.place_on(&self.system.gauss, &self.solution);
         self.past.clear();
-        self.factors = None;
+        self.factors = false;
     }
 
     /// Gives the solution a closure where the equations have one.
@@ -258,12 +252,12 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         }
     }
 
-    /// Takes the rate cv (1/s) of the next solves, and the sizes of the states that go with it: powers of two, so
-    /// that they seldom change.
+    /// Takes the rate cv (1/s) of a step's solves, and the sizes of the states that go with it: powers of two, so that
+    /// they seldom change. The factors of the step before are forgotten: its shapes are too far away.
     pub(super) fn set_rate(&mut self, cv: f64) {
         let wanted = (self.moving.mass().sqrt() * cv).sqrt().clamp(1.0, 1e9);
         let scales = P::sizes(wanted.log2().round().exp2());
-        self.rate = cv;
+        self.factors = false;
         let before = *self.moving.scales();
         self.moving.set_rate(cv, scales);
         if before != scales {
@@ -283,7 +277,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         self.solution.clone_from(solution);
         rescale(&mut self.solution, &std::array::from_fn(|a| scales[a] / self.moving.scales()[a]));
         self.past.retain(|(t, _)| *t <= time);
-        self.factors = None;
+        self.factors = false;
         self.moving.place_ends(&self.solution);
     }
 
@@ -295,7 +289,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         match self.iterate(tolerance) {
             Ok(()) => {}
             Err(_) if extrapolated => {
-                self.factors = None;
+                self.factors = false;
                 // From where it was last.
                 if let Some((_, last)) = self.past.last() {
                     self.solution.clone_from(last);
@@ -314,7 +308,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         let (mut applied, mut halvings, mut turns, mut switches) = (0.0, 0, 0, 0);
         let mut before = f64::INFINITY;
         let mut round = 0;
-        let mut keeps = self.factors == Some(self.rate);
+        let mut keeps = self.factors;
         while round < MOST {
             let linearised = if keeps { self.simplify() } else { self.linearise() };
             match linearised {
@@ -361,17 +355,15 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             // Rounds fall with the square of their size, and no faster than the last one did, which is all that is
             // known of rounds with kept factors. The drag's square, and its kinks, count by what a round changes of the
             // velocity.
-            let last = (size / before).min(1.0);
-            let rate = if applied < 1.0 {
-                1.0
-            } else if keeps {
-                self.contraction = if before == f64::INFINITY { self.contraction } else { last };
-                self.contraction
-            } else {
-                let of_drag = if before == f64::INFINITY { moved * self.moving.drag_change() } else { 0.0 };
-                last.max(size).max(of_drag.min(0.5))
+            let last = if before == f64::INFINITY { 0.0 } else { (size / before).min(1.0) };
+            let rate = match (before == f64::INFINITY, keeps) {
+                _ if applied < 1.0 => 1.0,
+                (true, true) => SLOW,
+                (true, false) => size.max((moved * self.moving.drag_change()).min(0.5)),
+                (false, true) => last,
+                (false, false) => last.max(size),
             };
-            keeps = applied == 1.0 && (before == f64::INFINITY || last < SLOW);
+            keeps = applied == 1.0 && last < SLOW;
             before = size;
             if moved.max(0.1 * angle) * rate <= tolerance && applied == 1.0 && off * rate <= STROKES {
                 return Ok(());
@@ -396,7 +388,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         spare.with_sides(&self.system.gauss, side, |s| moving.jumps_at(s), &mut self.solution);
         self.moving.place_ends(&self.solution);
         self.moving.set_end_rates(&self.system.gauss);
-        self.factors = None;
+        self.factors = false;
         true
     }
 
