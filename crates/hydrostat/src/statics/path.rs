@@ -25,6 +25,6 @@ pub(crate) use load_stepping::{Stopped, follow, follow_on, follow_range, follow_
 pub(crate) use no_equilibrium::{no_equilibrium, no_equilibrium_in_range};
 pub(crate) use points::has_a_path;
 pub use points::{Branch, Event, Path, PathEnd, PathError, PathOptions, PathPoint};
-pub(crate) use step_control::{BY_MESH, LOOSE, PathSummary, StepControl};
+pub(crate) use step_control::{BY_MESH, DOUBTFUL, LOOSE, PathSummary, StepControl};
 pub(crate) use trace::{ends_of_range, trace};
 pub(crate) use turns::{Further, Met, follow_turns};

@@ -5,7 +5,7 @@ use crate::rod::arm::{Arm, ArmError};
 use crate::statics::configuration::{Configuration, Statistics, Tip};
 use crate::statics::engine::{Engine, Trouble, WORK};
 use crate::statics::path::{
-    BY_MESH, LOOSE, PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium,
+    BY_MESH, DOUBTFUL, LOOSE, PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium,
     no_equilibrium_in_range,
 };
 use crate::statics::refinement::{First, Refinable as _};
@@ -400,6 +400,7 @@ impl Solver {
     fn end_of_path(&mut self, travelled: PathSummary) -> Result<Configuration, SolveError> {
         let before = self.engine.tip;
         let on_path = self.engine.system.determinant();
+        let is_doubtful = on_path.clearance < DOUBTFUL && self.engine.sure_sign().is_none();
         let settled = self.engine.settle(self.options.tol, First::Rough);
         let moved = distance(&self.engine.tip, &before);
         let near = moved < 10.0 * LOOSE;
@@ -407,7 +408,7 @@ impl Solver {
         // A coarse mesh can be exact for the shape, of a straight arm above all, and not for the determinant.
         let mut same = sign == on_path.sign || travelled.symmetric || moved < SAME;
         // What a mesh decides decides nothing: that of the path, or that of the answer.
-        same |= near && on_path.clearance <= BY_MESH;
+        same |= near && (is_doubtful || on_path.clearance <= BY_MESH);
         let unsure = (sign < 0.0 || !same) && settled.is_ok() && self.engine.sure_sign().is_none();
         same |= near && unsure;
         let odd = sign < 0.0 && !unsure;
