@@ -41,6 +41,7 @@ mod border;
 mod dimensions;
 mod eigenvalues;
 mod equations;
+mod equilibria_in_space;
 mod error;
 mod event;
 mod history;

@@ -40,6 +40,7 @@ mod varied;
 
 pub use self::configuration::{SpatialConfiguration, SpatialStation, SpatialStations, SpatialWrench};
 pub use self::equilibria::SpatialEquilibria;
+pub(crate) use self::equilibria::equilibria;
 pub use self::many::{SpatialRow, SpatialTile, solve_many_in_space};
 pub use self::sensitivity::{Ellipsoid, SpatialPoseChange};
 pub(crate) use self::sensitivity::{Quantity, turn_between};

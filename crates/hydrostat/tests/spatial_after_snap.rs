@@ -5,6 +5,7 @@
 mod space;
 
 use hydrostat::{AfterSnapError, Arm, MotionError, SpatialError, Stability, VerdictKind};
+use hydrostat_files::{ArmFile, shipped};
 use space::{apart, rotation, silicone, solved, tip, turned, turned_arm};
 
 /// An arm that lies against the stream, and snaps as the stream grows.
@@ -68,4 +69,21 @@ fn snaps_that_no_motion_follows_are_refused_with_their_key() {
         panic!("a verdict")
     };
     assert_eq!(no.verdict.kind, VerdictKind::LimitPoint);
+}
+
+/// An arm rested for 4e9 s and was said to move: under the resistance that stability assumes two motions grow where it
+/// rests, and under its own none.
+#[test]
+fn an_octopus_arm_that_had_come_to_rest_was_said_to_move() {
+    let mut arm = ArmFile::parse(shipped::get("octopus-spatial").unwrap(), "octopus-spatial").unwrap().arm().unwrap();
+    arm.flow.speed = 0.3;
+    arm.flow.direction = 180.0_f64.to_radians();
+    let found = arm.solve_after_snap_in_space(1e-6).unwrap();
+    assert_eq!(found.snaps.len(), 1);
+    assert!(found.snaps[0].duration < 60.0, "{} s", found.snaps[0].duration);
+    // The path leads to no shape and no turn of the base does: the search starts from this one.
+    let all = arm.equilibria_in_space(1e-6).unwrap();
+    let end = tip(&found.configuration);
+    let nearest = all.found.iter().map(|own| apart(tip(&own.configuration), end)).fold(f64::INFINITY, f64::min);
+    assert!(nearest < 1e-4 * arm.length && all.sum_of_signs == Some(1), "{nearest:.1e} {:?}", all.sum_of_signs);
 }

@@ -21,7 +21,8 @@ const SAME: f64 = 1e-4;
 /// Where an arm came to rest: in the plane, or with [`crate::SpatialConfiguration`] in space.
 #[derive(Debug, Clone)]
 pub struct Rest<C = Configuration> {
-    /// The equilibrium, which is stable.
+    /// The equilibrium. The number of its growing motions is even, most often none: that is counted against another
+    /// resistance than the arm's, against which they decay.
     pub configuration: C,
     /// When the arm came within 0.002 L of it to stay, s after it was let go.
     pub time: f64,

@@ -18,7 +18,6 @@ use crate::statics::dimensions::{Guess, L};
 use crate::statics::engine::Engine;
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::snap::Snap;
-use crate::statics::stability::Stability;
 
 impl Configuration {
     /// Lets this shape go, at rest, under the loads of `arm`, which has the same geometry, and follows the motion until
@@ -119,7 +118,7 @@ fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper<Moving, S, L> {
     Stepper::at_rest(settling, arm.clone(), Inputs::default(), 0.0, TOLERANCE, None).let_go()
 }
 
-/// The stable equilibrium at the shape of the moving arm, where there is one, with the engine left there.
+/// The equilibrium at the shape of the moving arm at which it may end, where there is one, with the engine left there.
 fn look(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> Option<Candidate<Configuration>> {
     let kept = engine.state();
     let found = look_from(engine, stepper, tol);
@@ -153,7 +152,7 @@ fn look_from(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> 
         [at.x / length, at.y / length, 0.0]
     };
     let places = nodes.map(place).collect();
-    let stands = matches!(configuration.stability(), Some(Stability::Stable) | None);
+    let stands = configuration.growth().is_none_or(|growth| growth.lets_rest());
     stands.then(|| Candidate::near(configuration, places, &stepper.now)).flatten()
 }
 

@@ -2,7 +2,7 @@
 //!
 //! An arm that creeps away from a limit point is as slow as one that comes to rest. So rest is no matter of speed:
 //! where the arm is slow the statics look for an equilibrium at its shape, and the arm rests once it stays within
-//! [`NEAR`] of a stable one.
+//! [`NEAR`] of one at which it may end (`Growth::lets_rest`).
 
 use super::error::MotionError;
 use super::history::{Snapshot, cubic};
@@ -48,7 +48,7 @@ pub enum Restless {
     },
 }
 
-/// A stable equilibrium near the moving arm.
+/// An equilibrium near the moving arm, at which it may end.
 pub(super) struct Candidate<C> {
     configuration: Box<C>,
     /// x, y, z over L at the nodes of the motion's mesh; z is 0 in the plane.
@@ -112,8 +112,8 @@ impl Track {
     }
 }
 
-/// Where and when (s) the arm of `stepper`, which was let go, comes to rest: `look` is asked for the stable equilibrium
-/// at the shape of the moving arm, where there is one.
+/// Where and when (s) the arm of `stepper`, which was let go, comes to rest: `look` is asked for the equilibrium at
+/// the shape of the moving arm at which it may end, where there is one.
 pub(super) fn come_to_rest<P: Moves<S, L>, C, const S: usize, const L: usize>(
     mut stepper: Stepper<P, S, L>,
     mut look: impl FnMut(&Stepper<P, S, L>) -> Option<Candidate<C>>,

@@ -84,71 +84,48 @@ fn tells_that_some_are_missing(curves: &[Option<PathEnd>], sum_of_signs: Option<
     !is_limited && sum_of_signs.is_some_and(|sum| sum != 1)
 }
 
-impl Arm {
-    /// Equilibria of an arm in space under its loads, whether the path from the unloaded arm leads to them or not, each
-    /// with its stability. The tip position is good to `tol` L.
-    ///
-    /// From each equilibrium the base is turned about axes across it, those across a load among them; wherever it comes
-    /// to whole turns, the arm has an equilibrium. An equilibrium need not be on such a curve, so that the list may not
-    /// be complete: see [`SpatialEquilibria::misses_some`].
-    ///
-    /// ```
-    /// use hydrostat::{Arm, Space};
-    ///
-    /// // A soft arm that the stream meets from the tip, and a little from above.
-    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
-    /// arm.flow.speed = 0.2;
-    /// arm.space = Some(Space { stream: Some([-1.0, 0.01, 0.02]), ..Space::default() });
-    /// let all = arm.equilibria_in_space(1e-8).unwrap();
-    /// assert!(all.found.len() >= 3 && !all.misses_some());
-    /// ```
-    ///
-    /// # Errors
-    /// [`PathError::Start`] when no equilibrium was found at any rotation of the base, [`PathError::Support`],
-    /// [`PathError::Friction`], [`PathError::Option`], [`PathError::Stroke`].
-    pub fn equilibria_in_space(&self, tol: f64) -> Result<SpatialEquilibria, PathError<SpatialError>> {
-        self.equilibria_in_space_while(tol, |_| true)
+/// The equilibria of an arm in space that are found from `start` or, without one, from the path of the loads. `go_on`
+/// is asked after every point of a curve, with how many there are.
+pub(crate) fn equilibria(
+    arm: &Arm,
+    tol: f64,
+    start: Option<&SpatialConfiguration>,
+    go_on: &mut dyn FnMut(usize) -> bool,
+) -> Result<SpatialEquilibria, PathError<SpatialError>> {
+    if !(1e-12..=1e-3).contains(&tol) {
+        return Err(PathError::Option { option: "tol", value: tol, expected: "in [1e-12, 1e-3]" });
     }
-
-    /// [`Arm::equilibria_in_space`] that asks `go_on` after every point of a curve, with how many there are, and ends
-    /// the search where that is false.
-    ///
-    /// # Errors
-    /// Those of [`Arm::equilibria_in_space`].
-    pub fn equilibria_in_space_while(
-        &self,
-        tol: f64,
-        mut go_on: impl FnMut(usize) -> bool,
-    ) -> Result<SpatialEquilibria, PathError<SpatialError>> {
-        if !(1e-12..=1e-3).contains(&tol) {
-            return Err(PathError::Option { option: "tol", value: tol, expected: "in [1e-12, 1e-3]" });
-        }
-        has_a_path(self)?;
-        if let Some(cable) = self.cables.iter().find(|c| c.stroke.is_some()) {
-            return Err(PathError::Stroke { cable: cable.name.clone() });
-        }
-        let mut arm = self.clone();
-        arm.space.get_or_insert_default();
-        let axes = first_axes(&arm);
-        let known = Vec::new();
-        let mut search = Search { tol, found: Vec::new(), axes, known, axis: 0, steps: 0, go_on: &mut go_on };
-        let mut curves = Vec::new();
+    has_a_path(arm)?;
+    if let Some(cable) = arm.cables.iter().find(|c| c.stroke.is_some()) {
+        return Err(PathError::Stroke { cable: cable.name.clone() });
+    }
+    let mut arm = arm.clone();
+    arm.space.get_or_insert_default();
+    let axes = first_axes(&arm);
+    let mut search = Search { tol, found: Vec::new(), axes, known: Vec::new(), axis: 0, steps: 0, go_on };
+    let mut curves = Vec::new();
+    if let Some(start) = start {
+        let mut engine = Engine::new(&arm);
+        engine.take_shape_of(start);
+        search.keep(&mut engine);
+    }
+    if search.found.is_empty() {
         search.start(&arm, &mut curves)?;
-        search.follow_all(&arm, &mut curves);
-        search.deflate_all(&arm, &mut curves);
-        let sum_of_signs = search.sum_of_signs();
-        let circles = Engine::new(&arm).equations.axis_of_symmetry().is_some();
-        let mut found: Vec<_> = search.found.into_iter().map(|found| found.shape).collect();
-        let place = |one: &Equilibrium<SpatialConfiguration>| {
-            let tip = one.configuration.tip();
-            [tip.x, tip.y, tip.z].map(|v| (v / (1e-7 * self.length)).round())
-        };
-        found.sort_by(|p, q| {
-            let (p, q) = (place(p), place(q));
-            p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])).then(p[2].total_cmp(&q[2]))
-        });
-        Ok(SpatialEquilibria { found, curves, steps: search.steps, sum_of_signs, circles })
     }
+    search.follow_all(&arm, &mut curves);
+    search.deflate_all(&arm, &mut curves);
+    let sum_of_signs = search.sum_of_signs();
+    let circles = Engine::new(&arm).equations.axis_of_symmetry().is_some();
+    let mut found: Vec<_> = search.found.into_iter().map(|found| found.shape).collect();
+    let place = |one: &Equilibrium<SpatialConfiguration>| {
+        let tip = one.configuration.tip();
+        [tip.x, tip.y, tip.z].map(|v| (v / (1e-7 * arm.length)).round())
+    };
+    found.sort_by(|p, q| {
+        let (p, q) = (place(p), place(q));
+        p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])).then(p[2].total_cmp(&q[2]))
+    });
+    Ok(SpatialEquilibria { found, curves, steps: search.steps, sum_of_signs, circles })
 }
 
 /// Axes in space for the turns of the base: across its a and each load, then those of the first lot of angles.

@@ -14,7 +14,6 @@ use crate::rod::arm::Arm;
 use crate::spatial::engine::Engine;
 use crate::spatial::equations::{FORCE, Guess, L, N};
 use crate::spatial::{SpatialConfiguration, SpatialSnap, SpatialTip};
-use crate::statics::stability::Stability;
 
 impl Lands for Engine {
     fn take(&mut self, shape: &SpatialConfiguration) {
@@ -106,7 +105,7 @@ fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper<SpatialMoving, S, L> {
     Stepper::at_rest(settling, arm.clone(), Inputs::default(), 0.0, TOLERANCE, None).let_go()
 }
 
-/// The stable equilibrium at the shape of the moving arm, where there is one, with the engine left there.
+/// The equilibrium at the shape of the moving arm at which it may end, where there is one, with the engine left there.
 fn look(
     engine: &mut Engine,
     stepper: &Stepper<SpatialMoving, S, L>,
@@ -122,7 +121,7 @@ fn look(
             [at.x / length, at.y / length, at.z / length]
         };
         let places = settling.solution.mesh.nodes().iter().map(place).collect();
-        let stands = matches!(configuration.stability(), Some(Stability::Stable) | None);
+        let stands = configuration.growth().is_none_or(|growth| growth.lets_rest());
         stands.then(|| Candidate::near(configuration, places, &stepper.now)).flatten()
     })
 }

@@ -14,8 +14,8 @@ pub(crate) const LOOSE: f64 = 1e-4;
 /// lies in the stream is free to turn, to first order, and its determinant is next to nothing, of either sign.
 pub(crate) const BY_MESH: f64 = 1e-5;
 
-/// The clearance below which a sign that would turn a path back, or that at its end, has to be the same on halves of the
-/// elements.
+/// The clearance below which a sign that would turn a path back, or that at its end, has to be the same on halves of
+/// the elements.
 pub(crate) const DOUBTFUL: f64 = 1e-3;
 
 /// Largest turn a unit of load (rad) on a branch that nothing but the load moves along: rounding.
