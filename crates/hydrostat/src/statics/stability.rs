@@ -117,8 +117,9 @@ impl Growth {
         }
     }
 
-    /// Whether a motion may end here. With an odd number of growing motions the determinant is negative, and one of them
-    /// grows against any resistance. An even number may all decay against that of the arm, which is not that assumed.
+    /// Whether a motion may end here. With an odd number of growing motions the determinant is negative, and one of
+    /// them grows against any resistance. An even number may all decay against that of the arm, which is not that
+    /// assumed.
     pub(crate) fn lets_rest(&self) -> bool {
         match self.stability() {
             Stability::Stable => true,
