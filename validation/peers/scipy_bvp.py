@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from scipy_arm import Arm
@@ -57,21 +58,24 @@ def candidate(tension, speed, nodes, power, tol, warm):
     return Best(arm, nodes, power, tol, before)
 
 
-def tuned(tension, speed, exact, error, warm):
-    """The fastest of a grid of choices that is within `error` of the exact tip (over L)."""
+def fastest(candidates, exact, error, repeats):
+    """The fastest of some choices that is within `error` of the exact tip (over L) each time."""
     best, least = None, np.inf
-    for nodes in (60, 70, 80):
-        for power in (1.6, 1.8, 2.0):
-            for tol in (1e-3, 1e-4, 3e-5, 1e-5):
-                one = candidate(tension, speed, nodes, power, tol, warm)
-                times = []
-                for _ in range(3):
-                    took, tip = one.solve()
-                    if tip is None or np.linalg.norm(tip - exact) > error:
-                        break
-                    times.append(took)
-                if len(times) == 3 and min(times) < least:
-                    best, least = one, min(times)
+    for one in candidates:
+        times = []
+        for _ in range(repeats):
+            took, tip = one.solve()
+            if tip is None or np.linalg.norm(tip - exact) > error:
+                break
+            times.append(took)
+        if len(times) == repeats and min(times) < least:
+            best, least = one, min(times)
     if best is None:
         raise SystemExit("solve_bvp reached the error with none of the choices")
     return best
+
+
+def tuned(tension, speed, exact, error, warm):
+    """The fastest of a grid of choices that is within `error` of the exact tip (over L)."""
+    grid = product((60, 70, 80), (1.6, 1.8, 2.0), (1e-3, 1e-4, 3e-5, 1e-5))
+    return fastest((candidate(tension, speed, *choice, warm) for choice in grid), exact, error, 3)

@@ -5,12 +5,14 @@ The state is (q, n_f, m_f, r) over s in [0, 1], thirteen numbers: a quaternion, 
 forces over C3 A0 / L^2 at the base. The strains at a point follow from the section law by Newton, all points at once.
 """
 
+import itertools
 import math
 import time
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import solve_bvp
+from scipy_bvp import fastest
 
 LENGTH = 0.245
 RADIUS = (10e-3, 2e-3)
@@ -114,7 +116,7 @@ class Arm:
         self.tensions = np.array(tensions) / FORCE
         self.kept = {}
 
-    def section(self, s, q, force, moment):
+    def section(self, s, force, moment):
         """Strains that carry n_f and m_f (in the directors), and the inverse of the law's derivative."""
         key = s.tobytes()
         if key not in self.places:
@@ -179,7 +181,7 @@ class Arm:
         frame, square = directors(q)
         back = transposed(frame)
         force, moment = apply(back, n), apply(back, m)
-        places, strain, inverse = self.section(s, q, force, moment)
+        places, strain, inverse = self.section(s, force, moment)
         along = apply(frame, strain[:3])
         return q, n, frame, square, force, moment, places, strain, inverse, along
 
@@ -283,18 +285,5 @@ class Best:
 
 def tuned(tensions, speed, exact, error, warm):
     """The fastest of a grid of choices that is within `error` of the exact tip (over L)."""
-    best, least = None, np.inf
-    for nodes in (20, 30, 40, 50, 60, 80):
-        for tol in (1e-3, 1e-4, 1e-5, 1e-6):
-            one = Best(tensions, speed, nodes, tol, warm)
-            times = []
-            for _ in range(2):
-                took, tip = one.solve()
-                if tip is None or np.linalg.norm(tip - exact) > error:
-                    break
-                times.append(took)
-            if len(times) == 2 and min(times) < least:
-                best, least = one, min(times)
-    if best is None:
-        raise SystemExit("solve_bvp reached the error with none of the choices")
-    return best
+    grid = itertools.product((20, 30, 40, 50, 60, 80), (1e-3, 1e-4, 1e-5, 1e-6))
+    return fastest((Best(tensions, speed, *choice, warm) for choice in grid), exact, error, 2)

@@ -187,7 +187,7 @@ pub(super) struct Settling<P: Moves<S, L>, const S: usize, const L: usize> {
     /// The last solves, the latest last, with their times.
     past: Vec<(f64, Solution<S, M, L>)>,
     spare: Solution<S, M, L>,
-    /// Whether the factors of the system are of this step and of these own ends.
+    /// Whether the factors of the system serve the next round: they are of this step and of these own ends.
     factors: bool,
     /// Rounds so far, and solves.
     pub(super) rounds: usize,
@@ -308,8 +308,8 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
         let (mut applied, mut halvings, mut turns, mut switches) = (0.0, 0, 0, 0);
         let mut before = f64::INFINITY;
         let mut round = 0;
-        let mut keeps = self.factors;
         while round < MOST {
+            let keeps = self.factors;
             let linearised = if keeps { self.simplify() } else { self.linearise() };
             match linearised {
                 Ok(()) => {}
@@ -319,7 +319,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
                     }
                     applied *= 0.5;
                     halvings += 1;
-                    keeps = false;
+                    self.factors = false;
                     self.solution.add(&self.correction, -applied);
                     self.add_tensions(-applied);
                     continue;
@@ -330,7 +330,6 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             if turns < TURNS && self.choose_sides() {
                 turns += 1;
                 applied = 0.0;
-                keeps = false;
                 continue;
             }
             round += 1;
@@ -349,7 +348,7 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
             if switches < SWITCHES && self.switch_taut(size) {
                 switches += 1;
                 round -= 1;
-                keeps = false;
+                self.factors = false;
                 continue;
             }
             // Rounds fall with the square of their size, and no faster than the last one did, which is all that is
@@ -363,11 +362,11 @@ impl<P: Moves<S, L>, const S: usize, const L: usize> Settling<P, S, L> {
                 (false, true) => last,
                 (false, false) => last.max(size),
             };
-            keeps = applied == 1.0 && last < SLOW;
             before = size;
             if moved.max(0.1 * angle) * rate <= tolerance && applied == 1.0 && off * rate <= STROKES {
                 return Ok(());
             }
+            self.factors = applied == 1.0 && last < SLOW;
         }
         Err(Unsolved::Stalled)
     }

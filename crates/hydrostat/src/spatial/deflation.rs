@@ -42,12 +42,7 @@ impl Engine {
             match linearise(&mut self.system, &self.equations, &self.solution) {
                 Ok(()) => {}
                 Err(LinearisationError::Slopes(failure)) => {
-                    if applied == 0.0 || halvings == 8 {
-                        return Err(Trouble::Section(failure));
-                    }
-                    applied *= 0.5;
-                    halvings += 1;
-                    self.solution.add(&self.correction, -applied);
+                    self.halve(&[], &mut applied, &mut halvings, failure)?;
                     continue;
                 }
                 Err(singular) => return Err(singular.into()),

@@ -15,7 +15,7 @@ use crate::rod::arm::Arm;
 use crate::rod::readings::Support;
 use crate::statics::configuration::Statistics;
 use crate::statics::engine::Trouble;
-use crate::statics::equations::{StrokeControl, Way};
+use crate::statics::equations::{SectionFailure, StrokeControl, Way};
 
 /// Steps of the section law that the check leaves: its one round has to take up their squares.
 const CHECKED: f64 = 1e-5;
@@ -242,13 +242,7 @@ impl Engine {
             match linearise(&mut self.system, &self.equations, &self.solution) {
                 Ok(()) => {}
                 Err(LinearisationError::Slopes(failure)) => {
-                    if applied == 0.0 || halvings == 8 {
-                        return Err(Trouble::Section(failure));
-                    }
-                    applied *= 0.5;
-                    halvings += 1;
-                    self.solution.add(&self.correction, -applied);
-                    self.add_tensions(&lengths.tensions, -applied);
+                    self.halve(&lengths.tensions, &mut applied, &mut halvings, failure)?;
                     continue;
                 }
                 Err(singular) => return Err(singular.into()),
@@ -304,6 +298,25 @@ impl Engine {
                 }
             }
         }
+    }
+
+    /// Takes half of the last correction back, and of the changes of tensions that came with it, after a `failure` of
+    /// its end.
+    pub(super) fn halve(
+        &mut self,
+        tensions: &[f64],
+        applied: &mut f64,
+        halvings: &mut usize,
+        failure: SectionFailure,
+    ) -> Result<(), Trouble> {
+        if *applied == 0.0 || *halvings == 8 {
+            return Err(Trouble::Section(failure));
+        }
+        *applied *= 0.5;
+        *halvings += 1;
+        self.solution.add(&self.correction, -*applied);
+        self.add_tensions(tensions, -*applied);
+        Ok(())
     }
 
     /// Adds `applied` of the correction; how far the whole of it moves the tip, over L.

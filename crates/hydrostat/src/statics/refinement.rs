@@ -123,6 +123,19 @@ pub(crate) trait Refinable {
         self.mesh().redistributed(self.errors(), &shortest, (2 * M + 1) as f64, target, limits)
     }
 
+    /// What `read` finds on halves of the elements, where Newton has a solution there; then back on these.
+    fn on_halves<T>(
+        &mut self,
+        tolerance: f64,
+        read: impl FnOnce(&mut Self) -> Result<T, Trouble>,
+    ) -> Result<T, Trouble> {
+        let kept = self.state();
+        self.move_to(self.mesh().cut(2));
+        let there = roughly(self.iterate(tolerance, 9, None)).and_then(|()| read(self));
+        self.restore(&kept);
+        there
+    }
+
     /// Moves to such a mesh, with nodes on the kinks; those closer than `apart` are one.
     fn refine(&mut self, target: f64, most: usize, apart: f64) {
         let mut mesh = self.refined(target, most);

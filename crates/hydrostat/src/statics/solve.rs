@@ -400,7 +400,8 @@ impl Solver {
     fn end_of_path(&mut self, travelled: PathSummary) -> Result<Configuration, SolveError> {
         let before = self.engine.tip;
         let on_path = self.engine.system.determinant();
-        let is_doubtful = on_path.clearance < DOUBTFUL && self.engine.sure_sign().is_none();
+        let is_doubtful =
+            on_path.clearance <= BY_MESH || (on_path.clearance < DOUBTFUL && self.engine.sure_sign().is_none());
         let settled = self.engine.settle(self.options.tol, First::Rough);
         let moved = distance(&self.engine.tip, &before);
         let near = moved < 10.0 * LOOSE;
@@ -408,7 +409,7 @@ impl Solver {
         // A coarse mesh can be exact for the shape, of a straight arm above all, and not for the determinant.
         let mut same = sign == on_path.sign || travelled.symmetric || moved < SAME;
         // What a mesh decides decides nothing: that of the path, or that of the answer.
-        same |= near && (is_doubtful || on_path.clearance <= BY_MESH);
+        same |= near && is_doubtful;
         let unsure = (sign < 0.0 || !same) && settled.is_ok() && self.engine.sure_sign().is_none();
         same |= near && unsure;
         let odd = sign < 0.0 && !unsure;

@@ -35,18 +35,24 @@ fn is_carried(arm: &Arm) -> bool {
     pull < 0.8 * most * young * area
 }
 
-/// What is wrong with the rod over all speeds.
-fn wrong(rod: &Arm) -> Vec<String> {
-    let at = |k: i32| {
-        let mut arm = rod.clone();
-        arm.flow.speed = speed(k);
-        arm
-    };
-    let solved: Vec<Result<Configuration, SolveError>> =
-        (0..SPEEDS).into_par_iter().map(|k| Solver::new(&at(k), Options::default())?.solve()).collect();
+/// The rod in a stream of that speed (m/s).
+fn in_stream(rod: &Arm, speed: f64) -> Arm {
+    let mut arm = rod.clone();
+    arm.flow.speed = speed;
+    arm
+}
+
+/// The rod at all speeds.
+fn solved(rod: &Arm) -> Vec<Result<Configuration, SolveError>> {
+    let solve = |k: i32| Solver::new(&in_stream(rod, speed(k)), Options::default())?.solve();
+    (0..SPEEDS).into_par_iter().map(solve).collect()
+}
+
+/// What is wrong with the rod, as `solved` has it over all speeds.
+fn wrong(rod: &Arm, solved: &[Result<Configuration, SolveError>]) -> Vec<String> {
     let points = Points::new(POINTS);
     let (mut out, mut not_followed, mut doubted) = (Vec::new(), 0, 0);
-    for (k, answer) in (0..SPEEDS).zip(&solved) {
+    for (k, answer) in (0..SPEEDS).zip(solved) {
         let name = format!("{}, {:.5} m/s", rod.name, speed(k));
         match answer {
             Ok(own) => {
@@ -81,7 +87,7 @@ fn wrong(rod: &Arm) -> Vec<String> {
                 }
             }
             Err(SolveError::NoEquilibrium(no)) => {
-                if is_carried(&at(k)) {
+                if is_carried(&in_stream(rod, speed(k))) {
                     out.push(format!("{name}: {}", no.verdict.message()));
                 }
             }
@@ -94,7 +100,10 @@ fn wrong(rod: &Arm) -> Vec<String> {
 }
 
 fn none_wrong(rods: &[Arm]) {
-    let wrong: Vec<String> = rods.iter().flat_map(wrong).collect();
+    are_none(&rods.iter().flat_map(|rod| wrong(rod, &solved(rod))).collect::<Vec<_>>());
+}
+
+fn are_none(wrong: &[String]) {
     assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), wrong.join("\n"));
 }
 
@@ -135,11 +144,7 @@ fn a_blade_bends_steadily_with_the_speed_by_the_momentum_law() {
     none_wrong(&[arm.clone()]);
     let refused: Vec<f64> = (0..200_i32)
         .map(|k| 0.05 + 0.004 * f64::from(k) / 199.0)
-        .filter(|speed| {
-            let mut arm = arm.clone();
-            arm.flow.speed = *speed;
-            arm.solve().is_err()
-        })
+        .filter(|speed| in_stream(&arm, *speed).solve().is_err())
         .collect();
     assert!(refused.is_empty(), "refused at {refused:?} m/s");
 }
@@ -151,15 +156,9 @@ fn a_blade_that_the_stream_pulls_to_twice_its_length_is_solved_at_every_speed() 
     let mut arm = blade();
     arm.flow.law = FlowLaw::Momentum;
     arm.readings.volume = Volume::None;
-    none_wrong(&[arm.clone()]);
-    let refused: Vec<f64> = (0..SPEEDS)
-        .map(speed)
-        .filter(|speed| {
-            let mut arm = arm.clone();
-            arm.flow.speed = *speed;
-            arm.solve().is_err()
-        })
-        .collect();
+    let solved = solved(&arm);
+    are_none(&wrong(&arm, &solved));
+    let refused: Vec<f64> = (0..SPEEDS).zip(&solved).filter(|(_, at)| at.is_err()).map(|(k, _)| speed(k)).collect();
     assert!(refused.is_empty(), "refused at {refused:?} m/s");
 }
 

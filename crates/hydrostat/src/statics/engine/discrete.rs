@@ -5,12 +5,13 @@ use std::sync::LazyLock;
 use hydrostat_bvp::{Collocation, Correction, Determinant, Gauss, Lanes, Resampling, Solution};
 
 use super::outputs::{asked_in, sharpened};
-use super::trouble::{Trouble, roughly};
+use super::trouble::Trouble;
 use crate::numerics::rounds::{correct, evaluate, linearise, respond};
 use crate::rod::arm::Arm;
 use crate::statics::dimensions::{Guess, K, L, M, N, Q};
 use crate::statics::equations::{Equations, Margins, SectionFailure, SectionQuery, SectionState, StationData, Way};
 use crate::statics::phase::Phase;
+use crate::statics::refinement::Refinable as _;
 use crate::statics::shape::{Statistics, Tip};
 
 /// Steps of the section law that the check leaves: its one round has to take up their squares.
@@ -250,13 +251,9 @@ impl Engine {
         const BY_MESH: f64 = 1e-6;
         let determinant = self.system.determinant();
         let here = determinant.known_sign().filter(|_| determinant.clearance > BY_MESH)?;
-        let kept = self.state();
-        let halves = self.solution.mesh.cut(2);
-        self.move_to(halves);
-        let there = roughly(self.newton(1e-9, 9)).ok().and_then(|()| self.system.determinant().known_sign());
-        self.restore(&kept);
+        let there = self.on_halves(1e-9, |halves| Ok(halves.system.determinant().known_sign()));
         let back = self.linearise();
-        there.filter(|sign| *sign == here && back.is_ok())
+        (there.is_ok_and(|sign| sign == Some(here)) && back.is_ok()).then_some(here)
     }
 
     /// The response of the solution at the last linearisation to a change of what is given.

@@ -411,11 +411,11 @@ impl<'e, E: Traced> Stepper<'e, E> {
     /// Whether the determinant's sign at a point, which the engine is at, is the same on halves of the elements.
     fn is_oriented_on_halves(&mut self, point: &Point<E>) -> Result<bool, Trouble> {
         let sign = self.orientation * point.dlambda_ds.signum();
-        self.engine.move_to(self.engine.mesh().cut(2));
-        let there = roughly(self.engine.newton(1e-6 * self.scale, 9))
-            .and_then(|()| self.linearise())
-            .map(|()| self.engine.determinant().known_sign());
-        self.engine.restore(&point.state);
+        let round = &mut self.round;
+        let there = self.engine.on_halves(1e-6 * self.scale, |halves| {
+            halves.linearise_held(true, round)?;
+            Ok(halves.determinant().known_sign())
+        });
         self.linearise()?;
         Ok(there.is_ok_and(|there| there == Some(sign)))
     }
