@@ -9,7 +9,7 @@ use crate::parquet_file::Reader;
 /// How a file is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// Parquet, compressed with zstd.
+    /// Parquet, compressed with gzip.
     Parquet,
     /// CSV with a header.
     Csv,
