@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 class ModelWarning(UserWarning):
     """A warning about a solution: its surface folds, its shape depends strongly on an uncertain load, and so on.
 
-    Raised by `Arm.solve`, `Solver.solve`, `Solver.resolve` and `Solver.solution`, and by `Arm.path`, `Arm.equilibria` and `Arm.reach` once per kind
+    Raised by `Arm.solve`, `Solver.solve` and `Solver.solution`, and by `Arm.path`, `Arm.equilibria` and `Arm.reach` once per kind
     for all their solutions; once per kind and place of the program with Python's usual filters;
     ``warnings.filterwarnings("ignore", category=hydrostat.ModelWarning)`` silences it. `Solution.warnings` has them with their numbers.
 

@@ -96,12 +96,8 @@ class Solver:
         """Solve from the unloaded arm."""
         return warn(solution_of(self._inner.solve()), 2)
 
-    def resolve(self) -> Solution:
-        """Solve from the last shape (warm start), or from the unloaded arm if the arm moved too far."""
-        return warn(solution_of(self._inner.resolve()), 2)
-
     def update(self) -> Answer:
-        """Solve as `resolve` does, and return the tip only."""
+        """Solve from the last shape (warm start), or from the unloaded arm if the arm moved too far. Returns the tip only."""
         if isinstance(self._inner, _native.SpatialSolver):
             fields, estimate = self._inner.update()
             return Answer(cast("Tip", SpatialTip.of(*fields)), estimate)
@@ -109,7 +105,7 @@ class Solver:
         return Answer(Tip(x, y, theta, alpha), error_estimate)
 
     def solution(self) -> Solution:
-        """The full solution of the last `update`."""
+        """The full solution under the present loads, solved as `update` does where they changed since the last solve."""
         return warn(solution_of(self._inner.configuration()), 2)
 
     def sensitivities(

@@ -119,7 +119,7 @@ def test_a_solver_goes_on(arm: hs.Arm) -> None:
     assert isinstance(solver.solution(), hs.SpatialSolution) and list(solver.tensions) == [0.11, 0.05, 0]
     other = copy.copy(solver)
     other.set_flow_speed(0.0)
-    assert other.resolve().tip.z < tip.z
+    assert other.solution().tip.z < tip.z
     solver.set_stroke(0, 0.004)
     held = solver.solve()
     assert held.cables[0].stroke == pytest.approx(0.004, abs=1e-9) and held.cables[0].tension > 0

@@ -27,7 +27,7 @@ def test_strings_with_units(silicone: hs.Arm) -> None:
     solver.set_flow_speed("10 cm/s")
     assert solver.solve().tip == pytest.approx(want.tip, abs=1e-9)
     solver.set_stroke(0, "12 mm")
-    assert solver.resolve().cables[0].command is not None
+    assert solver.solution().cables[0].command is not None
     many = hs.solve_many(silicone, tensions=[["100 mN", "0 N"], [0.1, 0.0]], flow_speed="10 cm/s")
     assert many.tip_y.tolist() == hs.solve_many(silicone, tensions=[[0.1, 0.0]] * 2, flow_speed=0.1).tip_y.tolist()
     assert silicone.equilibria(time_limit="2 s")

@@ -43,7 +43,7 @@ def test_warnings_can_be_errors_and_can_be_let_be(silicone: hs.Arm) -> None:
     assert "warnings" not in repr(silicone.solve())
 
 
-@pytest.mark.parametrize("call", ["resolve", "solution", "path", "equilibria", "reach"])
+@pytest.mark.parametrize("call", ["solution", "path", "equilibria", "reach"])
 def test_whoever_gives_solutions_warns_once_a_kind(silicone: hs.Arm, call: str) -> None:
     arm = silicone.replace(flow_speed=0.1, tensions=[0.2, 0.0])
     solver = hs.Solver(arm)
@@ -52,7 +52,6 @@ def test_whoever_gives_solutions_warns_once_a_kind(silicone: hs.Arm, call: str) 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         calls: dict[str, Callable[[], object]] = {
-            "resolve": solver.resolve,
             "solution": solver.solution,
             "path": lambda: arm.path("cable[0].tension", 0.0, 0.2),
             "equilibria": arm.equilibria,

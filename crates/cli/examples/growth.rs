@@ -148,11 +148,11 @@ fn warm(arm: &Arm, tol: f64) -> Result<[f64; 3], SolveError> {
     let less: Vec<f64> = tensions.iter().map(|tension| 0.99 * tension).collect();
     let back = |solver: &mut Solver| {
         solver.set_tensions(&less)?;
-        solver.resolve().map(|_| ())
+        solver.configuration().map(|_| ())
     };
     let solve = |solver: &mut Solver| {
         solver.set_tensions(&tensions)?;
-        Ok(solver.resolve()?.statistics)
+        Ok(solver.configuration()?.statistics)
     };
     taken(Solver::new(arm, Options::with_tol(tol))?, back, solve)
 }

@@ -39,7 +39,7 @@ fn single(c: &mut Criterion) {
     for tol in [1e-8, 1e-4] {
         let mut group = c.benchmark_group(format!("to {tol:e}"));
         group.bench_function("paper 40 N 0.5 m/s cold", |b| b.iter(|| solve(&paper, tol).expect("solves")));
-        group.bench_function("paper 40 N 0.5 m/s warm, 1 % more tension", |b| warm(b, tol, Solver::resolve));
+        group.bench_function("paper 40 N 0.5 m/s warm, 1 % more tension", |b| warm(b, tol, Solver::configuration));
         group.bench_function("paper 40 N 0.5 m/s update, 1 % more tension", |b| warm(b, tol, Solver::update));
         group.bench_function("silicone 0.3 N 0.5 m/s (a flag) cold", |b| {
             b.iter(|| solve(&silicone, tol).expect("solves"));

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             solver.solve()?;
             for round in 0..repeats {
                 solver.set_tensions(&tensions(round))?;
-                black_box(solver.resolve()?);
+                black_box(solver.configuration()?);
             }
         }
         "update" => {

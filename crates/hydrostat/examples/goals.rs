@@ -116,7 +116,7 @@ fn warm(arm: &Arm, options: Options) -> Result<[Times; 2], SolveError> {
         |solver| back(solver).map(drop),
         |solver| {
             solver.set_tensions(&tensions)?;
-            solver.resolve()
+            solver.configuration()
         },
     )?;
     let (tip, _) = timed(
@@ -155,10 +155,10 @@ fn in_space() -> Result<[(&'static str, Median, Median); 2], Failure> {
         solver.solve()?;
         samples[0].push(clock.elapsed().as_secs_f64() * 1e6);
         solver.set_tensions(&less)?;
-        solver.resolve()?;
+        solver.configuration()?;
         solver.set_tensions(&[0.1, 0.0])?;
         let clock = Instant::now();
-        solver.resolve()?;
+        solver.configuration()?;
         samples[1].push(clock.elapsed().as_secs_f64() * 1e6);
     }
     let [cold, warm] = samples.map(|mut all| {

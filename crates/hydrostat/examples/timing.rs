@@ -61,7 +61,7 @@ fn in_plane(arm: &Arm, tensions: &[f64], options: Options, repeats: usize) -> Re
         };
         let (warm, warm_tip) = timed::<_, _, SolveError>(repeats, Solver::new(arm, options)?, back, |solver| {
             solver.set_tensions(tensions)?;
-            Ok(solver.resolve()?.tip())
+            Ok(solver.configuration()?.tip())
         })?;
         let (update, update_tip) = timed::<_, _, SolveError>(repeats, Solver::new(arm, options)?, back, |solver| {
             solver.set_tensions(tensions)?;
@@ -86,11 +86,11 @@ fn in_space(arm: &Arm, tensions: &[f64], options: Options, repeats: usize) -> Re
     if let Some(less) = less(tensions) {
         let back = |solver: &mut SpatialSolver| {
             solver.set_tensions(&less)?;
-            solver.resolve().map(|_| ())
+            solver.configuration().map(|_| ())
         };
         let (warm, tip) = timed::<_, _, SpatialError>(repeats, SpatialSolver::new(arm, options)?, back, |solver| {
             solver.set_tensions(tensions)?;
-            Ok(solver.resolve()?.tip())
+            Ok(solver.configuration()?.tip())
         })?;
         report["warm"] = times(&warm);
         report["warm_tip"] = json!({ "x": tip.x, "y": tip.y, "z": tip.z });

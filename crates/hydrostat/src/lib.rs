@@ -142,7 +142,7 @@ mod statics;
 
 pub use inverse::reach;
 pub use rod::{arm, parameter, profile, readings};
-pub use statics::{configuration, many, path, sensitivity, snap, solve, stability, verdict};
+pub use statics::{configuration, many, path, row, sensitivity, snap, solve, stability, verdict, warm_start};
 
 pub use arm::{
     Arm, ArmError, Base, BaseDirections, Cable, Cavity, DistributedLoad, Dynamics, Flow, FlowLaw, Gravity, Material,
@@ -151,7 +151,7 @@ pub use arm::{
 pub use configuration::{
     CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,
 };
-pub use many::{ManyOptions, NoRow, Row, Tile, Wanted, solve_many};
+pub use many::{ManyOptions, NoRow, RowSolver, Rows, solve_many};
 pub use motion::{
     AfterSnap, AfterSnapError, CableMotion, Course, Inputs, Instant, Loading, LoadingError, LoadingSnap, LoadingStep,
     Mode, ModeSection, ModeShape, ModeStation, Modes, MotionError, MotionEvent, MotionEventKind, MotionOptions,
@@ -170,6 +170,7 @@ pub use reach::{
 pub use readings::{
     Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
 };
+pub use row::{Row, Wanted};
 pub use sensitivity::{
     Ellipse, PoseChange, SensitiveStation, Sensitivities, SensitivityError, SensitivityMethod, SensitivityOptions,
 };
@@ -177,9 +178,10 @@ pub use snap::{Snap, SnapBounds};
 pub use solve::{Answer, Options, Solver};
 pub use spatial::{
     Ellipsoid, NoSpatialEquilibrium, SpatialConfiguration, SpatialEquilibria, SpatialError, SpatialPoseChange,
-    SpatialRow, SpatialSnap, SpatialSolver, SpatialStation, SpatialStations, SpatialTile, SpatialTip, SpatialWrench,
+    SpatialRow, SpatialSnap, SpatialSolver, SpatialStation, SpatialStations, SpatialTip, SpatialWrench,
     solve_many_in_space,
 };
 pub use stability::{Growth, Stability};
 pub use statics::shape::Pose;
 pub use verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
+pub use warm_start::WarmStart;

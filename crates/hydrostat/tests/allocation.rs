@@ -39,13 +39,13 @@ fn a_warm_update_allocates_nothing() {
 }
 
 #[test]
-fn an_update_is_what_a_resolve_gives() {
+fn an_update_is_the_tip_of_the_configuration() {
     let mut solver = Solver::new(&arm(), Options::default()).unwrap();
     let mut twin = solver.clone();
-    assert_eq!(solver.update().unwrap().tip, twin.resolve().unwrap().tip());
+    assert_eq!(solver.update().unwrap().tip, twin.configuration().unwrap().tip());
     solver.set_tensions(&[0.505, 0.0]).unwrap();
     twin.set_tensions(&[0.505, 0.0]).unwrap();
-    let (answer, whole) = (solver.update().unwrap(), twin.resolve().unwrap());
+    let (answer, whole) = (solver.update().unwrap(), twin.configuration().unwrap());
     let off = (answer.tip.x - whole.tip().x).hypot(answer.tip.y - whole.tip().y);
     assert!(off < 1e-14 && (answer.tip.alpha - whole.tip().alpha).abs() < 1e-12, "{off}");
     assert_eq!(answer.error_estimate, whole.error_estimate);

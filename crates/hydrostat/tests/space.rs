@@ -305,7 +305,7 @@ fn warm_solves_are_cold_ones() {
     let mut solver = SpatialSolver::new(&arm, Options::default()).unwrap();
     solver.solve().unwrap();
     solver.set_tensions(&[0.101, 0.05, 0.0]).unwrap();
-    let warm = solver.resolve().unwrap();
+    let warm = solver.configuration().unwrap();
     arm.cables[0].tension = 0.101;
     let cold = solved(&arm, 1e-8);
     assert!(apart(tip(&warm), tip(&cold)) < 2e-8 * arm.length);

@@ -134,7 +134,7 @@ fn forward_and_adjoint_are_the_same() {
         assert_eq!(forward.stations[2].changes[k], forward.tip[k]);
     }
     // Of the square of the distance of the tip from a place.
-    let tip = solver.resolve().unwrap().tip();
+    let tip = solver.update().unwrap().tip;
     let weights = SpatialPoseChange { place: [2.0 * tip.x, 2.0 * tip.y, 2.0 * tip.z], turn: [0.0, 0.1, -0.2] };
     let gradient = solver.gradient(&parameters, &[(arm.length, weights)]).unwrap();
     for (k, own) in gradient.iter().enumerate() {

@@ -178,7 +178,7 @@ fn a_small_change_of_stroke_is_solved_from_the_last_shape() {
     let mut solver = Solver::new(&arm, Options::default()).unwrap();
     solver.solve().unwrap();
     solver.set_stroke(0, 0.0101).unwrap();
-    let warm = solver.resolve().unwrap();
+    let warm = solver.configuration().unwrap();
     arm.cables[0].stroke = Some(0.0101);
     let cold = arm.solve().unwrap();
     assert!((warm.tip().y - cold.tip().y).abs() < 1e-8 * arm.length);
@@ -205,7 +205,7 @@ fn tensions_that_replace_strokes_are_what_is_solved_for() {
     let mut solver = Solver::new(&arm, Options::default()).unwrap();
     solver.solve().unwrap();
     solver.set_tensions(&[0.2, 0.0]).unwrap();
-    let found = solver.resolve().unwrap();
+    let found = solver.configuration().unwrap();
     assert_eq!(found.cables[0].tension, 0.2);
     assert!(found.cables[0].command.is_none());
     assert!(matches!(solver.set_stroke(2, 0.01), Err(SolveError::Option { option: "cable", .. })));

@@ -27,7 +27,7 @@ fn warm_answers_said_nothing_of_the_tangential_load() -> Result<(), SolveError> 
     let mut solver = Solver::new(&arm, Options::default())?;
     let whole = solver.solve()?;
     assert_eq!(kinds(&whole), ["tangential_load"]);
-    assert_eq!(messages(&solver.resolve()?), messages(&whole));
+    assert_eq!(messages(&solver.configuration()?), messages(&whole));
     solver.set_tensions(&[0.201])?;
     solver.update()?;
     assert_eq!(kinds(&solver.configuration()?), ["tangential_load"]);

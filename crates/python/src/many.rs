@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hydrostat::parameter::names;
 use hydrostat::{
-    NoRow, Options, Parameter, Pose as _, PoseChange, Row, SensitivityOptions, SolveError, Solver, SpatialPoseChange,
-    SpatialRow, SpatialSolver, SpatialStations, SpatialTile, SpatialTip, SpatialWrench, Stations, Tile, Wanted, Wrench,
+    NoRow, Options, Parameter, Pose as _, PoseChange, Row, RowSolver, Rows, SensitivityOptions, SolveError, Solver,
+    SpatialPoseChange, SpatialRow, SpatialSolver, SpatialStations, SpatialTip, SpatialWrench, Stations, Wanted, Wrench,
 };
 use hydrostat_files::Dimension;
 use numpy::PyReadonlyArray1;
@@ -27,7 +27,7 @@ const BLOCK: usize = 1 << 17;
 /// The word for a row whose numbers are none.
 const NOT_A_NUMBER: &str = "not_a_number";
 
-/// The derivatives of a row: of what [`Rows::DERIVATIVES`] names, then of each cable's stroke, by the parameters asked for.
+/// The derivatives of a row: of what [`Columns::DERIVATIVES`] names, then of each cable's stroke, by the parameters asked for.
 type Gradients = Vec<Vec<f64>>;
 
 /// What a row is answered with.
@@ -38,14 +38,13 @@ enum Answer<R> {
 }
 
 /// The rows of what solves them.
-type RowOf<S> = Row<<S as Rows>::Tip, <S as Rows>::Wrench, <S as Rows>::Stations>;
+type RowOf<S> = Row<<S as Columns>::Tip, <S as Columns>::Wrench, <S as Columns>::Stations>;
 
-/// What solves rows one after the other, in the plane or in space.
-trait Rows: Clone + Sync {
+/// The columns of rows, of a solver in the plane or in space.
+trait Columns: Clone + Send + Sync + RowSolver<Row = RowOf<Self>> {
     type Tip: Send + Sync;
     type Wrench: Send + Sync;
     type Stations: Send + Sync;
-    type Solver;
     /// The columns that every row has, a number each.
     const FIELDS: &'static [&'static str];
     /// The columns of stations, where they are asked for, a number a station each.
@@ -53,15 +52,14 @@ trait Rows: Clone + Sync {
     /// The columns of derivatives of the tip.
     const DERIVATIVES: &'static [&'static str];
 
-    fn solve(&mut self, arm: &hydrostat::Arm) -> Result<RowOf<Self>, NoRow>;
-    /// The number of a row in the column [`Rows::FIELDS`]`[column]`.
+    /// The number of a row in the column [`Columns::FIELDS`]`[column]`.
     fn field(row: &RowOf<Self>, column: usize) -> f64;
-    /// The numbers of a row in the column [`Rows::STATIONS`]`[column]`.
+    /// The numbers of a row in the column [`Columns::STATIONS`]`[column]`.
     fn stations(row: &RowOf<Self>, column: usize) -> Vec<f64>;
     /// Derivatives about the shape of a row, by a solver that may have those about another row before.
     fn gradients(
         request: &Request<'_>,
-        kept: &mut Option<Self::Solver>,
+        kept: &mut Option<Self>,
         arm: &hydrostat::Arm,
         found: &RowOf<Self>,
     ) -> Option<Gradients>;
@@ -129,29 +127,27 @@ pub(crate) fn solve_many<'py>(
         return Err(wrong(none));
     }
     if arm.given.space.is_some() {
-        let start = SpatialTile::new(options, wanted).map_err(wrong)?;
-        return request.solve(py, &start, rows, threads, progress.as_ref());
+        return request.solve::<SpatialSolver>(py, rows, threads, progress.as_ref());
     }
-    let start = Tile::new(options, wanted).map_err(wrong)?;
-    request.solve(py, &start, rows, threads, progress.as_ref())
+    request.solve::<Solver>(py, rows, threads, progress.as_ref())
 }
 
 impl Request<'_> {
-    fn solve<'py, S: Rows>(
+    fn solve<'py, S: Columns>(
         &self,
         py: Python<'py>,
-        start: &S,
         rows: usize,
         threads: usize,
         progress: Option<&Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
+        let start = Rows::<S>::new(self.options, self.wanted).map_err(wrong)?;
         let done = AtomicU64::new(0);
         let answers = interruptible(
             py,
             |py| say(py, progress, done.load(Ordering::Relaxed)),
             |stop| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-                Ok(pool.install(|| self.answers(start, rows, &done, stop)))
+                Ok(pool.install(|| self.answers(&start, rows, &done, stop)))
             },
         )?;
         let answers =
@@ -161,7 +157,13 @@ impl Request<'_> {
     }
 
     /// The answers of all rows; `None` of those with NaN.
-    fn answers<S: Rows>(&self, start: &S, rows: usize, done: &AtomicU64, stop: &AtomicBool) -> Answers<RowOf<S>> {
+    fn answers<S: Columns>(
+        &self,
+        start: &Rows<S>,
+        rows: usize,
+        done: &AtomicU64,
+        stop: &AtomicBool,
+    ) -> Answers<RowOf<S>> {
         let mut out = Answers { solved: Vec::new(), places: Vec::with_capacity(rows) };
         let tile = |rows: &[usize]| -> Vec<Answer<RowOf<S>>> {
             let mut tile = start.clone();
@@ -176,7 +178,7 @@ impl Request<'_> {
                     // The arm was seen to have it.
                     let _ = parameter.set(&mut arm, values[*row]);
                 }
-                out.push(match tile.solve(&arm) {
+                out.push(match tile.next(&arm) {
                     Ok(found) => {
                         let asked = !self.gradients.is_empty();
                         let gradients =
@@ -214,7 +216,11 @@ impl Request<'_> {
         (1e-6 + 10.0 * self.options.tol) * arm.length
     }
 
-    fn columns_of<'py, S: Rows>(&self, py: Python<'py>, answers: &Answers<RowOf<S>>) -> PyResult<Bound<'py, PyDict>> {
+    fn columns_of<'py, S: Columns>(
+        &self,
+        py: Python<'py>,
+        answers: &Answers<RowOf<S>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
         let out = PyDict::new(py);
         let cables = self.base.cables.len();
         let wanted = self.wanted;
@@ -279,19 +285,14 @@ impl Request<'_> {
     }
 }
 
-impl Rows for Tile {
+impl Columns for Solver {
     type Tip = hydrostat::Tip;
     type Wrench = Wrench;
     type Stations = Stations;
-    type Solver = Solver;
     const FIELDS: &'static [&'static str] =
         &["tip_x", "tip_y", "tip_theta", "tip_alpha", "base_force_x", "base_force_y", "base_moment"];
     const STATIONS: &'static [&'static str] = &["x", "y", "theta"];
     const DERIVATIVES: &'static [&'static str] = &["d_tip_x", "d_tip_y", "d_tip_theta", "d_tip_alpha"];
-
-    fn solve(&mut self, arm: &hydrostat::Arm) -> Result<Row, NoRow> {
-        Self::solve(self, arm)
-    }
 
     fn field(row: &Row, column: usize) -> f64 {
         let (tip, base) = (row.tip, row.base_reaction);
@@ -326,11 +327,10 @@ impl Rows for Tile {
     }
 }
 
-impl Rows for SpatialTile {
+impl Columns for SpatialSolver {
     type Tip = SpatialTip;
     type Wrench = SpatialWrench;
     type Stations = SpatialStations;
-    type Solver = SpatialSolver;
     #[rustfmt::skip]
     const FIELDS: &'static [&'static str] = &[
         "tip_x", "tip_y", "tip_z",
@@ -341,10 +341,6 @@ impl Rows for SpatialTile {
     const STATIONS: &'static [&'static str] = &["x", "y", "z", "a_x", "a_y", "a_z", "b_x", "b_y", "b_z"];
     const DERIVATIVES: &'static [&'static str] =
         &["d_tip_x", "d_tip_y", "d_tip_z", "d_tip_turn_x", "d_tip_turn_y", "d_tip_turn_z"];
-
-    fn solve(&mut self, arm: &hydrostat::Arm) -> Result<SpatialRow, NoRow> {
-        Self::solve(self, arm)
-    }
 
     fn field(row: &SpatialRow, column: usize) -> f64 {
         let SpatialTip { x, y, z, a, b, c, alpha } = row.tip;
@@ -370,13 +366,11 @@ impl Rows for SpatialTile {
         arm: &hydrostat::Arm,
         found: &SpatialRow,
     ) -> Option<Gradients> {
-        // From the row before where only tensions differ and that leads to the shape that the row has.
-        let tensions: Vec<f64> = arm.cables.iter().map(|cable| cable.tension).collect();
-        let warm = kept.as_mut().is_some_and(|solver| {
-            solver.set_tensions(&tensions).is_ok()
-                && solver.arm() == arm
-                && solver.resolve().is_ok_and(|shape| shape.tip().distance_to(&found.tip) <= request.near(arm))
-        });
+        let near = |tip: SpatialTip| tip.distance_to(&found.tip) <= request.near(arm);
+        // From the row before where that leads to the shape that the row has.
+        let warm = kept
+            .as_mut()
+            .is_some_and(|solver| solver.set_arm(arm).is_ok() && solver.update().is_ok_and(|answer| near(answer.tip)));
         if !warm {
             let mut solver = SpatialSolver::new(arm, request.options).ok()?;
             solver.solve().ok()?;

@@ -337,7 +337,7 @@ impl Follower {
         let solved = py.detach(|| {
             let warm = kept.as_mut().and_then(|solver| {
                 solver.set_arm(arm).ok()?;
-                solver.resolve().ok().filter(is_it)
+                solver.configuration().ok().filter(is_it)
             });
             if let Some(found) = warm {
                 return Ok(Some(found));
@@ -359,7 +359,7 @@ impl Follower {
         let mut moved = solver.clone();
         let found = py.detach(|| {
             moved.set_arm(&arm)?;
-            moved.resolve()
+            moved.configuration()
         });
         let found = found.map_err(|error| solve_error(py, error, Options::with_tol(SHAPE)))?;
         let length = arm.length;

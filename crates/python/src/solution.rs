@@ -105,7 +105,7 @@ pub(crate) fn tip(Tip { x, y, theta, alpha }: Tip) -> TipFields {
 
 /// Options of a solve: its tolerance, and how far the tip may jump (over the length) and turn (rad) at a snap.
 pub(crate) fn options(tol: f64, (distance, angle): (f64, f64)) -> Options {
-    Options { tol, snaps: SnapBounds { distance, angle } }
+    Options { snaps: SnapBounds { distance, angle }, ..Options::with_tol(tol) }
 }
 
 /// An angle of a string, in rad; a bare number is in degrees.

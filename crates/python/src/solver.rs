@@ -54,10 +54,6 @@ impl Solver {
         self.whole(py, hydrostat::Solver::solve)
     }
 
-    fn resolve(&mut self, py: Python<'_>) -> PyResult<Solution> {
-        self.whole(py, hydrostat::Solver::resolve)
-    }
-
     fn configuration(&mut self, py: Python<'_>) -> PyResult<Solution> {
         self.whole(py, hydrostat::Solver::configuration)
     }

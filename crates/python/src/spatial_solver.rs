@@ -41,16 +41,11 @@ impl SpatialSolver {
     /// Strokes are then no longer commanded.
     fn set_tensions(&mut self, py: Python<'_>, tensions: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         let tensions = finite("tensions", &tensions, false)?;
-        if self.solver.arm().cables.iter().any(|cable| cable.stroke.is_some()) {
-            let mut arm = self.solver.arm().clone();
-            arm.set_tensions(&tensions).map_err(|error| wrong(format!("tensions: {error}")))?;
-            *self = Self::of(py, &arm, self.options)?;
-            return Ok(());
-        }
-        self.solver.set_tensions(&tensions).map_err(|error| wrong(format!("tensions: {error}")))
+        let mut arm = self.solver.arm().clone();
+        arm.set_tensions(&tensions).map_err(|error| wrong(format!("tensions: {error}")))?;
+        self.set_arm(py, &arm)
     }
 
-    /// The next solve begins with the unloaded arm.
     fn set_stroke(&mut self, py: Python<'_>, cable: usize, stroke: f64) -> PyResult<()> {
         let mut arm = self.solver.arm().clone();
         let Some(own) = arm.cables.get_mut(cable) else {
@@ -58,29 +53,22 @@ impl SpatialSolver {
             return Err(wrong(SpatialError::Option { option: "cable", value: cable as f64, expected }));
         };
         own.stroke = Some(stroke);
-        *self = Self::of(py, &arm, self.options)?;
-        Ok(())
+        self.set_arm(py, &arm)
     }
 
-    /// The next solve begins with the unloaded arm.
     fn set_flow_speed(&mut self, py: Python<'_>, speed: f64) -> PyResult<()> {
         let mut arm = self.solver.arm().clone();
         arm.flow.speed = speed;
-        *self = Self::of(py, &arm, self.options)?;
-        Ok(())
+        self.set_arm(py, &arm)
     }
 
     fn solve(&mut self, py: Python<'_>) -> PyResult<SpatialSolution> {
         self.whole(py, hydrostat::SpatialSolver::solve)
     }
 
-    fn resolve(&mut self, py: Python<'_>) -> PyResult<SpatialSolution> {
-        self.whole(py, hydrostat::SpatialSolver::resolve)
-    }
-
     /// The shape at the present loads.
     fn configuration(&mut self, py: Python<'_>) -> PyResult<SpatialSolution> {
-        self.whole(py, hydrostat::SpatialSolver::resolve)
+        self.whole(py, hydrostat::SpatialSolver::configuration)
     }
 
     /// Derivatives, and the solution that they are about.
@@ -96,7 +84,7 @@ impl SpatialSolver {
         let (solver, options) = (&mut self.solver, self.options);
         let found = py.detach(|| {
             let found = solver.sensitivities_with(&parameters, &asked)?;
-            let solution = solver.resolve().map_err(SensitivityError::Solve)?;
+            let solution = solver.configuration().map_err(SensitivityError::Solve)?;
             Ok((found, solution))
         });
         let (found, solution) = found.map_err(|error| spatial_sensitivity_error(py, error, options))?;
@@ -132,8 +120,8 @@ impl SpatialSolver {
     /// The tip, and the estimated error.
     fn update(&mut self, py: Python<'_>) -> PyResult<(TipFields, f64)> {
         let (solver, options) = (&mut self.solver, self.options);
-        let found = py.detach(|| solver.resolve()).map_err(|error| spatial_error(py, error, options))?;
-        Ok((tip(found.tip()), found.error_estimate))
+        let answer = py.detach(|| solver.update()).map_err(|error| spatial_error(py, error, options))?;
+        Ok((tip(answer.tip), answer.error_estimate))
     }
 }
 
@@ -141,6 +129,10 @@ impl SpatialSolver {
     fn of(py: Python<'_>, arm: &Given, options: Options) -> PyResult<Self> {
         let solver = hydrostat::SpatialSolver::new(arm, options);
         Ok(Self { solver: solver.map_err(|error| spatial_error(py, error, options))?, options })
+    }
+
+    fn set_arm(&mut self, py: Python<'_>, arm: &Given) -> PyResult<()> {
+        self.solver.set_arm(arm).map_err(|error| spatial_error(py, error, self.options))
     }
 
     fn whole(

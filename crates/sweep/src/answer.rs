@@ -1,8 +1,8 @@
 //! What became of a row, in the plane or in space.
 
 use hydrostat::{
-    AfterSnapError, Arm, FoldMargin, MotionError, NoRow, Options, Row, Snap, SolveError, SpatialError, SpatialRow,
-    SpatialSnap, SpatialTile, SpatialTip, Stability, Tile, Verdict, Wanted, Warning,
+    AfterSnapError, Arm, FoldMargin, MotionError, NoRow, Options, Row, Rows, Snap, SolveError, SpatialError,
+    SpatialRow, SpatialSnap, SpatialSolver, SpatialTip, Stability, Verdict, Wanted, Warning,
 };
 
 /// Why a row has no answer.
@@ -44,16 +44,16 @@ impl From<SpatialRow> for AnyRow {
     }
 }
 
-/// What solves the rows of a tile, of arms in the plane and in space.
+/// The rows of a tile, of arms in the plane and in space.
 #[derive(Debug, Clone)]
-pub(crate) struct Tiles {
-    pub(crate) plane: Tile,
-    pub(crate) space: SpatialTile,
+pub(crate) struct Tile {
+    pub(crate) plane: Rows,
+    pub(crate) space: Rows<SpatialSolver>,
 }
 
-impl Tiles {
+impl Tile {
     pub(crate) fn new(options: Options, wanted: Wanted) -> Result<Self, SolveError> {
-        Ok(Self { plane: Tile::new(options, wanted)?, space: SpatialTile::new(options, wanted)? })
+        Ok(Self { plane: Rows::new(options, wanted)?, space: Rows::new(options, wanted)? })
     }
 }
 

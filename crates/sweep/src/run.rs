@@ -10,7 +10,7 @@ use hydrostat_files::{ArmFile, arm_to_toml, write_whole, write_whole_with};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::answer::{AnyRow, NoAnswer, Tiles, solve_after_snap, solve_after_snap_in_space};
+use crate::answer::{AnyRow, NoAnswer, Tile, solve_after_snap, solve_after_snap_in_space};
 use crate::arms::{Arms, Last};
 use crate::column::{Answer, Answered, Column, Data, Layout, Output, WARNINGS};
 use crate::error::{SweepError, parquet_error};
@@ -95,7 +95,7 @@ pub struct Sweep {
     plan: Plan,
     arms: Arms,
     layout: Layout,
-    start: Tiles,
+    start: Tile,
     tiles: Range<u64>,
     /// The rows of these tiles that are wanted: all but where there are more shards than tiles.
     rows: Range<u64>,
@@ -145,8 +145,8 @@ impl Sweep {
         // Where motions are followed every snap is one.
         let every = SnapBounds { distance: 0.0, angle: 0.0 };
         let snaps = if options.after_snap { every } else { options.snaps };
-        let each = Options { tol: options.tol, snaps };
-        let start = Tiles::new(each, layout.wanted())?;
+        let each = Options { snaps, ..Options::with_tol(options.tol) };
+        let start = Tile::new(each, layout.wanted())?;
         let (tiles, rows) = match options.shard {
             None => (0..plan.tiles(), 0..plan.rows()),
             Some(shard) => tiles_and_rows(&plan, shard)?,
@@ -420,8 +420,8 @@ impl Sweep {
 }
 
 impl Sweep {
-    /// What becomes of a row; `tiles` have solved the one before.
-    fn answer(&self, arm: &Arm, tiles: &mut Tiles) -> Answer {
+    /// What becomes of a row of a tile.
+    fn answer(&self, arm: &Arm, tile: &mut Tile) -> Answer {
         let in_space = arm.space.is_some();
         if in_space != self.layout.is_spatial() {
             // Their columns differ.
@@ -430,7 +430,7 @@ impl Sweep {
             ));
         }
         let found =
-            if in_space { tiles.space.solve(arm).map(AnyRow::from) } else { tiles.plane.solve(arm).map(AnyRow::from) };
+            if in_space { tile.space.next(arm).map(AnyRow::from) } else { tile.plane.next(arm).map(AnyRow::from) };
         match found {
             Err(NoRow::Verdict(verdict)) if self.after_snap && verdict.kind == VerdictKind::LimitPoint => {
                 let after_snap = if in_space { solve_after_snap_in_space } else { solve_after_snap };

@@ -103,7 +103,7 @@ fn warm_estimates_are_as_honest_as_cold_ones() {
                     let mut solver = Solver::new(&before, Options::with_tol(tol)).unwrap();
                     let cold = solver.solve().unwrap();
                     solver.set_tensions(&[1.01 * pulled, 0.0]).unwrap();
-                    let warm = solver.resolve().unwrap();
+                    let warm = solver.configuration().unwrap();
                     for (solved, best, how) in [(cold, &first, "cold"), (warm, &second, "warm")] {
                         let off = (solved.tip().x - best.tip().x).hypot(solved.tip().y - best.tip().y) / length;
                         let estimate = solved.error_estimate / length;

@@ -73,7 +73,7 @@ impl Reaching for Solver {
     }
 
     fn settle_warm(&mut self) -> Option<()> {
-        self.update_warm().map(drop)
+        Self::settle_warm(self).map(drop)
     }
 
     fn tensions(&self) -> Vec<f64> {

@@ -143,11 +143,11 @@ impl Reaching for SpatialSolver {
     }
 
     fn settle(&mut self) -> Option<()> {
-        self.resolve().ok().map(drop)
+        self.update().ok().map(drop)
     }
 
     fn settle_warm(&mut self) -> Option<()> {
-        self.resolve_warm().map(drop)
+        Self::settle_warm(self).map(drop)
     }
 
     fn tensions(&self) -> Vec<f64> {
@@ -210,7 +210,7 @@ impl Reaching for SpatialSolver {
     }
 
     fn shape(&mut self) -> Result<SpatialConfiguration, SpatialError> {
-        self.resolve()
+        self.configuration()
     }
 
     fn on_the_path(arm: &Arm) -> Option<SpatialConfiguration> {

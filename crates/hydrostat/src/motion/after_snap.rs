@@ -155,7 +155,8 @@ pub(super) type AfterSnapOf<S> = AfterSnap<ShapeOf<S>, TipOf<S>>;
 
 /// The equilibrium at the whole loads of `arm`, with the motion from every limit point on the way.
 pub(super) fn solve_after_snap<S: Ranged>(arm: &Arm, tol: f64) -> Result<AfterSnapOf<S>, AfterSnapError<ErrorOf<S>>> {
-    let mut solver = S::new(arm, Options { tol, snaps: EVERY_SNAP }).map_err(AfterSnapError::Solve)?;
+    let mut solver =
+        S::new(arm, Options { snaps: EVERY_SNAP, ..Options::with_tol(tol) }).map_err(AfterSnapError::Solve)?;
     let mut motions: Vec<SnapMotion<TipOf<S>>> = Vec::new();
     let mut solved = solver.solve();
     loop {

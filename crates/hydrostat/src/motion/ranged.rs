@@ -42,7 +42,7 @@ pub(super) trait Ranged: Clone {
 
     /// A solver that holds a configuration of `arm`.
     fn at(arm: &Arm, configuration: &ShapeOf<Self>, tol: f64) -> Result<Self, ErrorOf<Self>> {
-        let mut solver = Self::new(arm, Options { tol, snaps: EVERY_SNAP })?;
+        let mut solver = Self::new(arm, Options { snaps: EVERY_SNAP, ..Options::with_tol(tol) })?;
         solver.engine_mut().take(configuration);
         Ok(solver)
     }

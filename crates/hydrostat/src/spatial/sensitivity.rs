@@ -239,7 +239,7 @@ impl SpatialSolver {
         let arm = self.engine.equations.arm();
         check(arm, parameters, stations)?;
         let places: Vec<f64> = stations.iter().map(|s| s / arm.length).collect();
-        self.be_solved().map_err(SensitivityError::Solve)?;
+        self.refresh().map_err(SensitivityError::Solve)?;
         self.engine.watch(&places, self.options.tol).map_err(|trouble| unsettled(&trouble))?;
         self.engine.converge_fully().map_err(|trouble| unsettled(&trouble))?;
         Ok(places)

@@ -3,6 +3,7 @@
 use super::configuration::SpatialConfiguration;
 use super::engine::{Engine, State};
 use super::equations::Guess;
+use super::row::SpatialRow;
 use super::tip::{SpatialSnap, SpatialTip};
 use crate::numerics::distance;
 use crate::rod::arm::{Arm, ArmError};
@@ -11,9 +12,16 @@ use crate::statics::path::loaded::Loaded as _;
 use crate::statics::path::{
     PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium, no_equilibrium_in_range,
 };
+use crate::statics::prediction::Recent;
 use crate::statics::refinement::{First, Refinable as _};
-use crate::statics::solve::Options;
+use crate::statics::row::Wanted;
+use crate::statics::shape::Pose as _;
+use crate::statics::solve::{Answer, Options};
+use crate::statics::solved::Solved;
 use crate::statics::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
+use crate::statics::warm_start::{
+    FARTHEST, FARTHEST_ON_RAMP, WarmStart, alike, differ_in_loads, loads, may_be_followed,
+};
 
 /// How far (over L) the tip may move when the end of a path is made accurate.
 const MOVED: f64 = 0.05;
@@ -34,17 +42,20 @@ impl From<SolveError> for SpatialError {
     }
 }
 
-/// Solves one arm in space, again and again as its tensions change.
+/// Solves one arm in space, again and again as its loads change, as [`crate::Solver`] does in the plane.
 #[derive(Debug, Clone)]
 pub struct SpatialSolver {
     pub(super) engine: Engine,
     pub(super) options: Options,
-    /// Whether the engine holds a configuration at whole loads.
+    /// Whether the engine's solution is a start for a warm start.
     settled: bool,
-    /// Whether it is that of the present tensions and strokes.
-    solved: bool,
     /// Sign of the determinant of the last configuration.
     sign: f64,
+    /// The engine's solution, if it is that of the present loads.
+    solved: Option<Solved<SpatialTip>>,
+    /// The loads that the engine's solution belongs to, and the solutions before it: for [`WarmStart::Ramp`].
+    loads: Vec<f64>,
+    before: Recent<Guess>,
 }
 
 impl SpatialSolver {
@@ -57,16 +68,18 @@ impl SpatialSolver {
         arm.space.get_or_insert_default();
         arm.check()?;
         options.check()?;
-        Ok(Self { engine: Engine::new(&arm), options, settled: false, solved: false, sign: 1.0 })
+        let (engine, before) = (Engine::new(&arm), Recent::new());
+        Ok(Self { engine, options, settled: false, sign: 1.0, solved: None, loads: Vec::new(), before })
     }
 
-    /// The arm, with the tensions that were set last.
+    /// The arm, with the loads that were set last.
     pub fn arm(&self) -> &Arm {
         self.engine.equations.arm()
     }
 
     /// What holds the last configuration.
     pub(crate) fn engine_mut(&mut self) -> &mut Engine {
+        (self.settled, self.solved) = (false, None);
         &mut self.engine
     }
 
@@ -75,23 +88,15 @@ impl SpatialSolver {
     /// # Errors
     /// [`SpatialError::NoEquilibrium`].
     pub fn solve(&mut self) -> Result<SpatialConfiguration, SpatialError> {
-        self.solved = false;
-        let found = self.solve_anew();
-        self.solved = found.is_ok();
-        found
-    }
-
-    fn solve_anew(&mut self) -> Result<SpatialConfiguration, SpatialError> {
-        self.settled = false;
-        self.engine.reset_statistics();
-        self.engine.allowed = WORK;
+        self.begin_anew();
         self.engine.release_strokes();
-        let solved = self.solve_tensions()?;
-        if self.arm().cables.iter().all(|cable| cable.stroke.is_none()) {
-            return Ok(solved);
+        let mut solved = self.solve_tensions()?;
+        if self.arm().is_commanded() {
+            (self.settled, self.solved) = (false, None);
+            solved = self.solve_strokes(solved)?;
+            self.remember(&solved);
         }
-        self.settled = false;
-        self.solve_strokes(solved)
+        Ok(solved)
     }
 
     /// At given tensions, the cables with a commanded stroke slack.
@@ -107,11 +112,28 @@ impl SpatialSolver {
             && !self.engine.needs_continuation()
             && let Ok(configuration) = self.read(estimate, PathSummary::default())
         {
-            self.settled = true;
-            self.sign = 1.0;
+            (self.settled, self.sign) = (true, 1.0);
+            self.remember(&configuration);
             return Ok(configuration);
         }
         self.solve_along_the_path()
+    }
+
+    /// The engine's solution is that of the present loads, read as `configuration`.
+    fn remember(&mut self, configuration: &SpatialConfiguration) {
+        self.solved = Some(Solved {
+            estimate: configuration.error_estimate / self.engine.equations.units.length,
+            steps: configuration.statistics.load_steps,
+            snaps: configuration.snaps.clone(),
+            stable: configuration.stable,
+        });
+    }
+
+    /// To be called before loads change: what the engine holds is the solution of the loads before.
+    fn leave_loads(&mut self) {
+        if self.solved.take().is_some() && self.options.warm_start == WarmStart::Ramp {
+            self.loads = loads(self.arm());
+        }
     }
 
     /// Sets all tensions (N), in the order of the cables.
@@ -120,69 +142,161 @@ impl SpatialSolver {
     /// [`SpatialError::Arm`] when their number is wrong or one of them is.
     pub fn set_tensions(&mut self, tensions: &[f64]) -> Result<(), SpatialError> {
         self.engine.equations.arm().check_tensions(tensions)?;
+        self.leave_loads();
         self.engine.equations.take_tensions(tensions);
         self.engine.check_equations.take_tensions(tensions);
-        self.solved = false;
         Ok(())
     }
 
-    /// Takes the loads of an arm with the same sections and cables; tensions of cables whose stroke is commanded stay.
-    pub(crate) fn set_loads(&mut self, arm: &Arm) -> Result<(), SpatialError> {
-        arm.check()?;
+    /// Takes another arm. One of the same geometry and material, with the same cables commanded by their strokes, is
+    /// solved from the last shape by [`SpatialSolver::update`]; any other starts anew. One without [`Arm::space`] may
+    /// leave its plane.
+    ///
+    /// # Errors
+    /// [`SpatialError::Arm`] when it is none; the arm before stays then.
+    pub fn set_arm(&mut self, arm: &Arm) -> Result<(), SpatialError> {
         let mut arm = arm.clone();
-        for (new, own) in arm.cables.iter_mut().zip(&self.arm().cables).filter(|(new, _)| new.stroke.is_some()) {
+        arm.space.get_or_insert_default();
+        arm.check()?;
+        let own = self.arm();
+        let is_start = if self.options.warm_start == WarmStart::Ramp {
+            may_be_followed(own) && differ_in_loads(own, &arm)
+        } else {
+            alike(own, &arm) && own.material == arm.material && own.density == arm.density
+        };
+        if !is_start {
+            *self = Self::new(&arm, self.options)?;
+            return Ok(());
+        }
+        for (new, own) in arm.cables.iter_mut().zip(&own.cables).filter(|(new, _)| new.stroke.is_some()) {
             new.tension = own.tension;
         }
-        self.take_loads(&arm);
+        self.leave_loads();
+        self.engine.equations.set_loads(&arm);
+        self.engine.check_equations.set_loads(&arm);
         Ok(())
     }
 
-    /// [`SpatialSolver::set_loads`] of an arm that was checked and commands no strokes.
-    pub(super) fn take_loads(&mut self, arm: &Arm) {
-        self.engine.equations.set_loads(arm);
-        self.engine.check_equations.set_loads(arm);
-        self.solved = false;
-    }
-
-    /// Solves again from the last configuration, after a small change of tensions; falls back to
-    /// [`SpatialSolver::solve`].
+    /// Solves from the last shape, after a small change of the loads: a few Newton rounds on the mesh there is. Solves
+    /// from the unloaded arm as [`SpatialSolver::solve`] does where nothing was solved before and where the arm moves
+    /// further than a small change of the loads moves it. [`Options::warm_start`] says which equilibrium it may give.
     ///
     /// # Errors
     /// [`SpatialError::NoEquilibrium`].
-    pub fn resolve(&mut self) -> Result<SpatialConfiguration, SpatialError> {
-        match self.resolve_warm() {
-            Some(configuration) => Ok(configuration),
+    ///
+    /// ```
+    /// use hydrostat::{Arm, Cable, Options, Profile, SpatialSolver};
+    ///
+    /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
+    /// let offset = Profile::linear(0.005, 0.001);
+    /// arm.cables.push(Cable { angle: 2.0.into(), ..Cable::new("left", offset) }.pulled(0.1)); // rad, N
+    /// let mut solver = SpatialSolver::new(&arm, Options::default())?;
+    /// let before = solver.update()?.tip;
+    /// solver.set_tensions(&[0.101])?;
+    /// assert!(solver.update()?.tip.z > before.z);
+    /// # Ok::<(), hydrostat::SpatialError>(())
+    /// ```
+    pub fn update(&mut self) -> Result<Answer<SpatialTip>, SpatialError> {
+        let found = match self.refresh()? {
+            Some(found) => found,
+            None => match self.answer() {
+                Some(answer) => return Ok(answer),
+                None => self.solve()?,
+            },
+        };
+        Ok(Answer { tip: found.tip(), error_estimate: found.error_estimate, statistics: found.statistics })
+    }
+
+    /// The configuration under the present loads: solved by [`SpatialSolver::update`] where they changed since the last
+    /// solve.
+    ///
+    /// # Errors
+    /// [`SpatialError::NoEquilibrium`].
+    pub fn configuration(&mut self) -> Result<SpatialConfiguration, SpatialError> {
+        if let Some(found) = self.refresh()? {
+            return Ok(found);
+        }
+        match self.read_again() {
+            Some(found) => Ok(found),
             None => self.solve(),
         }
     }
 
-    /// A few rounds from the last configuration; `None` where that is no way to the answer.
-    pub(crate) fn resolve_warm(&mut self) -> Option<SpatialConfiguration> {
-        let estimate = self.settle_warm()?;
-        self.settled = false;
-        let configuration = self.read(estimate, PathSummary::default()).ok()?;
-        (self.settled, self.solved) = (true, true);
-        Some(configuration)
+    /// What is wanted of the configuration under the present loads, solved as by [`SpatialSolver::update`].
+    ///
+    /// # Errors
+    /// [`SpatialError::NoEquilibrium`].
+    pub fn row(&mut self, wanted: Wanted) -> Result<SpatialRow, SpatialError> {
+        Ok(SpatialRow::in_space(&self.configuration()?, wanted))
     }
 
-    /// The rounds of [`SpatialSolver::resolve_warm`]: the estimated error, over L.
-    pub(super) fn settle_warm(&mut self) -> Option<f64> {
+    /// Solves where loads changed since the last solve. The configuration, if it had to be read for that.
+    pub(super) fn refresh(&mut self) -> Result<Option<SpatialConfiguration>, SpatialError> {
+        if self.solved.is_some() || self.settle_warm().is_some() {
+            return Ok(None);
+        }
+        // With the solution of other loads at hand: a row must not depend on what a row before it left behind.
+        if !self.loads.is_empty() {
+            *self = Self::new(&self.arm().clone(), self.options)?;
+        }
+        self.solve().map(Some)
+    }
+
+    /// The tip that the engine holds.
+    fn answer(&mut self) -> Option<Answer<SpatialTip>> {
+        let estimate = self.solved.as_ref()?.estimate;
+        let tip = self.engine.read_tip()?;
+        let length = self.engine.equations.units.length;
+        Some(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(0) })
+    }
+
+    /// A few Newton rounds on the mesh there is: the estimated error, over L. `None` where that is no way to the
+    /// answer: nothing was solved before, or the arm moved further than a small change moves it.
+    pub(crate) fn settle_warm(&mut self) -> Option<f64> {
         if !self.settled {
             return None;
         }
-        self.settled = false;
-        self.engine.reset_statistics();
-        self.engine.allowed = WORK;
+        self.begin_anew();
+        let on_ramp = self.options.warm_start == WarmStart::Ramp;
+        let last = if on_ramp { self.engine.read_tip() } else { None };
+        if on_ramp {
+            self.predict();
+        }
         let before = self.engine.tip;
         let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
-        let stays = self.engine.system.determinant().sign == self.sign && distance(&before, &self.engine.tip) < 0.2;
-        self.settled = stays;
-        stays.then_some(estimate)
+        let stays =
+            self.engine.system.determinant().sign == self.sign && distance(&before, &self.engine.tip) < FARTHEST;
+        if !stays {
+            return None;
+        }
+        if on_ramp {
+            // What a direct solve has to pass, too: one equilibrium, and that on the unloaded arm's branch.
+            let turned = last?.turn_to(&self.engine.read_tip()?);
+            if self.engine.needs_continuation() || turned > FARTHEST_ON_RAMP {
+                return None;
+            }
+        }
+        let stable = if self.sign < 0.0 { Some(false) } else { None };
+        self.settled = true;
+        self.solved = Some(Solved { estimate, steps: 0, snaps: Vec::new(), stable });
+        Some(estimate)
     }
 
-    /// Solves for the present tensions where that was not done yet.
-    pub(super) fn be_solved(&mut self) -> Result<(), SpatialError> {
-        if self.solved { Ok(()) } else { self.resolve().map(|_| ()) }
+    /// Moves the engine's solution on to the present loads by the solutions before it.
+    fn predict(&mut self) {
+        let next = loads(self.arm());
+        let here = std::mem::take(&mut self.loads);
+        let solution = self.engine.solution.clone();
+        self.engine.lead_on(&self.before.steps(&here, &next));
+        self.before.push(here, solution);
+    }
+
+    /// The engine's solution of the present loads, read.
+    fn read_again(&mut self) -> Option<SpatialConfiguration> {
+        let Solved { estimate, steps, snaps, stable } = self.solved.clone()?;
+        let mut found = self.read(estimate, PathSummary { steps, snaps, ..PathSummary::default() }).ok()?;
+        found.stable = stable;
+        Some(found)
     }
 
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
@@ -228,7 +342,7 @@ impl SpatialSolver {
     }
 
     fn begin_anew(&mut self) {
-        (self.settled, self.solved) = (false, false);
+        (self.settled, self.solved) = (false, None);
         self.engine.reset_statistics();
         self.engine.allowed = WORK;
     }
@@ -256,6 +370,7 @@ impl SpatialSolver {
             }
             self.settled = bifurcations == 0 && snaps.is_empty();
             self.sign = sign;
+            self.remember(&configuration);
             return Ok(configuration);
         }
         Err(self.last_verdict(Phase::Tension, snaps))

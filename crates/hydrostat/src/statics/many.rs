@@ -1,42 +1,17 @@
 //! Many arms, each answered with a few numbers: tiles of rows, in parallel.
 //!
 //! A row starts from the one before where the two differ in tensions, stream, gravity or tip loads only, and solves by
-//! itself wherever that could end on another branch than its own ramp (`docs/model.md`, section 7). A tile starts anew,
-//! so that its rows do not depend on what else is solved, nor on how many threads do it.
+//! itself wherever that could end on another branch than its own ramp ([`WarmStart::Ramp`]; `docs/model.md`, section
+//! 7). A tile starts anew, so that its rows do not depend on what else is solved, nor on how many threads do it.
 
 use rayon::prelude::*;
 
-use crate::rod::arm::{Arm, ArmError, Flow, Space};
-use crate::rod::readings::Support;
-use crate::statics::configuration::{Configuration, FoldMargin, Stations, Tip, Warning, Wrench};
-use crate::statics::engine::{Engine, Guess};
-use crate::statics::equations::StationData;
-use crate::statics::path::PathSummary;
-use crate::statics::prediction::Recent;
-use crate::statics::refinement::{First, Refinable as _};
-use crate::statics::snap::{Snap, SnapBounds};
+use crate::rod::arm::{Arm, ArmError};
+use crate::statics::row::{Row, Wanted};
+use crate::statics::snap::SnapBounds;
 use crate::statics::solve::{Options, Solver};
-use crate::statics::stability::Stability;
-use crate::statics::verdict::{Phase, SolveError, Verdict};
-
-/// A tip that turns further (rad) from one row to the next has left what a small change does.
-pub(crate) const FARTHEST: f64 = 0.5;
-
-/// What is asked of every row beyond tip, base reaction and error estimate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[allow(clippy::struct_excessive_bools, reason = "each is asked for by itself")]
-pub struct Wanted {
-    /// How far each cable is reeled in.
-    pub strokes: bool,
-    /// How far the surface is from folding: reads the whole configuration.
-    pub fold_margin: bool,
-    /// Stability, two to three milliseconds.
-    pub stability: bool,
-    /// What should be known about the answer: reads the whole configuration.
-    pub warnings: bool,
-    /// So many equally spaced stations; none below two.
-    pub stations: usize,
-}
+use crate::statics::verdict::{SolveError, Verdict};
+use crate::statics::warm_start::WarmStart;
 
 /// How many arms are solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,55 +33,6 @@ impl Default for ManyOptions {
     }
 }
 
-/// The answer of one row, in the plane or, as [`crate::SpatialRow`], in space.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Row<T = Tip, W = Wrench, S = Stations> {
-    /// Where the tip is.
-    pub tip: T,
-    /// What support and cable anchors exert on the arm at the base.
-    pub base_reaction: W,
-    /// Estimated error of the tip position, m.
-    pub error_estimate: f64,
-    /// Tension of each cable at the base, N.
-    pub tensions: Vec<f64>,
-    /// How far each cable is reeled in, m; empty unless asked for.
-    pub strokes: Vec<f64>,
-    /// How far the surface is from folding, if asked for.
-    pub fold_margin: Option<FoldMargin>,
-    /// `None` where it was not asked for or is not established.
-    pub stability: Option<Stability>,
-    /// What should be known about the answer; empty unless asked for.
-    pub warnings: Vec<Warning>,
-    /// The snaps that the arm makes as its loads grow from nothing to these.
-    pub snaps: Vec<Snap<T>>,
-    /// How long each of them takes, s, where their motions were followed; else empty.
-    pub snap_durations: Vec<f64>,
-    /// Empty unless asked for.
-    pub stations: S,
-}
-
-/// The row of what is wanted of a configuration, in the plane or in space.
-macro_rules! row_of {
-    ($configuration:expr, $wanted:expr) => {{
-        let (configuration, wanted): (_, $crate::statics::many::Wanted) = ($configuration, $wanted);
-        let cables = &configuration.cables;
-        Self {
-            tip: configuration.tip(),
-            base_reaction: configuration.base_reaction,
-            error_estimate: configuration.error_estimate,
-            tensions: cables.iter().map(|cable| cable.tension).collect(),
-            strokes: if wanted.strokes { cables.iter().map(|cable| cable.stroke).collect() } else { Vec::new() },
-            fold_margin: wanted.fold_margin.then(|| configuration.fold_margin()),
-            stability: if wanted.stability { configuration.stability() } else { None },
-            warnings: if wanted.warnings { configuration.warnings() } else { Vec::new() },
-            snaps: configuration.snaps.clone(),
-            snap_durations: Vec::new(),
-            stations: if wanted.stations < 2 { Default::default() } else { configuration.resampled(wanted.stations) },
-        }
-    }};
-}
-pub(crate) use row_of;
-
 /// Why a row has no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoRow {
@@ -127,185 +53,118 @@ pub(crate) fn no_row<C, T>(error: SolveError<C, T>) -> NoRow {
     }
 }
 
-/// Rows that are solved one after the other.
+/// A solver of arms in the plane or in space, as far as rows ask for it.
+pub trait RowSolver: Sized {
+    /// The answer of one row.
+    type Row;
+
+    /// A solver for `arm`.
+    ///
+    /// # Errors
+    /// [`NoRow::Arm`] for one that is none.
+    fn for_arm(arm: &Arm, options: Options) -> Result<Self, NoRow>;
+
+    /// Takes the arm of the next row.
+    ///
+    /// # Errors
+    /// [`NoRow::Arm`] for one that is none.
+    fn take_arm(&mut self, arm: &Arm) -> Result<(), NoRow>;
+
+    /// What is wanted of its equilibrium.
+    ///
+    /// # Errors
+    /// [`NoRow::Verdict`] where there is none.
+    fn next_row(&mut self, wanted: Wanted) -> Result<Self::Row, NoRow>;
+}
+
+impl RowSolver for Solver {
+    type Row = Row;
+
+    fn for_arm(arm: &Arm, options: Options) -> Result<Self, NoRow> {
+        Self::new(arm, options).map_err(no_row)
+    }
+
+    fn take_arm(&mut self, arm: &Arm) -> Result<(), NoRow> {
+        self.set_arm(arm).map_err(no_row)
+    }
+
+    fn next_row(&mut self, wanted: Wanted) -> Result<Row, NoRow> {
+        self.row(wanted).map_err(no_row)
+    }
+}
+
+/// Rows that are answered one after the other, each as if it was the only one: by a solver with [`WarmStart::Ramp`],
+/// which an arm without answer takes away.
 ///
 /// ```
-/// use hydrostat::{Arm, Cable, Options, Profile, Tile, Wanted};
+/// use hydrostat::{Arm, Cable, Options, Profile, Rows, Solver, Wanted};
 ///
 /// let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
 /// arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
-/// let mut tile = Tile::new(Options::with_tol(1e-6), Wanted { strokes: true, ..Wanted::default() })?;
+/// let wanted = Wanted { strokes: true, ..Wanted::default() };
+/// let mut rows = Rows::<Solver>::new(Options::with_tol(1e-6), wanted)?;
 /// let mut last = 0.0;
 /// for step in 0..5 {
 ///     arm.cables[0].tension = 0.05 * f64::from(step); // N
-///     let row = tile.solve(&arm).expect("so little does not fold the tip");
+///     let row = rows.next(&arm).expect("so little does not fold the tip");
 ///     assert!(row.tip.theta >= last && row.error_estimate < 1e-6 * arm.length);
 ///     last = row.tip.theta;
 /// }
 /// # Ok::<(), hydrostat::SolveError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Tile {
+pub struct Rows<S = Solver> {
     options: Options,
     wanted: Wanted,
-    solver: Option<Solver>,
-    /// The rows before the solver's, each of which the next one started from.
-    before: Recent<Guess>,
+    solver: Option<S>,
 }
 
-impl Tile {
+impl<S: RowSolver> Rows<S> {
     /// No rows yet.
     ///
     /// # Errors
     /// [`SolveError::Option`] for a tolerance out of [1e-12, 1e-2] and bounds of snaps below 0.
     pub fn new(options: Options, wanted: Wanted) -> Result<Self, SolveError> {
         options.check()?;
-        Ok(Self { options, wanted, solver: None, before: Recent::new() })
+        Ok(Self { options: Options { warm_start: WarmStart::Ramp, ..options }, wanted, solver: None })
     }
 
-    /// The next row.
+    /// The row of `arm`.
     ///
     /// # Errors
     /// [`NoRow`].
-    pub fn solve(&mut self, arm: &Arm) -> Result<Row, NoRow> {
-        // What a row leaves behind is a start for the next one only if it was solved.
-        if let Some(mut solver) = self.solver.take()
-            && differ_in_loads(solver.engine.equations.arm(), arm)
-        {
-            arm.check_loads()?;
-            if let Some(row) = self.warm(&mut solver, arm) {
-                self.solver = Some(solver);
-                return Ok(row);
+    pub fn next(&mut self, arm: &Arm) -> Result<S::Row, NoRow> {
+        let mut solver = match self.solver.take() {
+            Some(mut solver) => {
+                solver.take_arm(arm)?;
+                solver
             }
-        }
-        self.cold(arm)
-    }
-
-    fn cold(&mut self, arm: &Arm) -> Result<Row, NoRow> {
-        self.before.clear();
-        let mut solver = Solver::new(arm, self.options).map_err(no_row)?;
-        let configuration = solver.solve().map_err(no_row)?;
-        self.solver = may_be_followed(arm).then_some(solver);
-        Ok(self.row(&configuration))
-    }
-
-    /// From the last row: `None` unless the answer is surely that of the row's own ramp.
-    fn warm(&mut self, solver: &mut Solver, arm: &Arm) -> Option<Row> {
-        let engine = &mut solver.engine;
-        let (solution, here) = (engine.solution.clone(), loads(engine.equations.arm()));
-        engine.lead_on(&self.before.steps(&here, &loads(arm)));
-        self.before.push(here, solution);
-        engine.take_loads(arm);
-        engine.set_phase(Phase::Tension, 1.0);
-        engine.reset_statistics();
-        let before = engine.tip_angle();
-        let estimate = engine.settle(self.options.tol, First::Warm).ok()?;
-        // What a direct solve has to pass, too: one equilibrium, and that on the unloaded arm's branch.
-        if engine.needs_continuation() || (engine.tip_angle() - before).abs() > FARTHEST {
-            return None;
-        }
-        if self.wanted.fold_margin || self.wanted.stability || self.wanted.warnings || self.wanted.stations >= 2 {
-            return Some(self.row(&solver.read(estimate, PathSummary::default()).ok()?));
-        }
-        self.read(engine, estimate)
-    }
-
-    /// A row from what the engine has at hand.
-    fn read(&self, engine: &mut Engine, estimate: f64) -> Option<Row> {
-        let mut strokes = Vec::new();
-        if self.wanted.strokes {
-            engine.system.take_stations(&engine.solution);
-            let (equations, at) = (&engine.equations, StationData::of(&engine.system));
-            let stroke = |cable| {
-                let [now, unloaded] = equations.cable_lengths(cable, at);
-                equations.units.length * (unloaded - now)
-            };
-            strokes = (0..equations.arm().cables.len()).map(stroke).collect();
-        }
-        let tip = engine.read_tip().ok()?;
-        let (arm, units) = (engine.equations.arm(), engine.equations.units);
-        Some(Row {
-            tip,
-            base_reaction: Wrench::of_base(engine.solution.nodes[0], &units),
-            error_estimate: estimate * units.length,
-            tensions: arm.cables.iter().map(|cable| cable.tension).collect(),
-            strokes,
-            fold_margin: None,
-            stability: None,
-            warnings: Vec::new(),
-            snaps: Vec::new(),
-            snap_durations: Vec::new(),
-            stations: Stations::default(),
-        })
-    }
-
-    /// A row from a whole configuration.
-    fn row(&self, configuration: &Configuration) -> Row {
-        Row::new(configuration, self.wanted)
+            None => S::for_arm(arm, self.options)?,
+        };
+        let row = solver.next_row(self.wanted)?;
+        self.solver = Some(solver);
+        Ok(row)
     }
 }
 
-impl Row {
-    /// What is wanted of a configuration.
-    ///
-    /// ```
-    /// use hydrostat::{Arm, Row, Wanted};
-    ///
-    /// let shape = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5).solve()?;
-    /// let row = Row::new(&shape, Wanted { fold_margin: true, ..Wanted::default() });
-    /// assert_eq!((row.tip, row.fold_margin.is_some()), (shape.tip(), true));
-    /// # Ok::<(), hydrostat::SolveError>(())
-    /// ```
-    pub fn new(configuration: &Configuration, wanted: Wanted) -> Self {
-        row_of!(configuration, wanted)
-    }
-}
-
-/// The numbers that [`differ_in_loads`] lets differ.
-pub(crate) fn loads(arm: &Arm) -> Vec<f64> {
-    let Flow { speed, direction, density, .. } = arm.flow;
-    let gravity = arm.gravity.map_or([0.0; 2], |gravity| [gravity.acceleration, gravity.direction]);
-    let [fx, fy] = arm.tip.force;
-    let [fa, fb] = arm.tip.follower;
-    let others = [speed, direction, density, gravity[0], gravity[1], fx, fy, fa, fb, arm.tip.moment];
-    let in_space = arm.space.iter().flat_map(Space::loads);
-    others.into_iter().chain(in_space).chain(arm.cables.iter().map(|cable| cable.tension)).collect()
-}
-
-/// Whether the next row may start from this arm's shape: no friction and no strokes, whose answers hang on the way to
-/// them.
-pub(crate) fn may_be_followed(arm: &Arm) -> bool {
-    arm.readings.support == Support::Clamped && !arm.has_friction() && !arm.is_commanded()
-}
-
-/// Whether an arm differs from another in what a solver takes between two solves.
-pub(crate) fn differ_in_loads(a: &Arm, b: &Arm) -> bool {
-    a.has_geometry_of(b)
-        && a.base == b.base
-        && a.density == b.density
-        && a.material == b.material
-        && a.distributed == b.distributed
-        && a.space.iter().zip(&b.space).all(|(a, b)| a.is_loaded_along_as(b))
-        && a.cables.iter().chain(&b.cables).all(|cable| cable.friction == 0.0)
-        && b.cables.iter().all(|cable| cable.stroke.is_none())
-}
-
-/// The rows of `arms`, `tile` of them at a time on the threads of rayon's current pool, each tile one after the other
-/// by a copy of `start`.
-pub(crate) fn in_tiles<S: Clone + Sync, R: Send>(
+/// Solves all `arms` as [`Rows`] does, `options.tile` of them at a time on the threads of rayon's current pool.
+pub(crate) fn in_tiles<S: RowSolver>(
     arms: &[Arm],
-    tile: usize,
-    start: &S,
-    solve: impl Fn(&mut S, &Arm) -> R + Sync,
-) -> Result<Vec<R>, SolveError> {
-    if tile == 0 {
+    options: &ManyOptions,
+) -> Result<Vec<Result<S::Row, NoRow>>, SolveError>
+where
+    S::Row: Send,
+{
+    let each = Options { snaps: options.snaps, ..Options::with_tol(options.tol) };
+    each.check()?;
+    if options.tile == 0 {
         return Err(SolveError::Option { option: "tile", value: 0.0, expected: "at least 1" });
     }
-    let tiles = arms.par_chunks(tile).map(|arms| -> Vec<R> {
-        let mut solver = start.clone();
-        arms.iter().map(|arm| solve(&mut solver, arm)).collect()
+    let tiles = arms.par_chunks(options.tile).map(|arms| {
+        let mut rows = Rows::<S>::new(each, options.wanted)?;
+        Ok(arms.iter().map(|arm| rows.next(arm)).collect())
     });
-    let tiles: Vec<Vec<R>> = tiles.collect();
+    let tiles: Vec<Vec<_>> = tiles.collect::<Result<_, SolveError>>()?;
     Ok(tiles.into_iter().flatten().collect())
 }
 
@@ -332,6 +191,5 @@ pub(crate) fn in_tiles<S: Clone + Sync, R: Send>(
 /// # Errors
 /// [`SolveError::Option`]: a tolerance out of range, tiles without rows. What is wrong with a row is in its place.
 pub fn solve_many(arms: &[Arm], options: &ManyOptions) -> Result<Vec<Result<Row, NoRow>>, SolveError> {
-    let start = Tile::new(Options { tol: options.tol, snaps: options.snaps }, options.wanted)?;
-    in_tiles(arms, options.tile, &start, Tile::solve)
+    in_tiles::<Solver>(arms, options)
 }

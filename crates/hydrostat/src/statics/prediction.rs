@@ -23,10 +23,6 @@ impl<T> Recent<T> {
         Self(Vec::with_capacity(KEPT))
     }
 
-    pub(crate) fn clear(&mut self) {
-        self.0.clear();
-    }
-
     /// Keeps one more, and no more than are of use.
     pub(crate) fn push(&mut self, loads: Vec<f64>, found: T) {
         self.0.truncate(KEPT - 1);

@@ -318,7 +318,7 @@ impl Solver {
         let arm = self.engine.equations.arm();
         check(arm, parameters, stations)?;
         let places: Vec<f64> = stations.iter().map(|s| s / arm.length).collect();
-        self.be_solved()?;
+        self.refresh()?;
         self.engine.watch(&places, self.options.tol).map_err(|trouble| unsettled(&trouble))?;
         self.engine.converge_fully()?;
         Ok(places)

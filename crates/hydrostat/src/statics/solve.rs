@@ -3,15 +3,21 @@
 use crate::numerics::distance;
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::configuration::{Configuration, Statistics, Tip};
-use crate::statics::engine::{Engine, Trouble, WORK};
+use crate::statics::engine::{Engine, Guess, Trouble, WORK};
 use crate::statics::path::{
     BY_MESH, DOUBTFUL, LOOSE, PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium,
     no_equilibrium_in_range,
 };
+use crate::statics::prediction::Recent;
 use crate::statics::refinement::{First, Refinable as _};
+use crate::statics::row::{Row, Wanted};
 use crate::statics::snap::SnapBounds;
+use crate::statics::solved::Solved;
 use crate::statics::stability::Stability;
 use crate::statics::verdict::{Phase, SolveError, Verdict, VerdictKind};
+use crate::statics::warm_start::{
+    FARTHEST, FARTHEST_ON_RAMP, WarmStart, alike, differ_in_loads, loads, may_be_followed,
+};
 
 /// Tips (over L) that are this near belong to the same shape on two meshes.
 pub(crate) const SAME: f64 = 1e-6;
@@ -23,6 +29,8 @@ pub struct Options {
     pub tol: f64,
     /// How far the arm may snap on its way to the loads.
     pub snaps: SnapBounds,
+    /// Which equilibrium [`Solver::update`] may give.
+    pub warm_start: WarmStart,
 }
 
 impl Default for Options {
@@ -31,11 +39,11 @@ impl Default for Options {
     }
 }
 
-/// Where the tip is, and how well that is known.
+/// Where the tip is, and how well that is known; in space with a [`crate::SpatialTip`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer {
+pub struct Answer<T = Tip> {
     /// The tip.
-    pub tip: Tip,
+    pub tip: T,
     /// Estimated error of its position, m.
     pub error_estimate: f64,
     /// What the solve took.
@@ -51,7 +59,7 @@ impl Options {
     /// assert_eq!(Options::with_tol(1e-8), Options::default());
     /// ```
     pub const fn with_tol(tol: f64) -> Self {
-        Self { tol, snaps: SnapBounds::SMALL }
+        Self { tol, snaps: SnapBounds::SMALL, warm_start: WarmStart::Branch }
     }
 
     pub(crate) fn check(self) -> Result<(), SolveError> {
@@ -67,17 +75,21 @@ impl Options {
     }
 }
 
-/// Solves one arm, again and again as its loads change.
+/// Solves one arm, again and again as its loads change: [`Solver::solve`] from the unloaded arm, [`Solver::update`]
+/// from the last shape. [`Solver::configuration`] and [`Solver::row`] read out the solution.
 #[derive(Debug, Clone)]
 pub struct Solver {
     pub(crate) engine: Engine,
     pub(crate) options: Options,
-    /// Whether the engine holds a configuration at whole loads.
+    /// Whether the engine's solution is a start for a warm start.
     settled: bool,
     /// Sign of the determinant of the last configuration.
     sign: f64,
-    /// Estimated error of its tip position over L; none since loads were changed.
-    estimate: Option<f64>,
+    /// The engine's solution, if it is that of the present loads.
+    solved: Option<Solved>,
+    /// The loads that the engine's solution belongs to, and the solutions before it: for [`WarmStart::Ramp`].
+    loads: Vec<f64>,
+    before: Recent<Guess>,
 }
 
 impl Solver {
@@ -91,7 +103,8 @@ impl Solver {
         if arm.space.is_some() {
             return Err(ArmError::OnlyInPlane { what: "what was asked for" }.into());
         }
-        Ok(Self { engine: Engine::new(arm), options, settled: false, sign: 1.0, estimate: None })
+        let (engine, before) = (Engine::new(arm), Recent::new());
+        Ok(Self { engine, options, settled: false, sign: 1.0, solved: None, loads: Vec::new(), before })
     }
 
     /// The arm, with the loads that were set last.
@@ -114,6 +127,10 @@ impl Solver {
         let solved = if has_friction { self.solve_with_friction() } else { self.solve_smooth() };
         // What is done with the answer, a path say, has bounds of its own.
         self.engine.lift_limit();
+        if has_friction {
+            // The engine holds the last of its iterations, not the answer.
+            self.solved = None;
+        }
         solved
     }
 
@@ -127,8 +144,7 @@ impl Solver {
 
     /// With all tensions given.
     pub(crate) fn solve_tensions(&mut self) -> Result<Configuration, SolveError> {
-        self.settled = false;
-        self.engine.reset_statistics();
+        self.forget();
         self.engine.set_phase(Phase::Tension, 1.0);
         let tol = self.options.tol;
         let engine = &mut self.engine;
@@ -140,8 +156,7 @@ impl Solver {
             && !self.engine.needs_continuation()
             && let Ok(configuration) = self.read(estimate, PathSummary::default())
         {
-            self.settled = true;
-            self.sign = 1.0;
+            self.keep(&configuration, 1.0);
             return Ok(configuration);
         }
         self.solve_along_the_path(StepControl::BRISK)
@@ -149,15 +164,28 @@ impl Solver {
 
     /// Begins anew.
     pub(crate) fn forget(&mut self) {
-        self.settled = false;
+        (self.settled, self.solved) = (false, None);
         self.engine.reset_statistics();
     }
 
     /// Keeps the engine's solution, read as `configuration`, to start from, with the sign of its determinant. After a
-    /// snap the way back is another one: it is no start.
+    /// snap the way back is another one: no branch to stay on begins there.
     pub(crate) fn keep(&mut self, configuration: &Configuration, sign: f64) {
-        self.settled = configuration.snaps.is_empty();
+        self.settled = configuration.snaps.is_empty() || self.options.warm_start == WarmStart::Ramp;
         self.sign = sign;
+        self.solved = Some(Solved {
+            estimate: configuration.error_estimate / self.engine.equations.units.length,
+            steps: configuration.statistics.load_steps,
+            snaps: configuration.snaps.clone(),
+            stable: configuration.stable,
+        });
+    }
+
+    /// To be called before loads change: what the engine holds is the solution of the loads before.
+    fn leave_loads(&mut self) {
+        if self.solved.take().is_some() && self.options.warm_start == WarmStart::Ramp {
+            self.loads = loads(self.engine.equations.arm());
+        }
     }
 
     /// Commands the stroke (m, positive when reeled in) of cable `cable` in place of its tension.
@@ -171,17 +199,18 @@ impl Solver {
             return Err(SolveError::Option { option: "cable", value: cable as f64, expected });
         };
         // A cable that had a tension before starts anew.
-        self.settled &= own.stroke.is_some();
+        let starts_anew = own.stroke.is_none();
         own.stroke = Some(stroke);
         arm.check()?;
-        self.estimate = None;
+        self.leave_loads();
+        self.settled &= !starts_anew && self.options.warm_start == WarmStart::Branch;
         self.engine.set_loads(&arm);
         Ok(())
     }
 
     /// Takes another arm. One of the same geometry, with the same cables commanded by their strokes, is solved from the
-    /// last configuration by [`Solver::resolve`] and [`Solver::update`], whatever its loads and its material; any other
-    /// starts anew.
+    /// last shape by [`Solver::update`], whatever its loads and its material (with [`WarmStart::Ramp`]: where the loads
+    /// alone differ); any other starts anew.
     ///
     /// # Errors
     /// [`SolveError::Arm`] when it is none; the arm before stays then.
@@ -199,9 +228,15 @@ impl Solver {
     /// # Ok::<(), hydrostat::SolveError>(())
     /// ```
     pub fn set_arm(&mut self, arm: &Arm) -> Result<(), SolveError> {
-        arm.check()?;
         let own = self.engine.equations.arm();
-        if !alike(own, arm) {
+        if self.options.warm_start == WarmStart::Ramp && may_be_followed(own) && differ_in_loads(own, arm) {
+            arm.check_loads()?;
+            self.leave_loads();
+            self.engine.take_loads(arm);
+            return Ok(());
+        }
+        arm.check()?;
+        if self.options.warm_start == WarmStart::Ramp || !alike(own, arm) {
             *self = Self::new(arm, self.options)?;
             return Ok(());
         }
@@ -209,7 +244,7 @@ impl Solver {
         for (new, own) in arm.cables.iter_mut().zip(&own.cables).filter(|(new, _)| new.stroke.is_some()) {
             new.tension = own.tension;
         }
-        self.estimate = None;
+        self.leave_loads();
         self.engine.set_loads(&arm);
         Ok(())
     }
@@ -220,10 +255,10 @@ impl Solver {
     /// [`SolveError::Arm`] when their number is wrong or one of them is.
     pub fn set_tensions(&mut self, tensions: &[f64]) -> Result<(), SolveError> {
         self.engine.equations.arm().check_tensions(tensions)?;
+        self.leave_loads();
         // Strokes are not commanded any more: what was solved with them is no start.
         self.settled &= self.engine.equations.held.is_none();
         self.engine.equations.let_go();
-        self.estimate = None;
         self.engine.change_loads(|arm| {
             for (cable, tension) in arm.cables.iter_mut().zip(tensions) {
                 cable.tension = *tension;
@@ -238,8 +273,8 @@ impl Solver {
     /// # Errors
     /// [`SolveError::Arm`] when it is negative or not finite.
     pub fn set_flow_speed(&mut self, speed: f64) -> Result<(), SolveError> {
+        self.leave_loads();
         let before = self.engine.equations.arm().flow.speed;
-        self.estimate = None;
         self.engine.change_loads(|arm| arm.flow.speed = speed);
         if let Err(error) = self.engine.equations.arm().check_flow() {
             self.engine.change_loads(|arm| arm.flow.speed = before);
@@ -248,21 +283,12 @@ impl Solver {
         Ok(())
     }
 
-    /// Solves again from the last configuration, after a small change of tensions or stream: a few
-    /// Newton rounds on the mesh there is. Falls back to [`Solver::solve`] when the arm moves further
-    /// than a small change moves it, or when nothing was solved before.
+    /// Solves from the last shape, after a small change of the loads: a few Newton rounds on the mesh there is. Solves
+    /// from the unloaded arm as [`Solver::solve`] does where nothing was solved before, where the arm moves further than
+    /// a small change of the loads moves it, and with friction, where the answer depends on the way to the loads.
+    /// [`Options::warm_start`] says which equilibrium it may give.
     ///
-    /// # Errors
-    /// [`SolveError::NoEquilibrium`].
-    pub fn resolve(&mut self) -> Result<Configuration, SolveError> {
-        match self.settle_warm() {
-            Some(estimate) => self.read_warm(estimate),
-            None => self.solve(),
-        }
-    }
-
-    /// [`Solver::resolve`] for those who only want to know where the tip is, a control loop say: nothing is read out,
-    /// and nothing allocated once meshes have their size. [`Solver::configuration`] reads the rest when it is wanted.
+    /// A warm start reads nothing out but the tip, and allocates nothing once meshes have their size.
     ///
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
@@ -283,38 +309,67 @@ impl Solver {
     /// # Ok::<(), hydrostat::SolveError>(())
     /// ```
     pub fn update(&mut self) -> Result<Answer, SolveError> {
-        if let Some(answer) = self.update_warm() {
-            return Ok(answer);
-        }
-        let found = self.resolve()?;
+        let found = match self.refresh()? {
+            Some(found) => found,
+            None => match self.answer() {
+                Some(answer) => return Ok(answer),
+                None => self.solve()?,
+            },
+        };
         Ok(Answer { tip: found.tip(), error_estimate: found.error_estimate, statistics: found.statistics })
     }
 
-    /// [`Solver::update`], as far as a few rounds lead from the configuration before: on its branch. After `None`
-    /// nothing is solved.
-    pub(crate) fn update_warm(&mut self) -> Option<Answer> {
-        let estimate = self.settle_warm()?;
-        let tip = self.engine.read_tip().ok()?;
-        self.settled = true;
-        self.estimate = Some(estimate);
-        let length = self.engine.equations.units.length;
-        Some(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(0) })
-    }
-
-    /// Everything about the last [`Solver::update`], or, without one, of [`Solver::resolve`].
+    /// The configuration under the present loads: solved by [`Solver::update`] where they changed since the last
+    /// solve.
     ///
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
     pub fn configuration(&mut self) -> Result<Configuration, SolveError> {
-        match self.estimate {
-            Some(estimate) if self.settled => self.read_warm(estimate),
-            _ => self.resolve(),
+        if let Some(found) = self.refresh()? {
+            return Ok(found);
+        }
+        match self.read_again() {
+            Some(found) => Ok(found),
+            None => self.solve(),
         }
     }
 
-    /// Solves, unless the engine holds the configuration of the present loads.
-    pub(crate) fn be_solved(&mut self) -> Result<(), SolveError> {
-        if self.settled && self.estimate.is_some() { Ok(()) } else { self.update().map(|_| ()) }
+    /// What is wanted of the configuration under the present loads, solved as by [`Solver::update`]; without reading
+    /// the whole configuration where only tip, base reaction, tensions and strokes are wanted.
+    ///
+    /// # Errors
+    /// [`SolveError::NoEquilibrium`].
+    pub fn row(&mut self, wanted: Wanted) -> Result<Row, SolveError> {
+        if let Some(found) = self.refresh()? {
+            return Ok(Row::new(&found, wanted));
+        }
+        if let Some(solved) = &self.solved
+            && !wanted.reads_stations()
+            && let Some(row) = Row::at_hand(&mut self.engine, solved, wanted)
+        {
+            return Ok(row);
+        }
+        Ok(Row::new(&self.configuration()?, wanted))
+    }
+
+    /// Solves where loads changed since the last solve. The configuration, if it had to be read for that.
+    pub(crate) fn refresh(&mut self) -> Result<Option<Configuration>, SolveError> {
+        if self.solved.is_some() || self.settle_warm().is_some() {
+            return Ok(None);
+        }
+        // With the solution of other loads at hand: a row must not depend on what a row before it left behind.
+        if !self.loads.is_empty() {
+            *self = Self::new(&self.arm().clone(), self.options)?;
+        }
+        self.solve().map(Some)
+    }
+
+    /// The tip that the engine holds.
+    fn answer(&mut self) -> Option<Answer> {
+        let estimate = self.solved.as_ref()?.estimate;
+        let tip = self.engine.read_tip().ok()?;
+        let length = self.engine.equations.units.length;
+        Some(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(0) })
     }
 
     /// The tip of the configuration that the engine holds.
@@ -325,30 +380,54 @@ impl Solver {
         }
     }
 
-    /// A few Newton rounds on the mesh there is. `None` where that is no way to the answer: nothing was solved before,
-    /// the arm moved further than a small change moves it, or cables rub, and which way they slid is part of the
-    /// answer.
-    fn settle_warm(&mut self) -> Option<f64> {
+    /// A few Newton rounds on the mesh there is: the estimated error, over L. `None` where that is no way to the
+    /// answer: nothing was solved before, the arm moved further than a small change moves it, or cables rub, and which
+    /// way they slid is part of the answer.
+    pub(crate) fn settle_warm(&mut self) -> Option<f64> {
         if !self.settled || self.engine.equations.arm().has_friction() {
             return None;
         }
-        self.settled = false;
-        self.engine.reset_statistics();
+        self.forget();
+        let on_ramp = self.options.warm_start == WarmStart::Ramp;
+        if on_ramp {
+            self.predict();
+        }
         let before = self.engine.tip_angle();
         let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
-        let turned = self.engine.tip_angle() - before;
-        let same = self.engine.determinant().sign == self.sign && turned.abs() <= 0.2;
-        same.then_some(estimate)
+        let turned = (self.engine.tip_angle() - before).abs();
+        let is_it = if on_ramp {
+            // What a direct solve has to pass, too: one equilibrium, and that on the unloaded arm's branch.
+            self.sign = 1.0;
+            !self.engine.needs_continuation() && turned <= FARTHEST_ON_RAMP
+        } else {
+            self.engine.determinant().sign == self.sign && turned <= FARTHEST
+        };
+        if !is_it {
+            return None;
+        }
+        let stable = if self.sign < 0.0 { Some(false) } else { None };
+        self.settled = true;
+        self.solved = Some(Solved { estimate, steps: 0, snaps: Vec::new(), stable });
+        Some(estimate)
     }
 
-    /// The configuration that the engine has settled on from another.
-    fn read_warm(&mut self, estimate: f64) -> Result<Configuration, SolveError> {
-        let Ok(mut configuration) = self.read(estimate, PathSummary::default()) else { return self.solve() };
-        if self.sign < 0.0 {
-            configuration.stable = Some(false);
-        }
-        self.settled = true;
-        Ok(configuration)
+    /// Moves the engine's solution on to the present loads by the solutions before it. Rows of a table have loads in
+    /// regular steps; a control loop's have none, and copies of solutions would cost it allocations.
+    fn predict(&mut self) {
+        let next = loads(self.engine.equations.arm());
+        let here = std::mem::take(&mut self.loads);
+        let solution = self.engine.solution.clone();
+        self.engine.lead_on(&self.before.steps(&here, &next));
+        self.before.push(here, solution);
+        self.engine.set_phase(Phase::Tension, 1.0);
+    }
+
+    /// The engine's solution of the present loads, read.
+    fn read_again(&mut self) -> Option<Configuration> {
+        let Solved { estimate, steps, snaps, stable } = self.solved.clone()?;
+        let mut found = self.read(estimate, PathSummary { steps, snaps, ..PathSummary::default() }).ok()?;
+        found.stable = stable;
+        Some(found)
     }
 
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
@@ -433,7 +512,7 @@ impl Solver {
 
     /// The engine, which holds the last configuration.
     pub(crate) fn engine_mut(&mut self) -> &mut Engine {
-        self.settled = false;
+        (self.settled, self.solved) = (false, None);
         &mut self.engine
     }
 
@@ -456,7 +535,6 @@ impl Solver {
     }
 
     pub(crate) fn read(&mut self, estimate: f64, travelled: PathSummary) -> Result<Configuration, Trouble> {
-        self.estimate = Some(estimate);
         let statistics = self.engine.statistics(travelled.steps);
         let length = self.engine.equations.units.length;
         let mut read =
@@ -475,15 +553,6 @@ pub(crate) fn known_on_the_way(configuration: &Configuration, bifurcations: usiz
         (0, false) => None,
         (_, false) => counted(),
     }
-}
-
-/// Whether a solution for one arm is a start for the other: the same geometry, equations and unknowns.
-fn alike(a: &Arm, b: &Arm) -> bool {
-    a.has_geometry_of(b)
-        && a.cables.iter().zip(&b.cables).all(|(a, b)| a.stroke.is_some() == b.stroke.is_some())
-        && !a.has_friction()
-        && !b.has_friction()
-        && a.breaks() == b.breaks()
 }
 
 impl Arm {

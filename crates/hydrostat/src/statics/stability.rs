@@ -395,7 +395,7 @@ mod tests {
             };
             let mut stroke = |fraction: f64| {
                 solver.set_tensions(&[fraction * arm.cables[0].tension, 0.0]).unwrap();
-                solver.resolve().map(|shape| shape.cables[0].stroke)
+                solver.configuration().map(|shape| shape.cables[0].stroke)
             };
             let (Ok(less), Ok(more)) = (stroke(1.0 - 1e-4), stroke(1.0 + 1e-4)) else { continue };
             solved += 1;

@@ -28,7 +28,7 @@ impl SpatialQuasiStatic {
     /// [`SpatialError::NoEquilibrium`] where there is none, or none was found.
     pub fn tip(&mut self, time: f64) -> Result<SpatialTip, SpatialError> {
         self.inputs.apply(&mut self.arm, time);
-        self.solver.set_loads(&self.arm)?;
-        Ok(self.solver.resolve()?.tip())
+        self.solver.set_arm(&self.arm)?;
+        Ok(self.solver.update()?.tip)
     }
 }
