@@ -12,7 +12,6 @@ mod deflation;
 pub(crate) mod engine;
 pub(crate) mod equations;
 mod equilibria;
-mod held;
 pub(crate) mod inertia;
 mod kinks;
 mod lengths;
@@ -32,6 +31,7 @@ mod sensitivity;
 mod solve;
 mod stability;
 mod start;
+mod stroke_control;
 mod strokes;
 #[cfg(test)]
 mod tests;

@@ -19,7 +19,7 @@ pub(crate) fn run(args: &SolveArgs) -> anyhow::Result<()> {
     if arm.space.is_some() {
         return super::solve_spatial::run(args, &arm);
     }
-    let options = Options { tol: args.tol, snaps: args.snaps.bounds() };
+    let options = Options { snaps: args.snaps.bounds(), ..Options::with_tol(args.tol) };
     let mut solver = Solver::new(&arm, options).map_err(|error| match error {
         SolveError::Option { option, value, expected } => wrong_option(option, value, expected, error),
         other => other.into(),

@@ -19,7 +19,7 @@ use crate::request;
 use crate::say;
 
 pub(super) fn run(args: &SolveArgs, arm: &Arm) -> anyhow::Result<()> {
-    let options = Options { tol: args.tol, snaps: args.snaps.bounds() };
+    let options = Options { snaps: args.snaps.bounds(), ..Options::with_tol(args.tol) };
     let mut solver = SpatialSolver::new(arm, options).map_err(|error| match error {
         SpatialError::Option { option, value, expected } => wrong_option(option, value, expected, error),
         other => other.into(),

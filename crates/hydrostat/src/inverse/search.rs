@@ -304,9 +304,9 @@ impl<S: Reaching> Search<S> {
         let distance = state.distance();
         let fraction = if distance > LONGEST { LONGEST / distance } else { 1.0 };
         let wanted = linear(&slopes.rest, state, fraction);
-        self.within_strokes(state.pulled(), slopes, |held, most| {
+        self.within_strokes(state.pulled(), slopes, |active, most| {
             let targets = (slopes.rest.clone(), wanted.clone());
-            let all = self.conditions(targets, state.pulled(), slopes, (held, most), 1.0);
+            let all = self.conditions(targets, state.pulled(), slopes, (active, most), 1.0);
             let mut found = least_effort(&all.columns, &all.wanted, &all.most, most.len())?;
             found.truncate(most.len());
             Some(found)
@@ -318,9 +318,9 @@ impl<S: Reaching> Search<S> {
         let sizes = slopes.rest.iter().zip(&self.scale).map(|(column, scale)| scale * scale * dot(column, column));
         let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
         let wanted = linear(&slopes.rest, state, 1.0);
-        let found = self.within_strokes(state.pulled(), slopes, |held, most| {
+        let found = self.within_strokes(state.pulled(), slopes, |active, most| {
             let targets = (slopes.rest.clone(), wanted.clone());
-            let all = self.conditions(targets, state.pulled(), slopes, (held, most), HEAVY);
+            let all = self.conditions(targets, state.pulled(), slopes, (active, most), HEAVY);
             let mut weights: Vec<f64> = self.scale.iter().map(|scale| damping * size / (scale * scale)).collect();
             weights.resize(all.now.len(), 0.0);
             let mut found = nearest(&all.columns, &all.wanted, &all.most, &weights, &all.now)?;

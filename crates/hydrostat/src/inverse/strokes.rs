@@ -25,7 +25,7 @@ const NONE: f64 = 1e-9;
 /// Strokes over L past their bound, to first order, where the cable is not held to it, over the tolerance; and where it
 /// is.
 const PAST: f64 = 0.1;
-const HELD: f64 = 1e-6;
+const ACTIVE: f64 = 1e-6;
 
 /// Weight of a change over that of what it is for.
 const LITTLE: f64 = 1e-10;
@@ -56,7 +56,7 @@ impl<S: Reaching> Search<S> {
         slopes: &ByTensions,
         solve: impl Fn(&[usize], &[f64]) -> Option<Vec<f64>>,
     ) -> Option<Vec<f64>> {
-        let mut held: Vec<usize> = Vec::new();
+        let mut active: Vec<usize> = Vec::new();
         let mut most = self.most.clone();
         if let Some(longest) = self.longest {
             for (c, most) in most.iter_mut().enumerate() {
@@ -66,9 +66,9 @@ impl<S: Reaching> Search<S> {
             }
         }
         loop {
-            let found = solve(&held, &most);
+            let found = solve(&active, &most);
             let lets_go = match &found {
-                None => held.pop(),
+                None => active.pop(),
                 Some(tensions) => {
                     let moved = |c: usize| -> f64 {
                         let by = slopes.strokes.iter().zip(tensions.iter().zip(from.tensions));
@@ -76,9 +76,9 @@ impl<S: Reaching> Search<S> {
                     };
                     let strokes: Vec<f64> = (0..from.strokes.len()).map(moved).collect();
                     match self.too_long(tensions, &strokes) {
-                        Some((c, past)) if held.contains(&c) && past > HELD => Some(c),
-                        Some((c, past)) if !held.contains(&c) && past > PAST * self.tol => {
-                            held.push(c);
+                        Some((c, past)) if active.contains(&c) && past > ACTIVE => Some(c),
+                        Some((c, past)) if !active.contains(&c) && past > PAST * self.tol => {
+                            active.push(c);
                             continue;
                         }
                         _ => return found,
@@ -87,26 +87,26 @@ impl<S: Reaching> Search<S> {
             };
             // It cannot be taut within its bound.
             let c = lets_go?;
-            held.retain(|held| *held != c);
+            active.retain(|active| *active != c);
             most[c] = 0.0;
         }
     }
 
-    /// Conditions on the tensions, given by their columns, with those of the strokes of `held` cables below, so many
+    /// Conditions on the tensions, given by their columns, with those of the strokes of `active` cables below, so many
     /// times as heavy.
     pub(super) fn conditions(
         &self,
         (columns, wanted): (Vec<Vec<f64>>, Vec<f64>),
         from: Pulled<'_>,
         slopes: &ByTensions,
-        (held, most): (&[usize], &[f64]),
+        (active, most): (&[usize], &[f64]),
         heavy: f64,
     ) -> Conditions {
         let now = from.tensions.iter().zip(most).map(|(t, most)| t.min(*most)).collect();
         let mut out = Conditions { columns, wanted, most: most.to_vec(), now };
         let Some(longest) = self.longest else { return out };
         let rows = out.wanted.len();
-        for (k, h) in held.iter().enumerate() {
+        for (k, h) in active.iter().enumerate() {
             let own: Vec<f64> = slopes.strokes.iter().map(|column| column[*h]).collect();
             let size =
                 own.iter().zip(&self.scale).fold(f64::MIN_POSITIVE, |m, (v, scale)| f64::max(m, (v * scale).abs()));
@@ -116,7 +116,7 @@ impl<S: Reaching> Search<S> {
             let left = longest - from.strokes[*h];
             out.wanted.push(heavy * (left + dot(&own, from.tensions)) / size);
             let by = 1.0 / self.scale[*h];
-            let mut room = vec![0.0; rows + held.len()];
+            let mut room = vec![0.0; rows + active.len()];
             room[rows + k] = heavy * by;
             out.columns.push(room);
             out.most.push(f64::INFINITY);
@@ -147,9 +147,9 @@ impl<S: Reaching> Search<S> {
 
     /// The nearest tensions whose strokes are to first order within their bounds.
     fn shortened(&self, from: Pulled<'_>, slopes: &ByTensions) -> Option<Vec<f64>> {
-        self.within_strokes(from, slopes, |held, most| {
+        self.within_strokes(from, slopes, |active, most| {
             let none = (vec![Vec::new(); most.len()], Vec::new());
-            let all = self.conditions(none, from, slopes, (held, most), 1.0);
+            let all = self.conditions(none, from, slopes, (active, most), 1.0);
             let mut weights: Vec<f64> = self.scale.iter().map(|scale| LITTLE / (scale * scale)).collect();
             weights.resize(all.now.len(), 0.0);
             let mut found = nearest(&all.columns, &all.wanted, &all.most, &weights, &all.now)?;

@@ -96,10 +96,11 @@ impl Moving {
     pub(super) fn set_loads(&mut self, arm: &Arm, stream_acceleration: [f64; 2]) {
         self.stream_acceleration = if arm.dynamics.inertia { stream_acceleration } else { [0.0; 2] };
         // Tensions of held cables follow from their strokes.
-        let held = self.statics.held.iter().flat_map(|held| held.cables.iter());
-        let held: Vec<(usize, f64)> = held.map(|c| (*c, self.statics.arm().cables[*c].tension)).collect();
+        let stroke_control = self.statics.stroke_control.iter().flat_map(|stroke_control| stroke_control.cables.iter());
+        let stroke_control: Vec<(usize, f64)> =
+            stroke_control.map(|c| (*c, self.statics.arm().cables[*c].tension)).collect();
         self.statics.set_loads(arm);
-        for (cable, tension) in held {
+        for (cable, tension) in stroke_control {
             self.statics.set_tension(cable, tension);
         }
     }

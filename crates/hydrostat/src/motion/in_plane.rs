@@ -154,20 +154,20 @@ impl Moves<S, L> for Moving {
         Self::fold_margin(self, at)
     }
 
-    fn held(&self) -> Option<&StrokeControl> {
-        self.statics.held.as_ref()
+    fn stroke_control(&self) -> Option<&StrokeControl> {
+        self.statics.stroke_control.as_ref()
     }
 
-    fn held_mut(&mut self) -> Option<&mut StrokeControl> {
-        self.statics.held.as_mut()
+    fn stroke_control_mut(&mut self) -> Option<&mut StrokeControl> {
+        self.statics.stroke_control.as_mut()
     }
 
     fn set_tension(&mut self, cable: usize, tension: f64) {
         self.statics.set_tension(cable, tension);
     }
 
-    fn command(&self, held: &StrokeControl, index: usize) -> f64 {
-        self.statics.command(held, index)
+    fn command(&self, stroke_control: &StrokeControl, index: usize) -> f64 {
+        self.statics.command(stroke_control, index)
     }
 
     fn strained(&self, system: &Collocation<S, M, 0, L>, out: &mut Vec<Station<N, L>>) {

@@ -58,7 +58,7 @@ impl Configuration {
             stage.slope[1..].iter_mut().for_each(|v| *v = *v * by);
         });
         if strokes(arm).contains(&true) {
-            if strokes(arm) != strokes(&self.arm) || dense.equations.held.is_none() {
+            if strokes(arm) != strokes(&self.arm) || dense.equations.stroke_control.is_none() {
                 let reason = "a cable keeps its tension or its stroke while the arm is let go";
                 return Err(MotionError::Unsupported { key: "cable.stroke".to_owned(), reason }.into());
             }
@@ -90,7 +90,7 @@ impl Lands for Engine {
     fn can_rest(&self) -> Result<(), MotionError> {
         let arm = self.equations.arm();
         check(arm)?;
-        if self.equations.held.is_none()
+        if self.equations.stroke_control.is_none()
             && let Some(i) = arm.cables.iter().position(|cable| cable.stroke.is_some())
         {
             let reason = "the arm snaps before its cables are reeled in, and no motion leads from there to a stroke";
@@ -111,7 +111,7 @@ impl Lands for Engine {
 fn let_go(engine: &mut Engine, arm: &Arm) -> Stepper<Moving, S, L> {
     let mut settling = Planar::new(arm);
     let mesh = mesh_at(engine, ELEMENTS);
-    if engine.equations.held.is_some() {
+    if engine.equations.stroke_control.is_some() {
         settling.moving.statics.hold_strokes();
     }
     settling.start_from_statics(&engine.solution, engine.equations.units.force, mesh);
@@ -133,11 +133,13 @@ fn look_from(engine: &mut Engine, stepper: &Stepper<Moving, S, L>, tol: f64) -> 
     let force = settling.moving.statics.units.force / engine.equations.units.force;
     engine.solution = without_places(&settling.solution, &settling.moving.scales, force);
     engine.equations.place_on(&engine.system.gauss, &engine.solution);
-    if let (Some(held), Some(moving)) = (&mut engine.equations.held, &settling.moving.statics.held) {
-        held.taut.clone_from(&moving.taut);
-        held.switching = true;
+    if let (Some(stroke_control), Some(moving)) =
+        (&mut engine.equations.stroke_control, &settling.moving.statics.stroke_control)
+    {
+        stroke_control.taut.clone_from(&moving.taut);
+        stroke_control.switching = true;
         let tensions: Vec<(usize, f64)> =
-            held.cables.iter().map(|c| (*c, settling.moving.statics.arm().cables[*c].tension)).collect();
+            stroke_control.cables.iter().map(|c| (*c, settling.moving.statics.arm().cables[*c].tension)).collect();
         for (cable, tension) in tensions {
             engine.equations.set_tension(cable, tension);
         }

@@ -148,14 +148,14 @@ pub(super) trait Moves<const S: usize, const L: usize>:
     fn fold_margin(&self, at: &Snapshot) -> [f64; 2];
 
     /// The cables whose stroke is commanded.
-    fn held(&self) -> Option<&StrokeControl>;
-    fn held_mut(&mut self) -> Option<&mut StrokeControl>;
+    fn stroke_control(&self) -> Option<&StrokeControl>;
+    fn stroke_control_mut(&mut self) -> Option<&mut StrokeControl>;
 
     /// Changes the tension (N) of a cable.
     fn set_tension(&mut self, cable: usize, tension: f64);
 
     /// Stroke that is commanded of held cable `index` now, over L.
-    fn command(&self, held: &StrokeControl, index: usize) -> f64;
+    fn command(&self, stroke_control: &StrokeControl, index: usize) -> f64;
 
     /// The strains that `system` was linearised at.
     fn strained(&self, system: &Collocation<S, M, 0, L>, out: &mut Vec<Self::Strained>);

@@ -50,17 +50,17 @@ impl Equations {
 
     /// |tau| of cable `c` in a block of stations.
     fn stretch(&self, c: usize, block: usize, stage: &Stage<N, L>) -> Lanes {
-        let swelling = area_law(self.volume, stage.inner[0]);
-        let tau = tangent(&self.cables_in(block)[c], &stage.inner, &swelling, stage.closure_slope).tau;
+        let section_stretch = area_law(self.volume, stage.inner[0]);
+        let tau = tangent(&self.cables_in(block)[c], &stage.inner, &section_stretch, stage.closure_slope).tau;
         dot(&tau, &tau).sqrt()
     }
 
     /// |tau| of cable `c` in a block of stations at the reference strains.
     fn reference_stretch(&self, c: usize, block: usize) -> Lanes {
         let place = &self.places[block];
-        let swelling = area_law(self.volume, place.stiffness.reference[0]);
-        let slope = swelling.slope * place.reference_slope;
-        let tau = tangent(&self.cables_in(block)[c], &place.stiffness.reference, &swelling, slope).tau;
+        let section_stretch = area_law(self.volume, place.stiffness.reference[0]);
+        let slope = section_stretch.slope * place.reference_slope;
+        let tau = tangent(&self.cables_in(block)[c], &place.stiffness.reference, &section_stretch, slope).tau;
         dot(&tau, &tau).sqrt()
     }
 
@@ -134,12 +134,12 @@ impl Equations {
     /// Derivatives of |tau| by the strains and by beta': d|tau| = t . dtau with
     /// dtau = dv + du x p + d(beta) (u x p + p')/beta + d(beta') p/beta.
     pub(super) fn stretch_gradient(&self, c: usize, block: usize, stage: &Stage<N, L>) -> ([Lanes; STRAINS], Lanes) {
-        let swelling = area_law(self.volume, stage.inner[0]);
-        let path = tangent(&self.cables_in(block)[c], &stage.inner, &swelling, stage.closure_slope);
+        let section_stretch = area_law(self.volume, stage.inner[0]);
+        let path = tangent(&self.cables_in(block)[c], &stage.inner, &section_stretch, stage.closure_slope);
         let t = times(Lanes::of(1.0) / dot(&path.tau, &path.tau).sqrt(), &path.tau);
         // t . (du x p) = du . (p x t).
-        let lever = cross(&times(swelling.beta, &path.place), &t);
-        let by_nu = t[0] + swelling.slope * dot(&t, &path.by_beta);
+        let lever = cross(&times(section_stretch.beta, &path.place), &t);
+        let by_nu = t[0] + section_stretch.slope * dot(&t, &path.by_beta);
         ([by_nu, t[1], t[2], lever[0], lever[1], lever[2]], dot(&t, &path.place))
     }
 }

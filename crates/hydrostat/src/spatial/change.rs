@@ -110,7 +110,7 @@ impl Equations {
         for (block, (station, by)) in end_stations.iter().zip(&carried).enumerate() {
             let solved = self.solved_at_end(block, station, &mut pulled);
             let inner = apply(&solved.inverse, &by.map(|v| -v));
-            out.ends.push((inner, solved.balance.swelling.slope * inner[0]));
+            out.ends.push((inner, solved.balance.section_stretch.slope * inner[0]));
         }
         Ok(out)
     }
@@ -136,7 +136,8 @@ impl Equations {
         let directors = Directors::of(&each(|k| station.z[k]));
         let fraction = Lanes::of(self.fraction[0]);
         let force =
-            load(&self.water, &place.body, uniform(&self.water), &directors, &station.inner, &own.swelling).force;
+            load(&self.water, &place.body, uniform(&self.water), &directors, &station.inner, &own.section_stretch)
+                .force;
         Explicit {
             carried: own.carried,
             force: force.map(|v| v * fraction),
@@ -179,8 +180,8 @@ impl Equations {
         for (block, station) in stations.iter().enumerate() {
             let at = self.solved_in(block, station, &mut pulled)?;
             let place = &self.places[block];
-            let (stream, swelling) = (uniform(&self.water), &at.solved.balance.swelling);
-            let own = load(&self.water, &place.body, stream, &at.directors, &at.solved.strain, swelling);
+            let (stream, section_stretch) = (uniform(&self.water), &at.solved.balance.section_stretch);
+            let own = load(&self.water, &place.body, stream, &at.directors, &at.solved.strain, section_stretch);
             let mut forcing = StageForcing::default();
             for k in 0..3 {
                 forcing.slope[FORCE + k] = -own.force[k];
@@ -214,7 +215,7 @@ impl Equations {
         for (block, station) in end_stations.iter().enumerate() {
             let solved = self.solved_at_end(block, station, &mut pulled);
             let inner = pulled_more(self.cables_at_end(block), tensions, &solved, station.closure_slope);
-            out.ends.push((inner, solved.balance.swelling.slope * inner[0]));
+            out.ends.push((inner, solved.balance.section_stretch.slope * inner[0]));
         }
         if self.is_unstrained_base() {
             let none = vec![0.0; tensions.len()];
@@ -246,7 +247,7 @@ fn strained(at: &AtStation<Lanes>, station: &Station<N, L>, inner: [Lanes; L]) -
     StageForcing {
         slope: by_strain_change(at, &each(|k| station.z[k]), &inner),
         rate: at.directors.to_space(&[inner[0], inner[1], inner[2]]),
-        value: at.solved.balance.swelling.slope * inner[0],
+        value: at.solved.balance.section_stretch.slope * inner[0],
         inner,
     }
 }
@@ -256,7 +257,7 @@ fn pulled_more(cables: &[CableAt<Lanes>], tensions: &[f64], solved: &Solved<Lane
     let mut added = [Lanes::of(0.0); L];
     for (cable, tension) in cables.iter().zip(tensions).filter(|(_, tension)| **tension != 0.0) {
         let cable = CableAt { tension: cable.tension * Lanes::of(*tension), ..*cable };
-        let load = pull(&cable, &solved.strain, &solved.balance.swelling, slope).load;
+        let load = pull(&cable, &solved.strain, &solved.balance.section_stretch, slope).load;
         for k in 0..L {
             added[k] -= load[k];
         }

@@ -7,7 +7,7 @@ use hydrostat_bvp::{
 };
 
 use super::equations::{Equations, Guess, K, L, M, N, Q};
-use super::lengths::HeldRound;
+use super::lengths::StrokeRound;
 use super::neutral::without_neutral;
 use super::rotation::{Vector, dot, turn_of};
 use crate::numerics::rounds::{correct, linearise, respond};
@@ -56,7 +56,7 @@ pub(super) static METHODS: LazyLock<Methods> = LazyLock::new(|| {
 pub(crate) struct Engine {
     pub(crate) equations: Equations,
     /// The cables whose strokes are commanded, once they are.
-    pub(super) held: Option<StrokeControl>,
+    pub(super) stroke_control: Option<StrokeControl>,
     /// Determinant of the strokes of taut cables by their tensions, at the last round.
     pub(super) border: Option<Determinant>,
     pub(crate) system: Collocation<N, M, Q, L>,
@@ -99,7 +99,7 @@ pub(crate) struct State {
     range_fraction: f64,
     base: [f64; 4],
     tensions: Vec<f64>,
-    held: Option<StrokeControl>,
+    stroke_control: Option<StrokeControl>,
     spans: Vec<[f64; Q]>,
     pub(super) tip: [f64; Q],
     /// See [`Engine::speeds`]; of a path that did not need them, of an earlier point or none.
@@ -111,7 +111,7 @@ impl Engine {
         let methods = &*METHODS;
         Self {
             equations: Equations::new(arm, M),
-            held: None,
+            stroke_control: None,
             border: None,
             check_equations: Equations::new(arm, K).leaving(CHECKED),
             system: Collocation::with(methods.solve.clone()),
@@ -141,7 +141,7 @@ impl Engine {
         let methods = &*METHODS;
         Self {
             equations: self.equations.clone(),
-            held: self.held.clone(),
+            stroke_control: self.stroke_control.clone(),
             border: self.border,
             check_equations: self.check_equations.without_places(),
             system: Collocation::with(methods.solve.clone()),
@@ -166,7 +166,7 @@ impl Engine {
             range_fraction: self.equations.range_fraction(),
             base: self.equations.base,
             tensions: self.equations.tensions.clone(),
-            held: self.held.clone(),
+            stroke_control: self.stroke_control.clone(),
             spans: self.spans.clone(),
             tip: self.tip,
             speeds: self.speeds.clone(),
@@ -184,7 +184,7 @@ impl Engine {
             self.equations.set_range_fraction(state.range_fraction);
         }
         self.equations.base = state.base;
-        self.held.clone_from(&state.held);
+        self.stroke_control.clone_from(&state.stroke_control);
         for (cable, tension) in state.tensions.iter().enumerate() {
             self.equations.set_tension(cable, *tension);
         }
@@ -230,9 +230,9 @@ impl Engine {
     pub(super) fn iterate(&mut self, tolerance: f64, most: usize, resolution: Option<f64>) -> Result<(), Trouble> {
         let clamped = self.equations.arm().readings.support == Support::Clamped;
         let most = if clamped { most } else { 60 };
-        let most = if self.held.is_some() { most + MORE } else { most };
+        let most = if self.stroke_control.is_some() { most + MORE } else { most };
         let (mut applied, mut halvings, mut round) = (0.0, 0, 0);
-        let (mut lengths, mut switches) = (HeldRound::default(), 0);
+        let (mut lengths, mut switches) = (StrokeRound::default(), 0);
         let mut before = f64::INFINITY;
         let mut pins = if resolution.is_some() { PINS } else { 0 };
         let mut turns = 0;

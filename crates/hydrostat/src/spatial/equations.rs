@@ -270,9 +270,9 @@ impl Equations {
     #[inline(always)]
     pub(crate) fn speeds(&self, block: usize, station: &Station<N, L>) -> (Lanes, Vector<Lanes>) {
         let directors = Directors::of(&each(|k| station.z[k]));
-        let swelling = area_law(self.volume, station.inner[0]);
+        let section_stretch = area_law(self.volume, station.inner[0]);
         let body = &self.places[block].body;
-        let load = load(&self.water, body, uniform(&self.water), &directors, &station.inner, &swelling);
+        let load = load(&self.water, body, uniform(&self.water), &directors, &station.inner, &section_stretch);
         (load.along, load.across)
     }
 
@@ -331,8 +331,8 @@ impl Equations {
             return Err(failure(place.s, &solved, self.inner_tolerance));
         }
         let stream = uniform(&self.water);
-        let swelling = &solved.balance.swelling;
-        let mut load = load(&self.water, &place.body, stream, &directors, &solved.strain, swelling);
+        let section_stretch = &solved.balance.section_stretch;
+        let mut load = load(&self.water, &place.body, stream, &directors, &solved.strain, section_stretch);
         let fraction = Lanes::of(self.fraction[0]);
         for k in 0..3 {
             load.force[k] = load.force[k] * fraction;
@@ -589,16 +589,16 @@ pub(crate) fn slopes(
 /// The section law linearised and solved for the strains.
 #[inline(always)]
 pub(crate) fn inner(solved: &Solved<Lanes>, by_state: [[Lanes; N]; STRAINS]) -> Inner<N, L, Lanes> {
-    let swelling = &solved.balance.swelling;
+    let section_stretch = &solved.balance.section_stretch;
     let less = apply(&solved.inverse, &solved.balance.by_beta_slope);
     Inner {
         change: solved.change,
         gradient: by_state,
         by_closure: each(|k| -less[k]),
-        value: swelling.beta,
-        value_change: swelling.slope * solved.change[0],
-        value_gradient: each(|a| swelling.slope * by_state[0][a]),
-        reach: -(swelling.slope * less[0]),
+        value: section_stretch.beta,
+        value_change: section_stretch.slope * solved.change[0],
+        value_gradient: each(|a| section_stretch.slope * by_state[0][a]),
+        reach: -(section_stretch.slope * less[0]),
     }
 }
 

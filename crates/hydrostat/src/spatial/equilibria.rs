@@ -340,9 +340,9 @@ impl Search<'_> {
             self.steps += 1;
             return if (self.go_on)(self.steps) { Further::Yes } else { Further::Stop };
         };
-        let mut held = engine.clone();
-        held.equations.hold();
-        let Some(index) = self.keep(&mut held) else { return Further::Yes };
+        let mut clamped = engine.clone();
+        clamped.equations.hold();
+        let Some(index) = self.keep(&mut clamped) else { return Further::Yes };
         if self.found.len() >= MOST {
             return Further::Stop;
         }

@@ -37,13 +37,13 @@ pub(crate) fn inertia<R: Real>(
     masses: &Masses<R>,
     directors: &Directors<R>,
     strain: &[R; 6],
-    swelling: &SectionStretch<R>,
+    section_stretch: &SectionStretch<R>,
     acceleration: &Vector<R>,
     stream_acceleration: &Vector<f64>,
 ) -> Inertia<R> {
     let nu = strain[0];
     let [area, area_nu, _] = area_derivatives(water.volume, nu);
-    let [d, d_nu] = displacement(water.displaced, water.volume, nu, swelling);
+    let [d, d_nu] = displacement(water.displaced, water.volume, nu, section_stretch);
     let still: Vector<R> = each(|k| R::of(stream_acceleration[k]));
     let against = directors.to_body(&each(|k| acceleration[k] - still[k]));
     let mass = masses.added * area * nu + masses.inside * d;
@@ -144,15 +144,15 @@ pub(crate) fn turning<R: Real>(
     let [omega, omega_rate] = rates;
     let (spun, spun_rate) = (double(&omega), double(&omega_rate));
     let gyration = cross(&omega, &spun);
-    let swelling = area_nu * nu_rate;
+    let section_stretch = area_nu * nu_rate;
     Turning {
-        couple: each(|k| j * (swelling * spun[k] + area * (spun_rate[k] + gyration[k]))),
+        couple: each(|k| j * (section_stretch * spun[k] + area * (spun_rate[k] + gyration[k]))),
         by_turn: each(|i| {
             let psi: Vector<R> = each(|k| R::of(if k == i { 1.0 } else { 0.0 }));
             let [turned, turned_rate] = turn.changes(&rates, rate, &psi);
             let (first, second) = (cross(&turned, &spun), cross(&omega, &double(&turned)));
             let (own, own_rate) = (double(&turned), double(&turned_rate));
-            each(|k| j * (swelling * own[k] + area * (own_rate[k] + first[k] + second[k])))
+            each(|k| j * (section_stretch * own[k] + area * (own_rate[k] + first[k] + second[k])))
         }),
         by_nu: each(|k| {
             let by = area_nu_nu * nu_rate + area_nu * rate;
@@ -195,8 +195,8 @@ mod tests {
             let q = Directors::of(&[0.4, -0.3, 0.7, 0.2]).quaternion();
             let (strain, moved) = ([0.9, 0.05, -0.08, 0.2, 0.3, 0.4], [0.5, -1.2, 0.8]);
             let at = |q: &[f64; 4], strain: &[f64; 6], moved: &Vector<f64>| {
-                let swelling = area_law(volume, strain[0]);
-                inertia(&water, &MASSES, &Directors::of(q), strain, &swelling, moved, &[0.4, -0.7, 0.2])
+                let section_stretch = area_law(volume, strain[0]);
+                inertia(&water, &MASSES, &Directors::of(q), strain, &section_stretch, moved, &[0.4, -0.7, 0.2])
             };
             let here = at(&q, &strain, &moved);
             for k in 0..3 {

@@ -166,7 +166,7 @@ impl Engine {
         if pinned == self.solution.mesh {
             return false;
         }
-        self.move_to(pinned);
+        self.remap_to(pinned);
         true
     }
 }

@@ -11,7 +11,7 @@ use crate::statics::equations::StrokeControl;
 
 /// What a round does to the tensions and slacks of the commanded cables.
 #[derive(Debug, Clone, Default)]
-pub(super) struct HeldRound {
+pub(super) struct StrokeRound {
     /// Changes of the tensions, in the unit of force.
     pub(super) tensions: Vec<f64>,
     /// Strokes less commands after the round, over L.
@@ -39,16 +39,17 @@ pub(super) fn pull_taut<const S: usize>(
     equations: &Equations,
     system: &Collocation<N, S, Q, L>,
     solution: &Solution<N, S, L>,
-    held: &StrokeControl,
+    stroke_control: &StrokeControl,
 ) -> Result<Vec<UnitPull<N, S, Q, L>>, Trouble> {
     let at = StageData::of(system, solution);
     let mut out = Vec::new();
-    for index in held.taut_cables() {
-        let cable = held.cables[index];
+    for index in stroke_control.taut_cables() {
+        let cable = stroke_control.cables[index];
         let change = unit_change(equations, system, cable)?;
         let mut response = Correction::default();
         respond(system, &change, &mut response);
-        let mut strokes: Vec<f64> = held.cables.iter().map(|c| equations.stroke_change(*c, at, &response)).collect();
+        let mut strokes: Vec<f64> =
+            stroke_control.cables.iter().map(|c| equations.stroke_change(*c, at, &response)).collect();
         strokes[index] += equations.stroke(cable, at)[1];
         out.push(UnitPull { response, strokes });
     }
@@ -60,30 +61,31 @@ pub(super) fn hold_lengths<const S: usize>(
     equations: &Equations,
     system: &Collocation<N, S, Q, L>,
     solution: &Solution<N, S, L>,
-    held: &StrokeControl,
+    stroke_control: &StrokeControl,
     correction: &mut Correction<N, S, Q, L>,
-) -> Result<HeldRound, Trouble> {
+) -> Result<StrokeRound, Trouble> {
     let at = StageData::of(system, solution);
-    let pulled = pull_taut(equations, system, solution, held)?;
-    let mut round = HeldRound::default();
-    for (index, cable) in held.cables.iter().enumerate() {
-        let off = equations.stroke(*cable, at)[0] - equations.command(held, index);
-        if held.taut[index] {
+    let pulled = pull_taut(equations, system, solution, stroke_control)?;
+    let mut round = StrokeRound::default();
+    for (index, cable) in stroke_control.cables.iter().enumerate() {
+        let off = equations.stroke(*cable, at)[0] - equations.command(stroke_control, index);
+        if stroke_control.taut[index] {
             round.off = round.off.max(off.abs());
         }
         round.slack.push(off + equations.stroke_change(*cable, at, correction));
     }
-    let (tensions, border) = meeting(held, &pulled, [&round.slack, &round.slack]).ok_or(Trouble::Singular)?;
+    let (tensions, border) = meeting(stroke_control, &pulled, [&round.slack, &round.slack]).ok_or(Trouble::Singular)?;
     let changes = tensions.iter().map(|both| both[0]);
-    round.tensions = add_pulls(held, &pulled, changes, correction, &mut round.slack);
+    round.tensions = add_pulls(stroke_control, &pulled, changes, correction, &mut round.slack);
     round.border = Some(border);
     Ok(round)
 }
 
 impl Equations {
     /// Stroke that is commanded of held cable `index` now, over L.
-    pub(crate) fn command(&self, held: &StrokeControl, index: usize) -> f64 {
-        held.command(index, self.arm.cables[held.cables[index]].stroke.unwrap_or(0.0) / self.units.length)
+    pub(crate) fn command(&self, stroke_control: &StrokeControl, index: usize) -> f64 {
+        stroke_control
+            .command(index, self.arm.cables[stroke_control.cables[index]].stroke.unwrap_or(0.0) / self.units.length)
     }
 
     /// Changes the tension of one cable, in the unit of force.

@@ -91,7 +91,7 @@ pub(crate) fn load<R: Real>(
     stream: Option<Vector<R>>,
     directors: &Directors<R>,
     strain: &[R; STRAINS],
-    swelling: &SectionStretch<R>,
+    section_stretch: &SectionStretch<R>,
 ) -> Load<R> {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let along = Tangent::of(strain);
@@ -114,7 +114,7 @@ pub(crate) fn load<R: Real>(
         let over = one / u_p.max(R::of(STILL));
         let w = times(over, &across);
         let pressed = traction(water.law, u_t, u_p, one);
-        let (mut s, mut s_by) = (body.wetted * swelling.beta, [body.wetted * swelling.slope, zero, zero]);
+        let (mut s, mut s_by) = (body.wetted * section_stretch.beta, [body.wetted * section_stretch.slope, zero, zero]);
         if water.wetted == WettedLength::Deformed {
             s_by = each(|k| s_by[k] * stretch + s * t[k]);
             s = s * stretch;
@@ -148,7 +148,7 @@ pub(crate) fn load<R: Real>(
         out.along = u_t * speed;
         out.across = times(speed, &directors.to_space(&across));
     }
-    let [d, d_nu] = displacement(water.displaced, water.volume, strain[0], swelling);
+    let [d, d_nu] = displacement(water.displaced, water.volume, strain[0], section_stretch);
     let h: Vector<R> = each(|k| body.weight[k] - body.displaced[k] * d);
     let h_nu: Vector<R> = each(|k| -(body.displaced[k] * d_nu));
     match water.hydrostatics {

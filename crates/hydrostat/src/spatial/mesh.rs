@@ -29,8 +29,8 @@ impl Refinable for Engine {
         &self.solution.mesh
     }
 
-    fn move_to(&mut self, mesh: Mesh) {
-        Self::move_to(self, mesh);
+    fn remap_to(&mut self, mesh: Mesh) {
+        Self::remap_to(self, mesh);
     }
 
     fn state(&self) -> State {
@@ -106,7 +106,7 @@ impl Refinable for Engine {
 
 impl Engine {
     /// Moves the solution to another mesh.
-    pub(super) fn move_to(&mut self, mesh: Mesh) {
+    pub(super) fn remap_to(&mut self, mesh: Mesh) {
         std::mem::swap(&mut self.solution, &mut self.before);
         self.solution.mesh = mesh;
         self.meshes += 1;
@@ -122,8 +122,8 @@ impl Engine {
         self.rounds += 1;
         correct(&mut self.check, &self.finer, &mut self.check_correction);
         without_neutral(&self.check_equations, &self.check, &self.finer, &mut self.check_correction);
-        if let Some(held) = &self.held {
-            hold_lengths(&self.check_equations, &self.check, &self.finer, held, &mut self.check_correction)?;
+        if let Some(stroke_control) = &self.stroke_control {
+            hold_lengths(&self.check_equations, &self.check, &self.finer, stroke_control, &mut self.check_correction)?;
         }
         let (total, d) = (self.check.totals(), self.check_correction.total);
         let off = [0, 1, 2].map(|k| total[k] + d[k] - self.tip[k]);

@@ -46,7 +46,7 @@ pub(crate) struct CableAt<R> {
 /// The law and the cables together at given strains: `carried` equals (n_f, m_f) in the directors in equilibrium.
 #[derive(Clone, Copy)]
 pub(crate) struct Balance<R> {
-    pub(crate) swelling: SectionStretch<R>,
+    pub(crate) section_stretch: SectionStretch<R>,
     pub(crate) carried: [R; STRAINS],
     pub(crate) by_strain: [[R; STRAINS]; STRAINS],
     /// Derivatives by beta'.
@@ -73,7 +73,7 @@ pub(crate) struct Pull<R> {
 pub(crate) fn tangent<R: Real>(
     cable: &CableAt<R>,
     strain: &[R; STRAINS],
-    swelling: &SectionStretch<R>,
+    section_stretch: &SectionStretch<R>,
     beta_slope: R,
 ) -> Tangent<R> {
     let zero = R::of(0.0);
@@ -81,7 +81,7 @@ pub(crate) fn tangent<R: Real>(
     let place = [zero, cable.y, cable.z];
     let slope = [zero, cable.y_slope, cable.z_slope];
     let by_beta = sum(&cross(&[u1, u2, u3], &place), &slope);
-    let tau = each(|k| [nu, eta, zeta][k] + swelling.beta * by_beta[k] + beta_slope * place[k]);
+    let tau = each(|k| [nu, eta, zeta][k] + section_stretch.beta * by_beta[k] + beta_slope * place[k]);
     Tangent { tau, by_beta, place }
 }
 
@@ -100,15 +100,15 @@ pub(crate) struct Tangent<R> {
 pub(crate) fn pull<R: Real>(
     cable: &CableAt<R>,
     strain: &[R; STRAINS],
-    swelling: &SectionStretch<R>,
+    section_stretch: &SectionStretch<R>,
     beta_slope: R,
 ) -> Pull<R> {
     let zero = R::of(0.0);
-    let Tangent { tau, by_beta, place } = tangent(cable, strain, swelling, beta_slope);
+    let Tangent { tau, by_beta, place } = tangent(cable, strain, section_stretch, beta_slope);
     let inverse = R::of(1.0) / dot(&tau, &tau).sqrt();
     let t = times(inverse, &tau);
     let tension = cable.tension;
-    let lever = times(swelling.beta, &place);
+    let lever = times(section_stretch.beta, &place);
     let force = times(tension, &t);
     let moment = cross(&lever, &force);
     let fraction = tension * inverse;
@@ -136,11 +136,11 @@ pub(crate) fn pull<R: Real>(
             out.by_strain[row][3 + k] = by_u[row];
         }
     }
-    let by_swelling = both(turned(&times(swelling.slope, &by_beta)));
-    let by_lever = cross(&times(swelling.slope, &place), &force);
+    let by_section_stretch = both(turned(&times(section_stretch.slope, &by_beta)));
+    let by_lever = cross(&times(section_stretch.slope, &place), &force);
     for row in 0..3 {
-        out.by_strain[row][0] += by_swelling[row];
-        out.by_strain[3 + row][0] += by_swelling[3 + row] + by_lever[row];
+        out.by_strain[row][0] += by_section_stretch[row];
+        out.by_strain[3 + row][0] += by_section_stretch[3 + row] + by_lever[row];
     }
     out.by_beta_slope = both(turned(&place));
     out
@@ -156,11 +156,11 @@ pub(crate) fn balance<R: Real>(
     beta_slope: R,
 ) -> Balance<R> {
     let zero = R::of(0.0);
-    let swelling = area_law(volume, strain[0]);
-    let area = swelling.beta * swelling.beta;
-    let area_nu = R::of(2.0) * swelling.beta * swelling.slope;
+    let section_stretch = area_law(volume, strain[0]);
+    let area = section_stretch.beta * section_stretch.beta;
+    let area_nu = R::of(2.0) * section_stretch.beta * section_stretch.slope;
     let mut out = Balance {
-        swelling,
+        section_stretch,
         carried: [zero; STRAINS],
         by_strain: [[zero; STRAINS]; STRAINS],
         by_beta_slope: [zero; STRAINS],
@@ -174,7 +174,7 @@ pub(crate) fn balance<R: Real>(
         out.by_strain[k][0] += stiffness.value[k] * strained * area_nu;
     }
     for cable in cables {
-        let pull = pull(cable, strain, &swelling, beta_slope);
+        let pull = pull(cable, strain, &section_stretch, beta_slope);
         let open = zero.if_less(cable.tension, pull.along / strain[0], R::of(1.0));
         out.openness = open.min(out.openness);
         for k in 0..STRAINS {

@@ -80,7 +80,7 @@ pub(crate) fn solve_section<R: Real>(
         // A number that is none is less than nothing: no step.
         let size = sound.abs().if_less(R::of(f64::INFINITY), size, R::of(f64::INFINITY));
         if size.all_below(tolerance) || round == MOST {
-            let slack = stiffness.value[0] * balance.swelling.beta * balance.swelling.beta;
+            let slack = stiffness.value[0] * balance.section_stretch.beta * balance.section_stretch.beta;
             return Solved { strain, balance, inverse, change, regularity: pivot / slack, size };
         }
         let turning_at = (round >= SWIFT).then_some(beta_slope);
@@ -104,22 +104,23 @@ fn fraction_of<R: Real>(
     turning_at: Option<R>,
 ) -> R {
     let (zero, one, least) = (R::of(0.0), R::of(1.0), R::of(1e-30));
-    let swelling = &balance.swelling;
+    let section_stretch = &balance.section_stretch;
     let mut fraction = one.min(R::of(0.5) * strain[0] / step[0].abs().max(least));
     fraction = fraction.min(R::of(0.7) / size.max(least));
     for cable in cables {
         // tau_c . a = nu + beta (kappa z - mu y), and how much of it the step takes away.
         let bend = strain[4] * cable.z - strain[5] * cable.y;
-        let now = strain[0] + swelling.beta * bend;
-        let gained =
-            step[0] + swelling.slope * step[0] * bend + swelling.beta * (step[4] * cable.z - step[5] * cable.y);
+        let now = strain[0] + section_stretch.beta * bend;
+        let gained = step[0]
+            + section_stretch.slope * step[0] * bend
+            + section_stretch.beta * (step[4] * cable.z - step[5] * cable.y);
         let allowed = R::of(0.67) * now.abs() / (-gained).max(least);
         fraction = fraction.min(zero.if_less(cable.tension, allowed, one));
         if let Some(beta_slope) = turning_at {
-            let tau = tangent(cable, strain, swelling, beta_slope).tau;
+            let tau = tangent(cable, strain, section_stretch, beta_slope).tau;
             let stretch = (tau[0] * tau[0] + tau[1] * tau[1] + tau[2] * tau[2]).sqrt();
-            let beta_step = swelling.slope * step[0];
-            let across = |step: R, slope: R, twist: R| step + slope * beta_step + swelling.beta * twist;
+            let beta_step = section_stretch.slope * step[0];
+            let across = |step: R, slope: R, twist: R| step + slope * beta_step + section_stretch.beta * twist;
             let b = across(step[1], cable.y_slope, -(step[3] * cable.z)).abs();
             let c = across(step[2], cable.z_slope, step[3] * cable.y).abs();
             let allowed = R::of(0.3) * stretch / (b + c).max(least);

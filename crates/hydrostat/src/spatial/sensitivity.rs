@@ -19,7 +19,7 @@ use crate::rod::parameter::Parameter;
 use crate::statics::engine::Trouble;
 use crate::statics::equations::Way;
 use crate::statics::refinement::{First, Refinable as _};
-use crate::statics::sensitivity::derivatives::{self, Derivatives, hold, unheld};
+use crate::statics::sensitivity::derivatives::{self, Derivatives, at_given_tensions, hold};
 use crate::statics::sensitivity::{
     SensitiveStation, Sensitivities, SensitivityError, SensitivityMethod, SensitivityOptions, check, unsettled,
 };
@@ -311,7 +311,7 @@ impl Engine {
         moving.extend(&new);
         let mut mesh = self.solution.mesh.clone();
         mesh.pin(&self.breaks, &moving);
-        self.move_to(mesh);
+        self.remap_to(mesh);
         self.settle(tolerance, First::Fair).map(|_| ())
     }
 
@@ -319,9 +319,9 @@ impl Engine {
     fn converge_fully(&mut self) -> Result<(), Trouble> {
         self.linearise()?;
         correct(&mut self.system, &self.solution, &mut self.correction);
-        let held = self.hold_lengths()?;
+        let stroke_control = self.hold_lengths()?;
         let moved = super::engine::largest_turn(&self.solution, &self.correction);
-        if moved.max(held.off) < CONVERGED {
+        if moved.max(stroke_control.off) < CONVERGED {
             return Ok(());
         }
         match self.iterate(CONVERGED, ROUNDS, None) {
@@ -338,8 +338,9 @@ impl Engine {
         parameters: &[Parameter],
         method: SensitivityMethod,
     ) -> Option<Derivatives> {
-        let taut: Vec<usize> =
-            self.held.as_ref().map_or(Vec::new(), |held| held.taut_cables().iter().map(|i| held.cables[*i]).collect());
+        let taut: Vec<usize> = self.stroke_control.as_ref().map_or(Vec::new(), |stroke_control| {
+            stroke_control.taut_cables().iter().map(|i| stroke_control.cables[*i]).collect()
+        });
         let mut sources = parameters.to_vec();
         sources.extend(taut.iter().map(|c| Parameter::Tension(*c)));
         let asked = sums.len();
@@ -353,7 +354,7 @@ impl Engine {
         };
         let changes: Vec<Forcing<N, Q, L>> = sources.iter().map(change).collect::<Option<_>>()?;
         let rows: Vec<Row> = sums.iter().map(|sum| self.sum_row(&system, sum, &sources)).collect();
-        let rows = unheld(&system, &self.solution, &rows, &changes, method)?;
+        let rows = at_given_tensions(&system, &self.solution, &rows, &changes, method)?;
         hold(rows, asked, parameters, &taut, self.equations.arm().cables.len())
     }
 

@@ -47,7 +47,7 @@ impl SpatialConfiguration {
             engine.allowed = usize::MAX;
             let mesh = engine.solution.mesh.cut_to(1.0 / functions as f64);
             if mesh != engine.solution.mesh {
-                engine.move_to(mesh);
+                engine.remap_to(mesh);
             }
             engine.iterate(1e-10, 6, None).ok()?;
             engine.linearise().ok()?;
@@ -55,7 +55,8 @@ impl SpatialConfiguration {
             let sign = engine.determinant().known_sign();
             let unit = slowest_decay(&engine, functions)?;
             let compliance = compliance(&engine, functions)?;
-            let holds = engine.held.as_ref().is_some_and(|held| held.taut.contains(&true));
+            let holds =
+                engine.stroke_control.as_ref().is_some_and(|stroke_control| stroke_control.taut.contains(&true));
             let rates = |functions: usize| {
                 let size = FIELDS * functions;
                 let least = if holds { BLURRED } else { ROUNDING };
@@ -78,7 +79,7 @@ impl SpatialConfiguration {
 /// The slowest decay of the arm on the same mesh with no load at all.
 fn slowest_decay(engine: &Engine, functions: usize) -> Option<f64> {
     let mut unloaded = engine.clone();
-    unloaded.held = None;
+    unloaded.stroke_control = None;
     unloaded.equations.set_phase(Phase::Loads, 0.0);
     unloaded.start_unloaded_on(engine.solution.mesh.clone());
     unloaded.linearise().ok()?;
@@ -102,12 +103,15 @@ fn compliance(engine: &Engine, functions: usize) -> Option<DMatrix<f64>> {
     let mut change = Forcing { stages: vec![StageForcing::default(); blocks], ..Forcing::default() };
     let mut response = Correction::default();
     let at = StageData::of(system, &engine.solution);
-    let pulled = match &engine.held {
-        Some(held) => pull_taut(&engine.equations, system, &engine.solution, held).ok()?,
+    let pulled = match &engine.stroke_control {
+        Some(stroke_control) => pull_taut(&engine.equations, system, &engine.solution, stroke_control).ok()?,
         None => Vec::new(),
     };
-    let taut: Vec<(usize, usize)> =
-        engine.held.iter().flat_map(|held| held.taut_cables().into_iter().map(|i| (i, held.cables[i]))).collect();
+    let taut: Vec<(usize, usize)> = engine
+        .stroke_control
+        .iter()
+        .flat_map(|stroke_control| stroke_control.taut_cables().into_iter().map(|i| (i, stroke_control.cables[i])))
+        .collect();
     let mut motions = Vec::with_capacity(taut.len());
     for (by, (_, cable)) in pulled.iter().zip(&taut) {
         let change = unit_change(&engine.equations, system, *cable).ok()?;

@@ -24,9 +24,9 @@ impl SpatialSolver {
         engine.hold_strokes();
         engine.equations.set_phase(Phase::Tension, 1.0);
         let from = engine.strokes();
-        if let Some(held) = &mut engine.held {
-            held.from = from;
-            held.fraction = 0.0;
+        if let Some(stroke_control) = &mut engine.stroke_control {
+            stroke_control.from = from;
+            stroke_control.fraction = 0.0;
         }
         let mut snaps = slack.snaps;
         let start = engine.state();
@@ -63,8 +63,8 @@ impl Engine {
     /// error of the tip over L.
     fn reel_at_once(&mut self, tol: f64) -> Result<f64, Trouble> {
         let before = self.solution.nodes.clone();
-        if let Some(held) = &mut self.held {
-            held.fraction = 1.0;
+        if let Some(stroke_control) = &mut self.stroke_control {
+            stroke_control.fraction = 1.0;
         }
         self.damped = false;
         self.iterate(1e-6, 9, None)?;

@@ -28,8 +28,8 @@ impl Traced for Engine {
         match along {
             Along::Phase(phase) => {
                 self.equations.set_phase(phase, fraction);
-                if let Some(held) = &mut self.held {
-                    held.fraction = if phase == Phase::Stroke { fraction } else { 1.0 };
+                if let Some(stroke_control) = &mut self.stroke_control {
+                    stroke_control.fraction = if phase == Phase::Stroke { fraction } else { 1.0 };
                 }
             }
             Along::Range => self.equations.set_range_fraction(fraction),
@@ -101,8 +101,8 @@ impl Traced for Engine {
         self.take_speeds();
     }
 
-    fn linearise_held(&mut self, parameter: bool, round: &mut NewtonStep<Self::Change>) -> Result<(), Trouble> {
-        self.linearise_held(parameter, round)
+    fn linearise_at_strokes(&mut self, parameter: bool, round: &mut NewtonStep<Self::Change>) -> Result<(), Trouble> {
+        self.linearise_at_strokes(parameter, round)
     }
 
     fn take_round(&mut self, round: &NewtonStep<Self::Change>, slide: f64) {
@@ -162,13 +162,13 @@ impl Traced for Engine {
         (kind, s.map(|s| s * self.equations.units.length))
     }
 
-    fn held(&self) -> Option<&StrokeControl> {
-        self.held.as_ref()
+    fn stroke_control(&self) -> Option<&StrokeControl> {
+        self.stroke_control.as_ref()
     }
 
     fn let_cables_switch(&mut self, may: bool) {
-        if let Some(held) = &mut self.held {
-            held.switching = may;
+        if let Some(stroke_control) = &mut self.stroke_control {
+            stroke_control.switching = may;
         }
     }
 
@@ -181,7 +181,9 @@ impl Traced for Engine {
     }
 
     fn command_derivative(&self, index: usize) -> f64 {
-        self.held.as_ref().map_or(0.0, |held| self.equations.command_derivative(held, index))
+        self.stroke_control
+            .as_ref()
+            .map_or(0.0, |stroke_control| self.equations.command_derivative(stroke_control, index))
     }
 
     fn value_at(&self, fraction: f64) -> f64 {

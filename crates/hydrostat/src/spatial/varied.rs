@@ -201,8 +201,8 @@ impl Equations {
     }
 
     /// The change of the stroke that is commanded of held cable `index` a unit of the parameter, over L.
-    pub(super) fn command_derivative(&self, held: &StrokeControl, index: usize) -> f64 {
-        let cable = held.cables[index];
+    pub(super) fn command_derivative(&self, stroke_control: &StrokeControl, index: usize) -> f64 {
+        let cable = stroke_control.cables[index];
         match self.varied_over() {
             _ if self.imposed.is_some() => 0.0,
             Some(ways) => {
@@ -210,7 +210,7 @@ impl Equations {
                 own.map_or(0.0, |way| way.whole() / self.units.length)
             }
             None if self.phase == Phase::Stroke => {
-                self.arm.cables[cable].stroke.unwrap_or(0.0) / self.units.length - held.from[index]
+                self.arm.cables[cable].stroke.unwrap_or(0.0) / self.units.length - stroke_control.from[index]
             }
             _ => 0.0,
         }

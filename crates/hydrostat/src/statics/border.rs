@@ -50,26 +50,26 @@ impl<const N: usize, const S: usize, const Q: usize, const L: usize> NewtonStep<
     /// the command a unit of the parameter. The determinant of B; `None` where no tensions hold the strokes.
     pub(crate) fn hold(
         &mut self,
-        held: &StrokeControl,
+        stroke_control: &StrokeControl,
         pulled: &[UnitPull<N, S, Q, L>],
         off: impl Fn(usize) -> f64,
         change: impl Fn(usize, &Correction<N, S, Q, L>) -> f64,
         command: impl Fn(usize) -> f64,
     ) -> Option<Determinant> {
-        let mut slack: [Vec<f64>; 2] = std::array::from_fn(|_| Vec::with_capacity(held.cables.len()));
+        let mut slack: [Vec<f64>; 2] = std::array::from_fn(|_| Vec::with_capacity(stroke_control.cables.len()));
         self.off = 0.0;
-        for (index, cable) in held.cables.iter().enumerate() {
+        for (index, cable) in stroke_control.cables.iter().enumerate() {
             let off = off(index);
-            if held.taut[index] {
+            if stroke_control.taut[index] {
                 self.off = self.off.max(off.abs());
             }
             slack[0].push(off + change(*cable, &self.rest));
             slack[1].push(change(*cable, &self.response) - command(index));
         }
-        let (tensions, determinant) = meeting(held, pulled, [&slack[0], &slack[1]])?;
+        let (tensions, determinant) = meeting(stroke_control, pulled, [&slack[0], &slack[1]])?;
         for (which, shape) in [&mut self.rest, &mut self.response].into_iter().enumerate() {
             let changes = tensions.iter().map(|both| both[which]);
-            self.tension[which] = add_pulls(held, pulled, changes, shape, &mut slack[which]);
+            self.tension[which] = add_pulls(stroke_control, pulled, changes, shape, &mut slack[which]);
         }
         self.slack = slack;
         Some(determinant)
@@ -79,34 +79,34 @@ impl<const N: usize, const S: usize, const Q: usize, const L: usize> NewtonStep<
 /// Changes of the tensions of taut cables that take two lists of slacks away (one a commanded cable, over L), with the
 /// determinant of B; `None` where no tensions do.
 pub(crate) fn meeting<const N: usize, const S: usize, const Q: usize, const L: usize>(
-    held: &StrokeControl,
+    stroke_control: &StrokeControl,
     pulled: &[UnitPull<N, S, Q, L>],
     slack: [&[f64]; 2],
 ) -> Option<(Vec<[f64; 2]>, Determinant)> {
     let row =
         |index: usize| (pulled.iter().map(|by| by.strokes[index]).collect(), [-slack[0][index], -slack[1][index]]);
-    solved(held.taut_cables().into_iter().map(row).collect())
+    solved(stroke_control.taut_cables().into_iter().map(row).collect())
 }
 
 /// The determinant of B.
 pub(crate) fn border<const N: usize, const S: usize, const Q: usize, const L: usize>(
-    held: &StrokeControl,
+    stroke_control: &StrokeControl,
     pulled: &[UnitPull<N, S, Q, L>],
 ) -> Option<Determinant> {
-    let none = vec![0.0; held.cables.len()];
-    meeting(held, pulled, [&none, &none]).map(|(_, determinant)| determinant)
+    let none = vec![0.0; stroke_control.cables.len()];
+    meeting(stroke_control, pulled, [&none, &none]).map(|(_, determinant)| determinant)
 }
 
 /// Adds what `changes` of the taut tensions do to a correction and to the slacks; the changes, one a commanded cable.
 pub(crate) fn add_pulls<const N: usize, const S: usize, const Q: usize, const L: usize>(
-    held: &StrokeControl,
+    stroke_control: &StrokeControl,
     pulled: &[UnitPull<N, S, Q, L>],
     changes: impl Iterator<Item = f64>,
     correction: &mut Correction<N, S, Q, L>,
     slack: &mut [f64],
 ) -> Vec<f64> {
-    let mut out = vec![0.0; held.cables.len()];
-    for ((index, pulled), change) in held.taut_cables().into_iter().zip(pulled).zip(changes) {
+    let mut out = vec![0.0; stroke_control.cables.len()];
+    for ((index, pulled), change) in stroke_control.taut_cables().into_iter().zip(pulled).zip(changes) {
         correction.add(&pulled.response, change);
         out[index] = change;
         for (slack, by) in slack.iter_mut().zip(&pulled.strokes) {

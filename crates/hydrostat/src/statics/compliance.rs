@@ -37,7 +37,7 @@ pub(crate) struct Compliance {
     /// Polynomials a field.
     pub(crate) functions: usize,
     /// Whether lengths of cables are held.
-    pub(crate) held: bool,
+    pub(crate) at_strokes: bool,
     entries: Vec<f64>,
     /// Strokes of the cables asked for under the same loads, one row a cable.
     strokes: Vec<f64>,
@@ -56,7 +56,7 @@ impl Compliance {
         let columns = FIELDS * functions;
         let mut out = Self {
             functions,
-            held: false,
+            at_strokes: false,
             entries: vec![0.0; columns * columns],
             strokes: vec![0.0; cables * columns],
         };
@@ -86,7 +86,7 @@ impl Compliance {
     /// what they reel in of all of them. `None` where the cables have no tensions for their lengths.
     pub(crate) fn hold(&mut self, motions: &[Vec<f64>], strokes: &[Vec<f64>]) -> Option<()> {
         let (count, columns) = (motions.len(), FIELDS * self.functions);
-        self.held = true;
+        self.at_strokes = true;
         for column in 0..columns {
             let row = |i: usize| {
                 let under_load = self.strokes[i * columns + column];

@@ -287,8 +287,10 @@ fn sides_of_nodes(dense: &Dense) -> Vec<(usize, bool)> {
 fn cable_states(arm: &Arm, engine: &Engine) -> Vec<CableState> {
     let equations = &engine.equations;
     let taut = |cable: usize| {
-        let held = equations.held.as_ref();
-        held.is_some_and(|held| held.cables.iter().zip(&held.taut).any(|(own, taut)| *own == cable && *taut))
+        let stroke_control = equations.stroke_control.as_ref();
+        stroke_control.is_some_and(|stroke_control| {
+            stroke_control.cables.iter().zip(&stroke_control.taut).any(|(own, taut)| *own == cable && *taut)
+        })
     };
     let state = |(index, cable): (usize, &Cable)| {
         let [now, unloaded] = equations.cable_lengths(index, StationData::of(&engine.system));

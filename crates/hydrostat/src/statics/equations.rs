@@ -15,10 +15,10 @@
 mod buckling;
 mod cable_paths;
 mod change;
+mod commanded;
 mod ends;
 mod friction;
 pub(crate) mod gradients;
-mod held;
 mod limits;
 mod margins;
 pub(crate) mod place;

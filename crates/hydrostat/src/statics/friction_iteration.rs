@@ -138,7 +138,7 @@ impl Solver {
         for _ in 0..CUTS {
             let before = (self.engine.tip, self.engine.state());
             let cut = self.engine.solution.mesh.cut(2);
-            self.engine.move_to(cut);
+            self.engine.remap_to(cut);
             let Ok(again) = self.rub(1.0) else {
                 self.engine.restore(&before.1);
                 break;

@@ -86,7 +86,7 @@ pub(crate) trait Refinable {
 
     fn arm(&self) -> &Arm;
     fn mesh(&self) -> &Mesh;
-    fn move_to(&mut self, mesh: Mesh);
+    fn remap_to(&mut self, mesh: Mesh);
     fn state(&self) -> Self::State;
     fn restore(&mut self, state: &Self::State);
 
@@ -130,7 +130,7 @@ pub(crate) trait Refinable {
         read: impl FnOnce(&mut Self) -> Result<T, Trouble>,
     ) -> Result<T, Trouble> {
         let kept = self.state();
-        self.move_to(self.mesh().cut(2));
+        self.remap_to(self.mesh().cut(2));
         let there = roughly(self.iterate(tolerance, 9, None)).and_then(|()| read(self));
         self.restore(&kept);
         there
@@ -141,7 +141,7 @@ pub(crate) trait Refinable {
         let mut mesh = self.refined(target, most);
         let kinks = self.kinks(apart);
         mesh.pin(self.breaks(), &kinks);
-        self.move_to(mesh);
+        self.remap_to(mesh);
     }
 
     /// Newton from a rough start until corrections are small, and on to a mesh on which most arms meet `tolerance`.
@@ -151,7 +151,7 @@ pub(crate) trait Refinable {
         let kinks = self.kinks(10.0 * resolution);
         let mut mesh = graded(self.arm(), self.breaks(), fair_elements(tolerance));
         mesh.pin(self.breaks(), &kinks);
-        self.move_to(mesh);
+        self.remap_to(mesh);
         Ok(())
     }
 
@@ -195,7 +195,7 @@ pub(crate) trait Refinable {
                     cuts += 1;
                     self.restore(state);
                     let halves = self.mesh().cut(1 << cuts);
-                    self.move_to(halves);
+                    self.remap_to(halves);
                     continue;
                 }
                 (Err(_), Some(_)) => break,

@@ -257,7 +257,7 @@ impl Solver {
         self.engine.equations.arm().check_tensions(tensions)?;
         self.leave_loads();
         // Strokes are not commanded any more: what was solved with them is no start.
-        self.settled &= self.engine.equations.held.is_none();
+        self.settled &= self.engine.equations.stroke_control.is_none();
         self.engine.equations.let_go();
         self.engine.change_loads(|arm| {
             for (cable, tension) in arm.cables.iter_mut().zip(tensions) {
@@ -284,8 +284,8 @@ impl Solver {
     }
 
     /// Solves from the last shape, after a small change of the loads: a few Newton rounds on the mesh there is. Solves
-    /// from the unloaded arm as [`Solver::solve`] does where nothing was solved before, where the arm moves further than
-    /// a small change of the loads moves it, and with friction, where the answer depends on the way to the loads.
+    /// from the unloaded arm as [`Solver::solve`] does where nothing was solved before, where the arm moves further
+    /// than a small change of the loads moves it, and with friction, where the answer depends on the way to the loads.
     /// [`Options::warm_start`] says which equilibrium it may give.
     ///
     /// A warm start reads nothing out but the tip, and allocates nothing once meshes have their size.
@@ -431,8 +431,8 @@ impl Solver {
     }
 
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
-    pub(crate) fn solve_along_the_path(&mut self, pace: StepControl) -> Result<Configuration, SolveError> {
-        let travelled = follow(&mut self.engine, pace, self.options.snaps).map_err(|at| self.no_equilibrium(at))?;
+    pub(crate) fn solve_along_the_path(&mut self, control: StepControl) -> Result<Configuration, SolveError> {
+        let travelled = follow(&mut self.engine, control, self.options.snaps).map_err(|at| self.no_equilibrium(at))?;
         self.end_of_path(travelled)
     }
 

@@ -179,7 +179,7 @@ fn growth(dense: &Dense) -> Option<(Growth, usize)> {
 
 /// The rates -1/kappa of the first `functions` polynomials over `unit`, largest real part first.
 fn scaled_rates(compliance: &Compliance, functions: usize, unit: f64) -> Option<Vec<[f64; 2]>> {
-    let least = if compliance.held { BLURRED } else { ROUNDING };
+    let least = if compliance.at_strokes { BLURRED } else { ROUNDING };
     let size = FIELDS * functions;
     rates_of(DMatrix::from_fn(size, size, |i, j| compliance.entry(i, j)), unit, least)
 }
@@ -266,9 +266,11 @@ impl Tangent {
     fn linearise(&mut self) -> Option<()> {
         linearise(&mut self.system, &self.equations, &self.solution).ok()?;
         self.determinant = self.system.determinant();
-        if let Some(held) = self.equations.held.clone().filter(|held| held.taut.contains(&true)) {
-            let pulled = pull_taut(&self.equations, &self.system, &self.solution, &held);
-            self.determinant = self.determinant.times(border(&held, &pulled)?);
+        if let Some(stroke_control) =
+            self.equations.stroke_control.clone().filter(|stroke_control| stroke_control.taut.contains(&true))
+        {
+            let pulled = pull_taut(&self.equations, &self.system, &self.solution, &stroke_control);
+            self.determinant = self.determinant.times(border(&stroke_control, &pulled)?);
         }
         Some(())
     }
@@ -280,13 +282,15 @@ impl Tangent {
     }
 
     fn compliance(&self, functions: usize) -> Option<Compliance> {
-        let held = self.equations.held.clone().filter(|held| held.taut.contains(&true));
+        let stroke_control =
+            self.equations.stroke_control.clone().filter(|stroke_control| stroke_control.taut.contains(&true));
         let (mut pulled, mut taut) = (Vec::new(), Vec::new());
-        if let Some(held) = &held {
-            pulled = pull_taut(&self.equations, &self.system, &self.solution, held);
-            taut = held.taut_cables();
+        if let Some(stroke_control) = &stroke_control {
+            pulled = pull_taut(&self.equations, &self.system, &self.solution, stroke_control);
+            taut = stroke_control.taut_cables();
         }
-        let cables: Vec<usize> = held.iter().flat_map(|held| taut.iter().map(|i| held.cables[*i])).collect();
+        let cables: Vec<usize> =
+            stroke_control.iter().flat_map(|stroke_control| taut.iter().map(|i| stroke_control.cables[*i])).collect();
         let (equations, solution) = (&self.equations, &self.solution);
         let mut compliance =
             Compliance::new(&self.system, &solution.mesh, functions, cables.len(), |system, response| {
@@ -403,7 +407,10 @@ mod tests {
             let one_apart = growing(&found.rates).abs_diff(growing(&pulled.rates)) % 2 == 1;
             differ += usize::from(one_apart);
             if one_apart != (more < less) {
-                wrong.push(format!("{case}: {less} to {more} m, {:?} held, {:?} pulled", found.rates, pulled.rates));
+                wrong.push(format!(
+                    "{case}: {less} to {more} m, {:?} stroke_control, {:?} pulled",
+                    found.rates, pulled.rates
+                ));
             }
         }
         println!(

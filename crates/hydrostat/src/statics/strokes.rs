@@ -16,7 +16,7 @@
 //! ```
 //!
 //! for every such cable, which is solved as it stands: Newton rounds on the shape and the tensions of the
-//! taut cables together (`engine/held`), whose set changes until no taut cable pushes and no slack one is too short.
+//! taut cables together (`engine/stroke_control`), whose set changes until no taut cable pushes and no slack one is too short.
 //!
 //! Several shapes can have the same strokes. The one meant is the end of this path: loads and given tensions first,
 //! the commanded cables slack (section 7 of `docs/model.md`), then all commanded strokes in proportion, from
@@ -159,24 +159,25 @@ impl Solver {
     }
 
     /// The phase of strokes, from the engine's equilibrium, in which the commanded cables are slack or hardly pulled.
-    fn follow_strokes_from_here(&mut self, pace: StepControl) -> Result<PathSummary, Stopped> {
+    fn follow_strokes_from_here(&mut self, control: StepControl) -> Result<PathSummary, Stopped> {
         let bounds = self.options.snaps;
         let engine = &mut self.engine;
         engine.equations.hold_strokes();
         engine.set_phase(Phase::Stroke, 1.0);
         if engine.refresh().is_ok()
-            && let Some(held) = engine.equations.held.clone()
+            && let Some(stroke_control) = engine.equations.stroke_control.clone()
         {
-            let strokes = engine.strokes(held.cables.iter().copied());
-            let all_slack = !held.taut.contains(&true);
-            if all_slack && strokes.iter().enumerate().all(|(i, stroke)| *stroke >= engine.equations.command(&held, i))
+            let strokes = engine.strokes(stroke_control.cables.iter().copied());
+            let all_slack = !stroke_control.taut.contains(&true);
+            if all_slack
+                && strokes.iter().enumerate().all(|(i, stroke)| *stroke >= engine.equations.command(&stroke_control, i))
             {
                 // All stay slack.
                 return Ok(PathSummary::default());
             }
             engine.equations.start_strokes_from(strokes);
         }
-        follow_strokes(engine, pace, bounds)
+        follow_strokes(engine, control, bounds)
     }
 
     /// Tensions (N) of the cables that their commanded strokes take in a straight arm, and those given: with the
@@ -260,9 +261,9 @@ mod tests {
                     let mut other = Solver::new(&arm, Options::with_tol(1e-9)).unwrap();
                     other.engine = Engine::new(&with_tensions(&arm, |_| 0.0));
                     other.solve_tensions().unwrap();
-                    let pace = StepControl { longest: 0.1, straightness: 0.99, most: 2000, accuracy: 1e-6 };
+                    let control = StepControl { longest: 0.1, straightness: 0.99, most: 2000, accuracy: 1e-6 };
                     other.engine.equations.hold_strokes();
-                    other.follow_strokes_from_here(pace).map_err(|stopped| stopped.verdict).unwrap();
+                    other.follow_strokes_from_here(control).map_err(|stopped| stopped.verdict).unwrap();
                     other.engine.settle(1e-9, First::Warm).unwrap();
                     let two = other.read(1e-9, PathSummary::default()).unwrap();
                     both += 1;

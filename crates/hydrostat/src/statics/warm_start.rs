@@ -15,9 +15,9 @@ pub enum WarmStart {
     /// The one on the branch of the last configuration, as for a control loop.
     #[default]
     Branch,
-    /// The one that [`crate::Solver::solve`] gives, at the end of the arm's load ramp, as for the rows of a table. Wherever a
-    /// warm start could end elsewhere, the arm is solved from its unloaded shape. Warm starts follow changes of loads
-    /// only, of clamped arms without friction and without commanded strokes.
+    /// The one that [`crate::Solver::solve`] gives, at the end of the arm's load ramp, as for the rows of a table.
+    /// Wherever a warm start could end elsewhere, the arm is solved from its unloaded shape. Warm starts follow changes
+    /// of loads only, of clamped arms without friction and without commanded strokes.
     Ramp,
 }
 

@@ -62,7 +62,7 @@ pub(super) struct SpatialMoving {
     pub(super) end_places: Vec<EndPlace>,
     closed: bool,
     /// The cables whose stroke is commanded.
-    pub(super) held: Option<StrokeControl>,
+    pub(super) stroke_control: Option<StrokeControl>,
     pub(super) nodes: usize,
     /// Sizes of the states.
     pub(super) scales: [f64; S],
@@ -82,7 +82,7 @@ impl SpatialMoving {
             from: Vec::new(),
             end_rates: Vec::new(),
             end_places: Vec::new(),
-            held: None,
+            stroke_control: None,
             nodes: 0,
             scales: [1.0; S],
             closed: arm.readings.volume != Volume::None && !arm.cables.is_empty(),
@@ -137,7 +137,7 @@ impl SpatialMoving {
         place: &Vector<Lanes>,
         directors: &Directors<Lanes>,
         strain: &[Lanes; L],
-        swelling: &SectionStretch<Lanes>,
+        section_stretch: &SectionStretch<Lanes>,
     ) -> (Load<Lanes>, [Vector<Lanes>; 3]) {
         let statics = &self.statics;
         let cv = Lanes::of(self.cv);
@@ -145,14 +145,14 @@ impl SpatialMoving {
         let length = Lanes::of(statics.units.length);
         let wet = statics.arm().flow.density != 0.0;
         let stream = wet.then(|| each(|k| Lanes::of(statics.water.stream[k]) - length * moving[k][0]));
-        let mut out = load(&statics.water, &statics.places[block].body, stream, directors, strain, swelling);
+        let mut out = load(&statics.water, &statics.places[block].body, stream, directors, strain, section_stretch);
         let acceleration: Vector<Lanes> = each(|k| moving[k][1]);
         let inert = inertia(
             &statics.water,
             &self.masses[block],
             directors,
             strain,
-            swelling,
+            section_stretch,
             &acceleration,
             &self.stream_acceleration,
         );
@@ -204,7 +204,7 @@ impl SpatialMoving {
         if !solved.is_fine(statics.inner_tolerance) {
             return Err(failure(place.s, &solved, statics.inner_tolerance));
         }
-        let (load, by_place) = self.loads(block, &r, &directors, &solved.strain, &solved.balance.swelling);
+        let (load, by_place) = self.loads(block, &r, &directors, &solved.strain, &solved.balance.section_stretch);
         let at = AtStation { directors, contact, solved, load, couple: place.body.couple };
         let q: [Lanes; 4] = each(|k| station.z[k]);
         let turns = turn(&q);

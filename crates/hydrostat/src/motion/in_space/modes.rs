@@ -25,13 +25,13 @@ impl Vibrates<S, L, COORDINATES> for SpatialMoving {
         let statics = &self.statics;
         let (place, masses, water) = (&statics.places[block], &self.masses[block], &statics.water);
         let directors = Directors::of(&each(|k| station.z[k]));
-        let swelling = area_law(statics.volume, station.inner[0]);
+        let section_stretch = area_law(statics.volume, station.inner[0]);
         let zero = Lanes::of(0.0);
         let stream = (statics.arm().flow.density != 0.0).then(|| each(|k| Lanes::of(water.stream[k])));
-        let load = load(water, &place.body, stream, &directors, &station.inner, &swelling);
-        let inert = inertia(water, masses, &directors, &station.inner, &swelling, &[zero; 3], &[0.0; 3]);
+        let load = load(water, &place.body, stream, &directors, &station.inner, &section_stretch);
+        let inert = inertia(water, masses, &directors, &station.inner, &section_stretch, &[zero; 3], &[0.0; 3]);
         let length = Lanes::of(statics.units.length);
-        let area = swelling.beta * swelling.beta;
+        let area = section_stretch.beta * section_stretch.beta;
         let time = Lanes::of(statics.arm().dynamics.relaxation_time);
         let rotary = masses.rotary * area;
         let turned = |k: usize, c: usize| match (k, c) {

@@ -107,7 +107,7 @@ impl Moves<S, L> for SpatialMoving {
         // Tensions of held cables follow from their strokes.
         let tensions = self.statics.tensions.clone();
         self.statics.set_loads(arm);
-        for cable in self.held.iter().flat_map(|held| &held.cables) {
+        for cable in self.stroke_control.iter().flat_map(|stroke_control| &stroke_control.cables) {
             self.statics.set_tension(*cable, tensions[*cable]);
         }
     }
@@ -195,20 +195,20 @@ impl Moves<S, L> for SpatialMoving {
         Self::fold_margin(self, at)
     }
 
-    fn held(&self) -> Option<&StrokeControl> {
-        self.held.as_ref()
+    fn stroke_control(&self) -> Option<&StrokeControl> {
+        self.stroke_control.as_ref()
     }
 
-    fn held_mut(&mut self) -> Option<&mut StrokeControl> {
-        self.held.as_mut()
+    fn stroke_control_mut(&mut self) -> Option<&mut StrokeControl> {
+        self.stroke_control.as_mut()
     }
 
     fn set_tension(&mut self, cable: usize, tension: f64) {
         self.statics.set_tension(cable, tension / self.statics.units.force);
     }
 
-    fn command(&self, held: &StrokeControl, index: usize) -> f64 {
-        self.statics.command(held, index)
+    fn command(&self, stroke_control: &StrokeControl, index: usize) -> f64 {
+        self.statics.command(stroke_control, index)
     }
 
     fn strained(&self, system: &Collocation<S, M, 0, L>, out: &mut Vec<Stage<N, L>>) {

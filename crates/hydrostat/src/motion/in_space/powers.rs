@@ -97,15 +97,16 @@ impl SpatialMoving {
         let (zero, half) = (Lanes::of(0.0), Lanes::of(0.5));
         let (strain, strain_rate, directors) = (&at.stage.inner, &at.strain_rate, &at.directors);
         let (velocity, length) = (&at.velocity, Lanes::of(statics.units.length));
-        let swelling = area_law(statics.volume, strain[0]);
+        let section_stretch = area_law(statics.volume, strain[0]);
 
         let wet = arm.flow.density != 0.0;
         let stream = wet.then(|| each(|k| Lanes::of(water.stream[k]) - length * velocity[k]));
-        let of = |body: &Body<Lanes>| load(water, body, stream, directors, strain, &swelling).force;
+        let of = |body: &Body<Lanes>| load(water, body, stream, directors, strain, &section_stretch).force;
         let weightless = Body { weight: [zero; 3], displaced: [zero; 3], force: [zero; 3], ..place.body };
         let (all, by_stream, dead) = (of(&place.body), of(&weightless), &place.body.force);
         let acceleration = &at.acceleration;
-        let inert = inertia(water, masses, directors, strain, &swelling, acceleration, &self.stream_acceleration).force;
+        let inert =
+            inertia(water, masses, directors, strain, &section_stretch, acceleration, &self.stream_acceleration).force;
         let by_water: Vector<Lanes> = each(|k| by_stream[k] - (inert[k] - masses.wall * acceleration[k]));
         let hydrostatic: Vector<Lanes> = each(|k| all[k] - by_stream[k] - dead[k]);
 
@@ -119,12 +120,12 @@ impl SpatialMoving {
         let mut by_cables = zero;
         for (c, cable) in statics.cables_in(block).iter().enumerate() {
             let tension = cable.tension * Lanes::of(statics.tension(c));
-            let path = tangent(cable, strain, &swelling, at.stage.closure_slope);
+            let path = tangent(cable, strain, &section_stretch, at.stage.closure_slope);
             let inverse = Lanes::of(1.0) / dot(&path.tau, &path.tau).sqrt();
             let spun = cross(&[strain_rate[3], strain_rate[4], strain_rate[5]], &path.place);
             // What tau changes by with the strains at fixed beta, and with beta and beta' besides.
-            let by_force: Vector<Lanes> = each(|k| strain_rate[k] + swelling.beta * spun[k]);
-            let beta_rate = swelling.slope * strain_rate[0];
+            let by_force: Vector<Lanes> = each(|k| strain_rate[k] + section_stretch.beta * spun[k]);
+            let beta_rate = section_stretch.slope * strain_rate[0];
             let whole: Vector<Lanes> =
                 each(|k| by_force[k] + beta_rate * path.by_beta[k] + at.beta_slope_rate * path.place[k]);
             let along = |rate: &Vector<Lanes>| inverse * dot(&path.tau, rate);

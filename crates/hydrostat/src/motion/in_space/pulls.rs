@@ -14,9 +14,10 @@ impl SpatialMoving {
     /// Commands the strokes of the arm: those cables are taut that have a tension.
     pub(super) fn command_strokes(&mut self) {
         let cables = &self.statics.arm().cables;
-        self.held = StrokeControl::slack((0..cables.len()).filter(|c| cables[*c].stroke.is_some()).collect());
-        if let Some(held) = &mut self.held {
-            held.taut = held.cables.iter().map(|cable| self.statics.tensions[*cable] > 0.0).collect();
+        self.stroke_control = StrokeControl::slack((0..cables.len()).filter(|c| cables[*c].stroke.is_some()).collect());
+        if let Some(stroke_control) = &mut self.stroke_control {
+            stroke_control.taut =
+                stroke_control.cables.iter().map(|cable| self.statics.tensions[*cable] > 0.0).collect();
         }
     }
 
@@ -37,8 +38,8 @@ impl SpatialMoving {
 
     /// What a cable carries a unit of its tension, in the directors.
     fn carried(&self, cable: &CableAt<Lanes>, station: &Station<S, L>) -> [Lanes; STRAINS] {
-        let swelling = area_law(self.statics.volume, station.inner[0]);
-        pull(cable, &station.inner, &swelling, station.closure_slope).load
+        let section_stretch = area_law(self.statics.volume, station.inner[0]);
+        pull(cable, &station.inner, &section_stretch, station.closure_slope).load
     }
 
     /// What a change of what sections carry, in a block of stations, changes at fixed states: the strains follow, and
@@ -55,8 +56,8 @@ impl SpatialMoving {
         let directors = Directors::of(&q);
         let contact = in_directors(&directors, &station.z);
         let strain = self.follow(inner, &directors, carried);
-        let swelling = area_law(self.statics.volume, station.inner[0]);
-        let (load, _) = self.loads(block, &r, &directors, &station.inner, &swelling);
+        let section_stretch = area_law(self.statics.volume, station.inner[0]);
+        let (load, _) = self.loads(block, &r, &directors, &station.inner, &section_stretch);
         let still = strained(&directors, &contact, &load.by_stretch, &q, &strain);
         let by_nu = directors.to_space(&self.turning(block, &q, station.inner[0]).by_nu);
         let rate = directors.to_space(&[strain[0], strain[1], strain[2]]);
@@ -69,7 +70,7 @@ impl SpatialMoving {
             slope: each(|a| Lanes::of(1.0 / self.scales[a]) * slope[a]),
             rate: [],
             inner: strain,
-            value: swelling.slope * strain[0],
+            value: section_stretch.slope * strain[0],
         }
     }
 

@@ -7,7 +7,7 @@ use crate::statics::dimensions::{Guess, L, M, N, Q};
 
 impl Engine {
     /// Moves the solution to another mesh.
-    pub(crate) fn move_to(&mut self, mesh: Mesh) {
+    pub(crate) fn remap_to(&mut self, mesh: Mesh) {
         std::mem::swap(&mut self.solution, &mut self.before);
         self.solution.mesh = mesh;
         self.remap();

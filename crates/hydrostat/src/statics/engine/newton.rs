@@ -29,8 +29,8 @@ impl Engine {
     /// kinks of the load nodes have to be, they are moved there as soon as corrections are small: a round on nodes that
     /// are off is as good as lost.
     pub(super) fn iterate(&mut self, tolerance: f64, most: usize, resolution: Option<f64>) -> Result<(), Trouble> {
-        if self.equations.held.is_some() {
-            return self.iterate_held(tolerance, most);
+        if self.equations.stroke_control.is_some() {
+            return self.iterate_at_strokes(tolerance, most);
         }
         let clamped = self.equations.arm().readings.support == crate::Support::Clamped;
         let most = if clamped { most } else { 60 };

@@ -26,8 +26,8 @@ impl Refinable for Engine {
         &self.solution.mesh
     }
 
-    fn move_to(&mut self, mesh: Mesh) {
-        Self::move_to(self, mesh);
+    fn remap_to(&mut self, mesh: Mesh) {
+        Self::remap_to(self, mesh);
     }
 
     fn state(&self) -> State {

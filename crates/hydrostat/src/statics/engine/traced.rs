@@ -77,8 +77,8 @@ impl Traced for Engine {
         self.take_switches();
     }
 
-    fn linearise_held(&mut self, parameter: bool, round: &mut NewtonStep<Self::Change>) -> Result<(), Trouble> {
-        self.linearise_held(parameter, round)
+    fn linearise_at_strokes(&mut self, parameter: bool, round: &mut NewtonStep<Self::Change>) -> Result<(), Trouble> {
+        self.linearise_at_strokes(parameter, round)
     }
 
     fn take_round(&mut self, round: &NewtonStep<Self::Change>, slide: f64) {
@@ -130,8 +130,8 @@ impl Traced for Engine {
         name_limit(self, trouble)
     }
 
-    fn held(&self) -> Option<&StrokeControl> {
-        self.equations.held.as_ref()
+    fn stroke_control(&self) -> Option<&StrokeControl> {
+        self.equations.stroke_control.as_ref()
     }
 
     fn let_cables_switch(&mut self, may: bool) {
@@ -147,7 +147,10 @@ impl Traced for Engine {
     }
 
     fn command_derivative(&self, index: usize) -> f64 {
-        self.equations.held.as_ref().map_or(0.0, |held| self.equations.command_derivative(held, index))
+        self.equations
+            .stroke_control
+            .as_ref()
+            .map_or(0.0, |stroke_control| self.equations.command_derivative(stroke_control, index))
     }
 
     fn value_at(&self, fraction: f64) -> f64 {

@@ -46,7 +46,7 @@ impl Engine {
         moving.extend(&new);
         let mut mesh = self.solution.mesh.clone();
         mesh.pin(&self.breaks, &moving);
-        self.move_to(mesh);
+        self.remap_to(mesh);
         self.settle(tolerance, First::Fair).map(|_| ())
     }
 }

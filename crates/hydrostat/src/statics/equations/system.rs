@@ -41,7 +41,7 @@ pub(crate) struct Equations {
     pub(crate) phase: Phase,
     pub(super) varied: Option<Varied>,
     /// Cables whose stroke is commanded, from where on these are.
-    pub(crate) held: Option<StrokeControl>,
+    pub(crate) stroke_control: Option<StrokeControl>,
     /// What friction leaves of the tensions, if there is any.
     pub(crate) capstan: Option<CapstanFactors>,
     /// A couple over s/L that takes the place of the parameter, at every station.
@@ -76,7 +76,7 @@ impl Equations {
             fraction: [1.0, 1.0],
             phase: Phase::Tension,
             varied: None,
-            held: None,
+            stroke_control: None,
             capstan: None,
             imposed: None,
             inner_tolerance: ROUGH,
@@ -155,8 +155,9 @@ impl Equations {
                 cable.tension *= tension;
             }
         }
-        for (i, c) in self.held.iter().flat_map(|held| held.cables.iter().enumerate()) {
-            let stroke = self.held.as_ref().map(|held| self.command(held, i) * self.units.length);
+        for (i, c) in self.stroke_control.iter().flat_map(|stroke_control| stroke_control.cables.iter().enumerate()) {
+            let stroke =
+                self.stroke_control.as_ref().map(|stroke_control| self.command(stroke_control, i) * self.units.length);
             arm.cables[*c].stroke = stroke.filter(|_| self.phase == Phase::Stroke).or(arm.cables[*c].stroke);
         }
         if loads != 1.0 {

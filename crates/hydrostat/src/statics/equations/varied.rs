@@ -94,7 +94,7 @@ impl Equations {
             tensions: self.tensions.clone(),
             ends: self.ends.clone(),
             varied: self.varied.clone(),
-            held: self.held.clone(),
+            stroke_control: self.stroke_control.clone(),
             capstan: None,
             imposed: None,
             stations: Vec::new(),

@@ -163,9 +163,9 @@ fn start(arm: &Arm) -> Result<(Solver, f64), PathError> {
     let failed = |source| PathError::Start { parameter: Parameter::BaseAngle, value: arm.base.angle, source };
     let mut first = None;
     for turned in STARTS {
-        let mut held = arm.clone();
-        held.base.angle += TAU * turned;
-        let solved = Solver::new(&held, Options { snaps: SnapBounds::NONE, ..Options::default() })
+        let mut turned_arm = arm.clone();
+        turned_arm.base.angle += TAU * turned;
+        let solved = Solver::new(&turned_arm, Options { snaps: SnapBounds::NONE, ..Options::default() })
             .and_then(|mut solver| solver.solve().map(|_| solver));
         match solved {
             Ok(solver) => return Ok((solver, turned)),

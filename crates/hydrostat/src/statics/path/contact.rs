@@ -32,9 +32,11 @@ type Advanced<E> = (Point<E>, StepOutcome, Option<Contact<E>>);
 impl<E: Traced> Stepper<'_, E> {
     /// The margins of the commanded cables after the last linearisation.
     pub(super) fn margins(&self) -> Vec<f64> {
-        let Some(held) = self.engine.held() else { return Vec::new() };
-        let margin = |i: usize| if held.taut[i] { self.engine.tension(held.cables[i]) } else { self.round.slack[0][i] };
-        (0..held.cables.len()).map(margin).collect()
+        let Some(stroke_control) = self.engine.stroke_control() else { return Vec::new() };
+        let margin = |i: usize| {
+            if stroke_control.taut[i] { self.engine.tension(stroke_control.cables[i]) } else { self.round.slack[0][i] }
+        };
+        (0..stroke_control.cables.len()).map(margin).collect()
     }
 
     /// A step that ends where the first cable goes slack or taut, if one does on the way.
@@ -121,9 +123,10 @@ impl<E: Traced> Stepper<'_, E> {
     pub(super) fn nothing_reels_in(&mut self) -> bool {
         let kept = self.engine.state();
         self.set(0.0);
-        let Some(held) = self.engine.held().cloned() else { return false };
-        let short: Vec<usize> = (0..held.cables.len()).filter(|i| self.engine.command_derivative(*i) > 0.0).collect();
-        for i in short.iter().filter(|i| !held.taut[**i]) {
+        let Some(stroke_control) = self.engine.stroke_control().cloned() else { return false };
+        let short: Vec<usize> =
+            (0..stroke_control.cables.len()).filter(|i| self.engine.command_derivative(*i) > 0.0).collect();
+        for i in short.iter().filter(|i| !stroke_control.taut[**i]) {
             self.engine.switch_active(*i);
         }
         let pushes = self.linearise().is_ok() && short.iter().any(|i| self.round.tension[1][*i] < 0.0);
@@ -165,7 +168,7 @@ impl<E: Traced> Stepper<'_, E> {
 
     /// How the margin of the commanded cable `i` changes along the tangent of a point, after its linearisation.
     fn opening(&self, point: &Point<E>, i: usize) -> f64 {
-        let taut = self.engine.held().is_some_and(|held| held.taut[i]);
+        let taut = self.engine.stroke_control().is_some_and(|stroke_control| stroke_control.taut[i]);
         point.dlambda_ds * if taut { self.round.tension[1][i] } else { self.round.slack[1][i] }
     }
 }

@@ -73,25 +73,25 @@ impl<E: Traced> Stepper<'_, E> {
         step: f64,
         control: StepControl,
     ) -> Point<E> {
-        let mut found = self.crossing_between(here, next.clone(), step, control);
+        let mut found = self.bifurcation_between(here, next.clone(), step, control);
         let mut from = here.clone();
-        self.crossings_welcome = true;
+        self.bifurcations_welcome = true;
         for _ in 0..4 {
             let before = found.fraction;
-            let Some((cut, again)) = self.crossing_on_half_the_mesh(&from, step, control) else { break };
+            let Some((cut, again)) = self.bifurcation_on_half_the_mesh(&from, step, control) else { break };
             found = again;
             from = cut;
             if (found.fraction - before).abs() < 1e-7 {
                 break;
             }
         }
-        self.crossings_welcome = false;
+        self.bifurcations_welcome = false;
         found.dlambda_ds = found.dlambda_ds.abs() * here.dlambda_ds.signum();
         found
     }
 
-    /// `from` with its elements halved, and the crossing nearby.
-    fn crossing_on_half_the_mesh(
+    /// `from` with its elements halved, and the bifurcation nearby.
+    fn bifurcation_on_half_the_mesh(
         &mut self,
         from: &Point<E>,
         step: f64,
@@ -99,12 +99,12 @@ impl<E: Traced> Stepper<'_, E> {
     ) -> Option<(Point<E>, Point<E>)> {
         self.engine.restore(&from.state);
         let finer = self.engine.mesh().cut(2);
-        self.engine.move_to(finer);
+        self.engine.remap_to(finer);
         self.set(from.fraction);
         self.engine.newton(1e-9, 12).ok()?;
         let mut cut = self.point(from.fraction).ok()?;
         let orientation = self.orientation;
-        // On this mesh the point may be beyond the crossing.
+        // On this mesh the point may be beyond the bifurcation.
         let side = cut.dlambda_ds.signum() * from.dlambda_ds.signum();
         self.orientation *= side;
         cut.dlambda_ds *= side;
@@ -112,7 +112,7 @@ impl<E: Traced> Stepper<'_, E> {
         let mut found = None;
         while found.is_none() && reach < 2.0 {
             if let Ok((end, StepOutcome::Bifurcation)) = self.advance(&cut, side * reach, control) {
-                found = Some(self.crossing_between(&cut, end, side * reach, control));
+                found = Some(self.bifurcation_between(&cut, end, side * reach, control));
             }
             reach *= 3.0;
         }
@@ -120,9 +120,9 @@ impl<E: Traced> Stepper<'_, E> {
         found.map(|found| (cut, found))
     }
 
-    /// The crossing between two points, on their mesh. Corrections are of little worth right at it, so that it is found
+    /// The bifurcation between two points, on their mesh. Corrections are of little worth right at it, so that it is found
     /// from the determinants around it, which vary smoothly: by inverse interpolation.
-    fn crossing_between(&mut self, here: &Point<E>, next: Point<E>, step: f64, control: StepControl) -> Point<E> {
+    fn bifurcation_between(&mut self, here: &Point<E>, next: Point<E>, step: f64, control: StepControl) -> Point<E> {
         // Determinants over that of the first point.
         let unit = here.size;
         let signed = |point: &Point<E>, sign: f64| sign * (point.size - unit).exp();
@@ -257,7 +257,7 @@ impl<E: Traced> Stepper<'_, E> {
         let mut couple: Box<dyn Fn(f64) -> Turn> = Box::new(|s| FIRST_COUPLE.map(|couple| couple * (1.0 + s)));
         for _ in 0..4 {
             self.engine.impose_couple(Some(&couple));
-            let solved = self.engine.linearise_held(true, &mut round);
+            let solved = self.engine.linearise_at_strokes(true, &mut round);
             self.engine.impose_couple(None);
             solved.ok()?;
             let turns = self.engine.turns(&round.response);

@@ -128,7 +128,7 @@ pub(super) struct Stepper<'e, E: Traced> {
     /// the other orientation.
     pub(super) opposite: Option<f64>,
     /// Whether a tangent that points the other way is taken for another branch that crosses, however long the step.
-    pub(super) crossings_welcome: bool,
+    pub(super) bifurcations_welcome: bool,
     /// The last estimate of the tip's error over L.
     pub(super) error: f64,
     /// The turn (rad, root mean square along the arm) that counts as much as the whole of the load in the
@@ -161,7 +161,7 @@ impl<'e, E: Traced> Stepper<'e, E> {
             last_trouble: None,
             orientation: 1.0,
             opposite: None,
-            crossings_welcome: false,
+            bifurcations_welcome: false,
             error: LOOSE,
             scale: 1.0,
             progress: Progress::default(),
@@ -199,7 +199,7 @@ impl<'e, E: Traced> Stepper<'e, E> {
 
     pub(super) fn linearise(&mut self) -> Result<(), Trouble> {
         self.current = false;
-        self.engine.linearise_held(true, &mut self.round)
+        self.engine.linearise_at_strokes(true, &mut self.round)
     }
 
     /// Weights of the squares of the nodes' turns in the metric of the path: its root mean square along the
@@ -387,10 +387,12 @@ impl<'e, E: Traced> Stepper<'e, E> {
                 self.orientation = -self.orientation;
             }
         }
-        let crossing = cosine < 0.0 && -cosine >= control.straightness;
+        let bifurcation = cosine < 0.0 && -cosine >= control.straightness;
         // Nothing turns on a symmetric branch but the load: bifurcations are passed at once, because
         // near them rounding would lead off the branch.
-        if crossing && (self.crossings_welcome || step.abs() < CORNER || (here.is_symmetric() && next.is_symmetric())) {
+        if bifurcation
+            && (self.bifurcations_welcome || step.abs() < CORNER || (here.is_symmetric() && next.is_symmetric()))
+        {
             return Ok((next, StepOutcome::Bifurcation));
         }
         // Where much of a slender arm in line with the stream changes sides within a step, it may do so in a snap.
@@ -399,7 +401,7 @@ impl<'e, E: Traced> Stepper<'e, E> {
         let even = if self.engine.is_in_a_hurry() { strict.max(0.3) } else { strict };
         let unevenness = self.unevenness(here, &next, step) / (even * EVEN);
         self.stretch = self.stretch.max(bend).max(unevenness);
-        if crossing {
+        if bifurcation {
             self.opposite = Some(next.fraction);
         }
         if step.abs() > CORNER && !(bend <= 1.0 && unevenness <= 1.0) {
@@ -413,7 +415,7 @@ impl<'e, E: Traced> Stepper<'e, E> {
         let sign = self.orientation * point.dlambda_ds.signum();
         let round = &mut self.round;
         let there = self.engine.on_halves(1e-6 * self.scale, |halves| {
-            halves.linearise_held(true, round)?;
+            halves.linearise_at_strokes(true, round)?;
             Ok(halves.determinant().known_sign())
         });
         self.linearise()?;
@@ -456,7 +458,7 @@ impl<'e, E: Traced> Stepper<'e, E> {
                 return Ok(());
             }
             let mesh = self.engine.refined(0.05 * accuracy, 2 * MANY);
-            self.engine.move_to(mesh);
+            self.engine.remap_to(mesh);
             self.correct_again(here, fraction)?;
         }
         Ok(())

@@ -42,8 +42,8 @@ pub(crate) fn trace<E: Traced>(
     };
     let mut branches = vec![first];
     if options.branches {
-        for crossing in std::mem::take(&mut trace.bifurcations) {
-            branches.extend(trace.switched(&crossing));
+        for bifurcation in std::mem::take(&mut trace.bifurcations) {
+            branches.extend(trace.switched(&bifurcation));
         }
     }
     branches
@@ -99,7 +99,7 @@ impl<E: Traced> Trace<'_, '_, E> {
         let parts = FEWEST.div_ceil(engine.mesh().elements());
         if parts > 1 {
             let mesh = engine.mesh().cut(parts);
-            engine.move_to(mesh);
+            engine.remap_to(mesh);
             engine.newton(1e-9, 12)?;
         }
         let tol = self.control.accuracy;
@@ -269,14 +269,14 @@ impl<E: Traced> Trace<'_, '_, E> {
     }
 
     /// The branches to both sides of a bifurcation.
-    fn switched(&mut self, crossing: &Point<E>) -> Vec<Branch<E::Shape>> {
+    fn switched(&mut self, bifurcation: &Point<E>) -> Vec<Branch<E::Shape>> {
         let mut out = Vec::new();
         for side in [1.0, -1.0] {
-            let value = self.stepper.engine.value_at(crossing.fraction);
+            let value = self.stepper.engine.value_at(bifurcation.fraction);
             if self.stopped {
                 break;
             }
-            if let Some(first) = self.stepper.switch(crossing, side, self.control) {
+            if let Some(first) = self.stepper.switch(bifurcation, side, self.control) {
                 out.push(self.from(first, Some(value)));
             }
         }

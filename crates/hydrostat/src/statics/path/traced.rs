@@ -69,7 +69,7 @@ pub(crate) trait Traced: Clone + Refinable {
     fn note_sides(&mut self);
 
     /// Factorises at the solution, and finds correction and response, at held strokes where there are any.
-    fn linearise_held(&mut self, parameter: bool, round: &mut NewtonStep<Self::Change>) -> Result<(), Trouble>;
+    fn linearise_at_strokes(&mut self, parameter: bool, round: &mut NewtonStep<Self::Change>) -> Result<(), Trouble>;
     /// Adds the correction of a round, and `slide` times its response, to the solution.
     fn take_round(&mut self, round: &NewtonStep<Self::Change>, slide: f64);
     /// Adds `factor` times a change, and changes of the commanded cables' tensions, to the solution.
@@ -91,7 +91,7 @@ pub(crate) trait Traced: Clone + Refinable {
     fn name_limit(&mut self, trouble: Option<&Trouble>) -> (VerdictKind, Option<f64>);
 
     /// The cables whose strokes are commanded.
-    fn held(&self) -> Option<&StrokeControl>;
+    fn stroke_control(&self) -> Option<&StrokeControl>;
     /// Whether rounds may change which of them are taut.
     fn let_cables_switch(&mut self, may: bool);
     /// Makes held cable `index` slack that was taut, or the other way round: which it is of the arm's, and whether it

@@ -100,7 +100,7 @@ impl<const N: usize, const Q: usize, const L: usize> Row<N, Q, L> {
 
 /// Derivatives of quantities, one row each, by changes of the equations, with all tensions given. `None` where the
 /// system is singular.
-pub(crate) fn unheld<const N: usize, const M: usize, const Q: usize, const L: usize>(
+pub(crate) fn at_given_tensions<const N: usize, const M: usize, const Q: usize, const L: usize>(
     system: &Collocation<N, M, Q, L>,
     solution: &Solution<N, M, L>,
     rows: &[Row<N, Q, L>],

@@ -2,7 +2,7 @@
 
 use hydrostat_bvp::{Collocation, EndWeights, Forcing, LANES, Lanes, Real, Side, each};
 
-use super::derivatives::{self, Derivatives, SensitivityMethod, hold, unheld};
+use super::derivatives::{self, Derivatives, SensitivityMethod, at_given_tensions, hold};
 use super::error::{SensitivityError, unsettled};
 use crate::rod::parameter::Parameter;
 use crate::statics::engine::{Engine, M, Trouble, linearise, response_change};
@@ -54,7 +54,7 @@ impl Engine {
     pub(crate) fn converge_fully(&mut self) -> Result<(), SensitivityError> {
         // Rounds that move nothing but rounding are not made, so that derivatives taken twice are the same.
         self.linearise().map_err(|trouble| unsettled(&trouble))?;
-        if self.equations.held.is_none() && self.correction_here() < CONVERGED {
+        if self.equations.stroke_control.is_none() && self.correction_here() < CONVERGED {
             return Ok(());
         }
         match self.newton(CONVERGED, ROUNDS) {
@@ -88,9 +88,10 @@ impl Engine {
         parameters: &[Parameter],
         method: SensitivityMethod,
     ) -> Option<Derivatives> {
-        let (held, cables) = (self.equations.held.clone(), self.equations.arm().cables.len());
-        let taut: Vec<usize> =
-            held.map_or(Vec::new(), |held| held.taut_cables().iter().map(|i| held.cables[*i]).collect());
+        let (stroke_control, cables) = (self.equations.stroke_control.clone(), self.equations.arm().cables.len());
+        let taut: Vec<usize> = stroke_control.map_or(Vec::new(), |stroke_control| {
+            stroke_control.taut_cables().iter().map(|i| stroke_control.cables[*i]).collect()
+        });
         let mut sources = parameters.to_vec();
         sources.extend(taut.iter().map(|c| Parameter::Tension(*c)));
         let asked = sums.len();
@@ -102,7 +103,7 @@ impl Engine {
         let rows: Vec<Row> = sums.iter().map(|sum| about.sum_row(sum, &sources)).collect::<Option<_>>()?;
         let change = |source: &Parameter| response_change(&self.equations, &system, &self.solution, Way::Of(*source));
         let changes: Vec<Forcing<N, Q, L>> = sources.iter().map(change).collect();
-        let rows = unheld(&system, &self.solution, &rows, &changes, method)?;
+        let rows = at_given_tensions(&system, &self.solution, &rows, &changes, method)?;
         hold(rows, asked, parameters, &taut, cables)
     }
 }

@@ -30,14 +30,14 @@ impl Engine {
     /// Sign and size of the determinant of shape and unknown tensions together, at the last linearisation.
     pub(crate) fn determinant(&self) -> Determinant {
         let shape = self.system.determinant();
-        if self.equations.held.is_none() {
+        if self.equations.stroke_control.is_none() {
             return shape;
         }
         shape.times(self.border)
     }
 
     /// [`Engine::linearise`] with the corrections, at held strokes where there are any.
-    pub(crate) fn linearise_held(&mut self, parameter: bool, round: &mut NewtonStep) -> Result<(), Trouble> {
+    pub(crate) fn linearise_at_strokes(&mut self, parameter: bool, round: &mut NewtonStep) -> Result<(), Trouble> {
         self.match_closure();
         self.linearise()?;
         if self.choose_sides() {
@@ -50,16 +50,18 @@ impl Engine {
             round.response.clone_from(&round.rest);
             round.response.scale(0.0);
         }
-        let Some(held) = self.equations.held.clone() else {
+        let Some(stroke_control) = self.equations.stroke_control.clone() else {
             round.let_go();
             return Ok(());
         };
-        let pulled = pull_taut(&self.equations, &self.system, &self.solution, &held);
+        let pulled = pull_taut(&self.equations, &self.system, &self.solution, &stroke_control);
         let (equations, at) = (&self.equations, StationData::of(&self.system));
-        let off = |index: usize| equations.stroke(held.cables[index], at)[0] - equations.command(&held, index);
+        let off = |index: usize| {
+            equations.stroke(stroke_control.cables[index], at)[0] - equations.command(&stroke_control, index)
+        };
         let change = |cable: usize, by: &Correction<N, M, Q, L>| equations.stroke_change(cable, at, by);
-        let command = |index: usize| equations.command_derivative(&held, index);
-        self.border = round.hold(&held, &pulled, off, change, command).ok_or(Trouble::Singular)?;
+        let command = |index: usize| equations.command_derivative(&stroke_control, index);
+        self.border = round.hold(&stroke_control, &pulled, off, change, command).ok_or(Trouble::Singular)?;
         Ok(())
     }
 
@@ -71,26 +73,26 @@ impl Engine {
 
     /// Adds `factor` times `changes` (in the unit of force), one a commanded cable, to the tensions.
     pub(crate) fn add_tensions(&mut self, changes: &[f64], factor: f64) {
-        let Some(held) = self.equations.held.take() else { return };
+        let Some(stroke_control) = self.equations.stroke_control.take() else { return };
         let unit = self.equations.units.force;
-        for ((cable, taut), change) in held.cables.iter().zip(&held.taut).zip(changes) {
+        for ((cable, taut), change) in stroke_control.cables.iter().zip(&stroke_control.taut).zip(changes) {
             if *taut {
                 let tension = self.equations.arm().cables[*cable].tension + factor * change * unit;
                 self.equations.set_tension(*cable, tension);
             }
         }
-        self.equations.held = Some(held);
+        self.equations.stroke_control = Some(stroke_control);
     }
 
     /// Newton at held strokes until the tip moves by less than `tolerance` and the strokes are met.
-    pub(super) fn iterate_held(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
+    pub(super) fn iterate_at_strokes(&mut self, tolerance: f64, most: usize) -> Result<(), Trouble> {
         let strokes = STROKES.max(0.01 * tolerance);
         let mut round = NewtonStep::default();
         let (mut applied, mut halvings, mut switches) = (0.0, 0, 0);
         let mut count = 0;
         loop {
             let mut next = NewtonStep::default();
-            match self.linearise_held(false, &mut next) {
+            match self.linearise_at_strokes(false, &mut next) {
                 Ok(()) => round = next,
                 Err(Trouble::Section(failure)) => {
                     self.halve(&round, &mut applied, &mut halvings, failure)?;
@@ -153,12 +155,13 @@ impl Engine {
 
     /// Lets cables go slack that push, and takes slack ones up that are too short; whether any changed.
     fn switch_taut(&mut self, slack: &[f64]) -> bool {
-        let Some(mut held) = self.equations.held.take() else { return false };
-        let changed = held.switching && held.switch(|cable| self.equations.arm().cables[cable].tension, slack);
+        let Some(mut stroke_control) = self.equations.stroke_control.take() else { return false };
+        let changed = stroke_control.switching
+            && stroke_control.switch(|cable| self.equations.arm().cables[cable].tension, slack);
         if changed {
-            held.slack_cables().for_each(|cable| self.equations.set_tension(cable, 0.0));
+            stroke_control.slack_cables().for_each(|cable| self.equations.set_tension(cable, 0.0));
         }
-        self.equations.held = Some(held);
+        self.equations.stroke_control = Some(stroke_control);
         changed
     }
 }
@@ -168,17 +171,17 @@ pub(crate) fn pull_taut(
     equations: &Equations,
     system: &Collocation<N, M, Q, L>,
     solution: &Guess,
-    held: &StrokeControl,
+    stroke_control: &StrokeControl,
 ) -> Vec<UnitPull<N, M, Q, L>> {
     let at = StationData::of(system);
     let mut out = Vec::new();
-    for index in held.taut_cables() {
-        let cable = held.cables[index];
+    for index in stroke_control.taut_cables() {
+        let cable = stroke_control.cables[index];
         let change = response_change(equations, system, solution, Way::Tension(cable));
         let mut response = Correction::default();
         respond(system, &change, &mut response);
         let mut strokes: Vec<f64> =
-            held.cables.iter().map(|cable| equations.stroke_change(*cable, at, &response)).collect();
+            stroke_control.cables.iter().map(|cable| equations.stroke_change(*cable, at, &response)).collect();
         strokes[index] += equations.stroke(cable, at)[1];
         out.push(UnitPull { response, strokes });
     }
@@ -232,13 +235,16 @@ mod tests {
         ] {
             let arm = arm();
             let mut engine = settled(&arm);
-            assert_eq!(engine.equations.held.as_ref().unwrap().taut.iter().filter(|taut| **taut).count(), taut);
+            assert_eq!(
+                engine.equations.stroke_control.as_ref().unwrap().taut.iter().filter(|taut| **taut).count(),
+                taut
+            );
             let value = parameter.of(&arm).unwrap();
             // A range that differences of it are not lost in rounding.
             engine.equations.vary(parameter, value, value + RANGE * step);
             let mut round = NewtonStep::default();
             for _ in 0..3 {
-                engine.linearise_held(true, &mut round).unwrap();
+                engine.linearise_at_strokes(true, &mut round).unwrap();
             }
             let at = |value: f64| {
                 let mut arm = arm.clone();
@@ -256,9 +262,9 @@ mod tests {
                 assert!((change - found).abs() < bound * change.abs().max(1e-3), "{parameter}: {found} for {change}");
             }
             let slack = |engine: &Engine| {
-                let held = engine.equations.held.clone().unwrap();
+                let stroke_control = engine.equations.stroke_control.clone().unwrap();
                 let strokes = engine.strokes(0..3);
-                let one = |i: usize| strokes[i] - engine.equations.command(&held, i);
+                let one = |i: usize| strokes[i] - engine.equations.command(&stroke_control, i);
                 [one(0), one(1), one(2)]
             };
             for ((after, before), found) in slack(&after).iter().zip(slack(&before)).zip(&round.slack[1]) {
@@ -277,7 +283,7 @@ mod tests {
         let mut sizes = Vec::new();
         for _ in 0..5 {
             let mut round = NewtonStep::default();
-            engine.linearise_held(false, &mut round).unwrap();
+            engine.linearise_at_strokes(false, &mut round).unwrap();
             engine.add_round(&round, 0, 1.0);
             sizes.push(round.off.max(round.rest.largest(0)));
         }

@@ -5,7 +5,7 @@ use hydrostat_bvp::{Correction, Determinant};
 use super::cable_paths::StageData;
 use super::engine::Engine;
 use super::equations::{L, M, N, Q};
-use super::lengths::{HeldRound, hold_lengths, pull_taut};
+use super::lengths::{StrokeRound, hold_lengths, pull_taut};
 use super::neutral::{is_on_a_circle, without_neutral};
 use crate::numerics::rounds::correct;
 use crate::statics::border::{NewtonStep, border};
@@ -20,12 +20,12 @@ impl Engine {
     pub(super) fn hold_strokes(&mut self) {
         let cables = &self.equations.arm().cables;
         let commanded: Vec<usize> = (0..cables.len()).filter(|c| cables[*c].stroke.is_some()).collect();
-        self.held = StrokeControl::slack(commanded);
+        self.stroke_control = StrokeControl::slack(commanded);
     }
 
     /// Leaves all cables to their tensions, those with a commanded stroke slack.
     pub(super) fn release_strokes(&mut self) {
-        (self.held, self.border) = (None, None);
+        (self.stroke_control, self.border) = (None, None);
         for cable in 0..self.equations.arm().cables.len() {
             if self.equations.arm().cables[cable].stroke.is_some() {
                 self.equations.set_tension(cable, 0.0);
@@ -42,25 +42,25 @@ impl Engine {
     }
 
     /// Holds the lengths of taut cables in the present correction, if any are commanded.
-    pub(super) fn hold_lengths(&mut self) -> Result<HeldRound, Trouble> {
-        let Some(held) = &self.held else { return Ok(HeldRound::default()) };
-        let round = hold_lengths(&self.equations, &self.system, &self.solution, held, &mut self.correction)?;
+    pub(super) fn hold_lengths(&mut self) -> Result<StrokeRound, Trouble> {
+        let Some(stroke_control) = &self.stroke_control else { return Ok(StrokeRound::default()) };
+        let round = hold_lengths(&self.equations, &self.system, &self.solution, stroke_control, &mut self.correction)?;
         self.border = round.border;
         Ok(round)
     }
 
     /// The determinant of the strokes of taut cables by their tensions, at the last linearisation.
     pub(super) fn find_border(&mut self) -> Result<(), Trouble> {
-        let Some(held) = &self.held else { return Ok(()) };
-        let pulled = pull_taut(&self.equations, &self.system, &self.solution, held)?;
-        self.border = Some(border(held, &pulled).ok_or(Trouble::Singular)?);
+        let Some(stroke_control) = &self.stroke_control else { return Ok(()) };
+        let pulled = pull_taut(&self.equations, &self.system, &self.solution, stroke_control)?;
+        self.border = Some(border(stroke_control, &pulled).ok_or(Trouble::Singular)?);
         Ok(())
     }
 
     /// Adds `factor` times `changes` (in the unit of force), one a commanded cable, to the tensions.
     pub(super) fn add_tensions(&mut self, changes: &[f64], factor: f64) {
-        let Some(held) = &self.held else { return };
-        for (cable, change) in held.cables.iter().zip(changes) {
+        let Some(stroke_control) = &self.stroke_control else { return };
+        for (cable, change) in stroke_control.cables.iter().zip(changes) {
             let tension = self.equations.tension(*cable) + factor * change;
             self.equations.set_tension(*cable, tension);
         }
@@ -69,10 +69,12 @@ impl Engine {
     /// Lets cables go slack that push, and takes slack ones up that are too short, once a correction of `size` (rad)
     /// says which these are; whether any changed.
     pub(super) fn switch_taut(&mut self, size: f64, slack: &[f64]) -> bool {
-        let Some(held) = &mut self.held else { return false };
-        let changed = held.switching && size < SETTLED && held.switch(|cable| self.equations.tension(cable), slack);
+        let Some(stroke_control) = &mut self.stroke_control else { return false };
+        let changed = stroke_control.switching
+            && size < SETTLED
+            && stroke_control.switch(|cable| self.equations.tension(cable), slack);
         if changed {
-            held.slack_cables().for_each(|cable| self.equations.set_tension(cable, 0.0));
+            stroke_control.slack_cables().for_each(|cable| self.equations.set_tension(cable, 0.0));
         }
         changed
     }
@@ -80,9 +82,9 @@ impl Engine {
     /// Makes held cable `index` slack that was taut, or the other way round: which it is of the arm's, and whether it
     /// is slack now.
     pub(super) fn switch_active(&mut self, index: usize) -> (usize, bool) {
-        let Some(held) = &mut self.held else { return (index, false) };
-        held.taut[index] = !held.taut[index];
-        let (cable, slack) = (held.cables[index], !held.taut[index]);
+        let Some(stroke_control) = &mut self.stroke_control else { return (index, false) };
+        stroke_control.taut[index] = !stroke_control.taut[index];
+        let (cable, slack) = (stroke_control.cables[index], !stroke_control.taut[index]);
         if slack {
             self.equations.set_tension(cable, 0.0);
         }
@@ -90,7 +92,7 @@ impl Engine {
     }
 
     /// Factorises at the solution, and finds correction and response, at held strokes where there are any.
-    pub(super) fn linearise_held(
+    pub(super) fn linearise_at_strokes(
         &mut self,
         parameter: bool,
         round: &mut NewtonStep<Correction<N, M, Q, L>>,
@@ -109,29 +111,34 @@ impl Engine {
             round.response.clone_from(&round.rest);
             round.response.scale(0.0);
         }
-        let Some(held) = &self.held else {
+        let Some(stroke_control) = &self.stroke_control else {
             round.let_go();
             return Ok(());
         };
         let (equations, at) = (&self.equations, StageData::of(&self.system, &self.solution));
-        let pulled = pull_taut(equations, &self.system, &self.solution, held)?;
-        let off = |index: usize| equations.stroke(held.cables[index], at)[0] - equations.command(held, index);
+        let pulled = pull_taut(equations, &self.system, &self.solution, stroke_control)?;
+        let off = |index: usize| {
+            equations.stroke(stroke_control.cables[index], at)[0] - equations.command(stroke_control, index)
+        };
         let change = |cable: usize, by: &Correction<N, M, Q, L>| equations.stroke_change(cable, at, by);
-        let command = |index: usize| equations.command_derivative(held, index);
-        self.border = Some(round.hold(held, &pulled, off, change, command).ok_or(Trouble::Singular)?);
+        let command = |index: usize| equations.command_derivative(stroke_control, index);
+        self.border = Some(round.hold(stroke_control, &pulled, off, change, command).ok_or(Trouble::Singular)?);
         Ok(())
     }
 
     /// Whether cable `c` has a commanded stroke and is taut.
     pub(super) fn is_taut(&self, c: usize) -> bool {
-        let held = self.held.iter().flat_map(|held| held.cables.iter().zip(&held.taut));
-        held.into_iter().any(|(cable, taut)| *cable == c && *taut)
+        let stroke_control = self
+            .stroke_control
+            .iter()
+            .flat_map(|stroke_control| stroke_control.cables.iter().zip(&stroke_control.taut));
+        stroke_control.into_iter().any(|(cable, taut)| *cable == c && *taut)
     }
 
     /// Strokes of the commanded cables at the present solution, over L.
     pub(super) fn strokes(&self) -> Vec<f64> {
         let at = StageData::of(&self.system, &self.solution);
-        let cables = self.held.iter().flat_map(|held| held.cables.iter());
+        let cables = self.stroke_control.iter().flat_map(|stroke_control| stroke_control.cables.iter());
         cables.map(|cable| self.equations.stroke(*cable, at)[0]).collect()
     }
 }
