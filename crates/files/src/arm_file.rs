@@ -6,7 +6,7 @@ use std::path::Path;
 
 use hydrostat::{
     Arm, ArmError, Base, BaseDirections, Cable, Cavity, Displaced, DistributedLoad, Dynamics, EnteringSpeed, Flow,
-    FlowLaw, FlowSurface, Gravity, Hydrostatics, LayerMean, Material, Motion, Profile, Readings, Reference, Space,
+    FlowLaw, FlowSurface, Gravity, Hydrostatics, LayerMean, Material, ModelOptions, Motion, Profile, Reference, Space,
     Support, TipLoad, Volume, WettedLength,
 };
 
@@ -294,7 +294,7 @@ fn build(v: &Values, name: String) -> Arm {
             },
         },
         dynamics: dynamics(v),
-        readings: readings(v),
+        model: readings(v),
         space: v.is_spatial().then(|| space(v)),
     }
 }
@@ -403,8 +403,9 @@ fn flow(v: &Values) -> Flow {
     }
 }
 
-fn readings(v: &Values) -> Readings {
-    let mut r = if v.word("model.closure") == Some("literal") { Readings::LITERAL } else { Readings::default() };
+fn readings(v: &Values) -> ModelOptions {
+    let mut r =
+        if v.word("model.closure") == Some("literal") { ModelOptions::LITERAL } else { ModelOptions::default() };
     take(v, "volume", &Volume::ALL, &Volume::NAMES, &mut r.volume);
     take(v, "flow_surface", &FlowSurface::ALL, &FlowSurface::NAMES, &mut r.flow_surface);
     take(v, "entering_speed", &EnteringSpeed::ALL, &EnteringSpeed::NAMES, &mut r.entering_speed);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hydrostat::{Arm, Readings};
+use hydrostat::{Arm, ModelOptions};
 
 use crate::document::{Node, parse_setting};
 use crate::format::{self, Key, Kind};
@@ -104,7 +104,7 @@ fn is_default(table: &str, key: &Key, value: &Tree) -> bool {
         node(&text)
     };
     if table == "model" {
-        let Tree::Table(words) = model(Readings::default()) else { return false };
+        let Tree::Table(words) = model(ModelOptions::default()) else { return false };
         return words.iter().any(|(name, word)| *name == key.name && word == value);
     }
     // Left out, an offset is a number that few arms can have.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use hydrostat::{Arm, Cavity, FlowLaw, Join, Material, Profile, Readings};
+use hydrostat::{Arm, Cavity, FlowLaw, Join, Material, ModelOptions, Profile};
 use serde::{Serialize, Serializer};
 
 /// An arm in the form of its file, every default filled in: SI numbers, angles as bare numbers in
@@ -291,7 +291,7 @@ fn tree(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
         ];
         file.push(("dynamics", Tree::Table(keys)));
     }
-    file.push(("model", model(arm.readings)));
+    file.push(("model", model(arm.model)));
     Tree::Table(file)
 }
 
@@ -388,7 +388,7 @@ fn flow(arm: &Arm, angle: &dyn Fn(f64) -> Tree) -> Tree {
 }
 
 /// The readings by their words.
-pub(crate) fn model(r: Readings) -> Tree {
+pub(crate) fn model(r: ModelOptions) -> Tree {
     let words = [
         ("volume", r.volume.name()),
         ("flow_surface", r.flow_surface.name()),

@@ -3,7 +3,7 @@
 mod common;
 
 use hydrostat::{
-    Arm, Cable, Cavity, Displaced, Flow, FlowLaw, FlowSurface, Gravity, Material, Profile, Readings, Reference,
+    Arm, Cable, Cavity, Displaced, Flow, FlowLaw, FlowSurface, Gravity, Material, ModelOptions, Profile, Reference,
     Support, Volume,
 };
 use hydrostat_files::{ArmFile, shipped};
@@ -113,13 +113,13 @@ fn every_key_of_the_format() {
     assert_eq!((arm.tip.force, arm.tip.moment, arm.tip.follower), ([0.001, 0.002], 0.003, [0.0, -0.001]));
     assert_eq!(arm.distributed.force, [Profile::linear(0.001, 0.0), 0.5.into()]);
     assert_eq!(arm.distributed.couple, 0.001.into());
-    let want = Readings {
+    let want = ModelOptions {
         volume: Volume::None,
         displaced: Displaced::Section,
         support: Support::UnstrainedBase,
-        ..Readings::LITERAL
+        ..ModelOptions::LITERAL
     };
-    assert_eq!(arm.readings, want);
+    assert_eq!(arm.model, want);
 }
 
 #[test]
@@ -192,9 +192,9 @@ fn overrides_replace_and_make() {
     assert_eq!(ok("cable[1].tension", "20 mN").cables[1].tension, 0.02);
     assert_eq!(ok("arm.length", "0.3 m").length, 0.3);
     assert_eq!(ok("arm.length", "\"30 cm\"").length, 0.3);
-    assert_eq!(ok("model.volume", "none").readings.volume, Volume::None);
-    assert_eq!(ok("model.closure", "\"literal\"").readings, Readings::LITERAL);
-    assert_eq!(ok("model.flow_surface", "lateral").readings.flow_surface, FlowSurface::Lateral);
+    assert_eq!(ok("model.volume", "none").model.volume, Volume::None);
+    assert_eq!(ok("model.closure", "\"literal\"").model, ModelOptions::LITERAL);
+    assert_eq!(ok("model.flow_surface", "lateral").model.flow_surface, FlowSurface::Lateral);
     assert_eq!(ok("flow.speed", "0.5").flow.speed, 0.5);
     assert_eq!(ok("gravity.acceleration", "1 g").gravity.unwrap().acceleration, 9.80665);
     assert_eq!(ok("gravity", "{}").gravity, Some(Gravity::default()));

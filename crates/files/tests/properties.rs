@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use hydrostat::{
     Arm, Base, Cable, Cavity, Displaced, DistributedLoad, EnteringSpeed, Flow, FlowLaw, FlowSurface, Gravity,
-    Hydrostatics, Join, LayerMean, Material, Motion, Profile, Readings, Reference, Support, TipLoad, Volume,
+    Hydrostatics, Join, LayerMean, Material, ModelOptions, Motion, Profile, Reference, Support, TipLoad, Volume,
     WettedLength,
 };
 use hydrostat_files::{ArmFile, Inputs, arm_to_toml, schema, shipped};
@@ -40,7 +40,7 @@ fn angle() -> impl Strategy<Value = f64> {
     prop_oneof![-7.0..7.0, select(vec![0.0, -0.0, 30_f64.to_radians(), -90_f64.to_radians(), 1e-300])]
 }
 
-fn readings() -> impl Strategy<Value = Readings> {
+fn readings() -> impl Strategy<Value = ModelOptions> {
     (
         select(vec![Volume::Planar, Volume::Circular, Volume::None]),
         select(vec![FlowSurface::Centreline, FlowSurface::Lateral]),
@@ -53,7 +53,7 @@ fn readings() -> impl Strategy<Value = Readings> {
     )
         .prop_map(
             |(volume, flow_surface, entering_speed, layer_mean, wetted_length, displaced, hydrostatics, support)| {
-                Readings {
+                ModelOptions {
                     volume,
                     flow_surface,
                     entering_speed,
@@ -141,7 +141,7 @@ fn arm() -> impl Strategy<Value = Arm> {
                     tip,
                     distributed,
                     dynamics: hydrostat::Dynamics::default(),
-                    readings,
+                    model: readings,
                     space: None,
                 }
             },

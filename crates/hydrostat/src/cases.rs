@@ -15,7 +15,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::rod::arm::{Arm, Cable, Flow, FlowLaw, Gravity, Material};
-use crate::rod::readings::Volume;
+use crate::rod::model_options::Volume;
 use crate::statics::configuration::Configuration;
 
 /// A problem and what its answer must be.
@@ -97,7 +97,7 @@ pub fn uniform_arm(name: &str, ea: f64, ga: f64) -> Arm {
     name.clone_into(&mut arm.name);
     arm.radius = RADIUS.into();
     arm.material = Material::Coefficients { c1: (ea / area).into(), c2: (ga / area).into(), c3: (1.0 / area).into() };
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm
 }
 
@@ -133,7 +133,7 @@ fn cable_arm(name: &str, volume: Volume) -> Arm {
     let mut arm = Arm::cone(0.2, 0.01, 0.01, 100e3, 0.5);
     name.clone_into(&mut arm.name);
     arm.radius = 0.01.into();
-    arm.readings.volume = volume;
+    arm.model.volume = volume;
     arm
 }
 

@@ -75,16 +75,16 @@
 //! ## Other loads, readings and tolerances
 //!
 //! Every field of an arm is public, and so are weight, tip loads and loads along the arm. Where the
-//! source leaves a point open, [`Readings`] selects the reading that is solved.
+//! source leaves a point open, [`ModelOptions`] selects the reading that is solved.
 //!
 //! ```
-//! use hydrostat::{Arm, Gravity, Options, Readings, Solver, Volume};
+//! use hydrostat::{Arm, Gravity, Options, ModelOptions, Solver, Volume};
 //!
 //! let mut arm = Arm::cone(0.2, 0.010, 0.002, 110e3, 0.5);
 //! arm.density = 1080.0; // in still water of 1000 kg/m3: it sinks a little
 //! arm.gravity = Some(Gravity::default()); // 9.81 m/s2 along -e2
 //! arm.tip.force = [0.0, 1e-3]; // N, dead: keeps its direction
-//! arm.readings = Readings { volume: Volume::Circular, ..Readings::default() };
+//! arm.model = ModelOptions { volume: Volume::Circular, ..ModelOptions::default() };
 //!
 //! // Another tolerance: error of the tip over L, from 1e-12 to 1e-2.
 //! let shape = Solver::new(&arm, Options::with_tol(1e-6))?.solve()?;
@@ -141,7 +141,7 @@ pub mod spatial;
 mod statics;
 
 pub use inverse::reach;
-pub use rod::{arm, parameter, profile, readings};
+pub use rod::{arm, model_options, parameter, profile};
 pub use statics::{configuration, many, path, row, sensitivity, snap, solve, stability, verdict, warm_start};
 
 pub use arm::{
@@ -152,6 +152,9 @@ pub use configuration::{
     CableState, Command, Configuration, FoldMargin, Station, Stations, Statistics, Tip, Warning, Wrench,
 };
 pub use many::{ManyOptions, NoRow, RowSolver, Rows, solve_many};
+pub use model_options::{
+    Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, ModelOptions, Support, Volume, WettedLength,
+};
 pub use motion::{
     AfterSnap, AfterSnapError, CableMotion, Course, Inputs, Instant, Loading, LoadingError, LoadingSnap, LoadingStep,
     Mode, ModeSection, ModeShape, ModeStation, Modes, MotionError, MotionEvent, MotionEventKind, MotionOptions,
@@ -166,9 +169,6 @@ pub use profile::{Join, Point, Profile, Sample, TableError};
 pub use reach::{
     Bound, Boundary, BoundaryKind, BoundaryOptions, BoundaryPiece, BoundaryPoint, BoundaryProgress, Followed, Follower,
     Reach, ReachError, ReachOptions, Reached, SpatialFollower, SpatialTarget, Target,
-};
-pub use readings::{
-    Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
 };
 pub use row::{Row, Wanted};
 pub use sensitivity::{

@@ -90,7 +90,7 @@ fn a_snap_of_an_arm_with_friction_is_refused_by_name() {
 #[test]
 fn a_column_under_a_dead_load_snaps_to_its_mirror_image() {
     let mut arm = Arm::cone(1.0, 0.01, 0.01, 1e6, 0.5);
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm.density = 1000.0;
     arm.flow.density = 0.0;
     arm.dynamics.relaxation_time = 0.05;

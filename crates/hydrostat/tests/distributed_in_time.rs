@@ -30,7 +30,7 @@ fn rod() -> Arm {
     let mut arm = Arm::cone(1.0, r, r, young, 0.5);
     arm.density = rho;
     arm.flow.density = 0.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm
 }
 

@@ -18,7 +18,7 @@ fn rod() -> Arm {
     let mut arm = Arm::cone(1.0, r, r, young, 0.5);
     arm.density = rho;
     arm.flow.density = 0.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm
 }
 
@@ -28,7 +28,7 @@ fn silicone(volume: Volume) -> Arm {
     arm.density = 1080.0;
     arm.flow.density = 1022.0;
     arm.flow.speed = 0.1;
-    arm.readings.volume = volume;
+    arm.model.volume = volume;
     arm.dynamics.relaxation_time = 2.7e-3;
     arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)));
     arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)));
@@ -154,7 +154,7 @@ fn the_hinge_of_a_rod_that_falls_carries_what_the_closed_form_says() {
     let area = PI * radius * radius;
     let weight = 1000.0 * area * length * 9.81;
     let mut arm = Arm::cone(length, radius, radius, 1.0, 0.5);
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm.density = 1000.0;
     arm.flow.density = 0.0;
     arm.gravity = Some(Gravity::default());

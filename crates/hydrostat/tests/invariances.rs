@@ -54,9 +54,9 @@ prop_compose! {
         arm.tip.follower = [0.0, follower * force];
         arm.distributed.force[1] = (0.2 * follower * force / length).into();
         (arm.base.angle, arm.base.x, arm.base.y) = (angle, x, y);
-        arm.readings.volume = volume;
-        arm.readings.layer_mean = layer_mean;
-        arm.readings.wetted_length = wetted_length;
+        arm.model.volume = volume;
+        arm.model.layer_mean = layer_mean;
+        arm.model.wetted_length = wetted_length;
         arm
     }
 }
@@ -212,7 +212,7 @@ fn a_verdict_does_not_depend_on_units() {
     arm.cables.push(Cable::new("left", Profile::linear(0.0059, 0.0015)).pulled(4.917_687));
     arm.cables.push(Cable::new("right", Profile::linear(-0.0016, -0.0004)).pulled(2.874_317));
     arm.tip.force = [0.0, 0.015];
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     let fraction = |arm: &Arm| match solve(arm) {
         Err(SolveError::NoEquilibrium(end)) => (end.verdict.kind, end.verdict.load_fraction),
         other => panic!("an answer or another error: {:?}", other.map(|c| c.tip())),

@@ -12,7 +12,7 @@ fn rod(radius: f64) -> Arm {
     let mut arm = Arm::cone(1.0, radius, radius, 1e9, 0.5);
     arm.density = 1000.0;
     arm.flow.density = 0.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm
 }
 

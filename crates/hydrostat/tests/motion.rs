@@ -26,7 +26,7 @@ fn rod() -> Arm {
     let mut arm = Arm::cone(1.0, r, r, young, 0.5);
     arm.density = rho;
     arm.flow.density = 0.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm
 }
 
@@ -168,7 +168,7 @@ fn modes_of_a_thick_rod_are_timoshenkos() {
     let mut arm = Arm::cone(1.0, r, r, young, 0.5);
     arm.density = rho;
     arm.flow.density = 0.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     let [_, ga, ei] = arm.stiffness_at(0.0);
     let area = PI * r * r;
     let (mass, rotary) = (rho * area, rho * area * r * r / 4.0);
@@ -224,7 +224,7 @@ fn pendulum(radius: f64) -> Arm {
     let area = PI * radius * radius;
     let weight = 1000.0 * area * length * 9.81;
     let mut arm = Arm::cone(length, radius, radius, 1.0, 0.5);
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm.density = 1000.0;
     arm.flow.density = 0.0;
     arm.gravity = Some(Gravity::default());
@@ -361,7 +361,7 @@ fn a_free_neutral_arm_follows_a_stream_that_speeds_up() {
     // Soft enough to be free: the base alone holds it.
     let mut arm = Arm::cone(1.0, 0.01, 0.01, 1e4, 0.5);
     arm.density = 1000.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm.flow.law = FlowLaw::QuadraticDrag { cn: 1.0, ct: 0.01 };
     arm.flow.direction = PI / 2.0;
     let speed = Course::ramp(0.0, 0.1, 0.0, 1.0);
@@ -443,7 +443,7 @@ fn short_waves_that_grow_without_relaxation_time_were_called_a_limit_of_the_arm(
     end(&arm, Some(8)).unwrap();
     let damped = Arm { dynamics: Dynamics { relaxation_time: 1e-5, ..arm.dynamics }, ..arm.clone() };
     end(&damped, None).unwrap();
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     end(&arm, None).unwrap();
 }
 

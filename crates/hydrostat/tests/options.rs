@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use hydrostat::cases::{inextensible_arm, uniform_arm};
 use hydrostat::{
     Arm, Cable, Cavity, Configuration, Displaced, EnteringSpeed, FlowLaw, FlowSurface, Gravity, Hydrostatics,
-    LayerMean, Options, Profile, Readings, Solver, Support, Volume, WettedLength,
+    LayerMean, ModelOptions, Options, Profile, Solver, Support, Volume, WettedLength,
 };
 
 fn solve(arm: &Arm) -> Configuration {
@@ -55,8 +55,8 @@ fn quadratic_drag_on_a_straight_cylinder() {
         close(load(&arm), [ct * t.abs() * t, cn / PI * n.abs() * n]);
         // Neither the entering speed nor the layer is a part of this law.
         let same = load(&arm);
-        arm.readings.entering_speed = EnteringSpeed::Resultant;
-        arm.readings.layer_mean = LayerMean::Momentum;
+        arm.model.entering_speed = EnteringSpeed::Resultant;
+        arm.model.layer_mean = LayerMean::Momentum;
         assert_eq!(load(&arm), same);
     }
 }
@@ -67,13 +67,13 @@ fn layer_mean_momentum_raises_the_tangential_load() {
     for degrees in [0.0_f64, 40.0, 90.0] {
         let angle = degrees.to_radians();
         let mut arm = rigid(angle);
-        arm.readings.layer_mean = LayerMean::Momentum;
+        arm.model.layer_mean = LayerMean::Momentum;
         let (v, n) = ((8.0_f64 / 15.0).sqrt() * angle.cos(), angle.sin());
         close(load(&arm), [(v.abs() + 2.0 * n.abs()) * v, n * n]);
     }
     let mut along = rigid(0.0);
     let speed = load(&along)[0];
-    along.readings.layer_mean = LayerMean::Momentum;
+    along.model.layer_mean = LayerMean::Momentum;
     assert!((load(&along)[0] / speed - 1.2).abs() < 1e-9);
 }
 
@@ -85,13 +85,13 @@ fn resultant_adds_a_force_along_the_arm_at_normal_incidence() {
         let mut arm = rigid(FRAC_PI_2 + side * off);
         let (v, n) = (2.0 / 3.0 * off.sin(), off.cos());
         close(load(&arm), [-side * (v + 2.0 * n) * v, n * n]);
-        arm.readings.entering_speed = EnteringSpeed::Resultant;
+        arm.model.entering_speed = EnteringSpeed::Resultant;
         close(load(&arm), [-side * (v + n) * (v + n), n * n]);
     }
     // Along the arm both agree.
     let mut arm = rigid(0.0);
     let tangential = load(&arm);
-    arm.readings.entering_speed = EnteringSpeed::Resultant;
+    arm.model.entering_speed = EnteringSpeed::Resultant;
     close(load(&arm), tangential);
 }
 
@@ -104,7 +104,7 @@ fn deformed_wetted_length_scales_the_load_with_the_stretch() {
     arm.flow.speed = 1e-3;
     let reference = solve(&arm);
     assert!((reference.at(0.5).nu - 0.8).abs() < 1e-6);
-    arm.readings.wetted_length = WettedLength::Deformed;
+    arm.model.wetted_length = WettedLength::Deformed;
     let deformed = solve(&arm);
     let ratio = deformed.base_reaction.force[0] / reference.base_reaction.force[0];
     assert!((ratio - 0.8).abs() < 1e-6, "{ratio}");
@@ -117,7 +117,7 @@ fn loaded(volume: Volume) -> Configuration {
     arm.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)).pulled(0.1));
     arm.flow.speed = 0.05;
     arm.flow.direction = 0.4;
-    arm.readings.volume = volume;
+    arm.model.volume = volume;
     solve(&arm)
 }
 
@@ -161,10 +161,10 @@ fn an_arm_pulled_by_both_cables_floated_under_the_planar_law() {
     let weight = (1080.0 - 1022.0) * 9.81 * volume;
     assert!((weight - 0.0181).abs() < 1e-4);
     for volume_law in [Volume::Planar, Volume::Circular] {
-        let held = weight_in_water(|arm| arm.readings.volume = volume_law);
+        let held = weight_in_water(|arm| arm.model.volume = volume_law);
         assert!((held / weight - 1.0).abs() < 1e-9, "{volume_law:?}: {held} of {weight}");
     }
-    let by_section = weight_in_water(|arm| arm.readings.displaced = Displaced::Section);
+    let by_section = weight_in_water(|arm| arm.model.displaced = Displaced::Section);
     assert!(by_section.abs() < 0.1 * weight, "{by_section}");
     println!("{weight} N in water, {by_section} N by the section");
 }
@@ -187,7 +187,7 @@ fn cavities_displace_what_they_did_in_the_unloaded_arm() {
         for volume in Volume::ALL {
             for displaced in Displaced::ALL {
                 arm.cavity = cavity;
-                (arm.readings.volume, arm.readings.displaced) = (volume, displaced);
+                (arm.model.volume, arm.model.displaced) = (volume, displaced);
                 let solved = solve(&arm);
                 let middle = solved.at(0.5 * arm.length);
                 assert!(middle.nu < 0.99, "the cables compress the arm");
@@ -220,7 +220,7 @@ fn normal_only_leaves_no_weight_along_the_tangent() {
     };
     close(parts(&solve(&arm)), [0.5, 0.75_f64.sqrt()]);
     let mut normal_only = arm.clone();
-    normal_only.readings.hydrostatics = Hydrostatics::NormalOnly;
+    normal_only.model.hydrostatics = Hydrostatics::NormalOnly;
     let solved = solve(&normal_only);
     close(parts(&solved), [0.0, 0.75_f64.sqrt()]);
     // The axial force would be the sum of what is left along the tangent.
@@ -233,7 +233,7 @@ fn check_unstrained_base(tip_radius: f64, tension: f64) {
     const ROUNDING: f64 = 1e-15;
     let mut arm = Arm::cone(0.245, 0.010, tip_radius, 110e3, 0.5);
     arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.5 * tip_radius)).pulled(tension));
-    arm.readings.support = Support::UnstrainedBase;
+    arm.model.support = Support::UnstrainedBase;
     let solved = solve(&arm);
     // EI = E pi R^4/4 with R linear in s: the integral of 1/R^2 is L/(R(0) R(L)).
     let growth = ((4.0 * tension / (PI * 110e3)).sqrt() * arm.length / (0.010 * tip_radius)).exp();
@@ -272,7 +272,7 @@ fn an_unstrained_base_bends_more_in_a_faster_stream() {
     arm.flow.direction = 0.6;
     let bend = |support: Support, speed: f64| {
         let mut arm = arm.clone();
-        arm.readings.support = support;
+        arm.model.support = support;
         arm.flow.speed = speed;
         let solved = solve(&arm);
         assert_eq!(solved.unmet.is_some(), support == Support::UnstrainedBase);
@@ -293,7 +293,7 @@ fn lateral_is_centreline_on_a_cylinder() {
         arm.flow.direction = direction;
         arm.flow.speed = 0.1;
         let centreline = solve(&arm).tip();
-        arm.readings.flow_surface = FlowSurface::Lateral;
+        arm.model.flow_surface = FlowSurface::Lateral;
         let lateral = solve(&arm).tip();
         assert!((lateral.theta - 0.8).abs() > 0.05, "the stream bends it");
         let off = (centreline.x - lateral.x).hypot(centreline.y - lateral.y);
@@ -311,7 +311,7 @@ fn lateral_turns_the_load_by_the_taper() {
     arm.flow.speed = 1e-3;
     arm.flow.direction = 1.0;
     let s = PI * arm.flow.density * mean_radius * arm.flow.speed * arm.flow.speed;
-    arm.readings.flow_surface = FlowSurface::Lateral;
+    arm.model.flow_surface = FlowSurface::Lateral;
     // The stream comes from below: the right side is hit, whose tangent is turned by + taper.
     let (v, n) = (2.0 / 3.0 * (1.0 - taper).cos(), (1.0 - taper).sin());
     let (along, across) = ((v + 2.0 * n) * v, n * n);
@@ -321,7 +321,7 @@ fn lateral_turns_the_load_by_the_taper() {
 
 #[test]
 fn literal_is_the_listed_set() {
-    let listed = Readings {
+    let listed = ModelOptions {
         volume: Volume::Planar,
         flow_surface: FlowSurface::Lateral,
         entering_speed: EnteringSpeed::Resultant,
@@ -331,8 +331,8 @@ fn literal_is_the_listed_set() {
         hydrostatics: Hydrostatics::NormalOnly,
         support: Support::Clamped,
     };
-    assert_eq!(Readings::LITERAL, listed);
-    let default = Readings::default();
+    assert_eq!(ModelOptions::LITERAL, listed);
+    let default = ModelOptions::default();
     assert_eq!(default.volume, Volume::Planar);
     assert_eq!(default.flow_surface, FlowSurface::Centreline);
     assert_eq!(default.entering_speed, EnteringSpeed::Tangential);
@@ -349,12 +349,15 @@ fn in_still_water_only_the_volume_law_matters() {
     let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
     arm.cables.push(Cable::new("left", Profile::linear(0.005, 0.001)).pulled(0.5));
     let default = solve(&arm).tip();
-    arm.readings =
-        Readings { layer_mean: LayerMean::Momentum, wetted_length: WettedLength::Deformed, ..Readings::LITERAL };
+    arm.model = ModelOptions {
+        layer_mean: LayerMean::Momentum,
+        wetted_length: WettedLength::Deformed,
+        ..ModelOptions::LITERAL
+    };
     let literal = solve(&arm).tip();
     let off = (default.x - literal.x).hypot(default.y - literal.y) / arm.length;
     assert!(off < 2e-10, "{off:e}");
-    arm.readings.volume = Volume::Circular;
+    arm.model.volume = Volume::Circular;
     assert!((solve(&arm).tip().theta - default.theta).abs() > 1e-2);
 }
 
@@ -368,7 +371,7 @@ fn the_layer_ran_along_the_centreline_in_every_reading() {
     for (direction, windward) in [(1.0_f64, taper), (-1.0, -taper)] {
         arm.flow.direction = direction;
         for (surface, angle) in [(FlowSurface::Centreline, 0.0), (FlowSurface::Lateral, windward)] {
-            arm.readings.flow_surface = surface;
+            arm.model.flow_surface = surface;
             let outer = solve(&arm).layer_speed(0.5, arm.flow.layer_thickness) / arm.flow.speed;
             let want = (direction - angle).cos();
             assert!((outer - want).abs() < 1e-4, "{surface:?} from {direction}: {outer}, want {want}");
@@ -380,7 +383,7 @@ fn the_layer_ran_along_the_centreline_in_every_reading() {
 #[test]
 fn an_unstrained_base_kept_the_reference_strains() {
     let mut arm = Arm::cone(0.245, 0.010, 0.004, 110e3, 0.5);
-    arm.readings.support = Support::UnstrainedBase;
+    arm.model.support = Support::UnstrainedBase;
     arm.reference.nu = 1.04.into();
     arm.reference.eta = 0.03.into();
     arm.reference.mu = Profile::linear(2.0, -1.0);

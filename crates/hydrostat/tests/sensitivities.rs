@@ -1,8 +1,8 @@
 //! Sensitivities against extrapolated differences of solves, against each other, and against closed forms.
 
 use hydrostat::{
-    Arm, Cable, Configuration, Displaced, Ellipse, FlowLaw, Gravity, Material, Options, Parameter, PoseChange, Profile,
-    Readings, SensitivityError, SensitivityMethod, SensitivityOptions, Solver, Volume,
+    Arm, Cable, Configuration, Displaced, Ellipse, FlowLaw, Gravity, Material, ModelOptions, Options, Parameter,
+    PoseChange, Profile, SensitivityError, SensitivityMethod, SensitivityOptions, Solver, Volume,
 };
 
 /// Tolerance of the solves that are differenced.
@@ -57,7 +57,7 @@ fn stiff() -> Arm {
 /// The same loads where the displaced water follows the stretch.
 fn displacing(volume: Volume, displaced: Displaced) -> Arm {
     let mut arm = loaded();
-    arm.readings = Readings { volume, displaced, ..Readings::default() };
+    arm.model = ModelOptions { volume, displaced, ..ModelOptions::default() };
     arm
 }
 
@@ -67,10 +67,10 @@ fn literal() -> Arm {
     arm.set_tensions(&[0.05, 0.02]).unwrap();
     arm.gravity = Some(Gravity::default());
     arm.flow.speed = 0.05;
-    arm.readings = Readings { flow_surface: hydrostat::FlowSurface::Lateral, ..Readings::default() };
-    arm.readings.hydrostatics = hydrostat::Hydrostatics::NormalOnly;
-    arm.readings.entering_speed = hydrostat::EnteringSpeed::Resultant;
-    arm.readings.volume = hydrostat::Volume::Circular;
+    arm.model = ModelOptions { flow_surface: hydrostat::FlowSurface::Lateral, ..ModelOptions::default() };
+    arm.model.hydrostatics = hydrostat::Hydrostatics::NormalOnly;
+    arm.model.entering_speed = hydrostat::EnteringSpeed::Resultant;
+    arm.model.volume = hydrostat::Volume::Circular;
     arm.flow.direction = -1.3;
     arm
 }

@@ -7,7 +7,7 @@ mod common;
 
 use common::{apart, in_space, rotation, silicone, solved, three_cables, tip, turned, turned_arm};
 use hydrostat::{
-    Arm, Cable, FlowLaw, Gravity, Material, Options, Profile, Readings, Solver, Space, SpatialSolver, Volume,
+    Arm, Cable, FlowLaw, Gravity, Material, ModelOptions, Options, Profile, Solver, Space, SpatialSolver, Volume,
 };
 
 /// Without pins, elements: a rod of one section with given coefficients, no area change.
@@ -15,7 +15,7 @@ fn rod(length: f64, [ea, ga, ei, gj]: [f64; 4]) -> Arm {
     let mut arm = Arm::cone(length, 0.1 * length, 0.1 * length, 1.0, 0.0);
     let area = PI * 0.01 * length * length;
     arm.material = Material::Coefficients { c1: (ea / area).into(), c2: (ga / area).into(), c3: (ei / area).into() };
-    arm.readings = Readings { volume: Volume::None, ..Readings::default() };
+    arm.model = ModelOptions { volume: Volume::None, ..ModelOptions::default() };
     arm.space = Some(Space { c4: Some((gj / area).into()), ..Space::default() });
     arm
 }
@@ -78,7 +78,7 @@ fn arms_in_a_plane_have_the_planar_solution() {
     let mut drag = stream.clone();
     drag.flow.law = FlowLaw::QuadraticDrag { cn: 2.5, ct: 0.005 };
     let mut circular = stream.clone();
-    circular.readings.volume = Volume::Circular;
+    circular.model.volume = Volume::Circular;
     circular.gravity = Some(Gravity::default());
     let mut loaded = drag.clone();
     loaded.tip.force = [0.001, -0.002];
@@ -114,7 +114,7 @@ fn a_uniformly_turning_cable_strains_the_arm_evenly() {
     for volume in Volume::ALL {
         let (length, radius, offset, turns, tension) = (0.3, 0.01, 0.006, 4.0, 1.5);
         let mut arm = Arm::cone(length, radius, radius, 110e3, 0.4);
-        arm.readings.volume = volume;
+        arm.model.volume = volume;
         arm.cables.push(Cable::new("helix", offset).pulled(tension).at_angle(Profile::linear(0.2, 0.2 + turns)));
         let shape = solved(&in_space(&arm), 1e-10);
         let rate = turns / length;
@@ -289,7 +289,7 @@ fn what_arms_in_space_do_not_have_is_refused_by_its_key() {
     arm.cables[1].friction = 0.1;
     assert_eq!(arm.check().unwrap_err().key(), "cable[1].friction");
     let mut arm = in_space(&silicone());
-    arm.readings = Readings::LITERAL;
+    arm.model = ModelOptions::LITERAL;
     assert_eq!(arm.check().unwrap_err().key(), "model.flow_surface");
     let mut arm = silicone();
     arm.cables[0].angle = 0.3.into();
@@ -348,7 +348,7 @@ fn nodes_stood_as_near_to_jumps_of_the_load_as_to_kinks() {
     arm.gravity = Some(Gravity::default());
     (arm.flow.speed, arm.flow.direction) = (0.043, -87_f64.to_radians());
     (arm.tip.force, arm.tip.moment) = ([0.0054, 0.0], 0.00018);
-    arm.readings.entering_speed = hydrostat::EnteringSpeed::Resultant;
+    arm.model.entering_speed = hydrostat::EnteringSpeed::Resultant;
     let plane = |tol: f64| {
         let tip = Solver::new(&arm, Options::with_tol(tol)).unwrap().solve().unwrap().tip();
         [tip.x, tip.y, 0.0]

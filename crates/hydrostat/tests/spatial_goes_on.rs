@@ -97,7 +97,7 @@ fn steps_see_an_arm_that_only_twists() {
     let mut arm = Arm::cone(1.0, r, r, young, 0.5);
     arm.density = 1000.0;
     arm.flow.density = 0.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm.space = Some(Space::default());
     // phi = A sin(w x/c) sin(w t) of a forced swing, from its speed at t = 0 on: grown smoothly instead.
     let gj = young / 3.0 * PI * r.powi(4) / 2.0;

@@ -24,7 +24,7 @@ fn rod(radius: f64, young: f64) -> Arm {
     let mut arm = Arm::cone(1.0, radius, radius, young, 0.5);
     arm.density = DENSITY;
     arm.flow.density = 0.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm
 }
 

@@ -34,7 +34,7 @@ fn rod(r: f64) -> Arm {
     let mut arm = Arm::cone(1.0, r, r, young, 0.5);
     arm.density = rho;
     arm.flow.density = 0.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm.space = Some(Space::default());
     arm
 }
@@ -112,7 +112,7 @@ fn motion_in_any_plane_is_that_in_the_plane() {
     whip.dynamics.relaxation_time = 2.7e-3;
     let mut drag = whip.clone();
     drag.flow.law = FlowLaw::QuadraticDrag { cn: 2.5, ct: 0.01 };
-    drag.readings.volume = Volume::Circular;
+    drag.model.volume = Volume::Circular;
     let pull = Course::Table(vec![(0.0, 0.0), (0.2, 0.2), (0.3, 0.2), (0.3, 0.0)]);
     for (arm, released, until) in [(free, true, 0.5 * PERIOD), (whip, false, 0.6), (drag, false, 0.5)] {
         let tol = 1e-4;
@@ -180,7 +180,7 @@ fn a_whirling_rod_keeps_its_energy() {
 fn energy_balances_whatever_acts() {
     for volume in [Volume::Planar, Volume::Circular, Volume::None] {
         let mut arm = three_cables();
-        arm.readings.volume = volume;
+        arm.model.volume = volume;
         arm.dynamics.relaxation_time = 2.7e-3;
         let pull = |size: f64| Course::Table(vec![(0.0, 0.0), (0.1, size), (0.2, 0.3 * size)]);
         let loads = inputs(&[

@@ -24,7 +24,7 @@ fn values<C>(branch: &Branch<C>, event: Event) -> Vec<f64> {
 /// A uniform column with `none` and the load at which it buckles.
 fn column() -> (Arm, f64) {
     let mut arm = Arm::cone(0.2, 0.005, 0.005, 1e5, 0.25);
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     let area = PI * 0.005_f64.powi(2);
     let [axial, shear] = [1e5 * area, 1e5 / 2.5 * area];
     let euler = PI.powi(2) * 1e5 * PI / 4.0 * 0.005_f64.powi(4) / (4.0 * 0.2 * 0.2);

@@ -87,7 +87,7 @@ fn derivatives_match_differences_of_solves() {
 fn derivatives_match_differences_with_quadratic_drag_and_cables_that_turn() {
     let mut arm = three_cables();
     arm.flow.law = FlowLaw::QuadraticDrag { cn: 2.0, ct: 0.02 };
-    arm.readings.volume = Volume::Circular;
+    arm.model.volume = Volume::Circular;
     arm.cables[0].angle = Profile::linear(0.2, 1.5);
     arm.cables[1].end = 0.15;
     check(&arm, 1e-6);
@@ -167,7 +167,7 @@ fn what_has_no_derivative_says_why() {
     let found = error(solver.sensitivities(&[Parameter::BaseAngle]));
     assert!(found.to_string().contains("`arm.base.direction[0]` to"), "{found}");
     arm.cables[0].stroke = None;
-    arm.readings.support = Support::UnstrainedBase;
+    arm.model.support = Support::UnstrainedBase;
     let found = error(SpatialSolver::new(&arm, Options::default()).unwrap().sensitivities(&[Parameter::Tension(0)]));
     assert!(matches!(found, SensitivityError::Support), "{found}");
 }
@@ -196,7 +196,7 @@ proptest! {
             arm.flow.law = FlowLaw::QuadraticDrag { cn: 1.5, ct: 0.02 };
         }
         if circular {
-            arm.readings.volume = Volume::Circular;
+            arm.model.volume = Volume::Circular;
         }
         prop_assume!(SpatialSolver::new(&arm, Options::with_tol(1e-10)).unwrap().solve().is_ok());
         check(&arm, 1e-5);

@@ -100,7 +100,7 @@ fn an_unloaded_arm_is_stable() {
     for volume in [Volume::Planar, Volume::Circular, Volume::None] {
         for curvature in [0.0, 8.0] {
             let mut arm = cone();
-            arm.readings.volume = volume;
+            arm.model.volume = volume;
             arm.reference.mu = curvature.into();
             let found = growth(&arm);
             assert_eq!(found.stability(), Stability::Stable);
@@ -176,7 +176,7 @@ fn the_count_agrees_with_what_the_path_knows() {
 #[test]
 fn the_unstrained_base_has_no_stability() {
     let mut arm = cone();
-    arm.readings.support = Support::UnstrainedBase;
+    arm.model.support = Support::UnstrainedBase;
     arm.flow.speed = 0.05;
     assert_eq!(solve(&arm).stability(), None);
 }

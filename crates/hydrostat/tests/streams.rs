@@ -7,7 +7,7 @@ fn rod(volume: Volume, law: FlowLaw) -> Arm {
     arm.radius = 1e-3.into();
     arm.base.angle = std::f64::consts::FRAC_PI_2;
     arm.flow.law = law;
-    arm.readings.volume = volume;
+    arm.model.volume = volume;
     arm
 }
 

@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use hydrostat::VerdictKind::{self, CableFold, LimitPoint, LoadJump, NoSectionSolution, SectionCrushed};
 use hydrostat::cases::{column_buckling_load, inextensible_arm};
 use hydrostat::{
-    Arm, Cable, Configuration, NoEquilibrium, Options, Parameter, PathOptions, Phase, Profile, Readings, SolveError,
-    Solver, SpatialSolver, Volume,
+    Arm, Cable, Configuration, ModelOptions, NoEquilibrium, Options, Parameter, PathOptions, Phase, Profile,
+    SolveError, Solver, SpatialSolver, Volume,
 };
 use hydrostat_files::{ArmFile, shipped};
 
@@ -87,7 +87,7 @@ impl Case {
 /// A cylinder with C1 A0 = [`EA`].
 fn cylinder(volume: Volume) -> Arm {
     let mut arm = Arm::cone(0.2, 0.01, 0.01, 100e3, 0.5);
-    arm.readings.volume = volume;
+    arm.model.volume = volume;
     arm
 }
 
@@ -114,7 +114,7 @@ fn in_a_stream(mut arm: Arm, speed: f64, degrees: f64) -> Arm {
 fn a_cable_folds_its_side_shut() {
     for volume in [Volume::Planar, Volume::Circular, Volume::None] {
         let mut arm = silicone(1.5);
-        arm.readings.volume = volume;
+        arm.model.volume = volume;
         Case::new(format!("{volume:?}"), arm, CableFold, Phase::Tension).check_with_last_good();
     }
 }
@@ -185,7 +185,7 @@ fn the_last_good_shape_of_a_limit_point_is_at_its_load() {
 }
 
 fn literal(arm: Arm) -> Arm {
-    Arm { readings: Readings::LITERAL, ..arm }
+    Arm { model: ModelOptions::LITERAL, ..arm }
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn warm_answers_said_nothing_of_the_tangential_load() -> Result<(), SolveError> 
 fn the_tangential_load_was_called_4_ninths_in_every_reading() {
     for (layer_mean, ct) in [(LayerMean::Speed, 4.0 / 9.0), (LayerMean::Momentum, 8.0 / 15.0)] {
         let mut arm = dragged();
-        arm.readings.layer_mean = layer_mean;
+        arm.model.layer_mean = layer_mean;
         let warnings = arm.solve().unwrap().warnings();
         let Warning::TangentialLoad { ct: said, tip_shift } = warnings[0] else { panic!("{warnings:?}") };
         assert!((said - ct).abs() < 1e-12 && tip_shift > 0.01, "{warnings:?}");

@@ -211,7 +211,7 @@ fn missing(arm: &Arm, quantity: Quantity) -> Option<String> {
         Quantity::Off(marker, _) if arm.space.is_none() && marker.offset[2] != 0.0 => {
             Some(format!("has an offset along c, which {IN_PLANE}"))
         }
-        _ if of_base && arm.readings.support != Support::Clamped => {
+        _ if of_base && arm.model.support != Support::Clamped => {
             Some("follows no equilibrium with support = \"unstrained-base\"".to_owned())
         }
         _ => {

@@ -320,7 +320,7 @@ impl Run {
 
     fn out(&mut self) -> MotionOut {
         let (shape, stretches) = self.moving.shape(&self.places);
-        let volume = self.arm.readings.volume;
+        let volume = self.arm.model.volume;
         let inputs = (self.shown.as_ref() != Some(&self.arm)).then(|| Inputs::new(&self.arm));
         if inputs.is_some() {
             self.shown = Some(self.arm.clone());

@@ -180,7 +180,7 @@ fn arms(scope: Scope) -> Vec<Arm> {
         for (name, reading) in readings::alternatives() {
             let mut arm = arm.clone();
             arm.name = format!("{}, {name}", arm.name);
-            arm.readings = reading;
+            arm.model = reading;
             if let Some(cable) = arm.cables.first_mut() {
                 cable.tension = 0.2 * cable.max_tension.unwrap_or(0.0);
             }
@@ -271,7 +271,7 @@ fn row(arm: &Arm) -> Row {
             let off = residuals(&solved);
             // The section law holds to what Newton leaves there, a tenth of the balance's fraction.
             let checked = larger(larger(off.whole, off.parts), 10.0 * off.law);
-            let allowed = if arm.readings.load_can_jump() { ALLOWED_AT_JUMPS } else { ALLOWED };
+            let allowed = if arm.model.load_can_jump() { ALLOWED_AT_JUMPS } else { ALLOWED };
             Row::new([arm.name.clone(), size(off.whole), size(off.parts), size(off.law)])
                 .checked(Check::within(checked, allowed))
         }

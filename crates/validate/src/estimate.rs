@@ -112,7 +112,7 @@ pub fn compare(reference: &Reference) -> Compared {
         Ok(arm) => arm,
         Err(error) => return Compared::Lost(error.to_string()),
     };
-    let readings = arm.readings;
+    let readings = arm.model;
     let jumps = readings.flow_surface == FlowSurface::Lateral || readings.entering_speed == EnteringSpeed::Resultant;
     let unstrained = readings.support == Support::UnstrainedBase;
     let off = |solved: &Configuration| {

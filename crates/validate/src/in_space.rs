@@ -44,7 +44,7 @@ fn rod(length: f64, [ea, ga, ei, gj]: [f64; 4]) -> Arm {
     let mut arm = Arm::cone(length, 0.1 * length, 0.1 * length, 1.0, 0.0);
     let area = PI * (0.1 * length).powi(2);
     arm.material = Material::Coefficients { c1: (ea / area).into(), c2: (ga / area).into(), c3: (ei / area).into() };
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm.space = Some(Space { c4: Some((gj / area).into()), ..Space::default() });
     arm
 }

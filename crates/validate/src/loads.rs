@@ -28,7 +28,7 @@ pub(crate) fn stream_load(arm: &Arm, st: &Station) -> Pair {
     let stream = stream(arm);
     let radius = arm.radius.at(st.s, arm.length);
     let speed = st.nu.hypot(st.eta);
-    let wet = if arm.readings.wetted_length == WettedLength::Deformed { speed } else { 1.0 };
+    let wet = if arm.model.wetted_length == WettedLength::Deformed { speed } else { 1.0 };
     // Load on a surface with the tangent x a + y b; `faces` of its normal speed counts.
     let on = |x: f64, y: f64, faces: &dyn Fn(f64) -> f64| {
         let size = x.hypot(y);
@@ -37,8 +37,8 @@ pub(crate) fn stream_load(arm: &Arm, st: &Station) -> Pair {
         let (u_t, u_n) = (dot(stream, u), faces(dot(stream, w)));
         let (along, across) = match arm.flow.law {
             FlowLaw::Momentum => {
-                let v = arm.readings.layer_mean.factor() * u_t;
-                let along = match arm.readings.entering_speed {
+                let v = arm.model.layer_mean.factor() * u_t;
+                let along = match arm.model.entering_speed {
                     EnteringSpeed::Tangential => (v.abs() + 2.0 * u_n.abs()) * v,
                     EnteringSpeed::Resultant => (v.abs() + u_n.abs()).powi(2) * sign(v),
                 };
@@ -53,7 +53,7 @@ pub(crate) fn stream_load(arm: &Arm, st: &Station) -> Pair {
         };
         [wet * (along * u[0] + across * w[0]), wet * (along * u[1] + across * w[1])]
     };
-    if arm.readings.flow_surface == FlowSurface::Centreline {
+    if arm.model.flow_surface == FlowSurface::Centreline {
         return on(st.nu, st.eta, &|v| v);
     }
     let sigma = if outward(arm, st, 1.0) < outward(arm, st, -1.0) { 1.0 } else { -1.0 };
@@ -94,7 +94,7 @@ pub(crate) fn switches(arm: &Arm, st: &Station) -> [f64; 3] {
         let u = [(x * a[0] + y * b[0]) / size, (x * a[1] + y * b[1]) / size];
         [dot(stream, u), dot(stream, [-u[1], u[0]])]
     };
-    if arm.readings.flow_surface == FlowSurface::Centreline {
+    if arm.model.flow_surface == FlowSurface::Centreline {
         let [along, across] = on((st.nu, st.eta));
         return [along, across, 1.0];
     }
@@ -111,14 +111,14 @@ pub(crate) fn weight(arm: &Arm, st: &Station) -> Pair {
     let (outer, inner) = (arm.radius.at(st.s, arm.length).value, arm.inner_radius.at(st.s, arm.length).value);
     let wall = outer * outer - inner * inner;
     let outline = if arm.cavity == Cavity::Sealed { outer * outer } else { wall };
-    let displaced = match (arm.readings.displaced, arm.readings.volume) {
+    let displaced = match (arm.model.displaced, arm.model.volume) {
         (Displaced::Volume, Volume::None) => st.nu,
         (Displaced::Volume, _) => 1.0,
         (Displaced::Section, _) => st.nu * st.beta * st.beta,
     };
     let mass = PI * (arm.density * wall - arm.flow.density * outline * displaced);
     let whole = [mass * g[0], mass * g[1]];
-    if arm.readings.hydrostatics == Hydrostatics::Archimedes {
+    if arm.model.hydrostatics == Hydrostatics::Archimedes {
         return whole;
     }
     // Its part along the normal of the surface with the tangent x a + y b.
@@ -127,7 +127,7 @@ pub(crate) fn weight(arm: &Arm, st: &Station) -> Pair {
         let w = [-(x * a[1] + y * b[1]) / x.hypot(y), (x * a[0] + y * b[0]) / x.hypot(y)];
         [dot(whole, w) * w[0], dot(whole, w) * w[1]]
     };
-    if arm.readings.flow_surface == FlowSurface::Centreline {
+    if arm.model.flow_surface == FlowSurface::Centreline {
         return along_normal((st.nu, st.eta));
     }
     let [left, right] = [1.0, -1.0].map(|sigma| along_normal(lateral(arm, st, sigma)));
@@ -168,7 +168,7 @@ pub(crate) struct Sectional {
 pub(crate) fn sectional(arm: &Arm, st: &Station) -> Sectional {
     let [c1, c2, c3] = coefficients(arm, st.s);
     let (outer, inner) = (arm.radius.at(st.s, arm.length).value, arm.inner_radius.at(st.s, arm.length).value);
-    let beta = match arm.readings.volume {
+    let beta = match arm.model.volume {
         Volume::Planar => 1.0 / st.nu,
         Volume::Circular => st.nu.powf(-0.5),
         Volume::None => 1.0,

@@ -1,7 +1,7 @@
 //! The readings of the source side by side: what each changes.
 
 use hydrostat::{
-    Arm, Displaced, EnteringSpeed, FlowSurface, Gravity, Hydrostatics, LayerMean, Options, Readings, SolveError,
+    Arm, Displaced, EnteringSpeed, FlowSurface, Gravity, Hydrostatics, LayerMean, ModelOptions, Options, SolveError,
     Solver, Support, VerdictKind, Volume, WettedLength,
 };
 use hydrostat_figures::{Measure, Page, Panel, Scale, Scene, lines_figure};
@@ -14,27 +14,27 @@ use crate::shipped;
 
 /// The default reading, each alternative alone, and all that the source's letter asks for, under the words of the arm file. The
 /// support [`Support::UnstrainedBase`], under which balances are not met, is not among them.
-pub fn alternatives() -> Vec<(&'static str, Readings)> {
-    let default = Readings::default();
+pub fn alternatives() -> Vec<(&'static str, ModelOptions)> {
+    let default = ModelOptions::default();
     vec![
         ("default", default),
-        ("volume = circular", Readings { volume: Volume::Circular, ..default }),
-        ("volume = none", Readings { volume: Volume::None, ..default }),
-        ("flow_surface = lateral", Readings { flow_surface: FlowSurface::Lateral, ..default }),
-        ("entering_speed = resultant", Readings { entering_speed: EnteringSpeed::Resultant, ..default }),
-        ("layer_mean = momentum", Readings { layer_mean: LayerMean::Momentum, ..default }),
-        ("wetted_length = deformed", Readings { wetted_length: WettedLength::Deformed, ..default }),
-        ("displaced = section", Readings { displaced: Displaced::Section, ..default }),
-        ("hydrostatics = normal-only", Readings { hydrostatics: Hydrostatics::NormalOnly, ..default }),
-        ("closure = literal", Readings::LITERAL),
+        ("volume = circular", ModelOptions { volume: Volume::Circular, ..default }),
+        ("volume = none", ModelOptions { volume: Volume::None, ..default }),
+        ("flow_surface = lateral", ModelOptions { flow_surface: FlowSurface::Lateral, ..default }),
+        ("entering_speed = resultant", ModelOptions { entering_speed: EnteringSpeed::Resultant, ..default }),
+        ("layer_mean = momentum", ModelOptions { layer_mean: LayerMean::Momentum, ..default }),
+        ("wetted_length = deformed", ModelOptions { wetted_length: WettedLength::Deformed, ..default }),
+        ("displaced = section", ModelOptions { displaced: Displaced::Section, ..default }),
+        ("hydrostatics = normal-only", ModelOptions { hydrostatics: Hydrostatics::NormalOnly, ..default }),
+        ("closure = literal", ModelOptions::LITERAL),
     ]
 }
 
 const UNSTRAINED: &str = "support = unstrained-base";
 
-fn with_support() -> Vec<(&'static str, Readings)> {
+fn with_support() -> Vec<(&'static str, ModelOptions)> {
     let mut all = alternatives();
-    all.push((UNSTRAINED, Readings { support: Support::UnstrainedBase, ..Readings::default() }));
+    all.push((UNSTRAINED, ModelOptions { support: Support::UnstrainedBase, ..ModelOptions::default() }));
     all
 }
 
@@ -64,9 +64,9 @@ fn tip(arm: &Arm) -> Outcome {
     }
 }
 
-fn loaded(arm: &Arm, readings: Readings, tension: f64, speed: f64) -> Arm {
+fn loaded(arm: &Arm, readings: ModelOptions, tension: f64, speed: f64) -> Arm {
     let mut arm = arm.clone();
-    arm.readings = readings;
+    arm.model = readings;
     for (k, cable) in arm.cables.iter_mut().enumerate() {
         cable.tension = if k == 0 { tension } else { 0.0 };
     }
@@ -220,7 +220,7 @@ fn figures(study: &Study, scope: Scope) -> Vec<(&'static str, Scene)> {
 
 /// What docs/model.md says of the unstrained base, on `paper`.
 fn statements(study: &Study, table: &mut Table) {
-    let unstrained = Readings { support: Support::UnstrainedBase, ..Readings::default() };
+    let unstrained = ModelOptions { support: Support::UnstrainedBase, ..ModelOptions::default() };
     let still: Vec<Outcome> = [10.0, 40.0].iter().map(|t| tip(&loaded(&study.arm, unstrained, *t, 0.0))).collect();
     let aside = still.iter().map(|tip| tip.as_ref().map_or(f64::NAN, |tip| tip[1].abs())).fold(0.0, larger);
     table.push(
@@ -243,7 +243,7 @@ fn statements(study: &Study, table: &mut Table) {
     );
     let clamped: Vec<f64> = [0.0, 0.5, 1.0]
         .iter()
-        .map(|v| tip(&loaded(&study.arm, Readings::default(), 40.0, *v)).map_or(f64::NAN, |tip| tip[2].abs()))
+        .map(|v| tip(&loaded(&study.arm, ModelOptions::default(), 40.0, *v)).map_or(f64::NAN, |tip| tip[2].abs()))
         .collect();
     table.push(
         Row::new([

@@ -1,8 +1,8 @@
 //! Balance of the whole arm and of every part of it.
 
 use hydrostat::{
-    Arm, Cable, Cavity, Displaced, EnteringSpeed, FlowLaw, FlowSurface, Gravity, Hydrostatics, Options, Profile,
-    Readings, Solver, Volume, WettedLength,
+    Arm, Cable, Cavity, Displaced, EnteringSpeed, FlowLaw, FlowSurface, Gravity, Hydrostatics, ModelOptions, Options,
+    Profile, Solver, Volume, WettedLength,
 };
 use hydrostat_validate::balance::residuals;
 
@@ -26,7 +26,7 @@ fn silicone(name: &str) -> Arm {
 fn cables_alone() {
     for volume in [Volume::Planar, Volume::Circular, Volume::None] {
         let mut arm = silicone("cables alone");
-        arm.readings.volume = volume;
+        arm.model.volume = volume;
         check(&arm);
     }
 }
@@ -130,7 +130,7 @@ fn the_balance_across_a_jump_is_off_by_its_gap_alone() {
     arm.flow.direction = 1.1;
     arm.gravity = Some(Gravity::default());
     (arm.cables[0].tension, arm.cables[1].tension) = (0.3, 0.0);
-    arm.readings = Readings::LITERAL;
+    arm.model = ModelOptions::LITERAL;
     for tol in [1e-8, 1e-10] {
         let off = residuals(&Solver::new(&arm, Options::with_tol(tol)).unwrap().solve().unwrap());
         println!("{tol:e}: {off:?}");
@@ -144,20 +144,20 @@ fn other_readings() {
     arm.flow.speed = 0.1;
     arm.flow.direction = 1.1;
     arm.gravity = Some(Gravity::default());
-    arm.readings.wetted_length = WettedLength::Deformed;
-    arm.readings.layer_mean = hydrostat::LayerMean::Momentum;
+    arm.model.wetted_length = WettedLength::Deformed;
+    arm.model.layer_mean = hydrostat::LayerMean::Momentum;
     check(&arm);
     arm.cables[0].tension = 0.2;
     for (name, readings) in [
-        ("normal-only", Readings { hydrostatics: Hydrostatics::NormalOnly, ..Readings::default() }),
-        ("resultant", Readings { entering_speed: EnteringSpeed::Resultant, ..Readings::default() }),
-        ("lateral", Readings { flow_surface: FlowSurface::Lateral, ..Readings::default() }),
-        ("section", Readings { displaced: Displaced::Section, ..Readings::default() }),
-        ("none", Readings { volume: Volume::None, ..Readings::default() }),
-        ("literal", Readings::LITERAL),
+        ("normal-only", ModelOptions { hydrostatics: Hydrostatics::NormalOnly, ..ModelOptions::default() }),
+        ("resultant", ModelOptions { entering_speed: EnteringSpeed::Resultant, ..ModelOptions::default() }),
+        ("lateral", ModelOptions { flow_surface: FlowSurface::Lateral, ..ModelOptions::default() }),
+        ("section", ModelOptions { displaced: Displaced::Section, ..ModelOptions::default() }),
+        ("none", ModelOptions { volume: Volume::None, ..ModelOptions::default() }),
+        ("literal", ModelOptions::LITERAL),
     ] {
         name.clone_into(&mut arm.name);
-        arm.readings = readings;
+        arm.model = readings;
         check(&arm);
     }
     // Without a stream neither side is windward: the mean of both.

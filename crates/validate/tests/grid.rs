@@ -171,7 +171,7 @@ fn other_readings(thin: usize) {
     let mut all = [0; 2];
     for (name, readings) in alternatives().into_iter().filter(|(name, _)| *name != "default") {
         println!("{name}");
-        let own = run(thin, |arm| arm.readings = readings);
+        let own = run(thin, |arm| arm.model = readings);
         all = [all[0] + own[0], all[1] + own[1]];
     }
     println!("{} cases in all, {} not found", all[0], all[1]);

@@ -173,7 +173,7 @@ fn arm() -> Arm {
     let mut arm = Arm::cone(1.0, 0.06, 0.04, 1e5, 0.5);
     arm.density = 1000.0;
     arm.flow.density = 0.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     arm
 }
 

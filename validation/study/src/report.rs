@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use hydrostat::{EnteringSpeed, FlowSurface, LayerMean, Options, Readings, Solver, Volume, WettedLength};
+use hydrostat::{EnteringSpeed, FlowSurface, LayerMean, ModelOptions, Options, Solver, Volume, WettedLength};
 use hydrostat_figures::{
     Abscissa, Coloured, ColouredColumn, KeyValues, Measure, Page, Panel, Scale, arm_figure, lines_figure, map_figure,
 };
@@ -88,8 +88,7 @@ pub fn summary(drawn: &[Found], [highest, every]: &[Vec<Found>; 2]) -> String {
 
     let _ = writeln!(out, "\nreading: sets judged, all statements at the highest tension, at every one");
     for (name, has) in OPTIONS {
-        let own: Vec<Judged> =
-            judged(drawn).filter(|(one, _)| has(&one.set.readings)).map(|(_, judged)| judged).collect();
+        let own: Vec<Judged> = judged(drawn).filter(|(one, _)| has(&one.set.model)).map(|(_, judged)| judged).collect();
         let all = [false, true].map(|every| own.iter().filter(|j| j.failing(every).is_empty()).count());
         let _ = writeln!(out, "{name:>24} {:>8} {:>6} {:>6}", own.len(), all[0], all[1]);
     }
@@ -104,7 +103,7 @@ pub fn summary(drawn: &[Found], [highest, every]: &[Vec<Found>; 2]) -> String {
 }
 
 /// A reading with its name.
-type Choice = (&'static str, fn(&Readings) -> bool);
+type Choice = (&'static str, fn(&ModelOptions) -> bool);
 
 const OPTIONS: [Choice; 10] = [
     ("planar", |r| r.volume == Volume::Planar),
@@ -119,8 +118,8 @@ const OPTIONS: [Choice; 10] = [
     ("deformed", |r| r.wetted_length == WettedLength::Deformed),
 ];
 
-fn readings_words(readings: Readings) -> Vec<&'static str> {
-    OPTIONS.iter().filter(|(_, has)| has(&readings)).map(|(name, _)| *name).collect()
+fn readings_words(model: ModelOptions) -> Vec<&'static str> {
+    OPTIONS.iter().filter(|(_, has)| has(&model)).map(|(name, _)| *name).collect()
 }
 
 /// One row a set, those of the highest tension first.
@@ -142,7 +141,7 @@ pub fn best_csv(highest: &[Found], every: &[Found]) -> String {
                 .chain([set.c1, set.shear * set.c1])
                 .chain(set.bending_stiffness());
             cells.extend(numbers.map(|v| format!("{v:?}")));
-            cells.extend(readings_words(set.readings).into_iter().map(str::to_owned));
+            cells.extend(readings_words(set.model).into_iter().map(str::to_owned));
             let results = [
                 judged.tension,
                 judged.turned,

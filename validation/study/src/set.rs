@@ -1,7 +1,7 @@
 //! What the source leaves open, and the arm that it makes.
 
 use hydrostat::{
-    Arm, Cable, EnteringSpeed, FlowSurface, LayerMean, Material, Profile, Readings, Support, Volume, WettedLength,
+    Arm, Cable, EnteringSpeed, FlowSurface, LayerMean, Material, ModelOptions, Profile, Support, Volume, WettedLength,
 };
 
 /// Coordinates of a set in the unit cube.
@@ -71,7 +71,7 @@ pub struct Set {
     /// C3 at the tip over that at the base is the taper to this power: 2 for a homogeneous arm.
     pub bending_taper: f64,
     /// How the source is read.
-    pub readings: Readings,
+    pub model: ModelOptions,
 }
 
 impl Set {
@@ -79,13 +79,13 @@ impl Set {
     pub fn at(place: [f64; COORDINATES]) -> Self {
         let value = |k: usize| RANGES[k].at(place[k]);
         let second = |k: usize| place[READINGS + k] >= 0.5;
-        let readings = Readings {
+        let model = ModelOptions {
             volume: if second(0) { Volume::Circular } else { Volume::Planar },
             flow_surface: if second(1) { FlowSurface::Lateral } else { FlowSurface::Centreline },
             entering_speed: if second(2) { EnteringSpeed::Resultant } else { EnteringSpeed::Tangential },
             layer_mean: if second(3) { LayerMean::Momentum } else { LayerMean::Speed },
             wetted_length: if second(4) { WettedLength::Deformed } else { WettedLength::Reference },
-            ..Readings::default()
+            ..ModelOptions::default()
         };
         Self {
             place,
@@ -97,7 +97,7 @@ impl Set {
             shear: value(5),
             bending: value(6),
             bending_taper: value(7),
-            readings,
+            model,
         }
     }
 
@@ -132,13 +132,13 @@ impl Set {
             Cable::new("right", linear(self.offsets().map(|y| -y))),
         ];
         arm.flow.speed = speed;
-        arm.readings = self.readings;
+        arm.model = self.model;
         arm
     }
 
     /// The same with the base read word by word: unstrained.
     pub fn with_unstrained_base(mut self) -> Self {
-        self.readings.support = Support::UnstrainedBase;
+        self.model.support = Support::UnstrainedBase;
         self
     }
 }

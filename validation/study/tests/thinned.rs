@@ -1,6 +1,6 @@
 //! The study on few sets: its answers are those of its parts.
 
-use hydrostat::{Options, Readings, Solver};
+use hydrostat::{ModelOptions, Options, Solver};
 use hydrostat_files::{ArmFile, shipped};
 use hydrostat_study::statements::compare;
 use hydrostat_study::{Drawn, Set, Statement, judge, refine, report, sample};
@@ -53,7 +53,7 @@ fn a_sample_is_drawn_judged_and_written() {
 fn the_shipped_arm_satisfies_all_statements_at_the_highest_tension() {
     let text = shipped::get("paper-statements").unwrap();
     let arm = ArmFile::parse(text, "paper-statements").unwrap().arm().unwrap();
-    assert_eq!(arm.readings, Readings::default());
+    assert_eq!(arm.model, ModelOptions::default());
     let judged = judge(&arm, 1e-9).unwrap();
     println!("{judged:?}");
     assert!(judged.failing(false).is_empty(), "{:?}", judged.failing(false));

@@ -51,14 +51,14 @@ fn cauchy(out: &mut String, arm: &Arm) {
 
 /// Which volume law a weight asks for.
 fn weight(out: &mut String, arm: &Arm) {
-    if arm.gravity.is_none() || arm.readings.volume != Volume::Planar {
+    if arm.gravity.is_none() || arm.model.volume != Volume::Planar {
         return;
     }
     out.push_str(
         "# The arm has weight, and model.volume is \"planar\", the law of the source's figure. Rubber and muscle keep the volume of a\n\
          # round section: use \"circular\" for a real arm.\n",
     );
-    if arm.readings.displaced == Displaced::Section && arm.flow.density > 0.0 {
+    if arm.model.displaced == Displaced::Section && arm.flow.density > 0.0 {
         out.push_str(
             "# model.displaced is \"section\": the water displaced grows with the section, so that the arm can float when its cables pull;\n\
              # with \"volume\" it is constant.\n",

@@ -262,7 +262,7 @@ fn fluid_matters(study: &Study) -> Claim {
 fn precision(study: &Study, arm: &Arm) -> Claim {
     let planar = &study.faster[1];
     let mut round = loaded(arm, tension(planar), speed(planar));
-    round.readings.volume = Volume::Circular;
+    round.model.volume = Volume::Circular;
     let otherwise = match solved(&round, tension(planar), speed(planar)) {
         Ok(round) => format!("moves the tip by {:.1} mm", apart(planar, &round)),
         Err(_) => "leaves the arm without an equilibrium".to_owned(),

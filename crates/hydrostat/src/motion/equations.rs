@@ -25,8 +25,8 @@ use crate::rod::cable::pull;
 use crate::rod::cable_list::CableList;
 use crate::rod::inertia::{Masses, inertia, turning};
 use crate::rod::loads::{Load, centreline, load};
+use crate::rod::model_options::{FlowSurface, Volume};
 use crate::rod::profile::Profile;
-use crate::rod::readings::{FlowSurface, Volume};
 use crate::rod::section::{CableAt, Stiffness};
 use crate::statics::dimensions::{L, M, N};
 use crate::statics::equations::gradients::{by_strain_change, in_directors, jacobian, rate_gradient, strain_by_state};
@@ -57,7 +57,7 @@ impl Moving {
     pub(super) fn new(arm: &Arm) -> Self {
         let mut statics = Equations::new(arm, M).leaving(1e-4);
         statics.set_force_unit(force_unit(arm));
-        let lateral = arm.readings.flow_surface == FlowSurface::Lateral && arm.flow.density != 0.0;
+        let lateral = arm.model.flow_surface == FlowSurface::Lateral && arm.flow.density != 0.0;
         Self {
             statics,
             stream_acceleration: [0.0; 2],
@@ -67,7 +67,7 @@ impl Moving {
             end_rates: Vec::new(),
             nodes: 0,
             scales: [1.0; S],
-            closed: arm.readings.volume != Volume::None && (!arm.cables.is_empty() || lateral),
+            closed: arm.model.volume != Volume::None && (!arm.cables.is_empty() || lateral),
         }
     }
 

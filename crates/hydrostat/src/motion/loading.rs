@@ -210,7 +210,7 @@ fn begin<S: Ranged>(arm: &Arm, tol: f64) -> Result<(Loading<S>, AfterSnapOf<S>),
         let reason = "cables with friction stick as they turn back, which loading leaves out";
         return Err(LoadingError::Unsupported { key: format!("cable[{i}].friction"), reason });
     }
-    if arm.readings.support == crate::rod::readings::Support::UnstrainedBase {
+    if arm.model.support == crate::rod::model_options::Support::UnstrainedBase {
         let reason = "only a clamped arm has equilibria that follow its loads";
         return Err(LoadingError::Unsupported { key: "model.support".to_owned(), reason });
     }

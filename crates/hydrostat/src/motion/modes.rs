@@ -42,7 +42,7 @@ impl Arm {
     /// use hydrostat::{Arm, Volume};
     ///
     /// let mut rod = Arm::cone(1.0, 0.001, 0.001, 1e9, 0.5); // m, Pa
-    /// rod.readings.volume = Volume::None;
+    /// rod.model.volume = Volume::None;
     /// rod.flow.density = 0.0; // a vacuum
     /// let modes = rod.modes(3, 8)?;
     /// // omega = b^2 sqrt(E I/(rho A L^4)) with b = 1.8751041.

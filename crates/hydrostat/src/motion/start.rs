@@ -4,7 +4,7 @@ use hydrostat_bvp::Mesh;
 
 use super::error::{MotionError, MotionVerdict, MotionVerdictKind};
 use crate::rod::arm::Arm;
-use crate::rod::readings::{Support, Volume};
+use crate::rod::model_options::{Support, Volume};
 use crate::statics::equations::{Margins, SectionFailure};
 use crate::statics::limit::limit_at;
 use crate::statics::refinement::{Refinable, graded};
@@ -17,7 +17,7 @@ pub(super) fn not_found(time: f64, step: f64, failure: Option<SectionFailure>, a
         nu: (nu, s),
         regularity: (regularity, s),
     });
-    let kind = match near.and_then(|near| limit_at(near, arm.readings.volume)) {
+    let kind = match near.and_then(|near| limit_at(near, arm.model.volume)) {
         Some((VerdictKind::CableFold, _)) => MotionVerdictKind::CableFold,
         Some((VerdictKind::SectionCrushed, _)) => MotionVerdictKind::SectionCrushed,
         Some((VerdictKind::NoSectionSolution, _)) if has_short_waves(arm) => MotionVerdictKind::ShortWaves,
@@ -31,7 +31,7 @@ pub(super) fn not_found(time: f64, step: f64, failure: Option<SectionFailure>, a
 /// and stretch by one derivative more than the stiffness has, and only a relaxation time damps by two.
 fn has_short_waves(arm: &Arm) -> bool {
     let pulls = arm.cables.iter().any(|cable| cable.tension > 0.0 || cable.stroke.is_some());
-    pulls && arm.readings.volume != Volume::None && arm.dynamics.inertia && arm.dynamics.relaxation_time == 0.0
+    pulls && arm.model.volume != Volume::None && arm.dynamics.inertia && arm.dynamics.relaxation_time == 0.0
 }
 
 /// Elements for a tolerance. In water, kinks of the drag that move over the mesh bound what it can do, not modes: a
@@ -73,7 +73,7 @@ pub(super) fn mesh_at(engine: &mut impl Refinable, elements: usize) -> Mesh {
 pub(super) fn check(arm: &Arm) -> Result<(), MotionError> {
     arm.check()?;
     let refuse = |key: String, reason| Err(MotionError::Unsupported { key, reason });
-    if arm.readings.support == Support::UnstrainedBase {
+    if arm.model.support == Support::UnstrainedBase {
         return refuse("model.support".to_owned(), "only a clamped arm can move");
     }
     if let Some(i) = arm.cables.iter().position(|c| c.friction > 0.0) {

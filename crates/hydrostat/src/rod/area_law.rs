@@ -1,6 +1,6 @@
 //! How a section swells as it is stretched: beta(nu), (15) and (16), and the water that it displaces.
 
-use crate::rod::readings::{Displaced, Volume};
+use crate::rod::model_options::{Displaced, Volume};
 use hydrostat_bvp::Real;
 
 /// Section stretch and its slope in the stretch.

@@ -10,8 +10,8 @@ mod check_space;
 mod error;
 mod space;
 
+use crate::rod::model_options::ModelOptions;
 use crate::rod::profile::Profile;
-use crate::rod::readings::Readings;
 
 pub use self::cable::{Cable, Motion};
 pub use self::error::ArmError;
@@ -60,7 +60,7 @@ pub struct Arm {
     /// What moves it in time, besides its masses.
     pub dynamics: Dynamics,
     /// Options of the model.
-    pub readings: Readings,
+    pub model: ModelOptions,
     /// What takes the arm out of the plane; `None` for an arm in the plane.
     pub space: Option<Space>,
 }
@@ -250,7 +250,7 @@ impl Arm {
             tip: TipLoad::default(),
             distributed: DistributedLoad::default(),
             dynamics: Dynamics::default(),
-            readings: Readings::default(),
+            model: ModelOptions::default(),
             space: None,
         }
     }
@@ -278,7 +278,7 @@ impl Arm {
             && self.inner_radius == other.inner_radius
             && self.cavity == other.cavity
             && self.reference == other.reference
-            && self.readings == other.readings
+            && self.model == other.model
             && match (&self.space, &other.space) {
                 (Some(own), Some(other)) => own.is_laid_out_as(other),
                 (own, other) => own == other,

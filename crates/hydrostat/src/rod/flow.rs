@@ -4,7 +4,7 @@
 //! speeds U_t = U.u and U_n = U.w of the free stream. What surface that is, is a reading.
 
 use crate::rod::arm::FlowLaw;
-use crate::rod::readings::EnteringSpeed;
+use crate::rod::model_options::EnteringSpeed;
 use hydrostat_bvp::Real;
 
 /// Load over S = pi rho_w beta R (N/m per m2/s2) along u and w, with derivatives by the angle of u.

@@ -17,8 +17,8 @@
 use crate::rod::area_law::{SectionStretch, area_derivatives, displacement};
 use crate::rod::arm::{Arm, Cavity};
 use crate::rod::loads::{Frame, Water, dot};
+use crate::rod::model_options::Volume;
 use crate::rod::profile::Profile;
-use crate::rod::readings::Volume;
 use hydrostat_bvp::{Real, each};
 
 /// Masses of a section per reference length, so that mass times acceleration (L/s2) is a load in the unit of force over
@@ -146,7 +146,7 @@ mod tests {
     use crate::rod::area_law::area_law;
     use crate::rod::flow::Law;
     use crate::rod::loads::centreline;
-    use crate::rod::readings::{Displaced, FlowSurface, Hydrostatics, WettedLength};
+    use crate::rod::model_options::{Displaced, FlowSurface, Hydrostatics, WettedLength};
 
     #[test]
     fn derivatives_match_differences_for_every_volume_law() {

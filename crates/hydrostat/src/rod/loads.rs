@@ -2,7 +2,7 @@
 
 use crate::rod::area_law::{SectionStretch, displacement};
 use crate::rod::flow::{Law, traction};
-use crate::rod::readings::{Displaced, FlowSurface, Hydrostatics, Volume, WettedLength};
+use crate::rod::model_options::{Displaced, FlowSurface, Hydrostatics, Volume, WettedLength};
 use hydrostat_bvp::{Real, each};
 
 /// What the loads need to know of the arm as a whole.
@@ -334,7 +334,7 @@ mod tests {
     use super::*;
     use crate::rod::area_law::area_law;
     use crate::rod::arm::FlowLaw;
-    use crate::rod::readings::{EnteringSpeed, LayerMean};
+    use crate::rod::model_options::{EnteringSpeed, LayerMean};
 
     /// Every reading's derivatives against differences, away from kinks.
     #[test]

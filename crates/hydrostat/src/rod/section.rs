@@ -2,7 +2,7 @@
 
 use crate::rod::area_law::{SectionStretch, area_law};
 use crate::rod::cable::{Offset, pull};
-use crate::rod::readings::Volume;
+use crate::rod::model_options::Volume;
 use hydrostat_bvp::Real;
 
 /// A section as the law sees it, per unit beta^2.

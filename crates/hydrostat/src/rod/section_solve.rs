@@ -2,7 +2,7 @@
 
 use hydrostat_bvp::{Lanes, Real, each};
 
-use crate::rod::readings::Volume;
+use crate::rod::model_options::Volume;
 use crate::rod::section::{Balance, CableAt, Stiffness, apply3, balance, inverse3};
 
 /// A section near its strains: the law at `strain`, and the Newton step from there.

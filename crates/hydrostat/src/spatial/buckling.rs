@@ -6,7 +6,7 @@ use super::engine::Engine;
 use super::equations::{Equations, FORCE, L, M, N};
 use super::rotation::{Directors, Vector, dot, times, turned};
 use crate::rod::area_law::{area_law, displacement};
-use crate::rod::readings::Support;
+use crate::rod::model_options::Support;
 
 /// Buckling indicator from which on a direct solve may have landed on a branch that the path does not lead to.
 const HARD: f64 = 0.3;
@@ -16,7 +16,7 @@ impl Engine {
     /// path does not lead to. Cheap and on the safe side.
     pub(super) fn needs_continuation(&mut self) -> bool {
         let equations = &self.equations;
-        if equations.arm().readings.support == Support::UnstrainedBase {
+        if equations.arm().model.support == Support::UnstrainedBase {
             // An initial-value problem has one solution.
             return false;
         }

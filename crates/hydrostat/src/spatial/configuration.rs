@@ -12,7 +12,7 @@ use super::tip::{SpatialSnap, SpatialTip};
 use crate::numerics::rounds::evaluate;
 use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Cavity};
-use crate::rod::readings::Support;
+use crate::rod::model_options::Support;
 use crate::statics::configuration::{CableState, Command, FoldMargin, Statistics, Warning};
 use crate::statics::engine::Trouble;
 use crate::statics::equations::{Margins, SectionFailure};
@@ -364,7 +364,7 @@ impl SpatialConfiguration {
         };
         let carried = |z: &[f64; N]| -> [f64; 6] { each(|k| z[if k < 3 { FORCE + k } else { MOMENT + k - 3 }]) };
         let base_reaction = wrench(&carried(&engine.solution.nodes[0]), -1.0);
-        let unmet = (arm.readings.support == Support::UnstrainedBase).then(|| {
+        let unmet = (arm.model.support == Support::UnstrainedBase).then(|| {
             let end = engine.solution.nodes[n];
             let directors = Directors::of(&[end[0], end[1], end[2], end[3]]);
             let (load, _) = engine.equations.tip_load(engine.equations.fraction[0], &directors);

@@ -12,7 +12,7 @@ use super::neutral::without_neutral;
 use super::rotation::{Vector, dot, turn_of};
 use crate::numerics::rounds::{correct, linearise, respond};
 use crate::rod::arm::Arm;
-use crate::rod::readings::Support;
+use crate::rod::model_options::Support;
 use crate::statics::configuration::Statistics;
 use crate::statics::engine::Trouble;
 use crate::statics::equations::{SectionFailure, StrokeControl, Way};
@@ -228,7 +228,7 @@ impl Engine {
     /// Given how close to the kinks of the load nodes have to be, they are moved there as soon as corrections are
     /// small.
     pub(super) fn iterate(&mut self, tolerance: f64, most: usize, resolution: Option<f64>) -> Result<(), Trouble> {
-        let clamped = self.equations.arm().readings.support == Support::Clamped;
+        let clamped = self.equations.arm().model.support == Support::Clamped;
         let most = if clamped { most } else { 60 };
         let most = if self.stroke_control.is_some() { most + MORE } else { most };
         let (mut applied, mut halvings, mut round) = (0.0, 0, 0);

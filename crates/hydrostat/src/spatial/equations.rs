@@ -23,7 +23,7 @@ use super::section_solve::{Solved, solve_section};
 use crate::numerics::dispatch::each_block;
 use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Space};
-use crate::rod::readings::{Support, Volume};
+use crate::rod::model_options::{Support, Volume};
 use crate::statics::dimensions::Units;
 use crate::statics::equations::{SectionFailure, Varied};
 use crate::statics::verdict::Phase;
@@ -103,7 +103,7 @@ impl Equations {
         let mut this = Self {
             units: Units { length, force: 1.0 },
             water: water(arm),
-            volume: arm.readings.volume,
+            volume: arm.model.volume,
             tensions: Vec::new(),
             ends: arm.cables.iter().map(|c| c.end).collect(),
             arm: arm.clone(),
@@ -457,7 +457,7 @@ impl Equations {
     }
 
     pub(super) fn is_unstrained_base(&self) -> bool {
-        self.arm.readings.support == Support::UnstrainedBase
+        self.arm.model.support == Support::UnstrainedBase
     }
 }
 

@@ -16,7 +16,7 @@ use super::loads::{Tangent, Turned, Water};
 use super::rotation::{Directors, Vector, cross, dot};
 use crate::rod::area_law::{SectionStretch, area_derivatives, displacement};
 use crate::rod::inertia::Masses;
-use crate::rod::readings::Volume;
+use crate::rod::model_options::Volume;
 
 /// A load of inertia in space, which n_f' has with a plus, and its derivatives.
 #[derive(Clone, Copy)]
@@ -167,7 +167,7 @@ mod tests {
     use super::*;
     use crate::rod::area_law::area_law;
     use crate::rod::flow::Law;
-    use crate::rod::readings::{Displaced, Hydrostatics, WettedLength};
+    use crate::rod::model_options::{Displaced, Hydrostatics, WettedLength};
 
     const STEP: f64 = 1e-6;
     const MASSES: Masses<f64> = Masses { wall: 1.1, rotary: 0.2, added: 0.9, inside: 0.3, displaced: 0.8 };

@@ -15,7 +15,7 @@ use super::section::STRAINS;
 use crate::rod::area_law::{SectionStretch, displacement};
 use crate::rod::arm::Arm;
 use crate::rod::flow::{Law, traction};
-use crate::rod::readings::{Displaced, Hydrostatics, Volume, WettedLength};
+use crate::rod::model_options::{Displaced, Hydrostatics, Volume, WettedLength};
 
 /// What the loads need to know of the arm as a whole.
 #[derive(Debug, Clone, Copy)]
@@ -31,7 +31,7 @@ pub(crate) struct Water {
 
 /// What the loads need to know of `arm` as a whole.
 pub(super) fn water(arm: &Arm) -> Water {
-    let r = &arm.readings;
+    let r = &arm.model;
     Water {
         stream: if arm.flow.density == 0.0 { [0.0; 3] } else { arm.stream_in_space() },
         law: Law::new(arm.flow.law, r.entering_speed, r.layer_mean.factor()),

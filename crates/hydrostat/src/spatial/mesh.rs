@@ -54,7 +54,7 @@ impl Refinable for Engine {
     }
 
     fn resolution(&self, tolerance: f64) -> f64 {
-        kink_resolution(tolerance, self.equations.arm().readings.load_can_jump())
+        kink_resolution(tolerance, self.equations.arm().model.load_can_jump())
     }
 
     fn kinks(&mut self, apart: f64) -> Vec<f64> {

@@ -15,8 +15,8 @@ use hydrostat_bvp::{Collocation, Correction, Lanes, Real, Solution};
 
 use super::equations::{Equations, FORCE, L, MOMENT, N, Q};
 use super::rotation::{Directors, Vector, cross, dot, spin, turn_of};
+use crate::rod::model_options::Support;
 use crate::rod::profile::Profile;
-use crate::rod::readings::Support;
 
 /// Directions (sine of the angle) that are along the axis.
 const ALONG: f64 = 1e-12;
@@ -37,7 +37,7 @@ impl Equations {
         let slack = (0..self.ends.len()).all(|c| self.tensions[c] == 0.0 && arm.cables[c].stroke.is_none());
         let (tip, of_arm) = (&arm.tip, &arm.distributed);
         let is_symmetric = self.imposed.is_none()
-            && arm.readings.support == Support::Clamped
+            && arm.model.support == Support::Clamped
             && slack
             && nothing(&[&arm.reference.eta, &arm.reference.mu, &space.zeta, &space.kappa])
             && nothing(&[&of_arm.force[0], &of_arm.force[1], &of_arm.couple, &space.force])

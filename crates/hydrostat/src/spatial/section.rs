@@ -19,7 +19,7 @@ use hydrostat_bvp::{Real, each};
 
 use super::rotation::{Vector, cross, dot, sum, times};
 use crate::rod::area_law::{SectionStretch, area_law};
-use crate::rod::readings::Volume;
+use crate::rod::model_options::Volume;
 
 /// Strains of a section.
 pub(crate) const STRAINS: usize = 6;

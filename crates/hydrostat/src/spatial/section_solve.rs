@@ -3,7 +3,7 @@
 use hydrostat_bvp::{Lanes, Real, each};
 
 use super::section::{Balance, CableAt, STRAINS, Stiffness, apply, balance, inverse, tangent};
-use crate::rod::readings::Volume;
+use crate::rod::model_options::Volume;
 
 /// A section near its strains: the law at `strain`, and the Newton step from there.
 #[derive(Clone, Copy)]

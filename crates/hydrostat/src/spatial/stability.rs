@@ -15,7 +15,7 @@ use super::lengths::{pull_taut, unit_change};
 use super::rotation::{Directors, Vector, turn};
 use crate::numerics::elimination::solved;
 use crate::numerics::rounds::respond;
-use crate::rod::readings::Support;
+use crate::rod::model_options::Support;
 use crate::statics::compliance::Basis;
 use crate::statics::stability::{BLURRED, Growth, KEPT, MARGIN, ROUNDING, Stability, growing, rates_of};
 use crate::statics::verdict::Phase;
@@ -39,7 +39,7 @@ impl SpatialConfiguration {
     /// [`Support::UnstrainedBase`], whose arm is no equilibrium at the tip, and where the number of growing motions
     /// does not settle as they are resolved more finely.
     pub fn growth(&self) -> Option<Growth> {
-        if self.arm.readings.support == Support::UnstrainedBase {
+        if self.arm.model.support == Support::UnstrainedBase {
             return None;
         }
         for functions in POLYNOMIALS {

@@ -4,12 +4,12 @@ use hydrostat_bvp::{Gauss, Groups, Inner, Lanes, Local, Mesh, Problem, Side, Sol
 
 use super::equations::{Equations, L, M, N, Q};
 use crate::rod::arm::{Arm, BaseDirections, Cable, FlowLaw, Gravity, Space};
+use crate::rod::model_options::{Displaced, EnteringSpeed, Hydrostatics, ModelOptions, Support, Volume, WettedLength};
 use crate::rod::profile::Profile;
-use crate::rod::readings::{Displaced, EnteringSpeed, Hydrostatics, Readings, Support, Volume, WettedLength};
 use crate::statics::verdict::Phase;
 
 /// An arm with everything on it.
-fn arm(readings: Readings, law: FlowLaw) -> Arm {
+fn arm(model: ModelOptions, law: FlowLaw) -> Arm {
     let mut arm = Arm::cone(0.245, 0.010, 0.002, 110e3, 0.5);
     arm.density = 1300.0;
     arm.cables.push(Cable::new("one", Profile::linear(0.005, 0.001)).pulled(0.2).at_angle(0.3));
@@ -24,7 +24,7 @@ fn arm(readings: Readings, law: FlowLaw) -> Arm {
     arm.distributed.force = [0.01.into(), 0.02.into()];
     arm.distributed.couple = 1e-4.into();
     arm.reference.mu = 2.0.into();
-    arm.readings = readings;
+    arm.model = model;
     arm.space = Some(Space {
         base: Some(BaseDirections { direction: [0.6, 0.5, -0.4], section: Some([0.1, 0.2, 0.9]) }),
         stream: Some([1.0, -2.0, 0.5]),
@@ -44,17 +44,17 @@ fn arm(readings: Readings, law: FlowLaw) -> Arm {
 
 fn arms() -> Vec<Arm> {
     let drag = FlowLaw::QuadraticDrag { cn: 2.0, ct: 0.02 };
-    let other = Readings {
+    let other = ModelOptions {
         volume: Volume::Circular,
         entering_speed: EnteringSpeed::Resultant,
         wetted_length: WettedLength::Deformed,
         displaced: Displaced::Section,
         hydrostatics: Hydrostatics::NormalOnly,
         support: Support::UnstrainedBase,
-        ..Readings::default()
+        ..ModelOptions::default()
     };
-    let rigid = Readings { volume: Volume::None, ..Readings::default() };
-    vec![arm(Readings::default(), FlowLaw::Momentum), arm(other, FlowLaw::Momentum), arm(rigid, drag)]
+    let rigid = ModelOptions { volume: Volume::None, ..ModelOptions::default() };
+    vec![arm(ModelOptions::default(), FlowLaw::Momentum), arm(other, FlowLaw::Momentum), arm(rigid, drag)]
 }
 
 /// Equations on one group of elements with closure, and a station in its first block.
@@ -114,7 +114,7 @@ fn gradients_of_everything_match_differences() {
             };
             for (k, exact) in exact.iter().enumerate() {
                 let by = (hi[k] - lo[k]) / (2.0 * STEP);
-                assert!((by - exact).abs() < 2e-7 * exact.abs().max(1.0), "{:?} {b} {k}: {by} {exact}", arm.readings);
+                assert!((by - exact).abs() < 2e-7 * exact.abs().max(1.0), "{:?} {b} {k}: {by} {exact}", arm.model);
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::rod::arm::{Arm, Cable, FlowLaw};
 use crate::rod::flow::layer_profile;
 use crate::rod::loads::stream_along;
-use crate::rod::readings::Support;
+use crate::rod::model_options::Support;
 use crate::statics::dense::Dense;
 use crate::statics::engine::{Engine, M, shift_by_tangential_load};
 use crate::statics::equations::{SectionFailure, StationData};
@@ -101,7 +101,7 @@ impl Configuration {
         }
         let cables = cable_states(&arm, engine);
         let base_reaction = Wrench::of_base(dense.solution.nodes[0], &dense.equations.units);
-        let unmet = (arm.readings.support == Support::UnstrainedBase).then(|| {
+        let unmet = (arm.model.support == Support::UnstrainedBase).then(|| {
             let end = dense.solution.nodes[n];
             let (load, _) = dense.equations.tip_load(end[0]);
             Wrench {
@@ -216,7 +216,7 @@ impl Configuration {
         let radius = self.arm.radius.at(st.s, self.arm.length);
         let outer = stream_along(
             self.arm.stream(),
-            self.arm.readings.flow_surface,
+            self.arm.model.flow_surface,
             [st.theta, st.alpha],
             [st.nu, st.eta, st.mu],
             [st.beta, st.beta_slope],
@@ -306,7 +306,7 @@ fn cable_states(arm: &Arm, engine: &Engine) -> Vec<CableState> {
 /// over its outer speed. `None` where that law does not act.
 fn momentum_ct(arm: &Arm) -> Option<f64> {
     let acts = arm.flow.law == FlowLaw::Momentum && arm.flow.speed > 0.0 && arm.flow.density > 0.0;
-    acts.then(|| arm.readings.layer_mean.factor().powi(2))
+    acts.then(|| arm.model.layer_mean.factor().powi(2))
 }
 
 fn offset_point(st: &Station, distance: f64) -> [f64; 2] {

@@ -1,6 +1,6 @@
 //! Which limit of the section law an arm is at.
 
-use crate::rod::readings::Volume;
+use crate::rod::model_options::Volume;
 use crate::statics::equations::Margins;
 use crate::statics::verdict::VerdictKind;
 

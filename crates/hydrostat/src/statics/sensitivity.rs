@@ -24,8 +24,8 @@ pub(crate) use self::error::unsettled;
 use self::quantities::POSE;
 pub(crate) use self::quantities::Quantity;
 use crate::rod::arm::Arm;
+use crate::rod::model_options::Support;
 use crate::rod::parameter::{Curvature, IN_SPACE, PLAIN, Parameter};
-use crate::rod::readings::Support;
 use crate::statics::configuration::Wrench;
 use crate::statics::solve::Solver;
 
@@ -338,7 +338,7 @@ pub(crate) fn check<E>(arm: &Arm, parameters: &[Parameter], stations: &[f64]) ->
     if let Some(cable) = arm.cables.iter().position(|cable| cable.friction > 0.0) {
         return Err(SensitivityError::Friction(cable));
     }
-    if arm.readings.support != Support::Clamped {
+    if arm.model.support != Support::Clamped {
         return Err(SensitivityError::Support);
     }
     match stations.iter().find(|s| !(0.0..=arm.length).contains(*s)) {

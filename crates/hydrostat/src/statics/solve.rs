@@ -518,7 +518,7 @@ impl Solver {
 
     pub(crate) fn last_verdict(&mut self, load_fraction: Option<f64>) -> Verdict {
         let spent = self.engine.spent();
-        let jumps = spent.is_none() && self.engine.equations.arm().readings.load_can_jump();
+        let jumps = spent.is_none() && self.engine.equations.arm().model.load_can_jump();
         Verdict {
             kind: if jumps { VerdictKind::LoadJump } else { VerdictKind::NotFound },
             phase: Phase::Tension,

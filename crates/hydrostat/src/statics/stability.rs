@@ -28,7 +28,7 @@ use hydrostat_bvp::{Collocation, Correction, Determinant, Lanes, Solution};
 use nalgebra::DMatrix;
 use nalgebra::linalg::Schur;
 
-use crate::rod::readings::Support;
+use crate::rod::model_options::Support;
 use crate::statics::border::{UnitPull, border};
 use crate::statics::compliance::{Basis, Compliance, FIELDS, project};
 use crate::statics::configuration::Configuration;
@@ -158,7 +158,7 @@ pub(crate) fn growing(rates: &[[f64; 2]]) -> usize {
 /// The growth, and how many times it was resolved more finely.
 fn growth(dense: &Dense) -> Option<(Growth, usize)> {
     let arm = dense.equations.arm();
-    if arm.readings.support == Support::UnstrainedBase || arm.has_friction() {
+    if arm.model.support == Support::UnstrainedBase || arm.has_friction() {
         return None;
     }
     for (level, functions) in POLYNOMIALS.into_iter().enumerate() {
@@ -356,7 +356,7 @@ mod tests {
         arm.flow.direction = dice.one_of(&[0.0_f64, 60.0, 90.0, 180.0, 270.0]).to_radians();
         arm.gravity = dice.one_of(&[None, Some(Gravity::default())]);
         // The law by which the bounds of these tests were found.
-        arm.readings.displaced = Displaced::Section;
+        arm.model.displaced = Displaced::Section;
         arm
     }
 

@@ -1,7 +1,7 @@
 //! Which solutions are starts for which arms.
 
 use crate::rod::arm::{Arm, Flow, Space};
-use crate::rod::readings::Support;
+use crate::rod::model_options::Support;
 
 /// A tip that turns further (rad) than this in a warm start has left what a small change of the loads does.
 pub(crate) const FARTHEST: f64 = 0.2;
@@ -44,7 +44,7 @@ pub(crate) fn loads(arm: &Arm) -> Vec<f64> {
 /// Whether the next row may start from this arm's shape: no friction and no strokes, whose answers hang on the way to
 /// them.
 pub(crate) fn may_be_followed(arm: &Arm) -> bool {
-    arm.readings.support == Support::Clamped && !arm.has_friction() && !arm.is_commanded()
+    arm.model.support == Support::Clamped && !arm.has_friction() && !arm.is_commanded()
 }
 
 /// Whether an arm differs from another in what a solver takes between two solves.

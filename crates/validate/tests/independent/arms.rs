@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use hydrostat::{
-    Arm, Cable, Cavity, EnteringSpeed, FlowLaw, FlowSurface, Gravity, Hydrostatics, LayerMean, Material, Motion,
-    Profile, Readings, Support, Volume, WettedLength,
+    Arm, Cable, Cavity, EnteringSpeed, FlowLaw, FlowSurface, Gravity, Hydrostatics, LayerMean, Material, ModelOptions,
+    Motion, Profile, Support, Volume, WettedLength,
 };
 
 use crate::dice::Dice;
@@ -16,7 +16,7 @@ pub(crate) struct Draw {
     pub(crate) extreme: f64,
     pub(crate) friction: bool,
     pub(crate) strokes: bool,
-    /// Readings whose loads can jump.
+    /// ModelOptions whose loads can jump.
     pub(crate) jumps: bool,
 }
 
@@ -123,9 +123,9 @@ fn scaled(profile: &Profile, factor: f64) -> Profile {
 }
 
 fn readings(dice: &mut Dice, arm: &mut Arm, draw: &Draw) {
-    let mut readings = Readings {
+    let mut readings = ModelOptions {
         volume: dice.pick(&[Volume::Planar, Volume::Planar, Volume::Circular, Volume::None]),
-        ..Readings::default()
+        ..ModelOptions::default()
     };
     if dice.chance(0.3) {
         readings.layer_mean = dice.pick(&LayerMean::ALL);
@@ -139,7 +139,7 @@ fn readings(dice: &mut Dice, arm: &mut Arm, draw: &Draw) {
     if dice.chance(0.03) {
         readings.support = Support::UnstrainedBase;
     }
-    arm.readings = readings;
+    arm.model = readings;
 }
 
 fn cables(dice: &mut Dice, arm: &mut Arm, bending: f64, draw: &Draw) {

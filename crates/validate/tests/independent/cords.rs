@@ -66,7 +66,7 @@ impl Cord {
     /// nu and beta^2 of the section that carries `force` along a; `None` where none does.
     fn stretched(&self, force: f64) -> Option<[f64; 2]> {
         let t = force / (self.young * self.area);
-        match self.arm.readings.volume {
+        match self.arm.model.volume {
             // (nu - 1)/nu^2 = t.
             Volume::Planar => {
                 let nu = 2.0 / (1.0 + (1.0 - 4.0 * t).sqrt());
@@ -226,7 +226,7 @@ pub(crate) fn cord(seed: u64, heaviest: f64) -> Cord {
         arm.radius = radius.into();
         arm.density = density;
         arm.flow.density = if water { 1000.0 } else { 0.0 };
-        arm.readings.volume = volume;
+        arm.model.volume = volume;
         arm.base.angle = dice.between(-PI / 3.0, PI / 3.0);
         if by_weight {
             arm.gravity = Some(Gravity { acceleration: 9.81, direction: -FRAC_PI_2 });

@@ -264,7 +264,7 @@ impl<'a, 'b> Newton<'a, 'b> {
     }
 
     fn at_base(&self) -> usize {
-        if self.shape.model.arm.readings.support == Support::UnstrainedBase { 4 } else { 1 }
+        if self.shape.model.arm.model.support == Support::UnstrainedBase { 4 } else { 1 }
     }
 
     fn whole(&self, elements: &[LinearElement]) -> Banded {

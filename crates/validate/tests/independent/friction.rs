@@ -44,7 +44,7 @@ fn s_shaped(seed: u64) -> Arm {
     let tip = thick * dice.between(0.2, 1.0);
     let mut arm = Arm::cone(length, thick, tip, dice.order(1e4, 1e6), 0.5);
     arm.name = format!("S {seed}");
-    arm.readings.volume = dice.pick(&hydrostat::Volume::ALL);
+    arm.model.volume = dice.pick(&hydrostat::Volume::ALL);
     let side = dice.sign();
     arm.reference.mu = Profile::linear(side * dice.between(0.0, 4.0) / length, -side * dice.between(0.5, 6.0) / length);
     let bending = crate::arms::stiffness(&arm);

@@ -13,7 +13,7 @@ fn wrong(cords: impl IntoParallelIterator<Item = Cord>) -> Vec<String> {
     cords
         .into_par_iter()
         .filter_map(|cord| {
-            let name = format!("{}, {:?}, w L3/EI {:.2e}", cord.arm.name, cord.arm.readings.volume, cord.heaviness());
+            let name = format!("{}, {:?}, w L3/EI {:.2e}", cord.arm.name, cord.arm.model.volume, cord.heaviness());
             let [x, y, _] = cord.tip();
             match cord.arm.solve() {
                 Ok(solved) => {
@@ -56,7 +56,7 @@ fn shooting_arrives_at_the_tips_that_are_known() {
     for (length, x, y) in [(1.0, 6.797, -1002.636), (0.3, 12.732, -295.289)] {
         let mut arm = silicone_cord();
         arm.length = length;
-        arm.readings.volume = Volume::None;
+        arm.model.volume = Volume::None;
         arm.gravity = Some(Gravity { acceleration: 9.81, ..Gravity::default() });
         let tip = Cord::new(&arm).tip();
         assert!((1e3 * tip[0] - x).abs() < 6e-4 && (1e3 * tip[1] - y).abs() < 6e-4, "{length}: {tip:?}");
@@ -70,7 +70,7 @@ fn light_cords_are_those_of_the_tables() {
     let mut arm = Arm::cone(1.0, 1e-3, 1e-3, 1e9, 0.5);
     arm.radius = 1e-3.into();
     arm.flow.density = 0.0;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     let load = 10.0 * 1e9 * std::f64::consts::PI * 1e-12 / 4.0;
     arm.distributed.force = [0.0.into(), (-load).into()];
     let tip = Cord::new(&arm).tip();
@@ -106,7 +106,7 @@ fn a_heavy_sheet_hangs_as_shot() {
 #[test]
 fn the_path_over_gravity_meets_nothing() {
     let mut arm = silicone_cord();
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     let gravity: Parameter = "gravity.acceleration".parse().unwrap();
     let path = arm.path(gravity, [0.0, 9.80665], &PathOptions::default()).unwrap();
     let branch = &path.branches[0];

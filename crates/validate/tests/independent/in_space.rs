@@ -34,8 +34,8 @@ fn turned(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
 fn planar(seed: u64) -> Arm {
     let draw = Draw { extreme: 2.0, friction: false, ..Draw::ALL };
     let mut arm = arm(seed, &draw);
-    if arm.readings.flow_surface == FlowSurface::Lateral {
-        arm.readings.flow_surface = FlowSurface::Centreline;
+    if arm.model.flow_surface == FlowSurface::Lateral {
+        arm.model.flow_surface = FlowSurface::Centreline;
     }
     arm.distributed.force[1] = 0.0.into();
     arm

@@ -176,7 +176,7 @@ impl Model {
 
     /// Slope of a cable's path by s, along a and b: (5).
     pub(crate) fn tau(&self, cable: &CableHere, e: Strains, beta_slope: f64) -> Pair {
-        let beta = beta(self.arm.readings.volume, e[0])[0];
+        let beta = beta(self.arm.model.volume, e[0])[0];
         [e[0] - cable.offset * beta * e[2], e[1] + cable.offset_slope * beta + cable.offset * beta_slope]
     }
 
@@ -188,7 +188,7 @@ impl Model {
         e: Strains,
         beta_slope: f64,
     ) -> ([f64; 3], [[f64; 3]; 3]) {
-        let [beta, beta_nu] = beta(self.arm.readings.volume, e[0]);
+        let [beta, beta_nu] = beta(self.arm.model.volume, e[0]);
         let area = beta * beta;
         let (mut out, mut by) = ([0.0; 3], [[0.0; 3]; 3]);
         for k in 0..3 {
@@ -224,7 +224,7 @@ impl Model {
 
     /// n . a, n . b and m by the section law alone: (11), (12), (14).
     pub(crate) fn stress(&self, place: &Place, e: Strains) -> [f64; 3] {
-        let area = beta(self.arm.readings.volume, e[0])[0].powi(2);
+        let area = beta(self.arm.model.volume, e[0])[0].powi(2);
         [0, 1, 2].map(|k| place.stiffness[k] * (e[k] - place.reference[k]) * area)
     }
 
@@ -281,7 +281,7 @@ impl Model {
 
     /// Tangent of the lateral surface of side `sigma`, in space.
     fn lateral(&self, place: &Place, theta: f64, e: Strains, beta_slope: f64, sigma: f64) -> Pair {
-        let beta = beta(self.arm.readings.volume, e[0])[0];
+        let beta = beta(self.arm.model.volume, e[0])[0];
         let along = e[0] - sigma * beta * place.radius * e[2];
         let across = e[1] + sigma * (beta_slope * place.radius + beta * place.radius_slope);
         unit(theta, along, across)
@@ -289,7 +289,7 @@ impl Model {
 
     /// Tangents that the stream's load acts by, each with its side (0: both) and its fraction.
     fn surfaces(&self, place: &Place, theta: f64, e: Strains, beta_slope: f64) -> Vec<(Pair, f64, f64)> {
-        if self.arm.readings.flow_surface == FlowSurface::Centreline {
+        if self.arm.model.flow_surface == FlowSurface::Centreline {
             return vec![(unit(theta, e[0], e[1]), 0.0, 1.0)];
         }
         let sides = [1.0, -1.0].map(|sigma| (self.lateral(place, theta, e, beta_slope, sigma), sigma));
@@ -305,7 +305,7 @@ impl Model {
     }
 
     fn stream_load(&self, place: &Place, theta: f64, e: Strains, beta_slope: f64) -> Pair {
-        let (flow, readings) = (&self.arm.flow, &self.arm.readings);
+        let (flow, readings) = (&self.arm.flow, &self.arm.model);
         if flow.speed == 0.0 {
             return [0.0; 2];
         }
@@ -349,7 +349,7 @@ impl Model {
     fn hydrostatics(&self, place: &Place, theta: f64, e: Strains, beta_slope: f64) -> Pair {
         let fraction = displaced(&self.arm, e[0]);
         let whole = [0, 1].map(|k| place.weight[k] - fraction * place.buoyancy[k]);
-        if self.arm.readings.hydrostatics == Hydrostatics::Archimedes {
+        if self.arm.model.hydrostatics == Hydrostatics::Archimedes {
             return whole;
         }
         // Along the normals of the surface that the stream acts on.
@@ -368,7 +368,7 @@ impl Model {
         if speed == 0.0 || self.arm.flow.density == 0.0 {
             return Vec::new();
         }
-        if self.arm.readings.flow_surface == FlowSurface::Centreline {
+        if self.arm.model.flow_surface == FlowSurface::Centreline {
             let u = unit(theta, e[0], e[1]);
             return vec![dot(self.stream, u) / speed, dot(self.stream, left_of(u)) / speed];
         }
@@ -412,7 +412,7 @@ impl Model {
 
 /// Volume of the water displaced over that of the straight arm.
 pub(crate) fn displaced(arm: &Arm, nu: f64) -> f64 {
-    match (arm.readings.displaced, arm.readings.volume) {
+    match (arm.model.displaced, arm.model.volume) {
         (Displaced::Section, volume) => nu * beta(volume, nu)[0].powi(2),
         (Displaced::Volume, Volume::None) => nu,
         (Displaced::Volume, _) => 1.0,
@@ -452,7 +452,7 @@ fn derivatives_of_the_section_law_match_differences() {
     use hydrostat::{Cable, Profile};
     for volume in [Volume::Planar, Volume::Circular, Volume::None] {
         let mut arm = Arm::cone(0.2, 0.01, 0.004, 1e5, 0.4);
-        arm.readings.volume = volume;
+        arm.model.volume = volume;
         arm.cables.push(Cable::new("one", Profile::linear(0.006, 0.001)).pulled(0.7));
         arm.cables.push(Cable::new("two", -0.002).pulled(0.2));
         let model = Model::new(&arm);

@@ -33,7 +33,7 @@ fn kind(arm: &Arm) -> &'static str {
     let tip = arm.radius.at(arm.length, arm.length).value;
     if arm.cables.iter().any(|cable| cable.friction > 0.0 && pulled(cable)) {
         "friction"
-    } else if arm.readings.load_can_jump() && arm.flow.speed > 0.0 {
+    } else if arm.model.load_can_jump() && arm.flow.speed > 0.0 {
         "jumps"
     } else if tip < 5e-3 * arm.radius.at(0.0, arm.length).value {
         "pointed"

@@ -70,7 +70,7 @@ fn local(shape: &Shape<'_>, solved: &Configuration, out: &mut Residuals) {
     let (model, length) = (shape.model, shape.model.arm.length);
     let mut check = |place: &crate::mechanics::Place, station: &Station| {
         let e = [station.nu, station.eta, station.mu];
-        let swollen = beta(model.arm.readings.volume, station.nu)[0];
+        let swollen = beta(model.arm.model.volume, station.nu)[0];
         let got = model.stress(place, e);
         for (k, said) in [station.n_a, station.n_b, station.m].into_iter().enumerate() {
             let by = if k == 2 { length } else { 1.0 };
@@ -155,7 +155,7 @@ fn balances(shape: &Shape<'_>, solved: &Configuration, out: &mut Residuals) {
     let at = |k: usize, x: f64| {
         [0, 1, 2, 3].map(|c| shape.points.value(&carried[k].iter().map(|z| z[c]).collect::<Vec<f64>>(), x))
     };
-    let unstrained = arm.readings.support == hydrostat::Support::UnstrainedBase;
+    let unstrained = arm.model.support == hydrostat::Support::UnstrainedBase;
     // n_f(L), m_f(L): the loads of the tip, or what the integration from the base leaves there.
     let mut beyond = if unstrained { at(last, 1.0)[1..].try_into().unwrap_or(loads) } else { loads };
     if let Some(unmet) = &solved.unmet {

@@ -19,8 +19,8 @@ impl Model {
     /// Whether strains at a point hang on those at others.
     fn is_coupled(&self, element: &Element) -> bool {
         let pulled = element.start.iter().any(|tension| *tension != 0.0);
-        let lateral = self.arm.flow.speed > 0.0 && self.arm.readings.flow_surface == FlowSurface::Lateral;
-        let swells = self.arm.readings.volume != Volume::None;
+        let lateral = self.arm.flow.speed > 0.0 && self.arm.model.flow_surface == FlowSurface::Lateral;
+        let swells = self.arm.model.volume != Volume::None;
         (swells && (pulled || lateral)) || self.rubs(element)
     }
 

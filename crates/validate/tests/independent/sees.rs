@@ -1,6 +1,6 @@
 //! The checker sees what it is there for: an answer to another arm is corrected to the answer of this one.
 
-use hydrostat::{Arm, Cable, FlowLaw, Gravity, Material, Motion, Profile, Readings, Volume};
+use hydrostat::{Arm, Cable, FlowLaw, Gravity, Material, ModelOptions, Motion, Profile, Volume};
 
 use crate::correction::equilibrium_beside;
 use crate::mechanics::Model;
@@ -87,7 +87,7 @@ fn every_change_is_seen_in_other_readings_and_laws() {
         (Volume::Circular, FlowLaw::Momentum),
     ] {
         let mut before = arm();
-        before.readings = Readings { volume, ..Readings::default() };
+        before.model = ModelOptions { volume, ..ModelOptions::default() };
         before.flow.law = law;
         for (name, change) in [CHANGES[8], CHANGES[11], CHANGES[14]] {
             let mut after = before.clone();

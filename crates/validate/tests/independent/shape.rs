@@ -69,7 +69,7 @@ impl Element {
 
     /// beta' as the slope of the polynomial through beta at the points.
     pub(crate) fn follow_beta(&mut self, model: &Model, points: &Points) {
-        let volume = model.arm.readings.volume;
+        let volume = model.arm.model.volume;
         let values: Vec<f64> = self.strains.iter().map(|e| beta(volume, e[0])[0]).collect();
         self.beta_slope = points.slopes(&values).iter().map(|slope| slope / self.step).collect();
     }
@@ -279,7 +279,7 @@ impl<'a> Shape<'a> {
         let unloaded = self.integral(|element, j| {
             here(element, j).map_or(0.0, |own| {
                 let place = &element.places[j];
-                let slope = beta(model.arm.readings.volume, place.reference[0])[1] * place.reference_slope;
+                let slope = beta(model.arm.model.volume, place.reference[0])[1] * place.reference_slope;
                 let [x, z] = model.tau(&own, place.reference, slope);
                 x.hypot(z)
             })

@@ -12,9 +12,9 @@ use crate::mechanics::{Model, Place, Strains, advance};
 pub(crate) fn applies(arm: &Arm) -> bool {
     let pulled = arm.cables.iter().any(|cable| cable.tension > 0.0 || cable.stroke.is_some());
     let rubs = arm.cables.iter().any(|cable| cable.friction > 0.0);
-    let lateral = arm.flow.speed > 0.0 && arm.readings.flow_surface == FlowSurface::Lateral;
-    let follows = arm.readings.volume != Volume::None && (pulled || lateral);
-    !follows && !rubs && arm.readings.support == Support::Clamped
+    let lateral = arm.flow.speed > 0.0 && arm.model.flow_surface == FlowSurface::Lateral;
+    let follows = arm.model.volume != Volume::None && (pulled || lateral);
+    !follows && !rubs && arm.model.support == Support::Clamped
 }
 
 /// How fast the base may turn with the tip: beyond, other equilibria are too near in theta(L).

@@ -22,12 +22,12 @@ fn is_carried(arm: &Arm) -> bool {
     let hydrostat::Material::Homogeneous { young, .. } = arm.material else { unreachable!() };
     let area = std::f64::consts::PI * radius * radius;
     let along = match arm.flow.law {
-        FlowLaw::Momentum => arm.readings.layer_mean.factor().powi(2),
+        FlowLaw::Momentum => arm.model.layer_mean.factor().powi(2),
         FlowLaw::QuadraticDrag { ct, .. } => ct,
     };
     // Bends carry some of the normal load as tension, too: EI/2 curvature^2 at most, which is small here.
     let pull = along * std::f64::consts::PI * arm.flow.density * radius * arm.flow.speed.powi(2) * arm.length;
-    let most = match arm.readings.volume {
+    let most = match arm.model.volume {
         Volume::Planar => 0.25,
         Volume::Circular => 1.0 / 3.0,
         Volume::None => 0.5,
@@ -123,7 +123,7 @@ fn rods() -> Vec<Arm> {
                 arm.radius = radius.into();
                 arm.base.angle = std::f64::consts::FRAC_PI_2;
                 arm.flow.law = law;
-                arm.readings.volume = volume;
+                arm.model.volume = volume;
                 out.push(arm);
             }
         }
@@ -155,7 +155,7 @@ fn a_blade_bends_steadily_with_the_speed_by_the_momentum_law() {
 fn a_blade_that_the_stream_pulls_to_twice_its_length_is_solved_at_every_speed() {
     let mut arm = blade();
     arm.flow.law = FlowLaw::Momentum;
-    arm.readings.volume = Volume::None;
+    arm.model.volume = Volume::None;
     let solved = solved(&arm);
     are_none(&wrong(&arm, &solved));
     let refused: Vec<f64> = (0..SPEEDS).zip(&solved).filter(|(_, at)| at.is_err()).map(|(k, _)| speed(k)).collect();
@@ -173,7 +173,7 @@ fn rods_bend_steadily_with_the_speed_by_the_other_mean() {
         .into_iter()
         .filter(|arm| arm.flow.law == FlowLaw::Momentum)
         .map(|mut arm| {
-            arm.readings.layer_mean = LayerMean::Momentum;
+            arm.model.layer_mean = LayerMean::Momentum;
             arm.name += ", root of the mean square";
             arm
         })

@@ -18,8 +18,8 @@ use crate::numerics::dispatch::each_block;
 use crate::rod::area_law::SectionStretch;
 use crate::rod::arm::Arm;
 use crate::rod::inertia::Masses;
+use crate::rod::model_options::Volume;
 use crate::rod::profile::Profile;
-use crate::rod::readings::Volume;
 use crate::spatial::equations::{
     AtStation, Equations, FORCE, L, M, MOMENT, N, Q, by_strain_change, failure, inner, slopes, strain_by_state,
 };
@@ -85,7 +85,7 @@ impl SpatialMoving {
             stroke_control: None,
             nodes: 0,
             scales: [1.0; S],
-            closed: arm.readings.volume != Volume::None && !arm.cables.is_empty(),
+            closed: arm.model.volume != Volume::None && !arm.cables.is_empty(),
         }
     }
 

@@ -110,7 +110,7 @@ impl Arm {
     /// use hydrostat::{Arm, Space, Volume};
     ///
     /// let mut rod = Arm::cone(1.0, 0.001, 0.001, 1e9, 0.5); // m, Pa
-    /// rod.readings.volume = Volume::None;
+    /// rod.model.volume = Volume::None;
     /// rod.flow.density = 0.0; // a vacuum
     /// let modes = rod.modes_in_space(4, 4)?.modes;
     /// // A round rod bends to either side at the same frequency.

@@ -2,7 +2,7 @@
 
 use super::check::{finite, positive_profile};
 use super::{Arm, ArmError};
-use crate::rod::readings::FlowSurface;
+use crate::rod::model_options::FlowSurface;
 
 impl Arm {
     pub(super) fn check_space(&self, length: f64) -> Result<(), ArmError> {
@@ -36,7 +36,7 @@ impl Arm {
         }
         space.stream.map_or(Ok([0.0; 3]), |d| unit("flow.direction", d))?;
         space.gravity.map_or(Ok([0.0; 3]), |d| unit("gravity.direction", d))?;
-        if self.readings.flow_surface == FlowSurface::Lateral {
+        if self.model.flow_surface == FlowSurface::Lateral {
             let why = "has no windward side";
             return Err(ArmError::NotInSpace { key: "model.flow_surface".to_owned(), why });
         }

@@ -226,7 +226,7 @@ impl Engine {
     /// Where the switch of the load that can jump is nearest to its jump.
     pub(crate) fn nearest_switch(&mut self) -> Option<f64> {
         self.take_switches();
-        let which = if self.equations.arm().readings.flow_surface == crate::FlowSurface::Lateral { 2 } else { 0 };
+        let which = if self.equations.arm().model.flow_surface == crate::FlowSurface::Lateral { 2 } else { 0 };
         (0..self.equations.stations().len())
             .min_by(|a, b| {
                 let distance = |k: usize| self.switch(k / M, k % M, which).abs();

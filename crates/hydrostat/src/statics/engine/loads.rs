@@ -10,7 +10,7 @@ impl Engine {
     /// Whether something pushes against the arm hard enough that a direct solve may have landed on a
     /// branch that the path does not lead to. Cheap and on the safe side.
     pub(crate) fn needs_continuation(&mut self) -> bool {
-        if self.equations.arm().readings.support == crate::Support::UnstrainedBase {
+        if self.equations.arm().model.support == crate::Support::UnstrainedBase {
             // An initial-value problem has one solution.
             return false;
         }

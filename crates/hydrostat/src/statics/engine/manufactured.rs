@@ -16,10 +16,10 @@ use super::{Engine, Trouble};
 use crate::rod::area_law::area_law;
 use crate::rod::arm::{Arm, Cable, Cavity, FlowLaw, Gravity, Material};
 use crate::rod::loads::{Body, Water, load, uniform};
-use crate::rod::profile::Profile;
-use crate::rod::readings::{
-    Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, Readings, Support, Volume, WettedLength,
+use crate::rod::model_options::{
+    Displaced, EnteringSpeed, FlowSurface, Hydrostatics, LayerMean, ModelOptions, Support, Volume, WettedLength,
 };
+use crate::rod::profile::Profile;
 use crate::statics::dimensions::{N, Units};
 
 /// Taylor coefficients about a place, in s/L.
@@ -147,13 +147,13 @@ impl Manufactured {
         let reference_mu = of(&arm.reference.mu).times(l);
         // theta has the reference's curvature and a wave that begins flat; the unstrained base is straight, whatever
         // the reference is.
-        let straight = arm.readings.support == Support::UnstrainedBase;
+        let straight = arm.model.support == Support::UnstrainedBase;
         let mu_base = if straight { 0.0 } else { arm.reference.mu.at(0.0, l).value * l };
         let mu_slope = reference_mu.0[1];
         let turned = Series([mu_base * s + 0.5 * mu_slope * s * s, mu_base + mu_slope * s, 0.5 * mu_slope, 0.0]);
         let theta = Series::constant(arm.base.angle) + turned + still.times(0.12);
         let mu = theta.slope();
-        let beta = match arm.readings.volume {
+        let beta = match arm.model.volume {
             Volume::Planar => nu.power(-1.0),
             Volume::Circular => nu.power(-0.5),
             Volume::None => Series::constant(1.0),
@@ -194,7 +194,7 @@ impl Manufactured {
         let [nu, eta, mu] = shape.strain.map(Series::value);
         let (sin, cos) = shape.theta.value().sin_cos();
         let beta_slope = shape.beta.slope().value();
-        let stretch = area_law(self.arm.readings.volume, nu);
+        let stretch = area_law(self.arm.model.volume, nu);
         let present = load(water, body, uniform(water), [cos, sin], [nu, eta, mu], &stretch, beta_slope);
         let [n1, n2, m] = shape.carried.map(|c| c.slope().value());
         let [n_a, n_b] = shape.local.map(Series::value);
@@ -267,7 +267,7 @@ fn errors(shape: &Manufactured, elements: usize) -> [f64; 3] {
         Ok(()) => {}
         // Rounding may keep the last digits moving.
         Err(Trouble::Stalled(size)) if size < 1e-10 => {}
-        Err(trouble) => panic!("{:?} on {elements} elements: {trouble:?}", shape.arm.readings),
+        Err(trouble) => panic!("{:?} on {elements} elements: {trouble:?}", shape.arm.model),
     }
     let mut worst = [0.0_f64; 3];
     for (z, s) in engine.solution.nodes.iter().zip(engine.solution.mesh.nodes()) {
@@ -281,16 +281,16 @@ fn errors(shape: &Manufactured, elements: usize) -> [f64; 3] {
 }
 
 /// A hollow cone, curved when unloaded, with two cables, weight and a stream from the side.
-fn arm(readings: Readings, law: FlowLaw) -> Arm {
+fn arm(model: ModelOptions, law: FlowLaw) -> Arm {
     let mut arm = Arm::cone(0.245, 0.010, 0.004, 110e3, 0.45);
-    arm.readings = readings;
+    arm.model = model;
     arm.inner_radius = Profile::linear(0.004, 0.001);
     arm.cavity = Cavity::Sealed;
     arm.density = 1300.0;
     arm.base.angle = 0.1;
     arm.gravity = Some(Gravity { acceleration: 9.81, direction: -1.1 });
     arm.reference.mu = Profile::linear(0.5, -1.0);
-    if readings.support == Support::UnstrainedBase {
+    if model.support == Support::UnstrainedBase {
         // As strains of the base, nu = 1 and eta = 0 whatever these are.
         arm.reference.nu = 1.03.into();
         arm.reference.eta = 0.02.into();
@@ -305,7 +305,7 @@ fn arm(readings: Readings, law: FlowLaw) -> Arm {
 }
 
 /// Every combination of the options that bear on a flow law.
-fn combinations(law: FlowLaw) -> Vec<Readings> {
+fn combinations(law: FlowLaw) -> Vec<ModelOptions> {
     let momentum = law == FlowLaw::Momentum;
     let mut out = Vec::new();
     // The readings of the displaced water differ under the planar law alone.
@@ -317,7 +317,7 @@ fn combinations(law: FlowLaw) -> Vec<Readings> {
                     for wetted_length in [WettedLength::Reference, WettedLength::Deformed] {
                         for hydrostatics in [Hydrostatics::Archimedes, Hydrostatics::NormalOnly] {
                             for support in [Support::Clamped, Support::UnstrainedBase] {
-                                let readings = Readings {
+                                let model = ModelOptions {
                                     volume,
                                     flow_surface,
                                     entering_speed,
@@ -329,7 +329,7 @@ fn combinations(law: FlowLaw) -> Vec<Readings> {
                                 };
                                 let usual = (entering_speed, layer_mean) == Default::default();
                                 if momentum || usual {
-                                    out.push(readings);
+                                    out.push(model);
                                 }
                             }
                         }
@@ -347,14 +347,14 @@ fn combinations(law: FlowLaw) -> Vec<Readings> {
 fn check(law: FlowLaw) {
     let (mut lowest, mut last) = ([f64::INFINITY; 2], [0.0_f64; 3]);
     let all = combinations(law);
-    for readings in &all {
-        let shape = Manufactured::new(arm(*readings, law));
+    for model in &all {
+        let shape = Manufactured::new(arm(*model, law));
         let [coarse, fine, finest] = [16, 32, 64].map(|n| errors(&shape, n));
         println!(
             "{:.1} {:.1} {:?} {:?} {:?} {:?}",
             (coarse[0] / fine[0]).log2(),
             (fine[0] / finest[0]).log2(),
-            readings,
+            model,
             coarse,
             fine,
             finest
@@ -385,7 +385,7 @@ fn chosen_shapes_are_found_with_order_8_in_quadratic_drag() {
 #[test]
 fn a_chosen_shape_is_found_and_no_other() {
     let law = FlowLaw::Momentum;
-    let shape = Manufactured::new(arm(Readings::default(), law));
+    let shape = Manufactured::new(arm(ModelOptions::default(), law));
     let mut other = shape.clone();
     other.arm.tip.moment *= 1.0 + 1e-6;
     let (right, wrong) = (errors(&shape, 32), errors(&other, 32));

@@ -32,7 +32,7 @@ impl Engine {
         if self.equations.stroke_control.is_some() {
             return self.iterate_at_strokes(tolerance, most);
         }
-        let clamped = self.equations.arm().readings.support == crate::Support::Clamped;
+        let clamped = self.equations.arm().model.support == crate::Support::Clamped;
         let most = if clamped { most } else { 60 };
         let (mut applied, mut halvings, mut round) = (0.0, 0, 0);
         let mut before = f64::INFINITY;

@@ -53,7 +53,7 @@ impl Refinable for Engine {
     /// Kinks of friction are given while a shape is looked for, and as beside them chi' is not zero (`friction`), what
     /// a node that is off one costs is of first order.
     fn resolution(&self, tolerance: f64) -> f64 {
-        let resolution = kink_resolution(tolerance, self.arm().readings.load_can_jump());
+        let resolution = kink_resolution(tolerance, self.arm().model.load_can_jump());
         if self.equations.capstan.is_some() { resolution.min(OF_FRICTION) } else { resolution }
     }
 

@@ -42,7 +42,7 @@ impl Engine {
         if new.is_empty() {
             return Ok(());
         }
-        let mut moving = self.kinks(10.0 * kink_resolution(tolerance, self.equations.arm().readings.load_can_jump()));
+        let mut moving = self.kinks(10.0 * kink_resolution(tolerance, self.equations.arm().model.load_can_jump()));
         moving.extend(&new);
         let mut mesh = self.solution.mesh.clone();
         mesh.pin(&self.breaks, &moving);

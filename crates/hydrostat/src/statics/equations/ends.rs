@@ -4,7 +4,7 @@ use hydrostat_bvp::Condition;
 
 use super::system::Equations;
 use crate::rod::arm::TipLoad;
-use crate::rod::readings::Support;
+use crate::rod::model_options::Support;
 use crate::statics::dimensions::N;
 
 impl Equations {
@@ -13,7 +13,7 @@ impl Equations {
     pub(super) fn base_conditions(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
         out[0].residual = z[0] - self.arm.base.angle;
         out[0].gradient[0] = 1.0;
-        if self.arm.readings.support == Support::UnstrainedBase {
+        if self.arm.model.support == Support::UnstrainedBase {
             let (sin, cos) = self.arm.base.angle.sin_cos();
             let stiffness = self.place(0.0).stiffness;
             let unstrained = [1.0, 0.0, 0.0];
@@ -36,7 +36,7 @@ impl Equations {
 
     /// n_f(L) = tip force (dead, and following a(L), b(L)), m_f(L) = tip moment.
     pub(super) fn tip_conditions(&self, z: &[f64; N], out: &mut [Condition<N>; N]) {
-        if self.arm.readings.support == Support::UnstrainedBase {
+        if self.arm.model.support == Support::UnstrainedBase {
             return;
         }
         let (load, turn) = self.tip_load(z[0]);

@@ -14,8 +14,8 @@ use crate::rod::arm::Arm;
 use crate::rod::cable_list::CableList;
 use crate::rod::flow::Law;
 use crate::rod::loads::{Load, Water, load, uniform};
+use crate::rod::model_options::{FlowSurface, Support, Volume};
 use crate::rod::profile::Profile;
-use crate::rod::readings::{FlowSurface, Support, Volume};
 use crate::rod::section::{CableAt, Stiffness, apply3};
 use crate::rod::section_solve::{Solved, solve_section};
 use crate::statics::dimensions::{L, N, Q, Units};
@@ -69,7 +69,7 @@ impl Equations {
         let mut this = Self {
             units: Units { length, force: 1.0 },
             water: water(arm),
-            volume: arm.readings.volume,
+            volume: arm.model.volume,
             tensions: Vec::new(),
             ends: arm.cables.iter().map(|c| c.end).collect(),
             arm: arm.clone(),
@@ -232,7 +232,7 @@ impl Equations {
 
     /// Whether beta' enters the equations.
     pub(crate) fn is_closed(&self) -> bool {
-        let lateral = self.arm.readings.flow_surface == FlowSurface::Lateral && self.water.stream != [0.0; 2];
+        let lateral = self.arm.model.flow_surface == FlowSurface::Lateral && self.water.stream != [0.0; 2];
         self.volume != Volume::None && (!self.tensions.is_empty() || lateral)
     }
 
@@ -494,7 +494,7 @@ impl Problem<N, Q, L> for Equations {
     }
 
     fn left_count(&self) -> usize {
-        match self.arm.readings.support {
+        match self.arm.model.support {
             Support::Clamped => 1,
             Support::UnstrainedBase => N,
         }
@@ -510,7 +510,7 @@ impl Problem<N, Q, L> for Equations {
 }
 
 pub(crate) fn water(arm: &Arm) -> Water {
-    let r = &arm.readings;
+    let r = &arm.model;
     Water {
         stream: if arm.flow.density == 0.0 { [0.0; 2] } else { arm.stream() },
         law: Law::new(arm.flow.law, r.entering_speed, r.layer_mean.factor()),

@@ -31,10 +31,10 @@ pub(crate) fn name_limit(engine: &mut Engine, trouble: Option<&Trouble>) -> (Ver
     if let Some(failure) = &failed {
         near.note_failure(failure);
     }
-    let readings = engine.equations.arm().readings;
+    let model = engine.equations.arm().model;
     let (kind, s) = match limit_at(near, engine.equations.volume()) {
         Some((kind, s)) => (kind, Some(s)),
-        None if readings.load_can_jump() && failed.is_none() => (VerdictKind::LoadJump, engine.nearest_switch()),
+        None if model.load_can_jump() && failed.is_none() => (VerdictKind::LoadJump, engine.nearest_switch()),
         None => (VerdictKind::NotFound, failed.map(|f| f.s)),
     };
     (kind, s.map(|s| s * engine.equations.units.length))

@@ -517,7 +517,7 @@ impl<E: Loaded> Ramp<'_, '_, E> {
     fn never_started(&mut self) -> Verdict {
         *self.stepper.engine.last_mut() = 0.0;
         let engine = &self.stepper.engine;
-        if engine.spent().is_none() && engine.arm().readings.load_can_jump() {
+        if engine.spent().is_none() && engine.arm().model.load_can_jump() {
             let length = self.stepper.engine.arm().length;
             let place = self.stepper.engine.place_of_jump();
             self.end(VerdictKind::LoadJump, 0.0, place.map(|s| s * length))

@@ -1,8 +1,8 @@
 //! What paths are made of: points with their events, branches and their ends.
 
 use crate::rod::arm::Arm;
+use crate::rod::model_options::Support;
 use crate::rod::parameter::{Parameter, Refused};
-use crate::rod::readings::Support;
 use crate::statics::configuration::Configuration;
 use crate::statics::stability::Stability;
 use crate::statics::verdict::{SolveError, VerdictKind};
@@ -185,7 +185,7 @@ pub enum PathError<E = SolveError> {
 
 /// Whether there are paths of the equilibria of `arm`.
 pub(crate) fn has_a_path<E>(arm: &Arm) -> Result<(), PathError<E>> {
-    if arm.readings.support == Support::UnstrainedBase {
+    if arm.model.support == Support::UnstrainedBase {
         return Err(PathError::Support);
     }
     match arm.cables.iter().find(|c| c.friction > 0.0) {

@@ -195,10 +195,10 @@ impl Support {
     }
 }
 
-/// All readings together. `Readings::default()` is the consistent one, [`Readings::LITERAL`] the one closest to the
+/// All readings together. `ModelOptions::default()` is the consistent one, [`ModelOptions::LITERAL`] the one closest to the
 /// source's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct Readings {
+pub struct ModelOptions {
     /// Section stretch.
     pub volume: Volume,
     /// Surface that directs the flow loads.
@@ -217,7 +217,7 @@ pub struct Readings {
     pub support: Support,
 }
 
-impl Readings {
+impl ModelOptions {
     /// `closure = "literal"`: lateral, resultant, speed, reference, normal-only, planar, clamped. The water displaced
     /// is that of the default.
     ///
