@@ -270,7 +270,7 @@ impl Arm {
         Ok(())
     }
 
-    /// Whether bodies, cables and readings of both arms are laid out alike, whatever they are made of and whatever
+    /// Whether bodies, cables and model options of both arms are laid out alike, whatever they are made of and whatever
     /// loads them.
     pub(crate) fn has_geometry_of(&self, other: &Self) -> bool {
         self.length == other.length

@@ -195,8 +195,8 @@ impl Support {
     }
 }
 
-/// All readings together. `ModelOptions::default()` is the consistent one, [`ModelOptions::LITERAL`] the one closest to the
-/// source's words.
+/// All options together. `ModelOptions::default()` has the consistent readings of the source,
+/// [`ModelOptions::LITERAL`] those closest to its words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct ModelOptions {
     /// Section stretch.

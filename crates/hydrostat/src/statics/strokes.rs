@@ -15,8 +15,8 @@
 //! T >= 0,  c >= 0,  T c = 0
 //! ```
 //!
-//! for every such cable, which is solved as it stands: Newton rounds on the shape and the tensions of the
-//! taut cables together (`engine/stroke_control`), whose set changes until no taut cable pushes and no slack one is too short.
+//! for every such cable, which is solved as it stands: Newton rounds on the shape and the tensions of the taut cables
+//! together (`engine/stroke_control`), whose set changes until no taut cable pushes and no slack one is too short.
 //!
 //! Several shapes can have the same strokes. The one meant is the end of this path: loads and given tensions first,
 //! the commanded cables slack (section 7 of `docs/model.md`), then all commanded strokes in proportion, from

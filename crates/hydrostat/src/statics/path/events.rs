@@ -120,8 +120,8 @@ impl<E: Traced> Stepper<'_, E> {
         found.map(|found| (cut, found))
     }
 
-    /// The bifurcation between two points, on their mesh. Corrections are of little worth right at it, so that it is found
-    /// from the determinants around it, which vary smoothly: by inverse interpolation.
+    /// The bifurcation between two points, on their mesh. Corrections are of little worth right at it, so that it is
+    /// found from the determinants around it, which vary smoothly: by inverse interpolation.
     fn bifurcation_between(&mut self, here: &Point<E>, next: Point<E>, step: f64, control: StepControl) -> Point<E> {
         // Determinants over that of the first point.
         let unit = here.size;
