@@ -285,7 +285,7 @@ impl SpatialSolver {
     /// Moves the engine's solution on to the present loads by the solutions before it.
     fn predict(&mut self) {
         let next = loads(self.arm());
-        let here = std::mem::take(&mut self.loads);
+        let here = self.loads.clone();
         let solution = self.engine.solution.clone();
         self.engine.lead_on(&self.before.steps(&here, &next));
         self.before.push(here, solution);

@@ -415,7 +415,7 @@ impl Solver {
     /// regular steps; a control loop's have none, and copies of solutions would cost it allocations.
     fn predict(&mut self) {
         let next = loads(self.engine.equations.arm());
-        let here = std::mem::take(&mut self.loads);
+        let here = self.loads.clone();
         let solution = self.engine.solution.clone();
         self.engine.lead_on(&self.before.steps(&here, &next));
         self.before.push(here, solution);
