@@ -112,3 +112,28 @@ fn rows_at_hand_are_rows_of_configurations() {
     assert!(short.next(&arm(1.9)).is_err() && short.next(&arm(-1.0)).is_err());
     assert_eq!(short.next(&arm(0.1)).unwrap().tip, arm(0.1).solve().unwrap().tip());
 }
+
+/// A row whose warm start failed was solved from the unloaded arm on the meshes that the row before had left.
+#[test]
+fn a_row_far_from_the_one_before_is_that_of_a_solve() {
+    for in_space in [false, true] {
+        let far = |tension: f64| {
+            let mut arm = arm(tension);
+            arm.space = in_space.then(Space::default);
+            arm.flow.speed = 0.1;
+            arm
+        };
+        let wanted = Wanted::default();
+        if in_space {
+            let mut rows = Rows::<SpatialSolver>::new(Options::default(), wanted).unwrap();
+            rows.next(&far(0.05)).unwrap();
+            let cold = SpatialSolver::new(&far(0.7), Options::default()).unwrap().solve().unwrap();
+            assert_eq!(rows.next(&far(0.7)).unwrap().tip, cold.tip());
+        } else {
+            let mut rows = Rows::<Solver>::new(Options::default(), wanted).unwrap();
+            rows.next(&far(0.05)).unwrap();
+            rows.next(&far(0.06)).unwrap();
+            assert_eq!(rows.next(&far(0.7)).unwrap().tip, far(0.7).solve().unwrap().tip());
+        }
+    }
+}
