@@ -244,10 +244,10 @@ impl SpatialSolver {
 
     /// The tip that the engine holds.
     fn answer(&mut self) -> Option<Answer<SpatialTip>> {
-        let estimate = self.solved.as_ref()?.estimate;
+        let Solved { estimate, steps, .. } = *self.solved.as_ref()?;
         let tip = self.engine.read_tip()?;
         let length = self.engine.equations.units.length;
-        Some(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(0) })
+        Some(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(steps) })
     }
 
     /// A few Newton rounds on the mesh there is: the estimated error, over L. `None` where that is no way to the

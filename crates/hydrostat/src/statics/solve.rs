@@ -366,10 +366,10 @@ impl Solver {
 
     /// The tip that the engine holds.
     fn answer(&mut self) -> Option<Answer> {
-        let estimate = self.solved.as_ref()?.estimate;
+        let Solved { estimate, steps, .. } = *self.solved.as_ref()?;
         let tip = self.engine.read_tip().ok()?;
         let length = self.engine.equations.units.length;
-        Some(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(0) })
+        Some(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(steps) })
     }
 
     /// The tip of the configuration that the engine holds.
