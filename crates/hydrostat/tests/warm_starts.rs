@@ -1,7 +1,8 @@
 //! Warm starts: what they give, on which branch, and what is read of them.
 
 use hydrostat::{
-    Arm, Cable, Options, Pose as _, Profile, Rows, SnapBounds, Solver, Space, SpatialSolver, Wanted, WarmStart,
+    Arm, Cable, Gravity, Options, Parameter, Pose as _, Profile, Rows, SnapBounds, Solver, Space, SpatialSolver,
+    Wanted, WarmStart,
 };
 
 /// A cone with a cable, in a stream from ahead that it gives way to by a snap.
@@ -137,4 +138,53 @@ fn a_row_far_from_the_one_before_is_that_of_a_solve() {
             assert_eq!(rows.next(&far(0.7)).unwrap().tip, far(0.7).solve().unwrap().tip());
         }
     }
+}
+
+/// Changes one load, the base or the material by the fraction `by`.
+fn changed(arm: &mut Arm, what: usize, by: f64) {
+    match what {
+        0 => arm.flow.speed *= 1.0 + by,
+        1 => arm.flow.direction += by,
+        2 => arm.gravity.as_mut().unwrap().direction += by,
+        3 => arm.flow.density *= 1.0 + by,
+        4 => arm.base.angle += by,
+        5 => arm.density *= 1.0 + by,
+        6 => Parameter::Young.set(arm, 110e3 * (1.0 + by)).unwrap(),
+        7 => arm.tip.force[1] += 5e-3 * by,
+        _ => arm.cables[1].tension += 0.5 * by,
+    }
+}
+
+/// Whatever of loads, base and material changes, an update gives what a solve from the unloaded arm does.
+#[test]
+fn updates_are_solves_whatever_changes() {
+    let options = Options::default();
+    let mut warm = [0, 0];
+    for by in [0.01, 0.05, 0.2] {
+        let mut flat = arm(0.05);
+        flat.cables.push(Cable::new("right", Profile::linear(-0.005, -0.001)).pulled(0.02));
+        (flat.density, flat.flow.speed) = (1200.0, 0.06);
+        flat.gravity = Some(Gravity { acceleration: 9.81, direction: 0.4 });
+        let mut solid = flat.clone();
+        solid.space = Some(Space::default());
+        solid.cables[1].angle = 2.0.into();
+        let (mut plane, mut space) =
+            (Solver::new(&flat, options).unwrap(), SpatialSolver::new(&solid, options).unwrap());
+        let rounds = [plane.update().unwrap().statistics, space.update().unwrap().statistics].map(|s| s.newton_rounds);
+        for what in 0..9 {
+            changed(&mut flat, what, by);
+            changed(&mut solid, what, by);
+            plane.set_arm(&flat).unwrap();
+            space.set_arm(&solid).unwrap();
+            let (one, other) = (plane.update().unwrap(), space.update().unwrap());
+            let off = [
+                one.tip.distance_to(&flat.solve().unwrap().tip()),
+                other.tip.distance_to(&SpatialSolver::new(&solid, options).unwrap().solve().unwrap().tip()),
+            ];
+            assert!(off.iter().all(|off| *off < 2e-8 * flat.length), "change {what} by {by}: {off:?}");
+            warm[0] += usize::from(one.statistics.newton_rounds < rounds[0]);
+            warm[1] += usize::from(other.statistics.newton_rounds < rounds[1]);
+        }
+    }
+    assert!(warm.iter().all(|warm| *warm >= 9), "{warm:?} of 27 are warm");
 }
