@@ -143,11 +143,13 @@ impl Reaching for SpatialSolver {
     }
 
     fn settle(&mut self) -> Option<()> {
-        self.update().ok().map(drop)
+        self.update().ok()?;
+        self.evaluate()
     }
 
     fn settle_warm(&mut self) -> Option<()> {
-        Self::settle_warm(self).map(drop)
+        Self::settle_warm(self)?;
+        self.evaluate()
     }
 
     fn tensions(&self) -> Vec<f64> {
