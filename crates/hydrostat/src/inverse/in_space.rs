@@ -143,13 +143,11 @@ impl Reaching for SpatialSolver {
     }
 
     fn settle(&mut self) -> Option<()> {
-        self.update().ok()?;
-        self.evaluate()
+        self.update().ok().map(drop)
     }
 
     fn settle_warm(&mut self) -> Option<()> {
-        Self::settle_warm(self)?;
-        self.evaluate()
+        Self::settle_warm(self).map(drop)
     }
 
     fn tensions(&self) -> Vec<f64> {

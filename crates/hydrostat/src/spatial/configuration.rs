@@ -271,19 +271,6 @@ impl Engine {
         [base.x, base.y, self.equations.space.z]
     }
 
-    /// Evaluates the equations at the solution, which the last round has moved, for those who read sections and
-    /// strokes. That is no work of a solve.
-    pub(super) fn evaluate_to_read(&mut self) -> Result<(), Trouble> {
-        let evaluations = self.system.evaluations;
-        evaluate(&mut self.system, &self.equations, &self.solution).map_err(Trouble::Section)?;
-        self.system.evaluations = evaluations;
-        if self.spans.len() != self.solution.mesh.elements() {
-            // The mesh was changed and no round followed.
-            self.system.quadratures(&mut self.spans);
-        }
-        Ok(())
-    }
-
     /// Begins anew to count what a solve takes.
     pub(super) fn reset_statistics(&mut self) {
         (self.rounds, self.meshes) = (0, 0);
@@ -299,7 +286,13 @@ pub(crate) fn angle_to_tangent(strain: &[f64; L]) -> f64 {
 impl SpatialConfiguration {
     /// Reads the engine's solution out; the engine must be settled.
     pub(super) fn read(engine: &mut Engine, error_estimate: f64, statistics: Statistics) -> Result<Self, Trouble> {
-        engine.evaluate_to_read()?;
+        let evaluations = engine.system.evaluations;
+        evaluate(&mut engine.system, &engine.equations, &engine.solution).map_err(Trouble::Section)?;
+        engine.system.evaluations = evaluations;
+        if engine.spans.len() != engine.solution.mesh.elements() {
+            // The mesh was changed and no round followed.
+            engine.system.quadratures(&mut engine.spans);
+        }
         let arm = engine.equations.arm_at_fraction();
         let mesh = &engine.solution.mesh;
         let n = mesh.elements();

@@ -223,12 +223,7 @@ impl SpatialSolver {
         self.engine.derivatives(sums, parameters, method)
     }
 
-    /// Evaluates the equations at the solution, for [`SpatialSolver::strokes_now`].
-    pub(crate) fn evaluate(&mut self) -> Option<()> {
-        self.engine.evaluate_to_read().ok()
-    }
-
-    /// Strokes of the first cables as they are commanded, over L, by the last evaluation.
+    /// Strokes of the first cables as they are commanded, over L.
     pub(crate) fn strokes_now(&self, count: usize) -> Vec<f64> {
         let at = StageData::of(&self.engine.system, &self.engine.solution);
         (0..count).map(|c| self.engine.equations.stroke(c, at)[0]).collect()
