@@ -188,3 +188,16 @@ fn updates_are_solves_whatever_changes() {
     }
     assert!(warm.iter().all(|warm| *warm >= 9), "{warm:?} of 27 are warm");
 }
+
+/// Tensions that were set in space left strokes commanded, and were not what was solved for.
+#[test]
+fn tensions_in_space_replace_strokes() {
+    let mut arm = arm(0.0);
+    arm.space = Some(Space::default());
+    arm.cables[0].stroke = Some(0.003);
+    let mut solver = SpatialSolver::new(&arm, Options::default()).unwrap();
+    assert!(solver.solve().unwrap().cables[0].command.is_some());
+    solver.set_tensions(&[0.05]).unwrap();
+    let found = solver.configuration().unwrap();
+    assert!(found.cables[0].command.is_none() && found.cables[0].tension == 0.05);
+}

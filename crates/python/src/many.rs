@@ -41,7 +41,7 @@ enum Answer<R> {
 type RowOf<S> = Row<<S as Columns>::Tip, <S as Columns>::Wrench, <S as Columns>::Stations>;
 
 /// The columns of rows, of a solver in the plane or in space.
-trait Columns: Clone + Send + Sync + RowSolver<Row = RowOf<Self>> {
+trait Columns: RowSolver<Row = RowOf<Self>> {
     type Tip: Send + Sync;
     type Wrench: Send + Sync;
     type Stations: Send + Sync;

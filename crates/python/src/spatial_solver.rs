@@ -39,11 +39,9 @@ impl SpatialSolver {
     }
 
     /// Strokes are then no longer commanded.
-    fn set_tensions(&mut self, py: Python<'_>, tensions: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+    fn set_tensions(&mut self, tensions: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         let tensions = finite("tensions", &tensions, false)?;
-        let mut arm = self.solver.arm().clone();
-        arm.set_tensions(&tensions).map_err(|error| wrong(format!("tensions: {error}")))?;
-        self.set_arm(py, &arm)
+        self.solver.set_tensions(&tensions).map_err(|error| wrong(format!("tensions: {error}")))
     }
 
     fn set_stroke(&mut self, py: Python<'_>, cable: usize, stroke: f64) -> PyResult<()> {

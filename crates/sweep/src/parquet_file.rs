@@ -30,7 +30,7 @@ fn hardly_repeat(values: &[f64]) -> bool {
 
 fn properties(columns: &[Column], notes: &[(&str, String)]) -> Arc<WriterProperties> {
     let notes = notes.iter().map(|(key, value)| KeyValue::new((*key).to_owned(), value.clone())).collect();
-    // Bytes of numbers that were taken apart by place are runs or noise: the fastest level is within 1 % of the best.
+    // Bytes of numbers that were taken apart by place are runs or noise: level 6 makes files 1 % smaller than this.
     let level = GzipLevel::try_new(1).unwrap_or_default();
     let mut builder = WriterProperties::builder()
         .set_compression(Compression::GZIP(level))

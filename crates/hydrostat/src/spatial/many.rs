@@ -3,12 +3,12 @@
 use super::row::SpatialRow;
 use super::solve::SpatialSolver;
 use crate::rod::arm::Arm;
-use crate::statics::many::{ManyOptions, NoRow, RowSolver, in_tiles, no_row};
+use crate::statics::many::{ManyOptions, NoRow, asked, in_tiles, no_row};
 use crate::statics::row::Wanted;
 use crate::statics::solve::Options;
 use crate::statics::verdict::SolveError;
 
-impl RowSolver for SpatialSolver {
+impl asked::Answers for SpatialSolver {
     type Row = SpatialRow;
 
     fn for_arm(arm: &Arm, options: Options) -> Result<Self, NoRow> {

@@ -8,20 +8,20 @@ use super::tip::{SpatialSnap, SpatialTip};
 use crate::numerics::distance;
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::engine::{Trouble, WORK, led_on};
+use crate::statics::kept::{Kept, holds_equilibrium};
 use crate::statics::path::loaded::Loaded as _;
 use crate::statics::path::{
     PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium, no_equilibrium_in_range,
 };
-use crate::statics::prediction::Recent;
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::row::Wanted;
 use crate::statics::shape::Pose as _;
 use crate::statics::solve::{Answer, Options};
-use crate::statics::solved::Solved;
 use crate::statics::verdict::{NoEquilibrium, Phase, SolveError, Verdict, VerdictKind};
-use crate::statics::warm_start::{
-    FARTHEST, FARTHEST_ON_RAMP, WarmStart, alike, differ_in_loads, loads, may_be_followed,
-};
+use crate::statics::warm_start::{FARTHEST_ON_RAMP, WarmStart, alike, differ_in_loads, may_be_followed};
+
+/// A tip that moves further (over L) than this in a warm start has left what a small change of the loads does.
+const FARTHEST: f64 = 0.2;
 
 /// How far (over L) the tip may move when the end of a path is made accurate.
 const MOVED: f64 = 0.05;
@@ -47,15 +47,7 @@ impl From<SolveError> for SpatialError {
 pub struct SpatialSolver {
     pub(super) engine: Engine,
     pub(super) options: Options,
-    /// Whether the engine's solution is a start for a warm start.
-    settled: bool,
-    /// Sign of the determinant of the last configuration.
-    sign: f64,
-    /// The engine's solution, if it is that of the present loads.
-    solved: Option<Solved<SpatialTip>>,
-    /// The loads that the engine's solution belongs to, and the solutions before it: for [`WarmStart::Ramp`].
-    loads: Vec<f64>,
-    before: Recent<Guess>,
+    kept: Kept<Guess, SpatialTip>,
 }
 
 impl SpatialSolver {
@@ -68,8 +60,7 @@ impl SpatialSolver {
         arm.space.get_or_insert_default();
         arm.check()?;
         options.check()?;
-        let (engine, before) = (Engine::new(&arm), Recent::new());
-        Ok(Self { engine, options, settled: false, sign: 1.0, solved: None, loads: Vec::new(), before })
+        Ok(Self { engine: Engine::new(&arm), options, kept: Kept::new() })
     }
 
     /// The arm, with the loads that were set last.
@@ -79,7 +70,7 @@ impl SpatialSolver {
 
     /// What holds the last configuration.
     pub(crate) fn engine_mut(&mut self) -> &mut Engine {
-        (self.settled, self.solved) = (false, None);
+        self.kept.forget();
         &mut self.engine
     }
 
@@ -92,7 +83,7 @@ impl SpatialSolver {
         self.engine.release_strokes();
         let mut solved = self.solve_tensions()?;
         if self.arm().is_commanded() {
-            (self.settled, self.solved) = (false, None);
+            self.kept.forget();
             solved = self.solve_strokes(solved)?;
             self.remember(&solved);
         }
@@ -112,36 +103,27 @@ impl SpatialSolver {
             && !self.engine.needs_continuation()
             && let Ok(configuration) = self.read(estimate, PathSummary::default())
         {
-            (self.settled, self.sign) = (true, 1.0);
+            (self.kept.is_start, self.kept.sign) = (true, 1.0);
             self.remember(&configuration);
             return Ok(configuration);
         }
         self.solve_along_the_path()
     }
 
-    /// The engine's solution is that of the present loads, read as `configuration`.
-    fn remember(&mut self, configuration: &SpatialConfiguration) {
-        self.solved = Some(Solved {
-            estimate: configuration.error_estimate / self.engine.equations.units.length,
-            steps: configuration.statistics.load_steps,
-            snaps: configuration.snaps.clone(),
-            stable: configuration.stable,
-        });
-    }
+    holds_equilibrium!(SpatialConfiguration, SpatialTip, SpatialError);
 
-    /// To be called before loads change: what the engine holds is the solution of the loads before.
-    fn leave_loads(&mut self) {
-        if self.solved.take().is_some() && self.options.warm_start == WarmStart::Ramp {
-            self.loads = loads(self.arm());
-        }
-    }
-
-    /// Sets all tensions (N), in the order of the cables.
+    /// Sets all tensions (N), in the order of the cables. Strokes are not commanded any more.
     ///
     /// # Errors
     /// [`SpatialError::Arm`] when their number is wrong or one of them is.
     pub fn set_tensions(&mut self, tensions: &[f64]) -> Result<(), SpatialError> {
-        self.engine.equations.arm().check_tensions(tensions)?;
+        if self.arm().is_commanded() {
+            // What was solved with strokes is no start.
+            let mut arm = self.arm().clone();
+            arm.set_tensions(tensions)?;
+            return self.set_arm(&arm);
+        }
+        self.arm().check_tensions(tensions)?;
         self.leave_loads();
         self.engine.equations.take_tensions(tensions);
         self.engine.check_equations.take_tensions(tensions);
@@ -197,14 +179,7 @@ impl SpatialSolver {
     /// # Ok::<(), hydrostat::SpatialError>(())
     /// ```
     pub fn update(&mut self) -> Result<Answer<SpatialTip>, SpatialError> {
-        let found = match self.refresh()? {
-            Some(found) => found,
-            None => match self.answer() {
-                Some(answer) => return Ok(answer),
-                None => self.solve()?,
-            },
-        };
-        Ok(Answer { tip: found.tip(), error_estimate: found.error_estimate, statistics: found.statistics })
+        self.updated()
     }
 
     /// The configuration under the present loads: solved by [`SpatialSolver::update`] where they changed since the last
@@ -213,13 +188,7 @@ impl SpatialSolver {
     /// # Errors
     /// [`SpatialError::NoEquilibrium`].
     pub fn configuration(&mut self) -> Result<SpatialConfiguration, SpatialError> {
-        if let Some(found) = self.refresh()? {
-            return Ok(found);
-        }
-        match self.read_again() {
-            Some(found) => Ok(found),
-            None => self.solve(),
-        }
+        self.configured()
     }
 
     /// What is wanted of the configuration under the present loads, solved as by [`SpatialSolver::update`].
@@ -230,30 +199,10 @@ impl SpatialSolver {
         Ok(SpatialRow::in_space(&self.configuration()?, wanted))
     }
 
-    /// Solves where loads changed since the last solve. The configuration, if it had to be read for that.
-    pub(super) fn refresh(&mut self) -> Result<Option<SpatialConfiguration>, SpatialError> {
-        if self.solved.is_some() || self.settle_warm().is_some() {
-            return Ok(None);
-        }
-        // With the solution of other loads at hand: a row must not depend on what a row before it left behind.
-        if !self.loads.is_empty() {
-            *self = Self::new(&self.arm().clone(), self.options)?;
-        }
-        self.solve().map(Some)
-    }
-
-    /// The tip that the engine holds.
-    fn answer(&mut self) -> Option<Answer<SpatialTip>> {
-        let Solved { estimate, steps, .. } = *self.solved.as_ref()?;
-        let tip = self.engine.read_tip()?;
-        let length = self.engine.equations.units.length;
-        Some(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(steps) })
-    }
-
     /// A few Newton rounds on the mesh there is: the estimated error, over L. `None` where that is no way to the
     /// answer: nothing was solved before, or the arm moved further than a small change moves it.
     pub(crate) fn settle_warm(&mut self) -> Option<f64> {
-        if !self.settled {
+        if !self.kept.is_start {
             return None;
         }
         self.begin_anew();
@@ -265,7 +214,7 @@ impl SpatialSolver {
         let before = self.engine.tip;
         let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
         let stays =
-            self.engine.system.determinant().sign == self.sign && distance(&before, &self.engine.tip) < FARTHEST;
+            self.engine.system.determinant().sign == self.kept.sign && distance(&before, &self.engine.tip) < FARTHEST;
         if !stays {
             return None;
         }
@@ -276,27 +225,7 @@ impl SpatialSolver {
                 return None;
             }
         }
-        let stable = if self.sign < 0.0 { Some(false) } else { None };
-        self.settled = true;
-        self.solved = Some(Solved { estimate, steps: 0, snaps: Vec::new(), stable });
-        Some(estimate)
-    }
-
-    /// Moves the engine's solution on to the present loads by the solutions before it.
-    fn predict(&mut self) {
-        let next = loads(self.arm());
-        let here = self.loads.clone();
-        let solution = self.engine.solution.clone();
-        self.engine.lead_on(&self.before.steps(&here, &next));
-        self.before.push(here, solution);
-    }
-
-    /// The engine's solution of the present loads, read.
-    fn read_again(&mut self) -> Option<SpatialConfiguration> {
-        let Solved { estimate, steps, snaps, stable } = self.solved.clone()?;
-        let mut found = self.read(estimate, PathSummary { steps, snaps, ..PathSummary::default() }).ok()?;
-        found.stable = stable;
-        Some(found)
+        Some(self.kept.settle(estimate))
     }
 
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
@@ -342,7 +271,7 @@ impl SpatialSolver {
     }
 
     fn begin_anew(&mut self) {
-        (self.settled, self.solved) = (false, None);
+        self.kept.forget();
         self.engine.reset_statistics();
         self.engine.allowed = WORK;
     }
@@ -368,8 +297,8 @@ impl SpatialSolver {
             if sign < 0.0 {
                 configuration.stable = Some(false);
             }
-            self.settled = bifurcations == 0 && snaps.is_empty();
-            self.sign = sign;
+            self.kept.is_start = bifurcations == 0 && snaps.is_empty();
+            self.kept.sign = sign;
             self.remember(&configuration);
             return Ok(configuration);
         }

@@ -53,31 +53,41 @@ pub(crate) fn no_row<C, T>(error: SolveError<C, T>) -> NoRow {
     }
 }
 
-/// A solver of arms in the plane or in space, as far as rows ask for it.
-pub trait RowSolver: Sized {
-    /// The answer of one row.
-    type Row;
+/// A solver that [`Rows`] asks: [`Solver`] or [`crate::SpatialSolver`].
+pub trait RowSolver: asked::Answers {}
 
-    /// A solver for `arm`.
-    ///
-    /// # Errors
-    /// [`NoRow::Arm`] for one that is none.
-    fn for_arm(arm: &Arm, options: Options) -> Result<Self, NoRow>;
+impl<S: asked::Answers> RowSolver for S {}
 
-    /// Takes the arm of the next row.
-    ///
-    /// # Errors
-    /// [`NoRow::Arm`] for one that is none.
-    fn take_arm(&mut self, arm: &Arm) -> Result<(), NoRow>;
+/// What [`Rows`] asks of a solver, with options that it has checked: for itself alone.
+pub(crate) mod asked {
+    use super::{Arm, NoRow, Options, Wanted};
 
-    /// What is wanted of its equilibrium.
-    ///
-    /// # Errors
-    /// [`NoRow::Verdict`] where there is none.
-    fn next_row(&mut self, wanted: Wanted) -> Result<Self::Row, NoRow>;
+    /// The rows of a solver.
+    pub trait Answers: Clone + Send + Sync {
+        /// The answer of one row.
+        type Row: Send;
+
+        /// A solver for `arm`.
+        ///
+        /// # Errors
+        /// [`NoRow::Arm`] for one that is none.
+        fn for_arm(arm: &Arm, options: Options) -> Result<Self, NoRow>;
+
+        /// Takes the arm of the next row.
+        ///
+        /// # Errors
+        /// [`NoRow::Arm`] for one that is none.
+        fn take_arm(&mut self, arm: &Arm) -> Result<(), NoRow>;
+
+        /// What is wanted of its equilibrium.
+        ///
+        /// # Errors
+        /// [`NoRow::Verdict`] where there is none.
+        fn next_row(&mut self, wanted: Wanted) -> Result<Self::Row, NoRow>;
+    }
 }
 
-impl RowSolver for Solver {
+impl asked::Answers for Solver {
     type Row = Row;
 
     fn for_arm(arm: &Arm, options: Options) -> Result<Self, NoRow> {
@@ -151,20 +161,17 @@ impl<S: RowSolver> Rows<S> {
 pub(crate) fn in_tiles<S: RowSolver>(
     arms: &[Arm],
     options: &ManyOptions,
-) -> Result<Vec<Result<S::Row, NoRow>>, SolveError>
-where
-    S::Row: Send,
-{
+) -> Result<Vec<Result<S::Row, NoRow>>, SolveError> {
     let each = Options { snaps: options.snaps, ..Options::with_tol(options.tol) };
-    each.check()?;
+    let start = Rows::<S>::new(each, options.wanted)?;
     if options.tile == 0 {
         return Err(SolveError::Option { option: "tile", value: 0.0, expected: "at least 1" });
     }
-    let tiles = arms.par_chunks(options.tile).map(|arms| {
-        let mut rows = Rows::<S>::new(each, options.wanted)?;
-        Ok(arms.iter().map(|arm| rows.next(arm)).collect())
+    let tiles = arms.par_chunks(options.tile).map(|arms| -> Vec<_> {
+        let mut rows = start.clone();
+        arms.iter().map(|arm| rows.next(arm)).collect()
     });
-    let tiles: Vec<Vec<_>> = tiles.collect::<Result<_, SolveError>>()?;
+    let tiles: Vec<Vec<_>> = tiles.collect();
     Ok(tiles.into_iter().flatten().collect())
 }
 

@@ -3,8 +3,8 @@
 use crate::statics::configuration::{Configuration, FoldMargin, Stations, Tip, Warning, Wrench};
 use crate::statics::engine::Engine;
 use crate::statics::equations::StationData;
+use crate::statics::kept::Solved;
 use crate::statics::snap::Snap;
-use crate::statics::solved::Solved;
 use crate::statics::stability::Stability;
 
 /// What is asked of every row beyond tip, base reaction and error estimate.

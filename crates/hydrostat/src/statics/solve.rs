@@ -4,20 +4,21 @@ use crate::numerics::distance;
 use crate::rod::arm::{Arm, ArmError};
 use crate::statics::configuration::{Configuration, Statistics, Tip};
 use crate::statics::engine::{Engine, Guess, Trouble, WORK};
+use crate::statics::kept::{Kept, holds_equilibrium};
+use crate::statics::path::loaded::Loaded as _;
 use crate::statics::path::{
     BY_MESH, DOUBTFUL, LOOSE, PathSummary, StepControl, Stopped, follow, follow_on, follow_range, no_equilibrium,
     no_equilibrium_in_range,
 };
-use crate::statics::prediction::Recent;
 use crate::statics::refinement::{First, Refinable as _};
 use crate::statics::row::{Row, Wanted};
 use crate::statics::snap::SnapBounds;
-use crate::statics::solved::Solved;
 use crate::statics::stability::Stability;
 use crate::statics::verdict::{Phase, SolveError, Verdict, VerdictKind};
-use crate::statics::warm_start::{
-    FARTHEST, FARTHEST_ON_RAMP, WarmStart, alike, differ_in_loads, loads, may_be_followed,
-};
+use crate::statics::warm_start::{FARTHEST_ON_RAMP, WarmStart, alike, differ_in_loads, may_be_followed};
+
+/// A tip that turns further (rad) than this in a warm start has left what a small change of the loads does.
+const FARTHEST: f64 = 0.2;
 
 /// Tips (over L) that are this near belong to the same shape on two meshes.
 pub(crate) const SAME: f64 = 1e-6;
@@ -81,15 +82,7 @@ impl Options {
 pub struct Solver {
     pub(crate) engine: Engine,
     pub(crate) options: Options,
-    /// Whether the engine's solution is a start for a warm start.
-    settled: bool,
-    /// Sign of the determinant of the last configuration.
-    sign: f64,
-    /// The engine's solution, if it is that of the present loads.
-    solved: Option<Solved>,
-    /// The loads that the engine's solution belongs to, and the solutions before it: for [`WarmStart::Ramp`].
-    loads: Vec<f64>,
-    before: Recent<Guess>,
+    kept: Kept<Guess>,
 }
 
 impl Solver {
@@ -103,8 +96,7 @@ impl Solver {
         if arm.space.is_some() {
             return Err(ArmError::OnlyInPlane { what: "what was asked for" }.into());
         }
-        let (engine, before) = (Engine::new(arm), Recent::new());
-        Ok(Self { engine, options, settled: false, sign: 1.0, solved: None, loads: Vec::new(), before })
+        Ok(Self { engine: Engine::new(arm), options, kept: Kept::new() })
     }
 
     /// The arm, with the loads that were set last.
@@ -129,7 +121,7 @@ impl Solver {
         self.engine.lift_limit();
         if has_friction {
             // The engine holds the last of its iterations, not the answer.
-            self.solved = None;
+            self.kept.solved = None;
         }
         solved
     }
@@ -164,29 +156,19 @@ impl Solver {
 
     /// Begins anew.
     pub(crate) fn forget(&mut self) {
-        (self.settled, self.solved) = (false, None);
+        self.kept.forget();
         self.engine.reset_statistics();
     }
 
     /// Keeps the engine's solution, read as `configuration`, to start from, with the sign of its determinant. After a
     /// snap the way back is another one: no branch to stay on begins there.
     pub(crate) fn keep(&mut self, configuration: &Configuration, sign: f64) {
-        self.settled = configuration.snaps.is_empty() || self.options.warm_start == WarmStart::Ramp;
-        self.sign = sign;
-        self.solved = Some(Solved {
-            estimate: configuration.error_estimate / self.engine.equations.units.length,
-            steps: configuration.statistics.load_steps,
-            snaps: configuration.snaps.clone(),
-            stable: configuration.stable,
-        });
+        self.kept.is_start = configuration.snaps.is_empty() || self.options.warm_start == WarmStart::Ramp;
+        self.kept.sign = sign;
+        self.remember(configuration);
     }
 
-    /// To be called before loads change: what the engine holds is the solution of the loads before.
-    fn leave_loads(&mut self) {
-        if self.solved.take().is_some() && self.options.warm_start == WarmStart::Ramp {
-            self.loads = loads(self.engine.equations.arm());
-        }
-    }
+    holds_equilibrium!(Configuration, Tip, SolveError);
 
     /// Commands the stroke (m, positive when reeled in) of cable `cable` in place of its tension.
     ///
@@ -203,7 +185,7 @@ impl Solver {
         own.stroke = Some(stroke);
         arm.check()?;
         self.leave_loads();
-        self.settled &= !starts_anew && self.options.warm_start == WarmStart::Branch;
+        self.kept.is_start &= !starts_anew && self.options.warm_start == WarmStart::Branch;
         self.engine.set_loads(&arm);
         Ok(())
     }
@@ -257,7 +239,7 @@ impl Solver {
         self.engine.equations.arm().check_tensions(tensions)?;
         self.leave_loads();
         // Strokes are not commanded any more: what was solved with them is no start.
-        self.settled &= self.engine.equations.stroke_control.is_none();
+        self.kept.is_start &= self.engine.equations.stroke_control.is_none();
         self.engine.equations.let_go();
         self.engine.change_loads(|arm| {
             for (cable, tension) in arm.cables.iter_mut().zip(tensions) {
@@ -309,14 +291,7 @@ impl Solver {
     /// # Ok::<(), hydrostat::SolveError>(())
     /// ```
     pub fn update(&mut self) -> Result<Answer, SolveError> {
-        let found = match self.refresh()? {
-            Some(found) => found,
-            None => match self.answer() {
-                Some(answer) => return Ok(answer),
-                None => self.solve()?,
-            },
-        };
-        Ok(Answer { tip: found.tip(), error_estimate: found.error_estimate, statistics: found.statistics })
+        self.updated()
     }
 
     /// The configuration under the present loads: solved by [`Solver::update`] where they changed since the last
@@ -325,13 +300,7 @@ impl Solver {
     /// # Errors
     /// [`SolveError::NoEquilibrium`].
     pub fn configuration(&mut self) -> Result<Configuration, SolveError> {
-        if let Some(found) = self.refresh()? {
-            return Ok(found);
-        }
-        match self.read_again() {
-            Some(found) => Ok(found),
-            None => self.solve(),
-        }
+        self.configured()
     }
 
     /// What is wanted of the configuration under the present loads, solved as by [`Solver::update`]; without reading
@@ -343,33 +312,13 @@ impl Solver {
         if let Some(found) = self.refresh()? {
             return Ok(Row::new(&found, wanted));
         }
-        if let Some(solved) = &self.solved
+        if let Some(solved) = &self.kept.solved
             && !wanted.reads_stations()
             && let Some(row) = Row::at_hand(&mut self.engine, solved, wanted)
         {
             return Ok(row);
         }
-        Ok(Row::new(&self.configuration()?, wanted))
-    }
-
-    /// Solves where loads changed since the last solve. The configuration, if it had to be read for that.
-    pub(crate) fn refresh(&mut self) -> Result<Option<Configuration>, SolveError> {
-        if self.solved.is_some() || self.settle_warm().is_some() {
-            return Ok(None);
-        }
-        // With the solution of other loads at hand: a row must not depend on what a row before it left behind.
-        if !self.loads.is_empty() {
-            *self = Self::new(&self.arm().clone(), self.options)?;
-        }
-        self.solve().map(Some)
-    }
-
-    /// The tip that the engine holds.
-    fn answer(&mut self) -> Option<Answer> {
-        let Solved { estimate, steps, .. } = *self.solved.as_ref()?;
-        let tip = self.engine.read_tip().ok()?;
-        let length = self.engine.equations.units.length;
-        Some(Answer { tip, error_estimate: estimate * length, statistics: self.engine.statistics(steps) })
+        Ok(Row::new(&self.configured()?, wanted))
     }
 
     /// The tip of the configuration that the engine holds.
@@ -384,50 +333,26 @@ impl Solver {
     /// answer: nothing was solved before, the arm moved further than a small change moves it, or cables rub, and which
     /// way they slid is part of the answer.
     pub(crate) fn settle_warm(&mut self) -> Option<f64> {
-        if !self.settled || self.engine.equations.arm().has_friction() {
+        if !self.kept.is_start || self.engine.equations.arm().has_friction() {
             return None;
         }
         self.forget();
         let on_ramp = self.options.warm_start == WarmStart::Ramp;
         if on_ramp {
             self.predict();
+            self.engine.set_phase(Phase::Tension, 1.0);
         }
         let before = self.engine.tip_angle();
         let estimate = self.engine.settle(self.options.tol, First::Warm).ok()?;
         let turned = (self.engine.tip_angle() - before).abs();
         let is_it = if on_ramp {
             // What a direct solve has to pass, too: one equilibrium, and that on the unloaded arm's branch.
-            self.sign = 1.0;
+            self.kept.sign = 1.0;
             !self.engine.needs_continuation() && turned <= FARTHEST_ON_RAMP
         } else {
-            self.engine.determinant().sign == self.sign && turned <= FARTHEST
+            self.engine.determinant().sign == self.kept.sign && turned <= FARTHEST
         };
-        if !is_it {
-            return None;
-        }
-        let stable = if self.sign < 0.0 { Some(false) } else { None };
-        self.settled = true;
-        self.solved = Some(Solved { estimate, steps: 0, snaps: Vec::new(), stable });
-        Some(estimate)
-    }
-
-    /// Moves the engine's solution on to the present loads by the solutions before it. Rows of a table have loads in
-    /// regular steps; a control loop's have none, and copies of solutions would cost it allocations.
-    fn predict(&mut self) {
-        let next = loads(self.engine.equations.arm());
-        let here = self.loads.clone();
-        let solution = self.engine.solution.clone();
-        self.engine.lead_on(&self.before.steps(&here, &next));
-        self.before.push(here, solution);
-        self.engine.set_phase(Phase::Tension, 1.0);
-    }
-
-    /// The engine's solution of the present loads, read.
-    fn read_again(&mut self) -> Option<Configuration> {
-        let Solved { estimate, steps, snaps, stable } = self.solved.clone()?;
-        let mut found = self.read(estimate, PathSummary { steps, snaps, ..PathSummary::default() }).ok()?;
-        found.stable = stable;
-        Some(found)
+        is_it.then(|| self.kept.settle(estimate))
     }
 
     /// Follows the path of `docs/model.md`, section 7, whatever a direct solve would give.
@@ -512,7 +437,7 @@ impl Solver {
 
     /// The engine, which holds the last configuration.
     pub(crate) fn engine_mut(&mut self) -> &mut Engine {
-        (self.settled, self.solved) = (false, None);
+        self.kept.forget();
         &mut self.engine
     }
 

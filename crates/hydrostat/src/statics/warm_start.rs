@@ -3,10 +3,8 @@
 use crate::rod::arm::{Arm, Flow, Space};
 use crate::rod::model_options::Support;
 
-/// A tip that turns further (rad) than this in a warm start has left what a small change of the loads does.
-pub(crate) const FARTHEST: f64 = 0.2;
-
-/// The same where the answer is the one of the arm's load ramp, which other conditions make sure of.
+/// How far the tip may turn (rad) in a warm start to the answer of the arm's load ramp, which other conditions make
+/// sure of.
 pub(crate) const FARTHEST_ON_RAMP: f64 = 0.5;
 
 /// Which equilibrium a warm start may give, where there are several.
